@@ -1,0 +1,115 @@
+/* Recordings: MCAP files of ROS 2 messages (sensor_msgs/msg/Image, sensor_msgs/msg/CameraInfo,
+ * geometry_msgs/msg/PoseStamped or TransformStamped; CDR). Host side: this reader uses the heap. */
+#ifndef T3R_PLATFORM_RECORDING_H
+#define T3R_PLATFORM_RECORDING_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "capture.h"
+
+typedef struct t3r_triplet {
+    uint32_t context[2];
+    uint32_t target;
+} t3r_triplet;
+
+/* ---- reading ------------------------------------------------------------------------------------- */
+
+typedef struct t3r_recording t3r_recording;
+
+/* Reads and indexes a whole recording; NULL with "what, where" in error[] on failure. A file that was cut
+ * off reads up to its last whole message; t3r_recording_note() then says so. */
+t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_bytes);
+/* The same from memory, which must outlive the recording (the fuzzers' way in). */
+t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes);
+void t3r_recording_close(t3r_recording *recording);
+
+uint32_t t3r_recording_frame_count(const t3r_recording *recording);
+/* Frame `index`; its memory lives as long as the recording. T3R_CAPTURE_FRAME, or T3R_CAPTURE_FAILED with a
+ * reason in error[]. */
+int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *error,
+                        size_t error_bytes);
+
+uint32_t t3r_recording_triplet_count(const t3r_recording *recording);
+t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index);
+
+/* "" or a remark such as "cut off after 12 of its messages". */
+const char *t3r_recording_note(const t3r_recording *recording);
+/* The bits epoch that the recording was written in; 0 = not written by trim3r. */
+uint32_t t3r_recording_bits_epoch(const t3r_recording *recording);
+
+typedef struct t3r_stream_info {
+    const char *topic, *schema;
+    uint64_t messages;
+    int64_t first_ns, last_ns; /* log times */
+} t3r_stream_info;
+uint32_t t3r_recording_stream_count(const t3r_recording *recording);
+t3r_stream_info t3r_recording_stream(const t3r_recording *recording, uint32_t index);
+/* How depth, pose and camera_info were paired to the colour images, counted. */
+typedef struct t3r_pairing_info {
+    uint32_t frames, with_depth, with_pose, with_intrinsics;
+    int64_t worst_depth_gap_ns, worst_pose_gap_ns;
+} t3r_pairing_info;
+t3r_pairing_info t3r_recording_pairing(const t3r_recording *recording);
+/* The clock named in the recording's metadata ("synthetic", "monotonic", ...), or "unknown". */
+const char *t3r_recording_clock(const t3r_recording *recording);
+
+/* ---- writing: no heap, one pass, unchunked, uncompressed, CRC-checked ------------------------------- */
+
+typedef struct t3r_sink {
+    /* Appends count bytes; 0 = done. */
+    int (*write)(void *user, const void *bytes, size_t count);
+    void *user;
+} t3r_sink;
+
+/* The camera as the file holds it: doubles, straight from the source. */
+typedef struct t3r_recorded_camera {
+    uint32_t width, height;
+    double fx, fy, cx, cy;      /* pixels; pixel (0, 0) is the centre of the top-left pixel */
+    t3r_distortion distortion;
+    double coefficients[5];
+    double position[3];         /* world units */
+    double rotation[4];         /* w x y z, camera to world */
+} t3r_recorded_camera;
+
+typedef struct t3r_recorded_frame {
+    int64_t stamp_ns;
+    t3r_pixel_format format;
+    uint32_t width, height;
+    const uint8_t *planes[2];
+    uint32_t stride_bytes[2];
+    const uint16_t *depth;      /* NULL = none; host order */
+    uint32_t depth_width, depth_height;
+    t3r_recorded_camera camera;
+} t3r_recorded_frame;
+
+/* Caller-allocated, aligned as uint64_t: t3r_recorder_bytes() of them, or an array of T3R_RECORDER_BYTES, which is
+ * enough on every target. */
+typedef struct t3r_recorder t3r_recorder;
+#define T3R_RECORDER_BYTES 512
+size_t t3r_recorder_bytes(void);
+
+typedef struct t3r_recording_header {
+    const char *camera;         /* topic prefix, "camera" say: 1..47 of A-Z a-z 0-9 _ and, inside, / */
+    const char *source;         /* free text: what was imported */
+    const char *clock;          /* "synthetic", "monotonic", "boottime", ... */
+    double depth_unit;          /* world units a step; kept in Q40; more than 2^-41, less than 2^16 */
+    const t3r_triplet *triplets;
+    uint32_t triplet_count;
+} t3r_recording_header;
+
+/* 0, or -1 once the sink has failed; also -1, and nothing written, for an argument outside its range: a frame's
+ * stamp must lie in 0 .. 2^31 s, its sides in 2..T3R_MAX_SIDE and be even where the format asks for it, its strides
+ * hold a row, its camera be of the image's size. header and what it points to are read during the call only.
+ *
+ * The image is the last message of its frame, so that a file cut off by power loss holds no image without its
+ * pose, intrinsics and depth. */
+int t3r_recorder_begin(t3r_recorder *recorder, t3r_sink sink, const t3r_recording_header *header);
+int t3r_recorder_frame(t3r_recorder *recorder, const t3r_recorded_frame *frame);
+int t3r_recorder_end(t3r_recorder *recorder);
+
+/* A sink that appends to a stdio stream. */
+t3r_sink t3r_file_sink(FILE *file);
+
+#endif

@@ -1,0 +1,271 @@
+/* The C interface: arguments are checked here and nowhere deeper. */
+#include <string.h>
+
+#include "arena.h"
+#include "fixed.h"
+#include "hash.h"
+#include "pipeline.h"
+#include "scene_frame.h"
+#include "state.h"
+
+/* --- the arena ---------------------------------------------------------------------------------------------------- */
+
+/* Changes with the layout: an arena laid out by another build is refused. */
+static uint64_t layout_hash(const t3r_layout *layout)
+{
+    uint64_t hash = t3r_hash_u32(T3R_HASH_START, T3R_BUFFER_COUNT);
+    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
+        hash = t3r_hash_u64(t3r_hash_u64(hash, layout->offset[b]), layout->size[b]);
+    }
+    return t3r_hash_u32(hash, (uint32_t)sizeof(struct t3r_runtime));
+}
+
+static void bind_layout(t3r_runtime *rt, const t3r_layout *layout)
+{
+    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
+        rt->offset[b] = layout->offset[b];
+    }
+    rt->list_capacity = layout->list_capacity;
+    rt->layout_hash = layout_hash(layout);
+}
+
+t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config)
+{
+    if (rt == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    *rt = NULL;
+    if (arena == NULL || config == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (t3r_config_error(config) != NULL) {
+        return T3R_ERR_CONFIG;
+    }
+    t3r_layout layout;
+    if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || t3r_lay_out(config, arena_bytes, &layout) != T3R_OK) {
+        return T3R_ERR_ARENA;
+    }
+    t3r_runtime *state = arena;
+    memset(state, 0, sizeof *state);
+    state->magic = T3R_MAGIC;
+    state->bits_epoch = T3R_BITS_EPOCH;
+    state->arena_bytes = arena_bytes;
+    state->config = *config;
+    bind_layout(state, &layout);
+    *rt = state;
+    return T3R_OK;
+}
+
+t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
+{
+    if (rt == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    *rt = NULL;
+    if (arena == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || arena_bytes < T3R_HEADER_BYTES) {
+        return T3R_ERR_ARENA;
+    }
+    t3r_runtime *state = arena;
+    t3r_layout layout;
+    if (state->magic != T3R_MAGIC || state->bits_epoch != T3R_BITS_EPOCH || state->arena_bytes != arena_bytes ||
+        t3r_config_error(&state->config) != NULL || t3r_lay_out(&state->config, arena_bytes, &layout) != T3R_OK ||
+        state->layout_hash != layout_hash(&layout) || state->views > state->config.views ||
+        state->gaussians > state->config.max_gaussians) {
+        return T3R_ERR_EPOCH;
+    }
+    bind_layout(state, &layout);
+    memset(&state->hooks, 0, sizeof state->hooks);
+    *rt = state;
+    return T3R_OK;
+}
+
+t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks)
+{
+    if (rt == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    rt->hooks = hooks != NULL ? *hooks : (t3r_hooks){0};
+    return T3R_OK;
+}
+
+t3r_status t3r_reset(t3r_runtime *rt)
+{
+    if (rt == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    rt->views = 0;
+    rt->analysed = 0;
+    rt->has_scene = 0;
+    rt->gaussians = 0;
+    rt->valid_points = 0;
+    return T3R_OK;
+}
+
+/* --- views -------------------------------------------------------------------------------------------------------- */
+
+t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
+{
+    if (rt == NULL || frame == NULL || camera == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (rt->views >= rt->config.views || rt->has_scene) {
+        return T3R_ERR_STATE;
+    }
+    if (frame->depth == NULL) {
+        return T3R_ERR_NO_DEPTH;
+    }
+    t3r_camera undistorted;
+    t3r_status status = t3r_develop_view(rt, rt->views, frame, camera, &undistorted);
+    if (status != T3R_OK) {
+        return status;
+    }
+    rt->camera[rt->views] = undistorted;
+    rt->depth_unit_q40[rt->views] = frame->depth_unit_q40;
+    rt->views++;
+    rt->analysed = 0;
+    return T3R_OK;
+}
+
+t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
+                       uint16_t *depth_out, t3r_camera *undistorted)
+{
+    if (rt == NULL || frame == NULL || camera == NULL || rgb_out == NULL || undistorted == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (rt->config.views == 0 || rt->views > 0 || rt->has_scene) {
+        return T3R_ERR_STATE;
+    }
+    t3r_status status = t3r_develop_view(rt, 0, frame, camera, undistorted);
+    if (status != T3R_OK) {
+        return status;
+    }
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(rt, views);
+    size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
+    for (size_t i = 0; i < pixels; i++) {
+        for (int c = 0; c < 3; c++) {
+            rgb_out[3 * i + (size_t)c] = views[0].colour[c][i];
+        }
+    }
+    if (depth_out != NULL) {
+        memcpy(depth_out, views[0].depth, pixels * sizeof *depth_out);
+    }
+    return T3R_OK;
+}
+
+/* --- scenes ------------------------------------------------------------------------------------------------------- */
+
+t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene)
+{
+    if (rt == NULL || scene == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (!rt->has_scene) {
+        return T3R_ERR_STATE;
+    }
+    scene->frame = rt->frame;
+    scene->gaussians = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
+    scene->count = rt->gaussians;
+    scene->valid_points = rt->valid_points;
+    return T3R_OK;
+}
+
+t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene)
+{
+    if (rt == NULL || scene == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (rt->views == 0) {
+        return T3R_ERR_STATE;
+    }
+    rt->has_scene = 0;
+    rt->analysed = 0;
+    t3r_status status = t3r_analyse(rt);
+    if (status == T3R_OK) {
+        status = t3r_spend(rt);
+    }
+    return status == T3R_OK ? t3r_get_scene(rt, scene) : status;
+}
+
+t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head,
+                          t3r_scene *scene)
+{
+    if (rt == NULL || scene == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (!rt->config.keep_analysis || !rt->analysed) {
+        return T3R_ERR_STATE;
+    }
+    t3r_config config = rt->config;
+    config.gaussians = gaussians;
+    config.allocation = allocation;
+    config.head = head;
+    if (t3r_config_error(&config) != NULL) {
+        return T3R_ERR_CONFIG;
+    }
+    rt->config = config;
+    t3r_status status = t3r_spend(rt);
+    return status == T3R_OK ? t3r_get_scene(rt, scene) : status;
+}
+
+t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene)
+{
+    if (rt == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    return t3r_reallocate(rt, gaussians, rt->config.allocation, rt->config.head, scene);
+}
+
+t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame)
+{
+    if (rt == NULL || frame == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (frame->exponent < T3R_EXPONENT_LEAST || frame->exponent > T3R_EXPONENT_MOST) {
+        return T3R_ERR_ARGUMENT;
+    }
+    for (int i = 0; i < 3; i++) {
+        if (frame->origin_q32[i] <= -((int64_t)1 << 62) || frame->origin_q32[i] >= (int64_t)1 << 62) {
+            return T3R_ERR_ARGUMENT;
+        }
+    }
+    (void)t3r_reset(rt);
+    rt->frame = *frame;
+    rt->has_scene = 1;
+    return T3R_OK;
+}
+
+static bool is_sound(const t3r_gaussian *g)
+{
+    for (int i = 0; i < 3; i++) {
+        if (g->position_q20[i] < -T3R_POSITION_MOST_Q20 || g->position_q20[i] > T3R_POSITION_MOST_Q20 ||
+            g->colour_q7[i] > 255 * 128 || g->reserved[i] != 0) {
+            return false;
+        }
+    }
+    return g->factor_exponent >= -60 && g->factor_exponent <= 15 && g->opacity_q15 <= 32767;
+}
+
+t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian)
+{
+    if (rt == NULL || gaussian == NULL || !is_sound(gaussian)) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (!rt->has_scene) {
+        return T3R_ERR_STATE;
+    }
+    if (rt->gaussians >= rt->config.max_gaussians) {
+        return T3R_ERR_FULL;
+    }
+    t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
+    scene[rt->gaussians++] = *gaussian;
+    return T3R_OK;
+}
+
+uint32_t t3r_render_passes(const t3r_runtime *rt)
+{
+    return rt == NULL ? 0 : rt->render_passes;
+}

@@ -1,0 +1,94 @@
+#include "arena.h"
+
+#include "fixed.h"
+#include "raster_splat.h"
+#include "state.h"
+#include "superclusters.h"
+
+_Static_assert(sizeof(t3r_gaussian) == T3R_GAUSSIAN_BYTES, "trim3r_arena.h knows the Gaussian's size");
+_Static_assert(sizeof(t3r_splat) == T3R_SPLAT_BYTES, "trim3r_arena.h knows the splat's size");
+_Static_assert(sizeof(t3r_cluster) == T3R_CLUSTER_BYTES, "trim3r_arena.h knows the SuperCluster's size");
+_Static_assert(sizeof(t3r_cluster_work) <= T3R_CLUSTER_WORK_BYTES, "trim3r_arena.h knows the K-means' work");
+
+typedef struct buffer_row {
+    const char *name;
+    size_t bytes;
+    t3r_stage first, last;
+} buffer_row;
+
+#define ROW(p, NAME, text, buffer_bytes, first_stage, last_stage) \
+    rows[T3R_BUFFER_##NAME] =                                     \
+        (buffer_row){text, T3R_UP_(buffer_bytes), (t3r_stage)(first_stage), (t3r_stage)(last_stage)};
+
+static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
+{
+    T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width,
+                c->render_height, c->keep_analysis)
+}
+
+static bool alive_together(const buffer_row *a, const buffer_row *b)
+{
+    return a->first <= b->last && b->first <= a->last;
+}
+
+/* Offsets from the bottom: each buffer right above the highest earlier one that is alive when it is. The scene is
+ * laid from the top. The table's lifetimes nest, so no stage's top is above the sum of its live buffers (a test
+ * holds that against the macros). Returns the least bytes. */
+static size_t stack_buffers(const buffer_row rows[T3R_BUFFER_COUNT], size_t offset[T3R_BUFFER_COUNT])
+{
+    const buffer_row *scene = &rows[T3R_BUFFER_SCENE];
+    size_t most = 0;
+    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
+        if (b == T3R_BUFFER_SCENE) {
+            continue;
+        }
+        offset[b] = 0;
+        for (int a = 0; a < b; a++) {
+            if (a != T3R_BUFFER_SCENE && alive_together(&rows[a], &rows[b])) {
+                offset[b] = T3R_MAX(offset[b], offset[a] + rows[a].bytes);
+            }
+        }
+        size_t top = offset[b] + rows[b].bytes + (alive_together(&rows[b], scene) ? scene->bytes : 0);
+        most = T3R_MAX(most, top);
+    }
+    return most;
+}
+
+t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout *layout)
+{
+    buffer_row rows[T3R_BUFFER_COUNT];
+    read_table(config, rows);
+    layout->min_bytes = stack_buffers(rows, layout->offset);
+
+    buffer_row *lists = &rows[T3R_BUFFER_LISTS];
+    size_t full_lists = T3R_UP_(T3R_LISTS_BYTES_(config->max_gaussians, config->render_width, config->render_height));
+    size_t raster_top = layout->offset[T3R_BUFFER_LISTS] + full_lists + rows[T3R_BUFFER_SCENE].bytes;
+    layout->bytes = T3R_MAX(layout->min_bytes, raster_top);
+    if (arena_bytes < layout->min_bytes) {
+        return T3R_ERR_ARENA;
+    }
+
+    layout->offset[T3R_BUFFER_SCENE] = arena_bytes / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN - rows[T3R_BUFFER_SCENE].bytes;
+    lists->bytes = layout->offset[T3R_BUFFER_SCENE] - layout->offset[T3R_BUFFER_LISTS];
+    layout->list_capacity = T3R_MIN(lists->bytes / sizeof(uint32_t), (size_t)UINT32_MAX);
+    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
+        layout->size[b] = rows[b].bytes;
+    }
+    return T3R_OK;
+}
+
+const char *t3r_buffer_name(enum t3r_buffer buffer)
+{
+    buffer_row rows[T3R_BUFFER_COUNT];
+    t3r_config any = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
+    read_table(&any, rows);
+    return rows[buffer].name;
+}
+
+void t3r_buffer_lifetime(const t3r_config *config, enum t3r_buffer buffer, t3r_stage *first, t3r_stage *last)
+{
+    buffer_row rows[T3R_BUFFER_COUNT];
+    read_table(config, rows);
+    *first = rows[buffer].first;
+    *last = rows[buffer].last;
+}

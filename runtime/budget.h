@@ -1,0 +1,46 @@
+/* The budget: which Z of the valid points are retained (GaussianTrim3R 3.1.2; definitions, "Allocation modes").
+ *
+ * One mechanism serves every mode. Each point has a key, log2 of its blue-noise threshold over its wanted density;
+ * a group of points (a SuperCluster, or all) with a quota retains those with the smallest keys. So Z is met exactly,
+ * retained sets are nested as Z grows, and another Z costs no new analysis. */
+#ifndef T3R_BUDGET_H
+#define T3R_BUDGET_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "superclusters.h"
+#include "trim3r.h"
+#include "views.h"
+
+typedef struct t3r_budget_settings {
+    t3r_allocation allocation;
+    uint32_t gaussians;    /* Z */
+    uint32_t keep_percent; /* N of `paper` */
+    uint32_t gamma_q8;
+    uint32_t clusters;
+    uint32_t seed;
+} t3r_budget_settings;
+
+/* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */
+void t3r_blur_texture(const t3r_view *views, uint32_t count);
+
+/* Mean texture of every cluster (eq. 2) and its rank, from the texture planes before they are blurred. */
+void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);
+
+/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. Returns that number. */
+uint32_t t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                      t3r_cluster *clusters);
+
+/* Log2 of the density of retained points about a pixel under the allocation made last, Q10, at most 0: they are
+ * 2^(-density / 2) pixels apart. */
+int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
+                            const t3r_cluster *clusters);
+
+static inline bool t3r_retained(const t3r_view *view, size_t pixel)
+{
+    return (view->mask[pixel / 32] >> (pixel % 32) & 1) != 0;
+}
+
+#endif

@@ -1,0 +1,99 @@
+/* Fixed-point arithmetic: the one place where rounding is defined (SPEC.md, "Rounding").
+ *
+ * Every rounding in the runtime is round-half-up: add half, shift arithmetically. Right shifts of negative
+ * numbers are arithmetic on every compiler trim3r is built with; the assertion below refuses others. */
+#ifndef T3R_FIXED_H
+#define T3R_FIXED_H
+
+#include <stdint.h>
+
+_Static_assert((-3 >> 1) == -2, "right shift of negative numbers must be arithmetic");
+
+#define T3R_MIN(a, b) ((a) < (b) ? (a) : (b))
+#define T3R_MAX(a, b) ((a) > (b) ? (a) : (b))
+
+/* x / 2^shift, round-half-up; shift 0..62, |x| < 2^62 */
+static inline int64_t t3r_round_shift64(int64_t x, uint32_t shift)
+{
+    return shift == 0 ? x : (x + ((int64_t)1 << (shift - 1))) >> shift;
+}
+
+/* x / 2^shift, round-half-up; shift 0..30, |x| < 2^30 */
+static inline int32_t t3r_round_shift32(int32_t x, uint32_t shift)
+{
+    return shift == 0 ? x : (x + ((int32_t)1 << (shift - 1))) >> shift;
+}
+
+/* x * 2^shift for a shift of either sign; a right shift of 63 and more gives 0 */
+static inline int64_t t3r_scale64(int64_t x, int32_t shift)
+{
+    if (shift >= 0) {
+        return (int64_t)((uint64_t)x << shift);
+    }
+    return shift <= -63 ? 0 : t3r_round_shift64(x, (uint32_t)-shift);
+}
+
+/* (a b) / 2^15, round-half-up: SSSE3 pmulhrsw, NEON/MVE sqrdmulh. a b < 2^30, so the sum fits. */
+static inline int16_t t3r_mulr_q15(int16_t a, int16_t b)
+{
+    return (int16_t)(((int32_t)a * b + 0x4000) >> 15);
+}
+
+/* n / d, round-half-up (the same rule for a divisor that is no power of two); |n| < 2^61, 0 < d < 2^61 */
+static inline int64_t t3r_round_div64(int64_t n, int64_t d)
+{
+    int64_t twice = 2 * n + d;
+    int64_t quotient = twice / (2 * d);
+    return quotient - (twice % (2 * d) < 0);
+}
+
+static inline int32_t t3r_clamp32(int32_t x, int32_t low, int32_t high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+static inline int64_t t3r_clamp64(int64_t x, int64_t low, int64_t high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+static inline int32_t t3r_abs32(int32_t x)
+{
+    return x < 0 ? -x : x;
+}
+
+static inline int64_t t3r_abs64(int64_t x)
+{
+    return x < 0 ? -x : x;
+}
+
+/* Position of the highest set bit, floor(log2 x); x > 0 */
+static inline uint32_t t3r_msb32(uint32_t x)
+{
+    return 31u - (uint32_t)__builtin_clz(x);
+}
+
+static inline uint32_t t3r_msb64(uint64_t x)
+{
+    uint32_t high = (uint32_t)(x >> 32);
+    return high != 0 ? 32u + t3r_msb32(high) : t3r_msb32((uint32_t)x);
+}
+
+/* floor(sqrt x): 32 steps at most */
+uint32_t t3r_isqrt64(uint64_t x);
+/* log2(x) in Q16, error below 2^-14; x > 0 */
+int32_t t3r_log2_q16(uint32_t x);
+/* 2^(x / 65536) in Q16, relative error below 2^-14 and half a step; x in [-16 x 65536, 15 x 65536) */
+uint32_t t3r_exp2_q16(int32_t x_q16);
+
+/* A small deterministic mixing of 32 bits (Wellons' "lowbias32" constants): white noise per index. */
+static inline uint32_t t3r_mix32(uint32_t x)
+{
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+#endif

@@ -1,0 +1,100 @@
+/* The arena, at compile time: every buffer's bytes, first and last stage, and the sums that follow.
+ *
+ * t3r_plan() and t3r_init() read the same table (runtime/arena.c), so a static array sized by
+ * T3R_ARENA_BYTES() and the layout inside it cannot drift apart. */
+#ifndef TRIM3R_ARENA_H
+#define TRIM3R_ARENA_H
+
+#define T3R_ARENA_ALIGN 64
+
+/* Stages as plain numbers, usable in constant expressions; t3r_stage gives them a type. */
+#define T3R_AT_IMAGE 0
+#define T3R_AT_DEPTH 1
+#define T3R_AT_POINTMAP 2
+#define T3R_AT_WAVELET 3
+#define T3R_AT_SUPERCLUSTERS 4
+#define T3R_AT_BUDGET 5
+#define T3R_AT_HEAD 6
+#define T3R_AT_REFINE 7
+#define T3R_AT_RASTER 8
+#define T3R_AT_COUNT 9
+
+#define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
+#define T3R_MAX_(a, b) ((a) > (b) ? (a) : (b))
+
+/* Sizes of the records in the arena; runtime/arena.c asserts each against its struct. */
+#define T3R_HEADER_BYTES 4096
+#define T3R_GAUSSIAN_BYTES 44
+#define T3R_SPLAT_BYTES 40
+#define T3R_ORDER_BYTES 16       /* two keys and two indices a Gaussian: the radix sort's two sides */
+#define T3R_SORT_BYTES 8192      /* four histograms of 256 counts and their prefix sums */
+#define T3R_CLUSTER_BYTES 48     /* centre and statistics of a SuperCluster */
+#define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
+#define T3R_TILE_SIDE 16
+#define T3R_GRID_STEP 8          /* undistortion grid, pixels */
+
+#define T3R_PIXELS_(w, h) ((size_t)(w) * (h))
+#define T3R_TILES_(w, h) \
+    ((((size_t)(w) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE) * (((size_t)(h) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE))
+#define T3R_GRID_NODES_(w, h) (((size_t)(w) / T3R_GRID_STEP + 2) * ((size_t)(h) / T3R_GRID_STEP + 2))
+#define T3R_ANY_(v) ((v) > 0 ? (size_t)1 : (size_t)0)
+
+/* X(p, NAME, text, bytes, first, last); p is handed through.
+ * w x h working size, v views, z Gaussians, k clusters, rw x rh largest target; keep: the analysis outlives
+ * the build. Buffers come in the order of their first stage; `scene` and nothing else is laid from the
+ * arena's end, so that lifetimes nest and the sum over the live buffers of a stage is what that stage needs.
+ * `tile lists` is the one buffer that grows: more bytes than its minimum save passes. */
+#define T3R_LAST_(keep, stage) ((keep) ? T3R_AT_RASTER : (stage))
+#define T3R_BUFFERS(X, p, w, h, v, z, k, rw, rh, keep)                                                                     \
+    X(p, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                                   \
+    X(p, COLOUR, "colour planes", T3R_PIXELS_(w, h) * (v) * 3, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))               \
+    X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_HEAD))                   \
+    X(p, CONFIDENCE, "confidence planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_HEAD))             \
+    X(p, IMAGE_WORK, "undistortion and resize work",                                                                      \
+      T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w) * 32), T3R_AT_IMAGE, T3R_AT_IMAGE)    \
+    X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_WAVELET, T3R_LAST_(keep, T3R_AT_HEAD))             \
+    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16), T3R_AT_WAVELET,   \
+      T3R_AT_WAVELET)                                                                                                      \
+    X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_SUPERCLUSTERS, T3R_LAST_(keep, T3R_AT_HEAD))   \
+    X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * (k) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                           \
+      T3R_LAST_(keep, T3R_AT_HEAD))                                                                                        \
+    X(p, CLUSTER_WORK, "K-means work", T3R_ANY_(v) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)   \
+    X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * (v) * 4, T3R_AT_BUDGET, T3R_LAST_(keep, T3R_AT_HEAD))              \
+    X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_BUDGET, T3R_AT_BUDGET)                                   \
+    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_PIXELS_(w, h) * 2, T3R_AT_HEAD, T3R_AT_HEAD)                            \
+    X(p, SPLATS, "projected splats", (size_t)(z) * T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)                          \
+    X(p, ORDER, "depth order", (size_t)(z) * T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)               \
+    X(p, TILES, "tile table", (T3R_TILES_(rw, rh) + 1) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                  \
+    X(p, LISTS, "tile lists", (size_t)(z) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                               \
+    X(p, SCENE, "scene", (size_t)(z) * T3R_GAUSSIAN_BYTES, T3R_AT_HEAD, T3R_AT_RASTER)
+
+#define T3R_NAME_(p, NAME, text, bytes, first, last) T3R_BUFFER_##NAME,
+enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0) T3R_BUFFER_COUNT };
+
+/* Tile-list bytes with which a pass takes a whole view: four tiles a Gaussian and half a pixel's worth each. */
+#define T3R_LISTS_BYTES_(z, rw, rh) (((size_t)(z) * 4 + T3R_PIXELS_(rw, rh)) * 4)
+
+#define T3R_LIVE_(stage, NAME, text, bytes, first, last) \
+    +((first) <= (stage) && (stage) <= (last) ? T3R_UP_(bytes) : (size_t)0)
+#define T3R_STAGE_BYTES_(stage, w, h, v, z, k, rw, rh, keep) (0 T3R_BUFFERS(T3R_LIVE_, stage, w, h, v, z, k, rw, rh, keep))
+#define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
+#define T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, keep)                                     \
+    T3R_MAX_(T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, w, h, v, z, k, rw, rh, keep),     \
+                       T3R_STAGE_BYTES_(T3R_AT_WAVELET, w, h, v, z, k, rw, rh, keep),   \
+                       T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, w, h, v, z, k, rw, rh, keep), \
+                       T3R_STAGE_BYTES_(T3R_AT_BUDGET, w, h, v, z, k, rw, rh, keep)),   \
+             T3R_MAX_(T3R_STAGE_BYTES_(T3R_AT_HEAD, w, h, v, z, k, rw, rh, keep),       \
+                      T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, keep)))
+#define T3R_FULL_BYTES_(w, h, v, z, k, rw, rh, keep)                                    \
+    T3R_MAX_(T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, keep),                               \
+             T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, keep) - T3R_UP_((size_t)(z) * 4) + \
+                 T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)))
+
+/* For the default configuration (300 SuperClusters, targets of the working size, analysis not kept):
+ * the smallest arena that works, and the one with which nothing runs slower for lack of room. */
+#define T3R_ARENA_MIN_BYTES(width, height, views, gaussians) \
+    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, 0)
+#define T3R_ARENA_BYTES(width, height, views, gaussians) \
+    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, 0)
+
+#endif

@@ -1,0 +1,191 @@
+/* Wavelet rows in plain C. No sum leaves 16 bits for the ranges that wavelet.c proves. */
+#include "kernels/wavelet_rows.h"
+
+#include "fixed.h"
+
+void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row, size_t count)
+{
+    for (size_t i = 0; i < count / 2; i++) {
+        even[i] = row[2 * i];
+        odd[i] = row[2 * i + 1];
+    }
+    if (count % 2 != 0) {
+        even[count / 2] = row[count - 1];
+    }
+}
+
+void t3r_row_join(int16_t *restrict row, const int16_t *restrict even, const int16_t *restrict odd, size_t count)
+{
+    for (size_t i = 0; i < count / 2; i++) {
+        row[2 * i] = even[i];
+        row[2 * i + 1] = odd[i];
+    }
+    if (count % 2 != 0) {
+        row[count - 1] = even[count / 2];
+    }
+}
+
+void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
+                  const uint8_t *restrict b, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        /* at most 255 x 256 + 128: 16 bits */
+        uint16_t sum = (uint16_t)(77 * r[i] + 150 * g[i] + 29 * b[i] + 128);
+        row[i] = (int16_t)(((sum >> 8) - 128) * 16);
+    }
+}
+
+void t3r_row_db2_predict(int16_t *restrict odd, const int16_t *restrict even, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        odd[i] = (int16_t)(odd[i] - 2 * even[i] + t3r_mulr_q15_small(even[i], T3R_DB2_PREDICT_Q15));
+    }
+}
+
+void t3r_row_db2_unpredict(int16_t *restrict odd, const int16_t *restrict even, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        odd[i] = (int16_t)(odd[i] + 2 * even[i] - t3r_mulr_q15_small(even[i], T3R_DB2_PREDICT_Q15));
+    }
+}
+
+void t3r_row_db2_update(int16_t *restrict even, const int16_t *odd, const int16_t *odd_next, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        even[i] = (int16_t)(even[i] + t3r_mulr_q15_small(odd[i], T3R_DB2_UPDATE_Q15) -
+                            t3r_mulr_q15_small(odd_next[i], T3R_DB2_UPDATE_NEXT_Q15));
+    }
+}
+
+void t3r_row_db2_unupdate(int16_t *restrict even, const int16_t *odd, const int16_t *odd_next, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        even[i] = (int16_t)(even[i] - t3r_mulr_q15_small(odd[i], T3R_DB2_UPDATE_Q15) +
+                            t3r_mulr_q15_small(odd_next[i], T3R_DB2_UPDATE_NEXT_Q15));
+    }
+}
+
+void t3r_row_add(int16_t *restrict odd, const int16_t *restrict low, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        odd[i] = (int16_t)(odd[i] + low[i]);
+    }
+}
+
+void t3r_row_subtract(int16_t *restrict odd, const int16_t *restrict low, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        odd[i] = (int16_t)(odd[i] - low[i]);
+    }
+}
+
+void t3r_row_db2_tail(int16_t *restrict even, const int16_t *restrict even_previous, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        even[i] = (int16_t)(even[i] - t3r_mulr_q15_small(even_previous[i], T3R_DB2_PREDICT_Q15));
+    }
+}
+
+void t3r_row_db2_untail(int16_t *restrict even, const int16_t *restrict even_previous, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        even[i] = (int16_t)(even[i] + t3r_mulr_q15_small(even_previous[i], T3R_DB2_PREDICT_Q15));
+    }
+}
+
+void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        even[i] = (int16_t)(even[i] + t3r_round_shift32(odd[i], 1));
+    }
+}
+
+void t3r_row_haar_unupdate(int16_t *restrict even, const int16_t *restrict odd, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        even[i] = (int16_t)(even[i] - t3r_round_shift32(odd[i], 1));
+    }
+}
+
+void t3r_row_cdf53_predict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        odd[i] = (int16_t)(odd[i] - t3r_round_shift32(even[i] + even_next[i], 1));
+    }
+}
+
+void t3r_row_cdf53_unpredict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        odd[i] = (int16_t)(odd[i] + t3r_round_shift32(even[i] + even_next[i], 1));
+    }
+}
+
+void t3r_row_cdf53_update(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        even[i] = (int16_t)(even[i] + t3r_round_shift32(odd_previous[i] + odd[i], 2));
+    }
+}
+
+void t3r_row_cdf53_unupdate(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        even[i] = (int16_t)(even[i] - t3r_round_shift32(odd_previous[i] + odd[i], 2));
+    }
+}
+
+static inline uint16_t absolute(int16_t x)
+{
+    return (uint16_t)(x < 0 ? -x : x);
+}
+
+void t3r_row_texture_finest(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
+                            const int16_t *restrict d, uint16_t d_gain_q16, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t product = (uint32_t)absolute(d[i]) * d_gain_q16;
+        /* round-half-up of product / 2^16: see t3r_mulr_q15_small() */
+        uint16_t high = (uint16_t)(product >> 16);
+        uint16_t low = (uint16_t)product;
+        texture[i] = (uint16_t)(absolute(h[i]) + absolute(v[i]) + high + (low >> 15));
+    }
+}
+
+void t3r_row_texture_coarse(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
+                            const int16_t *restrict d, uint32_t gain_q8, uint32_t d_gain_q8, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        /* |h| + |v| < 2^14.5 and |d| < 2^14 on levels above 1 (wavelet.c); gains < 2^15.7: below 2^31 */
+        uint32_t sum = gain_q8 * (uint32_t)(absolute(h[i]) + absolute(v[i])) + d_gain_q8 * absolute(d[i]);
+        texture[i] = (uint16_t)T3R_MIN((sum + 128) >> 8, 65535u);
+    }
+}
+
+static inline uint16_t add_saturated(uint16_t a, uint16_t b)
+{
+    uint16_t room = (uint16_t)(65535u - b);
+    return (uint16_t)(T3R_MIN(a, room) + b);
+}
+
+void t3r_row_texture_add(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count)
+{
+    for (size_t i = 0; i < count / 2; i++) {
+        fine[2 * i] = add_saturated(fine[2 * i], coarse[i]);
+        fine[2 * i + 1] = add_saturated(fine[2 * i + 1], coarse[i]);
+    }
+    if (count % 2 != 0) {
+        fine[count - 1] = add_saturated(fine[count - 1], coarse[count / 2]);
+    }
+}
+
+void t3r_row_texture_spread(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count)
+{
+    for (size_t i = 0; i < count / 2; i++) {
+        fine[2 * i] = coarse[i];
+        fine[2 * i + 1] = coarse[i];
+    }
+    if (count % 2 != 0) {
+        fine[count - 1] = coarse[count / 2];
+    }
+}

@@ -1,0 +1,67 @@
+/* The lifting steps of the wavelets over rows of int16, in the plain C that defines them. A row is a plane's row
+ * (vertical lifting) or one phase of a split row (horizontal lifting). Steps come in pairs: the inverse adds what
+ * the forward step took away, computed from the same samples. `sign` never appears in a loop. */
+#ifndef T3R_WAVELET_ROWS_H
+#define T3R_WAVELET_ROWS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Q15, all below one half: 2 - sqrt 3, sqrt 3 / 4, (2 - sqrt 3) / 4. */
+#define T3R_DB2_PREDICT_Q15 8780
+#define T3R_DB2_UPDATE_Q15 14189
+#define T3R_DB2_UPDATE_NEXT_Q15 2195
+
+/* t3r_mulr_q15(a, c), for 0 <= c < 2^14, in 16-bit lanes: with 2 a c = high 2^16 + low, adding half and shifting
+ * is high plus the top bit of low. */
+static inline int16_t t3r_mulr_q15_small(int16_t a, int16_t c)
+{
+    int16_t twice = (int16_t)(2 * c);
+    int16_t high = (int16_t)(((int32_t)a * twice) >> 16);
+    uint16_t low = (uint16_t)((uint32_t)(uint16_t)a * (uint32_t)(uint16_t)twice);
+    return (int16_t)(high + (low >> 15));
+}
+
+/* even[i] = row[2 i], odd[i] = row[2 i + 1], and back; an odd count leaves one more even */
+void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row, size_t count);
+void t3r_row_join(int16_t *restrict row, const int16_t *restrict even, const int16_t *restrict odd, size_t count);
+
+/* (luma - 128) x 16 of count pixels */
+void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
+                  const uint8_t *restrict b, size_t count);
+
+/* db2, 1: odd -= sqrt(3) even, as 2 even - mulr(even, 2 - sqrt 3) */
+void t3r_row_db2_predict(int16_t *restrict odd, const int16_t *restrict even, size_t count);
+void t3r_row_db2_unpredict(int16_t *restrict odd, const int16_t *restrict even, size_t count);
+/* db2, 2: even += mulr(odd, sqrt 3 / 4) - mulr(next odd, (2 - sqrt 3) / 4) */
+void t3r_row_db2_update(int16_t *restrict even, const int16_t *odd, const int16_t *odd_next, size_t count);
+void t3r_row_db2_unupdate(int16_t *restrict even, const int16_t *odd, const int16_t *odd_next, size_t count);
+/* db2, 3: odd += previous low */
+void t3r_row_add(int16_t *restrict odd, const int16_t *restrict low, size_t count);
+void t3r_row_subtract(int16_t *restrict odd, const int16_t *restrict low, size_t count);
+/* db2, the even sample that an odd length leaves without a partner: even -= mulr(previous even, 2 - sqrt 3) */
+void t3r_row_db2_tail(int16_t *restrict even, const int16_t *restrict even_previous, size_t count);
+void t3r_row_db2_untail(int16_t *restrict even, const int16_t *restrict even_previous, size_t count);
+
+/* Haar: odd -= even (t3r_row_subtract); even += (odd + 1) >> 1 */
+void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count);
+void t3r_row_haar_unupdate(int16_t *restrict even, const int16_t *restrict odd, size_t count);
+
+/* CDF 5/3: odd -= (even + next even + 1) >> 1; even += (previous odd + odd + 2) >> 2 */
+void t3r_row_cdf53_predict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count);
+void t3r_row_cdf53_unpredict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count);
+void t3r_row_cdf53_update(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count);
+void t3r_row_cdf53_unupdate(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count);
+
+/* Texture of a level-1 row: |h| + |v| + mulr(|d|, d_gain), Q4; the sum is below 2^15 (wavelet.c). */
+void t3r_row_texture_finest(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
+                            const int16_t *restrict d, uint16_t d_gain_q16, size_t count);
+/* Of a coarser level: (gain (|h| + |v|) + d_gain |d|) with Q8 gains, one rounding, at most 65535. */
+void t3r_row_texture_coarse(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
+                            const int16_t *restrict d, uint32_t gain_q8, uint32_t d_gain_q8, size_t count);
+/* fine[i] += coarse[i / 2], at most 65535 */
+void t3r_row_texture_add(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count);
+/* fine[i] = coarse[i / 2] */
+void t3r_row_texture_spread(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count);
+
+#endif

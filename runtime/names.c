@@ -1,0 +1,67 @@
+/* Names and sentences, as the command line and the tables spell them. */
+#include "trim3r.h"
+
+static const char *pick(const char *const *names, uint32_t count, uint32_t index)
+{
+    return index < count ? names[index] : NULL;
+}
+
+const char *t3r_error_text(t3r_status status)
+{
+    switch (status) {
+    case T3R_OK:
+        return "no error";
+    case T3R_ERR_ARGUMENT:
+        return "an argument is null or out of its range";
+    case T3R_ERR_CONFIG:
+        return "a setting is out of its range";
+    case T3R_ERR_ARENA:
+        return "the arena is too small or misaligned";
+    case T3R_ERR_FRAME:
+        return "the frame's format, size or stride cannot be read";
+    case T3R_ERR_CAMERA:
+        return "the camera's intrinsics, distortion or pose are out of range";
+    case T3R_ERR_STATE:
+        return "calls out of order";
+    case T3R_ERR_NO_DEPTH:
+        return "a context view has no valid depth";
+    case T3R_ERR_CANCELLED:
+        return "cancelled";
+    case T3R_ERR_EPOCH:
+        return "the arena was made by another version or settings";
+    case T3R_ERR_FULL:
+        return "the scene has no room for another Gaussian";
+    }
+    return "unknown status";
+}
+
+const char *t3r_stage_name(t3r_stage stage)
+{
+    static const char *const names[] = {"image",  "depth", "pointmap", "wavelet", "superclusters",
+                                        "budget", "head",  "refine",   "raster"};
+    return pick(names, T3R_STAGE_COUNT, (uint32_t)stage);
+}
+
+const char *t3r_allocation_name(t3r_allocation allocation)
+{
+    static const char *const names[] = {"density", "paper", "pixel", "uniform", "random"};
+    return pick(names, T3R_ALLOCATE_COUNT, (uint32_t)allocation);
+}
+
+const char *t3r_head_name(t3r_head head)
+{
+    static const char *const names[] = {"analytic", "moment", "none"};
+    return pick(names, T3R_HEAD_COUNT, (uint32_t)head);
+}
+
+const char *t3r_wavelet_name(t3r_wavelet wavelet)
+{
+    static const char *const names[] = {"db2", "haar", "cdf53"};
+    return pick(names, T3R_WAVELET_COUNT, (uint32_t)wavelet);
+}
+
+const char *t3r_pixel_format_name(t3r_pixel_format format)
+{
+    static const char *const names[] = {"rgb24", "bgr24", "grey", "yuyv", "uyvy", "nv12"};
+    return pick(names, T3R_PIXEL_FORMAT_COUNT, (uint32_t)format);
+}

@@ -1,0 +1,133 @@
+/* The rasterizer: project, order, bin by tiles, blend front to back.
+ *
+ * Fewer bytes never change a pixel: the depth order is global, a pass takes as many whole tiles as its lists have
+ * room for (one tile always fits), and a tile's pixels depend on nothing but its own list. */
+#include "raster_tile.h"
+
+#include "fixed.h"
+#include "hash.h"
+#include "state.h"
+
+typedef struct tile_job {
+    const t3r_binning *bin;
+    const t3r_target *target;
+    uint32_t first;
+} tile_job;
+
+static void draw_job(void *context, uint32_t index)
+{
+    const tile_job *job = context;
+    const t3r_binning *bin = job->bin;
+    uint32_t tile = job->first + index;
+    uint32_t begin = index == 0 ? 0 : bin->table[tile - 1];
+    t3r_draw_tile(bin->splats, bin->lists + begin, bin->table[tile] - begin, tile % bin->across, tile / bin->across,
+                  job->target);
+}
+
+#define PROJECT_CHUNK 4096u
+
+typedef struct project_job {
+    const t3r_projection *projection;
+    const t3r_gaussian *gaussians;
+    uint32_t count;
+    t3r_splat *splats;
+} project_job;
+
+/* A culled Gaussian leaves z = 0 behind. */
+static void project_chunk(void *context, uint32_t index)
+{
+    const project_job *job = context;
+    uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
+    for (uint32_t i = first; i < end; i++) {
+        if (!t3r_project(job->projection, &job->gaussians[i], &job->splats[i])) {
+            job->splats[i].z_q20 = 0;
+        }
+    }
+}
+
+static t3r_status check_target(const t3r_runtime *rt, const t3r_target *t)
+{
+    if (t->width < 1 || t->height < 1 || t->width > rt->config.render_width || t->height > rt->config.render_height) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if ((t->rgb != NULL && t->rgb_stride_bytes < 3 * t->width) ||
+        (t->depth_q20 != NULL && (t->depth_stride_bytes < 4 * t->width || t->depth_stride_bytes % 4 != 0)) ||
+        (t->alpha_q15 != NULL && (t->alpha_stride_bytes < 2 * t->width || t->alpha_stride_bytes % 2 != 0))) {
+        return T3R_ERR_ARGUMENT;
+    }
+    return T3R_OK;
+}
+
+static uint64_t hash_target(const t3r_target *target)
+{
+    uint64_t hash = t3r_hash_u32(t3r_hash_u32(T3R_HASH_START, target->width), target->height);
+    for (uint32_t y = 0; y < target->height && target->rgb != NULL; y++) {
+        hash = t3r_hash_bytes(hash, target->rgb + (size_t)y * target->rgb_stride_bytes, (size_t)3 * target->width);
+    }
+    return hash;
+}
+
+t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target)
+{
+    if (rt == NULL || camera == NULL || target == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (!rt->has_scene) {
+        return T3R_ERR_STATE;
+    }
+    t3r_status status = check_target(rt, target);
+    t3r_projection projection;
+    if (status == T3R_OK) {
+        status = t3r_projection_make(camera, &rt->frame, target->width, target->height, &projection);
+    }
+    if (status != T3R_OK) {
+        return status;
+    }
+    if (!rt->config.keep_analysis) {
+        rt->views = 0; /* the raster's buffers lie where the planes were */
+        rt->analysed = 0;
+    }
+
+    uint32_t count = rt->gaussians, most = rt->config.max_gaussians;
+    t3r_splat *splats = t3r_buffer_at(rt, T3R_BUFFER_SPLATS);
+    uint32_t *histogram = t3r_buffer_at(rt, T3R_BUFFER_ORDER);
+    uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};
+    uint32_t *indices[2] = {keys[1] + most, keys[1] + 2 * (size_t)most};
+
+    project_job projecting = {&projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, splats};
+    t3r_parallel(rt, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
+    uint32_t visible = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        keys[0][visible] = (uint32_t)splats[i].z_q20;
+        indices[0][visible] = i;
+        visible += splats[i].z_q20 != 0;
+    }
+    t3r_order(keys, indices, visible, histogram);
+
+    t3r_binning bin = {
+        .splats = splats,
+        .order = indices[0],
+        .visible = visible,
+        .across = (target->width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE,
+        .tiles = (uint32_t)T3R_TILES_(target->width, target->height),
+        .table = t3r_buffer_at(rt, T3R_BUFFER_TILES),
+        .lists = t3r_buffer_at(rt, T3R_BUFFER_LISTS),
+        .capacity = rt->list_capacity,
+    };
+    t3r_bin_count(&bin);
+    uint32_t passes = 0;
+    for (uint32_t first = 0; first < bin.tiles; passes++) {
+        if (!t3r_progress(rt, T3R_STAGE_RASTER, first, bin.tiles)) {
+            return T3R_ERR_CANCELLED;
+        }
+        uint32_t end = t3r_bin_pass(&bin, first);
+        tile_job job = {&bin, target, first};
+        t3r_parallel(rt, end - first, draw_job, &job);
+        first = end;
+    }
+    rt->render_passes = passes;
+    if (rt->hooks.stage_hash != NULL) {
+        rt->hooks.stage_hash(rt->hooks.user, T3R_STAGE_RASTER, hash_target(target));
+    }
+    return T3R_OK;
+}

@@ -1,0 +1,31 @@
+/* Tiles: which splats each one lists, and how a tile is drawn from its list. */
+#ifndef T3R_RASTER_TILE_H
+#define T3R_RASTER_TILE_H
+
+#include <stdint.h>
+
+#include "raster_splat.h"
+
+/* The splats in depth order, and the tiles of the target. */
+typedef struct t3r_binning {
+    const t3r_splat *splats;
+    const uint32_t *order;
+    uint32_t visible;
+    uint32_t across, tiles;
+    uint32_t *table;  /* tiles + 1 entries: counts, then list ends as passes open */
+    uint32_t *lists;
+    uint64_t capacity; /* entries of lists; at least `visible` */
+} t3r_binning;
+
+/* Counts every tile's splats into the table. */
+void t3r_bin_count(const t3r_binning *binning);
+
+/* Fills the lists of as many tiles from `first` on as there is room for, at least one; returns the first tile
+ * left over. Afterwards table[t] is the end of tile t's list, which starts where tile t - 1's ends (0 for `first`). */
+uint32_t t3r_bin_pass(const t3r_binning *binning, uint32_t first);
+
+/* Draws one tile from its list (front to back) into the target. */
+void t3r_draw_tile(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y,
+                   const t3r_target *target);
+
+#endif

@@ -1,0 +1,61 @@
+/* The head of the arena: everything the runtime remembers besides the planes. Offsets, never pointers, so
+ * that a copied arena goes on working; the hooks are the one exception and are cleared by t3r_attach(). */
+#ifndef T3R_STATE_H
+#define T3R_STATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "trim3r.h"
+#include "views.h"
+
+#define T3R_MAGIC 0x72336d74u /* "tm3r" */
+
+struct t3r_runtime {
+    uint32_t magic;
+    uint32_t bits_epoch;
+    uint64_t arena_bytes;
+    uint64_t layout_hash;
+    t3r_config config;
+    uint64_t offset[T3R_BUFFER_COUNT];
+    uint64_t list_capacity;          /* entries of the tile lists */
+    uint32_t views;                  /* context views added */
+    t3r_camera camera[T3R_MAX_VIEWS];/* of the working size, undistorted */
+    uint64_t depth_unit_q40[T3R_MAX_VIEWS];
+    uint32_t analysed;               /* planes, labels and keys are those of the current views */
+    uint32_t has_scene;
+    t3r_scene_frame frame;
+    int32_t median_depth_q20;        /* scene units, [1, 2) */
+    uint32_t valid_points;
+    uint32_t gaussians;              /* in the scene */
+    uint32_t render_passes;
+    t3r_hooks hooks;
+};
+
+_Static_assert(sizeof(struct t3r_runtime) <= T3R_HEADER_BYTES, "the state outgrew its buffer");
+
+static inline void *t3r_buffer_at(const t3r_runtime *rt, enum t3r_buffer buffer)
+{
+    return (uint8_t *)(uintptr_t)rt + rt->offset[buffer];
+}
+
+/* Calls the progress hook; true = go on. */
+static inline bool t3r_progress(const t3r_runtime *rt, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    return rt->hooks.progress == NULL || rt->hooks.progress(rt->hooks.user, stage, done, total) == 0;
+}
+
+/* Runs the task over 0..count-1, through the hook when there is one. */
+static inline void t3r_parallel(const t3r_runtime *rt, uint32_t count, void (*task)(void *context, uint32_t index),
+                                void *context)
+{
+    if (rt->hooks.parallel_for != NULL && count > 1) {
+        rt->hooks.parallel_for(rt->hooks.user, count, task, context);
+        return;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        task(context, i);
+    }
+}
+
+#endif

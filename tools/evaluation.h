@@ -1,0 +1,86 @@
+/* How well a reconstruction shows a view it was not given (design: definitions, "Measures").
+ *
+ * A case is one (scene, context, target). evaluation_views_make() prepares what all of its rows share: the recorded
+ * pictures through the image stage, their cameras and their masks. evaluation_measure() builds one scene and scores
+ * it: one row. Functions that can fail report on stderr and return an exit status of cli.h. */
+#ifndef TRIM3R_TOOLS_EVALUATION_H
+#define TRIM3R_TOOLS_EVALUATION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "reconstruction.h"
+#include "recording.h"
+#include "trim3r.h"
+
+typedef enum evaluation_method {
+    EVALUATION_TRIM3R, /* allocation and head as the settings say */
+    EVALUATION_RANDOM, /* random points, nothing adapted */
+    EVALUATION_METHOD_COUNT
+} evaluation_method;
+
+/* "trim3r", "random". */
+const char *evaluation_method_name(evaluation_method method);
+
+typedef struct evaluation_case {
+    const t3r_recording *recording;
+    const char *path;                /* of the recording or image, for messages */
+    const char *scene;               /* its name in the tables */
+    uint32_t context[T3R_MAX_VIEWS]; /* frame indices */
+    uint32_t context_count;
+    uint32_t target;                 /* a frame index */
+    bool planar;                     /* one image on a plane: target is the context view itself, all pixels count */
+} evaluation_case;
+
+/* A recorded frame at the working size. */
+typedef struct evaluation_picture {
+    t3r_camera camera; /* undistorted */
+    uint8_t *rgb;      /* width x height x 3 */
+    uint8_t *mask;     /* width x height, 255 = counts, else 0 */
+} evaluation_picture;
+
+typedef struct evaluation_views {
+    uint32_t width, height;
+    evaluation_picture target;
+    evaluation_picture context[T3R_MAX_VIEWS];
+    uint32_t context_count;
+} evaluation_views;
+
+/* CLI_OK, and evaluation_views_free() is due; otherwise nothing is. */
+int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings);
+void evaluation_views_free(evaluation_views *views);
+
+/* The numbers of a row; NaN = does not apply. */
+typedef enum evaluation_value {
+    EVALUATION_KEEP,      /* percent of the valid points */
+    EVALUATION_GAUSSIANS, /* count used */
+    EVALUATION_PSNR,      /* on the mask, dB */
+    EVALUATION_SSIM,
+    EVALUATION_SHARP,
+    EVALUATION_HOLES,        /* share of mask pixels with transmittance above 1/2 */
+    EVALUATION_PSNR_ALL,     /* all pixels over black, dB */
+    EVALUATION_CONTEXT_PSNR, /* mean over the context views on their masks, dB */
+    EVALUATION_PERCEPTUAL,   /* FLIP on the mask */
+    EVALUATION_BUILD_MS,     /* frames to scene: image stage and everything behind it */
+    EVALUATION_RENDER_MS,    /* the target view */
+    EVALUATION_ARENA_BYTES,
+    EVALUATION_PLANAR_PSNR, /* all pixels of a planar case, dB */
+    EVALUATION_VALUE_COUNT
+} evaluation_value;
+
+typedef struct evaluation_row {
+    char scene[256], context[192], target[16];
+    const char *method, *head, *bits, *refine, *allocate, *depth; /* "" = does not apply */
+    double value[EVALUATION_VALUE_COUNT];
+} evaluation_row;
+
+/* Builds `what` with `keep` percent of the valid points, draws and scores it. With from_file the scene is written as
+ * .ply, read back and drawn from that. `render` (width x height x 3) gets the target view. */
+int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
+                       evaluation_method method, double keep, bool from_file, const reconstruction_options *settings);
+
+/* A recording in memory of one image, cropped and averaged to width x height as import does: a single view on a plane
+ * two units away, the focal length `width` pixels. *bytes (free()) must outlive it. NULL after a message. */
+t3r_recording *evaluation_planar_recording(char *path, uint32_t width, uint32_t height, uint8_t **bytes);
+
+#endif

@@ -1,0 +1,33 @@
+/* Rows of an evaluation as cells of a table: the one list of columns that CSV, JSON, terminal and page share. */
+#ifndef TRIM3R_TOOLS_EVALUATION_TABLE_H
+#define TRIM3R_TOOLS_EVALUATION_TABLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cjson/cJSON.h>
+
+#include "csv.h"
+#include "evaluation.h"
+
+#define EVALUATION_COLUMNS 22u
+
+/* Stable order; NULL past the last. */
+const char *evaluation_column_name(uint32_t column);
+/* The cell as text; "" where it does not apply. */
+void evaluation_cell(const evaluation_row *row, uint32_t column, char *text, size_t bytes);
+
+void evaluation_csv_header(csv_table *table);
+void evaluation_csv_row(csv_table *table, const evaluation_row *row);
+/* An object of all columns, null where one does not apply; NULL without memory. */
+cJSON *evaluation_json(const evaluation_row *row);
+
+/* Averages rows that differ in scene, context and target alone, in order of first appearance; decibels are averaged
+ * as decibels, cells that do not apply are left out. Returns how many means there are, at most `count`. */
+uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, evaluation_row *means);
+
+/* For the terminal and the page: the columns worth reading at a glance. */
+void evaluation_print_header(FILE *out);
+void evaluation_print_row(FILE *out, const evaluation_row *row);
+
+#endif

@@ -1,0 +1,22 @@
+/* The one JSON object that a command prints on stdout with --json. */
+#ifndef TRIM3R_TOOLS_JSON_OUTPUT_H
+#define TRIM3R_TOOLS_JSON_OUTPUT_H
+
+#include <stdint.h>
+
+#include <cjson/cJSON.h>
+
+#define HASH_TEXT_BYTES 17
+
+/* 16 lower-case hexadecimal digits. */
+void hash_text(uint64_t hash, char text[HASH_TEXT_BYTES]);
+/* 0, or -1 unless text is 16 hexadecimal digits, with "0x" before them or not. */
+int hash_parse(const char *text, uint64_t *hash);
+
+void json_add_hash(cJSON *object, const char *key, uint64_t hash);
+/* Exact beyond 2^53 too, where a double would round. */
+void json_add_integer(cJSON *object, const char *key, int64_t value);
+/* Prints the object on one line and frees it. */
+void json_print(cJSON *object);
+
+#endif

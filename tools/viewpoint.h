@@ -1,0 +1,35 @@
+/* Where a picture is taken from: pose files and trajectories. */
+#ifndef TRIM3R_TOOLS_VIEWPOINT_H
+#define TRIM3R_TOOLS_VIEWPOINT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "trim3r.h"
+
+typedef struct viewpoint {
+    t3r_camera camera; /* without distortion */
+    uint32_t width, height;
+} viewpoint;
+
+typedef struct viewpoint_list {
+    viewpoint *items;  /* heap; viewpoint_list_free() */
+    uint32_t count;
+} viewpoint_list;
+
+/* A JSON object with the fields of one frame of transforms.json (fl_x [fl_y cx cy] w h transform_matrix), or a whole
+ * transforms.json; pictures are not looked at. 0, or -1 with "path: field: what" in error[]. */
+int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size_t error_bytes);
+
+/* TUM lines `stamp tx ty tz qx qy qz qw`, camera to world, x right, y down, z forward; # starts a comment. Intrinsics
+ * and size are those of `lens`. 0, or -1 with "path: line: what" in error[]. */
+int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
+                              size_t error_bytes);
+
+/* A lens of the given horizontal angle in degrees, (0, 180), looking along the world's z from its origin. 0, or -1
+ * when the focal length is out of the runtime's range. */
+int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, viewpoint *out);
+
+void viewpoint_list_free(viewpoint_list *list);
+
+#endif
