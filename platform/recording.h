@@ -16,6 +16,22 @@ typedef struct t3r_triplet {
 
 /* ---- reading ------------------------------------------------------------------------------------- */
 
+/* What is read, from files of any writer:
+ *   colour  the first sensor_msgs/Image topic in rgb8, bgr8, mono8, yuv422_yuy2 (yuyv), yuv422 (uyvy) or nv12 (Y plane,
+ *           then UV, rows of `step` bytes)
+ *   depth   16UC1 or mono16: steps of the unit in metadata "trim3r", else of 0.001; 32FC1 metres become steps of
+ *           that unit: to Q40, then divided, both round-half-even; NaN, infinity, nothing, what lies behind the
+ *           camera or beyond 65535 steps is 0
+ *   intrinsics  sensor_msgs/CameraInfo: K and D; plumb_bob, equidistant, and rational_polynomial when its terms beyond
+ *           the fifth are 0; all D zero and not equidistant is T3R_DISTORTION_NONE
+ *   pose    geometry_msgs/PoseStamped or TransformStamped (child to frame): camera to world
+ * Depth, intrinsics and pose come from the topic below the colour topic's prefix ("/camera/"), else from the only one
+ * in the file. Depth and pose pair with the colour image of the same header.stamp, else the nearest within 20 ms;
+ * intrinsics hold from their stamp on, the first ones also before. A stamp of 0 means the log time.
+ *
+ * Doubles become fixed point by t3r_fixed_from_double(): intrinsics Q16, distortion Q24, position Q32, rotation Q30;
+ * the depth unit is decimal text, to Q40. What is not a number or outside the ranges of t3r_camera is refused. */
+
 typedef struct t3r_recording t3r_recording;
 
 /* Reads and indexes a whole recording; NULL with "what, where" in error[] on failure. A file that was cut
@@ -27,10 +43,12 @@ void t3r_recording_close(t3r_recording *recording);
 
 uint32_t t3r_recording_frame_count(const t3r_recording *recording);
 /* Frame `index`; its memory lives as long as the recording. T3R_CAPTURE_FRAME, or T3R_CAPTURE_FAILED with a
- * reason in error[]. */
+ * reason in error[]. Depth that the file holds as floats or big-endian is converted once and kept: not from two threads
+ * at the same time. */
 int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *error,
                         size_t error_bytes);
 
+/* Triplets that name a frame which the recording does not hold are left out, with a remark in the note. */
 uint32_t t3r_recording_triplet_count(const t3r_recording *recording);
 t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index);
 

@@ -196,15 +196,15 @@ t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation al
     if (rt == NULL || scene == NULL) {
         return T3R_ERR_ARGUMENT;
     }
-    if (!rt->config.keep_analysis || !rt->analysed) {
-        return T3R_ERR_STATE;
-    }
     t3r_config config = rt->config;
     config.gaussians = gaussians;
     config.allocation = allocation;
     config.head = head;
     if (t3r_config_error(&config) != NULL) {
-        return T3R_ERR_CONFIG;
+        return T3R_ERR_ARGUMENT;
+    }
+    if (!rt->config.keep_analysis || !rt->analysed) {
+        return T3R_ERR_STATE;
     }
     rt->config = config;
     t3r_status status = t3r_spend(rt);

@@ -15,9 +15,9 @@ void t3r_depth_confidence(t3r_view *view)
 
 /* The measured pixels on both sides of a hole along one axis; gap = 0: none within reach. */
 typedef struct bracket {
-    size_t first, second;     /* their indices */
-    uint32_t before, after;   /* their distances, 1.. */
-    uint32_t gap;             /* before + after */
+    size_t first, second;   /* their indices */
+    uint32_t before, after; /* their distances, 1.. */
+    uint32_t gap;           /* before + after */
 } bracket;
 
 /* at: index of the pixel, step: to its next neighbour on the axis, back/ahead: pixels there are on either side. */

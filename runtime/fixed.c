@@ -31,22 +31,6 @@ static const uint32_t exp2_q20[129] = {
     2008240, 2019144, 2030108, 2041131, 2052214, 2063358, 2074562, 2085826, 2097152,
 };
 
-uint32_t t3r_isqrt64(uint64_t x)
-{
-    uint64_t root = 0;
-
-    /* digit by digit, two bits of x a step; root^2 <= x holds throughout */
-    for (uint64_t bit = UINT64_C(1) << 62; bit != 0; bit >>= 2) {
-        uint64_t trial = root + bit;
-        root >>= 1;
-        if (x >= trial) {
-            x -= trial;
-            root += bit;
-        }
-    }
-    return (uint32_t)root;
-}
-
 /* entry + (next - entry) fraction, Q20; fraction Q16 below 1; a step is below 2^13.5, so the product fits */
 static uint32_t interpolate(const uint32_t *entry, uint32_t fraction_q16)
 {
@@ -71,4 +55,27 @@ uint32_t t3r_exp2_q16(int32_t x_q16)
 
     /* Q20 to Q16 and times 2^exponent; below 2^21 x 2^10 */
     return (uint32_t)t3r_scale64(mantissa_q20, exponent - 4);
+}
+
+/* Newton's iteration from above. The start, 2^(log2(x) / 2) and more than its error, is at most 2^-11 too large; three
+ * steps then reach the floor, where the iteration stops falling. */
+uint32_t t3r_isqrt64(uint64_t x)
+{
+    if (x == 0) {
+        return 0;
+    }
+    /* x = top 4^half: sqrt x = sqrt(top) 2^half with top in [2^30, 2^32) */
+    int32_t half = (int32_t)t3r_msb64(x) / 2 - 15;
+    uint32_t top = (uint32_t)(half >= 0 ? x >> (2 * half) : x << (-2 * half));
+    uint64_t root_q15 = t3r_exp2_q16(t3r_log2_q16(top) / 2 - (1 << 16)); /* sqrt(top) < 2^16, Q15 */
+    root_q15 += root_q15 >> 12;
+    uint64_t root = (half >= 15 ? root_q15 << (half - 15) : root_q15 >> (15 - half)) + 1;
+    for (int step = 0; step < 4; step++) {
+        uint64_t next = (root + x / root) >> 1;
+        if (next >= root) {
+            break;
+        }
+        root = next;
+    }
+    return (uint32_t)root;
 }

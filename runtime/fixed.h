@@ -33,18 +33,23 @@ static inline int64_t t3r_scale64(int64_t x, int32_t shift)
     return shift <= -63 ? 0 : t3r_round_shift64(x, (uint32_t)-shift);
 }
 
-/* (a b) / 2^15, round-half-up: SSSE3 pmulhrsw, NEON/MVE sqrdmulh. a b < 2^30, so the sum fits. */
+/* (a b) / 2^15, round-half-up: (a b + 2^14) >> 15, in 16-bit steps that a compiler turns into 16-bit lanes (SSSE3
+ * pmulhrsw and NEON/MVE sqrdmulh are the same). With a b = 65536 high + low that is 2 high plus the rounded low / 2^15,
+ * (low / 2^14 + 1) / 2 rounded down. -32768 x -32768 wraps to -32768; nothing in the runtime multiplies these. */
 static inline int16_t t3r_mulr_q15(int16_t a, int16_t b)
 {
-    return (int16_t)(((int32_t)a * b + 0x4000) >> 15);
+    int16_t high = (int16_t)(((int32_t)a * b) >> 16);
+    uint16_t low = (uint16_t)((int32_t)a * b);
+    uint16_t carry = (uint16_t)((uint16_t)((low >> 14) + 1) >> 1);
+    return (int16_t)(uint16_t)((uint16_t)high + (uint16_t)high + carry);
 }
 
-/* n / d, round-half-up (the same rule for a divisor that is no power of two); |n| < 2^61, 0 < d < 2^61 */
+/* n / d, round-half-up: floor(n / d + 1/2); d > 0, |n| and d below 2^61 */
 static inline int64_t t3r_round_div64(int64_t n, int64_t d)
 {
-    int64_t twice = 2 * n + d;
-    int64_t quotient = twice / (2 * d);
-    return quotient - (twice % (2 * d) < 0);
+    int64_t doubled = 2 * n + d;
+    int64_t quotient = doubled / (2 * d);
+    return quotient - (doubled % (2 * d) < 0);
 }
 
 static inline int32_t t3r_clamp32(int32_t x, int32_t low, int32_t high)

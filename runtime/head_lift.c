@@ -18,7 +18,7 @@ static void narrowed_factor(const t3r_footprint *f, int64_t lower_q12[3])
     int64_t xx = T3R_MAX(f->xx_q12 - DILATION_Q12, VARIANCE_LEAST_Q12);
     int64_t yy = T3R_MAX(f->yy_q12 - DILATION_Q12, VARIANCE_LEAST_Q12);
     lower_q12[0] = t3r_isqrt64((uint64_t)xx << 12);
-    lower_q12[1] = ((int64_t)f->xy_q12 << 12) / lower_q12[0];
+    lower_q12[1] = ((int64_t)f->xy_q12 * 4096) / lower_q12[0];
     int64_t rest_q24 = (yy << 12) - lower_q12[1] * lower_q12[1];
     lower_q12[2] = t3r_isqrt64((uint64_t)T3R_MAX(rest_q24, (int64_t)VARIANCE_LEAST_Q12 << 12));
 }

@@ -119,8 +119,8 @@ static void triple_row(const uint8_t *restrict in, uint32_t count, uint8_t *rest
 /* count pixels of row y from column x (even for the YUV formats) to r, g, b */
 static void convert(const t3r_frame *frame, uint32_t y, uint32_t x, uint32_t count, uint8_t *r, uint8_t *g, uint8_t *b)
 {
-    const uint8_t *row = frame->planes[0] + (size_t)y * frame->stride_bytes[0] +
-                         (size_t)x * bytes_per_pixel(frame->format);
+    const uint8_t *row =
+        frame->planes[0] + (size_t)y * frame->stride_bytes[0] + (size_t)x * bytes_per_pixel(frame->format);
 
     switch (frame->format) {
     case T3R_PIXEL_RGB24:

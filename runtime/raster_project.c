@@ -120,16 +120,25 @@ static void conic_of(const int32_t a_q12[3], const int32_t b_q12[3], t3r_splat *
     splat->c_q30 = to_q30((aa + dilation) * rd, right);
 }
 
-/* Half-width in pixels, Q8, rounded up, of the box outside of which opacity exp(-q) < 1/255:
- * sqrt(2 L variance), L = ln(255 opacity) plus a margin that covers the arithmetic of the blend. */
-static int64_t half_width_q8(const int32_t row_q12[3], int64_t level_q8)
+/* log2 of a positive 64-bit number, Q16 */
+static int32_t log2_wide_q16(uint64_t x)
+{
+    uint32_t excess = (uint32_t)T3R_MAX((int32_t)t3r_msb64(x) - 31, 0);
+    return t3r_log2_q16((uint32_t)(x >> excess)) + (int32_t)(excess << 16);
+}
+
+/* Half-width in pixels, Q8, of the box outside of which opacity exp(-q) < 1/255: sqrt(2 L variance), by logarithms,
+ * with more than their error (2^-13 of it) added. log_level: log2 of 2 L in Q8. */
+static int64_t half_width_q8(const int32_t row_q12[3], int32_t log_level_q16)
 {
     int64_t variance_q24 = DILATION_Q24;
     for (int j = 0; j < 3; j++) {
         variance_q24 += (int64_t)row_q12[j] * row_q12[j]; /* at most 3 x 2^48 */
     }
-    uint64_t variance_q8 = (uint64_t)(variance_q24 >> 16) + 1;
-    return (int64_t)t3r_isqrt64(2 * variance_q8 * (uint64_t)level_q8) + 1;
+    /* Q24 times Q8 is Q32, whose root is Q16; below 2^15 px */
+    int32_t log_half_q16 = ((log2_wide_q16((uint64_t)variance_q24) + log_level_q16) >> 1) - (16 << 16);
+    uint32_t half_q8 = t3r_exp2_q16(log_half_q16) >> 8;
+    return (int64_t)half_q8 + (half_q8 >> 10) + 2;
 }
 
 /* The inclusive pixels within centre -+ half, clipped to 0..size - 1; false = none */
@@ -183,11 +192,11 @@ bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *spla
 
     /* L = ln 2 (log2(255 opacity_q15) - 15), Q8; ln 2 = 45426 / 65536; 16 / 256 of margin */
     int64_t level_q8 = ((((int64_t)t3r_log2_q16(255u * g->opacity_q15) - (15 << 16)) * 45426) >> 24) + 16;
-    level_q8 = T3R_MAX(level_q8, 16);
+    int32_t log_level_q16 = t3r_log2_q16((uint32_t)(2 * T3R_MAX(level_q8, 16)));
     splat->x_q12 = (int32_t)x_q12;
     splat->y_q12 = (int32_t)y_q12;
-    if (!clip_range(splat->x_q12, half_width_q8(a_q12, level_q8), p->width, &splat->x0, &splat->x1) ||
-        !clip_range(splat->y_q12, half_width_q8(b_q12, level_q8), p->height, &splat->y0, &splat->y1)) {
+    if (!clip_range(splat->x_q12, half_width_q8(a_q12, log_level_q16), p->width, &splat->x0, &splat->x1) ||
+        !clip_range(splat->y_q12, half_width_q8(b_q12, log_level_q16), p->height, &splat->y0, &splat->y1)) {
         return false;
     }
     conic_of(a_q12, b_q12, splat);

@@ -5,7 +5,7 @@
 #include "fixed.h"
 #include "kernels/blend.h"
 
-/* A splat centred at most this far from a tile needs no test against its lane groups: within 24 + 16 px of the centre,
+/* A splat centred at most this far from a tile needs no test against its columns: within 24 + 16 px of the centre,
  * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6); Q17 holds 16,383. */
 #define SMALL_SPLAT 24
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
@@ -14,7 +14,7 @@
 #define STOP_INTERVAL 16
 
 typedef struct tile_state {
-    t3r_lanes lanes[T3R_GROUPS];
+    t3r_tile pixels;
     uint32_t depth_q20[T3R_TILE_SIDE][T3R_TILE_SIDE];
 } tile_state;
 
@@ -28,7 +28,7 @@ static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
     return q + ((h * t_q8) >> 7) + ((a * t_q8 * t_q8) >> 16);
 }
 
-/* Whether a large splat's quadratic falls below LEVEL_MOST anywhere on the group's rectangle of pixel centres. It is
+/* Whether a large splat's quadratic falls below LEVEL_MOST anywhere on eight columns of a tile (pixel centres). It is
  * convex, so unless the centre lies inside, its least value is on an edge. Within its box a splat is at most
  * 2^14.6 px away: half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
 static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
@@ -52,7 +52,7 @@ static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
     return least < (int64_t)LEVEL_MOST << 18;
 }
 
-/* The quadratic about the group's first pixel. With the group touched the half-gradients are below 2^6, and each
+/* The quadratic about the columns' first pixel. With the columns touched the half-gradients are below 2^6, and each
  * product below 2^63 (SPEC.md). */
 static void lane_splat_of(const t3r_splat *s, uint32_t x, uint32_t y, t3r_lane_splat *out)
 {
@@ -72,12 +72,12 @@ static void lane_splat_of(const t3r_splat *s, uint32_t x, uint32_t y, t3r_lane_s
 }
 
 /* The splat at which a pixel's transmittance first falls below one half gives it its depth. */
-static void note_depth(tile_state *tile, uint32_t group, uint32_t first, uint32_t last, int32_t z_q20)
+static void note_depth(tile_state *tile, uint32_t column, uint32_t first, uint32_t last, int32_t z_q20)
 {
     for (uint32_t j = first; j <= last; j++) {
-        for (uint32_t i = 0; i < T3R_LANES; i++) {
-            uint32_t *depth = &tile->depth_q20[j][group * T3R_LANES + i];
-            if (*depth == 0 && tile->lanes[group].transmittance_q15[j][i] < T3R_ONE_Q15 / 2 + 1) {
+        for (uint32_t i = column; i < column + T3R_LANES; i++) {
+            uint32_t *depth = &tile->depth_q20[j][i];
+            if (*depth == 0 && tile->pixels.transmittance_q15[j][i] < T3R_ONE_Q15 / 2 + 1) {
                 *depth = (uint32_t)z_q20;
             }
         }
@@ -91,34 +91,42 @@ static bool is_near(int32_t centre_q12, uint32_t tile)
     return offset >= -(SMALL_SPLAT << 12) && offset <= (SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12;
 }
 
-static void blend_splat(tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top, bool with_depth)
+static void blend_columns(tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top, uint32_t column,
+                          bool with_depth)
 {
-    uint32_t x0 = T3R_MAX(s->x0, left) - left, x1 = T3R_MIN(s->x1, left + T3R_TILE_SIDE - 1) - left;
     uint32_t first = T3R_MAX(s->y0, top) - top, last = T3R_MIN(s->y1, top + T3R_TILE_SIDE - 1) - top;
     bool small = is_near(s->x_q12, left) && is_near(s->y_q12, top);
-    for (uint32_t group = x0 / T3R_LANES; group <= x1 / T3R_LANES; group++) {
-        uint32_t x = left + group * T3R_LANES;
-        if (!small && !touches(s, x, top)) {
-            continue;
-        }
-        t3r_lane_splat lane;
-        lane_splat_of(s, x, top, &lane);
-        t3r_blend_rows(&tile->lanes[group], &lane, first, last);
-        if (with_depth) {
-            note_depth(tile, group, first, last, s->z_q20);
-        }
+    if (!small && !touches(s, left + column, top)) {
+        return;
+    }
+    t3r_lane_splat lane;
+    lane_splat_of(s, left + column, top, &lane);
+    t3r_blend_rows(&tile->pixels, &lane, column, first, last);
+    if (with_depth) {
+        note_depth(tile, column, first, last, s->z_q20);
     }
 }
 
-static bool all_stopped(const tile_state *tile)
+/* A splat at most eight columns wide takes one step wherever it lies, a wider one each half of the tile it reaches. */
+static void blend_splat(tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top, bool with_depth)
+{
+    uint32_t x0 = T3R_MAX(s->x0, left) - left, x1 = T3R_MIN(s->x1, left + T3R_TILE_SIDE - 1) - left;
+    if (x1 - x0 < T3R_LANES) {
+        blend_columns(tile, s, left, top, T3R_MIN(x0, (uint32_t)T3R_TILE_SIDE - T3R_LANES), with_depth);
+        return;
+    }
+    for (uint32_t column = 0; column < T3R_TILE_SIDE; column += T3R_LANES) {
+        blend_columns(tile, s, left, top, column, with_depth);
+    }
+}
+
+static bool all_stopped(const t3r_tile *tile)
 {
     int16_t most = 0;
-    for (uint32_t group = 0; group < T3R_GROUPS; group++) {
-        for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
-            for (uint32_t i = 0; i < T3R_LANES; i++) {
-                int16_t t = tile->lanes[group].transmittance_q15[j][i];
-                most = t > most ? t : most;
-            }
+    for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
+        for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
+            int16_t t = tile->transmittance_q15[j][i];
+            most = t > most ? t : most;
         }
     }
     return most < T3R_STOP_Q15;
@@ -137,18 +145,16 @@ static void write_tile(const tile_state *tile, uint32_t left, uint32_t top, cons
     for (uint32_t j = 0; j < rows; j++) {
         size_t y = top + j;
         for (uint32_t i = 0; i < columns; i++) {
-            const t3r_lanes *lanes = &tile->lanes[i / T3R_LANES];
-            uint32_t lane = i % T3R_LANES;
             size_t x = left + i;
             if (target->rgb != NULL) {
                 uint8_t *pixel = target->rgb + y * target->rgb_stride_bytes + 3 * x;
                 for (int channel = 0; channel < 3; channel++) {
-                    pixel[channel] = byte_of(lanes->colour_q7[channel][j][lane]);
+                    pixel[channel] = byte_of(tile->pixels.colour_q7[channel][j][i]);
                 }
             }
             if (target->alpha_q15 != NULL) {
                 target->alpha_q15[y * (target->alpha_stride_bytes / sizeof *target->alpha_q15) + x] =
-                    (uint16_t)(T3R_ONE_Q15 - lanes->transmittance_q15[j][lane]);
+                    (uint16_t)(T3R_ONE_Q15 - tile->pixels.transmittance_q15[j][i]);
             }
             if (target->depth_q20 != NULL) {
                 target->depth_q20[y * (target->depth_stride_bytes / sizeof *target->depth_q20) + x] =
@@ -165,15 +171,13 @@ void t3r_draw_tile(const t3r_splat *splats, const uint32_t *list, uint32_t count
     bool with_depth = target->depth_q20 != NULL;
     tile_state tile;
     memset(&tile, 0, sizeof tile);
-    for (uint32_t group = 0; group < T3R_GROUPS; group++) {
-        for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
-            for (uint32_t i = 0; i < T3R_LANES; i++) {
-                tile.lanes[group].transmittance_q15[j][i] = T3R_ONE_Q15;
-            }
+    for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
+        for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
+            tile.pixels.transmittance_q15[j][i] = T3R_ONE_Q15;
         }
     }
     for (uint32_t i = 0; i < count; i++) {
-        if (i % STOP_INTERVAL == STOP_INTERVAL - 1 && all_stopped(&tile)) {
+        if (i % STOP_INTERVAL == STOP_INTERVAL - 1 && all_stopped(&tile.pixels)) {
             break; /* the rest would add nothing: the same pixels, sooner */
         }
         blend_splat(&tile, &splats[list[i]], left, top, with_depth);

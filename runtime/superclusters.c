@@ -8,19 +8,17 @@
 #define BLOCK 64u         /* points gathered at a time */
 #define WEIGHT_MOST 2048u /* a centre forgets what lies further back, so that late batches still move it */
 
-/* Half |c|^2 and padding, for t3r_nearest(). */
 static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint32_t count)
 {
-    uint32_t padded = (count + T3R_NEAREST_BLOCK - 1) / T3R_NEAREST_BLOCK * T3R_NEAREST_BLOCK;
-    centres->count = padded;
-    for (uint32_t k = 0; k < padded; k++) {
+    centres->count = count;
+    for (uint32_t k = 0; k < count; k++) {
         int32_t norm = 0; /* at most 6 x 15000^2 < 2^31 */
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-            int16_t c = k < count ? (int16_t)t3r_round_shift32(clusters[k].centre_q19[d], CENTRE_FRACTION) : 0;
+            int16_t c = (int16_t)t3r_round_shift32(clusters[k].centre_q19[d], CENTRE_FRACTION);
             centres->feature_q11[d][k] = c;
             norm += c * c;
         }
-        centres->half_norm[k] = k < count ? norm / 2 : INT32_MAX / 2;
+        centres->half_norm[k] = norm / 2;
     }
 }
 
@@ -148,20 +146,15 @@ static void add_point(t3r_cluster_work *work, uint16_t label, const int16_t feat
     }
 }
 
-static int64_t divide_rounded(int64_t numerator, int64_t denominator)
-{
-    int64_t doubled = 2 * numerator + denominator;
-    int64_t quotient = doubled / (2 * denominator);
-    return quotient - (doubled % (2 * denominator) < 0);
-}
-
 /* One mini-batch (Sculley 2010, with whole-batch means): points spread over the source, a different set each time. */
 static void run_batch(const t3r_point_source *source, uint32_t batch, uint32_t count, t3r_cluster *clusters,
                       t3r_cluster_work *work)
 {
     load_centres(&work->centres, clusters, count);
+    t3r_find_neighbours(&work->centres, &work->u.means.neighbours);
     clear_sums(work);
     uint32_t size = T3R_MIN(source->points, T3R_CLUSTER_BATCH);
+    uint16_t guess = 0;
     for (uint32_t first = 0; first < size; first += BLOCK) {
         int16_t feature[BLOCK][T3R_DIMENSIONS];
         uint16_t label[BLOCK];
@@ -172,8 +165,9 @@ static void run_batch(const t3r_point_source *source, uint32_t batch, uint32_t c
             uint32_t index = low + t3r_mix32(s * 1031u + batch) % (high - low);
             valid += source->features(source->context, index, feature[valid]);
         }
-        t3r_nearest(&work->centres, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, label);
+        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess, label);
         for (uint32_t i = 0; i < valid; i++) {
+            guess = label[i];
             add_point(work, label[i], feature[i]);
         }
     }
@@ -185,7 +179,7 @@ static void run_batch(const t3r_point_source *source, uint32_t batch, uint32_t c
         int64_t before = work->u.means.weight[k], after = before + points;
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
             int64_t sum = clusters[k].centre_q19[d] * before + (work->u.means.sum[k][d] * (1 << CENTRE_FRACTION));
-            clusters[k].centre_q19[d] = (int32_t)divide_rounded(sum, after);
+            clusters[k].centre_q19[d] = (int32_t)t3r_round_div64(sum, after);
         }
         work->u.means.weight[k] = T3R_MIN((uint32_t)after, WEIGHT_MOST);
     }
@@ -196,8 +190,10 @@ static uint32_t assign(const t3r_point_source *source, uint32_t count, t3r_clust
                        t3r_cluster_work *work, const t3r_cluster_progress *progress, uint32_t done, uint32_t total)
 {
     load_centres(&work->centres, clusters, count);
+    t3r_find_neighbours(&work->centres, &work->u.means.neighbours);
     clear_sums(work);
     uint32_t all_valid = 0;
+    uint16_t guess = 0;
     for (uint32_t first = 0; first < source->points; first += BLOCK) {
         if (first % (BLOCK * 64) == 0 && progress != NULL &&
             !progress->step(progress->context, done + first / T3R_CLUSTER_BATCH, total)) {
@@ -212,8 +208,9 @@ static uint32_t assign(const t3r_point_source *source, uint32_t count, t3r_clust
             place[valid] = index;
             valid += source->features(source->context, index, feature[valid]);
         }
-        t3r_nearest(&work->centres, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, label);
+        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess, label);
         for (uint32_t i = 0; i < valid; i++) {
+            guess = label[i];
             labels[place[i]] = label[i];
             add_point(work, label[i], feature[i]);
         }
@@ -224,7 +221,7 @@ static uint32_t assign(const t3r_point_source *source, uint32_t count, t3r_clust
         clusters[k].points = points;
         for (uint32_t d = 0; d < T3R_DIMENSIONS && points > 0; d++) {
             clusters[k].centre_q19[d] =
-                (int32_t)divide_rounded(work->u.means.sum[k][d] * (1 << CENTRE_FRACTION), points);
+                (int32_t)t3r_round_div64(work->u.means.sum[k][d] * (1 << CENTRE_FRACTION), points);
         }
     }
     return all_valid;

@@ -41,6 +41,7 @@ typedef struct t3r_cluster_work {
             uint32_t distance[T3R_CLUSTER_SAMPLE]; /* squared, Q20 */
         } seeding;
         struct {
+            t3r_neighbours neighbours;
             int64_t sum[T3R_MAX_CLUSTERS][T3R_DIMENSIONS];
             uint32_t points[T3R_MAX_CLUSTERS];
             uint32_t weight[T3R_MAX_CLUSTERS]; /* points behind a centre so far, held at a bound */

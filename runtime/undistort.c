@@ -23,9 +23,9 @@ _Static_assert(T3R_GRID_STEP == 1 << STEP_SHIFT, "grid step");
 /* atan(2^-i), nearest */
 static const int64_t atan_q40[CORDIC_STEPS] = {
     863554413089, 509785937287, 269356888665, 136729762476, 68630207382, 34348560106, 17178471287, 8589759836,
-    4294945451, 2147480917, 1073741483, 536870869, 268435451, 134217727, 67108864, 33554432,
-    16777216, 8388608, 4194304, 2097152, 1048576, 524288, 262144, 131072,
-    65536, 32768, 16384, 8192, 4096, 2048, 1024, 512,
+    4294945451,   2147480917,   1073741483,   536870869,    268435451,   134217727,   67108864,    33554432,
+    16777216,     8388608,      4194304,      2097152,      1048576,     524288,      262144,      131072,
+    65536,        32768,        16384,        8192,         4096,        2048,        1024,        512,
 };
 
 /* The radial part of a lens: factor(s) = 1 + k[0] s + k[1] s^2 + ..., s the squared radius or angle. */
@@ -131,9 +131,8 @@ static bool distort_fisheye(const lens *model, int64_t x, int64_t y, int64_t *ou
     if (r == 0) {
         return true;
     }
-    if (!multiply_q24(angle, angle, &angle2) || angle2 > model->limit_q24 ||
-        !radial(model, angle2, false, &factor) || !multiply_q24(angle, factor, &bent) ||
-        t3r_abs64(bent) >= INT64_C(1) << 31) {
+    if (!multiply_q24(angle, angle, &angle2) || angle2 > model->limit_q24 || !radial(model, angle2, false, &factor) ||
+        !multiply_q24(angle, factor, &bent) || t3r_abs64(bent) >= INT64_C(1) << 31) {
         return false;
     }
     *out_x = t3r_round_div64(x * bent, r);

@@ -28,8 +28,8 @@ typedef struct evaluation_case {
     const char *scene;               /* its name in the tables */
     uint32_t context[T3R_MAX_VIEWS]; /* frame indices */
     uint32_t context_count;
-    uint32_t target;                 /* a frame index */
-    bool planar;                     /* one image on a plane: target is the context view itself, all pixels count */
+    uint32_t target; /* a frame index */
+    bool planar;     /* one image on a plane: target is the context view itself, all pixels count */
 } evaluation_case;
 
 /* A recorded frame at the working size. */

@@ -2,6 +2,7 @@
 #ifndef TRIM3R_TOOLS_EVALUATION_TABLE_H
 #define TRIM3R_TOOLS_EVALUATION_TABLE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -22,12 +23,15 @@ void evaluation_csv_row(csv_table *table, const evaluation_row *row);
 /* An object of all columns, null where one does not apply; NULL without memory. */
 cJSON *evaluation_json(const evaluation_row *row);
 
-/* Averages rows that differ in scene, context and target alone, in order of first appearance; decibels are averaged
- * as decibels, cells that do not apply are left out. Returns how many means there are, at most `count`. */
-uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, evaluation_row *means);
+/* Averages rows that differ in context and target alone (by_scene) or in the scene as well, in order of first
+ * appearance; decibels are averaged as decibels, cells that do not apply are left out. Returns how many means there
+ * are, at most `count`. */
+uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, bool by_scene, evaluation_row *means);
 
-/* For the terminal and the page: the columns worth reading at a glance. */
-void evaluation_print_header(FILE *out);
-void evaluation_print_row(FILE *out, const evaluation_row *row);
+/* For terminal and page: the columns worth reading at a glance, of recordings or of planar images, in fewer digits.
+ * False where the column is not among them. */
+bool evaluation_glance(const evaluation_row *row, uint32_t column, bool planar, char *text, size_t bytes);
+void evaluation_print_header(FILE *out, bool planar);
+void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar);
 
 #endif

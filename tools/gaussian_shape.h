@@ -1,4 +1,5 @@
-/* The shape of a Gaussian: the runtime's factor F (covariance F F^T) to and from axes and rotation, as files hold it. */
+/* The shape of a Gaussian: the runtime's factor F (covariance F F^T) to and from axes and rotation, as files hold it.
+ */
 #ifndef TRIM3R_TOOLS_GAUSSIAN_SHAPE_H
 #define TRIM3R_TOOLS_GAUSSIAN_SHAPE_H
 

@@ -13,7 +13,8 @@ typedef struct html_page html_page;
 /* NULL without memory. */
 html_page *html_page_new(const char *title, const char *introduction);
 
-/* The table stands above the sections; cells of its first row are headings. */
+/* A table above the sections; cells of its first row are headings. `folded`: opens at a click. */
+void html_page_table(html_page *page, const char *heading, int folded);
 void html_page_table_cell(html_page *page, const char *text);
 void html_page_table_end_row(html_page *page);
 

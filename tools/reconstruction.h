@@ -19,11 +19,11 @@ typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
 
 /* Settings as the command line gives them. reconstruction_defaults() fills every field. */
 typedef struct reconstruction_options {
-    uint32_t context[T3R_MAX_VIEWS]; /* frame indices of the context views */
-    uint32_t context_count;          /* 0 = the first two frames */
-    uint32_t gaussians;              /* budget as a count; 0 = keep_percent decides */
-    double keep_percent;             /* budget as percent of the valid points, (0, 100]; 0 = not given */
-    uint32_t width, height;          /* working size; 0 = the first context frame's */
+    uint32_t context[T3R_MAX_VIEWS];      /* frame indices of the context views */
+    uint32_t context_count;               /* 0 = the first two frames */
+    uint32_t gaussians;                   /* budget as a count; 0 = keep_percent decides */
+    double keep_percent;                  /* budget as percent of the valid points, (0, 100]; 0 = not given */
+    uint32_t width, height;               /* working size; 0 = the first context frame's */
     uint32_t render_width, render_height; /* largest target; 0 = the working size */
     t3r_allocation allocation;
     t3r_head head;
@@ -31,21 +31,22 @@ typedef struct reconstruction_options {
     uint32_t wavelet_levels;
     uint32_t clusters;
     uint32_t gamma_q8;
-    uint32_t paper_keep_percent;     /* N of the allocation `paper` */
+    uint32_t paper_keep_percent; /* N of the allocation `paper` */
     uint32_t fill_radius;
     uint32_t seed;
-    uint32_t refine;                 /* passes of refinement; 0 */
-    bool keep_analysis;              /* so that t3r_rebudget() and t3r_reallocate() work afterwards */
-    bool hash;                       /* collect the stages' hashes */
+    uint32_t refine;    /* passes of refinement; 0 */
+    bool keep_analysis; /* so that t3r_rebudget() and t3r_reallocate() work afterwards */
+    bool hash;          /* collect the stages' hashes */
     arena_choice arena;
-    uint64_t arena_bytes;            /* for ARENA_BYTES */
+    uint64_t arena_bytes; /* for ARENA_BYTES */
     uint32_t threads;
 } reconstruction_options;
 
 void reconstruction_defaults(reconstruction_options *options);
 
 /* argp children; each parent's parser hands reconstruction_options * on in state->child_inputs[].
- * `settings`: --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep --auto --method. */
+ * `settings`: --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep --auto
+ * --method. */
 extern const struct argp reconstruction_settings_argp;
 extern const struct argp reconstruction_budget_argp;
 
@@ -61,10 +62,10 @@ typedef struct reconstruction {
     t3r_scene scene;
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
-    uint32_t valid_points;     /* pixels of the context views with a raw depth, at the working size */
-    uint32_t requested;        /* the budget asked for; more than valid_points when all are used */
-    double add_views_seconds;  /* image stage */
-    double build_seconds;      /* t3r_reconstruct() */
+    uint32_t valid_points;                /* pixels of the context views with a raw depth, at the working size */
+    uint32_t requested;                   /* the budget asked for; more than valid_points when all are used */
+    double add_views_seconds;             /* image stage */
+    double build_seconds;                 /* t3r_reconstruct() */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* a stage that reports several times: its reports chained */
     bool stage_hashed[T3R_STAGE_COUNT];
 } reconstruction;

@@ -17,7 +17,8 @@
 #define ROOM_MAX_TRIPLETS 3u
 #define ROOM_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* 1 mm, as t3r_frame has it */
 
-/* The camera of frame `index` (any; the path repeats after 70) for width x height pixels (8..T3R_MAX_SIDE). */
+/* The camera of frame `index` (any; the path goes back and forth and repeats after 70) for width x height pixels
+ * (8..T3R_MAX_SIDE). */
 void room_camera(uint32_t index, uint32_t width, uint32_t height, t3r_camera *camera);
 /* The same numbers as doubles, exactly. */
 void room_recorded_camera(uint32_t index, uint32_t width, uint32_t height, t3r_recorded_camera *camera);

@@ -14,9 +14,9 @@ typedef struct scene_file {
     uint32_t count;
 } scene_file;
 
-/* Reads a .ply (degree 0 of its harmonics): 0, or -1 with "what, where" in error[]. NaN, infinities, cut files,
- * missing properties and foreign formats are refused with a reason. The scene frame (origin, exponent) is the one
- * the file names, when trim3r wrote it, else chosen from the positions. */
+/* Reads a .ply (degree 0 of its harmonics): 0, or -1 with "what, where" in error[]. NaN, infinities (but those of an
+ * opacity of 0 or 1 and of a scale of 0), cut files, missing properties and foreign formats are refused with a reason.
+ * The scene frame (origin, exponent) is the one that SCENE_FILE_COMMENTS named, else chosen from the positions. */
 int scene_file_read_ply(const char *path, scene_file *out, char *error, size_t error_bytes);
 int scene_file_parse_ply(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
 /* Writes in the recording's world frame; flags: 0, or of these */

@@ -13,7 +13,7 @@ typedef struct viewpoint {
 } viewpoint;
 
 typedef struct viewpoint_list {
-    viewpoint *items;  /* heap; viewpoint_list_free() */
+    viewpoint *items; /* heap; viewpoint_list_free() */
     uint32_t count;
 } viewpoint_list;
 

@@ -226,7 +226,7 @@ t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes);
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 
 /* Takes the next context view: to planes, resized to the working size, undistorted. On an error nothing
- * is added. The camera belongs to the frame's own pixel grid. */
+ * is added. The camera belongs to the frame's own pixel grid. T3R_ERR_NO_DEPTH when the frame has none. */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
 /* Forgets views, analysis and scene; keeps the configuration. Needed before t3r_add_view() once there is a scene. */

@@ -1,4 +1,4 @@
-/* The innermost loop of the K-means: the nearest of K centres to each of a block of points. */
+/* The innermost loop of the K-means: the nearest of K centres to each of a run of points. */
 #ifndef T3R_KERNEL_NEAREST_H
 #define T3R_KERNEL_NEAREST_H
 
@@ -9,17 +9,27 @@
 #define T3R_DIMENSIONS 6
 /* Features are Q11 within this. Scores are half |c|^2 - p c: at most 9 x 15000^2 < 2^31. */
 #define T3R_FEATURE_MOST 15000
-#define T3R_NEAREST_BLOCK 8u /* centres are padded to a multiple of this */
+#define T3R_NEIGHBOURS 12u
 
-/* Centres by dimension; half_norm = |c|^2 / 2, of padding INT32_MAX / 2. */
+/* Centres by dimension, with half_norm = floor(|c|^2 / 2). A point's nearest centre is the one with the least score
+ * half_norm - p c, the lowest index among equals. */
 typedef struct t3r_centres {
     int16_t feature_q11[T3R_DIMENSIONS][T3R_MAX_CLUSTERS];
     int32_t half_norm[T3R_MAX_CLUSTERS];
     uint32_t count;
 } t3r_centres;
 
-/* Index of the nearest centre of each point, the lowest among equals. */
-void t3r_nearest(const t3r_centres *centres, uint32_t points, const int16_t (*feature_q11)[T3R_DIMENSIONS],
-                 uint16_t *nearest);
+/* Of each centre the nearest others, nearest first. */
+typedef struct t3r_neighbours {
+    uint16_t index[T3R_MAX_CLUSTERS][T3R_NEIGHBOURS];
+} t3r_neighbours;
+
+/* Fills the neighbours: count^2 distances. */
+void t3r_find_neighbours(const t3r_centres *centres, t3r_neighbours *neighbours);
+
+/* Index of the nearest centre of each point. A point is first compared with the neighbours of the centre its
+ * predecessor had, which the triangle inequality often shows to be enough; else with all. `guess`: where to start. */
+void t3r_nearest(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,
+                 const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest);
 
 #endif

@@ -35,61 +35,91 @@ void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_
     }
 }
 
-void t3r_row_db2_predict(int16_t *restrict odd, const int16_t *restrict even, size_t count)
+void t3r_row_db2_predict(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        odd[i] = (int16_t)(odd[i] - 2 * even[i] + t3r_mulr_q15_small(even[i], T3R_DB2_PREDICT_Q15));
+        high[i] = (int16_t)(high[i] - 2 * low[i] + t3r_mulr_q15_small(low[i], T3R_DB2_PREDICT_Q15));
     }
 }
 
-void t3r_row_db2_unpredict(int16_t *restrict odd, const int16_t *restrict even, size_t count)
+void t3r_row_db2_unpredict(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        odd[i] = (int16_t)(odd[i] + 2 * even[i] - t3r_mulr_q15_small(even[i], T3R_DB2_PREDICT_Q15));
+        high[i] = (int16_t)(high[i] + 2 * low[i] - t3r_mulr_q15_small(low[i], T3R_DB2_PREDICT_Q15));
     }
 }
 
-void t3r_row_db2_update(int16_t *restrict even, const int16_t *odd, const int16_t *odd_next, size_t count)
+void t3r_row_db2_update(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        even[i] = (int16_t)(even[i] + t3r_mulr_q15_small(odd[i], T3R_DB2_UPDATE_Q15) -
-                            t3r_mulr_q15_small(odd_next[i], T3R_DB2_UPDATE_NEXT_Q15));
+        low[i] = (int16_t)(low[i] + t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_Q15) -
+                           t3r_mulr_q15_small(high_next[i], T3R_DB2_UPDATE_NEXT_Q15));
     }
 }
 
-void t3r_row_db2_unupdate(int16_t *restrict even, const int16_t *odd, const int16_t *odd_next, size_t count)
+void t3r_row_db2_unupdate(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        even[i] = (int16_t)(even[i] - t3r_mulr_q15_small(odd[i], T3R_DB2_UPDATE_Q15) +
-                            t3r_mulr_q15_small(odd_next[i], T3R_DB2_UPDATE_NEXT_Q15));
+        low[i] = (int16_t)(low[i] - t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_Q15) +
+                           t3r_mulr_q15_small(high_next[i], T3R_DB2_UPDATE_NEXT_Q15));
     }
 }
 
-void t3r_row_add(int16_t *restrict odd, const int16_t *restrict low, size_t count)
+void t3r_row_db2_pair_update(int16_t *restrict low, const int16_t *restrict high, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        odd[i] = (int16_t)(odd[i] + low[i]);
+        low[i] = (int16_t)(low[i] + t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_PAIR_Q15));
     }
 }
 
-void t3r_row_subtract(int16_t *restrict odd, const int16_t *restrict low, size_t count)
+void t3r_row_db2_pair_unupdate(int16_t *restrict low, const int16_t *restrict high, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        odd[i] = (int16_t)(odd[i] - low[i]);
+        low[i] = (int16_t)(low[i] - t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_PAIR_Q15));
     }
 }
 
-void t3r_row_db2_tail(int16_t *restrict even, const int16_t *restrict even_previous, size_t count)
+void t3r_row_add(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        even[i] = (int16_t)(even[i] - t3r_mulr_q15_small(even_previous[i], T3R_DB2_PREDICT_Q15));
+        high[i] = (int16_t)(high[i] + low[i]);
     }
 }
 
-void t3r_row_db2_untail(int16_t *restrict even, const int16_t *restrict even_previous, size_t count)
+void t3r_row_subtract(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        even[i] = (int16_t)(even[i] + t3r_mulr_q15_small(even_previous[i], T3R_DB2_PREDICT_Q15));
+        high[i] = (int16_t)(high[i] - low[i]);
+    }
+}
+
+void t3r_row_db2_first(int16_t *restrict x0, const int16_t *restrict x1, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        x0[i] = (int16_t)(x0[i] - t3r_mulr_q15_small(x1[i], T3R_DB2_PREDICT_Q15));
+    }
+}
+
+void t3r_row_db2_unfirst(int16_t *restrict x0, const int16_t *restrict x1, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        x0[i] = (int16_t)(x0[i] + t3r_mulr_q15_small(x1[i], T3R_DB2_PREDICT_Q15));
+    }
+}
+
+void t3r_row_db2_last(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
+                      size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        last[i] = (int16_t)(last[i] - 2 * before[i] + before_that[i]);
+    }
+}
+
+void t3r_row_db2_unlast(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
+                        size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        last[i] = (int16_t)(last[i] + 2 * before[i] - before_that[i]);
     }
 }
 
@@ -156,7 +186,7 @@ void t3r_row_texture_coarse(uint16_t *restrict texture, const int16_t *restrict 
                             const int16_t *restrict d, uint32_t gain_q8, uint32_t d_gain_q8, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        /* |h| + |v| < 2^14.5 and |d| < 2^14 on levels above 1 (wavelet.c); gains < 2^15.7: below 2^31 */
+        /* |h| + |v| < 2^14.4, |d| < 2^14.6 on levels above 1 (wavelet.c); gains < 2^15.7 and 2^13.8: below 2^31 */
         uint32_t sum = gain_q8 * (uint32_t)(absolute(h[i]) + absolute(v[i])) + d_gain_q8 * absolute(d[i]);
         texture[i] = (uint16_t)T3R_MIN((sum + 128) >> 8, 65535u);
     }

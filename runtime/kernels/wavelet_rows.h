@@ -1,16 +1,17 @@
 /* The lifting steps of the wavelets over rows of int16, in the plain C that defines them. A row is a plane's row
- * (vertical lifting) or one phase of a split row (horizontal lifting). Steps come in pairs: the inverse adds what
- * the forward step took away, computed from the same samples. `sign` never appears in a loop. */
+ * (vertical lifting) or one half of a split row (horizontal lifting). Each step has its inverse, which adds what the
+ * step took away, computed from the same samples. */
 #ifndef T3R_WAVELET_ROWS_H
 #define T3R_WAVELET_ROWS_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* Q15, all below one half: 2 - sqrt 3, sqrt 3 / 4, (2 - sqrt 3) / 4. */
+/* Q15, all below one half: 2 - sqrt 3, sqrt 3 / 4, (2 - sqrt 3) / 4, (sqrt 3 - 1) / 2. */
 #define T3R_DB2_PREDICT_Q15 8780
 #define T3R_DB2_UPDATE_Q15 14189
 #define T3R_DB2_UPDATE_NEXT_Q15 2195
+#define T3R_DB2_UPDATE_PAIR_Q15 11994
 
 /* t3r_mulr_q15(a, c), for 0 <= c < 2^14, in 16-bit lanes: with 2 a c = high 2^16 + low, adding half and shifting
  * is high plus the top bit of low. */
@@ -30,18 +31,26 @@ void t3r_row_join(int16_t *restrict row, const int16_t *restrict even, const int
 void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
                   const uint8_t *restrict b, size_t count);
 
-/* db2, 1: odd -= sqrt(3) even, as 2 even - mulr(even, 2 - sqrt 3) */
-void t3r_row_db2_predict(int16_t *restrict odd, const int16_t *restrict even, size_t count);
-void t3r_row_db2_unpredict(int16_t *restrict odd, const int16_t *restrict even, size_t count);
-/* db2, 2: even += mulr(odd, sqrt 3 / 4) - mulr(next odd, (2 - sqrt 3) / 4) */
-void t3r_row_db2_update(int16_t *restrict even, const int16_t *odd, const int16_t *odd_next, size_t count);
-void t3r_row_db2_unupdate(int16_t *restrict even, const int16_t *odd, const int16_t *odd_next, size_t count);
-/* db2, 3: odd += previous low */
-void t3r_row_add(int16_t *restrict odd, const int16_t *restrict low, size_t count);
-void t3r_row_subtract(int16_t *restrict odd, const int16_t *restrict low, size_t count);
-/* db2, the even sample that an odd length leaves without a partner: even -= mulr(previous even, 2 - sqrt 3) */
-void t3r_row_db2_tail(int16_t *restrict even, const int16_t *restrict even_previous, size_t count);
-void t3r_row_db2_untail(int16_t *restrict even, const int16_t *restrict even_previous, size_t count);
+/* db2, 1: high -= sqrt(3) low, as 2 low - mulr(low, 2 - sqrt 3) */
+void t3r_row_db2_predict(int16_t *restrict high, const int16_t *restrict low, size_t count);
+void t3r_row_db2_unpredict(int16_t *restrict high, const int16_t *restrict low, size_t count);
+/* db2, 2: low += mulr(high, sqrt 3 / 4) - mulr(next high, (2 - sqrt 3) / 4) */
+void t3r_row_db2_update(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
+void t3r_row_db2_unupdate(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
+/* db2, 2, where the pair is all there is: low += mulr(high, (sqrt 3 - 1) / 2) */
+void t3r_row_db2_pair_update(int16_t *restrict low, const int16_t *restrict high, size_t count);
+void t3r_row_db2_pair_unupdate(int16_t *restrict low, const int16_t *restrict high, size_t count);
+/* db2, 3: high += previous low */
+void t3r_row_add(int16_t *restrict high, const int16_t *restrict low, size_t count);
+void t3r_row_subtract(int16_t *restrict high, const int16_t *restrict low, size_t count);
+/* db2, the first sample, which has no partner: x0 -= mulr(x1, 2 - sqrt 3) */
+void t3r_row_db2_first(int16_t *restrict x0, const int16_t *restrict x1, size_t count);
+void t3r_row_db2_unfirst(int16_t *restrict x0, const int16_t *restrict x1, size_t count);
+/* db2, the last sample of an even length, which has none either: last += that before - 2 before */
+void t3r_row_db2_last(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
+                      size_t count);
+void t3r_row_db2_unlast(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
+                        size_t count);
 
 /* Haar: odd -= even (t3r_row_subtract); even += (odd + 1) >> 1 */
 void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count);

@@ -1,0 +1,11 @@
+/* A file's bytes in memory. */
+#ifndef T3R_PLATFORM_FILE_BYTES_H
+#define T3R_PLATFORM_FILE_BYTES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The whole file (or pipe); free() it. NULL with "path: why" in error[]. */
+uint8_t *t3r_file_bytes(const char *path, size_t *count, char *error, size_t error_bytes);
+
+#endif

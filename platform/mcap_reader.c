@@ -1,0 +1,461 @@
+#include "mcap_reader.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bytes.h"
+#include "chunk_codec.h"
+#include "crc32.h"
+#include "grow.h"
+#include "mcap.h"
+#include "reason.h"
+
+typedef struct walk {
+    const t3r_mcap_visitor *visitor;
+    t3r_mcap_chunks *chunks;
+    const uint8_t *bytes;
+    uint64_t limit;    /* records end here: at the end magic, or where a cut file ends */
+    bool cut;          /* the file has no end magic */
+    uint64_t data_end; /* where the summary starts; 0 while in the data section */
+    char *error;
+    size_t error_bytes;
+} walk;
+
+/* ---- fields: the first step past the end sets `failed`; later calls give zeros ---- */
+
+typedef struct fields {
+    const uint8_t *bytes;
+    size_t count, at;
+    bool failed;
+} fields;
+
+static const uint8_t *take(fields *in, uint64_t count)
+{
+    if (in->failed || in->count - in->at < count) {
+        in->failed = true;
+        return NULL;
+    }
+    const uint8_t *bytes = in->bytes + in->at;
+    in->at += (size_t)count;
+    return bytes;
+}
+
+static uint16_t get_u16(fields *in)
+{
+    const uint8_t *bytes = take(in, 2);
+    return bytes == NULL ? 0 : t3r_load_le16(bytes);
+}
+
+static uint32_t get_u32(fields *in)
+{
+    const uint8_t *bytes = take(in, 4);
+    return bytes == NULL ? 0 : t3r_load_le32(bytes);
+}
+
+static uint64_t get_u64(fields *in)
+{
+    const uint8_t *bytes = take(in, 8);
+    return bytes == NULL ? 0 : t3r_load_le64(bytes);
+}
+
+static t3r_text get_text(fields *in)
+{
+    uint32_t count = get_u32(in);
+    const uint8_t *bytes = take(in, count);
+    return bytes == NULL ? (t3r_text){"", 0} : (t3r_text){(const char *)bytes, count};
+}
+
+/* ---- reasons ---- */
+
+const char *t3r_mcap_place_text(t3r_mcap_place place, char text[T3R_MCAP_PLACE_BYTES])
+{
+    if (place.in_chunk) {
+        snprintf(text, T3R_MCAP_PLACE_BYTES, "byte %" PRIu64 " of the chunk at byte %" PRIu64, place.offset,
+                 place.chunk_offset);
+    } else {
+        snprintf(text, T3R_MCAP_PLACE_BYTES, "byte %" PRIu64, place.offset);
+    }
+    return text;
+}
+
+static const char *record_name(uint8_t opcode)
+{
+    static const char *const names[] = {"unknown",    "Header",        "Footer",          "Schema",
+                                        "Channel",    "Message",       "Chunk",           "MessageIndex",
+                                        "ChunkIndex", "Attachment",    "AttachmentIndex", "Statistics",
+                                        "Metadata",   "MetadataIndex", "SummaryOffset",   "DataEnd"};
+    return names[opcode < sizeof names / sizeof names[0] ? opcode : 0];
+}
+
+static int malformed(walk *w, uint8_t opcode, t3r_mcap_place place, const char *what)
+{
+    char text[T3R_MCAP_PLACE_BYTES];
+    return t3r_reason(w->error, w->error_bytes, "%s record at %s: %s", record_name(opcode),
+                      t3r_mcap_place_text(place, text), what);
+}
+
+static const char *const short_fields = "a field reaches past the record's end";
+
+/* ---- records that visitors see ---- */
+
+static int read_schema(walk *w, fields *in, t3r_mcap_place place)
+{
+    t3r_mcap_schema_record schema = {.id = get_u16(in)};
+    schema.name = get_text(in);
+    schema.encoding = get_text(in);
+    schema.definition = get_text(in);
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_SCHEMA, place, short_fields);
+    }
+    /* Id 0 means "no schema": such a record is to be ignored. */
+    return schema.id == 0 ? 0 : w->visitor->schema(w->visitor->user, &schema, place);
+}
+
+static int read_channel(walk *w, fields *in, t3r_mcap_place place)
+{
+    t3r_mcap_channel_record channel = {.id = get_u16(in)};
+    channel.schema = get_u16(in);
+    channel.topic = get_text(in);
+    channel.encoding = get_text(in);
+    get_text(in); /* the map of metadata, unused */
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_CHANNEL, place, short_fields);
+    }
+    return w->visitor->channel(w->visitor->user, &channel, place);
+}
+
+static int read_message(walk *w, fields *in, t3r_mcap_place place)
+{
+    t3r_mcap_message_record message = {.channel = get_u16(in)};
+    message.sequence = get_u32(in);
+    message.log_ns = get_u64(in);
+    message.publish_ns = get_u64(in);
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_MESSAGE, place, short_fields);
+    }
+    message.data = in->bytes + in->at;
+    message.bytes = in->count - in->at;
+    return w->visitor->message(w->visitor->user, &message, place);
+}
+
+static int read_metadata(walk *w, fields *in, t3r_mcap_place place)
+{
+    t3r_text name = get_text(in);
+    t3r_text map = get_text(in);
+    fields pairs = {(const uint8_t *)map.chars, map.count, 0, in->failed};
+    while (!pairs.failed && pairs.at < pairs.count) {
+        t3r_text key = get_text(&pairs);
+        t3r_text value = get_text(&pairs);
+        if (!pairs.failed && w->visitor->metadata(w->visitor->user, name, key, value, place) != 0) {
+            return -1;
+        }
+    }
+    return pairs.failed ? malformed(w, T3R_MCAP_METADATA, place, short_fields) : 0;
+}
+
+static int read_attachment(walk *w, fields *in, t3r_mcap_place place)
+{
+    get_u64(in); /* log_time */
+    get_u64(in); /* create_time */
+    get_text(in);
+    get_text(in);
+    uint64_t bytes = get_u64(in);
+    take(in, bytes);
+    size_t checked = in->at;
+    uint32_t crc = get_u32(in);
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_ATTACHMENT, place, short_fields);
+    }
+    if (crc != 0 && crc != t3r_crc32(0, in->bytes, checked)) {
+        return malformed(w, T3R_MCAP_ATTACHMENT, place, "its CRC does not match its bytes");
+    }
+    return 0;
+}
+
+/* ---- chunks ---- */
+
+/* The records of a chunk; one that reaches past the end is an error, or, in a chunk that was cut, the end. */
+static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chunk_offset, bool cut)
+{
+    t3r_mcap_place place = {0, true, chunk_offset};
+    for (size_t at = 0; at < count;) {
+        place.offset = at;
+        uint8_t opcode = bytes[at];
+        bool has_head = count - at >= T3R_MCAP_RECORD_HEAD_BYTES;
+        uint64_t length = has_head ? t3r_load_le64(bytes + at + 1) : 0;
+        if (!has_head || length > count - at - T3R_MCAP_RECORD_HEAD_BYTES) {
+            return cut ? 0 : malformed(w, opcode, place, "it reaches past the chunk's end");
+        }
+        fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
+        int status = 0;
+        switch (opcode) {
+        case T3R_MCAP_SCHEMA:
+            status = read_schema(w, &in, place);
+            break;
+        case T3R_MCAP_CHANNEL:
+            status = read_channel(w, &in, place);
+            break;
+        case T3R_MCAP_MESSAGE:
+            status = read_message(w, &in, place);
+            break;
+        default: /* opcodes from 0x10 on are extensions, to be skipped */
+            status = opcode <= T3R_MCAP_DATA_END ? malformed(w, opcode, place, "it may not stand in a chunk") : 0;
+            break;
+        }
+        if (status != 0) {
+            return -1;
+        }
+        at += T3R_MCAP_RECORD_HEAD_BYTES + (size_t)length;
+    }
+    return 0;
+}
+
+/* Memory for `bytes` bytes, kept in w->chunks; NULL when memory is out. */
+static uint8_t *keep_chunk(walk *w, uint64_t bytes)
+{
+    t3r_mcap_chunks *chunks = w->chunks;
+    uint8_t **grown = t3r_grow(chunks->data, chunks->count, &chunks->capacity, sizeof *chunks->data);
+    if (grown == NULL) {
+        return NULL;
+    }
+    chunks->data = grown;
+    uint8_t *data = malloc(bytes > 0 ? (size_t)bytes : 1);
+    if (data != NULL) {
+        chunks->data[chunks->count++] = data;
+        chunks->bytes += bytes;
+    }
+    return data;
+}
+
+/* `in` holds the content, or as much of it as a cut file has left. */
+static int read_chunk(walk *w, fields *in, t3r_mcap_place place, bool cut)
+{
+    get_u64(in); /* message_start_time */
+    get_u64(in); /* message_end_time */
+    uint64_t uncompressed_bytes = get_u64(in);
+    uint32_t crc = get_u32(in);
+    t3r_text compression = get_text(in);
+    uint64_t compressed_bytes = get_u64(in);
+    if (in->failed) {
+        return cut ? 0 : malformed(w, T3R_MCAP_CHUNK, place, short_fields);
+    }
+    size_t available = in->count - in->at;
+    if (compressed_bytes > available && !cut) {
+        return malformed(w, T3R_MCAP_CHUNK, place, short_fields);
+    }
+    available = compressed_bytes < available ? (size_t)compressed_bytes : available;
+    const uint8_t *data = in->bytes + in->at;
+    size_t count = available;
+    if (compression.count == 0) {
+        if (uncompressed_bytes != compressed_bytes) {
+            return malformed(w, T3R_MCAP_CHUNK, place, "uncompressed_size differs from the size of its records");
+        }
+    } else {
+        if (!t3r_chunk_codec_known(compression)) {
+            char name[32], what[96];
+            t3r_text_copy(name, sizeof name, compression);
+            snprintf(what, sizeof what, "its compression '%s' is not supported (lz4 and zstd are)", name);
+            return malformed(w, T3R_MCAP_CHUNK, place, what);
+        }
+        if (uncompressed_bytes > T3R_MCAP_MAX_CHUNK_BYTES ||
+            uncompressed_bytes > T3R_MCAP_MAX_CHUNKS_BYTES - w->chunks->bytes) {
+            return malformed(w, T3R_MCAP_CHUNK, place, "it decompresses to more than 1 GiB, or all chunks to 4 GiB");
+        }
+        uint64_t most = t3r_chunk_codec_most(compression, available);
+        if (uncompressed_bytes > most && !cut) {
+            return malformed(w, T3R_MCAP_CHUNK, place, "its uncompressed_size is more than its data can hold");
+        }
+        uint64_t room = uncompressed_bytes < most ? uncompressed_bytes : most;
+        uint8_t *out = keep_chunk(w, room);
+        if (out == NULL) {
+            return malformed(w, T3R_MCAP_CHUNK, place, "out of memory");
+        }
+        const char *wrong = t3r_chunk_decompress(compression, data, available, out, (size_t)room, &count);
+        if (wrong == NULL && count != uncompressed_bytes) {
+            wrong = "its data are shorter than its uncompressed_size";
+        }
+        if (wrong != NULL && !cut) {
+            return malformed(w, T3R_MCAP_CHUNK, place, wrong);
+        }
+        data = out;
+    }
+    if (!cut && crc != 0 && crc != t3r_crc32(0, data, count)) {
+        return malformed(w, T3R_MCAP_CHUNK, place, "its CRC does not match its records");
+    }
+    return walk_chunk(w, data, count, place.offset, cut);
+}
+
+/* ---- the file ---- */
+
+static int read_data_end(walk *w, fields *in, t3r_mcap_place place)
+{
+    uint32_t crc = get_u32(in);
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_DATA_END, place, short_fields);
+    }
+    if (crc != 0 && crc != t3r_crc32(0, w->bytes, (size_t)place.offset)) {
+        return malformed(w, T3R_MCAP_DATA_END, place, "the data section's CRC does not match its bytes");
+    }
+    w->data_end = place.offset + T3R_MCAP_RECORD_HEAD_BYTES + in->count;
+    return 0;
+}
+
+static int read_footer(walk *w, fields *in, t3r_mcap_place place)
+{
+    uint64_t summary = get_u64(in);
+    uint64_t summary_offset = get_u64(in);
+    uint32_t crc = get_u32(in);
+    if (in->failed || in->at != in->count) {
+        return malformed(w, T3R_MCAP_FOOTER, place, "its length is not 20 bytes");
+    }
+    if (w->data_end == 0) {
+        return malformed(w, T3R_MCAP_FOOTER, place, "no DataEnd record stands in front of it");
+    }
+    if ((summary != 0 && (summary < w->data_end || summary > place.offset)) ||
+        (summary_offset != 0 && (summary_offset < w->data_end || summary_offset > place.offset))) {
+        return malformed(w, T3R_MCAP_FOOTER, place, "it points outside the summary section");
+    }
+    uint64_t start = summary != 0 ? summary : w->data_end;
+    uint64_t stop = place.offset + T3R_MCAP_RECORD_HEAD_BYTES + 16;
+    if (crc != 0 && crc != t3r_crc32(0, w->bytes + start, (size_t)(stop - start))) {
+        return malformed(w, T3R_MCAP_FOOTER, place, "the summary's CRC does not match its bytes");
+    }
+    return 0;
+}
+
+static int read_record(walk *w, uint8_t opcode, fields *in, t3r_mcap_place place)
+{
+    bool in_summary = w->data_end != 0;
+    switch (opcode) {
+    case T3R_MCAP_HEADER:
+        if (place.offset != T3R_MCAP_MAGIC_BYTES) {
+            return malformed(w, opcode, place, "it is not the first record");
+        }
+        get_text(in); /* profile */
+        get_text(in); /* library */
+        return in->failed ? malformed(w, opcode, place, short_fields) : 0;
+    case T3R_MCAP_FOOTER:
+        return read_footer(w, in, place);
+    case T3R_MCAP_SCHEMA: /* those of the summary repeat the data section's */
+        return in_summary ? 0 : read_schema(w, in, place);
+    case T3R_MCAP_CHANNEL:
+        return in_summary ? 0 : read_channel(w, in, place);
+    case T3R_MCAP_MESSAGE:
+    case T3R_MCAP_CHUNK:
+    case T3R_MCAP_ATTACHMENT:
+    case T3R_MCAP_METADATA:
+    case T3R_MCAP_DATA_END:
+        if (in_summary) {
+            return malformed(w, opcode, place, "it stands behind the DataEnd record");
+        }
+        return opcode == T3R_MCAP_MESSAGE      ? read_message(w, in, place)
+               : opcode == T3R_MCAP_CHUNK      ? read_chunk(w, in, place, false)
+               : opcode == T3R_MCAP_ATTACHMENT ? read_attachment(w, in, place)
+               : opcode == T3R_MCAP_METADATA   ? read_metadata(w, in, place)
+                                               : read_data_end(w, in, place);
+    case 0:
+        return malformed(w, opcode, place, "0 is no opcode");
+    default: /* indexes, which a reader from front to back does not need, and extensions */
+        return 0;
+    }
+}
+
+/* What is wrong with the first 8 bytes, or NULL. */
+static const char *magic_error(const uint8_t *bytes, size_t count)
+{
+    size_t compared = count < T3R_MCAP_MAGIC_BYTES ? count : T3R_MCAP_MAGIC_BYTES;
+    if (count == 0) {
+        return "the file is empty";
+    }
+    if (memcmp(bytes, T3R_MCAP_MAGIC, compared) != 0) {
+        bool other_version = count >= T3R_MCAP_MAGIC_BYTES && memcmp(bytes, T3R_MCAP_MAGIC, 5) == 0 &&
+                             memcmp(bytes + 6, &T3R_MCAP_MAGIC[6], 2) == 0;
+        return other_version ? "byte 5: an MCAP version other than 0" : "byte 0: not an MCAP file";
+    }
+    return count < T3R_MCAP_MAGIC_BYTES ? "cut off inside the magic of its first 8 bytes" : NULL;
+}
+
+/* The footer was read; what follows must be the end magic, or the part of it that a cut file has left. */
+static int check_end(walk *w, uint64_t at, size_t count, t3r_mcap_end *end)
+{
+    uint64_t rest = count - at;
+    if (!w->cut) {
+        return rest == T3R_MCAP_MAGIC_BYTES
+                   ? 0
+                   : t3r_reason(w->error, w->error_bytes, "byte %" PRIu64 ": bytes between Footer and end magic", at);
+    }
+    if (rest >= T3R_MCAP_MAGIC_BYTES || memcmp(w->bytes + at, T3R_MCAP_MAGIC, (size_t)rest) != 0) {
+        return t3r_reason(w->error, w->error_bytes, "byte %" PRIu64 ": no end magic behind the Footer", at);
+    }
+    *end = (t3r_mcap_end){true, at};
+    return 0;
+}
+
+int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *visitor, t3r_mcap_chunks *chunks,
+                  t3r_mcap_end *end, char *error, size_t error_bytes)
+{
+    const char *wrong = magic_error(bytes, count);
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes, "%s", wrong);
+    }
+    bool whole = count >= 2 * T3R_MCAP_MAGIC_BYTES &&
+                 memcmp(bytes + count - T3R_MCAP_MAGIC_BYTES, T3R_MCAP_MAGIC, T3R_MCAP_MAGIC_BYTES) == 0;
+    walk w = {
+        .visitor = visitor,
+        .chunks = chunks,
+        .bytes = bytes,
+        .limit = whole ? count - T3R_MCAP_MAGIC_BYTES : count,
+        .cut = !whole,
+        .error = error,
+        .error_bytes = error_bytes,
+    };
+    *end = (t3r_mcap_end){false, 0};
+    uint64_t at = T3R_MCAP_MAGIC_BYTES;
+    while (at < w.limit) {
+        t3r_mcap_place place = {at, false, 0};
+        uint8_t opcode = bytes[at];
+        uint64_t rest = w.limit - at;
+        uint64_t length = rest >= T3R_MCAP_RECORD_HEAD_BYTES ? t3r_load_le64(bytes + at + 1) : 0;
+        bool fits = rest >= T3R_MCAP_RECORD_HEAD_BYTES && length <= rest - T3R_MCAP_RECORD_HEAD_BYTES;
+        /* A file system may leave zeros behind where a file was cut. */
+        if (w.cut && (!fits || opcode == 0)) {
+            *end = (t3r_mcap_end){true, at};
+            if (opcode == T3R_MCAP_CHUNK && rest > T3R_MCAP_RECORD_HEAD_BYTES && w.data_end == 0) {
+                fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)(rest - T3R_MCAP_RECORD_HEAD_BYTES), 0,
+                             false};
+                return read_chunk(&w, &in, place, true);
+            }
+            return 0;
+        }
+        if (!fits) {
+            return malformed(&w, opcode, place, "it reaches past the file's end");
+        }
+        if (at == T3R_MCAP_MAGIC_BYTES && opcode != T3R_MCAP_HEADER) {
+            return malformed(&w, opcode, place, "the first record is not a Header");
+        }
+        fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
+        if (read_record(&w, opcode, &in, place) != 0) {
+            return -1;
+        }
+        at += T3R_MCAP_RECORD_HEAD_BYTES + length;
+        if (opcode == T3R_MCAP_FOOTER) {
+            return check_end(&w, at, count, end);
+        }
+    }
+    if (whole) {
+        return t3r_reason(error, error_bytes, "byte %" PRIu64 ": no Footer record in front of the end magic", at);
+    }
+    *end = (t3r_mcap_end){true, at};
+    return 0;
+}
+
+void t3r_mcap_chunks_free(t3r_mcap_chunks *chunks)
+{
+    for (size_t i = 0; i < chunks->count; i++) {
+        free(chunks->data[i]);
+    }
+    free(chunks->data);
+    *chunks = (t3r_mcap_chunks){0};
+}

@@ -1,0 +1,15 @@
+#include "reason.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+int t3r_reason(char *error, size_t error_bytes, const char *format, ...)
+{
+    if (error != NULL && error_bytes > 0) {
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(error, error_bytes, format, arguments);
+        va_end(arguments);
+    }
+    return -1;
+}

@@ -1,0 +1,77 @@
+/* What the files of the recording reader share: the messages of a recording by stream, and each frame's companions. */
+#ifndef T3R_PLATFORM_RECORDING_INDEX_H
+#define T3R_PLATFORM_RECORDING_INDEX_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "mcap_reader.h"
+#include "recording.h"
+#include "ros_messages.h"
+
+#define T3R_NO_MESSAGE SIZE_MAX
+#define T3R_NO_STREAM SIZE_MAX
+#define T3R_NOTE_BYTES 512
+
+typedef struct t3r_indexed_message {
+    const uint8_t *data;
+    size_t bytes;
+    int64_t stamp_ns; /* header.stamp, or the log time where that is 0 ("unset"); |stamp_ns| <= 2^62 */
+    size_t order;     /* in its stream */
+    t3r_mcap_place place;
+} t3r_indexed_message;
+
+typedef enum t3r_stream_role {
+    T3R_STREAM_OTHER,
+    T3R_STREAM_COLOUR,
+    T3R_STREAM_DEPTH,
+    T3R_STREAM_CAMERA_INFO,
+    T3R_STREAM_POSE
+} t3r_stream_role;
+
+/* A channel. Messages are kept for the types that trim3r reads; others are counted. */
+typedef struct t3r_stream {
+    t3r_text name;        /* the topic as the file holds it; points into its bytes */
+    char *topic, *schema; /* printable copies */
+    uint16_t schema_id;
+    t3r_ros_type type; /* T3R_ROS_TYPE_COUNT = none that trim3r reads */
+    t3r_stream_role role;
+    uint64_t count;
+    int64_t first_ns, last_ns;
+    t3r_indexed_message *messages;
+    size_t kept, capacity;
+} t3r_stream;
+
+/* Indices into the messages of the streams chosen; T3R_NO_MESSAGE = none. */
+typedef struct t3r_frame_links {
+    size_t depth, pose, camera_info;
+} t3r_frame_links;
+
+struct t3r_recording {
+    uint8_t *file; /* owned, or NULL */
+    t3r_mcap_chunks chunks;
+
+    t3r_stream *streams;
+    size_t stream_count, stream_capacity;
+    size_t colour, depth, pose, camera_info; /* the streams chosen, or T3R_NO_STREAM */
+
+    t3r_frame_links *links; /* one a message of the colour stream */
+    uint8_t **depth_z16;    /* one a message of the depth stream: its samples as Z16 once asked for, when the file
+                               holds them otherwise */
+    t3r_pairing_info pairing;
+
+    uint32_t bits_epoch;
+    uint64_t depth_unit_q40;
+    char clock[64];
+    t3r_triplet *triplets;
+    uint32_t triplet_count;
+    char note[T3R_NOTE_BYTES];
+};
+
+/* Adds a remark to the note. */
+void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Chooses the streams and links each colour image to its companions. 0, or -1 when memory is out. */
+int t3r_recording_pair(t3r_recording *recording);
+
+#endif

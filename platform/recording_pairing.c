@@ -1,0 +1,174 @@
+/* Which streams make up the frames, and which messages belong to one instant. */
+#include "recording_index.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define NEAR_NS 20000000 /* messages of one instant that do not share a stamp are at most this far apart */
+
+/* ---- choosing streams ---- */
+
+/* Bytes of the topic up to and with its last slash: the camera's prefix. */
+static size_t prefix_bytes(const char *topic)
+{
+    const char *slash = strrchr(topic, '/');
+    return slash == NULL ? 0 : (size_t)(slash - topic) + 1;
+}
+
+static size_t choose_colour(const t3r_recording *recording)
+{
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        if (recording->streams[i].role == T3R_STREAM_COLOUR) {
+            return i;
+        }
+    }
+    return T3R_NO_STREAM;
+}
+
+/* The first stream of this role below the camera's prefix, else the only one of this role in the file. */
+static size_t choose_companion(const t3r_recording *recording, t3r_stream_role role)
+{
+    const char *camera = recording->streams[recording->colour].topic;
+    size_t prefix = prefix_bytes(camera);
+    size_t only = T3R_NO_STREAM, count = 0;
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        const t3r_stream *stream = &recording->streams[i];
+        if (stream->role == role) {
+            if (prefix > 1 && strncmp(stream->topic, camera, prefix) == 0) {
+                return i;
+            }
+            only = i;
+            count++;
+        }
+    }
+    return count == 1 ? only : T3R_NO_STREAM;
+}
+
+static void remark_unused(t3r_recording *recording)
+{
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        const t3r_stream *stream = &recording->streams[i];
+        bool chosen =
+            i == recording->colour || i == recording->depth || i == recording->pose || i == recording->camera_info;
+        if (stream->role != T3R_STREAM_OTHER && !chosen) {
+            t3r_recording_remark(recording, "%s is not used", stream->topic);
+        }
+    }
+}
+
+/* ---- pairing ---- */
+
+static int by_stamp(const void *left, const void *right)
+{
+    const t3r_indexed_message *a = left, *b = right;
+    if (a->stamp_ns != b->stamp_ns) {
+        return a->stamp_ns < b->stamp_ns ? -1 : 1;
+    }
+    return a->order < b->order ? -1 : a->order > b->order;
+}
+
+/* The first message not before `stamp` in a stream sorted by stamp; its count when there is none. */
+static size_t first_from(const t3r_stream *stream, int64_t stamp)
+{
+    size_t low = 0, high = stream->kept;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (stream->messages[middle].stamp_ns < stamp) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+/* The message of the same stamp, else the nearest; of two equally near the earlier. */
+static size_t nearest(const t3r_stream *stream, int64_t stamp)
+{
+    size_t after = first_from(stream, stamp);
+    if (after == 0) {
+        return stream->kept > 0 ? 0 : T3R_NO_MESSAGE;
+    }
+    if (after == stream->kept) {
+        return after - 1;
+    }
+    int64_t gap_after = stream->messages[after].stamp_ns - stamp;
+    int64_t gap_before = stamp - stream->messages[after - 1].stamp_ns;
+    return gap_after == 0 || gap_after < gap_before ? after : after - 1;
+}
+
+/* The nearest within NEAR_NS; widens *worst_ns to its distance. */
+static size_t pair_near(const t3r_stream *stream, int64_t stamp, int64_t *worst_ns)
+{
+    size_t found = nearest(stream, stamp);
+    if (found == T3R_NO_MESSAGE) {
+        return found;
+    }
+    int64_t gap = stream->messages[found].stamp_ns - stamp;
+    gap = gap < 0 ? -gap : gap;
+    if (gap > NEAR_NS) {
+        return T3R_NO_MESSAGE;
+    }
+    *worst_ns = gap > *worst_ns ? gap : *worst_ns;
+    return found;
+}
+
+/* Intrinsics hold until the next ones: the message of the same stamp, else the last one before, else the first. */
+static size_t pair_standing(const t3r_stream *stream, int64_t stamp)
+{
+    size_t after = first_from(stream, stamp);
+    if (stream->kept == 0) {
+        return T3R_NO_MESSAGE;
+    }
+    bool same = after < stream->kept && stream->messages[after].stamp_ns == stamp;
+    return same || after == 0 ? after : after - 1;
+}
+
+int t3r_recording_pair(t3r_recording *recording)
+{
+    recording->colour = choose_colour(recording);
+    recording->depth = recording->pose = recording->camera_info = T3R_NO_STREAM;
+    if (recording->colour == T3R_NO_STREAM) {
+        t3r_recording_remark(recording, "holds no colour images in a format that can be read");
+        return 0;
+    }
+    recording->depth = choose_companion(recording, T3R_STREAM_DEPTH);
+    recording->pose = choose_companion(recording, T3R_STREAM_POSE);
+    recording->camera_info = choose_companion(recording, T3R_STREAM_CAMERA_INFO);
+    remark_unused(recording);
+
+    static const t3r_stream none = {0};
+    const t3r_stream *colour = &recording->streams[recording->colour];
+    const t3r_stream *depth = &none, *pose = &none, *camera_info = &none;
+    const struct {
+        size_t index;
+        const t3r_stream **stream;
+    } companions[] = {{recording->depth, &depth}, {recording->pose, &pose}, {recording->camera_info, &camera_info}};
+    for (size_t i = 0; i < sizeof companions / sizeof companions[0]; i++) {
+        if (companions[i].index != T3R_NO_STREAM) {
+            t3r_stream *stream = &recording->streams[companions[i].index];
+            if (stream->kept > 1) {
+                qsort(stream->messages, stream->kept, sizeof *stream->messages, by_stamp);
+            }
+            *companions[i].stream = stream;
+        }
+    }
+    recording->links = calloc(colour->kept > 0 ? colour->kept : 1, sizeof *recording->links);
+    recording->depth_z16 = calloc(depth->kept > 0 ? depth->kept : 1, sizeof *recording->depth_z16);
+    if (recording->links == NULL || recording->depth_z16 == NULL) {
+        return -1;
+    }
+    t3r_pairing_info *pairing = &recording->pairing;
+    pairing->frames = (uint32_t)colour->kept;
+    for (size_t i = 0; i < colour->kept; i++) {
+        t3r_frame_links *links = &recording->links[i];
+        int64_t stamp = colour->messages[i].stamp_ns;
+        links->depth = pair_near(depth, stamp, &pairing->worst_depth_gap_ns);
+        links->pose = pair_near(pose, stamp, &pairing->worst_pose_gap_ns);
+        links->camera_info = pair_standing(camera_info, stamp);
+        pairing->with_depth += links->depth != T3R_NO_MESSAGE;
+        pairing->with_pose += links->pose != T3R_NO_MESSAGE;
+        pairing->with_intrinsics += links->camera_info != T3R_NO_MESSAGE;
+    }
+    return 0;
+}

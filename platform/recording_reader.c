@@ -1,0 +1,453 @@
+/* Recordings: from MCAP records to streams of indexed messages and what the metadata say. */
+#include "recording.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "file_bytes.h"
+#include "fixed_text.h"
+#include "grow.h"
+#include "pixel_layout.h"
+#include "reason.h"
+#include "recording_index.h"
+
+#define IDS 65536u                                  /* schema and channel ids have 16 bits */
+#define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
+#define MAX_DEPTH_UNIT_Q40 (UINT64_C(1) << 56)
+#define MAX_TRIPLETS (1u << 20)
+#define MAX_LOG_NS ((uint64_t)1 << 62)
+
+/* State of one pass over the records. */
+typedef struct indexing {
+    t3r_recording *recording;
+    t3r_mcap_schema_record *schemas;
+    size_t schema_count, schema_capacity;
+    uint32_t *schema_of, *stream_of; /* by id: index + 1, 0 = none */
+    char *error;
+    size_t error_bytes;
+} indexing;
+
+static int fail(indexing *x, const char *record, t3r_mcap_place place, const char *what)
+{
+    char text[T3R_MCAP_PLACE_BYTES];
+    return t3r_reason(x->error, x->error_bytes, "%s at %s: %s", record, t3r_mcap_place_text(place, text), what);
+}
+
+void t3r_recording_remark(t3r_recording *recording, const char *format, ...)
+{
+    size_t used = strlen(recording->note);
+    if (used > 0 && used + 3 < sizeof recording->note) {
+        memcpy(recording->note + used, "; ", 3);
+        used += 2;
+    }
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(recording->note + used, sizeof recording->note - used, format, arguments);
+    va_end(arguments);
+}
+
+static char *printable(t3r_text text)
+{
+    char *copy = malloc(text.count + 1);
+    if (copy != NULL) {
+        t3r_text_copy(copy, text.count + 1, text);
+    }
+    return copy;
+}
+
+/* ---- schemas and channels ---- */
+
+static int on_schema(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_place place)
+{
+    indexing *x = user;
+    if (x->schema_of[schema->id] != 0) {
+        const t3r_mcap_schema_record *old = &x->schemas[x->schema_of[schema->id] - 1];
+        bool same = t3r_text_same(old->name, schema->name) && t3r_text_same(old->encoding, schema->encoding) &&
+                    t3r_text_same(old->definition, schema->definition);
+        return same ? 0 : fail(x, "schema", place, "its id is taken by another schema");
+    }
+    t3r_mcap_schema_record *grown = t3r_grow(x->schemas, x->schema_count, &x->schema_capacity, sizeof *grown);
+    if (grown == NULL) {
+        return fail(x, "schema", place, "out of memory");
+    }
+    x->schemas = grown;
+    x->schemas[x->schema_count++] = *schema;
+    x->schema_of[schema->id] = (uint32_t)x->schema_count;
+    return 0;
+}
+
+/* Schema names come as "package/msg/Type", from older writers as "package/Type". */
+static t3r_ros_type type_of(t3r_text name)
+{
+    static const char *const old_names[T3R_ROS_TYPE_COUNT] = {
+        "sensor_msgs/Image", "sensor_msgs/CameraInfo", "geometry_msgs/PoseStamped", "geometry_msgs/TransformStamped"};
+    uint32_t type = 0;
+    while (type < T3R_ROS_TYPE_COUNT && !t3r_text_is(name, t3r_ros_names[type]) &&
+           !t3r_text_is(name, old_names[type])) {
+        type++;
+    }
+    return (t3r_ros_type)type;
+}
+
+static int on_channel(void *user, const t3r_mcap_channel_record *channel, t3r_mcap_place place)
+{
+    indexing *x = user;
+    t3r_recording *recording = x->recording;
+    if (x->stream_of[channel->id] != 0) {
+        const t3r_stream *old = &recording->streams[x->stream_of[channel->id] - 1];
+        bool same = old->schema_id == channel->schema && t3r_text_same(old->name, channel->topic);
+        return same ? 0 : fail(x, "channel", place, "its id is taken by another channel");
+    }
+    t3r_text schema = {"", 0};
+    if (channel->schema != 0) {
+        if (x->schema_of[channel->schema] == 0) {
+            return fail(x, "channel", place, "its schema was not defined before it");
+        }
+        schema = x->schemas[x->schema_of[channel->schema] - 1].name;
+    }
+    t3r_stream *grown =
+        t3r_grow(recording->streams, recording->stream_count, &recording->stream_capacity, sizeof *grown);
+    if (grown == NULL) {
+        return fail(x, "channel", place, "out of memory");
+    }
+    recording->streams = grown;
+    t3r_stream *stream = &recording->streams[recording->stream_count++];
+    *stream = (t3r_stream){
+        .name = channel->topic,
+        .topic = printable(channel->topic),
+        .schema = printable(schema),
+        .schema_id = channel->schema,
+        .type = t3r_text_is(channel->encoding, "cdr") ? type_of(schema) : T3R_ROS_TYPE_COUNT,
+    };
+    x->stream_of[channel->id] = (uint32_t)recording->stream_count;
+    return stream->topic != NULL && stream->schema != NULL ? 0 : fail(x, "channel", place, "out of memory");
+}
+
+/* ---- messages ---- */
+
+static t3r_stream_role role_of_image(t3r_recording *recording, const t3r_stream *stream, t3r_text encoding)
+{
+    t3r_pixel_format format;
+    if (t3r_pixel_format_of(encoding, &format)) {
+        return T3R_STREAM_COLOUR;
+    }
+    if (t3r_text_is(encoding, "16UC1") || t3r_text_is(encoding, "mono16") || t3r_text_is(encoding, "32FC1")) {
+        return T3R_STREAM_DEPTH;
+    }
+    char name[32];
+    t3r_text_copy(name, sizeof name, encoding);
+    t3r_recording_remark(recording, "%s: its encoding '%s' is not supported", stream->topic, name);
+    return T3R_STREAM_OTHER;
+}
+
+/* Parses a message of a known type; *stamp_ns and the stream's role from it. NULL, or what is wrong. *usable: it may
+ * be paired to an image. */
+static const char *inspect(t3r_recording *recording, t3r_stream *stream, const t3r_mcap_message_record *message,
+                           int64_t *stamp_ns, bool *usable)
+{
+    *usable = true;
+    const char *wrong = NULL;
+    if (stream->type == T3R_ROS_IMAGE) {
+        t3r_ros_image image;
+        wrong = t3r_ros_read_image(message->data, message->bytes, &image);
+        if (wrong == NULL) {
+            *stamp_ns = image.header.stamp_ns;
+            stream->role = stream->count == 0 ? role_of_image(recording, stream, image.encoding) : stream->role;
+            *usable = stream->role != T3R_STREAM_OTHER;
+        }
+    } else if (stream->type == T3R_ROS_CAMERA_INFO) {
+        t3r_ros_camera_info info;
+        wrong = t3r_ros_read_camera_info(message->data, message->bytes, &info);
+        if (wrong == NULL) {
+            *stamp_ns = info.header.stamp_ns;
+            stream->role = T3R_STREAM_CAMERA_INFO;
+            *usable = info.k_f64[0] << 1 != 0; /* K[0] = 0: uncalibrated */
+        }
+    } else {
+        t3r_ros_pose pose;
+        wrong = stream->type == T3R_ROS_POSE ? t3r_ros_read_pose(message->data, message->bytes, &pose)
+                                             : t3r_ros_read_transform(message->data, message->bytes, &pose);
+        if (wrong == NULL) {
+            *stamp_ns = pose.header.stamp_ns;
+            stream->role = T3R_STREAM_POSE;
+        }
+    }
+    return wrong;
+}
+
+static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mcap_place place)
+{
+    indexing *x = user;
+    if (x->stream_of[message->channel] == 0) {
+        return fail(x, "message", place, "its channel was not defined before it");
+    }
+    t3r_stream *stream = &x->recording->streams[x->stream_of[message->channel] - 1];
+    int64_t log_ns = (int64_t)(message->log_ns < MAX_LOG_NS ? message->log_ns : MAX_LOG_NS);
+    if (stream->type != T3R_ROS_TYPE_COUNT) {
+        int64_t stamp_ns = 0;
+        bool usable = false;
+        const char *wrong = inspect(x->recording, stream, message, &stamp_ns, &usable);
+        if (wrong != NULL) {
+            char what[128];
+            snprintf(what, sizeof what, "%s (%.64s)", wrong, stream->topic);
+            return fail(x, "message", place, what);
+        }
+        if (usable) {
+            t3r_indexed_message *grown =
+                stream->kept == UINT32_MAX ? NULL
+                                           : t3r_grow(stream->messages, stream->kept, &stream->capacity, sizeof *grown);
+            if (grown == NULL) {
+                return fail(x, "message", place, "out of memory");
+            }
+            stream->messages = grown;
+            stream->messages[stream->kept] = (t3r_indexed_message){
+                message->data, message->bytes, stamp_ns != 0 ? stamp_ns : log_ns, stream->kept, place};
+            stream->kept++;
+        }
+    }
+    stream->first_ns = stream->count == 0 || log_ns < stream->first_ns ? log_ns : stream->first_ns;
+    stream->last_ns = stream->count == 0 || log_ns > stream->last_ns ? log_ns : stream->last_ns;
+    stream->count++;
+    return 0;
+}
+
+/* ---- metadata ---- */
+
+/* A decimal number at text[*at]; false when there is none or it exceeds 32 bits. */
+static bool number(t3r_text text, size_t *at, uint32_t *value)
+{
+    uint64_t x = 0;
+    size_t start = *at;
+    for (; *at < text.count && text.chars[*at] >= '0' && text.chars[*at] <= '9'; (*at)++) {
+        x = x * 10 + (uint64_t)(text.chars[*at] - '0');
+        if (x > UINT32_MAX) {
+            return false;
+        }
+    }
+    *value = (uint32_t)x;
+    return *at > start;
+}
+
+/* "0,2,1;3,5,4": context a, context b, target. NULL, or what is wrong. */
+static const char *parse_triplets(t3r_text text, t3r_recording *recording)
+{
+    size_t room = 1;
+    for (size_t i = 0; i < text.count; i++) {
+        room += text.chars[i] == ';';
+    }
+    if (text.count == 0) {
+        return NULL;
+    }
+    if (room > MAX_TRIPLETS) {
+        return "more than 1048576 triplets";
+    }
+    t3r_triplet *triplets = calloc(room, sizeof *triplets);
+    if (triplets == NULL) {
+        return "out of memory";
+    }
+    free(recording->triplets);
+    recording->triplets = triplets;
+    recording->triplet_count = 0;
+    size_t at = 0;
+    for (size_t i = 0; i < room; i++) {
+        uint32_t members[3];
+        for (uint32_t j = 0; j < 3; j++) {
+            char behind = j < 2 ? ',' : ';';
+            bool last = i + 1 == room && j == 2;
+            if (!number(text, &at, &members[j]) || (last ? at != text.count : text.chars[at] != behind)) {
+                return "triplets is not 'a,b,target;a,b,target...'";
+            }
+            at += !last;
+        }
+        triplets[recording->triplet_count++] = (t3r_triplet){{members[0], members[1]}, members[2]};
+    }
+    return NULL;
+}
+
+static int on_metadata(void *user, t3r_text name, t3r_text key, t3r_text value, t3r_mcap_place place)
+{
+    indexing *x = user;
+    t3r_recording *recording = x->recording;
+    const char *wrong = NULL;
+    if (t3r_text_is(name, "trim3r_triplets") && t3r_text_is(key, "triplets")) {
+        wrong = parse_triplets(value, recording);
+    } else if (t3r_text_is(name, "trim3r") && t3r_text_is(key, "bits_epoch")) {
+        size_t at = 0;
+        bool good = number(value, &at, &recording->bits_epoch) && at == value.count && recording->bits_epoch > 0;
+        wrong = good ? NULL : "bits_epoch is not a number above 0";
+    } else if (t3r_text_is(name, "trim3r") && t3r_text_is(key, "depth_unit")) {
+        bool good = t3r_q40_from_text(value, &recording->depth_unit_q40) == 0 && recording->depth_unit_q40 > 0 &&
+                    recording->depth_unit_q40 < MAX_DEPTH_UNIT_Q40;
+        wrong = good ? NULL : "depth_unit is not a decimal number such as 0.001, above 0 and below 65536";
+    } else if (t3r_text_is(name, "trim3r") && t3r_text_is(key, "clock")) {
+        t3r_text_copy(recording->clock, sizeof recording->clock, value);
+    }
+    return wrong == NULL ? 0 : fail(x, "metadata", place, wrong);
+}
+
+/* Drops the triplets that name frames which the recording does not hold. */
+static void check_triplets(t3r_recording *recording)
+{
+    uint32_t kept = 0, frames = recording->pairing.frames;
+    for (uint32_t i = 0; i < recording->triplet_count; i++) {
+        t3r_triplet t = recording->triplets[i];
+        if (t.context[0] < frames && t.context[1] < frames && t.target < frames) {
+            recording->triplets[kept++] = t;
+        }
+    }
+    if (kept < recording->triplet_count) {
+        t3r_recording_remark(recording, "%" PRIu32 " of its %" PRIu32 " triplets name frames that it does not hold",
+                             recording->triplet_count - kept, recording->triplet_count);
+    }
+    recording->triplet_count = kept;
+}
+
+/* ---- opening ---- */
+
+static void remark_cut(t3r_recording *recording, const t3r_mcap_end *end)
+{
+    uint64_t messages = 0;
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        messages += recording->streams[i].count;
+    }
+    t3r_recording_remark(recording, "cut off at byte %" PRIu64 ", after %" PRIu64 " of its messages", end->cut_offset,
+                         messages);
+}
+
+static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
+{
+    indexing x = {.recording = recording, .error = error, .error_bytes = error_bytes};
+    x.schema_of = calloc(IDS, sizeof *x.schema_of);
+    x.stream_of = calloc(IDS, sizeof *x.stream_of);
+    const t3r_mcap_visitor visitor = {&x, on_schema, on_channel, on_message, on_metadata};
+    t3r_mcap_end end;
+    int status = x.schema_of == NULL || x.stream_of == NULL
+                     ? t3r_reason(error, error_bytes, "out of memory")
+                     : t3r_mcap_read(bytes, count, &visitor, &recording->chunks, &end, error, error_bytes);
+    free(x.schemas);
+    free(x.schema_of);
+    free(x.stream_of);
+    if (status == 0 && end.cut) {
+        remark_cut(recording, &end);
+    }
+    if (status == 0 && t3r_recording_pair(recording) != 0) {
+        status = t3r_reason(error, error_bytes, "out of memory");
+    }
+    if (status == 0) {
+        check_triplets(recording);
+    }
+    return status;
+}
+
+t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
+{
+    t3r_recording *recording = calloc(1, sizeof *recording);
+    if (recording == NULL) {
+        t3r_reason(error, error_bytes, "out of memory");
+        return NULL;
+    }
+    recording->colour = recording->depth = recording->pose = recording->camera_info = T3R_NO_STREAM;
+    recording->depth_unit_q40 = DEFAULT_DEPTH_UNIT_Q40;
+    memcpy(recording->clock, "unknown", sizeof "unknown");
+    if (index_bytes(recording, bytes, count, error, error_bytes) != 0) {
+        t3r_recording_close(recording);
+        return NULL;
+    }
+    return recording;
+}
+
+t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_bytes)
+{
+    size_t count;
+    uint8_t *bytes = t3r_file_bytes(path, &count, error, error_bytes);
+    if (bytes == NULL) {
+        return NULL;
+    }
+    char what[256];
+    t3r_recording *recording = t3r_recording_parse(bytes, count, what, sizeof what);
+    if (recording == NULL) {
+        t3r_reason(error, error_bytes, "%s: %s", path, what);
+        free(bytes);
+        return NULL;
+    }
+    recording->file = bytes;
+    return recording;
+}
+
+void t3r_recording_close(t3r_recording *recording)
+{
+    if (recording == NULL) {
+        return;
+    }
+    if (recording->depth_z16 != NULL && recording->depth != T3R_NO_STREAM) {
+        for (size_t i = 0; i < recording->streams[recording->depth].kept; i++) {
+            free(recording->depth_z16[i]);
+        }
+    }
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        free(recording->streams[i].topic);
+        free(recording->streams[i].schema);
+        free(recording->streams[i].messages);
+    }
+    free(recording->streams);
+    free(recording->links);
+    free(recording->depth_z16);
+    free(recording->triplets);
+    t3r_mcap_chunks_free(&recording->chunks);
+    free(recording->file);
+    free(recording);
+}
+
+/* ---- what it says ---- */
+
+uint32_t t3r_recording_frame_count(const t3r_recording *recording)
+{
+    return recording->pairing.frames;
+}
+
+uint32_t t3r_recording_triplet_count(const t3r_recording *recording)
+{
+    return recording->triplet_count;
+}
+
+t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index)
+{
+    return index < recording->triplet_count ? recording->triplets[index] : (t3r_triplet){{0, 0}, 0};
+}
+
+const char *t3r_recording_note(const t3r_recording *recording)
+{
+    return recording->note;
+}
+
+uint32_t t3r_recording_bits_epoch(const t3r_recording *recording)
+{
+    return recording->bits_epoch;
+}
+
+uint32_t t3r_recording_stream_count(const t3r_recording *recording)
+{
+    return (uint32_t)recording->stream_count;
+}
+
+t3r_stream_info t3r_recording_stream(const t3r_recording *recording, uint32_t index)
+{
+    if (index >= recording->stream_count) {
+        return (t3r_stream_info){"", "", 0, 0, 0};
+    }
+    const t3r_stream *stream = &recording->streams[index];
+    return (t3r_stream_info){stream->topic, stream->schema, stream->count, stream->first_ns, stream->last_ns};
+}
+
+t3r_pairing_info t3r_recording_pairing(const t3r_recording *recording)
+{
+    return recording->pairing;
+}
+
+const char *t3r_recording_clock(const t3r_recording *recording)
+{
+    return recording->clock;
+}

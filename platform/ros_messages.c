@@ -1,0 +1,156 @@
+#include "ros_messages.h"
+
+#define NS_PER_S 1000000000
+
+static const char *const bad_encapsulation = "the encapsulation is not plain CDR";
+
+static const char *get_header(t3r_cdr_reader *in, const uint8_t *bytes, size_t count, t3r_ros_header *header)
+{
+    t3r_cdr_open(in, bytes, count);
+    if (in->failed) {
+        return bad_encapsulation;
+    }
+    int32_t seconds = (int32_t)t3r_cdr_get_u32(in);
+    uint32_t nanoseconds = t3r_cdr_get_u32(in);
+    header->stamp_ns = (int64_t)seconds * NS_PER_S + nanoseconds;
+    header->frame_id = t3r_cdr_get_string(in);
+    if (in->failed) {
+        return "header is malformed or cut short";
+    }
+    return nanoseconds < NS_PER_S ? NULL : "header.stamp.nanosec is over 999999999";
+}
+
+static void get_f64s(t3r_cdr_reader *in, uint64_t *values, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        values[i] = t3r_cdr_get_u64(in);
+    }
+}
+
+const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image)
+{
+    t3r_cdr_reader in;
+    const char *wrong = get_header(&in, bytes, count, &image->header);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    image->height = t3r_cdr_get_u32(&in);
+    image->width = t3r_cdr_get_u32(&in);
+    image->encoding = t3r_cdr_get_string(&in);
+    if (in.failed) {
+        return "encoding is malformed or cut short";
+    }
+    image->is_bigendian = t3r_cdr_get_u8(&in) != 0;
+    image->step = t3r_cdr_get_u32(&in);
+    image->data = t3r_cdr_get_bytes(&in, &image->data_bytes);
+    return in.failed ? "data is cut short" : NULL;
+}
+
+const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros_camera_info *info)
+{
+    t3r_cdr_reader in;
+    const char *wrong = get_header(&in, bytes, count, &info->header);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    info->height = t3r_cdr_get_u32(&in);
+    info->width = t3r_cdr_get_u32(&in);
+    info->distortion_model = t3r_cdr_get_string(&in);
+    if (in.failed) {
+        return "distortion_model is malformed or cut short";
+    }
+    info->d_count = t3r_cdr_get_u32(&in);
+    if (info->d_count > T3R_ROS_MAX_D) {
+        return "D has more than 16 coefficients";
+    }
+    get_f64s(&in, info->d_f64, info->d_count);
+    get_f64s(&in, info->k_f64, 9);
+    get_f64s(&in, info->r_f64, 9);
+    get_f64s(&in, info->p_f64, 12);
+    info->binning_x = t3r_cdr_get_u32(&in);
+    info->binning_y = t3r_cdr_get_u32(&in);
+    info->roi_x = t3r_cdr_get_u32(&in);
+    info->roi_y = t3r_cdr_get_u32(&in);
+    info->roi_height = t3r_cdr_get_u32(&in);
+    info->roi_width = t3r_cdr_get_u32(&in);
+    info->roi_rectify = t3r_cdr_get_u8(&in) != 0;
+    return in.failed ? "D, K, R, P, binning or roi is cut short" : NULL;
+}
+
+static const char *get_pose(t3r_cdr_reader *in, t3r_ros_pose *pose)
+{
+    get_f64s(in, pose->position_f64, 3);
+    get_f64s(in, pose->rotation_f64, 4);
+    return in->failed ? "position or orientation is cut short" : NULL;
+}
+
+const char *t3r_ros_read_pose(const uint8_t *bytes, size_t count, t3r_ros_pose *pose)
+{
+    t3r_cdr_reader in;
+    const char *wrong = get_header(&in, bytes, count, &pose->header);
+    pose->child_frame_id = (t3r_text){"", 0};
+    return wrong != NULL ? wrong : get_pose(&in, pose);
+}
+
+const char *t3r_ros_read_transform(const uint8_t *bytes, size_t count, t3r_ros_pose *pose)
+{
+    t3r_cdr_reader in;
+    const char *wrong = get_header(&in, bytes, count, &pose->header);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    pose->child_frame_id = t3r_cdr_get_string(&in);
+    return in.failed ? "child_frame_id is malformed or cut short" : get_pose(&in, pose);
+}
+
+static void put_header(t3r_cdr_writer *out, const t3r_ros_header *header)
+{
+    t3r_cdr_put_u32(out, (uint32_t)(header->stamp_ns / NS_PER_S));
+    t3r_cdr_put_u32(out, (uint32_t)(header->stamp_ns % NS_PER_S));
+    t3r_cdr_put_string(out, header->frame_id);
+}
+
+static void put_f64s(t3r_cdr_writer *out, const uint64_t *values, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        t3r_cdr_put_u64(out, values[i]);
+    }
+}
+
+void t3r_ros_write_image_head(t3r_cdr_writer *out, const t3r_ros_image *image)
+{
+    put_header(out, &image->header);
+    t3r_cdr_put_u32(out, image->height);
+    t3r_cdr_put_u32(out, image->width);
+    t3r_cdr_put_string(out, image->encoding);
+    t3r_cdr_put_u8(out, image->is_bigendian);
+    t3r_cdr_put_u32(out, image->step);
+    t3r_cdr_put_u32(out, image->data_bytes);
+}
+
+void t3r_ros_write_camera_info(t3r_cdr_writer *out, const t3r_ros_camera_info *info)
+{
+    put_header(out, &info->header);
+    t3r_cdr_put_u32(out, info->height);
+    t3r_cdr_put_u32(out, info->width);
+    t3r_cdr_put_string(out, info->distortion_model);
+    t3r_cdr_put_u32(out, info->d_count);
+    put_f64s(out, info->d_f64, info->d_count);
+    put_f64s(out, info->k_f64, 9);
+    put_f64s(out, info->r_f64, 9);
+    put_f64s(out, info->p_f64, 12);
+    t3r_cdr_put_u32(out, info->binning_x);
+    t3r_cdr_put_u32(out, info->binning_y);
+    t3r_cdr_put_u32(out, info->roi_x);
+    t3r_cdr_put_u32(out, info->roi_y);
+    t3r_cdr_put_u32(out, info->roi_height);
+    t3r_cdr_put_u32(out, info->roi_width);
+    t3r_cdr_put_u8(out, info->roi_rectify);
+}
+
+void t3r_ros_write_pose(t3r_cdr_writer *out, const t3r_ros_pose *pose)
+{
+    put_header(out, &pose->header);
+    put_f64s(out, pose->position_f64, 3);
+    put_f64s(out, pose->rotation_f64, 4);
+}

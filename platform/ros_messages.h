@@ -1,0 +1,75 @@
+/* The ROS 2 messages of a recording, read from and written to CDR. Doubles stay the 64 bits that the file holds
+ * (names end in _f64): what they mean in fixed point is decided in recording_frame.c. */
+#ifndef T3R_PLATFORM_ROS_MESSAGES_H
+#define T3R_PLATFORM_ROS_MESSAGES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "cdr.h"
+#include "text.h"
+
+#define T3R_ROS_MAX_D 16u /* most distortion coefficients of any model in use are 14 */
+
+/* Messages that trim3r reads; the first three are the ones that it writes. */
+typedef enum t3r_ros_type {
+    T3R_ROS_IMAGE,
+    T3R_ROS_CAMERA_INFO,
+    T3R_ROS_POSE,
+    T3R_ROS_TRANSFORM,
+    T3R_ROS_TYPE_COUNT
+} t3r_ros_type;
+
+/* "sensor_msgs/msg/Image" ... */
+extern const char *const t3r_ros_names[T3R_ROS_TYPE_COUNT];
+/* The message and all that it refers to, as MCAP's schema encoding "ros2msg" wants it. */
+extern const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT];
+
+typedef struct t3r_ros_header {
+    int64_t stamp_ns; /* seconds in int32_t, so |stamp_ns| < 2^62 */
+    t3r_text frame_id;
+} t3r_ros_header;
+
+typedef struct t3r_ros_image {
+    t3r_ros_header header;
+    uint32_t height, width;
+    t3r_text encoding;
+    bool is_bigendian;
+    uint32_t step; /* bytes from row to row */
+    const uint8_t *data;
+    uint32_t data_bytes;
+} t3r_ros_image;
+
+typedef struct t3r_ros_camera_info {
+    t3r_ros_header header;
+    uint32_t height, width;
+    t3r_text distortion_model;
+    uint32_t d_count;
+    uint64_t d_f64[T3R_ROS_MAX_D];
+    uint64_t k_f64[9], r_f64[9], p_f64[12]; /* row-major */
+    uint32_t binning_x, binning_y;
+    uint32_t roi_x, roi_y, roi_height, roi_width;
+    bool roi_rectify;
+} t3r_ros_camera_info;
+
+/* geometry_msgs/msg/PoseStamped, or TransformStamped (child to frame_id). */
+typedef struct t3r_ros_pose {
+    t3r_ros_header header;
+    t3r_text child_frame_id; /* of a transform, else empty */
+    uint64_t position_f64[3];
+    uint64_t rotation_f64[4]; /* x y z w */
+} t3r_ros_pose;
+
+/* NULL, or which field is malformed or cut short. Texts and data point into the message. */
+const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image);
+const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros_camera_info *info);
+const char *t3r_ros_read_pose(const uint8_t *bytes, size_t count, t3r_ros_pose *pose);
+const char *t3r_ros_read_transform(const uint8_t *bytes, size_t count, t3r_ros_pose *pose);
+
+/* The stamp must lie in 0 .. 2^31 seconds. An image is written up to the count of its data; the caller's
+ * t3r_cdr_put_raw() adds the data_bytes bytes themselves. */
+void t3r_ros_write_image_head(t3r_cdr_writer *out, const t3r_ros_image *image);
+void t3r_ros_write_camera_info(t3r_cdr_writer *out, const t3r_ros_camera_info *info);
+void t3r_ros_write_pose(t3r_cdr_writer *out, const t3r_ros_pose *pose);
+
+#endif

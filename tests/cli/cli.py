@@ -1,0 +1,349 @@
+#!/usr/bin/env python3
+"""The trim3r program from outside: exit codes, messages, JSON, and what must not change a bit.
+
+    cli.py PATH/TO/trim3r"""
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import xml.dom.minidom
+import zlib
+
+TRIM3R = os.path.abspath(sys.argv[1])
+failures = []
+checks = 0
+
+
+def run(*arguments):
+    done = subprocess.run([TRIM3R, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    return done.returncode, done.stdout, done.stderr
+
+
+def check(condition, what):
+    global checks
+    checks += 1
+    if not condition:
+        failures.append(what)
+        print("FAILED:", what)
+
+
+def expect(code, *arguments, err=None, out=None):
+    """Runs and checks the exit code and a piece of either stream; an error must say something, and only there."""
+    got, stdout, stderr = run(*arguments)
+    line = " ".join(map(str, arguments))
+    check(got == code, f"{line}: exit {got}, not {code}: {stderr.strip()}")
+    if code != 0:
+        check(stderr.strip() != "", f"{line}: no message")
+    if err:
+        check(err in stderr, f"{line}: '{stderr.strip()}' does not say '{err}'")
+    if out:
+        check(out in stdout, f"{line}: '{stdout.strip()}' does not say '{out}'")
+    return stdout
+
+
+def expect_json(*arguments):
+    stdout = expect(0, *arguments, "--json")
+    try:
+        return json.loads(stdout)
+    except ValueError:
+        check(False, f"{' '.join(map(str, arguments))}: not JSON: {stdout[:200]}")
+        return {}
+
+
+def write(path, content):
+    with open(path, "wb") as file:
+        file.write(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+def png(width, height):
+    """A grey-brown RGB picture."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    rows = b"".join(b"\0" + bytes((120, 110, 100)) * width for _ in range(height))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+COMMANDS = ["import", "room", "info", "build", "render", "eval", "replay", "diff", "plan", "bench"]
+POSE = {"fl_x": 220, "w": 64, "h": 48, "transform_matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}
+
+
+def test_dispatch():
+    expect(2)
+    expect(2, "paint", err="paint")
+    expect(0, "--version", out="bits epoch")
+    summary = expect(0, "--help", out="COMMAND")
+    for command in COMMANDS:
+        check(f"\n  {command} " in summary, f"--help does not list {command}")
+        text = expect(0, command, "--help", out="trim3r " + command)
+        check("Example" in text, f"{command} --help has no examples")
+        check(all(len(line) < 80 for line in text.splitlines()), f"{command} --help is wider than 79 columns")
+        expect(2, command, "--no-such-option", err="no-such-option")
+
+
+def test_build(room):
+    expect(2, "build", err="REC.mcap is missing")
+    expect(2, "build", room, "--keep", 10, err="-o")
+    expect(2, "build", room, room, "--keep", 10, "-o", "s.ply", err="too many")
+    expect(2, "build", room, "--keep", 10, "-o", "s.obj", err=".ply")
+    expect(2, "build", room, "-o", "s.ply", err="budget")
+    expect(2, "build", room, "--keep", 10, "--gaussians", 5, "-o", "s.ply", err="exclude")
+    for option, values in {
+        "--keep": ["0", "101", "x", "-3", "10,20", ""],
+        "--gaussians": ["0", "x", "-1", "16777217", "1.5"],
+        "--context": ["", "a", "0,", "-1", ",".join(map(str, range(17)))],
+        "--allocate": ["evenly", ""],
+        "--head": ["big"],
+        "--wavelet": ["db9"],
+        "--levels": ["0", "6"],
+        "--clusters": ["0", "513"],
+        "--gamma": ["-1", "2.1", "x", "nan"],
+        "--keep-percent": ["101"],
+        "--fill-radius": ["9"],
+        "--seed": ["-1", "4294967296"],
+        "--working": ["64", "4x64", "64x5000"],
+        "--arena": ["x", "-1", "1k", ""],
+        "--threads": ["0", "65"],
+        "--cpu-mask": ["all"],
+        "--method": ["best"],
+        "--depth": ["stereo", "radar"],
+        "--refine": ["2", "x"],
+    }.items():
+        for value in values:
+            expect(2, "build", room, "-o", "s.ply", f"{option}={value}", err=option)
+    expect(2, "build", room, "--auto", "-o", "s.ply", err="not yet available")
+    expect(2, "build", room, "--keep", 10, "--context", "1,1", "-o", "s.ply", err="twice")
+    expect(1, "build", room, "--keep", 10, "--context", "0,99", "-o", "s.ply", err="no frame 99")
+    expect(1, "build", room, "--keep", 10, "-o", "missing/s.ply", err="missing/s.ply")
+    if os.path.exists("/dev/full"):
+        os.symlink("/dev/full", "full.ply")
+        expect(1, "build", room, "--keep", 10, "-o", "full.ply", err="full.ply")
+
+    found = expect_json("build", room, "--context", "0,2", "--keep", "10%", "-o", "scene.ply")
+    for key in ("gaussians", "arena_bytes", "hash", "valid_points", "bits_epoch", "origin", "exponent"):
+        check(key in found, f"build --json has no {key}")
+    check(found["gaussians"] == (found["valid_points"] * 10 + 50) // 100, "--keep 10% is not a tenth")
+    exact = expect_json("build", room, "--gaussians", 777, "-o", "exact.ply")
+    check(exact["gaussians"] == 777, "--gaussians is not met exactly")
+    text = expect(0, "build", room, "--working", "32x32", "--gaussians", 100000, "-o", "all.ply", out="all valid points are used")
+    check("100000" in text, "the count asked for is not told")
+    expect(0, "build", room, "--working", "32x32", "--gaussians", 9, "--method", "random", "--comments", "-o", "named.ply")
+    check(b"comment trim3r bits_epoch" in open("named.ply", "rb").read(), "--comments writes none")
+    check(b"comment" not in open("exact.ply", "rb").read(), "a comment is in the header unasked")
+
+
+def test_recordings(room):
+    whole = open(room, "rb").read()
+    bad = {
+        "empty.mcap": b"",
+        "magic.mcap": b"RIFF" + whole[4:],
+        "text.mcap": b"hello, world\n" * 99,
+        "short.mcap": whole[:7],
+    }
+    for name, content in bad.items():
+        write(name, content)
+        for command in (["build", name, "--keep", 10, "-o", "s.ply"], ["replay", name], ["info", name],
+                        ["render", "scene.ply", name, "--view", 0, "-o", "v.png"]):
+            expect(1, *command, err=name)
+    for command in (["build", "absent.mcap", "--keep", 10, "-o", "s.ply"], ["replay", "absent.mcap"],
+                    ["info", "absent.mcap"], ["eval", "absent.mcap", "--keep", 10]):
+        expect(1, *command, err="absent.mcap")
+    expect(1, "replay", ".", err=".")
+    if os.geteuid() != 0:
+        write("locked.mcap", whole)
+        os.chmod("locked.mcap", 0)
+        expect(1, "replay", "locked.mcap", err="locked.mcap")
+    # a cut recording holds fewer frames, and says so when asked for more
+    write("cut.mcap", whole[:len(whole) // 2])
+    expect(1, "build", "cut.mcap", "--keep", 10, "--context", "0,5", "-o", "s.ply", err="cut.mcap")
+    # pictures without depth
+    os.mkdir("flat")
+    write("flat/a.png", png(64, 48))
+    write("flat/transforms.json", json.dumps({"frames": [dict(POSE, file_path="a.png")]}))
+    expect(1, "import", "absent", "-o", "flat.mcap", err="absent")
+    expect(0, "import", "flat", "-o", "flat.mcap")
+    expect(1, "build", "flat.mcap", "--keep", 10, "-o", "s.ply", err="no depth")
+
+
+def test_arena(room):
+    base = ["build", room, "--context", "0,2", "--gaussians", 5000, "--working", "64x64"]
+    plan = expect_json("plan", "--size", "64x64", "--views", 2, "--gaussians", 5000)
+    least, full = plan["min_bytes"], plan["arena_bytes"]
+    expect(3, *base, "--arena", least - 1, "-o", "s.ply", err="too small")
+    expect(3, *base, "--arena", 0, "-o", "s.ply", err=str(least))
+    hashes, files = set(), set()
+    for i, more in enumerate((["--arena", "min"], ["--arena", least], ["--arena", "full"], ["--arena", full * 10],
+                              ["--threads", 2], ["--threads", 7, "--arena", "min"], ["--cpu-mask", 0])):
+        name = f"arena{i}.ply"
+        hashes.add(expect_json(*base, *more, "-o", name).get("hash"))
+        files.add(open(name, "rb").read())
+    check(len(hashes) == 1 and len(files) == 1, "arena or threads change the scene")
+
+    views = set()
+    for more in (["--arena", "min"], ["--arena", "full"], ["--threads", 3]):
+        views.add(expect_json("render", "scene.ply", room, "--view", 1, "-o", "v.png", *more).get("hash"))
+    check(len(views) == 1, "arena or threads change the view")
+    expect(3, "render", "scene.ply", room, "--view", 1, "--arena", 1000, "-o", "v.png", err="too small")
+
+
+def test_render(room):
+    write("pose.json", json.dumps(POSE))
+    write("path.txt", "# stamp tx ty tz qx qy qz qw\n0 0 0 0 0 0 0 1\n1 0 0 0.1 0 0 0 1\n")
+    expect(2, "render", err="SCENE")
+    expect(2, "render", "scene.ply", room, "--view", 1, err="-o")
+    expect(2, "render", "scene.ply", "-o", "v.png", err="viewpoint")
+    expect(2, "render", "scene.ply", room, "-o", "v.png", err="--view")
+    expect(2, "render", "scene.ply", "--view", 1, "-o", "v.png", err="REC.mcap")
+    expect(2, "render", "scene.ply", room, "--view", 1, "--pose", "pose.json", "-o", "v.png", err="more than one")
+    expect(2, "render", "scene.ply", "--fov", 60, "-o", "v.png", err="--fov")
+    expect(2, "render", "scene.ply", room, "extra", "--view", 1, "-o", "v.png", err="too many")
+    for option, values in {"--view": ["x", "-1"], "--size": ["9", "0x9", "5000x5"], "--fov": ["0", "180", "x"],
+                           "--threads": ["0"], "--depth-unit": ["0", "x"], "--arena": ["big"]}.items():
+        for value in values:
+            expect(2, "render", "scene.ply", "-o", "v.png", f"{option}={value}", err=option)
+    expect(1, "render", "scene.ply", room, "--view", 99, "-o", "v.png", err="no frame 99")
+    expect(1, "render", "absent.ply", room, "--view", 1, "-o", "v.png", err="absent.ply")
+    expect(1, "render", room, room, "--view", 1, "-o", "v.png", err="not a .ply")
+    scene = open("scene.ply", "rb").read()
+    write("cut.ply", scene[:-1])
+    expect(1, "render", "cut.ply", room, "--view", 1, "-o", "v.png", err="cut off")
+    expect(1, "render", "scene.ply", "--pose", "absent.json", "-o", "v.png", err="absent.json")
+    expect(1, "render", "scene.ply", "--pose", "path.txt", "-o", "v.png", err="JSON")
+    expect(1, "render", "scene.ply", "--pose", "pose.json", "--trajectory", "pose.json", "-o", "v.png", err="line 1")
+    expect(2, "render", "scene.ply", "--fov", 179.9, "--size", "64x64", "--trajectory", "path.txt", "-o", "v.png", err="focal")
+    expect(1, "render", "scene.ply", room, "--view", 1, "-o", "missing/v.png", err="missing/v.png")
+
+    found = expect_json("render", "scene.ply", room, "--view", 1, "--depth", "d.png", "--alpha", "a.png", "-o", "view.png")
+    check(found["gaussians"] > 0 and found["width"] == 256, "render --json lacks its keys")
+    for name in ("view.png", "d.png", "a.png"):
+        check(open(name, "rb").read(8) == b"\x89PNG\r\n\x1a\n", f"{name} is no PNG")
+    small = expect_json("render", "scene.ply", room, "--view", 1, "--size", "100x50", "-o", "small.png")
+    check((small["width"], small["height"]) == (100, 50), "--size does not set the size")
+    check(expect_json("render", "scene.ply", "--pose", "pose.json", "-o", "p.png")["height"] == 48, "--pose sets no size")
+    expect(0, "render", "scene.ply", "--trajectory", "path.txt", "--pose", "pose.json", "-o", "t.png", out="2 views")
+    expect(0, "render", "scene.ply", "--trajectory", "path.txt", "--fov", 60, "--size", "32x32", "-o", "f.png")
+    check(all(os.path.exists(n) for n in ("t_0000.png", "t_0001.png", "f_0001.png")), "numbered pictures are missing")
+
+
+def test_replay(room):
+    base = ["replay", room, "--working", "64x64"]
+    found = expect_json(*base)
+    check(len(found.get("stages", {})) == 8 and len(found["tiles"]) == 16, "replay --json lacks stages or tiles")
+    write("golden.json", json.dumps(found))
+    for more in ([], ["--threads", 2], ["--arena", "min"], ["--arena", 30000000], ["--cpu-mask", 0], ["--cpu-mask", 255]):
+        expect(0, *base, "--expect", "golden.json", *more, out="as expected")
+        expect(0, *base, "--expect", found["hash"], *more, out="as expected")
+    check(expect_json(*base, "--expect", "golden.json")["match"] is True, "match is not told")
+
+    expect(1, *base, "--expect", "0" * 16, err=found["hash"])
+    expect(1, *base, "--expect", "golden.json", "--seed", 9, err="stage superclusters")
+    expect(1, *base, "--expect", "golden.json", "--wavelet", "haar", err="stage wavelet")
+    expect(1, *base, "--expect", "golden.json", "--context", "0,2", err="stage image")
+    expect(1, *base, "--expect", "golden.json", "--head", "moment", err="stage head")
+    broken = dict(found, hash="1" * 16, stages=dict(found["stages"], raster="2" * 16), tiles=list(found["tiles"]))
+    broken["tiles"][6] = "3" * 16
+    write("broken.json", json.dumps(broken))
+    expect(1, *base, "--expect", "broken.json", err="tile 6 (pixels from 32, 16)")
+    expect(1, *base, "--expect", "absent.json", err="absent.json")
+    for content in ("{", "[]", '{"hash": 5}', '{"hash": "xyz"}', json.dumps(dict(found, stages={"image": 1})),
+                    json.dumps(dict(found, tiles=["x"]))):
+        expect(1, *base, "--expect", write("malformed.json", content), err="malformed.json")
+    expect(2, "replay", err="REC.mcap")
+    expect(2, "replay", room, room, err="too many")
+
+
+def test_diff():
+    expect(2, "diff", err="two files")
+    expect(2, "diff", "scene.ply", err="two files")
+    expect(2, "diff", "scene.ply", "exact.ply", "all.ply", err="too many")
+    expect(2, "diff", "scene.ply", "view.png", err="cannot be compared")
+    expect(1, "diff", "scene.ply", "absent.ply", err="absent.ply")
+    expect(1, "diff", "view.png", "absent.png", err="absent.png")
+    expect(1, "diff", "view.png", "small.png", err="256x256")
+    expect(0, "diff", "scene.ply", "scene.ply", out="equal")
+    expect(0, "diff", "view.png", "view.png", out="equal")
+    check(expect_json("diff", "scene.ply", "scene.ply")["equal"] is True, "diff --json does not say equal")
+    code, out, _ = run("diff", "scene.ply", "exact.ply", "--json")
+    found = json.loads(out)
+    check(code == 1 and found["gaussians"][1] == 777 and found["position"] > 0, "diff of scenes is wrong")
+    # one opacity changed: one Gaussian differs, and it is named
+    scene = bytearray(open("scene.ply", "rb").read())
+    row = scene.index(b"end_header\n") + 11 + 5 * 17 * 4
+    scene[row + 9 * 4:row + 10 * 4] = struct.pack("<f", -3.0)
+    write("touched.ply", bytes(scene))
+    code, out, _ = run("diff", "scene.ply", "touched.ply", "--json")
+    found = json.loads(out)
+    check(code == 1 and found["different"] == 1 and found["first"] == 5 and found["position"] == 0, f"diff names {out}")
+    code, out, _ = run("diff", "t_0000.png", "t_0001.png", "--json")
+    found = json.loads(out)
+    check(code == 1 and found["psnr"] > 0 and found["first_tile"][0] % 16 == 0, "diff of views is wrong")
+
+
+def test_plan():
+    expect(2, "plan", err="--size")
+    expect(2, "plan", "--size", "256x256", err="--gaussians")
+    expect(2, "plan", "--size", "4x4", "--gaussians", 5, err="width")
+    expect(2, "plan", "--size", "256", "--gaussians", 5, err="--size")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 0, err="--gaussians")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--views", 17, err="--views")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--clusters", 513, err="--clusters")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--json", "--markdown", err="exclude")
+    expect(2, "plan", "more", err="too many")
+    expect(1, "plan", "--size", "256x256", "--gaussians", 5, "--svg", "missing/a.svg", err="missing/a.svg")
+    base = ["plan", "--size", "256x256", "--views", 2, "--gaussians", 13107]
+    found = expect_json(*base, "--svg", "arena.svg")
+    check(found["min_bytes"] <= found["arena_bytes"] and len(found["operations"]) == 9, "plan --json lacks its keys")
+    for buffer in found["buffers"]:
+        check(buffer["offset"] + buffer["bytes"] <= found["arena_bytes"], f"{buffer['name']} leaves the arena")
+    xml.dom.minidom.parse("arena.svg")
+    table = expect(0, *base, "--markdown", out="|---|")
+    check(all(f"| {b['name']} | {b['bytes']} |" in table for b in found["buffers"]), "the Markdown table lacks a buffer")
+    check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
+
+
+def test_bench():
+    for option, values in {"--runs": ["0", "102", "x"], "--threads": ["0", "x"]}.items():
+        for value in values:
+            expect(2, "bench", f"{option}={value}", err=option)
+    expect(2, "bench", "more", err="too many")
+    expect(1, "bench", "--runs", 1, "--points", "absent.f32", err="absent.f32")
+    expect(1, "bench", "--runs", 1, "--points", write("odd.f32", b"\0" * 25), err="25 bytes")
+    expect(1, "bench", "--runs", 1, "--points", write("nan.f32", struct.pack("<6f", *[float("nan")] * 6)), err="byte 0")
+    corners = [[1000.0 + 3 * (i & 1), 2.0 * (i >> 1 & 1), -4.0 * (i >> 2 & 1), 0, 0.5, 1] for i in range(8)] * 50
+    found = expect_json("bench", "--runs", 1, "--points",
+                        write("corners.f32", b"".join(struct.pack("<6f", *row) for row in corners)))
+    check(found["kmeans_points"] == 400 and found["kmeans_msd"] < 1e-4, f"eight places need eight clusters: {found['kmeans_msd']}")
+    for key in ("raster_131k_ms", "raster_13k_ms", "kmeans_ms", "wavelet_ns_per_pixel", "build_analytic_ms"):
+        check(found[key] > 0 and found[key + "_min"] <= found[key] <= found[key + "_max"], f"bench lacks {key}")
+    for key in ("head_gmac_per_s", "stereo_ms", "build_small_ms"):
+        check(key in found and found[key] is None, f"bench: {key} is not null")
+    check(isinstance(found["cpu_flags"], str), "bench lacks cpu_flags")
+
+
+def main():
+    folder = tempfile.mkdtemp(prefix="trim3r-cli-")
+    os.chdir(folder)
+    try:
+        expect(0, "room", "-o", "room.mcap")
+        test_dispatch()
+        test_build("room.mcap")
+        test_recordings("room.mcap")
+        test_arena("room.mcap")
+        test_render("room.mcap")
+        test_replay("room.mcap")
+        test_diff()
+        test_plan()
+        test_bench()
+    finally:
+        os.chdir("/")
+        shutil.rmtree(folder)
+    print(f"{checks} checks, {len(failures)} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,61 @@
+/* The pool: every index exactly once, whatever the number of threads, job after job. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include <stdint.h>
+#include <string.h>
+
+#include "threads.h"
+
+#define MOST 3000u
+
+typedef struct job {
+    uint8_t visits[MOST];
+} job;
+
+static void visit(void *context, uint32_t index)
+{
+    job *j = context;
+    j->visits[index]++; /* each index belongs to one thread */
+}
+
+static void visits_every_index_once(void **state)
+{
+    (void)state;
+    static const uint32_t threads[] = {1, 2, 5, 16}, counts[] = {0, 1, 2, 7, MOST};
+    for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
+        t3r_threads *pool = t3r_threads_start(threads[t]);
+        assert_non_null(pool);
+        assert_int_equal(t3r_threads_count(pool), threads[t]);
+        for (int repeat = 0; repeat < 40; repeat++) {
+            for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
+                job j;
+                memset(&j, 0, sizeof j);
+                t3r_threads_run(pool, counts[c], visit, &j);
+                for (uint32_t i = 0; i < MOST; i++) {
+                    assert_int_equal(j.visits[i], i < counts[c] ? 1 : 0);
+                }
+            }
+        }
+        t3r_threads_stop(pool);
+    }
+}
+
+static void refuses_impossible_counts(void **state)
+{
+    (void)state;
+    assert_null(t3r_threads_start(0));
+    assert_null(t3r_threads_start(T3R_MAX_THREADS + 1));
+    t3r_threads_stop(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(visits_every_index_once),
+        cmocka_unit_test(refuses_impossible_counts),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,117 @@
+/* Values on the command line: lists, percentages, sizes, budgets, hashes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include <stdint.h>
+
+#include "cli.h"
+#include "json_output.h"
+#include "reconstruction.h"
+
+static void parses_lists(void **state)
+{
+    (void)state;
+    uint32_t values[3], count = 0;
+    assert_int_equal(cli_parse_list_u32("0,2", values, 3, &count), 0);
+    assert_int_equal(count, 2);
+    assert_int_equal(values[1], 2);
+    assert_int_equal(cli_parse_list_u32("4294967295", values, 3, &count), 0);
+    assert_int_equal(values[0], UINT32_MAX);
+    static const char *const bad[] = {"",    ",",  "1,", ",1", "1,,2",       "-1",
+                                      "1.5", " 1", "1 ", "x",  "4294967296", "1,2,3,4"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(cli_parse_list_u32(bad[i], values, 3, &count), -1);
+    }
+}
+
+static void parses_percentages(void **state)
+{
+    (void)state;
+    double values[3];
+    uint32_t count = 0;
+    assert_int_equal(cli_parse_list_percent("100,12.5%,.5", values, 3, &count), 0);
+    assert_int_equal(count, 3);
+    assert_true(values[0] == 100 && values[1] == 12.5 && values[2] == 0.5);
+    static const char *const bad[] = {"",     "0",    "101", "-5", "nan", "inf", "1e1",
+                                      "0x10", "1..2", ".",   "%",  "5%%", "1,",  "1,2,3,4"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(cli_parse_list_percent(bad[i], values, 3, &count), -1);
+    }
+}
+
+static void parses_sizes(void **state)
+{
+    (void)state;
+    uint32_t width = 0, height = 0;
+    assert_int_equal(cli_parse_size("640x480", &width, &height), 0);
+    assert_true(width == 640 && height == 480);
+    static const char *const bad[] = {"",      "640",     "640x",      "x480", "0x480",
+                                      "640x0", "640X480", "640x480x3", "-1x2", "640 x480"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(cli_parse_size(bad[i], &width, &height), -1);
+    }
+    assert_true(width == 640 && height == 480);
+}
+
+static void rounds_budgets_half_up(void **state)
+{
+    (void)state;
+    assert_int_equal(reconstruction_budget(131072, 10), 13107);
+    assert_int_equal(reconstruction_budget(131072, 100), 131072);
+    assert_int_equal(reconstruction_budget(5, 10), 1);  /* 0.5 */
+    assert_int_equal(reconstruction_budget(25, 10), 3); /* 2.5 */
+    assert_int_equal(reconstruction_budget(24, 10), 2); /* 2.4 */
+    assert_int_equal(reconstruction_budget(1, 0.001), 1);
+}
+
+static void reads_and_writes_hashes(void **state)
+{
+    (void)state;
+    char text[HASH_TEXT_BYTES];
+    uint64_t hash = 0;
+    hash_text(UINT64_C(0x0123456789abcdef), text);
+    assert_string_equal(text, "0123456789abcdef");
+    assert_int_equal(hash_parse(text, &hash), 0);
+    assert_true(hash == UINT64_C(0x0123456789abcdef));
+    assert_int_equal(hash_parse("0x0123456789ABCDEF", &hash), 0);
+    static const char *const bad[] = {"", "0123456789abcde", "0123456789abcdef0", "0123456789abcdeg", "golden.json"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(hash_parse(bad[i], &hash), -1);
+    }
+}
+
+static void scales_cameras_with_the_picture(void **state)
+{
+    (void)state;
+    t3r_camera camera = {.fx_q16 = 200 << 16,
+                         .fy_q16 = 100 << 16,
+                         .cx_q16 = (255 << 16) / 2,
+                         .cy_q16 = 0,
+                         .distortion = T3R_DISTORTION_RADTAN,
+                         .distortion_q24 = {1, 2, 3, 4, 5}};
+    t3r_camera same = reconstruction_camera(&camera, 256, 256, 256, 256);
+    assert_int_equal(same.fx_q16, camera.fx_q16);
+    assert_int_equal(same.cx_q16, camera.cx_q16);
+    assert_int_equal(same.distortion, T3R_DISTORTION_NONE);
+    assert_int_equal(same.distortion_q24[4], 0);
+    t3r_camera half = reconstruction_camera(&camera, 256, 256, 128, 64);
+    assert_int_equal(half.fx_q16, 100 << 16);
+    assert_int_equal(half.fy_q16, 25 << 16);
+    assert_int_equal(half.cx_q16, (127 << 16) / 2); /* the middle stays the middle */
+    assert_int_equal(half.cy_q16, 8192 - 32768);    /* half a pixel from the edge is an eighth now */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parses_lists),
+        cmocka_unit_test(parses_percentages),
+        cmocka_unit_test(parses_sizes),
+        cmocka_unit_test(rounds_budgets_half_up),
+        cmocka_unit_test(reads_and_writes_hashes),
+        cmocka_unit_test(scales_cameras_with_the_picture),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

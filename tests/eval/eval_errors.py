@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""eval_errors.py TRIM3R: every wrong use of `trim3r eval` says what and where, with the right exit status."""
+import os
+import struct
+import sys
+import tempfile
+import zlib
+
+from common import check, done, run
+
+trim3r = sys.argv[1]
+INPUT, USAGE, BUDGET = 1, 2, 3
+
+
+def refuse(status, *words_and_arguments):
+    """refuse(STATUS, "word", ..., [arguments]): stderr has every word and stdout nothing that looks like a score."""
+    *words, arguments = words_and_arguments
+    result = run(trim3r, "eval", *arguments, expect=status)
+    for word in words:
+        check(word in result.stderr, f"eval {arguments}: '{word}' is not in: {result.stderr}")
+
+
+def write_grey16(path):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    rows = b"".join(b"\0" + bytes(2 * 16) for _ in range(16))
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 16, 16, 16, 0, 0, 0, 0)) +
+                   chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+with tempfile.TemporaryDirectory() as folder:
+    room = f"{folder}/room.mcap"
+    run(trim3r, "room", "--size", "64x64", "-o", room)
+    one = [room, "--context", "0,2", "--target", "1"]
+
+    refuse(USAGE, "REC.mcap is missing", ["--keep", "10"])
+    refuse(USAGE, "--keep is missing", one)
+    refuse(USAGE, "--context and --target", [room, "--context", "0,2", "--keep", "10"])
+    refuse(USAGE, "--context and --target", [room, "--target", "1", "--keep", "10"])
+    refuse(USAGE, "twice", [room, "--context", "0,0", "--target", "1", "--keep", "10"])
+    for keep in ("0", "101", "10,", "ten", "-5", ""):
+        refuse(USAGE, "--keep takes percentages", [*one, f"--keep={keep}"])
+    for context in ("0,", "a", ",".join(str(i) for i in range(17))):
+        refuse(USAGE, "--context takes", [room, "--context", context, "--target", "1", "--keep", "10"])
+    refuse(USAGE, "--target takes", [room, "--context", "0,2", "--target", "1,3", "--keep", "10"])
+    for method in ("eagles", "lightgaussian", "pup", "efficientgs", "eagles+finetune"):
+        refuse(USAGE, f"{method} is not available yet", "trim3r, random", [*one, "--keep", "10", "--methods", method])
+    refuse(USAGE, "best is not a method", [*one, "--keep", "10", "--methods", "trim3r,best"])
+    refuse(USAGE, "trim3r twice", [*one, "--keep", "10", "--methods", "trim3r,random,trim3r"])
+    refuse(USAGE, "stereo", [*one, "--keep", "10", "--depth", "stereo"])
+    refuse(USAGE, "--head", [*one, "--keep", "10", "--head", "huge"])
+    refuse(USAGE, "--size belongs to --planar", [*one, "--keep", "10", "--size", "32x32"])
+    refuse(USAGE, "--size takes", ["--planar", room, "--keep", "10", "--size", "32"])
+    refuse(USAGE, "--size takes", ["--planar", room, "--keep", "10", "--size", "4x4"])
+    refuse(USAGE, "--planar takes images", ["--planar", *one, "--keep", "10"])
+    refuse(USAGE, "--working belongs", ["--planar", room, "--keep", "10", "--working", "32x32"])
+    refuse(USAGE, "IMAGE... is missing", ["--planar", "--keep", "10"])
+
+    refuse(INPUT, f"{folder}/none.mcap", [f"{folder}/none.mcap", "--keep", "10"])
+    refuse(INPUT, room, "no frame 999", [room, "--context", "0,2", "--target", "999", "--keep", "10"])
+    refuse(INPUT, room, "no frame 999", [room, "--context", "0,999", "--target", "1", "--keep", "10"])
+    refuse(BUDGET, "too small", [*one, "--keep", "10", "--arena", "1000"])
+
+    for name, data in (("empty.mcap", b""), ("text.mcap", b"not a recording, but long enough to be looked at\n" * 9)):
+        with open(f"{folder}/{name}", "wb") as file:
+            file.write(data)
+        refuse(INPUT, name, [f"{folder}/{name}", "--keep", "10"])
+        refuse(INPUT, name, [room, f"{folder}/{name}", "--keep", "10"])
+        refuse(INPUT, name, ["--planar", f"{folder}/{name}", "--keep", "10"])
+    write_grey16(f"{folder}/deep.png")
+    refuse(INPUT, "deep.png", ["--planar", f"{folder}/deep.png", "--size", "8x8", "--keep", "10"])
+    refuse(INPUT, "none.png", ["--planar", f"{folder}/none.png", "--keep", "10"])
+
+    # nothing can be written below a file
+    below = f"{room}/below"
+    refuse(INPUT, below, [*one, "--keep", "10", "--csv", below])
+    refuse(INPUT, room, [*one, "--keep", "10", "--images", below])
+    refuse(INPUT, below, [*one, "--keep", "10", "--html", below])
+    if os.path.exists("/dev/full"):
+        refuse(INPUT, "/dev/full", [*one, "--keep", "10", "--csv", "/dev/full"])
+    os.environ["TMPDIR"] = below
+    refuse(INPUT, "TMPDIR", [*one, "--keep", "10", "--from-file"])
+    text = run(trim3r, "eval", "--help").stdout
+    check("Examples:" in text and "--planar" in text, "the help has examples")
+done()

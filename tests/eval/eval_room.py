@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""eval_room.py TRIM3R SCORE.PY: `trim3r eval` on the built-in room, small: rows, columns, masks, pictures, and the
+independent scorer's figures on the written pictures (where the scorer is there)."""
+import csv
+import json
+import os
+import re
+import shutil
+import sys
+import tempfile
+
+from common import check, done, load_scorer, near, need_numpy, run
+
+numpy, cv2 = need_numpy()
+trim3r = sys.argv[1]
+scorer = load_scorer(sys.argv[2])
+COLUMNS = ("scene context target method head bits refine allocate depth keep gaussians psnr ssim sharp holes psnr_all "
+           "context_psnr perceptual build_ms render_ms arena_bytes planar_psnr").split()
+
+
+def read(path, grey=False):
+    image = cv2.imread(path, cv2.IMREAD_GRAYSCALE if grey else cv2.IMREAD_COLOR)
+    check(image is not None, f"{path} is missing")
+    return image
+
+
+def read_csv(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+        file.seek(0)
+        check(next(csv.reader(file)) == COLUMNS, "the columns and their order")
+    return rows
+
+
+def check_scores(row, target, render, mask, psnr):
+    """The row's figures, from the pictures alone."""
+    error = ((target.astype(float) - render) ** 2)[mask].mean()
+    near(float(row[psnr]), 10 * numpy.log10(255**2 / error) if error > 0 else 99, 0.02, psnr)
+    if scorer is not None:
+        figures = scorer.score(target.astype(float), render.astype(float), mask)
+        near(float(row[psnr]), figures["psnr"], 0.02, psnr)
+        near(float(row["ssim"]), figures["ssim"], 0.001, "ssim")
+        near(float(row["sharp"]), figures["sharp"], 0.001, "sharp")
+    check(0 < float(row["perceptual"]) < 1, "perceptual lies within 0..1")
+
+
+def evaluate_triplet(folder, room):
+    keeps = ["100", "20", "2.5"]
+    pictures, table, page = f"{folder}/pictures", f"{folder}/a.csv", f"{folder}/page.html"
+    shown = run(trim3r, "eval", room, "--context", "0,2", "--target", "1", "--keep", ",".join(keeps), "--methods",
+                "trim3r,random", "--csv", table, "--images", pictures, "--html", page).stdout
+    rows = read_csv(table)
+    check([(r["method"], r["keep"]) for r in rows] == [(m, k) for m in ("trim3r", "random") for k in keeps],
+          "one row a method and budget, in the order asked for")
+    check(len(shown.splitlines()) == 1 + len(rows), "a heading and a line a row")
+    check(sorted(os.listdir(f"{pictures}/1")) ==
+          sorted(["target.png", "mask.png", "context_a.png", "context_b.png"] +
+                 [f"{m}_{k}.png" for m in ("trim3r", "random") for k in keeps]), "the pictures' names")
+    target, mask = read(f"{pictures}/1/target.png"), read(f"{pictures}/1/mask.png", grey=True)
+    check(target.shape == (64, 64, 3), "pictures have the working size")
+    check(set(numpy.unique(mask)) <= {0, 255} and (mask == 255).mean() > 0.2, "the mask is black and white, and not empty")
+    mask = mask > 127
+    everything = numpy.ones_like(mask)
+    for row in rows:
+        check((row["scene"], row["context"], row["target"], row["depth"]) == ("room", "0,2", "1", "sensor"), "names")
+        check((row["head"], row["allocate"]) ==
+              (("analytic", "density") if row["method"] == "trim3r" else ("none", "random")), "settings")
+        check(row["planar_psnr"] == "" and row["bits"] == "", "cells that do not apply are empty")
+        render = read(f"{pictures}/1/{row['method']}_{row['keep']}.png")
+        check_scores(row, target, render, mask, "psnr")
+        error = ((target.astype(float) - render) ** 2)[everything].mean()
+        near(float(row["psnr_all"]), 10 * numpy.log10(255**2 / error), 0.02, "psnr_all")
+        check(0 <= float(row["holes"]) <= 1 and int(row["arena_bytes"]) > 0, "holes and arena")
+        check(float(row["build_ms"]) > 0 and float(row["render_ms"]) > 0, "times")
+    full = int(rows[0]["gaussians"])
+    for row in rows:
+        near(int(row["gaussians"]), full * float(row["keep"]) / 100, 0.5, "keep is percent of the valid points")
+    by = {(r["method"], r["keep"]): r for r in rows}
+    check(float(by["trim3r", "2.5"]["psnr"]) > float(by["random", "2.5"]["psnr"]) + 3, "adapting beats not adapting")
+    check(float(by["random", "2.5"]["holes"]) > float(by["trim3r", "2.5"]["holes"]), "unadapted points leave holes")
+    check(float(by["trim3r", "100"]["psnr"]) > float(by["trim3r", "2.5"]["psnr"]), "more points, more likeness")
+    check(float(by["trim3r", "100"]["context_psnr"]) > 20, "the context views are met")
+    text = open(page).read()
+    check(text.count("<figure>") == 4 + len(rows) and not re.search(r"https?:|<script", text), "the page stands alone")
+    check(text.count("class=\"view compared\"") == len(rows), "every render can show its error")
+
+
+def evaluate_all(folder, room):
+    triplets = json.loads(run(trim3r, "info", room, "--json").stdout)
+    table = f"{folder}/all.csv"
+    answer = json.loads(run(trim3r, "eval", room, "--keep", "10", "--csv", table, "--json").stdout)
+    rows = read_csv(table)
+    check(len(rows) >= 1 and len(rows) == len(answer["rows"]), f"one row a triplet: {triplets}")
+    check(len({(r["context"], r["target"]) for r in rows}) == len(rows), "triplets differ")
+    check(list(answer["rows"][0]) == COLUMNS, "JSON has the columns")
+    mean = answer["means"][0]
+    near(mean["psnr"], sum(r["psnr"] for r in answer["rows"]) / len(rows), 1e-3, "means are means of decibels")
+    for row, other in zip(rows, answer["rows"]):
+        check(int(row["gaussians"]) == other["gaussians"] and float(row["psnr"]) == other["psnr"], "CSV and JSON agree")
+
+
+def evaluate_several(folder, room):
+    other = f"{folder}/other.mcap"
+    shutil.copy(room, other)
+    answer = json.loads(run(trim3r, "eval", room, other, "--context", "0,2", "--target", "1", "--keep", "5,10", "--images",
+                            f"{folder}/both", "--json").stdout)
+    check([(r["scene"], r["keep"]) for r in answer["rows"]] == [(s, k) for s in ("room", "other") for k in (5, 10)], "scenes")
+    check([m["scene"] for m in answer["means"]] == ["room", "room", "other", "other"], "means stay within a recording")
+    for scene in ("room", "other"):
+        check(os.path.exists(f"{folder}/both/{scene}/1/trim3r_5.png"), "a folder a recording")
+
+
+def evaluate_variants(folder, room):
+    """What must not matter does not; what must, does."""
+    common = [trim3r, "eval", room, "--context", "0,2", "--target", "1", "--keep", "20", "--json"]
+
+    def row(*more):
+        return json.loads(run(*common, *more).stdout)["rows"][0]
+
+    plain = row()
+    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "context_psnr", "perceptual")
+    least = row("--arena", "min")
+    check([least[s] for s in scores] == [plain[s] for s in scores], "the smallest arena scores the same")
+    check(least["arena_bytes"] < plain["arena_bytes"], "and is smaller")
+    near(row("--from-file")["psnr"], plain["psnr"], 0.05, "the exported file looks like the memory it came from")
+    moment = row("--head", "moment", "--allocate", "uniform")
+    check((moment["head"], moment["allocate"]) == ("moment", "uniform") and moment["psnr"] != plain["psnr"], "settings count")
+
+
+def evaluate_planar(folder):
+    random = numpy.random.default_rng(2)
+    image = cv2.GaussianBlur(random.integers(0, 256, (90, 120, 3)).astype(numpy.uint8), (0, 0), 2.5)
+    image = cv2.normalize(image, None, 0, 255, cv2.NORM_MINMAX)
+    cv2.imwrite(f"{folder}/photo.png", image)
+    cv2.imwrite(f"{folder}/grey.png", image[..., 0])
+    run(trim3r, "eval", "--planar", f"{folder}/photo.png", f"{folder}/grey.png", "--size", "48x48", "--keep", "100,10",
+        "--csv", f"{folder}/planar.csv", "--images", f"{folder}/planar")
+    rows = read_csv(f"{folder}/planar.csv")
+    check([(r["scene"], r["keep"]) for r in rows] == [(s, k) for s in ("photo", "grey") for k in ("100", "10")], "planar rows")
+    target = read(f"{folder}/planar/photo/target.png")
+    check(target.shape == (48, 48, 3), "the size of planar pictures")
+    expected = cv2.resize(image[:, 15:105], (48, 48), interpolation=cv2.INTER_AREA)
+    check(numpy.abs(target.astype(int) - expected).max() <= 1, "the largest centred crop, averaged")
+    for row in rows:
+        check(row["context"] == row["target"] == row["psnr"] == row["context_psnr"] == "" and row["depth"] == "plane",
+              "a plane has neither target nor mask")
+        folder_of = f"{folder}/planar/{row['scene']}"
+        render = read(f"{folder_of}/trim3r_{row['keep']}.png")
+        check_scores(row, read(f"{folder_of}/target.png"), render, numpy.ones((48, 48), bool), "planar_psnr")
+    check(int(rows[0]["gaussians"]) == 48 * 48 and int(rows[1]["gaussians"]) == 230, "every pixel is a point")
+    check(float(rows[0]["planar_psnr"]) > 25 and float(rows[0]["planar_psnr"]) > float(rows[1]["planar_psnr"]), "likeness")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    room = f"{folder}/room.mcap"
+    run(trim3r, "room", "--size", "64x64", "-o", room)
+    evaluate_triplet(folder, room)
+    evaluate_all(folder, room)
+    evaluate_several(folder, room)
+    evaluate_variants(folder, room)
+    evaluate_planar(folder)
+if scorer is None:
+    print(f"without the scorer: nothing at {sys.argv[2]}")
+done()

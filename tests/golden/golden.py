@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Same bits: every stage's hash, against the ones written down in this folder.
+
+golden.py host DRIVER             the driver as built here, in every way that must not matter (arena, tasks, moves)
+golden.py build [--run EMULATOR] COMPILER FLAG...
+                                  the driver built by another compiler, for another processor
+golden.py replay TRIM3R           the built-in recording, made and replayed by the program
+Exit 0: the same; 1: other bits, naming the first stage that differs; 77: skipped, a tool is absent.
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+STAGES = HERE / "stages.txt"
+ROOM = HERE / "room.json"
+WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--moved"],
+        ["--arena", "min", "--tasks", "reverse", "--moved"]]
+REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"]]
+DRIVER_SOURCES = [HERE / "golden_driver.c", *sorted((ROOT / "tools").glob("room*.c"))]
+
+
+def output_of(command):
+    result = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    if result.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: status {result.returncode}\n{result.stdout}{result.stderr}")
+    return result.stdout
+
+
+def difference(got, expected):
+    """None, or a sentence that names the first line that differs."""
+    got, expected = got.splitlines(), expected.splitlines()
+    for here, there in zip(got, expected):
+        if here != there:
+            return f"got '{here}', written down is '{there}'"
+    if len(got) != len(expected):
+        return f"got {len(got)} lines, written down are {len(expected)}"
+    return None
+
+
+def same(what, got, expected):
+    at = max(expected.rfind(digit) for digit in "0123456789abcdef")
+    tampered = expected[:at] + ("0" if expected[at] != "0" else "1") + expected[at + 1:]
+    if difference(got, tampered) is None:
+        sys.exit("blind: a changed digit was not noticed")
+    found = difference(got, expected)
+    if found:
+        sys.exit(f"OTHER BITS: {what}: {found}")
+    print(f"same bits: {what}, {len(expected.splitlines())} lines")
+
+
+def check_host(driver):
+    expected = STAGES.read_text()
+    for way in WAYS:
+        same(" ".join(way) or "as usual", output_of([driver, *way]), expected)
+
+
+def runtime_sources():
+    return sorted((ROOT / "runtime").glob("*.c")) + sorted((ROOT / "runtime" / "kernels").glob("*.c"))
+
+
+def check_build(arguments):
+    emulator = []
+    if arguments[0] == "--run":
+        emulator, arguments = [arguments[1]], arguments[2:]
+    for tool in (arguments[0], *emulator):
+        if shutil.which(tool) is None:
+            print(f"SKIPPED: no {tool} here (tools/setup --tests)")
+            sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="trim3r-golden-") as folder:
+        driver = pathlib.Path(folder) / "golden_driver"
+        output_of([*arguments, "-std=gnu11", "-I", ROOT / "runtime" / "include", "-I", ROOT / "runtime",
+                   "-I", ROOT / "platform", "-I", ROOT / "tools", *runtime_sources(), *DRIVER_SOURCES, "-o", driver])
+        expected = STAGES.read_text()
+        for way in ([], WAYS[-1]):
+            same(" ".join([*emulator, *arguments, *way]), output_of([*emulator, driver, *way]), expected)
+
+
+def replay(program, way=()):
+    """What is written down of the built-in recording: its own hash, and what `trim3r replay --json` says of it."""
+    with tempfile.TemporaryDirectory(prefix="trim3r-golden-") as folder:
+        recording = pathlib.Path(folder) / "room.mcap"
+        made = json.loads(output_of([program, "room", "--json", "-o", recording]))
+        said = json.loads(output_of([program, "replay", recording, "--json", *way]))
+    kept = {"recording": made["hash"], **{key: said[key] for key in ("bits_epoch", "gaussians", "stages", "hash")}}
+    return json.dumps(kept, indent=2) + "\n"
+
+
+def check_replay(program):
+    for way in REPLAY_WAYS:
+        same(" ".join(["the built-in recording", *way]), replay(program, way), ROOM.read_text())
+
+
+def main():
+    if sys.argv[1] == "host":
+        check_host(sys.argv[2])
+    elif sys.argv[1] == "build":
+        check_build(sys.argv[2:])
+    elif sys.argv[1] == "replay":
+        check_replay(sys.argv[2])
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main()

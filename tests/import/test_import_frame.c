@@ -1,0 +1,304 @@
+/* Cropping and resizing: pixels and camera must still agree. Checked by projecting points through both cameras, and
+ * against an area average in double. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "import_frame.h"
+#include "picture.h"
+#include "scratch.h"
+
+static int open_folder(void **state)
+{
+    *state = malloc(sizeof(scratch));
+    return *state == NULL ? -1 : scratch_open(*state);
+}
+
+static int close_folder(void **state)
+{
+    scratch_close(*state);
+    free(*state);
+    return 0;
+}
+
+static void write_picture(scratch *s, const char *name, const picture *p)
+{
+    char error[256];
+    if (picture_write_png(scratch_path(s, name), p, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+}
+
+/* Red counts columns, green rows; depth's steps count both. */
+static void write_ramps(scratch *s, uint32_t width, uint32_t height, uint32_t depth_width, uint32_t depth_height)
+{
+    picture colour = {width, height, 3, 8, calloc((size_t)width * height, 3)};
+    picture depth = {depth_width, depth_height, 1, 16, calloc((size_t)depth_width * depth_height, 2)};
+    uint8_t *rgb = colour.samples;
+    uint16_t *steps = depth.samples;
+    for (uint32_t y = 0; y < height; y++) {
+        for (uint32_t x = 0; x < width; x++) {
+            rgb[(y * width + x) * 3] = (uint8_t)x;
+            rgb[(y * width + x) * 3 + 1] = (uint8_t)y;
+        }
+    }
+    for (uint32_t y = 0; y < depth_height; y++) {
+        for (uint32_t x = 0; x < depth_width; x++) {
+            steps[y * depth_width + x] = (uint16_t)(y * 256 + x);
+        }
+    }
+    write_picture(s, "colour.png", &colour);
+    write_picture(s, "depth.png", &depth);
+    picture_free(&colour);
+    picture_free(&depth);
+}
+
+static posed_frame ramp_frame(void)
+{
+    static char colour[] = "colour.png", depth[] = "depth.png";
+    posed_frame frame = {.image = colour, .depth = depth, .rotation = {1, 0, 0, 0}};
+    frame.intrinsics = (posed_intrinsics){
+        .width = NAN, .height = NAN, .fx = 210, .fy = 190, .cx = 104.3, .cy = 71.9, .angle_x = NAN, .angle_y = NAN};
+    return frame;
+}
+
+static double bilinear(const uint8_t *rgb, uint32_t width, uint32_t channel, double u, double v)
+{
+    uint32_t x = (uint32_t)u, y = (uint32_t)v;
+    double a = u - x, b = v - y;
+    const uint8_t *p = rgb + ((size_t)y * width + x) * 3 + channel;
+    return (p[0] * (1 - a) + p[3] * a) * (1 - b) + (p[width * 3] * (1 - a) + p[width * 3 + 3] * a) * b;
+}
+
+/* A point in front of the camera is seen at a column of the source, which the ramp names; the imported picture, looked
+ * at where the imported camera sees the point, must name the same column. Half a level of rounding, no more. */
+static void check_reprojection(scratch *s, uint32_t from_width, uint32_t from_height, uint32_t width, uint32_t height)
+{
+    char error[512] = "";
+    posed_frame frame = ramp_frame();
+    import_buffers buffers;
+    t3r_recorded_frame out;
+    uint32_t checked = 0;
+    write_ramps(s, from_width, from_height, from_width, from_height);
+    if (import_frame(s->directory, &frame, width, height, &buffers, &out, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+    assert_int_equal(out.width, width);
+    assert_int_equal(out.camera.width, width);
+    assert_int_equal(out.camera.height, height);
+    for (double y = -0.5; y < 0.5; y += 0.037) {
+        for (double x = -0.6; x < 0.6; x += 0.041) {
+            double u = out.camera.fx * x + out.camera.cx, v = out.camera.fy * y + out.camera.cy;
+            if (u < 0 || v < 0 || u > width - 1.001 || v > height - 1.001) {
+                continue;
+            }
+            double column = 210 * x + 104.3 - 0.5, row = 190 * y + 71.9 - 0.5;
+            assert_true(fabs(bilinear(buffers.rgb, width, 0, u, v) - column) < 0.51);
+            assert_true(fabs(bilinear(buffers.rgb, width, 1, u, v) - row) < 0.51);
+            /* depth: the source pixel that the box's centre lies in */
+            uint32_t px = (uint32_t)(u + 0.5), py = (uint32_t)(v + 0.5);
+            uint16_t step = buffers.depth[py * width + px];
+            double centre_column = (px - out.camera.cx) / out.camera.fx * 210 + 104.3 - 0.5;
+            double centre_row = (py - out.camera.cy) / out.camera.fy * 190 + 71.9 - 0.5;
+            assert_true(fabs((step & 255) - centre_column) < 0.5 + 1e-9);
+            assert_true(fabs((step >> 8) - centre_row) < 0.5 + 1e-9);
+            checked++;
+        }
+    }
+    assert_true(checked > 100);
+    import_buffers_free(&buffers);
+}
+
+static void test_points_stay_where_they_are(void **state)
+{
+    check_reprojection(*state, 240, 160, 64, 64);
+    check_reprojection(*state, 240, 160, 120, 80);
+    check_reprojection(*state, 240, 160, 240, 160);
+    check_reprojection(*state, 201, 150, 50, 50);
+    check_reprojection(*state, 150, 201, 64, 48);
+    check_reprojection(*state, 230, 200, 96, 33);
+    check_reprojection(*state, 240, 160, 0xf5, 0xa5); /* larger than the crop */
+}
+
+static void test_the_crop_is_the_largest(void **state)
+{
+    (void)state;
+    for (uint32_t w = 2; w < 200; w += 7) {
+        for (uint32_t h = 2; h < 200; h += 5) {
+            import_crop c = import_largest_crop(w, h, 4, 3);
+            assert_true(c.width == w || c.height == h);
+            assert_true(c.x + c.width <= w && c.y + c.height <= h);
+            double off_aspect = fabs((double)c.width * 3 - (double)c.height * 4);
+            assert_true(off_aspect <= 2 || c.width == 1 || c.height == 1);
+            assert_true(w - c.width - 2 * c.x <= 1 && h - c.height - 2 * c.y <= 1);
+        }
+    }
+    import_crop c = import_largest_crop(540, 360, 256, 256);
+    assert_int_equal(c.x, 90);
+    assert_int_equal(c.width, 360);
+    assert_int_equal(c.height, 360);
+}
+
+static void test_depth_of_another_resolution(void **state)
+{
+    scratch *s = *state;
+    char error[512] = "";
+    posed_frame frame = ramp_frame();
+    import_buffers buffers;
+    t3r_recorded_frame out;
+    write_ramps(s, 240, 160, 120, 80);
+    assert_int_equal(import_frame(s->directory, &frame, 40, 40, &buffers, &out, error, sizeof error), 0);
+    /* the colour's crop is columns 40..200, so the depth's 20..100: two source pixels a box, its centre the second */
+    assert_int_equal(out.depth_width, 40);
+    for (uint32_t y = 0; y < 40; y++) {
+        for (uint32_t x = 0; x < 40; x++) {
+            assert_int_equal(buffers.depth[y * 40 + x], (2 * y + 1) * 256 + 20 + 2 * x + 1);
+        }
+    }
+    import_buffers_free(&buffers);
+    /* without a size both stay as they are */
+    assert_int_equal(import_frame(s->directory, &frame, 0, 0, &buffers, &out, error, sizeof error), 0);
+    assert_int_equal(out.width * 1000 + out.height, 240160);
+    assert_int_equal(out.depth_width * 1000 + out.depth_height, 120080);
+    assert_int_equal(buffers.depth[79 * 120 + 119], 79 * 256 + 119);
+    assert_true(out.camera.fx == 210 && fabs(out.camera.cx - 103.8) < 1e-12);
+    import_buffers_free(&buffers);
+}
+
+static void refuse(scratch *s, const posed_frame *frame, uint32_t side, const char *why)
+{
+    char error[512] = "";
+    import_buffers buffers;
+    t3r_recorded_frame out;
+    int status = import_frame(s->directory, frame, side, side, &buffers, &out, error, sizeof error);
+    import_buffers_free(&buffers);
+    assert_int_equal(status, -1);
+    if (strstr(error, why) == NULL) {
+        fail_msg("'%s' does not say '%s'", error, why);
+    }
+}
+
+static void test_bad_pictures_are_named(void **state)
+{
+    scratch *s = *state;
+    write_ramps(s, 64, 48, 64, 48);
+    posed_frame frame = ramp_frame();
+    char other[] = "other";
+    frame.image = other;
+    refuse(s, &frame, 16, "/other: No such file");
+    frame = ramp_frame();
+    frame.depth = other;
+    refuse(s, &frame, 16, "/other: No such file");
+    frame.depth = frame.image;
+    refuse(s, &frame, 16, "colour.png: 8-bit colour, but depth is a 16-bit grey PNG");
+    frame = ramp_frame();
+    frame.image = frame.depth;
+    refuse(s, &frame, 16, "depth.png: 16-bit grey, but a colour picture has 8 bits");
+    frame = ramp_frame();
+    frame.intrinsics.width = 65;
+    refuse(s, &frame, 16, "colour.png: w: 65, but the picture is 64 pixels wide");
+    frame = ramp_frame();
+    frame.intrinsics.fx = 30000;
+    refuse(s, &frame, 0, "fl_x");
+    frame = ramp_frame();
+    frame.intrinsics.cx = 1e6;
+    refuse(s, &frame, 0, "cx");
+    frame = ramp_frame();
+    frame.intrinsics.coefficients[0] = 200;
+    refuse(s, &frame, 0, "distortion");
+}
+
+static void test_the_ending_may_be_left_out(void **state)
+{
+    scratch *s = *state;
+    char error[512] = "", bare[] = "./colour", bare_depth[] = "depth";
+    write_ramps(s, 64, 48, 64, 48);
+    posed_frame frame = ramp_frame();
+    frame.image = bare;
+    frame.depth = bare_depth;
+    import_buffers buffers;
+    t3r_recorded_frame out;
+    assert_int_equal(import_frame(s->directory, &frame, 16, 16, &buffers, &out, error, sizeof error), 0);
+    import_buffers_free(&buffers);
+}
+
+/* Length of [a, a + 1) within [low, high) */
+static double overlap(double a, double low, double high)
+{
+    double from = a > low ? a : low, to = a + 1 < high ? a + 1 : high;
+    return to > from ? to - from : 0;
+}
+
+static double box_mean(const picture *p, double x0, double x1, double y0, double y1, uint32_t channel)
+{
+    double sum = 0;
+    const uint8_t *rgb = p->samples;
+    for (uint32_t y = (uint32_t)y0; y < y1; y++) {
+        for (uint32_t x = (uint32_t)x0; x < x1; x++) {
+            sum += rgb[((size_t)y * p->width + x) * 3 + channel] * overlap(x, x0, x1) * overlap(y, y0, y1);
+        }
+    }
+    return sum / ((x1 - x0) * (y1 - y0));
+}
+
+/* A real scene: every frame imports, and colours are the mean under each box. */
+static void test_hololens_scene(void **state)
+{
+    (void)state;
+    char folder_path[512], error[1024] = "";
+    const char *data = getenv("T3R_DATA");
+    snprintf(folder_path, sizeof folder_path, "%s/hololens_b", data != NULL ? data : "../shared/data");
+    if (access(folder_path, R_OK) != 0) {
+        printf("SKIPPED: no %s\n", folder_path);
+        skip();
+    }
+    posed_folder folder;
+    if (posed_folder_open(folder_path, NULL, &folder, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+    assert_int_equal(folder.frame_count, 12);
+    assert_int_equal(folder.triplet_count, 4);
+    for (uint32_t i = 0; i < folder.frame_count; i++) {
+        import_buffers buffers;
+        t3r_recorded_frame out;
+        picture source;
+        char *path = posed_path(folder_path, folder.frames[i].image);
+        const posed_frame *frame = &folder.frames[i];
+        assert_int_equal(import_frame(folder_path, frame, 256, 256, &buffers, &out, error, sizeof error), 0);
+        assert_int_equal(picture_read(path, &source, error, sizeof error), 0);
+        assert_true(fabs(out.camera.fx - 495.56775700934577 * 256 / 360) < 1e-9);
+        assert_true(fabs(out.camera.cx - ((270.00289719626164 - 90) * 256 / 360 - 0.5)) < 1e-9);
+        for (uint32_t k = 0; k < 600; k++) {
+            uint32_t x = k * 37 % 256, y = k * 101 % 256;
+            for (uint32_t c = 0; c < 3; c++) {
+                double mean = box_mean(&source, 90 + x * 360 / 256.0, 90 + (x + 1) * 360 / 256.0, y * 360 / 256.0,
+                                       (y + 1) * 360 / 256.0, c);
+                assert_true(fabs(buffers.rgb[(y * 256 + x) * 3 + c] - mean) < 0.501);
+            }
+        }
+        free(path);
+        picture_free(&source);
+        import_buffers_free(&buffers);
+    }
+    posed_folder_close(&folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_points_stay_where_they_are, open_folder, close_folder),
+        cmocka_unit_test(test_the_crop_is_the_largest),
+        cmocka_unit_test_setup_teardown(test_depth_of_another_resolution, open_folder, close_folder),
+        cmocka_unit_test_setup_teardown(test_bad_pictures_are_named, open_folder, close_folder),
+        cmocka_unit_test_setup_teardown(test_the_ending_may_be_left_out, open_folder, close_folder),
+        cmocka_unit_test(test_hololens_scene),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,256 @@
+/* Pictures: what is written is read back, what is damaged is refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <jpeglib.h>
+#include <png.h>
+
+#include "picture.h"
+#include "scratch.h"
+
+static int open_folder(void **state)
+{
+    *state = malloc(sizeof(scratch));
+    return *state == NULL ? -1 : scratch_open(*state);
+}
+
+static int close_folder(void **state)
+{
+    scratch_close(*state);
+    free(*state);
+    return 0;
+}
+
+static void fill(uint8_t *bytes, size_t count)
+{
+    uint32_t x = 12345;
+    for (size_t i = 0; i < count; i++) {
+        x = x * 1664525u + 1013904223u;
+        bytes[i] = (uint8_t)(x >> 24);
+    }
+}
+
+static void check_round_trip(scratch *s, uint32_t width, uint32_t height, uint32_t channels, uint32_t bits)
+{
+    char error[256];
+    size_t bytes = (size_t)width * height * channels * bits / 8;
+    picture out = {width, height, channels, bits, malloc(bytes)}, in;
+    fill(out.samples, bytes);
+    assert_int_equal(picture_write_png(scratch_path(s, "a.png"), &out, error, sizeof error), 0);
+    assert_int_equal(picture_read(s->path, &in, error, sizeof error), 0);
+    assert_int_equal(in.width, width);
+    assert_int_equal(in.height, height);
+    assert_int_equal(in.channels, channels);
+    assert_int_equal(in.bits, bits);
+    assert_memory_equal(in.samples, out.samples, bytes);
+    picture_free(&in);
+    picture_free(&out);
+}
+
+static void test_png_round_trips(void **state)
+{
+    check_round_trip(*state, 37, 11, 3, 8);
+    check_round_trip(*state, 1, 1, 1, 8);
+    check_round_trip(*state, 64, 5, 1, 16);
+}
+
+/* A PNG of libpng's own making in another pixel format. */
+static void write_foreign_png(const char *path, int colour_type, int bits)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    const png_color palette[2] = {{10, 20, 30}, {200, 100, 50}};
+    png_byte row[8] = {1, 0, 1, 0, 1, 0, 1, 0};
+    if (setjmp(png_jmpbuf(png))) {
+        fail_msg("libpng refused to write");
+    }
+    png_init_io(png, file);
+    png_set_IHDR(png, info, 2, 1, bits, colour_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    if (colour_type == PNG_COLOR_TYPE_PALETTE) {
+        png_set_PLTE(png, info, palette, 2);
+    }
+    png_write_info(png, info);
+    png_write_row(png, row);
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    fclose(file);
+}
+
+static void test_foreign_png_formats_become_8_bit(void **state)
+{
+    scratch *s = *state;
+    char error[256];
+    picture in;
+    write_foreign_png(scratch_path(s, "p.png"), PNG_COLOR_TYPE_PALETTE, 8);
+    assert_int_equal(picture_read(s->path, &in, error, sizeof error), 0);
+    static const uint8_t expected[6] = {200, 100, 50, 10, 20, 30};
+    assert_int_equal(in.channels * in.bits, 24);
+    assert_memory_equal(in.samples, expected, sizeof expected);
+    picture_free(&in);
+    write_foreign_png(scratch_path(s, "a.png"), PNG_COLOR_TYPE_RGB_ALPHA, 8);
+    assert_int_equal(picture_read(s->path, &in, error, sizeof error), 0);
+    static const uint8_t without_alpha[6] = {1, 0, 1, 1, 0, 1};
+    assert_memory_equal(in.samples, without_alpha, sizeof without_alpha);
+    picture_free(&in);
+}
+
+static size_t file_bytes(const char *path, uint8_t **bytes)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    *bytes = malloc(1 << 20);
+    size_t count = fread(*bytes, 1, 1 << 20, file);
+    fclose(file);
+    return count;
+}
+
+/* Every shorter file is refused with the path in the message. */
+static void refuse_all_cuts(scratch *s, const char *name)
+{
+    uint8_t *bytes;
+    size_t count = file_bytes(scratch_path(s, name), &bytes);
+    assert_true(count > 100);
+    for (size_t cut = 0; cut + 2 <= count; cut += cut < 64 ? 1 : 13) {
+        char error[256] = "";
+        picture in;
+        assert_int_equal(scratch_write(s, "cut", bytes, cut), 0);
+        assert_int_equal(picture_read(s->path, &in, error, sizeof error), -1);
+        assert_non_null(strstr(error, s->path));
+        assert_null(in.samples);
+    }
+    free(bytes);
+}
+
+static void write_jpeg(const char *path, uint32_t width, uint32_t height)
+{
+    struct jpeg_compress_struct jpeg;
+    struct jpeg_error_mgr manager;
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    jpeg.err = jpeg_std_error(&manager);
+    jpeg_create_compress(&jpeg);
+    jpeg_stdio_dest(&jpeg, file);
+    jpeg.image_width = width;
+    jpeg.image_height = height;
+    jpeg.input_components = 3;
+    jpeg.in_color_space = JCS_RGB;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, 95, TRUE);
+    jpeg_start_compress(&jpeg, TRUE);
+    uint8_t *row = malloc((size_t)width * 3);
+    for (uint32_t y = 0; y < height; y++) {
+        for (uint32_t x = 0; x < width; x++) {
+            row[3 * x] = (uint8_t)(x * 3);
+            row[3 * x + 1] = (uint8_t)(y * 3);
+            row[3 * x + 2] = 128;
+        }
+        jpeg_write_scanlines(&jpeg, &row, 1);
+    }
+    free(row);
+    jpeg_finish_compress(&jpeg);
+    jpeg_destroy_compress(&jpeg);
+    fclose(file);
+}
+
+static void test_jpeg_is_read(void **state)
+{
+    scratch *s = *state;
+    char error[256];
+    picture in;
+    write_jpeg(scratch_path(s, "a.jpg"), 80, 60);
+    assert_int_equal(picture_read(s->path, &in, error, sizeof error), 0);
+    assert_int_equal(in.width, 80);
+    assert_int_equal(in.height, 60);
+    assert_int_equal(in.channels, 3);
+    const uint8_t *pixel = (const uint8_t *)in.samples + ((size_t)40 * 80 + 50) * 3;
+    assert_in_range(pixel[0], 144, 156);
+    assert_in_range(pixel[1], 114, 126);
+    assert_in_range(pixel[2], 122, 134);
+    picture_free(&in);
+}
+
+static void test_cut_files_are_refused(void **state)
+{
+    scratch *s = *state;
+    check_round_trip(s, 40, 30, 3, 8);
+    refuse_all_cuts(s, "a.png");
+    check_round_trip(s, 40, 30, 1, 16);
+    refuse_all_cuts(s, "a.png");
+    write_jpeg(scratch_path(s, "a.jpg"), 80, 60);
+    refuse_all_cuts(s, "a.jpg");
+}
+
+static void expect_refused(const char *path, const char *why)
+{
+    char error[256] = "";
+    picture in;
+    assert_int_equal(picture_read(path, &in, error, sizeof error), -1);
+    if (strstr(error, why) == NULL) {
+        fail_msg("'%s' does not say '%s'", error, why);
+    }
+}
+
+static void test_bad_files_are_named(void **state)
+{
+    scratch *s = *state;
+    expect_refused(scratch_path(s, "missing.png"), "missing.png: No such file");
+    assert_int_equal(scratch_write(s, "text.png", "hello, world", 12), 0);
+    expect_refused(s->path, "neither PNG nor JPEG");
+    assert_int_equal(scratch_write(s, "empty.png", "", 0), 0);
+    expect_refused(s->path, "empty");
+    /* one byte of the compressed data changed: the check sum notices */
+    uint8_t *bytes;
+    check_round_trip(s, 40, 30, 3, 8);
+    size_t count = file_bytes(scratch_path(s, "a.png"), &bytes);
+    bytes[count / 2] ^= 0x55;
+    assert_int_equal(scratch_write(s, "flip.png", bytes, count), 0);
+    expect_refused(s->path, "PNG: ");
+    free(bytes);
+}
+
+static void test_sizes_over_the_limit_are_refused(void **state)
+{
+    scratch *s = *state;
+    char error[256];
+    picture wide = {4097, 1, 1, 8, calloc(4097, 1)};
+    assert_int_equal(picture_write_png(scratch_path(s, "wide.png"), &wide, error, sizeof error), 0);
+    expect_refused(s->path, "PNG: ");
+    picture_free(&wide);
+    write_jpeg(scratch_path(s, "wide.jpg"), 4097, 1);
+    expect_refused(s->path, "largest side");
+}
+
+static void test_writing_fails_cleanly(void **state)
+{
+    scratch *s = *state;
+    char error[256] = "";
+    uint8_t samples[3] = {0};
+    picture p = {1, 1, 3, 8, samples}, odd = {1, 1, 2, 8, samples};
+    assert_int_equal(picture_write_png(scratch_path(s, "no/such/folder.png"), &p, error, sizeof error), -1);
+    assert_non_null(strstr(error, "folder.png: No such file"));
+    assert_int_equal(picture_write_png(scratch_path(s, "odd.png"), &odd, error, sizeof error), -1);
+    if (access("/dev/full", W_OK) == 0) {
+        assert_int_equal(picture_write_png("/dev/full", &p, error, sizeof error), -1);
+        assert_int_equal(access("/dev/full", W_OK), 0); /* only what is a file of ours is removed */
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_png_round_trips),       cmocka_unit_test(test_foreign_png_formats_become_8_bit),
+        cmocka_unit_test(test_jpeg_is_read),          cmocka_unit_test(test_cut_files_are_refused),
+        cmocka_unit_test(test_bad_files_are_named),   cmocka_unit_test(test_sizes_over_the_limit_are_refused),
+        cmocka_unit_test(test_writing_fails_cleanly),
+    };
+    return cmocka_run_group_tests(tests, open_folder, close_folder);
+}

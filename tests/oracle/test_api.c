@@ -1,0 +1,699 @@
+/* The C interface used wrongly: null pointers, every field beyond its documented range, calls out of order. Each
+ * gives the documented status and leaves the arena as it was, to the byte. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "drawing.h"
+
+enum { W = 32, H = 24, POINTS = W * H };
+
+static const t3r_scene_frame plain_frame;
+
+/* ---- a runtime, and whether a call changed it ---------------------------------------------------- */
+
+typedef struct bench {
+    t3r_config config;
+    arena memory, before;
+    t3r_runtime *rt;
+} bench;
+
+static bench bench_of(t3r_config config)
+{
+    bench b = {.config = config, .memory = arena_of(&config, ARENA_AT_FULL)};
+    b.before = arena_of_bytes(b.memory.count);
+    assert_int_equal(t3r_init(&b.rt, b.memory.bytes, b.memory.count, &config), T3R_OK);
+    return b;
+}
+
+static void bench_free(bench *b)
+{
+    arena_free(&b->memory);
+    arena_free(&b->before);
+}
+
+static void remember(bench *b)
+{
+    memcpy(b->before.bytes, b->memory.bytes, b->memory.count);
+}
+
+static void refused_at(bench *b, t3r_status got, t3r_status want, int line)
+{
+    if (got != want) {
+        fail_msg("line %d: status %d (%s), wanted %d", line, (int)got, t3r_error_text(got), (int)want);
+    }
+    if (memcmp(b->before.bytes, b->memory.bytes, b->memory.count) != 0) {
+        fail_msg("line %d: a refused call changed the arena", line);
+    }
+}
+
+/* The call is refused with the status and the arena stays as it was. */
+#define REFUSED(b, call, want)                                                                                         \
+    do {                                                                                                               \
+        remember(b);                                                                                                   \
+        refused_at((b), (call), (want), __LINE__);                                                                     \
+    } while (0)
+
+/* ---- a picture to hand in ------------------------------------------------------------------------ */
+
+static uint8_t pixels[T3R_PIXEL_FORMAT_COUNT][POINTS * 3];
+static uint8_t depths[POINTS * 2];
+
+static t3r_frame good_frame(void)
+{
+    for (size_t i = 0; i < POINTS; i++) {
+        uint16_t millimetres = (uint16_t)(1500 + i % W * 4 + i / W * 3);
+        depths[i * 2] = (uint8_t)millimetres;
+        depths[i * 2 + 1] = (uint8_t)(millimetres >> 8);
+        for (size_t c = 0; c < 3; c++) {
+            pixels[T3R_PIXEL_RGB24][i * 3 + c] = (uint8_t)(i * (7 + c) + (i / W) * 13);
+        }
+    }
+    return (t3r_frame){
+        .format = T3R_PIXEL_RGB24,
+        .width = W,
+        .height = H,
+        .planes = {pixels[T3R_PIXEL_RGB24], NULL},
+        .stride_bytes = {W * 3, 0},
+        .depth = depths,
+        .depth_width = W,
+        .depth_height = H,
+        .depth_stride_bytes = W * 2,
+        .depth_unit_q40 = 1099511628,
+    };
+}
+
+static t3r_config good_config(void)
+{
+    t3r_config c = t3r_default_config(W, H, 2, 200);
+    c.clusters = 8;
+    return c;
+}
+
+/* ---- tests --------------------------------------------------------------------------------------- */
+
+static void null_pointers(void **state)
+{
+    (void)state;
+    bench b = bench_of(good_config());
+    t3r_frame frame = good_frame();
+    t3r_camera camera = plain_camera(30, W, H), undistorted;
+    t3r_gaussian g = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
+    uint8_t rgb[POINTS * 3];
+    t3r_target target = {.width = W, .height = H, .rgb = rgb, .rgb_stride_bytes = W * 3};
+    t3r_scene scene;
+    t3r_plan_info plan;
+    t3r_runtime *rt = b.rt;
+    assert_int_equal(t3r_plan(NULL, &plan), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_plan(&b.config, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_init(NULL, b.memory.bytes, b.memory.count, &b.config), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_init(&rt, NULL, b.memory.count, &b.config), T3R_ERR_ARGUMENT);
+    assert_null(rt);
+    rt = b.rt;
+    REFUSED(&b, t3r_init(&rt, b.memory.bytes, b.memory.count, NULL), T3R_ERR_ARGUMENT);
+    assert_null(rt);
+    REFUSED(&b, t3r_attach(NULL, b.memory.bytes, b.memory.count), T3R_ERR_ARGUMENT);
+    rt = b.rt;
+    REFUSED(&b, t3r_attach(&rt, NULL, b.memory.count), T3R_ERR_ARGUMENT);
+    assert_null(rt);
+    REFUSED(&b, t3r_set_hooks(NULL, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_add_view(NULL, &frame, &camera), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_add_view(b.rt, NULL, &camera), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_add_view(b.rt, &frame, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reset(NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reconstruct(NULL, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reconstruct(b.rt, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget(NULL, 1, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget(b.rt, 1, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reallocate(NULL, 1, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reallocate(b.rt, 1, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_get_scene(NULL, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_get_scene(b.rt, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_scene_begin(NULL, &plain_frame), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_scene_begin(b.rt, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_scene_append(NULL, &g), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_scene_append(b.rt, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_render(NULL, &camera, &target), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_render(b.rt, NULL, &target), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_render(b.rt, &camera, NULL), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_render_passes(NULL), 0);
+    REFUSED(&b, t3r_develop(NULL, &frame, &camera, rgb, NULL, &undistorted), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_develop(b.rt, NULL, &camera, rgb, NULL, &undistorted), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_develop(b.rt, &frame, NULL, rgb, NULL, &undistorted), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_develop(b.rt, &frame, &camera, NULL, NULL, &undistorted), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_set_hooks(b.rt, NULL), T3R_OK);
+    bench_free(&b);
+}
+
+static void config_ranges(void **state)
+{
+    (void)state;
+    const t3r_config good = good_config();
+    assert_null(t3r_config_error(&good));
+    assert_non_null(t3r_config_error(NULL));
+    static const struct {
+        size_t field;
+        uint32_t least_bad, most_good, too_low; /* too_low UINT32_MAX: 0 is allowed */
+    } ranges[] = {
+#define RANGE(field, low, high) {offsetof(t3r_config, field), (high) + 1u, (high), (low) == 0 ? UINT32_MAX : (low)-1u}
+        RANGE(width, T3R_MIN_SIDE, T3R_MAX_SIDE),
+        RANGE(height, T3R_MIN_SIDE, T3R_MAX_SIDE),
+        RANGE(views, 0, T3R_MAX_VIEWS),
+        RANGE(max_gaussians, 200, T3R_MAX_GAUSSIANS), /* the budget is 200 */
+        RANGE(gaussians, 1, 200),
+        RANGE(render_width, 1, T3R_MAX_SIDE),
+        RANGE(render_height, 1, T3R_MAX_SIDE),
+        RANGE(wavelet, 0, T3R_WAVELET_COUNT - 1),
+        RANGE(wavelet_levels, 1, T3R_MAX_LEVELS),
+        RANGE(clusters, 1, T3R_MAX_CLUSTERS),
+        RANGE(cluster_batches, 0, 1024),
+        RANGE(colour_weight_q8, 0, 1024),
+        RANGE(allocation, 0, T3R_ALLOCATE_COUNT - 1),
+        RANGE(keep_percent, 0, 100),
+        RANGE(gamma_q8, 0, 512),
+        RANGE(head, 0, T3R_HEAD_COUNT - 1),
+        RANGE(fill_radius, 0, 8),
+        RANGE(keep_analysis, 0, 1),
+    };
+    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
+        const uint32_t bad[] = {ranges[i].least_bad, UINT32_MAX, ranges[i].too_low};
+        for (size_t k = 0; k < 3; k++) {
+            t3r_config c = good;
+            t3r_plan_info plan;
+            memcpy((uint8_t *)&c + ranges[i].field, &bad[k], sizeof bad[k]);
+            assert_non_null(t3r_config_error(&c));
+            assert_int_equal(t3r_plan(&c, &plan), T3R_ERR_CONFIG);
+            arena a = arena_of(&good, ARENA_AT_FULL);
+            t3r_runtime *rt = (t3r_runtime *)(void *)&c;
+            assert_int_equal(t3r_init(&rt, a.bytes, a.count, &c), T3R_ERR_CONFIG);
+            assert_null(rt);
+            for (size_t byte = 0; byte < a.count; byte++) {
+                assert_int_equal(((uint8_t *)a.bytes)[byte], 0xa5);
+            }
+            arena_free(&a);
+        }
+        t3r_config c = good;
+        memcpy((uint8_t *)&c + ranges[i].field, &ranges[i].most_good, sizeof(uint32_t));
+        assert_null(t3r_config_error(&c));
+    }
+    /* the defaults never fail where the four numbers are in range, and out of range are refused later */
+    for (uint32_t side = T3R_MIN_SIDE; side <= T3R_MAX_SIDE; side *= 2) {
+        t3r_config c = t3r_default_config(side, side, 2, side * side / 10);
+        assert_null(t3r_config_error(&c));
+    }
+    t3r_config c = t3r_default_config(0, UINT32_MAX, 17, 0);
+    assert_non_null(t3r_config_error(&c));
+}
+
+static void frame_ranges(void **state)
+{
+    (void)state;
+    bench b = bench_of(good_config());
+    t3r_camera camera = plain_camera(30, W, H);
+    const t3r_frame good = good_frame();
+    t3r_frame bad[40];
+    size_t n = 0;
+#define BAD(field, value)                                                                                              \
+    do {                                                                                                               \
+        bad[n] = good;                                                                                                 \
+        bad[n].field = (value);                                                                                        \
+        n++;                                                                                                           \
+    } while (0)
+    BAD(format, T3R_PIXEL_FORMAT_COUNT);
+    BAD(format, (t3r_pixel_format)-1);
+    BAD(width, 0);
+    BAD(width, 1);
+    BAD(width, T3R_MAX_SIDE + 1);
+    BAD(width, UINT32_MAX);
+    BAD(height, 0);
+    BAD(height, 1);
+    BAD(height, T3R_MAX_SIDE + 1);
+    BAD(height, UINT32_MAX);
+    BAD(stride_bytes[0], 0);
+    BAD(stride_bytes[0], W * 3 - 1);
+    BAD(depth_width, 0);
+    BAD(depth_width, T3R_MAX_SIDE + 1);
+    BAD(depth_height, 0);
+    BAD(depth_height, UINT32_MAX);
+    BAD(depth_stride_bytes, W * 2 - 1);
+    BAD(depth_stride_bytes, 0);
+    BAD(depth_unit_q40, 0);
+    for (size_t i = 0; i < n; i++) {
+        REFUSED(&b, t3r_add_view(b.rt, &bad[i], &camera), T3R_ERR_FRAME);
+    }
+    /* 4:2:2 wants an even width, 4:2:0 both sides even and its second plane */
+    n = 0;
+    for (int format = T3R_PIXEL_YUYV; format <= T3R_PIXEL_NV12; format++) {
+        BAD(format, (t3r_pixel_format)format);
+        bad[n - 1].width = W - 1;
+        bad[n - 1].stride_bytes[1] = W;
+        bad[n - 1].planes[1] = pixels[0];
+    }
+    BAD(format, T3R_PIXEL_NV12);
+    bad[n - 1].height = H - 1;
+    bad[n - 1].planes[1] = pixels[0];
+    bad[n - 1].stride_bytes[1] = W;
+    BAD(format, T3R_PIXEL_NV12);
+    bad[n - 1].planes[1] = pixels[0];
+    bad[n - 1].stride_bytes[1] = W - 1;
+    for (size_t i = 0; i < n; i++) {
+        REFUSED(&b, t3r_add_view(b.rt, &bad[i], &camera), T3R_ERR_FRAME);
+    }
+    t3r_frame missing = good;
+    missing.planes[0] = NULL;
+    remember(&b);
+    t3r_status status = t3r_add_view(b.rt, &missing, &camera);
+    refused_at(&b, status, status == T3R_ERR_ARGUMENT ? T3R_ERR_ARGUMENT : T3R_ERR_FRAME, __LINE__);
+    missing = good;
+    missing.format = T3R_PIXEL_NV12;
+    remember(&b);
+    status = t3r_add_view(b.rt, &missing, &camera);
+    refused_at(&b, status, status == T3R_ERR_ARGUMENT ? T3R_ERR_ARGUMENT : T3R_ERR_FRAME, __LINE__);
+#undef BAD
+    /* what the documentation allows is taken: a frame of 2 x 2, depth of another size, no depth where none is needed */
+    assert_int_equal(t3r_add_view(b.rt, &good, &camera), T3R_OK);
+    assert_int_equal(t3r_reset(b.rt), T3R_OK);
+    t3r_frame small = good;
+    small.width = small.height = 2;
+    small.depth_width = 2;
+    small.depth_height = 3;
+    assert_int_equal(t3r_add_view(b.rt, &small, &camera), T3R_OK);
+    assert_int_equal(t3r_reset(b.rt), T3R_OK); /* developing needs the planes of a runtime without views */
+    small.depth = NULL;
+    small.depth_width = small.depth_height = small.depth_stride_bytes = 0;
+    small.depth_unit_q40 = 0;
+    uint8_t rgb[POINTS * 3];
+    t3r_camera undistorted;
+    assert_int_equal(t3r_develop(b.rt, &small, &camera, rgb, NULL, &undistorted), T3R_OK);
+    bench_free(&b);
+}
+
+static void camera_ranges(void **state)
+{
+    (void)state;
+    t3r_config config = good_config();
+    bench b = bench_of(config);
+    t3r_frame frame = good_frame();
+    const t3r_camera good = plain_camera(30, W, H);
+    t3r_camera bad[64];
+    size_t n = 0;
+#define BAD(field, value)                                                                                              \
+    do {                                                                                                               \
+        bad[n] = good;                                                                                                 \
+        bad[n].field = (value);                                                                                        \
+        n++;                                                                                                           \
+    } while (0)
+    BAD(fx_q16, 0);
+    BAD(fx_q16, (8 << 16) - 1);
+    BAD(fx_q16, 16384 << 16);
+    BAD(fx_q16, INT32_MAX);
+    BAD(fx_q16, INT32_MIN);
+    BAD(fy_q16, -(30 << 16));
+    BAD(fy_q16, (8 << 16) - 1);
+    BAD(fy_q16, 16384 << 16);
+    BAD(cx_q16, 16384 << 16);
+    BAD(cx_q16, -(16384 << 16));
+    BAD(cx_q16, INT32_MIN);
+    BAD(cy_q16, 16384 << 16);
+    BAD(cy_q16, -(16384 << 16));
+    BAD(cy_q16, INT32_MAX);
+    BAD(rotation_q30[0], 0);
+    BAD(rotation_q30[0], (1 << 29) - (1 << 16));
+    BAD(rotation_q30[0], 3 * (1 << 29) + (1 << 16));
+    BAD(rotation_q30[0], INT32_MIN);
+    BAD(rotation_q30[3], INT32_MAX);
+    const size_t of_target_too = n;
+    BAD(distortion, T3R_DISTORTION_COUNT);
+    BAD(distortion, (t3r_distortion)-1);
+#undef BAD
+    for (size_t i = 0; i < n; i++) {
+        REFUSED(&b, t3r_add_view(b.rt, &frame, &bad[i]), T3R_ERR_CAMERA);
+    }
+    uint8_t rgb[POINTS * 3];
+    t3r_camera undistorted;
+    for (size_t i = 0; i < n; i++) {
+        REFUSED(&b, t3r_develop(b.rt, &frame, &bad[i], rgb, NULL, &undistorted), T3R_ERR_CAMERA);
+    }
+    t3r_gaussian g = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
+    load_scene(b.rt, &plain_frame, &g, 1);
+    t3r_target target = {.width = W, .height = H, .rgb = rgb, .rgb_stride_bytes = W * 3};
+    for (size_t i = 0; i < of_target_too; i++) {
+        REFUSED(&b, t3r_render(b.rt, &bad[i], &target), T3R_ERR_CAMERA);
+    }
+    /* the ends of the ranges are taken, and a position anywhere gives an answer */
+    t3r_camera edge = good;
+    edge.fx_q16 = 8 << 16;
+    edge.fy_q16 = (16384 << 16) - 1;
+    edge.cx_q16 = -(16384 << 16) + 1;
+    edge.cy_q16 = (16384 << 16) - 1;
+    edge.rotation_q30[0] = (1 << 29) + (1 << 16);
+    assert_int_equal(t3r_render(b.rt, &edge, &target), T3R_OK);
+    edge.rotation_q30[0] = 3 * (1 << 29) - (1 << 16);
+    assert_int_equal(t3r_render(b.rt, &edge, &target), T3R_OK);
+    static const int64_t places[] = {INT64_MIN, INT64_MIN + 1, -1, 1, INT64_MAX};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        for (int k = 0; k < 3; k++) {
+            t3r_camera far = good;
+            far.position_q32[k] = places[i];
+            t3r_status status = t3r_render(b.rt, &far, &target);
+            assert_true(status == T3R_OK || status == T3R_ERR_CAMERA);
+        }
+    }
+    bench_free(&b);
+}
+
+static void gaussian_ranges(void **state)
+{
+    (void)state;
+    bench b = bench_of(good_config());
+    assert_int_equal(t3r_scene_begin(b.rt, &plain_frame), T3R_OK);
+    const t3r_gaussian good = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
+    t3r_gaussian bad[16];
+    size_t n = 0;
+#define BAD(field, value)                                                                                              \
+    do {                                                                                                               \
+        bad[n] = good;                                                                                                 \
+        bad[n].field = (value);                                                                                        \
+        n++;                                                                                                           \
+    } while (0)
+    BAD(factor_exponent, -61);
+    BAD(factor_exponent, 16);
+    BAD(factor_exponent, INT8_MIN);
+    BAD(factor_exponent, INT8_MAX);
+    BAD(colour_q7[0], 32641);
+    BAD(colour_q7[1], 32641);
+    BAD(colour_q7[2], UINT16_MAX);
+    BAD(opacity_q15, 32768);
+    BAD(opacity_q15, UINT16_MAX);
+    BAD(reserved[0], 1);
+    BAD(reserved[2], 255);
+#undef BAD
+    for (size_t i = 0; i < n; i++) {
+        REFUSED(&b, t3r_scene_append(b.rt, &bad[i]), T3R_ERR_ARGUMENT);
+    }
+    t3r_gaussian edge = good;
+    edge.factor_exponent = -60;
+    edge.opacity_q15 = 32767;
+    edge.colour_q7[0] = 32640;
+    edge.view = 255;
+    assert_int_equal(t3r_scene_append(b.rt, &edge), T3R_OK);
+    edge.factor_exponent = 15;
+    assert_int_equal(t3r_scene_append(b.rt, &edge), T3R_OK);
+    t3r_scene scene;
+    assert_int_equal(t3r_get_scene(b.rt, &scene), T3R_OK);
+    assert_int_equal(scene.count, 2);
+    for (uint32_t i = scene.count; i < b.config.max_gaussians; i++) {
+        assert_int_equal(t3r_scene_append(b.rt, &good), T3R_OK);
+    }
+    REFUSED(&b, t3r_scene_append(b.rt, &good), T3R_ERR_FULL);
+    bench_free(&b);
+}
+
+static void target_ranges(void **state)
+{
+    (void)state;
+    bench b = bench_of(good_config());
+    t3r_gaussian g = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
+    load_scene(b.rt, &plain_frame, &g, 1);
+    t3r_camera camera = plain_camera(30, W, H);
+    static uint8_t rgb[POINTS * 3];
+    static uint32_t depth[POINTS];
+    static uint16_t alpha[POINTS];
+    const t3r_target good = {
+        .width = W,
+        .height = H,
+        .rgb = rgb,
+        .rgb_stride_bytes = W * 3,
+        .depth_q20 = depth,
+        .depth_stride_bytes = W * 4,
+        .alpha_q15 = alpha,
+        .alpha_stride_bytes = W * 2,
+    };
+    t3r_target bad[16];
+    size_t n = 0;
+#define BAD(field, value)                                                                                              \
+    do {                                                                                                               \
+        bad[n] = good;                                                                                                 \
+        bad[n].field = (value);                                                                                        \
+        n++;                                                                                                           \
+    } while (0)
+    BAD(width, 0);
+    BAD(width, W + 1);
+    BAD(width, UINT32_MAX);
+    BAD(height, 0);
+    BAD(height, H + 1);
+    BAD(rgb_stride_bytes, W * 3 - 1);
+    BAD(depth_stride_bytes, W * 4 - 4);
+    BAD(depth_stride_bytes, W * 4 + 2);
+    BAD(alpha_stride_bytes, W * 2 - 2);
+    BAD(alpha_stride_bytes, W * 2 + 1);
+#undef BAD
+    for (size_t i = 0; i < n; i++) {
+        REFUSED(&b, t3r_render(b.rt, &camera, &bad[i]), T3R_ERR_ARGUMENT);
+    }
+    assert_int_equal(t3r_render(b.rt, &camera, &good), T3R_OK);
+    bench_free(&b);
+}
+
+static void calls_out_of_order(void **state)
+{
+    (void)state;
+    t3r_frame frame = good_frame(), blind = frame;
+    blind.depth = NULL;
+    t3r_camera camera = plain_camera(30, W, H);
+    uint8_t rgb[POINTS * 3];
+    t3r_target target = {.width = W, .height = H, .rgb = rgb, .rgb_stride_bytes = W * 3};
+    t3r_gaussian g = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
+    t3r_scene scene;
+    bench b = bench_of(good_config());
+    REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_get_scene(b.rt, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_scene_append(b.rt, &g), T3R_ERR_STATE);
+    REFUSED(&b, t3r_render(b.rt, &camera, &target), T3R_ERR_STATE);
+    REFUSED(&b, t3r_add_view(b.rt, &blind, &camera), T3R_ERR_NO_DEPTH);
+    assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+    assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+    REFUSED(&b, t3r_add_view(b.rt, &frame, &camera), T3R_ERR_STATE);
+    assert_int_equal(t3r_reset(b.rt), T3R_OK);
+    /* depth that is all holes: the view counts for nothing, wherever that is noticed */
+    static const uint8_t holes[POINTS * 2];
+    t3r_frame empty = frame;
+    empty.depth = holes;
+    t3r_status status = t3r_add_view(b.rt, &empty, &camera);
+    assert_int_equal(status == T3R_OK ? t3r_reconstruct(b.rt, &scene) : status, T3R_ERR_NO_DEPTH);
+    assert_int_equal(t3r_reset(b.rt), T3R_OK);
+    REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+    assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+    assert_int_equal(scene.count, b.config.gaussians);
+    assert_int_equal(scene.valid_points, POINTS);
+    /* the analysis was not kept */
+    REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_render(b.rt, &camera, &target), T3R_OK);
+    assert_int_equal(t3r_reset(b.rt), T3R_OK);
+    REFUSED(&b, t3r_get_scene(b.rt, &scene), T3R_ERR_STATE);
+    bench_free(&b);
+
+    t3r_config keep = good_config();
+    keep.keep_analysis = 1;
+    b = bench_of(keep);
+    assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+    REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+    REFUSED(&b, t3r_rebudget(b.rt, 0, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget(b.rt, keep.max_gaussians + 1, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_COUNT, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_COUNT, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reallocate(b.rt, 0, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
+    for (uint32_t z = 1; z <= keep.max_gaussians; z += 33) {
+        assert_int_equal(t3r_rebudget(b.rt, z, &scene), T3R_OK);
+        assert_int_equal(scene.count, z);
+    }
+    bench_free(&b);
+
+    /* an arena that only renders takes no view */
+    t3r_config render_only = render_config(5, W, H);
+    b = bench_of(render_only);
+    REFUSED(&b, t3r_add_view(b.rt, &frame, &camera), T3R_ERR_STATE);
+    REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
+    bench_free(&b);
+}
+
+/* Exactly min(Z, valid points), and valid points are those measured: filled holes count for nothing. */
+static void budgets(void **state)
+{
+    (void)state;
+    t3r_frame frame = good_frame();
+    uint32_t measured = POINTS;
+    for (size_t i = 3; i < POINTS; i += 7) { /* bracketed on all sides: fillable */
+        depths[i * 2] = depths[i * 2 + 1] = 0;
+        measured--;
+    }
+    t3r_camera camera = plain_camera(30, W, H);
+    for (int allocation = 0; allocation < T3R_ALLOCATE_COUNT; allocation++) {
+        for (int head = 0; head < T3R_HEAD_COUNT; head++) {
+            const uint32_t wanted[] = {1, 2, measured / 20, measured / 2, measured - 1, measured, measured + 1, POINTS};
+            t3r_config config = good_config();
+            config.max_gaussians = config.gaussians = POINTS;
+            config.allocation = (t3r_allocation)allocation;
+            config.head = (t3r_head)head;
+            config.keep_analysis = 1;
+            bench b = bench_of(config);
+            t3r_scene scene;
+            assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+            assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+            assert_int_equal(scene.valid_points, measured);
+            for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
+                assert_int_equal(t3r_rebudget(b.rt, wanted[i], &scene), T3R_OK);
+                uint32_t expected = wanted[i] < measured ? wanted[i] : measured;
+                if (scene.count != expected) {
+                    fail_msg("%s, %s: %u Gaussians for a budget of %u with %u valid points",
+                             t3r_allocation_name(config.allocation), t3r_head_name(config.head), scene.count, wanted[i],
+                             measured);
+                }
+            }
+            bench_free(&b);
+        }
+    }
+}
+
+/* ---- cancelling ---------------------------------------------------------------------------------- */
+
+typedef struct fuse {
+    uint32_t calls, cancel_at;
+} fuse;
+
+static int burn(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    fuse *f = user;
+    assert_true((int)stage >= 0 && stage < T3R_STAGE_COUNT);
+    assert_true(done <= total);
+    return f->calls++ == f->cancel_at;
+}
+
+static void cancelling(void **state)
+{
+    (void)state;
+    t3r_frame frame = good_frame();
+    t3r_camera camera = plain_camera(30, W, H);
+    bench b = bench_of(good_config());
+    t3r_scene scene;
+    assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+    assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+    t3r_gaussian *expected = malloc(scene.count * sizeof *expected);
+    assert_non_null(expected);
+    const uint32_t count = scene.count;
+    memcpy(expected, scene.gaussians, count * sizeof *expected);
+    fuse f = {0, UINT32_MAX};
+    t3r_hooks hooks = {.user = &f, .progress = burn};
+    uint32_t cancelled = 0;
+    for (uint32_t at = 0; at < 10000; at++) {
+        assert_int_equal(t3r_set_hooks(b.rt, &hooks), T3R_OK);
+        f = (fuse){0, UINT32_MAX};
+        assert_int_equal(t3r_reset(b.rt), T3R_OK);
+        assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+        f = (fuse){0, at};
+        t3r_status status = t3r_reconstruct(b.rt, &scene);
+        if (status == T3R_OK) {
+            assert_true(f.calls <= at); /* past its last call */
+            break;
+        }
+        assert_int_equal(status, T3R_ERR_CANCELLED);
+        assert_int_equal(f.calls, at + 1); /* asked no more once it said stop */
+        cancelled++;
+        /* what was cancelled leaves no trace in what comes next */
+        assert_int_equal(t3r_set_hooks(b.rt, NULL), T3R_OK);
+        assert_int_equal(t3r_reset(b.rt), T3R_OK);
+        assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+        assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+        assert_int_equal(scene.count, count);
+        assert_memory_equal(scene.gaussians, expected, count * sizeof *expected);
+    }
+    print_message("reconstruction can be cancelled at %u points\n", cancelled);
+    assert_true(cancelled > 3);
+    uint8_t rgb[POINTS * 3];
+    t3r_target target = {.width = W, .height = H, .rgb = rgb, .rgb_stride_bytes = W * 3};
+    f = (fuse){0, 0};
+    assert_int_equal(t3r_set_hooks(b.rt, &hooks), T3R_OK);
+    assert_int_equal(t3r_render(b.rt, &camera, &target), T3R_ERR_CANCELLED);
+    f = (fuse){0, UINT32_MAX};
+    assert_int_equal(t3r_render(b.rt, &camera, &target), T3R_OK);
+    free(expected);
+    bench_free(&b);
+}
+
+static const char *stage_name(int i)
+{
+    return t3r_stage_name((t3r_stage)i);
+}
+
+static const char *allocation_name(int i)
+{
+    return t3r_allocation_name((t3r_allocation)i);
+}
+
+static const char *head_name(int i)
+{
+    return t3r_head_name((t3r_head)i);
+}
+
+static const char *wavelet_name(int i)
+{
+    return t3r_wavelet_name((t3r_wavelet)i);
+}
+
+static const char *pixel_format_name(int i)
+{
+    return t3r_pixel_format_name((t3r_pixel_format)i);
+}
+
+static void texts(void **state)
+{
+    (void)state;
+    for (int status = -100; status <= 100; status++) {
+        const char *text = t3r_error_text((t3r_status)status);
+        assert_non_null(text);
+        assert_true(text[0] != '\0');
+        for (int other = -10; other < status && status <= 0; other++) {
+            assert_string_not_equal(text, t3r_error_text((t3r_status)other));
+        }
+    }
+    static const struct {
+        const char *(*name)(int);
+        int count;
+    } tables[] = {
+        {stage_name, T3R_STAGE_COUNT},     {allocation_name, T3R_ALLOCATE_COUNT},       {head_name, T3R_HEAD_COUNT},
+        {wavelet_name, T3R_WAVELET_COUNT}, {pixel_format_name, T3R_PIXEL_FORMAT_COUNT},
+    };
+    for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
+        assert_null(tables[i].name(-1));
+        assert_null(tables[i].name(tables[i].count));
+        assert_null(tables[i].name(1 << 30));
+        for (int k = 0; k < tables[i].count; k++) {
+            assert_non_null(tables[i].name(k));
+            for (int other = 0; other < k; other++) {
+                assert_string_not_equal(tables[i].name(k), tables[i].name(other));
+            }
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(null_pointers),      cmocka_unit_test(config_ranges),
+        cmocka_unit_test(frame_ranges),       cmocka_unit_test(camera_ranges),
+        cmocka_unit_test(gaussian_ranges),    cmocka_unit_test(target_ranges),
+        cmocka_unit_test(calls_out_of_order), cmocka_unit_test(budgets),
+        cmocka_unit_test(cancelling),         cmocka_unit_test(texts),
+    };
+    return cmocka_run_group_tests_name("api", tests, NULL, NULL);
+}

@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+"""headers.py: each public header compiles alone, first and twice, as C11 and as C++17, without a warning."""
+import shutil
+import sys
+
+import proof
+
+STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror", "-fsyntax-only"]
+LANGUAGES = [("gcc", "c", "-std=c11"), ("g++", "c++", "-std=c++17"),
+             ("clang", "c", "-std=c11"), ("clang++", "c++", "-std=c++17")]
+
+
+def check(header, folder):
+    findings = []
+    user = folder / "user"
+    user.write_text(f'#include "{header.name}"\n#include "{header.name}"\n')
+    for compiler, language, standard in LANGUAGES:
+        if shutil.which(compiler) is None:
+            print(f"without {compiler}: not here")
+            continue
+        result = proof.run([compiler, "-x", language, standard, *STRICT, "-I", header.parent, user])
+        if result.returncode != 0:
+            findings.append(f"{header.name} as {standard} by {compiler}: {result.stderr.strip()}")
+    return findings
+
+
+def main():
+    with proof.scratch() as folder:
+        proof.must_find(check(proof.PLANTED / "header.h", folder), "size_t", "header.h")
+        headers = proof.public_headers()
+        proof.verdict(f"{', '.join(h.name for h in headers)}: compile alone in C11 and C++17",
+                      [finding for header in headers for finding in check(header, folder)])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,2 @@
+/* Does not say where size_t comes from. */
+size_t planted_header(void);

@@ -1,0 +1,120 @@
+"""What the proofs share: compiling the runtime for a target, and the verdict.
+
+A proof first shows that it can fail: each kind of offence stands planted in planted/ and must be found there.
+Then it looks at the real thing. Exit 0: holds; 1: broken; 77: skipped, a tool is absent.
+"""
+import contextlib
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+RUNTIME = ROOT / "runtime"
+PLANTED = HERE / "planted"
+FREESTANDING = ["-std=c11", "-ffreestanding", "-fno-tree-loop-distribute-patterns"]
+
+
+class Target:
+    """A compiler, its flags, and the helpers it may call where the processor lacks an instruction."""
+
+    def __init__(self, name, prefix, flags, helpers=()):
+        self.name, self.prefix, self.flags, self.helpers = name, prefix, flags, set(helpers)
+
+
+TARGETS = {
+    "x86_64": Target("x86_64", "", ["-O3"]),
+    "x86_64-general-registers": Target("x86_64-general-registers", "", ["-O2", "-mgeneral-regs-only"]),
+    # 64-bit division and multiplication of integers
+    "i686": Target("i686", "i686-linux-gnu-", ["-O2", "-fno-pic"],
+                   ["__divdi3", "__moddi3", "__udivdi3", "__umoddi3", "__divmoddi4", "__udivmoddi4"]),
+    # no divide, no 64-bit shift, no FPU: integer helpers only; __aeabi_f... and __aeabi_d... would be soft float
+    "cortex-m3": Target("cortex-m3", "arm-none-eabi-", ["-O2", "-mthumb", "-mcpu=cortex-m3", "-mfloat-abi=soft"],
+                        ["__aeabi_ldivmod", "__aeabi_uldivmod", "__aeabi_lmul", "__aeabi_llsl", "__aeabi_llsr",
+                         "__aeabi_lasr", "__aeabi_memcpy", "__aeabi_memcpy4", "__aeabi_memcpy8", "__aeabi_memmove",
+                         "__aeabi_memset", "__aeabi_memclr"]),
+    "cortex-m0": Target("cortex-m0", "arm-none-eabi-", ["-O2", "-mthumb", "-mcpu=cortex-m0", "-mfloat-abi=soft"],
+                        ["__aeabi_idiv", "__aeabi_idivmod", "__aeabi_uidiv", "__aeabi_uidivmod", "__aeabi_ldivmod",
+                         "__aeabi_uldivmod", "__aeabi_lmul", "__aeabi_llsl", "__aeabi_llsr", "__aeabi_lasr",
+                         "__clzsi2", "__ctzsi2", "__popcountsi2", "__gnu_thumb1_case_sqi", "__gnu_thumb1_case_uqi",
+                         "__gnu_thumb1_case_shi", "__gnu_thumb1_case_uhi", "__gnu_thumb1_case_si"]),
+}
+
+
+def compiler_of(target):
+    """The target's compiler; skips the proof when this machine has none."""
+    compiler = target.prefix + "gcc" if target.prefix else os.environ.get("CC", "gcc")
+    if shutil.which(compiler) is None:
+        print(f"SKIPPED: no {compiler} here (tools/setup --tests)")
+        sys.exit(77)
+    return compiler
+
+
+def run(command, **options):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
+
+
+def compile_each(target, sources, folder, extra=()):
+    """Compiles each source to an object in the folder; ends the proof when one does not compile."""
+    compiler, objects = compiler_of(target), []
+    for index, source in enumerate(sources):
+        made = pathlib.Path(folder) / f"{index:02d}_{source.stem}.o"
+        result = compile_one(compiler, target, source, made, extra)
+        if result.returncode != 0:
+            broken(f"{source} does not compile for {target.name}", result.stderr.splitlines())
+        objects.append(made)
+    return objects
+
+
+def compile_one(compiler, target, source, made, extra=()):
+    includes = ["-I", RUNTIME / "include", "-I", RUNTIME]
+    if source.parent != PLANTED:
+        includes = ["-isystem", HERE / "freestanding"] + includes
+    return run([compiler, *FREESTANDING, *target.flags, *extra, *includes, "-c", source, "-o", made])
+
+
+def runtime_sources():
+    return sorted(RUNTIME.glob("*.c")) + sorted((RUNTIME / "kernels").glob("*.c"))
+
+
+def public_headers():
+    return sorted((RUNTIME / "include").glob("*.h"))
+
+
+def public_functions():
+    """Names of the functions that trim3r.h declares."""
+    text = re.sub(r"/\*.*?\*/", "", (RUNTIME / "include" / "trim3r.h").read_text(), flags=re.S)
+    text = re.sub(r"^\s*#.*$", "", text, flags=re.M)
+    text = re.sub(r"\{[^{}]*\}", "", text)
+    return re.findall(r"^[A-Za-z_][\w *]*?\b(t3r_\w+)\(", text, flags=re.M)
+
+
+@contextlib.contextmanager
+def scratch():
+    with tempfile.TemporaryDirectory(prefix="trim3r-proof-") as folder:
+        yield pathlib.Path(folder)
+
+
+def must_find(findings, text, what):
+    """The proof's own proof: the offence planted in `what` is among the findings."""
+    if not any(text in finding for finding in findings):
+        broken(f"blind: '{text}' planted in {what} was not found", findings or ["(no findings)"])
+    found = next(line for finding in findings for line in finding.splitlines() if text in line)
+    print(f"finds what is planted in {what}: {found}")
+
+
+def broken(headline, lines=()):
+    print(f"BROKEN: {headline}")
+    for line in lines:
+        print("  " + line)
+    sys.exit(1)
+
+
+def verdict(claim, findings):
+    if findings:
+        broken(claim, findings)
+    print(f"holds: {claim}")

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""readme.py example LIBRARY | table PROGRAM [--update]: what the README shows is what happens.
+
+example: its C program compiles without a warning, links with the runtime alone and prints what the README says.
+table:   its arena table is what `trim3r plan --markdown` prints; --update writes it there.
+"""
+import re
+import sys
+
+import proof
+
+README = proof.ROOT / "README.md"
+PLAN = ["plan", "--size", "256x256", "--views", "2", "--gaussians", "13107", "--markdown"]
+STRICT = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"]
+
+
+def example_of(text):
+    """The first C block, and the text block after it, which is its output."""
+    match = re.search(r"```c\n(.*?)```.*?```text\n(.*?)```", text, flags=re.S)
+    if match is None:
+        proof.broken("README.md has no C example followed by its output")
+    return match.group(1), match.group(2)
+
+
+def check_example(text, library, folder):
+    code, expected = example_of(text)
+    source, program = folder / "example.c", folder / "example"
+    source.write_text(code)
+    result = proof.run(["gcc", *STRICT, "-I", proof.RUNTIME / "include", source, library, "-o", program])
+    if result.returncode != 0:
+        return ["does not build: " + result.stderr.strip()]
+    result = proof.run([program], timeout=60)
+    if result.returncode != 0:
+        return [f"ends with status {result.returncode}: {result.stdout}{result.stderr}"]
+    if result.stdout != expected:
+        return [f"prints {result.stdout!r}, the README says {expected!r}"]
+    return []
+
+
+def table_in(text):
+    return re.search(r"(<!-- arena:begin -->\n)(.*?)(<!-- arena:end -->)", text, flags=re.S) or proof.broken(
+        "README.md has no arena markers")
+
+
+def check_table(text, printed):
+    shown = table_in(text).group(2)
+    if shown == printed:
+        return []
+    return ["the README's arena table is not what the plan prints; tests/proofs/readme.py table PROGRAM --update", printed]
+
+
+def main():
+    what, path = sys.argv[1:3]
+    text = README.read_text()
+    if what == "example":
+        with proof.scratch() as folder:
+            for wrong, offence in [(text.replace("#include", "#inclde", 1), "does not build"),
+                                   (text.replace("```text\n", "```text\n1 ", 1), "the README says")]:
+                proof.must_find(check_example(wrong, path, folder), offence, "the README's example")
+            proof.verdict("the README's example builds, runs and prints what the README says",
+                          check_example(text, path, folder))
+        return
+    printed = proof.run([path, *PLAN], check=True).stdout
+    if "--update" in sys.argv:
+        found = table_in(text)
+        README.write_text(text[:found.start(2)] + printed + text[found.end(2):])
+        return
+    proof.must_find(check_table(text.replace("<!-- arena:end -->", "| state | 1 |\n<!-- arena:end -->"), printed),
+                    "is not what", "the README's arena table")
+    proof.verdict("the README's arena table is what the plan prints", check_table(text, printed))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""stack_depth.py TARGET [--markdown]: the deepest stack of each public function, from the compiler's own call graph.
+
+Fails on recursion, on frames whose size is not known at compile time, on a depth over the limit, and on calls through
+pointers that pointers.txt does not declare. What callbacks of the caller use comes on top.
+"""
+import re
+import sys
+
+import proof
+
+LIMIT_BYTES = 16 * 1024
+NODE = re.compile(r'^node: \{ title: "([^"]+)" label: "([^"]*)"')
+EDGE = re.compile(r'^edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
+FRAME = re.compile(r"(\d+) bytes \(([^)]*)\)")
+INDIRECT = "__indirect_call"
+
+
+def plain(title):
+    """raster.c:draw_tile.constprop.0 -> draw_tile"""
+    return title.split(":")[-1].split(".")[0]
+
+
+class Graph:
+    def __init__(self, files):
+        self.bytes, self.kind, self.calls, self.source = {}, {}, {}, {}
+        for path in files:
+            for line in path.read_text().splitlines():
+                node, edge = NODE.match(line), EDGE.match(line)
+                frame = node and FRAME.search(node.group(2))
+                if frame:
+                    self.bytes[node.group(1)] = int(frame.group(1))
+                    self.kind[node.group(1)] = frame.group(2)
+                    self.source[node.group(1)] = path.stem.split("_", 1)[1] + ".c"
+                if edge:
+                    self.calls.setdefault(edge.group(1), set()).add(edge.group(2))
+        called = set().union(*self.calls.values()) if self.calls else set()
+        self.uncalled = {title for title in self.bytes if title not in called}
+
+
+class Depths:
+    def __init__(self, graph, pointers):
+        self.graph, self.findings, self.memo, self.pointers = graph, [], {}, pointers
+
+    def behind_pointer(self, title):
+        """The runtime's functions that a call through a pointer in this function may reach."""
+        source = self.graph.source[title]
+        key = f"{source} {plain(title)}"
+        key = key if key in self.pointers else source
+        if key not in self.pointers:
+            self.findings.append(f"calls through a pointer, not declared in pointers.txt: {plain(title)} in {source}")
+        return [t for t in self.graph.bytes if plain(t) in self.pointers.get(key, ())]
+
+    def of(self, title, path=()):
+        """(bytes, deepest path) below and with the function."""
+        if title in path:
+            self.findings.append("recursion: " + " > ".join(plain(t) for t in (*path[path.index(title):], title)))
+            return 0, ()
+        if title not in self.graph.bytes:
+            return 0, ()
+        if title not in self.memo:
+            # "dynamic,bounded" is realignment, and within the bytes that are told
+            if self.graph.kind[title] not in ("static", "dynamic,bounded"):
+                self.findings.append(f"frame of unknown size: {plain(title)} ({self.graph.kind[title]})")
+            below = (0, ())
+            for callee in sorted(self.graph.calls.get(title, ())):
+                for reached in self.behind_pointer(title) if callee == INDIRECT else [callee]:
+                    below = max(below, self.of(reached, (*path, title)), key=lambda depth: depth[0])
+            self.memo[title] = (self.graph.bytes[title] + below[0], (title, *below[1]))
+        return self.memo[title]
+
+
+def check(graph, roots, pointers):
+    depths = Depths(graph, pointers)
+    table = []
+    for root in sorted(roots):
+        if root not in graph.bytes:
+            depths.findings.append(f"{root} is declared but not defined")
+            continue
+        size, path = depths.of(root)
+        table.append((root, size, path))
+        if size > LIMIT_BYTES:
+            depths.findings.append(f"deeper than {LIMIT_BYTES} bytes: {root} {size}: "
+                                   + " > ".join(f"{plain(t)}({graph.bytes[t]})" for t in path))
+    # A static function that nothing calls can only be reached through a pointer.
+    declared = {name for names in pointers.values() for name in names}
+    for name in sorted({plain(title) for title in graph.uncalled if ":" in title} - declared):
+        depths.findings.append(f"reached through a pointer, not declared in pointers.txt: {name}")
+    return sorted(set(depths.findings)), table
+
+
+def declared_pointers():
+    """pointers.txt: source file, or file and function -> names of functions; each must still be there."""
+    text = re.sub(r"#.*", "", (proof.HERE / "pointers.txt").read_text())
+    pointers = {source.strip(): names.split() for source, names in re.findall(r"^(.+?):(.*)$", text, flags=re.M)}
+    runtime = {path.name: path.read_text() for path in proof.runtime_sources()}
+    code = "".join(runtime.values())
+    stale = [f"{source} is not in the runtime" for source in pointers if source.split()[0] not in runtime]
+    stale += [f"{name} is not in the runtime" for names in pointers.values() for name in names
+              if not re.search(rf"\b{name}\b", code)]
+    if stale:
+        proof.broken("pointers.txt is out of date", stale)
+    return pointers
+
+
+def graph_of(target, sources, folder):
+    proof.compile_each(target, sources, folder, ["-fstack-usage", "-fcallgraph-info=su"])
+    graphs = sorted(folder.glob("*.ci"))
+    graph = Graph(graphs)
+    for path in graphs:
+        path.unlink()
+    return graph
+
+
+def main():
+    target = proof.TARGETS[sys.argv[1]]
+    pointers = declared_pointers()
+    with proof.scratch() as folder:
+        for name, offence in [("recursion.c", "recursion: "), ("dynamic_frame.c", "frame of unknown size"),
+                              ("deep.c", "deeper than"), ("task.c", "not declared in pointers.txt: planted_task"),
+                              ("task.c", "calls through a pointer")]:
+            graph = graph_of(target, [proof.PLANTED / name], folder)
+            proof.must_find(check(graph, ["t3r_planted"], {})[0], offence, name)
+        graph = graph_of(target, proof.runtime_sources(), folder)
+        findings, table = check(graph, proof.public_functions(), pointers)
+    if "--markdown" in sys.argv:
+        print("| function | stack, bytes |\n|---|---|")
+        for name, size, _ in table:
+            print(f"| `{name}` | {size} |")
+    else:
+        for name, size, path in sorted(table, key=lambda row: -row[1]):
+            print(f"{name:24} {size:6} bytes  {' > '.join(f'{plain(t)}({graph.bytes[t]})' for t in path)}")
+    proof.verdict(f"{target.name}: no recursion, no frame of unknown size, at most {LIMIT_BYTES} bytes of stack", findings)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,35 @@
+#!/bin/sh
+# Both ways with MCAP's reference reader and writer (npm: @mcap/core).   reference.sh RECORDING_TOOL BUILD_FOLDER
+set -eu
+tool=$1
+build=$2/reference
+sources=$(cd "$(dirname "$0")" && pwd)
+skip() {
+    echo "SKIPPED: $1"
+    exit 77
+}
+command -v node >/dev/null || skip "no node"
+command -v npm >/dev/null || skip "no npm"
+
+mkdir -p "$build"
+cp "$sources"/*.json "$sources"/*.mjs "$build"
+if ! cmp -s "$build/package-lock.json" "$build/installed"; then
+    (cd "$build" && npm ci --no-audit --no-fund --ignore-scripts >npm.log 2>&1) ||
+        skip "npm ci failed (offline?): $(tail -n 1 "$build/npm.log")"
+    cp "$build/package-lock.json" "$build/installed"
+fi
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+for encoding in rgb8 bgr8 mono8 yuv422_yuy2 yuv422 nv12; do
+    "$tool" sample $encoding "$scratch/ours.mcap"
+    node "$build/read_ours.mjs" $encoding "$scratch/ours.mcap"
+done
+for packing in none lz4 zstd unchunked; do
+    for encoding in rgb8 nv12; do
+        echo "theirs, $packing:"
+        node "$build/write_theirs.mjs" $packing $encoding "$scratch/theirs.mcap"
+        "$tool" dump "$scratch/theirs.mcap" >"$scratch/dump.json"
+        node "$build/check_dump.mjs" $encoding <"$scratch/dump.json"
+    done
+done

@@ -1,0 +1,22 @@
+#!/bin/sh
+# What the recorder needs from a C library: memcpy, memset, memcmp (clang: bcmp), memmove and strlen, so neither
+# heap nor files.
+#   writer_symbols.sh COMPILER SOURCE_FOLDER
+set -eu
+compiler=$1
+source=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+files="recording_writer mcap_writer cdr ros_messages ros_schemas pixel_layout fixed_double fixed_text text crc32"
+for file in $files; do
+    "$compiler" -std=gnu11 -O2 -fno-stack-protector -I "$source/platform" -I "$source/runtime/include" \
+        -c "$source/platform/$file.c" -o "$scratch/$file.o"
+done
+ld -r -o "$scratch/recorder.o" "$scratch"/*.o
+allowed='memcpy|memset|memcmp|bcmp|memmove|strlen|_GLOBAL_OFFSET_TABLE_'
+needed=$(nm -u "$scratch/recorder.o" | awk '{print $2}' | grep -vxE "$allowed" || true)
+if [ -n "$needed" ]; then
+    echo "the recorder needs: $needed"
+    exit 1
+fi
+echo "the recorder needs no heap and no files"

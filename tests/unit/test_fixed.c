@@ -1,0 +1,117 @@
+/* Fixed-point functions over their domain, against double. */
+#include "unit.h"
+
+#include "fixed.h"
+#include "kernels/wavelet_rows.h"
+
+static void square_root(void **state)
+{
+    (void)state;
+    uint64_t seed = 1;
+    for (uint64_t x = 0; x < 70000; x++) {
+        uint64_t root = t3r_isqrt64(x);
+        assert_true(root * root <= x && (root + 1) * (root + 1) > x);
+    }
+    for (int i = 0; i < 200000; i++) {
+        uint64_t root = unit_random(&seed) >> (32 + i % 31);
+        assert_int_equal(t3r_isqrt64(root * root), root);
+        if (root > 0) {
+            assert_int_equal(t3r_isqrt64(root * root - 1), root - 1);
+            assert_int_equal(t3r_isqrt64(root * root + 2 * root), root);
+        }
+    }
+    assert_int_equal(t3r_isqrt64(UINT64_MAX), UINT32_MAX);
+}
+
+static void logarithm(void **state)
+{
+    (void)state;
+    const double bound = 4.0; /* 2^-14 in Q16 */
+    double worst = 0;
+    int32_t before = -1;
+    for (uint32_t x = 1; x != 0;) {
+        int32_t got = t3r_log2_q16(x);
+        worst = fmax(worst, fabs(got - log2(x) * 65536));
+        assert_true(got >= before);
+        before = got;
+        uint32_t next = x + (x < (1u << 20) ? 1 : 4099);
+        x = next > x ? next : 0;
+    }
+    worst = fmax(worst, fabs(t3r_log2_q16(UINT32_MAX) - log2(UINT32_MAX) * 65536));
+    assert_true(worst < bound);
+    for (uint32_t i = 0; i < 32; i++) {
+        assert_int_equal(t3r_log2_q16(1u << i), i << 16);
+    }
+}
+
+static void power(void **state)
+{
+    (void)state;
+    double worst = 0;
+    uint32_t before = 0;
+    for (int32_t x = -16 * 65536; x < 15 * 65536; x++) {
+        uint32_t got = t3r_exp2_q16(x);
+        double exact = exp2(x / 65536.0) * 65536;
+        worst = fmax(worst, (fabs(got - exact) - 0.5) / exact);
+        assert_true(got >= before);
+        before = got;
+    }
+    assert_true(worst < 1.0 / 16384);
+    assert_int_equal(t3r_exp2_q16(0), 65536);
+    assert_int_equal(t3r_exp2_q16(-16 * 65536), 1);
+    assert_int_equal(t3r_exp2_q16(14 * 65536), 1u << 30);
+}
+
+static void division(void **state)
+{
+    (void)state;
+    for (int64_t d = 1; d < 40; d++) {
+        for (int64_t n = -300; n <= 300; n++) {
+            assert_int_equal(t3r_round_div64(n, d), (int64_t)floor((2.0 * (double)n + (double)d) / (2.0 * (double)d)));
+        }
+    }
+    const int64_t most = (INT64_C(1) << 61) - 1;
+    assert_int_equal(t3r_round_div64(most, 1), most);
+    assert_int_equal(t3r_round_div64(-most, 1), -most);
+    assert_int_equal(t3r_round_div64(most, most), 1);
+    assert_int_equal(t3r_round_div64(-most, most), -1);
+}
+
+static void shifts(void **state)
+{
+    (void)state;
+    for (int32_t x = -4100; x <= 4100; x++) {
+        for (uint32_t shift = 0; shift < 12; shift++) {
+            int64_t exact = (int64_t)floor(ldexp(x, -(int)shift) + 0.5);
+            assert_int_equal(t3r_round_shift64(x, shift), exact);
+            assert_int_equal(t3r_round_shift32(x, shift), exact);
+            assert_int_equal(t3r_scale64(x, -(int32_t)shift), exact);
+        }
+    }
+    assert_int_equal(t3r_scale64(-5, 3), -40);
+    assert_int_equal(t3r_scale64(INT64_C(1) << 61, -63), 0);
+    for (uint32_t i = 0; i < 64; i++) {
+        assert_int_equal(t3r_msb64(UINT64_C(1) << i), i);
+        assert_int_equal(t3r_msb64(UINT64_MAX >> (63 - i)), i);
+    }
+}
+
+/* The 16-bit form of the product is the one rounding, bit for bit, for each constant and every sample. */
+static void small_product(void **state)
+{
+    (void)state;
+    const int16_t constants[] = {0, 1, T3R_DB2_PREDICT_Q15, T3R_DB2_UPDATE_Q15, T3R_DB2_UPDATE_NEXT_Q15, 16383};
+    for (size_t c = 0; c < sizeof constants / sizeof constants[0]; c++) {
+        for (int32_t a = INT16_MIN; a <= INT16_MAX; a++) {
+            assert_int_equal(t3r_mulr_q15_small((int16_t)a, constants[c]), t3r_mulr_q15((int16_t)a, constants[c]));
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(square_root), cmocka_unit_test(logarithm),
+                                       cmocka_unit_test(power),       cmocka_unit_test(division),
+                                       cmocka_unit_test(shifts),      cmocka_unit_test(small_product)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,32 @@
+/* wavelet_driver WIDTH HEIGHT LEVELS: R, G, B planes on stdin, db2's periodized texture (uint16, host order) on
+ * stdout. For wavelet_pywavelets.py. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "wavelet.h"
+
+int main(int argc, char **argv)
+{
+    if (argc != 4) {
+        return 2;
+    }
+    uint32_t width = (uint32_t)atoi(argv[1]), height = (uint32_t)atoi(argv[2]), levels = (uint32_t)atoi(argv[3]);
+    size_t pixels = (size_t)width * height;
+    uint8_t *colour = malloc(pixels * 3);
+    uint16_t *texture = malloc(pixels * sizeof *texture);
+    int16_t *plane = malloc(pixels * sizeof *plane);
+    int16_t *work = malloc(t3r_wavelet_work_bytes(width, height));
+    int done = 0;
+    if (colour != NULL && texture != NULL && plane != NULL && work != NULL &&
+        fread(colour, 1, pixels * 3, stdin) == pixels * 3) {
+        const uint8_t *const planes[3] = {colour, colour + pixels, colour + 2 * pixels};
+        t3r_wavelet_texture_border(planes, width, height, levels, T3R_WAVELET_DB2, T3R_WAVELET_PERIODIC, texture, plane,
+                                   work);
+        done = fwrite(texture, sizeof *texture, pixels, stdout) == pixels;
+    }
+    free(colour);
+    free(texture);
+    free(plane);
+    free(work);
+    return done ? 0 : 1;
+}

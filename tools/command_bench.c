@@ -1,0 +1,413 @@
+/* trim3r bench: the speed of each stage, on a fixed piece of work: two 256x256 views of the built-in room. */
+#include "commands.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "bench_points.h"
+#include "cli.h"
+#include "json_output.h"
+#include "reconstruction.h"
+#include "room.h"
+#include "wavelet.h"
+
+#define SIDE 256u
+#define VIEWS 2u
+#define POINTS (SIDE * SIDE * VIEWS)
+#define TRIMMED 13107u /* 10 % of them */
+#define SEED 1u
+#define WAVELET_WIDTH 1280u
+#define WAVELET_HEIGHT 720u
+#define MAX_RUNS 101u
+#define ERROR_BYTES 512
+
+typedef struct bench_options {
+    const char *points;
+    uint32_t runs, threads;
+    bool json;
+} bench_options;
+
+enum { KEY_POINTS = 0x1000, KEY_RUNS, KEY_THREADS, KEY_JSON };
+
+static const struct argp_option options[] = {
+    {"points", KEY_POINTS, "FILE", 0, "cluster these points instead: raw float32, N x 6", 0},
+    {"runs", KEY_RUNS, "N", 0, "timed runs of each stage, 1..101 (7)", 0},
+    {"threads", KEY_THREADS, "N", 0, "1..64 (1); with more than one, elapsed time instead of processor time", 0},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {0},
+};
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    bench_options *o = state->input;
+    uint32_t count;
+    switch (key) {
+    case KEY_POINTS:
+        o->points = arg;
+        return 0;
+    case KEY_RUNS:
+        if (cli_parse_list_u32(arg, &o->runs, 1, &count) != 0 || o->runs < 1 || o->runs > MAX_RUNS) {
+            argp_error(state, "--runs takes a whole number 1..%u, not '%s'", MAX_RUNS, arg);
+        }
+        return 0;
+    case KEY_THREADS:
+        if (cli_parse_list_u32(arg, &o->threads, 1, &count) != 0 || o->threads < 1 || o->threads > T3R_MAX_THREADS) {
+            argp_error(state, "--threads takes a whole number 1..%u, not '%s'", T3R_MAX_THREADS, arg);
+        }
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        argp_error(state, "'%s' is too many", arg);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    options,
+    parse,
+    "",
+    "Times the stages on two 256x256 views of the built-in room (131,072 points): the median of interleaved runs, with "
+    "the least and the most beside; processor time of one thread."
+    "\vExamples:\n"
+    "  trim3r bench\n"
+    "  trim3r bench --json --runs 21\n"
+    "  trim3r bench --points cloud.f32 --json\n\n"
+    "kmeans_msd is the mean squared distance of the points from their SuperCluster's centre, xyz over the median "
+    "depth and rgb over 255, or as the file has them.",
+    NULL,
+    NULL,
+    NULL,
+};
+
+/* ---- the work ---------------------------------------------------------------------------------------------------- */
+
+typedef struct scene_bench {
+    t3r_runtime *runtime;
+    void *arena;
+} scene_bench;
+
+typedef struct workload {
+    uint8_t *rgb[VIEWS];
+    uint16_t *depth[VIEWS];
+    t3r_camera camera[VIEWS];
+    t3r_camera viewpoint;
+    scene_bench full, trimmed;
+    t3r_threads *threads;
+    uint8_t *view; /* where renders go */
+    uint8_t *wavelet_rgb;
+    uint8_t *wavelet_planes;
+    int16_t *wavelet_plane, *wavelet_work;
+    uint16_t *texture;
+    bench_points points;
+    double kmeans_msd;
+} workload;
+
+static t3r_status build(workload *w, t3r_runtime *runtime)
+{
+    t3r_scene scene;
+    t3r_status status = t3r_reset(runtime);
+    for (uint32_t v = 0; v < VIEWS && status == T3R_OK; v++) {
+        t3r_frame frame = {
+            .format = T3R_PIXEL_RGB24,
+            .width = SIDE,
+            .height = SIDE,
+            .planes = {w->rgb[v]},
+            .stride_bytes = {3 * SIDE},
+            .depth = (const uint8_t *)w->depth[v], /* little-endian hosts: the bench compares times, not bits */
+            .depth_width = SIDE,
+            .depth_height = SIDE,
+            .depth_stride_bytes = 2 * SIDE,
+            .depth_unit_q40 = ROOM_DEPTH_UNIT_Q40,
+        };
+        status = t3r_add_view(runtime, &frame, &w->camera[v]);
+    }
+    return status == T3R_OK ? t3r_reconstruct(runtime, &scene) : status;
+}
+
+static t3r_status open_scene(workload *w, scene_bench *s, uint32_t gaussians)
+{
+    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, gaussians);
+    t3r_plan_info plan;
+    t3r_status status = t3r_plan(&config, &plan);
+    if (status != T3R_OK || posix_memalign(&s->arena, T3R_ARENA_ALIGN, plan.bytes) != 0) {
+        s->arena = NULL;
+        return T3R_ERR_ARENA;
+    }
+    status = t3r_init(&s->runtime, s->arena, plan.bytes, &config);
+    t3r_hooks hooks = {.user = w->threads, .parallel_for = w->threads != NULL ? t3r_threads_run : NULL};
+    if (status == T3R_OK) {
+        status = t3r_set_hooks(s->runtime, &hooks);
+    }
+    return status == T3R_OK ? build(w, s->runtime) : status;
+}
+
+static t3r_status draw(workload *w, t3r_runtime *runtime)
+{
+    t3r_target target = {.width = SIDE, .height = SIDE, .rgb = w->view, .rgb_stride_bytes = 3 * SIDE};
+    return t3r_render(runtime, &w->viewpoint, &target);
+}
+
+static void close_workload(workload *w)
+{
+    for (uint32_t v = 0; v < VIEWS; v++) {
+        free(w->rgb[v]);
+        free(w->depth[v]);
+    }
+    free(w->full.arena);
+    free(w->trimmed.arena);
+    free(w->view);
+    free(w->wavelet_rgb);
+    free(w->wavelet_planes);
+    free(w->wavelet_plane);
+    free(w->wavelet_work);
+    free(w->texture);
+    bench_points_free(&w->points);
+    t3r_threads_stop(w->threads);
+}
+
+static bool allocate(workload *w)
+{
+    size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
+    bool ok = true;
+    for (uint32_t v = 0; v < VIEWS; v++) {
+        w->rgb[v] = malloc((size_t)SIDE * SIDE * 3);
+        w->depth[v] = malloc((size_t)SIDE * SIDE * 2);
+        ok = ok && w->rgb[v] != NULL && w->depth[v] != NULL;
+    }
+    w->view = malloc((size_t)SIDE * SIDE * 3);
+    w->wavelet_rgb = malloc(pixels * 3);
+    w->wavelet_planes = malloc(pixels * 3);
+    w->wavelet_plane = malloc(pixels * sizeof *w->wavelet_plane);
+    w->wavelet_work = malloc(t3r_wavelet_work_bytes(WAVELET_WIDTH, WAVELET_HEIGHT));
+    w->texture = malloc(pixels * sizeof *w->texture);
+    return ok && w->view != NULL && w->wavelet_rgb != NULL && w->wavelet_planes != NULL && w->wavelet_plane != NULL &&
+           w->wavelet_work != NULL && w->texture != NULL;
+}
+
+static int open_workload(workload *w, const bench_options *o)
+{
+    if (!allocate(w)) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    if (o->threads > 1 && (w->threads = t3r_threads_start(o->threads)) == NULL) {
+        return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", o->threads);
+    }
+    /* context views 0 and 2, seen from view 1 between them */
+    for (uint32_t v = 0; v < VIEWS; v++) {
+        room_camera(2 * v, SIDE, SIDE, &w->camera[v]);
+        room_frame(2 * v, SIDE, SIDE, SEED, w->rgb[v], w->depth[v]);
+    }
+    room_camera(1, SIDE, SIDE, &w->viewpoint);
+    room_frame(0, WAVELET_WIDTH, WAVELET_HEIGHT, SEED, w->wavelet_rgb, NULL);
+    size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
+    for (size_t i = 0; i < pixels * 3; i++) {
+        w->wavelet_planes[i % 3 * pixels + i / 3] = w->wavelet_rgb[i];
+    }
+    t3r_status status = open_scene(w, &w->full, POINTS);
+    if (status == T3R_OK) {
+        status = open_scene(w, &w->trimmed, TRIMMED);
+    }
+    if (status != T3R_OK) {
+        return cli_error(CLI_BAD_INPUT, "the built-in room: %s", t3r_error_text(status));
+    }
+    char error[ERROR_BYTES] = "";
+    int failed = o->points != NULL ? bench_points_read(&w->points, o->points, error, sizeof error)
+                                   : bench_points_unproject(&w->points, VIEWS, SIDE, SIDE, w->rgb, w->depth, w->camera,
+                                                            error, sizeof error);
+    return failed ? cli_error(CLI_BAD_INPUT, "%s", error) : CLI_OK;
+}
+
+/* ---- the stages ---------------------------------------------------------------------------------------------------
+ */
+
+static bool run_raster_full(workload *w)
+{
+    return draw(w, w->full.runtime) == T3R_OK;
+}
+
+static bool run_raster_trimmed(workload *w)
+{
+    return draw(w, w->trimmed.runtime) == T3R_OK;
+}
+
+static bool run_build(workload *w)
+{
+    return build(w, w->trimmed.runtime) == T3R_OK;
+}
+
+static bool run_kmeans(workload *w)
+{
+    return bench_points_cluster(&w->points);
+}
+
+/* 8-bit planes in, coefficients out. */
+static bool run_wavelet(workload *w)
+{
+    size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
+    const uint8_t *r = w->wavelet_planes, *g = r + pixels, *b = g + pixels;
+    for (size_t i = 0; i < pixels; i++) {
+        int luma = (77 * r[i] + 150 * g[i] + 29 * b[i] + 128) >> 8;
+        w->wavelet_plane[i] = (int16_t)((luma - 128) * (1 << T3R_WAVELET_FRACTION));
+    }
+    t3r_wavelet_forward(w->wavelet_plane, WAVELET_WIDTH, WAVELET_HEIGHT, 2, T3R_WAVELET_DB2, w->wavelet_work);
+    return true;
+}
+
+static bool run_texture(workload *w)
+{
+    size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
+    const uint8_t *colour[3] = {w->wavelet_planes, w->wavelet_planes + pixels, w->wavelet_planes + 2 * pixels};
+    t3r_wavelet_texture(colour, WAVELET_WIDTH, WAVELET_HEIGHT, 2, T3R_WAVELET_DB2, w->texture, w->wavelet_plane,
+                        w->wavelet_work);
+    return true;
+}
+
+#define MILLISECONDS 1e3
+#define NANOSECONDS_A_PIXEL (1e9 / ((double)WAVELET_WIDTH * WAVELET_HEIGHT))
+
+static const struct {
+    const char *key;
+    bool (*run)(workload *w);
+    double unit; /* per second */
+} stages[] = {
+    {"raster_131k_ms", run_raster_full, MILLISECONDS},
+    {"raster_13k_ms", run_raster_trimmed, MILLISECONDS},
+    {"kmeans_ms", run_kmeans, MILLISECONDS},
+    {"wavelet_ns_per_pixel", run_wavelet, NANOSECONDS_A_PIXEL},
+    {"texture_ns_per_pixel", run_texture, NANOSECONDS_A_PIXEL},
+    {"build_analytic_ms", run_build, MILLISECONDS},
+};
+enum { STAGE_COUNT = sizeof stages / sizeof stages[0] };
+
+/* Keys of stages that do not exist yet. */
+static const char *const missing[] = {"head_gmac_per_s", "stereo_ms", "build_small_ms"};
+
+static double seconds(clockid_t clock)
+{
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Round after round through all stages, so that a slow moment of the machine hits each alike; the first is not counted.
+ */
+static int time_stages(workload *w, const bench_options *o, double times[STAGE_COUNT][MAX_RUNS])
+{
+    clockid_t clock = o->threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
+    for (uint32_t run = 0; run <= o->runs; run++) {
+        for (int s = 0; s < STAGE_COUNT; s++) {
+            double start = seconds(clock);
+            if (!stages[s].run(w)) {
+                return cli_error(CLI_BAD_INPUT, "%s: the stage failed", stages[s].key);
+            }
+            if (run > 0) {
+                times[s][run - 1] = (seconds(clock) - start) * stages[s].unit;
+            }
+            cli_progress(stages[s].key, run * STAGE_COUNT + (uint32_t)s, (o->runs + 1) * STAGE_COUNT);
+        }
+    }
+    cli_progress_end();
+    for (int s = 0; s < STAGE_COUNT; s++) {
+        qsort(times[s], o->runs, sizeof times[s][0], compare_doubles);
+    }
+    return CLI_OK;
+}
+
+/* The processor's vector extensions, as the system names them; "" where it names none. */
+static void read_cpu_flags(char *flags, size_t flags_bytes)
+{
+    static const char *const families[] = {"sse", "ssse", "avx", "fma", "asimd", "neon", "sve", "mve"};
+    flags[0] = '\0';
+    char line[8192];
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file != NULL && fgets(line, sizeof line, file) != NULL) {
+        if (strncmp(line, "flags", 5) != 0 && strncmp(line, "Features", 8) != 0) {
+            continue;
+        }
+        size_t length = 0;
+        char *rest = NULL;
+        for (char *word = strtok_r(line, " \t\n:", &rest); word != NULL; word = strtok_r(NULL, " \t\n:", &rest)) {
+            for (size_t i = 0; i < sizeof families / sizeof families[0]; i++) {
+                if (strncmp(word, families[i], strlen(families[i])) == 0 && length + strlen(word) + 2 < flags_bytes) {
+                    length +=
+                        (size_t)snprintf(flags + length, flags_bytes - length, "%s%s", length == 0 ? "" : " ", word);
+                    break;
+                }
+            }
+        }
+        break;
+    }
+    if (file != NULL) {
+        fclose(file);
+    }
+}
+
+static void print_results(const workload *w, const bench_options *o, double times[STAGE_COUNT][MAX_RUNS])
+{
+    char flags[1024];
+    read_cpu_flags(flags, sizeof flags);
+    if (!o->json) {
+        for (int s = 0; s < STAGE_COUNT; s++) {
+            printf("%-22s %9.3f  (%.3f to %.3f)\n", stages[s].key, times[s][o->runs / 2], times[s][0],
+                   times[s][o->runs - 1]);
+        }
+        printf("%-22s %9.5f  (%" PRIu32 " points)\n%-22s %s\n", "kmeans_msd", w->kmeans_msd, w->points.count,
+               "cpu_flags", flags);
+        return;
+    }
+    cJSON *root = cJSON_CreateObject();
+    for (int s = 0; s < STAGE_COUNT; s++) {
+        char key[64];
+        cJSON_AddNumberToObject(root, stages[s].key, times[s][o->runs / 2]);
+        snprintf(key, sizeof key, "%s_min", stages[s].key);
+        cJSON_AddNumberToObject(root, key, times[s][0]);
+        snprintf(key, sizeof key, "%s_max", stages[s].key);
+        cJSON_AddNumberToObject(root, key, times[s][o->runs - 1]);
+    }
+    cJSON_AddNumberToObject(root, "kmeans_msd", w->kmeans_msd);
+    json_add_integer(root, "kmeans_points", w->points.count);
+    cJSON *notes = cJSON_CreateObject();
+    for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++) {
+        cJSON_AddNullToObject(root, missing[i]);
+        cJSON_AddStringToObject(notes, missing[i], "the stage does not exist yet");
+    }
+    cJSON_AddItemToObject(root, "notes", notes);
+    cJSON_AddStringToObject(root, "cpu_flags", flags);
+    json_add_integer(root, "threads", o->threads);
+    json_add_integer(root, "runs", o->runs);
+    json_print(root);
+}
+
+int command_bench(int argc, char **argv)
+{
+    bench_options o = {.runs = 7, .threads = 1};
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+
+    workload w = {0};
+    double times[STAGE_COUNT][MAX_RUNS];
+    int code = open_workload(&w, &o);
+    if (code == CLI_OK) {
+        code = time_stages(&w, &o, times);
+    }
+    if (code == CLI_OK) {
+        w.kmeans_msd = bench_points_mean_squared_distance(&w.points);
+        print_results(&w, &o, times);
+    }
+    close_workload(&w);
+    return code;
+}

@@ -1,0 +1,157 @@
+/* trim3r build: frames of a recording to a scene file. */
+#include "commands.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli.h"
+#include "json_output.h"
+#include "reconstruction.h"
+
+#define ERROR_BYTES 512
+
+typedef struct build_options {
+    const char *recording;
+    const char *output;
+    int flags; /* SCENE_FILE_... */
+    bool json;
+    reconstruction_options settings;
+} build_options;
+
+enum { KEY_LOCAL = 0x1000, KEY_COMMENTS, KEY_JSON };
+
+static const struct argp_option options[] = {
+    {"output", 'o', "SCENE.ply", 0, "where the scene goes (needed)", 0},
+    {"local", KEY_LOCAL, NULL, 0,
+     "write positions from the first context camera's centre instead of the world's origin", 0},
+    {"comments", KEY_COMMENTS, NULL, 0,
+     "name bits epoch and scene frame in header comments (some readers choke on them)", 0},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {0},
+};
+
+static bool ends_in_ply(const char *path)
+{
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".ply") == 0;
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    build_options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->settings;
+        state->child_inputs[1] = &o->settings;
+        return 0;
+    case 'o':
+        o->output = arg;
+        return 0;
+    case KEY_LOCAL:
+        o->flags |= SCENE_FILE_LOCAL;
+        return 0;
+    case KEY_COMMENTS:
+        o->flags |= SCENE_FILE_COMMENTS;
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->recording != NULL) {
+            argp_error(state, "one recording at a time: '%s' is too many", arg);
+        }
+        o->recording = arg;
+        return 0;
+    case ARGP_KEY_END:
+        if (o->recording == NULL) {
+            argp_error(state, "REC.mcap is missing");
+        } else if (o->output == NULL) {
+            argp_error(state, "-o SCENE.ply is missing");
+        } else if (!ends_in_ply(o->output)) {
+            argp_error(state, "-o %s: scenes are written as .ply", o->output);
+        } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0) {
+            argp_error(state, "the budget is missing: --gaussians Z or --keep P%%");
+        }
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {
+    {&reconstruction_budget_argp, 0, NULL, 0}, {&reconstruction_settings_argp, 0, NULL, 0}, {0}};
+static const struct argp argp = {
+    options,
+    parse,
+    "REC.mcap",
+    "Makes exactly Z Gaussians of a recording's context frames."
+    "\vExamples:\n"
+    "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+    "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
+    "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n\n"
+    "The scene stands in the recording's world frame unless --local is given.",
+    children,
+    NULL,
+    NULL,
+};
+
+static void print_json(const build_options *o, const reconstruction *r)
+{
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "scene", o->output);
+    json_add_integer(root, "gaussians", r->scene.count);
+    json_add_integer(root, "requested", r->requested);
+    json_add_integer(root, "valid_points", r->valid_points);
+    cJSON *context = cJSON_AddArrayToObject(root, "context");
+    for (uint32_t v = 0; v < r->context_count; v++) {
+        cJSON_AddItemToArray(context, cJSON_CreateNumber(r->context[v]));
+    }
+    cJSON_AddNumberToObject(root, "width", r->config.width);
+    cJSON_AddNumberToObject(root, "height", r->config.height);
+    cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(r->config.allocation));
+    cJSON_AddStringToObject(root, "head", t3r_head_name(r->config.head));
+    json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
+    cJSON_AddNumberToObject(root, "build_ms", (r->add_views_seconds + r->build_seconds) * 1e3);
+    cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
+    /* where float32 positions lose the world's origin: --local and this */
+    cJSON *origin = cJSON_AddArrayToObject(root, "origin");
+    for (int i = 0; i < 3; i++) {
+        cJSON_AddItemToArray(origin, cJSON_CreateNumber((double)r->scene.frame.origin_q32[i] / 4294967296.0));
+    }
+    cJSON_AddNumberToObject(root, "exponent", r->scene.frame.exponent);
+    json_add_hash(root, "hash", reconstruction_hash(r));
+    json_print(root);
+}
+
+int command_build(int argc, char **argv)
+{
+    build_options o = {0};
+    reconstruction_defaults(&o.settings);
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+
+    char error[ERROR_BYTES] = "";
+    t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
+    if (recording == NULL) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    reconstruction r;
+    int code = reconstruction_build(&r, recording, o.recording, &o.settings);
+    if (code == CLI_OK) {
+        if (scene_file_write_ply(o.output, &r.scene, o.flags, error, sizeof error) != 0) {
+            code = cli_error(CLI_BAD_INPUT, "%s", error);
+        } else if (o.json) {
+            print_json(&o, &r);
+        } else {
+            printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n", o.output,
+                   r.scene.count, r.valid_points, r.arena_bytes, (r.add_views_seconds + r.build_seconds) * 1e3);
+            if (r.requested > r.scene.count) {
+                printf("%" PRIu32 " were asked for; all valid points are used\n", r.requested);
+            }
+        }
+        reconstruction_close(&r);
+    }
+    t3r_recording_close(recording);
+    return code;
+}

@@ -1,0 +1,301 @@
+#include "evaluation.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli.h"
+#include "metrics.h"
+#include "scene_file.h"
+
+/* alpha_q15 is one minus transmittance; 32767 is the runtime's one */
+#define ALPHA_ONE 32767u
+#define MASK_TRANSMITTANCE 0.3
+#define HOLE_TRANSMITTANCE 0.5
+
+const char *evaluation_method_name(evaluation_method method)
+{
+    static const char *const names[EVALUATION_METHOD_COUNT] = {"trim3r", "random"};
+    return names[method];
+}
+
+static double transmittance(uint16_t alpha_q15)
+{
+    return (double)(ALPHA_ONE - (alpha_q15 > ALPHA_ONE ? ALPHA_ONE : alpha_q15)) / ALPHA_ONE;
+}
+
+static int draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,
+                uint16_t *alpha)
+{
+    t3r_target target = {
+        .width = views->width,
+        .height = views->height,
+        .rgb = rgb,
+        .rgb_stride_bytes = views->width * 3,
+        .alpha_q15 = alpha,
+        .alpha_stride_bytes = views->width * 2,
+    };
+    t3r_status status = t3r_render(r->runtime, camera, &target);
+    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "render", &r->config, r->arena_bytes);
+}
+
+/* ---- what the rows of a case share -------------------------------------------------------------------------- */
+
+void evaluation_views_free(evaluation_views *views)
+{
+    free(views->target.rgb);
+    free(views->target.mask);
+    for (uint32_t v = 0; v < views->context_count; v++) {
+        free(views->context[v].rgb);
+        free(views->context[v].mask);
+    }
+    *views = (evaluation_views){0};
+}
+
+/* The image stage alone, in an arena of its own: the one that holds a scene cannot take frames. */
+static int develop(evaluation_picture *picture, const evaluation_views *views, const evaluation_case *what,
+                   uint32_t index, const t3r_capture_frame *frame)
+{
+    t3r_config config = t3r_default_config(views->width, views->height, 1, 1);
+    t3r_runtime *runtime;
+    t3r_plan_info plan;
+    void *arena = NULL;
+    t3r_status status = t3r_plan(&config, &plan);
+    if (status != T3R_OK || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
+        return status != T3R_OK ? reconstruction_error(status, "image stage", &config, 0)
+                                : cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    status = t3r_init(&runtime, arena, plan.min_bytes, &config);
+    if (status == T3R_OK) {
+        status = t3r_develop(runtime, &frame->frame, &frame->camera, picture->rgb, NULL, &picture->camera);
+    }
+    free(arena);
+    return status == T3R_OK
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", what->path, index, t3r_error_text(status));
+}
+
+/* Frame `index` as the image stage gives it, and where the unpruned scene in `r` covers it. */
+static int make_picture(evaluation_picture *picture, const evaluation_views *views, const evaluation_case *what,
+                        uint32_t index, reconstruction *r, uint16_t *alpha)
+{
+    size_t pixels = (size_t)views->width * views->height;
+    t3r_capture_frame frame;
+    int code = reconstruction_frame(what->recording, what->path, index, &frame);
+    if (code != CLI_OK) {
+        return code;
+    }
+    picture->rgb = malloc(pixels * 3);
+    picture->mask = malloc(pixels);
+    if (picture->rgb == NULL || picture->mask == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    code = develop(picture, views, what, index, &frame);
+    if (code != CLI_OK || what->planar) {
+        memset(picture->mask, 255, pixels);
+        return code;
+    }
+    code = draw(r, &picture->camera, views, NULL, alpha);
+    for (size_t i = 0; i < pixels && code == CLI_OK; i++) {
+        picture->mask[i] = transmittance(alpha[i]) < MASK_TRANSMITTANCE ? 255 : 0;
+    }
+    return code;
+}
+
+static int make_pictures(evaluation_views *views, const evaluation_case *what, reconstruction *r)
+{
+    uint16_t *alpha = malloc((size_t)views->width * views->height * sizeof *alpha);
+    if (alpha == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    int code = make_picture(&views->target, views, what, what->target, r, alpha);
+    for (uint32_t v = 0; v < what->context_count && code == CLI_OK; v++) {
+        views->context_count = v + 1;
+        code = make_picture(&views->context[v], views, what, what->context[v], r, alpha);
+    }
+    free(alpha);
+    return code;
+}
+
+int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings)
+{
+    /* all points of the raw sensor depth, the plain analytic head, whatever is to be compared */
+    reconstruction_options options = *settings;
+    options.gaussians = 0;
+    options.keep_percent = 100;
+    options.fill_radius = 0;
+    options.head = T3R_HEAD_ANALYTIC;
+    options.allocation = T3R_ALLOCATE_UNIFORM;
+    options.keep_analysis = false;
+    options.refine = 0;
+    options.hash = false;
+    options.arena = ARENA_FULL;
+    options.context_count = what->context_count;
+    memcpy(options.context, what->context, sizeof options.context);
+
+    *views = (evaluation_views){0};
+    reconstruction r;
+    int code = reconstruction_build(&r, what->recording, what->path, &options);
+    if (code != CLI_OK) {
+        return code;
+    }
+    views->width = r.config.width;
+    views->height = r.config.height;
+    code = make_pictures(views, what, &r);
+    reconstruction_close(&r);
+    if (code != CLI_OK) {
+        evaluation_views_free(views);
+    }
+    return code;
+}
+
+/* ---- a row -------------------------------------------------------------------------------------------------- */
+
+static double share_of_holes(const uint16_t *alpha, const uint8_t *mask, size_t pixels)
+{
+    size_t holes = 0, count = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        if (mask[i] != 0) {
+            count++;
+            holes += transmittance(alpha[i]) > HOLE_TRANSMITTANCE;
+        }
+    }
+    return count == 0 ? NAN : (double)holes / (double)count;
+}
+
+/* Draws the target and the context views from the scene in `r`, and scores them. */
+static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *alpha, const evaluation_views *views,
+                 bool planar, reconstruction *r)
+{
+    uint32_t w = views->width, h = views->height;
+    const evaluation_picture *target = &views->target;
+    double start = cli_now();
+    int code = draw(r, &target->camera, views, render, alpha);
+    row->value[EVALUATION_RENDER_MS] = (cli_now() - start) * 1000;
+    if (code != CLI_OK) {
+        return code;
+    }
+    row->value[EVALUATION_SSIM] = metric_ssim(target->rgb, render, target->mask, w, h);
+    row->value[EVALUATION_SHARP] = metric_sharp(target->rgb, render, target->mask, w, h);
+    row->value[EVALUATION_PERCEPTUAL] = metric_flip(target->rgb, render, target->mask, w, h);
+    row->value[EVALUATION_HOLES] = share_of_holes(alpha, target->mask, (size_t)w * h);
+    row->value[EVALUATION_PSNR_ALL] = metric_psnr(target->rgb, render, NULL, w, h);
+    if (planar) {
+        row->value[EVALUATION_PLANAR_PSNR] = row->value[EVALUATION_PSNR_ALL];
+        return CLI_OK;
+    }
+    row->value[EVALUATION_PSNR] = metric_psnr(target->rgb, render, target->mask, w, h);
+    double sum = 0;
+    for (uint32_t v = 0; v < views->context_count; v++) {
+        code = draw(r, &views->context[v].camera, views, rgb, alpha);
+        if (code != CLI_OK) {
+            return code;
+        }
+        sum += metric_psnr(views->context[v].rgb, rgb, views->context[v].mask, w, h);
+    }
+    row->value[EVALUATION_CONTEXT_PSNR] = sum / views->context_count;
+    return CLI_OK;
+}
+
+/* The scene of `built` by way of a file: *loaded holds what was read back. */
+static int through_file(reconstruction *loaded, const reconstruction *built, const evaluation_views *views,
+                        const reconstruction_options *options)
+{
+    const char *folder = getenv("TMPDIR");
+    char path[4096], error[512] = "";
+    int length =
+        snprintf(path, sizeof path, "%s/trim3r-eval-XXXXXX.ply", folder != NULL && *folder != '\0' ? folder : P_tmpdir);
+    int file = length > 0 && (size_t)length < sizeof path ? mkstemps(path, 4) : -1;
+    if (file < 0) {
+        return cli_error(CLI_BAD_INPUT, "no temporary file can be made in TMPDIR");
+    }
+    close(file);
+    scene_file scene;
+    int failed = scene_file_write_ply(path, &built->scene, 0, error, sizeof error);
+    if (failed == 0) {
+        failed = scene_file_read_ply(path, &scene, error, sizeof error);
+    }
+    unlink(path);
+    if (failed != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    int code = reconstruction_load(loaded, &scene, views->width, views->height, options);
+    scene_file_free(&scene);
+    return code;
+}
+
+static void name_row(evaluation_row *row, const evaluation_case *what, evaluation_method method,
+                     const reconstruction_options *options)
+{
+    size_t length = 0;
+    snprintf(row->scene, sizeof row->scene, "%s", what->scene);
+    for (uint32_t v = 0; v < what->context_count && length < sizeof row->context && !what->planar; v++) {
+        length += (size_t)snprintf(row->context + length, sizeof row->context - length, "%s%" PRIu32, v == 0 ? "" : ",",
+                                   what->context[v]);
+    }
+    if (!what->planar) {
+        snprintf(row->target, sizeof row->target, "%" PRIu32, what->target);
+    }
+    row->method = evaluation_method_name(method);
+    row->head = t3r_head_name(options->head);
+    row->bits = ""; /* of a learned head's weights */
+    row->refine = "0";
+    row->allocate = t3r_allocation_name(options->allocation);
+    row->depth = what->planar ? "plane" : "sensor";
+}
+
+static int score_all(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
+                     reconstruction *r)
+{
+    size_t pixels = (size_t)views->width * views->height;
+    uint8_t *rgb = malloc(pixels * 3);
+    uint16_t *alpha = malloc(pixels * sizeof *alpha);
+    int code = rgb == NULL || alpha == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
+                                            : score(row, render, rgb, alpha, views, what->planar, r);
+    free(alpha);
+    free(rgb);
+    return code;
+}
+
+int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
+                       evaluation_method method, double keep, bool from_file, const reconstruction_options *settings)
+{
+    reconstruction_options options = *settings;
+    options.gaussians = 0;
+    options.keep_percent = keep;
+    options.hash = false; /* timed without */
+    options.context_count = what->context_count;
+    memcpy(options.context, what->context, sizeof options.context);
+    if (method == EVALUATION_RANDOM) {
+        options.allocation = T3R_ALLOCATE_RANDOM;
+        options.head = T3R_HEAD_NONE;
+    }
+
+    *row = (evaluation_row){0};
+    for (int i = 0; i < EVALUATION_VALUE_COUNT; i++) {
+        row->value[i] = NAN;
+    }
+    name_row(row, what, method, &options);
+
+    reconstruction built, loaded = {0};
+    int code = reconstruction_build(&built, what->recording, what->path, &options);
+    if (code != CLI_OK) {
+        return code;
+    }
+    row->value[EVALUATION_KEEP] = keep;
+    row->value[EVALUATION_GAUSSIANS] = built.scene.count;
+    row->value[EVALUATION_BUILD_MS] = (built.add_views_seconds + built.build_seconds) * 1000;
+    row->value[EVALUATION_ARENA_BYTES] = (double)built.arena_bytes;
+    if (from_file) {
+        code = through_file(&loaded, &built, views, &options);
+    }
+    if (code == CLI_OK) {
+        code = score_all(row, render, views, what, from_file ? &loaded : &built);
+    }
+    reconstruction_close(&loaded);
+    reconstruction_close(&built);
+    return code;
+}

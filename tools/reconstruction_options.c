@@ -1,0 +1,232 @@
+/* The options that build, eval, replay and bench share. */
+#include "reconstruction.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+
+enum {
+    KEY_GAUSSIANS = 256,
+    KEY_KEEP,
+    KEY_AUTO,
+    KEY_MAX_LOSS,
+    KEY_METHOD,
+    KEY_CONTEXT,
+    KEY_ALLOCATE,
+    KEY_HEAD,
+    KEY_WAVELET,
+    KEY_LEVELS,
+    KEY_CLUSTERS,
+    KEY_GAMMA,
+    KEY_KEEP_PERCENT,
+    KEY_FILL_RADIUS,
+    KEY_SEED,
+    KEY_WORKING,
+    KEY_DEPTH,
+    KEY_REFINE,
+    KEY_ARENA,
+    KEY_THREADS,
+    KEY_CPU_MASK
+};
+
+/* A whole number in [low, high], or a usage error that names the option. */
+static uint32_t number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
+{
+    uint32_t value, count;
+    if (cli_parse_list_u32(text, &value, 1, &count) != 0 || value < low || value > high) {
+        argp_error(state, "--%s takes a whole number %u..%u, not '%s'", option, (unsigned)low, (unsigned)high, text);
+        return low;
+    }
+    return value;
+}
+
+/* The index of a name in a runtime's list of names. */
+#define CHOOSE(type, function)                                                                                         \
+    static type choose_##type(struct argp_state *state, const char *option, const char *text)                          \
+    {                                                                                                                  \
+        for (int i = 0; function((type)i) != NULL; i++) {                                                              \
+            if (strcmp(text, function((type)i)) == 0) {                                                                \
+                return (type)i;                                                                                        \
+            }                                                                                                          \
+        }                                                                                                              \
+        argp_error(state, "--%s does not know '%s'", option, text);                                                    \
+        return (type)0;                                                                                                \
+    }
+CHOOSE(t3r_allocation, t3r_allocation_name)
+CHOOSE(t3r_head, t3r_head_name)
+CHOOSE(t3r_wavelet, t3r_wavelet_name)
+
+static const struct argp_option settings[] = {
+    {NULL, 0, NULL, 0, "Settings:", 20},
+    {"allocate", KEY_ALLOCATE, "MODE", 0, "how the budget is spread: density (default), paper, pixel, uniform, random",
+     0},
+    {"head", KEY_HEAD, "HEAD", 0, "analytic (default), moment, none", 0},
+    {"wavelet", KEY_WAVELET, "NAME", 0, "db2 (default), haar, cdf53", 0},
+    {"levels", KEY_LEVELS, "N", 0, "wavelet levels, 1..5 (2)", 0},
+    {"clusters", KEY_CLUSTERS, "K", 0, "SuperClusters, 1..512 (300)", 0},
+    {"gamma", KEY_GAMMA, "G", 0, "exponent of texture in the density, 0..2 (0.7)", 0},
+    {"keep-percent", KEY_KEEP_PERCENT, "N", 0, "percent that a trimmed SuperCluster keeps with --allocate paper (10)",
+     0},
+    {"fill-radius", KEY_FILL_RADIUS, "N", 0, "depth holes bracketed within N pixels are filled, 0..8 (4)", 0},
+    {"seed", KEY_SEED, "N", 0, "of the K-means seeding and of --allocate random (1)", 0},
+    {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
+    {"depth", KEY_DEPTH, "SOURCE", 0, "sensor", 0},
+    {"refine", KEY_REFINE, "N", 0, "refinement passes; 0 is the only value so far", 0},
+    {NULL, 0, NULL, 0, "What must not change a bit:", 30},
+    {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
+    {"threads", KEY_THREADS, "N", 0, "1..64 (1)", 0},
+    {"cpu-mask", KEY_CPU_MASK, "MASK", 0,
+     "SIMD variants allowed; there is plain C alone so far, which every mask allows", 0},
+    {0},
+};
+
+void reconstruction_parse_arena(struct argp_state *state, const char *text, reconstruction_options *o)
+{
+    if (strcmp(text, "full") == 0) {
+        o->arena = ARENA_FULL;
+    } else if (strcmp(text, "min") == 0) {
+        o->arena = ARENA_MIN;
+    } else {
+        char *end = NULL;
+        size_t digits = strspn(text, "0123456789");
+        uint64_t bytes = strtoull(text, &end, 10);
+        if (digits == 0 || digits > 15 || *end != '\0') {
+            argp_error(state, "--arena takes a number of bytes, min or full, not '%s'", text);
+        }
+        o->arena = ARENA_BYTES;
+        o->arena_bytes = bytes;
+    }
+}
+
+static void parse_gamma(struct argp_state *state, const char *text, reconstruction_options *o)
+{
+    char *end = NULL;
+    size_t length = strspn(text, "0123456789.");
+    double gamma = strtod(text, &end);
+    if (length == 0 || end != text + length || *end != '\0' || gamma > 2) {
+        argp_error(state, "--gamma takes a number 0..2, not '%s'", text);
+        return;
+    }
+    o->gamma_q8 = (uint32_t)(gamma * 256 + 0.5);
+}
+
+static error_t parse_setting(int key, char *arg, struct argp_state *state)
+{
+    reconstruction_options *o = state->input;
+    switch (key) {
+    case KEY_ALLOCATE:
+        o->allocation = choose_t3r_allocation(state, "allocate", arg);
+        return 0;
+    case KEY_HEAD:
+        o->head = choose_t3r_head(state, "head", arg);
+        return 0;
+    case KEY_WAVELET:
+        o->wavelet = choose_t3r_wavelet(state, "wavelet", arg);
+        return 0;
+    case KEY_LEVELS:
+        o->wavelet_levels = number(state, "levels", arg, 1, T3R_MAX_LEVELS);
+        return 0;
+    case KEY_CLUSTERS:
+        o->clusters = number(state, "clusters", arg, 1, T3R_MAX_CLUSTERS);
+        return 0;
+    case KEY_GAMMA:
+        parse_gamma(state, arg, o);
+        return 0;
+    case KEY_KEEP_PERCENT:
+        o->paper_keep_percent = number(state, "keep-percent", arg, 0, 100);
+        return 0;
+    case KEY_FILL_RADIUS:
+        o->fill_radius = number(state, "fill-radius", arg, 0, 8);
+        return 0;
+    case KEY_SEED:
+        o->seed = number(state, "seed", arg, 0, UINT32_MAX);
+        return 0;
+    case KEY_WORKING:
+        if (cli_parse_size(arg, &o->width, &o->height) != 0 || o->width < T3R_MIN_SIDE || o->height < T3R_MIN_SIDE ||
+            o->width > T3R_MAX_SIDE || o->height > T3R_MAX_SIDE) {
+            argp_error(state, "--working takes WxH, each 8..4096, not '%s'", arg);
+        }
+        return 0;
+    case KEY_DEPTH:
+        if (strcmp(arg, "stereo") == 0) {
+            argp_error(state, "--depth stereo is not yet available; sensor is");
+        } else if (strcmp(arg, "sensor") != 0) {
+            argp_error(state, "--depth does not know '%s'", arg);
+        }
+        return 0;
+    case KEY_REFINE:
+        o->refine = number(state, "refine", arg, 0, UINT32_MAX);
+        if (o->refine != 0) {
+            argp_error(state, "--refine %s: refinement is not yet available; 0 is the only value", arg);
+        }
+        return 0;
+    case KEY_ARENA:
+        reconstruction_parse_arena(state, arg, o);
+        return 0;
+    case KEY_THREADS:
+        o->threads = number(state, "threads", arg, 1, T3R_MAX_THREADS);
+        return 0;
+    case KEY_CPU_MASK:
+        (void)number(state, "cpu-mask", arg, 0, UINT32_MAX);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp reconstruction_settings_argp = {.options = settings, .parser = parse_setting};
+
+static const struct argp_option budget[] = {
+    {NULL, 0, NULL, 0, "Views and budget:", 10},
+    {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, 1..16 (the first two)", 0},
+    {"gaussians", KEY_GAUSSIANS, "Z", 0, "exactly Z Gaussians, or all valid points where there are fewer", 0},
+    {"keep", KEY_KEEP, "P%", 0, "as many as P percent of the valid points, rounded half up", 0},
+    {"method", KEY_METHOD, "METHOD", 0, "trim3r (default), or random: random points, nothing adapted", 0},
+    {"auto", KEY_AUTO, NULL, 0, "the smallest budget within a loss; not yet available", 0},
+    {"max-loss", KEY_MAX_LOSS, "DB", OPTION_HIDDEN, NULL, 0},
+    {0},
+};
+
+static error_t parse_budget(int key, char *arg, struct argp_state *state)
+{
+    reconstruction_options *o = state->input;
+    uint32_t count;
+    switch (key) {
+    case KEY_CONTEXT:
+        if (cli_parse_list_u32(arg, o->context, T3R_MAX_VIEWS, &o->context_count) != 0) {
+            argp_error(state, "--context takes 1 to %u frame indices with commas between, not '%s'", T3R_MAX_VIEWS,
+                       arg);
+        }
+        return 0;
+    case KEY_GAUSSIANS:
+        o->gaussians = number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
+        return 0;
+    case KEY_KEEP:
+        if (cli_parse_list_percent(arg, &o->keep_percent, 1, &count) != 0) {
+            argp_error(state, "--keep takes a percentage above 0 and up to 100, not '%s'", arg);
+        }
+        return 0;
+    case KEY_METHOD:
+        if (strcmp(arg, "random") == 0) {
+            o->allocation = T3R_ALLOCATE_RANDOM;
+            o->head = T3R_HEAD_NONE;
+        } else if (strcmp(arg, "trim3r") != 0) {
+            argp_error(state, "--method does not know '%s'", arg);
+        }
+        return 0;
+    case KEY_AUTO:
+    case KEY_MAX_LOSS:
+        argp_error(state, "--auto is not yet available; give --gaussians or --keep");
+        return 0;
+    case ARGP_KEY_END:
+        if (o->gaussians != 0 && o->keep_percent > 0) {
+            argp_error(state, "--gaussians and --keep exclude each other");
+        }
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp reconstruction_budget_argp = {.options = budget, .parser = parse_budget};
