@@ -251,6 +251,43 @@ static void find_thresholds(const t3r_view *views, uint32_t count, t3r_cluster *
     }
 }
 
+/* log2 of the share of points retained about a pixel, Q10, if its group's density were `density_q10`: at most all, and
+ * at least the sure ones, 0.003 = 2^-8.4. */
+static int32_t local_density_q10(int32_t density_q10, int32_t wanted_q10)
+{
+    return t3r_clamp32(density_q10 + wanted_q10, -8602, 0);
+}
+
+/* The density of each group for which its pixels' shares sum to its quota. The threshold alone, the key of one point, is
+ * a noisy measure of it in small groups; two rounds of proportional correction from there settle it. */
+static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                               t3r_cluster *clusters, uint32_t groups, bool clustered)
+{
+    for (uint32_t g = 0; g < groups; g++) {
+        clusters[g].density_q10 = (int32_t)clusters[g].threshold - KEY_ZERO;
+    }
+    for (int round = 0; round < 2; round++) {
+        uint64_t expected_q16[T3R_MAX_CLUSTERS] = {0};
+        for (uint32_t v = 0; v < count; v++) {
+            size_t pixels = (size_t)views[v].width * views[v].height;
+            for (size_t i = 0; i < pixels; i++) {
+                if (views[v].label[i] != T3R_NO_LABEL) {
+                    uint32_t g = group_of(&views[v], i, clustered);
+                    int32_t wanted = log_wanted_q10(views[v].texture[i], settings);
+                    expected_q16[g] += t3r_exp2_q16(local_density_q10(clusters[g].density_q10, wanted) * 64);
+                }
+            }
+        }
+        for (uint32_t g = 0; g < groups; g++) {
+            if (clusters[g].quota > 0) {
+                int32_t log_ratio_q16 = t3r_log2_wide_q16((uint64_t)clusters[g].quota << 16) -
+                                        t3r_log2_wide_q16(expected_q16[g]); /* a quota's points make it above 0 */
+                clusters[g].density_q10 += t3r_round_shift32(log_ratio_q16, 6);
+            }
+        }
+    }
+}
+
 static uint32_t set_masks(const t3r_view *views, uint32_t count, t3r_cluster *clusters, bool clustered)
 {
     uint32_t retained = 0;
@@ -292,7 +329,9 @@ uint32_t t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_se
         clusters[0].quota = (uint32_t)budget;
     }
     fill_keys(views, count, settings);
-    find_thresholds(views, count, clusters, clustered ? settings->clusters : 1, clustered);
+    uint32_t groups = clustered ? settings->clusters : 1;
+    find_thresholds(views, count, clusters, groups, clustered);
+    estimate_densities(views, count, settings, clusters, groups, clustered);
     return set_masks(views, count, clusters, clustered);
 }
 
@@ -300,6 +339,5 @@ int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget
                             const t3r_cluster *clusters)
 {
     const t3r_cluster *group = &clusters[group_of(view, pixel, by_cluster(settings->allocation))];
-    int32_t density = (int32_t)group->threshold - KEY_ZERO + log_wanted_q10(view->texture[pixel], settings);
-    return t3r_clamp32(density, -8 * 1024 - 512, 0); /* never sparser than the sure ones: 0.003 = 2^-8.4 */
+    return local_density_q10(group->density_q10, log_wanted_q10(view->texture[pixel], settings));
 }

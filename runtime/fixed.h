@@ -88,6 +88,12 @@ static inline uint32_t t3r_msb64(uint64_t x)
 uint32_t t3r_isqrt64(uint64_t x);
 /* log2(x) in Q16, error below 2^-14; x > 0 */
 int32_t t3r_log2_q16(uint32_t x);
+/* The same for 64 bits */
+static inline int32_t t3r_log2_wide_q16(uint64_t x)
+{
+    uint32_t msb = t3r_msb64(x), excess = msb > 31 ? msb - 31 : 0;
+    return t3r_log2_q16((uint32_t)(x >> excess)) + (int32_t)(excess << 16);
+}
 /* 2^(x / 65536) in Q16, relative error below 2^-14 and half a step; x in [-16 x 65536, 15 x 65536) */
 uint32_t t3r_exp2_q16(int32_t x_q16);
 

@@ -227,7 +227,7 @@ t3r_status t3r_spend(t3r_runtime *rt)
 {
     t3r_budget_settings settings = {
         .allocation = rt->config.allocation,
-        .gaussians = rt->config.gaussians,
+        .gaussians = T3R_MIN(rt->config.gaussians, rt->valid_points), /* filled holes compete, but add no budget */
         .keep_percent = rt->config.keep_percent,
         .gamma_q8 = rt->config.gamma_q8,
         .clusters = rt->config.clusters,

@@ -120,13 +120,6 @@ static void conic_of(const int32_t a_q12[3], const int32_t b_q12[3], t3r_splat *
     splat->c_q30 = to_q30((aa + dilation) * rd, right);
 }
 
-/* log2 of a positive 64-bit number, Q16 */
-static int32_t log2_wide_q16(uint64_t x)
-{
-    uint32_t excess = (uint32_t)T3R_MAX((int32_t)t3r_msb64(x) - 31, 0);
-    return t3r_log2_q16((uint32_t)(x >> excess)) + (int32_t)(excess << 16);
-}
-
 /* Half-width in pixels, Q8, of the box outside of which opacity exp(-q) < 1/255: sqrt(2 L variance), by logarithms,
  * with more than their error (2^-13 of it) added. log_level: log2 of 2 L in Q8. */
 static int64_t half_width_q8(const int32_t row_q12[3], int32_t log_level_q16)
@@ -136,7 +129,7 @@ static int64_t half_width_q8(const int32_t row_q12[3], int32_t log_level_q16)
         variance_q24 += (int64_t)row_q12[j] * row_q12[j]; /* at most 3 x 2^48 */
     }
     /* Q24 times Q8 is Q32, whose root is Q16; below 2^15 px */
-    int32_t log_half_q16 = ((log2_wide_q16((uint64_t)variance_q24) + log_level_q16) >> 1) - (16 << 16);
+    int32_t log_half_q16 = ((t3r_log2_wide_q16((uint64_t)variance_q24) + log_level_q16) >> 1) - (16 << 16);
     uint32_t half_q8 = t3r_exp2_q16(log_half_q16) >> 8;
     return (int64_t)half_q8 + (half_q8 >> 10) + 2;
 }
@@ -180,8 +173,8 @@ bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *spla
     int64_t u_q24 = t3r_round_shift64(c[0] * inverse.rn, (uint32_t)(38 - inverse.lz));
     int64_t v_q24 = t3r_round_shift64(c[1] * inverse.rn, (uint32_t)(38 - inverse.lz));
     /* |u| <= 16 + 2^-23 and f < 2^30: below 2^59 */
-    int64_t x_q12 = t3r_round_shift64(u_q24 * p->fx_q16 + ((int64_t)p->cx_q16 << 24), 28);
-    int64_t y_q12 = t3r_round_shift64(v_q24 * p->fy_q16 + ((int64_t)p->cy_q16 << 24), 28);
+    int64_t x_q12 = t3r_round_shift64(u_q24 * p->fx_q16 + (int64_t)p->cx_q16 * (1 << 24), 28);
+    int64_t y_q12 = t3r_round_shift64(v_q24 * p->fy_q16 + (int64_t)p->cy_q16 * (1 << 24), 28);
 
     const int32_t *w = p->world_to_camera_q30;
     int32_t hold_u = (int32_t)t3r_clamp64(u_q24, -p->limit_x_q24, p->limit_x_q24);

@@ -29,7 +29,8 @@ typedef struct t3r_cluster {
     uint32_t quota;       /* points to be retained */
     uint32_t threshold;   /* the largest key retained */
     uint32_t ties;        /* points retained among those whose key is the threshold */
-    uint32_t order;       /* rank from the lowest texture */
+    uint32_t order;       /* entry k: which cluster is k-th from the lowest texture */
+    int32_t density_q10;  /* log2 of the share of points retained, for a texture power of 1 */
 } t3r_cluster;
 
 /* The K-means' working memory: the seeding's sample and the sums share their bytes. */

@@ -28,7 +28,7 @@
 #define T3R_SPLAT_BYTES 40
 #define T3R_ORDER_BYTES 16       /* two keys and two indices a Gaussian: the radix sort's two sides */
 #define T3R_SORT_BYTES 8192      /* four histograms of 256 counts and their prefix sums */
-#define T3R_CLUSTER_BYTES 48     /* centre and statistics of a SuperCluster */
+#define T3R_CLUSTER_BYTES 52     /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8          /* undistortion grid, pixels */

@@ -248,6 +248,7 @@ typedef struct session {
     uint8_t *arena;
     size_t arena_bytes;
     t3r_runtime *rt;
+    uint32_t budget; /* of the next reconstruction: settings stay as t3r_rebudget() left them */
     uint32_t calls_until_cancelled;
 } session;
 
@@ -382,6 +383,23 @@ static void call_move(session *s)
     REQUIRE(t3r_attach(&rt, s->arena, s->arena_bytes / 2) != T3R_OK && rt == NULL);
 }
 
+static void call_reallocate(session *s, input *in, int budget_alone)
+{
+    t3r_scene scene;
+    uint32_t budget = below(in, MOST_GAUSSIANS + 20);
+    t3r_status status;
+    if (budget_alone) {
+        status = t3r_rebudget(s->rt, budget, &scene);
+    } else {
+        uint32_t allocation = below(in, T3R_ALLOCATE_COUNT + 1), head = below(in, T3R_HEAD_COUNT + 1);
+        status = t3r_reallocate(s->rt, budget, (t3r_allocation)allocation, (t3r_head)head, &scene);
+    }
+    check_scene(s, status, &scene, budget);
+    if (status == T3R_OK || status == T3R_ERR_CANCELLED) {
+        s->budget = budget;
+    }
+}
+
 /* The whole way at once, so that short inputs come deep. */
 static void call_all(session *s, input *in)
 {
@@ -389,32 +407,26 @@ static void call_all(session *s, input *in)
         call_add_view(s, in);
     }
     t3r_scene scene;
-    check_scene(s, t3r_reconstruct(s->rt, &scene), &scene, s->config.gaussians);
+    check_scene(s, t3r_reconstruct(s->rt, &scene), &scene, s->budget);
     call_render(s, in);
 }
 
 static void call(session *s, input *in)
 {
     t3r_scene scene;
-    uint32_t budget;
     switch (take8(in) % 14) {
     case 0:
     case 1:
         call_add_view(s, in);
         break;
     case 2:
-        check_scene(s, t3r_reconstruct(s->rt, &scene), &scene, s->config.gaussians);
+        check_scene(s, t3r_reconstruct(s->rt, &scene), &scene, s->budget);
         break;
     case 3:
-        budget = below(in, MOST_GAUSSIANS + 20);
-        check_scene(s, t3r_rebudget(s->rt, budget, &scene), &scene, budget);
+        call_reallocate(s, in, 1);
         break;
     case 4:
-        budget = below(in, MOST_GAUSSIANS + 20);
-        check_scene(s,
-                    t3r_reallocate(s->rt, budget, (t3r_allocation)(int8_t)below(in, T3R_ALLOCATE_COUNT + 1),
-                                   (t3r_head)below(in, T3R_HEAD_COUNT + 1), &scene),
-                    &scene, budget);
+        call_reallocate(s, in, 0);
         break;
     case 5:
         call_scene(s, in);
@@ -457,6 +469,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     input in = {bytes, count};
     session s = {.config = take_config(&in)};
     wild_config(&in, s.config);
+    s.budget = s.config.gaussians;
     t3r_plan_info plan;
     REQUIRE(t3r_plan(&s.config, &plan) == T3R_OK);
     if (plan.bytes > MOST_ARENA) {

@@ -25,7 +25,7 @@ typedef struct bench {
 
 static bench bench_of(t3r_config config)
 {
-    bench b = {.config = config, .memory = arena_of(&config, ARENA_AT_FULL)};
+    bench b = {.config = config, .memory = arena_of(&config, ARENA_AT_MINIMUM)};
     b.before = arena_of_bytes(b.memory.count);
     assert_int_equal(t3r_init(&b.rt, b.memory.bytes, b.memory.count, &config), T3R_OK);
     return b;
@@ -565,6 +565,54 @@ static void budgets(void **state)
     }
 }
 
+/* What the planes' bytes are lent to once the scene is built must never come back as an analysis: a second
+ * reconstruction is refused, or gives the same scene again. */
+static void planes_lent_away(void **state)
+{
+    (void)state;
+    t3r_frame frame = good_frame();
+    t3r_camera camera = plain_camera(30, W, H);
+    uint8_t rgb[POINTS * 3];
+    t3r_target target = {.width = W, .height = H, .rgb = rgb, .rgb_stride_bytes = W * 3};
+    t3r_gaussian g = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1), expected[200];
+    for (uint32_t keep = 0; keep < 2; keep++) {
+        for (int between = 0; between < 4; between++) {
+            t3r_config config = good_config();
+            config.keep_analysis = keep;
+            bench b = bench_of(config);
+            t3r_scene scene;
+            assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
+            assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+            assert_int_equal(scene.count, 200);
+            memcpy(expected, scene.gaussians, sizeof expected);
+            if (between & 1) {
+                assert_int_equal(t3r_render(b.rt, &camera, &target), T3R_OK);
+            }
+            if (between & 2) {
+                t3r_status status = t3r_scene_begin(b.rt, &plain_frame);
+                for (int i = 0; status == T3R_OK && i < 200; i++) {
+                    assert_int_equal(t3r_scene_append(b.rt, &g), T3R_OK);
+                }
+            }
+            for (int again = 0; again < 2; again++) {
+                t3r_status status =
+                    again == 0 && keep ? t3r_rebudget(b.rt, 200, &scene) : t3r_reconstruct(b.rt, &scene);
+                assert_true(status == T3R_OK || status == T3R_ERR_STATE);
+                if (status == T3R_OK && memcmp(scene.gaussians, expected, sizeof expected) != 0) {
+                    fail_msg("keep_analysis %u, in between %s%s: %s gives another scene", keep,
+                             between & 1 ? "a render " : "", between & 2 ? "a scene from outside" : "",
+                             again == 0 && keep ? "t3r_rebudget()" : "t3r_reconstruct()");
+                }
+            }
+            /* a view that comes now is refused, or leaves the scene as it is */
+            if (t3r_add_view(b.rt, &frame, &camera) == T3R_OK && t3r_get_scene(b.rt, &scene) == T3R_OK) {
+                assert_memory_equal(scene.gaussians, expected, sizeof expected);
+            }
+            bench_free(&b);
+        }
+    }
+}
+
 /* ---- cancelling ---------------------------------------------------------------------------------- */
 
 typedef struct fuse {
@@ -689,10 +737,9 @@ static void texts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(null_pointers),      cmocka_unit_test(config_ranges),
-        cmocka_unit_test(frame_ranges),       cmocka_unit_test(camera_ranges),
-        cmocka_unit_test(gaussian_ranges),    cmocka_unit_test(target_ranges),
-        cmocka_unit_test(calls_out_of_order), cmocka_unit_test(budgets),
+        cmocka_unit_test(null_pointers),      cmocka_unit_test(config_ranges),   cmocka_unit_test(frame_ranges),
+        cmocka_unit_test(camera_ranges),      cmocka_unit_test(gaussian_ranges), cmocka_unit_test(target_ranges),
+        cmocka_unit_test(calls_out_of_order), cmocka_unit_test(budgets),         cmocka_unit_test(planes_lent_away),
         cmocka_unit_test(cancelling),         cmocka_unit_test(texts),
     };
     return cmocka_run_group_tests_name("api", tests, NULL, NULL);
