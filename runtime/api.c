@@ -31,13 +31,9 @@ static void bind_layout(t3r_runtime *rt, const t3r_layout *layout)
 
 t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config)
 {
-    if (rt == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     *rt = NULL;
-    if (arena == NULL || config == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(arena != NULL && config != NULL, T3R_ERR_ARGUMENT);
     if (t3r_config_error(config) != NULL) {
         return T3R_ERR_CONFIG;
     }
@@ -58,13 +54,9 @@ t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r
 
 t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
 {
-    if (rt == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     *rt = NULL;
-    if (arena == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(arena != NULL, T3R_ERR_ARGUMENT);
     if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || arena_bytes < T3R_HEADER_BYTES) {
         return T3R_ERR_ARENA;
     }
@@ -84,18 +76,14 @@ t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
 
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks)
 {
-    if (rt == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     rt->hooks = hooks != NULL ? *hooks : (t3r_hooks){0};
     return T3R_OK;
 }
 
 t3r_status t3r_reset(t3r_runtime *rt)
 {
-    if (rt == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     rt->views = 0;
     rt->analysed = 0;
     rt->has_scene = 0;
@@ -108,12 +96,8 @@ t3r_status t3r_reset(t3r_runtime *rt)
 
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
 {
-    if (rt == NULL || frame == NULL || camera == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
-    if (rt->views >= rt->config.views || rt->has_scene) {
-        return T3R_ERR_STATE;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->views < rt->config.views && !rt->has_scene, T3R_ERR_STATE);
     if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
@@ -132,12 +116,9 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted)
 {
-    if (rt == NULL || frame == NULL || camera == NULL || rgb_out == NULL || undistorted == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
-    if (rt->config.views == 0 || rt->views > 0 || rt->has_scene) {
-        return T3R_ERR_STATE;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL && rgb_out != NULL && undistorted != NULL,
+                      T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->config.views > 0 && rt->views == 0 && !rt->has_scene, T3R_ERR_STATE);
     t3r_status status = t3r_develop_view(rt, 0, frame, camera, undistorted);
     if (status != T3R_OK) {
         return status;
@@ -160,9 +141,7 @@ t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera
 
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene)
 {
-    if (rt == NULL || scene == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
     if (!rt->has_scene) {
         return T3R_ERR_STATE;
     }
@@ -175,12 +154,8 @@ t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene)
 
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene)
 {
-    if (rt == NULL || scene == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
-    if (rt->views == 0) {
-        return T3R_ERR_STATE;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->views > 0, T3R_ERR_STATE);
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
@@ -193,9 +168,7 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene)
 t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head,
                           t3r_scene *scene)
 {
-    if (rt == NULL || scene == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
     t3r_config config = rt->config;
     config.gaussians = gaussians;
     config.allocation = allocation;
@@ -203,9 +176,7 @@ t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation al
     if (t3r_config_error(&config) != NULL) {
         return T3R_ERR_ARGUMENT;
     }
-    if (!rt->config.keep_analysis || !rt->analysed) {
-        return T3R_ERR_STATE;
-    }
+    T3R_REFUSE_UNLESS(rt->config.keep_analysis && rt->analysed, T3R_ERR_STATE);
     rt->config = config;
     t3r_status status = t3r_spend(rt);
     return status == T3R_OK ? t3r_get_scene(rt, scene) : status;
@@ -213,17 +184,13 @@ t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation al
 
 t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene)
 {
-    if (rt == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     return t3r_reallocate(rt, gaussians, rt->config.allocation, rt->config.head, scene);
 }
 
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame)
 {
-    if (rt == NULL || frame == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL, T3R_ERR_ARGUMENT);
     if (frame->exponent < T3R_EXPONENT_LEAST || frame->exponent > T3R_EXPONENT_MOST) {
         return T3R_ERR_ARGUMENT;
     }
@@ -251,12 +218,11 @@ static bool is_sound(const t3r_gaussian *g)
 
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian)
 {
-    if (rt == NULL || gaussian == NULL || !is_sound(gaussian)) {
+    T3R_REFUSE_UNLESS(rt != NULL && gaussian != NULL, T3R_ERR_ARGUMENT);
+    if (!is_sound(gaussian)) {
         return T3R_ERR_ARGUMENT;
     }
-    if (!rt->has_scene) {
-        return T3R_ERR_STATE;
-    }
+    T3R_REFUSE_UNLESS(rt->has_scene, T3R_ERR_STATE);
     if (rt->gaussians >= rt->config.max_gaussians) {
         return T3R_ERR_FULL;
     }

@@ -65,29 +65,42 @@ const char *t3r_config_error(const t3r_config *c)
     return NULL;
 }
 
-/* Upper bounds of inner-loop steps: what each stage's loops run to at most. */
+/* Upper bounds of inner-loop steps: what each stage's loops run to at most, whatever the frames hold. */
 static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_COUNT])
 {
     uint64_t pixels = (uint64_t)c->width * c->height * c->views;
-    uint64_t target = (uint64_t)c->render_width * c->render_height;
+    uint64_t across = (c->render_width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE;
     uint64_t tiles = T3R_TILES_(c->render_width, c->render_height);
-    operations[T3R_STAGE_IMAGE] = pixels * 8;
-    operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 1);
-    operations[T3R_STAGE_POINTMAP] = pixels * 3;
-    operations[T3R_STAGE_WAVELET] = pixels * 8;
+    uint64_t clusters = c->clusters, gaussians = c->max_gaussians;
+    uint64_t frame = (uint64_t)T3R_MAX_SIDE * T3R_MAX_SIDE;
+
+    /* every source pixel twice (the box's two axes), every pixel once resized and once undistorted */
+    operations[T3R_STAGE_IMAGE] = c->views * 2 * frame + 2 * pixels;
+    operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2);
+    operations[T3R_STAGE_POINTMAP] = 2 * pixels; /* two looks at the depths for their median */
+    /* two lifting passes of three steps and a sum a level, the levels adding up to less than 4 / 3 */
+    operations[T3R_STAGE_WAVELET] = pixels * (7 * 4 / 3 + c->wavelet_levels + 1);
+    /* seeding: a draw and a sum for each trial, one update; neighbours a batch; a point against all centres at most */
     operations[T3R_STAGE_SUPERCLUSTERS] =
-        ((uint64_t)c->cluster_batches * T3R_CLUSTER_BATCH + 2 * T3R_CLUSTER_SAMPLE + pixels) * c->clusters * 6;
-    operations[T3R_STAGE_BUDGET] = pixels * 32;
-    operations[T3R_STAGE_HEAD] = (uint64_t)c->max_gaussians * 512;
+        T3R_DIMENSIONS *
+        (clusters * T3R_CLUSTER_SAMPLE * (2 * T3R_CLUSTER_TRIALS + 1) +
+         (c->cluster_batches + 1) * clusters * clusters * (1 + T3R_NEIGHBOURS) +
+         ((uint64_t)c->cluster_batches * T3R_CLUSTER_BATCH + pixels) * (clusters + T3R_NEIGHBOURS * 2));
+    /* textures, two blurs of nine taps, keys, 17 bisections, two density rounds, masks; ranking and quotas */
+    operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 1 + 17 + 2 + 1) + 2 * clusters * clusters;
+    /* the widest window of `analytic` is 15 x 15, of `moment` 31 x 31 after four sweeps of four offers */
+    operations[T3R_STAGE_HEAD] =
+        c->head == T3R_HEAD_MOMENT ? pixels * 17 + gaussians * (31 * 31 + 32) : pixels + gaussians * (15 * 15 + 32);
     operations[T3R_STAGE_REFINE] = 0;
-    operations[T3R_STAGE_RASTER] = (uint64_t)c->max_gaussians * (100 + 5 * tiles + target);
+    /* project; four radix passes and their counts; counting tiles; at most a pass a tile, which scans its row of tiles
+     * and the next; every pixel of every tile */
+    operations[T3R_STAGE_RASTER] =
+        gaussians * (32 + 8 + tiles + tiles * (1 + 2 * across) + tiles * T3R_TILE_SIDE * T3R_TILE_SIDE);
 }
 
 t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
 {
-    if (config == NULL || plan == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
+    T3R_REFUSE_UNLESS(config != NULL && plan != NULL, T3R_ERR_ARGUMENT);
     if (t3r_config_error(config) != NULL) {
         return T3R_ERR_CONFIG;
     }

@@ -69,12 +69,8 @@ static uint64_t hash_target(const t3r_target *target)
 
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target)
 {
-    if (rt == NULL || camera == NULL || target == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
-    if (!rt->has_scene) {
-        return T3R_ERR_STATE;
-    }
+    T3R_REFUSE_UNLESS(rt != NULL && camera != NULL && target != NULL, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->has_scene, T3R_ERR_STATE);
     t3r_status status = check_target(rt, target);
     t3r_projection projection;
     if (status == T3R_OK) {

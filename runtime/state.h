@@ -11,6 +11,19 @@
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 
+/* Misuse of the API (null pointers, calls out of order) is refused with a status in every build; a debug build may also
+ * stop at it: compile the runtime with T3R_ASSERT(condition) defined. It never sees what files or cameras brought. */
+#ifndef T3R_ASSERT
+#define T3R_ASSERT(condition) ((void)0)
+#endif
+#define T3R_REFUSE_UNLESS(condition, status) \
+    do {                                     \
+        T3R_ASSERT(condition);               \
+        if (!(condition)) {                  \
+            return (status);                 \
+        }                                    \
+    } while (0)
+
 struct t3r_runtime {
     uint32_t magic;
     uint32_t bits_epoch;

@@ -93,8 +93,6 @@ static uint32_t draw_far(const t3r_cluster_work *work, uint32_t count, uint64_t 
     return count - 1;
 }
 
-#define TRIALS 4u
-
 static void seed(const t3r_cluster_settings *settings, uint32_t count, t3r_cluster *clusters, t3r_cluster_work *work)
 {
     uint32_t random = t3r_mix32(settings->seed + 0x9e3779b9u);
@@ -106,7 +104,7 @@ static void seed(const t3r_cluster_settings *settings, uint32_t count, t3r_clust
     for (uint32_t k = 0; k < settings->clusters; k++) {
         if (k > 0) {
             uint64_t best = UINT64_MAX;
-            for (uint32_t trial = 0; trial < TRIALS; trial++) {
+            for (uint32_t trial = 0; trial < T3R_CLUSTER_TRIALS; trial++) {
                 random = t3r_mix32(random + 0x9e3779b9u);
                 uint32_t candidate = draw_far(work, count, potential, random);
                 uint64_t with = potential_with(work, count, candidate);

@@ -12,6 +12,7 @@
 
 #define T3R_CLUSTER_SAMPLE 2560u /* points of the seeding subsample */
 #define T3R_CLUSTER_BATCH 4096u  /* points of a mini-batch */
+#define T3R_CLUSTER_TRIALS 4u    /* draws for a new centre, of which the best is taken */
 
 /* Where points come from: `index` below `points` to its six features, Q11 within +-T3R_FEATURE_MOST; false = the
  * point is not valid and gets T3R_NO_LABEL. */

@@ -238,7 +238,7 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
 /* Another budget for the pair analysed last, without analysing again; needs keep_analysis. */
 t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene);
 
-/* Another allocation and head as well as budget, likewise. */
+/* Another allocation and head as well as budget, likewise; a later t3r_reconstruct() goes on with them. */
 t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head, t3r_scene *scene);
 
 /* The scene in the arena, after t3r_attach() say. T3R_ERR_STATE when there is none. */

@@ -1,0 +1,8 @@
+/* What a firmware's debug build might define: here an assertion that fails is counted. */
+#ifndef T3R_NOTED_ASSERT_H
+#define T3R_NOTED_ASSERT_H
+
+void noted_assertion(void);
+#define T3R_ASSERT(condition) ((condition) ? (void)0 : noted_assertion())
+
+#endif
