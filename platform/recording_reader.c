@@ -257,7 +257,7 @@ static const char *parse_triplets(t3r_text text, t3r_recording *recording)
         for (uint32_t j = 0; j < 3; j++) {
             char behind = j < 2 ? ',' : ';';
             bool last = i + 1 == room && j == 2;
-            if (!number(text, &at, &members[j]) || (last ? at != text.count : text.chars[at] != behind)) {
+            if (!number(text, &at, &members[j]) || (last ? at != text.count : at >= text.count || text.chars[at] != behind)) {
                 return "triplets is not 'a,b,target;a,b,target...'";
             }
             at += !last;
@@ -362,7 +362,7 @@ t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *err
 t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_bytes)
 {
     size_t count;
-    uint8_t *bytes = t3r_file_bytes(path, &count, error, error_bytes);
+    uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, error_bytes);
     if (bytes == NULL) {
         return NULL;
     }

@@ -52,6 +52,15 @@ static inline int64_t t3r_round_div64(int64_t n, int64_t d)
     return quotient - (doubled % (2 * d) < 0);
 }
 
+/* (a b) / 2^16, round-half-up, of numbers that are not negative: (a b + 2^15) >> 16, likewise in 16-bit steps (SSE2
+ * pmulhuw and pmullw, MVE vrmulh, NEON vmull and vrshrn). At most 65534. */
+static inline uint16_t t3r_mulr_q16(uint16_t a, uint16_t b)
+{
+    uint16_t high = (uint16_t)(((uint32_t)a * b) >> 16);
+    uint16_t low = (uint16_t)((uint32_t)a * b);
+    return (uint16_t)(high + (low >> 15));
+}
+
 static inline int32_t t3r_clamp32(int32_t x, int32_t low, int32_t high)
 {
     return x < low ? low : x > high ? high : x;

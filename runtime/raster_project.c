@@ -195,8 +195,8 @@ bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *spla
     conic_of(a_q12, b_q12, splat);
     splat->z_q20 = (int32_t)c[2];
     for (int i = 0; i < 3; i++) {
-        splat->colour_q7[i] = (int16_t)g->colour_q7[i];
+        splat->colour_q7[i] = g->colour_q7[i];
     }
-    splat->opacity_q15 = (int16_t)g->opacity_q15;
+    splat->opacity_q15 = g->opacity_q15;
     return true;
 }

@@ -17,8 +17,8 @@ typedef struct t3r_splat {
     int32_t x_q12, y_q12;         /* centre, pixels */
     int32_t a_q30, b_q30, c_q30;  /* conic, 1 / px^2; a, c <= 1 / 0.6 */
     int32_t z_q20;                /* depth along the optical axis, scene units */
-    int16_t colour_q7[3];
-    int16_t opacity_q15;
+    uint16_t colour_q7[3];
+    uint16_t opacity_q15;
     uint16_t x0, y0, x1, y1;      /* inclusive pixels outside of which alpha < 1/255 */
 } t3r_splat;
 

@@ -65,7 +65,7 @@ static void lane_splat_of(const t3r_splat *s, uint32_t x, uint32_t y, t3r_lane_s
     out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
     out->b = (int32_t)t3r_round_shift64(s->b_q30, 12);
     out->c = t3r_round_shift32(s->c_q30 >> 1, 12);
-    out->opacity_q15 = s->opacity_q15;
+    out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
     for (int i = 0; i < 3; i++) {
         out->colour_q7[i] = s->colour_q7[i];
     }
@@ -77,7 +77,7 @@ static void note_depth(tile_state *tile, uint32_t column, uint32_t first, uint32
     for (uint32_t j = first; j <= last; j++) {
         for (uint32_t i = column; i < column + T3R_LANES; i++) {
             uint32_t *depth = &tile->depth_q20[j][i];
-            if (*depth == 0 && tile->pixels.transmittance_q15[j][i] < T3R_ONE_Q15 / 2 + 1) {
+            if (*depth == 0 && tile->pixels.transmittance_q16[j][i] < T3R_HALF_Q16) {
                 *depth = (uint32_t)z_q20;
             }
         }
@@ -122,14 +122,14 @@ static void blend_splat(tile_state *tile, const t3r_splat *s, uint32_t left, uin
 
 static bool all_stopped(const t3r_tile *tile)
 {
-    int16_t most = 0;
+    uint16_t most = 0;
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
         for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
-            int16_t t = tile->transmittance_q15[j][i];
+            uint16_t t = tile->transmittance_q16[j][i];
             most = t > most ? t : most;
         }
     }
-    return most < T3R_STOP_Q15;
+    return most < T3R_STOP_Q16;
 }
 
 static uint8_t byte_of(uint16_t colour_q7)
@@ -154,7 +154,7 @@ static void write_tile(const tile_state *tile, uint32_t left, uint32_t top, cons
             }
             if (target->alpha_q15 != NULL) {
                 target->alpha_q15[y * (target->alpha_stride_bytes / sizeof *target->alpha_q15) + x] =
-                    (uint16_t)(T3R_ONE_Q15 - tile->pixels.transmittance_q15[j][i]);
+                    (uint16_t)((T3R_ONE_Q16 - tile->pixels.transmittance_q16[j][i]) >> 1);
             }
             if (target->depth_q20 != NULL) {
                 target->depth_q20[y * (target->depth_stride_bytes / sizeof *target->depth_q20) + x] =
@@ -173,7 +173,7 @@ void t3r_draw_tile(const t3r_splat *splats, const uint32_t *list, uint32_t count
     memset(&tile, 0, sizeof tile);
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
         for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
-            tile.pixels.transmittance_q15[j][i] = T3R_ONE_Q15;
+            tile.pixels.transmittance_q16[j][i] = T3R_ONE_Q16;
         }
     }
     for (uint32_t i = 0; i < count; i++) {

@@ -8,6 +8,7 @@
 
 #include "camera.h"
 #include "file_bytes.h"
+#include "reason.h"
 
 void bench_points_free(bench_points *points)
 {
@@ -26,8 +27,7 @@ static int allocate(bench_points *p, uint32_t count, char *error, size_t error_b
     p->labels = calloc(count, sizeof *p->labels);
     p->work = calloc(1, sizeof *p->work);
     if (p->value == NULL || p->feature_q11 == NULL || p->labels == NULL || p->work == NULL) {
-        snprintf(error, error_bytes, "out of memory for %" PRIu32 " points", count);
-        return -1;
+        return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " points", count);
     }
     return 0;
 }
@@ -60,14 +60,14 @@ int bench_points_read(bench_points *points, const char *path, char *error, size_
 {
     *points = (bench_points){0};
     size_t bytes;
-    uint8_t *data = t3r_file_bytes(path, &bytes, error, error_bytes);
+    uint8_t *data = t3r_file_bytes(path, SIZE_MAX, &bytes, error, error_bytes);
     if (data == NULL) {
         return -1;
     }
     size_t row = 4 * T3R_DIMENSIONS, count = bytes / row;
     int result = -1;
     if (bytes % row != 0 || count == 0 || count > T3R_MAX_GAUSSIANS) {
-        snprintf(error, error_bytes, "%s: %zu bytes are not N x 6 float32 with N in 1..%u", path, bytes,
+        t3r_reason(error, error_bytes, "%s: %zu bytes are not N x 6 float32 with N in 1..%u", path, bytes,
                  T3R_MAX_GAUSSIANS);
     } else {
         result = allocate(points, (uint32_t)count, error, error_bytes);
@@ -78,7 +78,7 @@ int bench_points_read(bench_points *points, const char *path, char *error, size_
         float value;
         memcpy(&value, &bits, sizeof value);
         if (!isfinite(value)) {
-            snprintf(error, error_bytes, "%s: byte %zu: not a finite number", path, 4 * i);
+            t3r_reason(error, error_bytes, "%s: byte %zu: not a finite number", path, 4 * i);
             result = -1;
         }
         points->value[i / T3R_DIMENSIONS][i % T3R_DIMENSIONS] = value;

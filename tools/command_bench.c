@@ -12,6 +12,7 @@
 #include "bench_points.h"
 #include "cli.h"
 #include "json_output.h"
+#include "option_values.h"
 #include "reconstruction.h"
 #include "room.h"
 #include "wavelet.h"
@@ -45,26 +46,21 @@ static const struct argp_option options[] = {
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     bench_options *o = state->input;
-    uint32_t count;
     switch (key) {
     case KEY_POINTS:
         o->points = arg;
         return 0;
     case KEY_RUNS:
-        if (cli_parse_list_u32(arg, &o->runs, 1, &count) != 0 || o->runs < 1 || o->runs > MAX_RUNS) {
-            argp_error(state, "--runs takes a whole number 1..%u, not '%s'", MAX_RUNS, arg);
-        }
+        o->runs = option_number(state, "runs", arg, 1, MAX_RUNS);
         return 0;
     case KEY_THREADS:
-        if (cli_parse_list_u32(arg, &o->threads, 1, &count) != 0 || o->threads < 1 || o->threads > T3R_MAX_THREADS) {
-            argp_error(state, "--threads takes a whole number 1..%u, not '%s'", T3R_MAX_THREADS, arg);
-        }
+        o->threads = option_number(state, "threads", arg, 1, T3R_MAX_THREADS);
         return 0;
     case KEY_JSON:
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        argp_error(state, "'%s' is too many", arg);
+        option_argument(state, arg, NULL, 0);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -226,8 +222,7 @@ static int open_workload(workload *w, const bench_options *o)
     return failed ? cli_error(CLI_BAD_INPUT, "%s", error) : CLI_OK;
 }
 
-/* ---- the stages ---------------------------------------------------------------------------------------------------
- */
+/* ---- the stages -------------------------------------------------------------------------------------------------- */
 
 static bool run_raster_full(workload *w)
 {

@@ -4,10 +4,10 @@
 #include <argp.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "cli.h"
 #include "json_output.h"
+#include "option_values.h"
 #include "reconstruction.h"
 
 #define ERROR_BYTES 512
@@ -32,12 +32,6 @@ static const struct argp_option options[] = {
     {0},
 };
 
-static bool ends_in_ply(const char *path)
-{
-    size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".ply") == 0;
-}
-
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     build_options *o = state->input;
@@ -59,17 +53,14 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        if (o->recording != NULL) {
-            argp_error(state, "one recording at a time: '%s' is too many", arg);
-        }
-        o->recording = arg;
+        option_argument(state, arg, (const char **[]){&o->recording}, 1);
         return 0;
     case ARGP_KEY_END:
         if (o->recording == NULL) {
             argp_error(state, "REC.mcap is missing");
         } else if (o->output == NULL) {
             argp_error(state, "-o SCENE.ply is missing");
-        } else if (!ends_in_ply(o->output)) {
+        } else if (!path_is_ply(o->output)) {
             argp_error(state, "-o %s: scenes are written as .ply", o->output);
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0) {
             argp_error(state, "the budget is missing: --gaussians Z or --keep P%%");
@@ -104,10 +95,7 @@ static void print_json(const build_options *o, const reconstruction *r)
     json_add_integer(root, "gaussians", r->scene.count);
     json_add_integer(root, "requested", r->requested);
     json_add_integer(root, "valid_points", r->valid_points);
-    cJSON *context = cJSON_AddArrayToObject(root, "context");
-    for (uint32_t v = 0; v < r->context_count; v++) {
-        cJSON_AddItemToArray(context, cJSON_CreateNumber(r->context[v]));
-    }
+    json_add_integers(root, "context", r->context, r->context_count);
     cJSON_AddNumberToObject(root, "width", r->config.width);
     cJSON_AddNumberToObject(root, "height", r->config.height);
     cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(r->config.allocation));

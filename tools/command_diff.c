@@ -10,6 +10,7 @@
 #include "cli.h"
 #include "gaussian_shape.h"
 #include "json_output.h"
+#include "option_values.h"
 #include "picture.h"
 #include "scene_file.h"
 
@@ -27,12 +28,6 @@ static const struct argp_option options[] = {
     {0},
 };
 
-static bool is_scene(const char *path)
-{
-    size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".ply") == 0;
-}
-
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     diff_options *o = state->input;
@@ -41,16 +36,12 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        if (state->arg_num >= 2) {
-            argp_error(state, "two files are compared: '%s' is too many", arg);
-        } else {
-            o->path[state->arg_num] = arg;
-        }
+        option_argument(state, arg, (const char **[]){&o->path[0], &o->path[1]}, 2);
         return 0;
     case ARGP_KEY_END:
         if (o->path[1] == NULL) {
             argp_error(state, "two files are needed");
-        } else if (is_scene(o->path[0]) != is_scene(o->path[1])) {
+        } else if (path_is_ply(o->path[0]) != path_is_ply(o->path[1])) {
             argp_error(state, "a scene (.ply) and a picture cannot be compared");
         }
         return 0;
@@ -271,5 +262,5 @@ int command_diff(int argc, char **argv)
 {
     diff_options o = {0};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    return is_scene(o.path[0]) ? diff_scenes(&o) : diff_pictures(&o);
+    return path_is_ply(o.path[0]) ? diff_scenes(&o) : diff_pictures(&o);
 }

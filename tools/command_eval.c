@@ -2,18 +2,14 @@
 #include "commands.h"
 
 #include <argp.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli.h"
-#include "csv.h"
 #include "evaluation.h"
-#include "evaluation_pictures.h"
-#include "evaluation_table.h"
-#include "json_output.h"
+#include "evaluation_report.h"
+#include "option_values.h"
 #include "reconstruction.h"
 
 #define MOST_KEEPS 64u
@@ -22,14 +18,14 @@ typedef struct options {
     reconstruction_options settings;
     char **inputs; /* recordings, or the images of --planar */
     uint32_t input_count;
-    bool planar, has_target, from_file, json;
+    bool planar, has_target, from_file;
     uint32_t width, height; /* --size */
     uint32_t target;
     double keep[MOST_KEEPS];
     uint32_t keep_count;
     evaluation_method methods[EVALUATION_METHOD_COUNT];
     uint32_t method_count;
-    const char *csv, *images, *page;
+    evaluation_outputs to;
 } options;
 
 enum {
@@ -129,21 +125,15 @@ static void check_options(struct argp_state *state, options *o)
 static error_t parse_option(int key, char *arg, struct argp_state *state)
 {
     options *o = state->input;
-    uint32_t count;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
         return 0;
     case KEY_CONTEXT:
-        if (cli_parse_list_u32(arg, o->settings.context, T3R_MAX_VIEWS, &o->settings.context_count) != 0) {
-            argp_error(state, "--context takes 1 to %u frame indices with commas between, not '%s'", T3R_MAX_VIEWS,
-                       arg);
-        }
+        option_frames(state, "context", arg, o->settings.context, &o->settings.context_count);
         return 0;
     case KEY_TARGET:
-        if (cli_parse_list_u32(arg, &o->target, 1, &count) != 0) {
-            argp_error(state, "--target takes a frame index, not '%s'", arg);
-        }
+        o->target = option_number(state, "target", arg, 0, UINT32_MAX);
         o->has_target = true;
         return 0;
     case KEY_KEEP:
@@ -158,25 +148,22 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         o->planar = true;
         return 0;
     case KEY_SIZE:
-        if (cli_parse_size(arg, &o->width, &o->height) != 0 || o->width < T3R_MIN_SIDE || o->height < T3R_MIN_SIDE ||
-            o->width > T3R_MAX_SIDE || o->height > T3R_MAX_SIDE) {
-            argp_error(state, "--size takes WxH, each %u..%u, not '%s'", T3R_MIN_SIDE, T3R_MAX_SIDE, arg);
-        }
+        option_size(state, "size", arg, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_CSV:
-        o->csv = arg;
+        o->to.csv = arg;
         return 0;
     case KEY_IMAGES:
-        o->images = arg;
+        o->to.images = arg;
         return 0;
     case KEY_HTML:
-        o->page = arg;
+        o->to.page = arg;
         return 0;
     case KEY_FROM_FILE:
         o->from_file = true;
         return 0;
     case KEY_JSON:
-        o->json = true;
+        o->to.json = true;
         return 0;
     case ARGP_KEY_ARGS:
         o->inputs = state->argv + state->next;
@@ -192,7 +179,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 
 static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is compared:", 1},
-    {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of (all triplets that the recording carries)",
+    {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, one named twice counting once (all triplets that the recording carries)",
      0},
     {"target", KEY_TARGET, "T", 0, "the frame to be met; it is never shown to the method", 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
@@ -233,204 +220,46 @@ static const struct argp parser = {
     .children = children,
 };
 
-/* ---- what is written as rows arrive --------------------------------------------------------------------------- */
+/* ---- cases ---------------------------------------------------------------------------------------------------- */
 
-typedef struct output {
-    const options *o;
-    csv_table csv;
-    html_page *page;
-    evaluation_row *rows; /* room for all */
-    uint32_t row_count, row_total;
-    char folder[4096]; /* of the pictures; "" = none */
-} output;
-
-/* Several recordings share a folder by one of their own each. */
-static int choose_folder(output *out, const evaluation_case *what)
+static int measure_all(evaluation_report *report, const options *o, const evaluation_case *what,
+                       const evaluation_views *views, uint8_t *render)
 {
-    const options *o = out->o;
-    bool shared = !o->planar && o->input_count > 1;
-    if (o->images == NULL) {
-        return CLI_OK;
-    }
-    int length =
-        snprintf(out->folder, sizeof out->folder, "%s%s%s", o->images, shared ? "/" : "", shared ? what->scene : "");
-    return length > 0 && (size_t)length < sizeof out->folder
-               ? CLI_OK
-               : cli_error(CLI_BAD_USAGE, "--images: the name of a folder of at most %zu bytes is needed",
-                           sizeof out->folder - 1);
-}
-
-static int open_output(output *out, const options *o, uint32_t cases)
-{
-    *out = (output){.o = o, .row_total = cases * o->method_count * o->keep_count};
-    out->rows = calloc(out->row_total, sizeof *out->rows);
-    if (out->rows == NULL) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    if (o->page != NULL) {
-        out->page =
-            html_page_new("trim3r: rendered views beside recorded ones",
-                          "A scene is built from the context views alone, with the share of their points that stands "
-                          "under each picture, and drawn from where the target was taken.");
-        if (out->page == NULL) {
-            return cli_error(CLI_BAD_INPUT, "out of memory");
-        }
-    }
-    if (o->csv != NULL) {
-        out->csv.file = fopen(o->csv, "w");
-        if (out->csv.file == NULL) {
-            return cli_error(CLI_BAD_INPUT, "%s: %s", o->csv, strerror(errno));
-        }
-        evaluation_csv_header(&out->csv);
-    }
-    if (!o->json) {
-        evaluation_print_header(stdout, o->planar);
-    }
-    return CLI_OK;
-}
-
-static int put_row(output *out, const evaluation_views *views, const evaluation_case *what, const evaluation_row *row,
-                   uint8_t *render)
-{
-    out->rows[out->row_count++] = *row;
-    if (!out->o->json) {
-        evaluation_print_row(stdout, row, out->o->planar);
-        fflush(stdout);
-    } else if (isatty(STDERR_FILENO)) {
-        fprintf(stderr, "\r%u of %u rows%s", (unsigned)out->row_count, (unsigned)out->row_total,
-                out->row_count == out->row_total ? "\r\033[K" : "");
-    }
-    if (out->csv.file != NULL) {
-        evaluation_csv_row(&out->csv, row);
-    }
-    if (out->page != NULL) {
-        evaluation_page_render(out->page, views, row, render);
-    }
-    return out->folder[0] != '\0' ? evaluation_write_render(out->folder, views, what, row, render) : CLI_OK;
-}
-
-static int put_case(output *out, const evaluation_case *what, const evaluation_views *views, uint8_t *render)
-{
-    const options *o = out->o;
-    if (out->page != NULL) {
-        evaluation_page_views(out->page, views, what);
-    }
-    int code = out->folder[0] != '\0' ? evaluation_write_views(out->folder, views, what) : CLI_OK;
+    int code = evaluation_report_case(report, views, what);
     for (uint32_t m = 0; m < o->method_count && code == CLI_OK; m++) {
-        if (out->page != NULL) {
-            html_page_strip(out->page, evaluation_method_name(o->methods[m]));
-        }
+        evaluation_report_method(report, o->methods[m]);
         for (uint32_t k = 0; k < o->keep_count && code == CLI_OK; k++) {
             evaluation_row row;
             code = evaluation_measure(&row, render, views, what, o->methods[m], o->keep[k], o->from_file, &o->settings);
             if (code == CLI_OK) {
-                code = put_row(out, views, what, &row, render);
+                code = evaluation_report_row(report, views, what, &row, render);
             }
         }
     }
     return code;
 }
 
-static int evaluate_case(output *out, const evaluation_case *what)
+static int evaluate_case(evaluation_report *report, const options *o, const evaluation_case *what)
 {
     evaluation_views views;
-    int code = choose_folder(out, what);
-    if (code == CLI_OK) {
-        code = evaluation_views_make(&views, what, &out->o->settings);
-    }
+    int code = evaluation_views_make(&views, what, &o->settings);
     if (code != CLI_OK) {
         return code;
     }
     uint8_t *render = malloc((size_t)views.width * views.height * 3);
-    code = render == NULL ? cli_error(CLI_BAD_INPUT, "out of memory") : put_case(out, what, &views, render);
+    code = render == NULL ? cli_error(CLI_BAD_INPUT, "out of memory") : measure_all(report, o, what, &views, render);
     free(render);
     evaluation_views_free(&views);
     return code;
 }
 
-static void print_json(const output *out, const evaluation_row *means, uint32_t mean_count)
+static int open_report(evaluation_report *report, const options *o, uint32_t cases)
 {
-    cJSON *object = cJSON_CreateObject();
-    cJSON *rows = cJSON_AddArrayToObject(object, "rows");
-    for (uint32_t i = 0; i < out->row_count; i++) {
-        cJSON_AddItemToArray(rows, evaluation_json(&out->rows[i]));
-    }
-    cJSON *mean_rows = cJSON_AddArrayToObject(object, "means");
-    for (uint32_t i = 0; i < mean_count; i++) {
-        cJSON_AddItemToArray(mean_rows, evaluation_json(&means[i]));
-    }
-    json_print(object);
+    evaluation_outputs to = o->to;
+    to.planar = o->planar;
+    to.folder_each = !o->planar && o->input_count > 1;
+    return evaluation_report_open(report, &to, cases * o->method_count * o->keep_count);
 }
-
-static void page_table(html_page *page, const char *heading, const evaluation_row *rows, uint32_t count, bool planar,
-                       bool folded)
-{
-    char text[256];
-    html_page_table(page, heading, folded);
-    for (uint32_t c = 0; c < EVALUATION_COLUMNS; c++) {
-        if (evaluation_glance(&rows[0], c, planar, text, sizeof text)) {
-            html_page_table_cell(page, evaluation_column_name(c));
-        }
-    }
-    html_page_table_end_row(page);
-    for (uint32_t i = 0; i < count; i++) {
-        for (uint32_t c = 0; c < EVALUATION_COLUMNS; c++) {
-            if (evaluation_glance(&rows[i], c, planar, text, sizeof text)) {
-                html_page_table_cell(page, text);
-            }
-        }
-        html_page_table_end_row(page);
-    }
-}
-
-/* Means, JSON and page, once all rows are there. A mean of one row is no news. */
-static int finish_output(output *out)
-{
-    evaluation_row *means = calloc(out->row_count, sizeof *means);
-    if (means == NULL) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    uint32_t mean_count = evaluation_means(out->rows, out->row_count, !out->o->planar, means);
-    bool several = mean_count < out->row_count;
-    int code = CLI_OK;
-    if (out->o->json) {
-        print_json(out, means, mean_count);
-    }
-    for (uint32_t i = 0; several && !out->o->json && i < mean_count; i++) {
-        evaluation_print_row(stdout, &means[i], out->o->planar);
-    }
-    if (out->page != NULL) {
-        char error[512] = "";
-        if (several) {
-            page_table(out->page, "Means", means, mean_count, out->o->planar, false);
-        }
-        page_table(out->page, "Scores", out->rows, out->row_count, out->o->planar, several);
-        if (html_page_write(out->page, out->o->page, error, sizeof error) != 0) {
-            code = cli_error(CLI_BAD_INPUT, "%s", error);
-        }
-    }
-    free(means);
-    return code;
-}
-
-static int close_output(output *out, int code)
-{
-    if (code == CLI_OK) {
-        code = finish_output(out);
-    }
-    if (out->csv.file != NULL) {
-        bool failed = ferror(out->csv.file) != 0;
-        failed |= fclose(out->csv.file) != 0;
-        if (failed && code == CLI_OK) {
-            code = cli_error(CLI_BAD_INPUT, "%s: %s", out->o->csv, strerror(errno));
-        }
-    }
-    html_page_free(out->page);
-    free(out->rows);
-    return code;
-}
-
-/* ---- cases ---------------------------------------------------------------------------------------------------- */
 
 /* "room" of "recordings/room.mcap"; at most `bytes` - 1 characters. */
 static void scene_name(const char *path, char *name, size_t bytes)
@@ -449,25 +278,36 @@ static uint32_t case_count(const options *o, const t3r_recording *recording)
     return o->has_target ? 1 : t3r_recording_triplet_count(recording);
 }
 
-static int evaluate_recording(output *out, const char *path, const t3r_recording *recording)
+/* A triplet of a stereo pair names its one context view twice. */
+static void set_context(evaluation_case *what, const uint32_t *frames, uint32_t count)
 {
-    const options *o = out->o;
+    for (uint32_t i = 0; i < count; i++) {
+        bool known = false;
+        for (uint32_t v = 0; v < what->context_count; v++) {
+            known = known || what->context[v] == frames[i];
+        }
+        if (!known) {
+            what->context[what->context_count++] = frames[i];
+        }
+    }
+}
+
+static int evaluate_recording(evaluation_report *report, const options *o, const char *path, const t3r_recording *recording)
+{
     char name[256];
     int code = CLI_OK;
     scene_name(path, name, sizeof name);
     for (uint32_t i = 0; i < case_count(o, recording) && code == CLI_OK; i++) {
         evaluation_case what = {.recording = recording, .path = path, .scene = name};
         if (o->has_target) {
-            what.context_count = o->settings.context_count;
-            memcpy(what.context, o->settings.context, sizeof what.context);
+            set_context(&what, o->settings.context, o->settings.context_count);
             what.target = o->target;
         } else {
             t3r_triplet triplet = t3r_recording_triplet(recording, i);
-            what.context_count = 2;
-            memcpy(what.context, triplet.context, sizeof triplet.context);
+            set_context(&what, triplet.context, 2);
             what.target = triplet.target;
         }
-        code = evaluate_case(out, &what);
+        code = evaluate_case(report, o, &what);
     }
     return code;
 }
@@ -501,12 +341,12 @@ static int evaluate_recordings(const options *o)
     uint32_t cases;
     int code = open_recordings(o, recordings, &cases);
     if (code == CLI_OK) {
-        output out;
-        code = open_output(&out, o, cases);
+        evaluation_report report;
+        code = open_report(&report, o, cases);
         for (uint32_t i = 0; i < o->input_count && code == CLI_OK; i++) {
-            code = evaluate_recording(&out, o->inputs[i], recordings[i]);
+            code = evaluate_recording(&report, o, o->inputs[i], recordings[i]);
         }
-        code = close_output(&out, code);
+        code = evaluation_report_close(&report, code);
     }
     for (uint32_t i = 0; i < o->input_count; i++) {
         if (recordings[i] != NULL) {
@@ -519,8 +359,8 @@ static int evaluate_recordings(const options *o)
 
 static int evaluate_planar(const options *o)
 {
-    output out;
-    int code = open_output(&out, o, o->input_count);
+    evaluation_report report;
+    int code = open_report(&report, o, o->input_count);
     for (uint32_t i = 0; i < o->input_count && code == CLI_OK; i++) {
         char name[256];
         uint8_t *bytes;
@@ -532,11 +372,11 @@ static int evaluate_planar(const options *o)
         }
         evaluation_case what = {
             .recording = recording, .path = o->inputs[i], .scene = name, .context_count = 1, .planar = true};
-        code = evaluate_case(&out, &what);
+        code = evaluate_case(&report, o, &what);
         t3r_recording_close(recording);
         free(bytes);
     }
-    return close_output(&out, code);
+    return evaluation_report_close(&report, code);
 }
 
 int command_eval(int argc, char **argv)

@@ -9,7 +9,9 @@
 #include "cli.h"
 #include "import_frame.h"
 #include "json_output.h"
+#include "option_values.h"
 #include "posed_folder.h"
+#include "reason.h"
 #include "recording.h"
 #include "trim3r.h"
 #include "whole_file.h"
@@ -68,10 +70,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     options *o = state->input;
     switch (key) {
     case 's':
-        if (cli_parse_size(argument, &o->width, &o->height) != 0 || o->width < T3R_MIN_SIDE ||
-            o->height < T3R_MIN_SIDE || o->width > T3R_MAX_SIDE || o->height > T3R_MAX_SIDE) {
-            argp_error(state, "--size %s: not WxH with sides from 8 to 4096", argument);
-        }
+        option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_INTRINSICS:
         if (parse_numbers(argument, o->intrinsics, 9, &o->intrinsics_count) != 0 ||
@@ -87,10 +86,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        if (o->directory != NULL) {
-            argp_error(state, "%s: one DIR at a time", argument);
-        }
-        o->directory = argument;
+        option_argument(state, argument, (const char **[]){&o->directory}, 1);
         return 0;
     case ARGP_KEY_END:
         check_options(state, o);
@@ -152,9 +148,9 @@ static int write_frame(t3r_recorder *recorder, const options *o, const posed_fol
     t3r_recorded_frame recorded;
     int status = import_frame(o->directory, frame, o->width, o->height, &buffers, &recorded, reason, sizeof reason);
     if (status != 0) {
-        posed_fail(error, ERROR_BYTES, "%s: frame %u: %.700s", o->directory, index, reason);
+        t3r_reason(error, ERROR_BYTES, "%s: frame %u: %.700s", o->directory, index, reason);
     } else if (index > 0 && (recorded.width != t->width || recorded.height != t->height)) {
-        status = posed_fail(error, ERROR_BYTES, "%s: frame %u: %s: %ux%u pixels, but frame 0 has %ux%u; give --size",
+        status = t3r_reason(error, ERROR_BYTES, "%s: frame %u: %s: %ux%u pixels, but frame 0 has %ux%u; give --size",
                             o->directory, index, frame->image, recorded.width, recorded.height, t->width, t->height);
     } else {
         recorded.stamp_ns = (int64_t)index * 1000000000 / 30;
@@ -162,7 +158,7 @@ static int write_frame(t3r_recorder *recorder, const options *o, const posed_fol
         t->height = recorded.height;
         t->depth_frames += recorded.depth != NULL;
         if (t3r_recorder_frame(recorder, &recorded) != 0) {
-            status = posed_fail(error, ERROR_BYTES, "%s: frame %u cannot be written", o->output, index);
+            status = t3r_reason(error, ERROR_BYTES, "%s: frame %u cannot be written", o->output, index);
         }
     }
     import_buffers_free(&buffers);
@@ -179,7 +175,7 @@ static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, 
                                    .triplets = folder->triplets,
                                    .triplet_count = folder->triplet_count};
     if (t3r_recorder_begin(recorder, t3r_file_sink(stream), &header) != 0) {
-        return posed_fail(error, ERROR_BYTES, "%s: cannot be written", o->output);
+        return t3r_reason(error, ERROR_BYTES, "%s: cannot be written", o->output);
     }
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         cli_progress("importing", i, folder->frame_count);
@@ -188,7 +184,7 @@ static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, 
         }
     }
     if (t3r_recorder_end(recorder) != 0) {
-        return posed_fail(error, ERROR_BYTES, "%s: cannot be written", o->output);
+        return t3r_reason(error, ERROR_BYTES, "%s: cannot be written", o->output);
     }
     return 0;
 }
@@ -200,7 +196,7 @@ static int write_recording(const options *o, const posed_folder *folder, totals 
     t3r_recorder *recorder = malloc(t3r_recorder_bytes());
     int status = -1;
     if (source == NULL || recorder == NULL) {
-        posed_fail(error, ERROR_BYTES, "out of memory");
+        t3r_reason(error, ERROR_BYTES, "out of memory");
     } else if (whole_file_begin(&file, o->output, error, ERROR_BYTES) == 0) {
         status = write_frames(recorder, file.stream, o, folder, source, t, error);
         if (status == 0) {

@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "json_output.h"
+#include "option_values.h"
 #include "recording.h"
 
 #define ERROR_BYTES 512
@@ -36,10 +37,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        if (o->recording != NULL) {
-            argp_error(state, "%s: one recording at a time", argument);
-        }
-        o->recording = argument;
+        option_argument(state, argument, (const char **[]){&o->recording}, 1);
         return 0;
     case ARGP_KEY_END:
         if (o->recording == NULL) {
@@ -119,9 +117,8 @@ static cJSON *triplets_json(const t3r_recording *recording)
     cJSON *list = cJSON_CreateArray();
     for (uint32_t i = 0; i < t3r_recording_triplet_count(recording); i++) {
         t3r_triplet t = t3r_recording_triplet(recording, i);
-        const int context[2] = {(int)t.context[0], (int)t.context[1]};
         cJSON *item = cJSON_CreateObject();
-        cJSON_AddItemToObject(item, "context", cJSON_CreateIntArray(context, 2));
+        json_add_integers(item, "context", t.context, 2);
         cJSON_AddNumberToObject(item, "target", t.target);
         cJSON_AddItemToArray(list, item);
     }

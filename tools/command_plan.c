@@ -2,15 +2,16 @@
 #include "commands.h"
 
 #include <argp.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli.h"
 #include "json_output.h"
+#include "option_values.h"
 #include "plan_picture.h"
 #include "reconstruction.h"
+#include "whole_file.h"
 
 typedef struct plan_options {
     uint32_t width, height, views, gaussians, clusters, render_width, render_height;
@@ -43,38 +44,25 @@ static const struct argp_option options[] = {
     {0},
 };
 
-static uint32_t number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
-{
-    uint32_t value = low, count;
-    if (cli_parse_list_u32(text, &value, 1, &count) != 0 || value < low || value > high) {
-        argp_error(state, "--%s takes a whole number %" PRIu32 "..%" PRIu32 ", not '%s'", option, low, high, text);
-    }
-    return value;
-}
-
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     plan_options *o = state->input;
     switch (key) {
     case KEY_SIZE:
-        if (cli_parse_size(arg, &o->width, &o->height) != 0) {
-            argp_error(state, "--size takes WxH, not '%s'", arg);
-        }
+        option_size(state, "size", arg, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_VIEWS:
-        o->views = number(state, "views", arg, 0, T3R_MAX_VIEWS);
+        o->views = option_number(state, "views", arg, 0, T3R_MAX_VIEWS);
         return 0;
     case KEY_GAUSSIANS:
-        o->gaussians = number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
+        o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
         return 0;
     case KEY_CLUSTERS:
-        o->clusters = number(state, "clusters", arg, 1, T3R_MAX_CLUSTERS);
+        o->clusters = option_number(state, "clusters", arg, 1, T3R_MAX_CLUSTERS);
         o->has_clusters = true;
         return 0;
     case KEY_RENDER:
-        if (cli_parse_size(arg, &o->render_width, &o->render_height) != 0) {
-            argp_error(state, "--render takes WxH, not '%s'", arg);
-        }
+        option_size(state, "render", arg, 1, &o->render_width, &o->render_height);
         return 0;
     case KEY_KEEP:
         o->keep_analysis = true;
@@ -89,7 +77,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        argp_error(state, "'%s' is too many", arg);
+        option_argument(state, arg, NULL, 0);
         return 0;
     case ARGP_KEY_END:
         if (o->width == 0 || o->gaussians == 0) {
@@ -173,16 +161,13 @@ static void print_operations(const t3r_plan_info *plan, bool markdown)
 
 static int write_svg(const char *path, const t3r_plan_info *plan)
 {
-    FILE *file = fopen(path, "w");
-    if (file == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s: %s", path, strerror(errno));
+    whole_file file;
+    char error[512] = "";
+    if (whole_file_begin(&file, path, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    plan_picture_write(file, plan);
-    int failed = ferror(file);
-    if (fclose(file) != 0 || failed) {
-        return cli_error(CLI_BAD_INPUT, "%s: %s", path, strerror(errno));
-    }
-    return CLI_OK;
+    plan_picture_write(file.stream, plan);
+    return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 int command_plan(int argc, char **argv)

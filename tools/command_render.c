@@ -11,6 +11,7 @@
 #include "cli.h"
 #include "hash.h"
 #include "json_output.h"
+#include "option_values.h"
 #include "picture.h"
 #include "reconstruction.h"
 #include "viewpoint.h"
@@ -96,12 +97,9 @@ static void check_options(struct argp_state *state, const render_options *o)
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     render_options *o = state->input;
-    uint32_t count;
     switch (key) {
     case KEY_VIEW:
-        if (cli_parse_list_u32(arg, &o->view, 1, &count) != 0) {
-            argp_error(state, "--view takes a frame index, not '%s'", arg);
-        }
+        o->view = option_number(state, "view", arg, 0, UINT32_MAX);
         o->has_view = true;
         return 0;
     case KEY_POSE:
@@ -115,9 +113,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->has_fov = true;
         return 0;
     case KEY_SIZE:
-        if (cli_parse_size(arg, &o->width, &o->height) != 0 || o->width > T3R_MAX_SIDE || o->height > T3R_MAX_SIDE) {
-            argp_error(state, "--size takes WxH, each 1..4096, not '%s'", arg);
-        }
+        option_size(state, "size", arg, 1, &o->width, &o->height);
         o->has_size = true;
         return 0;
     case 'o':
@@ -136,22 +132,13 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         reconstruction_parse_arena(state, arg, &o->settings);
         return 0;
     case KEY_THREADS:
-        if (cli_parse_list_u32(arg, &o->settings.threads, 1, &count) != 0 || o->settings.threads < 1 ||
-            o->settings.threads > T3R_MAX_THREADS) {
-            argp_error(state, "--threads takes a whole number 1..%u, not '%s'", T3R_MAX_THREADS, arg);
-        }
+        o->settings.threads = option_number(state, "threads", arg, 1, T3R_MAX_THREADS);
         return 0;
     case KEY_JSON:
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        if (o->scene == NULL) {
-            o->scene = arg;
-        } else if (o->recording == NULL) {
-            o->recording = arg;
-        } else {
-            argp_error(state, "'%s' is too many", arg);
-        }
+        option_argument(state, arg, (const char **[]){&o->scene, &o->recording}, 2);
         return 0;
     case ARGP_KEY_END:
         check_options(state, o);

@@ -11,9 +11,11 @@
 #include "file_bytes.h"
 #include "hash.h"
 #include "json_output.h"
+#include "option_values.h"
 #include "reconstruction.h"
 
 #define ERROR_BYTES 512
+#define MAX_EXPECTATION_BYTES ((size_t)64 << 20)
 
 typedef struct replay_options {
     const char *recording;
@@ -65,10 +67,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
-        if (o->recording != NULL) {
-            argp_error(state, "one recording at a time: '%s' is too many", arg);
-        }
-        o->recording = arg;
+        option_argument(state, arg, (const char **[]){&o->recording}, 1);
         return 0;
     case ARGP_KEY_END:
         if (o->recording == NULL) {
@@ -137,7 +136,7 @@ static int read_expectation(const char *text, expectation *e)
     }
     char error[ERROR_BYTES] = "";
     size_t count;
-    uint8_t *bytes = t3r_file_bytes(text, &count, error, sizeof error);
+    uint8_t *bytes = t3r_file_bytes(text, MAX_EXPECTATION_BYTES, &count, error, sizeof error);
     if (bytes == NULL) {
         return cli_error(CLI_BAD_INPUT, "--expect takes 16 hexadecimal digits or a file: %s", error);
     }
@@ -258,10 +257,7 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "recording", o->recording);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
-    cJSON *context = cJSON_AddArrayToObject(root, "context");
-    for (uint32_t v = 0; v < r->context_count; v++) {
-        cJSON_AddItemToArray(context, cJSON_CreateNumber(r->context[v]));
-    }
+    json_add_integers(root, "context", r->context, r->context_count);
     json_add_integer(root, "target", view->frame);
     json_add_integer(root, "width", view->width);
     json_add_integer(root, "height", view->height);

@@ -8,6 +8,8 @@
 #include "cli.h"
 #include "hash.h"
 #include "json_output.h"
+#include "option_values.h"
+#include "reason.h"
 #include "recording.h"
 #include "room.h"
 #include "whole_file.h"
@@ -23,30 +25,18 @@ typedef struct options {
 
 enum { KEY_FRAMES = 0x100, KEY_SEED, KEY_JSON };
 
-static uint32_t number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
-{
-    uint32_t value = 0, count;
-    if (cli_parse_list_u32(text, &value, 1, &count) != 0 || value < low || value > high) {
-        argp_error(state, "--%s %s: not a whole number from %u to %u", option, text, low, high);
-    }
-    return value;
-}
-
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     options *o = state->input;
     switch (key) {
     case 's':
-        if (cli_parse_size(argument, &o->width, &o->height) != 0 || o->width < T3R_MIN_SIDE ||
-            o->height < T3R_MIN_SIDE || o->width > T3R_MAX_SIDE || o->height > T3R_MAX_SIDE) {
-            argp_error(state, "--size %s: not WxH with sides from 8 to 4096", argument);
-        }
+        option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_FRAMES:
-        o->frames = number(state, "frames", argument, 1, ROOM_MAX_FRAMES);
+        o->frames = option_number(state, "frames", argument, 1, ROOM_MAX_FRAMES);
         return 0;
     case KEY_SEED:
-        o->seed = number(state, "seed", argument, 0, UINT32_MAX);
+        o->seed = option_number(state, "seed", argument, 0, UINT32_MAX);
         return 0;
     case 'o':
         o->output = argument;
@@ -132,13 +122,13 @@ static int write_recording(const options *o, drawing *d, uint64_t *bytes, char *
     d->hash = T3R_HASH_START;
     int status = -1;
     if (recorder == NULL || d->rgb == NULL || d->depth == NULL) {
-        snprintf(error, ERROR_BYTES, "out of memory");
+        t3r_reason(error, ERROR_BYTES, "out of memory");
     } else if (whole_file_begin(&file, o->output, error, ERROR_BYTES) == 0) {
         status = write_frames(recorder, file.stream, o, d);
         if (status == 0) {
             status = whole_file_commit(&file, bytes, error, ERROR_BYTES);
         } else {
-            snprintf(error, ERROR_BYTES, "%s: cannot be written", o->output);
+            t3r_reason(error, ERROR_BYTES, "%s: cannot be written", o->output);
             whole_file_abandon(&file);
         }
     }

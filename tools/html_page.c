@@ -1,6 +1,5 @@
 #include "html_page.h"
 
-#include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -217,7 +216,7 @@ void html_page_picture(html_page *page, const char *caption, uint32_t width, uin
     fputs("</figcaption></figure>\n", page->body);
 }
 
-static bool write_page(html_page *page, FILE *out)
+static void write_page(html_page *page, FILE *out)
 {
     fputs(head, out);
     write_escaped(out, page->title);
@@ -233,29 +232,17 @@ static bool write_page(html_page *page, FILE *out)
     fwrite(page->table_text, 1, page->table_bytes, out);
     fwrite(page->body_text, 1, page->body_bytes, out);
     fputs("</main>\n</body>\n</html>\n", out);
-    return !ferror(out);
 }
 
-int html_page_write(html_page *page, const char *path, char *error, size_t error_bytes)
+int html_page_write(html_page *page, FILE *out)
 {
     end_table(page);
     end_section(page);
     if (fflush(page->table) != 0 || fflush(page->body) != 0 || ferror(page->table) || ferror(page->body) ||
         page->failed) {
-        snprintf(error, error_bytes, "%s: out of memory for the page", path);
         return -1;
     }
-    FILE *out = fopen(path, "wb");
-    bool written = out != NULL && write_page(page, out);
-    int reason = errno;
-    if (out != NULL && fclose(out) != 0 && written) {
-        reason = errno;
-        written = false;
-    }
-    if (!written) {
-        snprintf(error, error_bytes, "%s: %s", path, strerror(reason));
-        return -1;
-    }
+    write_page(page, out);
     return 0;
 }
 

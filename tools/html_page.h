@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 typedef struct html_page html_page;
 
@@ -26,8 +27,8 @@ void html_page_strip(html_page *page, const char *heading);
 void html_page_picture(html_page *page, const char *caption, uint32_t width, uint32_t height, uint32_t channels,
                        const uint8_t *samples, int compared);
 
-/* 0, or -1 with "what, where" in error[]. */
-int html_page_write(html_page *page, const char *path, char *error, size_t error_bytes);
+/* 0, or -1 when memory ran out on the way; whether `out` took it all is the caller's to ask. */
+int html_page_write(html_page *page, FILE *out);
 void html_page_free(html_page *page);
 
 #endif

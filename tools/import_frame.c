@@ -8,6 +8,7 @@
 
 #include "image.h"
 #include "picture.h"
+#include "reason.h"
 
 #define MIN_SIDE 2u /* of t3r_frame */
 
@@ -84,10 +85,10 @@ static int read_colour(const char *path, picture *out, char *error, size_t error
         return -1;
     }
     if (out->bits != 8) {
-        return posed_fail(error, error_bytes, "%s: 16-bit grey, but a colour picture has 8 bits", path);
+        return t3r_reason(error, error_bytes, "%s: 16-bit grey, but a colour picture has 8 bits", path);
     }
     if (out->width < MIN_SIDE || out->height < MIN_SIDE) {
-        return posed_fail(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
+        return t3r_reason(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
     }
     return 0;
 }
@@ -98,11 +99,11 @@ static int read_depth(const char *path, picture *out, char *error, size_t error_
         return -1;
     }
     if (out->bits != 16 || out->channels != 1) {
-        return posed_fail(error, error_bytes, "%s: %u-bit %s, but depth is a 16-bit grey PNG", path, out->bits,
+        return t3r_reason(error, error_bytes, "%s: %u-bit %s, but depth is a 16-bit grey PNG", path, out->bits,
                           out->channels == 1 ? "grey" : "colour");
     }
     if (out->width < MIN_SIDE || out->height < MIN_SIDE) {
-        return posed_fail(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
+        return t3r_reason(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
     }
     return 0;
 }
@@ -169,16 +170,16 @@ static int develop_depth(picture *in, const import_crop *crop, uint32_t width, u
 static int check_camera(const t3r_recorded_camera *camera, const char *name, char *error, size_t error_bytes)
 {
     if (!(camera->fx >= 8 && camera->fx < 16384 && camera->fy >= 8 && camera->fy < 16384)) {
-        return posed_fail(error, error_bytes, "%s: fl_x, fl_y: %g, %g after resizing; 8 to 16384 pixels are supported",
+        return t3r_reason(error, error_bytes, "%s: fl_x, fl_y: %g, %g after resizing; 8 to 16384 pixels are supported",
                           name, camera->fx, camera->fy);
     }
     if (!(fabs(camera->cx) < 16384 && fabs(camera->cy) < 16384)) {
-        return posed_fail(error, error_bytes, "%s: cx, cy: %g, %g after resizing; less than 16384 is supported", name,
+        return t3r_reason(error, error_bytes, "%s: cx, cy: %g, %g after resizing; less than 16384 is supported", name,
                           camera->cx, camera->cy);
     }
     for (int i = 0; i < 5; i++) {
         if (!(fabs(camera->coefficients[i]) < 128)) {
-            return posed_fail(error, error_bytes, "%s: distortion: a coefficient is 128 or more", name);
+            return t3r_reason(error, error_bytes, "%s: distortion: a coefficient is 128 or more", name);
         }
     }
     return 0;
@@ -189,14 +190,14 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
 {
     char *path = find_picture(directory, frame->image);
     int status =
-        path == NULL ? posed_fail(error, error_bytes, "out of memory") : read_colour(path, colour, error, error_bytes);
+        path == NULL ? t3r_reason(error, error_bytes, "out of memory") : read_colour(path, colour, error, error_bytes);
     free(path);
     if (status != 0) {
         return -1;
     }
     char reason[256];
     if (posed_frame_camera(frame, colour->width, colour->height, &out->camera, reason, sizeof reason) != 0) {
-        return posed_fail(error, error_bytes, "%s: %s", frame->image, reason);
+        return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
     }
     bool resize = width != 0;
     out->format = T3R_PIXEL_RGB24;
@@ -204,7 +205,7 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
     out->height = resize ? height : colour->height;
     import_crop crop = import_largest_crop(colour->width, colour->height, out->width, out->height);
     if (crop.width < MIN_SIDE || crop.height < MIN_SIDE) {
-        return posed_fail(error, error_bytes, "%s: too narrow to crop to that aspect", frame->image);
+        return t3r_reason(error, error_bytes, "%s: too narrow to crop to that aspect", frame->image);
     }
     import_crop_camera(&out->camera, &crop, out->width, out->height);
     if (check_camera(&out->camera, frame->image, error, error_bytes) != 0) {
@@ -212,7 +213,7 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
     }
     buffers->rgb = malloc((size_t)out->width * out->height * 3);
     if (buffers->rgb == NULL || develop_colour(colour, &crop, out->width, out->height, buffers->rgb) != 0) {
-        return posed_fail(error, error_bytes, "%s: out of memory", frame->image);
+        return t3r_reason(error, error_bytes, "%s: out of memory", frame->image);
     }
     out->planes[0] = buffers->rgb;
     out->stride_bytes[0] = out->width * 3;
@@ -221,21 +222,21 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
     }
     path = find_picture(directory, frame->depth);
     status =
-        path == NULL ? posed_fail(error, error_bytes, "out of memory") : read_depth(path, depth, error, error_bytes);
+        path == NULL ? t3r_reason(error, error_bytes, "out of memory") : read_depth(path, depth, error, error_bytes);
     free(path);
     if (status != 0) {
         return -1;
     }
     import_crop part = import_crop_in_proportion(&crop, colour->width, colour->height, depth->width, depth->height);
     if (part.width < MIN_SIDE || part.height < MIN_SIDE) {
-        return posed_fail(error, error_bytes, "%s: too small to crop", frame->depth);
+        return t3r_reason(error, error_bytes, "%s: too small to crop", frame->depth);
     }
     out->depth_width = resize ? width : depth->width;
     out->depth_height = resize ? height : depth->height;
     buffers->depth = malloc((size_t)out->depth_width * out->depth_height * sizeof *buffers->depth);
     if (buffers->depth == NULL ||
         develop_depth(depth, &part, out->depth_width, out->depth_height, buffers->depth) != 0) {
-        return posed_fail(error, error_bytes, "%s: out of memory", frame->depth);
+        return t3r_reason(error, error_bytes, "%s: out of memory", frame->depth);
     }
     out->depth = buffers->depth;
     return 0;

@@ -36,6 +36,14 @@ void json_add_integer(cJSON *object, const char *key, int64_t value)
     cJSON_AddRawToObject(object, key, text);
 }
 
+void json_add_integers(cJSON *object, const char *key, const uint32_t *values, uint32_t count)
+{
+    cJSON *list = cJSON_AddArrayToObject(object, key);
+    for (uint32_t i = 0; i < count; i++) {
+        cJSON_AddItemToArray(list, cJSON_CreateNumber(values[i]));
+    }
+}
+
 void json_print(cJSON *object)
 {
     char *text = cJSON_PrintUnformatted(object);

@@ -16,6 +16,7 @@ int hash_parse(const char *text, uint64_t *hash);
 void json_add_hash(cJSON *object, const char *key, uint64_t hash);
 /* Exact beyond 2^53 too, where a double would round. */
 void json_add_integer(cJSON *object, const char *key, int64_t value);
+void json_add_integers(cJSON *object, const char *key, const uint32_t *values, uint32_t count);
 /* Prints the object on one line and frees it. */
 void json_print(cJSON *object);
 

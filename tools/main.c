@@ -1,5 +1,6 @@
 /* trim3r: finds the command and hands over. */
 #include <argp.h>
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -44,9 +45,8 @@ static void print_help(FILE *out)
           out);
 }
 
-int main(int argc, char **argv)
+static int run(int argc, char **argv)
 {
-    argp_err_exit_status = CLI_BAD_USAGE;
     if (argc < 2) {
         print_help(stderr);
         return CLI_BAD_USAGE;
@@ -70,4 +70,15 @@ int main(int argc, char **argv)
         }
     }
     return cli_error(CLI_BAD_USAGE, "there is no command '%s'; trim3r --help lists them", argv[1]);
+}
+
+int main(int argc, char **argv)
+{
+    argp_err_exit_status = CLI_BAD_USAGE;
+    int code = run(argc, argv);
+    /* a result that could not be printed is not a success */
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code == CLI_OK) {
+        code = cli_error(CLI_BAD_INPUT, "standard output: %s", strerror(errno));
+    }
+    return code;
 }

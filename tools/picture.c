@@ -7,13 +7,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include <jpeglib.h>
 #include <jerror.h>
 #include <png.h>
 
+#include "reason.h"
 #include "trim3r.h"
+#include "whole_file.h"
 
 /* Both libraries report errors by longjmp. Everything that must survive one or be freed after one lives in a struct
  * of the caller's, so that no local variable is read after a jump. */
@@ -22,8 +23,7 @@
 
 static int fail(char *error, size_t error_bytes, const char *path, const char *reason)
 {
-    snprintf(error, error_bytes, "%s: %s", path, reason);
-    return -1;
+    return t3r_reason(error, error_bytes, "%s: %s", path, reason);
 }
 
 static void *allocate_samples(const picture *p)
@@ -160,27 +160,19 @@ int picture_write_png(const char *path, const picture *in, char *error, size_t e
         (in->bits != 8 && !(in->bits == 16 && in->channels == 1))) {
         return fail(error, error_bytes, path, "only 8-bit RGB, 8-bit grey and 16-bit grey pictures can be written");
     }
-    png_work work = {.reason = "PNG: out of memory"};
-    work.file = fopen(path, "wb");
-    if (work.file == NULL) {
-        return fail(error, error_bytes, path, strerror(errno));
+    whole_file file;
+    if (whole_file_begin(&file, path, error, error_bytes) != 0) {
+        return -1;
     }
-    struct stat kind;
-    bool regular = fstat(fileno(work.file), &kind) == 0 && S_ISREG(kind.st_mode);
+    png_work work = {.file = file.stream, .reason = "PNG: out of memory"};
     int status = png_encode(&work, in);
     png_destroy_write_struct(&work.png, &work.info);
     free(work.rows);
-    if (fclose(work.file) != 0 && status == 0) {
-        snprintf(work.reason, sizeof work.reason, "%s", strerror(errno));
-        status = -1;
-    }
     if (status != 0) {
-        if (regular) {
-            remove(path);
-        }
+        whole_file_abandon(&file);
         return fail(error, error_bytes, path, work.reason);
     }
-    return 0;
+    return whole_file_commit(&file, NULL, error, error_bytes);
 }
 
 /* ---- JPEG ------------------------------------------------------------------------------------------------------ */

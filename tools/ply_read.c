@@ -10,6 +10,7 @@
 
 #include "file_bytes.h"
 #include "gaussian_shape.h"
+#include "reason.h"
 #include "scene_frame.h"
 
 #define HARMONIC_0 0.28209479177387814
@@ -44,7 +45,7 @@ typedef struct reader {
     size_t error_bytes;
 } reader;
 
-#define FAIL(r, ...) (snprintf((r)->error, (r)->error_bytes, __VA_ARGS__), -1)
+#define FAIL(r, ...) t3r_reason((r)->error, (r)->error_bytes, __VA_ARGS__)
 
 /* ---- header --------------------------------------------------------------------------------------------- */
 
@@ -404,14 +405,14 @@ int scene_file_read_ply(const char *path, scene_file *out, char *error, size_t e
 {
     *out = (scene_file){0};
     size_t count;
-    uint8_t *bytes = t3r_file_bytes(path, &count, error, error_bytes);
+    uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, error_bytes);
     if (bytes == NULL) {
         return -1;
     }
     char reason[256] = "";
     int result = scene_file_parse_ply(bytes, count, out, reason, sizeof reason);
     if (result != 0) {
-        snprintf(error, error_bytes, "%s: %s", path, reason);
+        t3r_reason(error, error_bytes, "%s: %s", path, reason);
     }
     free(bytes);
     return result;

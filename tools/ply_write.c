@@ -2,13 +2,13 @@
  * the header. */
 #include "scene_file.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "gaussian_shape.h"
+#include "whole_file.h"
 
 #define HARMONIC_0 0.28209479177387814
 
@@ -73,21 +73,15 @@ static void write_header(FILE *file, const t3r_scene *scene, int flags)
 
 int scene_file_write_ply(const char *path, const t3r_scene *scene, int flags, char *error, size_t error_bytes)
 {
-    FILE *file = fopen(path, "wb");
-    if (file == NULL) {
-        snprintf(error, error_bytes, "%s: %s", path, strerror(errno));
+    whole_file file;
+    if (whole_file_begin(&file, path, error, error_bytes) != 0) {
         return -1;
     }
-    write_header(file, scene, flags);
+    write_header(file.stream, scene, flags);
     for (uint32_t i = 0; i < scene->count; i++) {
         uint8_t row[4 * PROPERTY_COUNT];
         put_gaussian(row, &scene->gaussians[i], &scene->frame, flags & SCENE_FILE_LOCAL);
-        fwrite(row, 1, sizeof row, file);
+        fwrite(row, 1, sizeof row, file.stream);
     }
-    int failed = ferror(file);
-    if (fclose(file) != 0 || failed) {
-        snprintf(error, error_bytes, "%s: %s", path, strerror(errno));
-        return -1;
-    }
-    return 0;
+    return whole_file_commit(&file, NULL, error, error_bytes);
 }

@@ -2,24 +2,16 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "file_bytes.h"
+#include "reason.h"
 #include "trim3r.h"
 
 #define MAX_TEXT_BYTES ((size_t)256 << 20)
-
-int posed_fail(char *error, size_t error_bytes, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(error, error_bytes, format, arguments);
-    va_end(arguments);
-    return -1;
-}
 
 char *posed_path(const char *directory, const char *name)
 {
@@ -37,55 +29,6 @@ char *posed_path(const char *directory, const char *name)
         snprintf(path, bytes, "%s%s%s", directory, slash ? "/" : "", name);
     }
     return path;
-}
-
-/* Grows a buffer while reading, so that pipes and files that change under us are read safely too. */
-static char *read_stream(FILE *file, const char *path, size_t most, size_t *bytes, char *error, size_t error_bytes)
-{
-    char *text = NULL;
-    size_t used = 0, room = 0;
-    for (;;) {
-        if (used + 1 >= room) {
-            room = room == 0 ? 65536 : room * 2;
-            char *grown = realloc(text, room);
-            if (grown == NULL) {
-                free(text);
-                posed_fail(error, error_bytes, "%s: out of memory", path);
-                return NULL;
-            }
-            text = grown;
-        }
-        size_t got = fread(text + used, 1, room - used - 1, file);
-        used += got;
-        if (used > most) {
-            free(text);
-            posed_fail(error, error_bytes, "%s: larger than %zu MiB", path, most >> 20);
-            return NULL;
-        }
-        if (got == 0) {
-            break;
-        }
-    }
-    if (ferror(file)) {
-        posed_fail(error, error_bytes, "%s: %s", path, strerror(errno));
-        free(text);
-        return NULL;
-    }
-    text[used] = '\0';
-    *bytes = used;
-    return text;
-}
-
-char *posed_read_text(const char *path, size_t most, size_t *bytes, char *error, size_t error_bytes)
-{
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        posed_fail(error, error_bytes, "%s: %s", path, strerror(errno));
-        return NULL;
-    }
-    char *text = read_stream(file, path, most, bytes, error, error_bytes);
-    fclose(file);
-    return text;
 }
 
 /* The nearest rotation: Newton's iteration for the polar factor, R <- R (3 I - R^T R) / 2. Quadratic: an error of
@@ -180,10 +123,10 @@ int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height
 {
     const posed_intrinsics *in = &frame->intrinsics;
     if (!isnan(in->width) && in->width != width) {
-        return posed_fail(error, error_bytes, "w: %.17g, but the picture is %u pixels wide", in->width, width);
+        return t3r_reason(error, error_bytes, "w: %.17g, but the picture is %u pixels wide", in->width, width);
     }
     if (!isnan(in->height) && in->height != height) {
-        return posed_fail(error, error_bytes, "h: %.17g, but the picture is %u pixels high", in->height, height);
+        return t3r_reason(error, error_bytes, "h: %.17g, but the picture is %u pixels high", in->height, height);
     }
     *camera = (t3r_recorded_camera){.width = width, .height = height, .distortion = in->distortion};
     double fx = focal_length(in->fx, in->angle_x, width, NAN);
@@ -191,12 +134,12 @@ int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height
     camera->fx = isnan(fx) ? fy : fx;
     camera->fy = fy;
     if (isnan(camera->fx)) {
-        return posed_fail(error, error_bytes, "fl_x: missing, and no camera_angle_x to derive it from");
+        return t3r_reason(error, error_bytes, "fl_x: missing, and no camera_angle_x to derive it from");
     }
     camera->cx = (isnan(in->cx) ? width / 2.0 : in->cx) - 0.5;
     camera->cy = (isnan(in->cy) ? height / 2.0 : in->cy) - 0.5;
     if (!(camera->fx > 0 && isfinite(camera->fx)) || !(camera->fy > 0 && isfinite(camera->fy))) {
-        return posed_fail(error, error_bytes, "fl_x, fl_y: %g, %g: focal lengths must be positive", camera->fx,
+        return t3r_reason(error, error_bytes, "fl_x, fl_y: %g, %g: focal lengths must be positive", camera->fx,
                           camera->fy);
     }
     memcpy(camera->coefficients, in->coefficients, sizeof camera->coefficients);
@@ -217,16 +160,16 @@ static int read_transforms(const char *directory, posed_folder *out, char *error
 {
     char *path = posed_path(directory, "transforms.json");
     if (path == NULL) {
-        return posed_fail(error, error_bytes, "out of memory");
+        return t3r_reason(error, error_bytes, "out of memory");
     }
     size_t bytes = 0;
     char reason[512];
-    char *text = posed_read_text(path, MAX_TEXT_BYTES, &bytes, error, error_bytes);
+    char *text = (char *)t3r_file_bytes(path, MAX_TEXT_BYTES, &bytes, error, error_bytes);
     int status = -1;
     if (text != NULL) {
         status = transforms_json_parse(text, bytes, out, reason, sizeof reason);
         if (status != 0) {
-            posed_fail(error, error_bytes, "%s: %s", path, reason);
+            t3r_reason(error, error_bytes, "%s: %s", path, reason);
         }
     }
     free(text);
@@ -239,11 +182,11 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
 {
     memset(out, 0, sizeof *out);
     if (!exists(directory, ".")) {
-        return posed_fail(error, error_bytes, "%s: %s", directory, errno == ENOTDIR ? "not a folder" : strerror(errno));
+        return t3r_reason(error, error_bytes, "%s: %s", directory, errno == ENOTDIR ? "not a folder" : strerror(errno));
     }
     if (exists(directory, "transforms.json")) {
         if (options != NULL && options->intrinsics_count != 0) {
-            return posed_fail(error, error_bytes,
+            return t3r_reason(error, error_bytes,
                               "%s/transforms.json: has its own intrinsics; --intrinsics is for "
                               "TUM RGB-D folders",
                               directory);
@@ -253,7 +196,7 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
     if (exists(directory, "rgb.txt") || exists(directory, "groundtruth.txt")) {
         return tum_rgbd_read(directory, options, out, error, error_bytes);
     }
-    return posed_fail(error, error_bytes,
+    return t3r_reason(error, error_bytes,
                       "%s: neither transforms.json nor rgb.txt and groundtruth.txt (TUM RGB-D) is there", directory);
 }
 

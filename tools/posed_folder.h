@@ -64,12 +64,8 @@ int tum_rgbd_read(const char *directory, const posed_folder_options *options, po
 
 /* Shared by the readers ------------------------------------------------------------------------------------------ */
 
-/* "%s" into error[]; always -1. */
-int posed_fail(char *error, size_t error_bytes, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* DIR/NAME, or NAME when absolute, on the heap; NULL when out of memory. */
 char *posed_path(const char *directory, const char *name);
-/* A whole file of at most `most` bytes, with a 0 behind; on the heap. NULL with "path: why" in error[]. */
-char *posed_read_text(const char *path, size_t most, size_t *bytes, char *error, size_t error_bytes);
 /* A camera-to-world rotation (row-major, camera axes x right, y down, z forward) to a unit quaternion: entries finite,
  * orthonormal within 1e-3, determinant +1. NULL, or what is wrong with it. */
 const char *posed_quaternion(const double matrix[9], double quaternion[4]);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "option_values.h"
 
 enum {
     KEY_GAUSSIANS = 256,
@@ -29,17 +30,6 @@ enum {
     KEY_THREADS,
     KEY_CPU_MASK
 };
-
-/* A whole number in [low, high], or a usage error that names the option. */
-static uint32_t number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
-{
-    uint32_t value, count;
-    if (cli_parse_list_u32(text, &value, 1, &count) != 0 || value < low || value > high) {
-        argp_error(state, "--%s takes a whole number %u..%u, not '%s'", option, (unsigned)low, (unsigned)high, text);
-        return low;
-    }
-    return value;
-}
 
 /* The index of a name in a runtime's list of names. */
 #define CHOOSE(type, function)                                                                                         \
@@ -125,28 +115,25 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         o->wavelet = choose_t3r_wavelet(state, "wavelet", arg);
         return 0;
     case KEY_LEVELS:
-        o->wavelet_levels = number(state, "levels", arg, 1, T3R_MAX_LEVELS);
+        o->wavelet_levels = option_number(state, "levels", arg, 1, T3R_MAX_LEVELS);
         return 0;
     case KEY_CLUSTERS:
-        o->clusters = number(state, "clusters", arg, 1, T3R_MAX_CLUSTERS);
+        o->clusters = option_number(state, "clusters", arg, 1, T3R_MAX_CLUSTERS);
         return 0;
     case KEY_GAMMA:
         parse_gamma(state, arg, o);
         return 0;
     case KEY_KEEP_PERCENT:
-        o->paper_keep_percent = number(state, "keep-percent", arg, 0, 100);
+        o->paper_keep_percent = option_number(state, "keep-percent", arg, 0, 100);
         return 0;
     case KEY_FILL_RADIUS:
-        o->fill_radius = number(state, "fill-radius", arg, 0, 8);
+        o->fill_radius = option_number(state, "fill-radius", arg, 0, 8);
         return 0;
     case KEY_SEED:
-        o->seed = number(state, "seed", arg, 0, UINT32_MAX);
+        o->seed = option_number(state, "seed", arg, 0, UINT32_MAX);
         return 0;
     case KEY_WORKING:
-        if (cli_parse_size(arg, &o->width, &o->height) != 0 || o->width < T3R_MIN_SIDE || o->height < T3R_MIN_SIDE ||
-            o->width > T3R_MAX_SIDE || o->height > T3R_MAX_SIDE) {
-            argp_error(state, "--working takes WxH, each 8..4096, not '%s'", arg);
-        }
+        option_size(state, "working", arg, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_DEPTH:
         if (strcmp(arg, "stereo") == 0) {
@@ -156,7 +143,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         }
         return 0;
     case KEY_REFINE:
-        o->refine = number(state, "refine", arg, 0, UINT32_MAX);
+        o->refine = option_number(state, "refine", arg, 0, UINT32_MAX);
         if (o->refine != 0) {
             argp_error(state, "--refine %s: refinement is not yet available; 0 is the only value", arg);
         }
@@ -165,10 +152,10 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         reconstruction_parse_arena(state, arg, o);
         return 0;
     case KEY_THREADS:
-        o->threads = number(state, "threads", arg, 1, T3R_MAX_THREADS);
+        o->threads = option_number(state, "threads", arg, 1, T3R_MAX_THREADS);
         return 0;
     case KEY_CPU_MASK:
-        (void)number(state, "cpu-mask", arg, 0, UINT32_MAX);
+        (void)option_number(state, "cpu-mask", arg, 0, UINT32_MAX);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -194,13 +181,10 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
     uint32_t count;
     switch (key) {
     case KEY_CONTEXT:
-        if (cli_parse_list_u32(arg, o->context, T3R_MAX_VIEWS, &o->context_count) != 0) {
-            argp_error(state, "--context takes 1 to %u frame indices with commas between, not '%s'", T3R_MAX_VIEWS,
-                       arg);
-        }
+        option_frames(state, "context", arg, o->context, &o->context_count);
         return 0;
     case KEY_GAUSSIANS:
-        o->gaussians = number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
+        o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
         return 0;
     case KEY_KEEP:
         if (cli_parse_list_percent(arg, &o->keep_percent, 1, &count) != 0) {

@@ -8,6 +8,7 @@
 
 #include <cjson/cJSON.h>
 
+#include "reason.h"
 #include "trim3r.h"
 
 #define MAX_PATH_BYTES 4096u
@@ -22,7 +23,7 @@ typedef struct reader {
 
 static int fail(reader *r, const char *field, const char *what)
 {
-    return posed_fail(r->error, r->error_bytes, "%s%s%s: %s", r->where, r->where[0] != '\0' ? ": " : "", field, what);
+    return t3r_reason(r->error, r->error_bytes, "%s%s%s: %s", r->where, r->where[0] != '\0' ? ": " : "", field, what);
 }
 
 /* The field of the frame, else of the top; NULL when neither has it. */
@@ -255,7 +256,7 @@ static int read_frames(reader *r, posed_folder *out)
         posed_frame *frame = &out->frames[out->frame_count++];
         snprintf(r->where, sizeof r->where, "frames[%u]", out->frame_count - 1);
         if (!cJSON_IsObject(r->frame)) {
-            return posed_fail(r->error, r->error_bytes, "%s: not an object", r->where);
+            return t3r_reason(r->error, r->error_bytes, "%s: not an object", r->where);
         }
         if (read_path(r, "file_path", &frame->image) != 0) {
             return -1;
@@ -343,12 +344,12 @@ int transforms_json_parse(const char *text, size_t bytes, posed_folder *out, cha
     cJSON *root = cJSON_ParseWithLengthOpts(text, bytes, &end, 0);
     if (root == NULL) {
         size_t at = end == NULL ? 0 : (size_t)(end - text);
-        return posed_fail(error, error_bytes, "byte %zu: not JSON (NaN and Infinity are not either)", at);
+        return t3r_reason(error, error_bytes, "byte %zu: not JSON (NaN and Infinity are not either)", at);
     }
     reader r = {.root = root, .error = error, .error_bytes = error_bytes};
     int status;
     if (!cJSON_IsObject(root)) {
-        status = posed_fail(error, error_bytes, "byte 0: not a JSON object");
+        status = t3r_reason(error, error_bytes, "byte 0: not a JSON object");
     } else {
         status = read_frames(&r, out) != 0 || read_depth_unit(&r, out) != 0 || read_triplets(&r, out) != 0 ? -1 : 0;
     }

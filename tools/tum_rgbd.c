@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "file_bytes.h"
+#include "reason.h"
 #include "trim3r.h"
 
 #define MAX_LIST_BYTES ((size_t)64 << 20)
@@ -114,7 +116,7 @@ static int parse_list(const char *path, char *text, bool poses, stamped_list *li
             room = room == 0 ? 1024 : room * 2;
             stamped *grown = realloc(list->items, room * sizeof *grown);
             if (grown == NULL) {
-                return posed_fail(error, error_bytes, "%s: out of memory", path);
+                return t3r_reason(error, error_bytes, "%s: out of memory", path);
             }
             list->items = grown;
         }
@@ -122,12 +124,12 @@ static int parse_list(const char *path, char *text, bool poses, stamped_list *li
         *item = (stamped){0};
         const char *wrong = parse_line(line, poses, item);
         if (wrong != NULL) {
-            return posed_fail(error, error_bytes, "%s: line %zu: %s", path, line_number, wrong);
+            return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, line_number, wrong);
         }
         list->count++;
     }
     if (list->count == 0) {
-        return posed_fail(error, error_bytes, "%s: no entry", path);
+        return t3r_reason(error, error_bytes, "%s: no entry", path);
     }
     qsort(list->items, list->count, sizeof *list->items, by_stamp);
     return 0;
@@ -138,10 +140,10 @@ static int read_list(const char *directory, const char *name, bool poses, stampe
 {
     char *path = posed_path(directory, name);
     if (path == NULL) {
-        return posed_fail(error, error_bytes, "out of memory");
+        return t3r_reason(error, error_bytes, "out of memory");
     }
     size_t bytes = 0;
-    char *text = posed_read_text(path, MAX_LIST_BYTES, &bytes, error, error_bytes);
+    char *text = (char *)t3r_file_bytes(path, MAX_LIST_BYTES, &bytes, error, error_bytes);
     int status = text == NULL ? -1 : parse_list(path, text, poses, list, error, error_bytes);
     free(text);
     free(path);
@@ -234,7 +236,7 @@ static int find_intrinsics(const char *directory, const posed_folder_options *op
         }
         free(full);
         if (row == NULL) {
-            return posed_fail(error, error_bytes,
+            return t3r_reason(error, error_bytes,
                               "%s: intrinsics unknown: a TUM RGB-D folder does not hold them, and its name has none of "
                               "freiburg1, freiburg2, freiburg3; give --intrinsics fx,fy,cx,cy[,k1,k2,p1,p2,k3] "
                               "(525,525,319.5,239.5 is the data set's own default)",
@@ -261,11 +263,11 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
                 const posed_intrinsics *intrinsics, posed_folder *out, char *error, size_t error_bytes)
 {
     if (colour->count > POSED_FOLDER_MAX_FRAMES) {
-        return posed_fail(error, error_bytes, "rgb.txt: more than 100000 pictures");
+        return t3r_reason(error, error_bytes, "rgb.txt: more than 100000 pictures");
     }
     out->frames = calloc(colour->count, sizeof *out->frames);
     if (out->frames == NULL) {
-        return posed_fail(error, error_bytes, "out of memory");
+        return t3r_reason(error, error_bytes, "out of memory");
     }
     for (size_t i = 0; i < colour->count; i++) {
         posed_frame *frame = &out->frames[out->frame_count];
@@ -279,11 +281,11 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
         frame->image = strdup(colour->items[i].name);
         frame->depth = measured != NULL ? strdup(measured->name) : NULL;
         if (frame->image == NULL || (measured != NULL && frame->depth == NULL)) {
-            return posed_fail(error, error_bytes, "out of memory");
+            return t3r_reason(error, error_bytes, "out of memory");
         }
     }
     if (out->frame_count == 0) {
-        return posed_fail(error, error_bytes, "groundtruth.txt: no pose within 20 ms of any picture of rgb.txt");
+        return t3r_reason(error, error_bytes, "groundtruth.txt: no pose within 20 ms of any picture of rgb.txt");
     }
     return 0;
 }

@@ -11,6 +11,9 @@
 #include "camera.h"
 #include "file_bytes.h"
 #include "posed_folder.h"
+#include "reason.h"
+
+#define MAX_TEXT_BYTES ((size_t)256 << 20)
 
 void viewpoint_list_free(viewpoint_list *list)
 {
@@ -60,8 +63,7 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
 {
     out->items = calloc(folder->frame_count, sizeof *out->items);
     if (out->items == NULL) {
-        snprintf(error, error_bytes, "out of memory");
-        return -1;
+        return t3r_reason(error, error_bytes, "out of memory");
     }
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         const posed_frame *frame = &folder->frames[i];
@@ -69,8 +71,7 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
         viewpoint *view = &out->items[i];
         t3r_recorded_camera camera;
         if (isnan(lens->width) || isnan(lens->height)) {
-            snprintf(error, error_bytes, "w or h: missing");
-            return -1;
+            return t3r_reason(error, error_bytes, "w or h: missing");
         }
         if (posed_frame_camera(frame, (uint32_t)lens->width, (uint32_t)lens->height, &camera, error, error_bytes) !=
             0) {
@@ -82,9 +83,8 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
         view->camera.cx_q16 = to_q(camera.cx, 16);
         view->camera.cy_q16 = to_q(camera.cy, 16);
         if (set_pose(&view->camera, camera.position, camera.rotation) != 0) {
-            snprintf(error, error_bytes,
+            return t3r_reason(error, error_bytes,
                      "the camera is out of range (focal length 8..16384 pixels, position below 2^30)");
-            return -1;
         }
         out->count++;
     }
@@ -115,7 +115,7 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
 {
     *out = (viewpoint_list){0};
     size_t count;
-    uint8_t *bytes = t3r_file_bytes(path, &count, error, error_bytes);
+    uint8_t *bytes = t3r_file_bytes(path, MAX_TEXT_BYTES, &count, error, error_bytes);
     if (bytes == NULL) {
         return -1;
     }
@@ -132,7 +132,7 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
     free(bytes);
     if (result != 0) {
         viewpoint_list_free(out);
-        snprintf(error, error_bytes, "%s: %s", path, reason);
+        t3r_reason(error, error_bytes, "%s: %s", path, reason);
     }
     return result;
 }
@@ -164,26 +164,12 @@ static int read_line(char *line, const viewpoint *lens, viewpoint *view, char *r
     return 0;
 }
 
-/* The file with a zero byte behind, where strtod() stops. */
-static char *read_text(const char *path, size_t *count, char *error, size_t error_bytes)
-{
-    uint8_t *bytes = t3r_file_bytes(path, count, error, error_bytes);
-    char *text = bytes != NULL ? realloc(bytes, *count + 1) : NULL;
-    if (text != NULL) {
-        text[*count] = '\0';
-    } else if (bytes != NULL) {
-        snprintf(error, error_bytes, "%s: out of memory", path);
-        free(bytes);
-    }
-    return text;
-}
-
 int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
                               size_t error_bytes)
 {
     *out = (viewpoint_list){0};
     size_t count;
-    char *text = read_text(path, &count, error, error_bytes);
+    char *text = (char *)t3r_file_bytes(path, MAX_TEXT_BYTES, &count, error, error_bytes);
     if (text == NULL) {
         return -1;
     }
@@ -222,7 +208,7 @@ int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint
     }
     free(text);
     if (result != 0) {
-        snprintf(error, error_bytes, "%s: line %" PRIu32 ": %s", path, line_number, reason);
+        t3r_reason(error, error_bytes, "%s: line %" PRIu32 ": %s", path, line_number, reason);
         viewpoint_list_free(out);
     }
     return result;

@@ -383,7 +383,7 @@ static void texture_by_definition(void **state)
             for (uint32_t i = 0; i < width * height; i++) {
                 for (int c = 0; c < 3; c++) {
                     x.colour[c][i] =
-                        turn == 0 ? (uint8_t)unit_random(&seed) : (uint8_t)((uint32_t)c * 20 + i % width + i / width);
+                        (uint8_t)(turn == 0 ? unit_random(&seed) : (uint32_t)c * 20 + i % width + i / width);
                 }
                 int luma = (77 * x.colour[0][i] + 150 * x.colour[1][i] + 29 * x.colour[2][i] + 128) / 256;
                 x.b.copy[i] = (int16_t)((luma - 128) * 16);

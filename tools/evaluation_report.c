@@ -1,0 +1,199 @@
+#include "evaluation_report.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli.h"
+#include "evaluation_pictures.h"
+#include "evaluation_table.h"
+#include "json_output.h"
+
+#define ERROR_BYTES 512
+#define PATH_BYTES 4096
+
+static int open_page(evaluation_report *report)
+{
+    char error[ERROR_BYTES] = "";
+    report->page = html_page_new("trim3r: rendered views beside recorded ones",
+                                 "A scene is built from the context views alone, with the share of their points that "
+                                 "stands under each picture, and drawn from where the target was taken.");
+    if (report->page == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    if (whole_file_begin(&report->page_file, report->to.page, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    return CLI_OK;
+}
+
+int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t row_total)
+{
+    *report = (evaluation_report){.to = *to, .row_total = row_total};
+    report->rows = calloc(row_total, sizeof *report->rows);
+    if (report->rows == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    int code = to->page != NULL ? open_page(report) : CLI_OK;
+    if (code == CLI_OK && to->csv != NULL) {
+        report->csv.file = fopen(to->csv, "w");
+        if (report->csv.file == NULL) {
+            return cli_error(CLI_BAD_INPUT, "%s: %s", to->csv, strerror(errno));
+        }
+        evaluation_csv_header(&report->csv);
+    }
+    if (code == CLI_OK && !to->json) {
+        evaluation_print_header(stdout, to->planar);
+    }
+    return code;
+}
+
+/* ---- what is written as rows arrive --------------------------------------------------------------------------- */
+
+static int picture_folder(const evaluation_report *report, const evaluation_case *what, char folder[PATH_BYTES])
+{
+    bool each = report->to.folder_each;
+    int length = snprintf(folder, PATH_BYTES, "%s%s%s", report->to.images, each ? "/" : "", each ? what->scene : "");
+    return length > 0 && length < PATH_BYTES
+               ? CLI_OK
+               : cli_error(CLI_BAD_USAGE, "--images: the name of a folder of at most %d bytes is needed",
+                           PATH_BYTES - 1);
+}
+
+int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what)
+{
+    if (report->page != NULL) {
+        evaluation_page_views(report->page, views, what);
+    }
+    if (report->to.images == NULL) {
+        return CLI_OK;
+    }
+    char folder[PATH_BYTES];
+    int code = picture_folder(report, what, folder);
+    return code == CLI_OK ? evaluation_write_views(folder, views, what) : code;
+}
+
+void evaluation_report_method(evaluation_report *report, evaluation_method method)
+{
+    if (report->page != NULL) {
+        html_page_strip(report->page, evaluation_method_name(method));
+    }
+}
+
+int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const evaluation_case *what,
+                          const evaluation_row *row, uint8_t *render)
+{
+    report->rows[report->row_count++] = *row;
+    if (!report->to.json) {
+        evaluation_print_row(stdout, row, report->to.planar);
+        fflush(stdout);
+    } else if (isatty(STDERR_FILENO)) {
+        fprintf(stderr, "\r%u of %u rows%s", (unsigned)report->row_count, (unsigned)report->row_total,
+                report->row_count == report->row_total ? "\r\033[K" : "");
+    }
+    if (report->csv.file != NULL) {
+        evaluation_csv_row(&report->csv, row);
+    }
+    if (report->page != NULL) {
+        evaluation_page_render(report->page, views, row, render);
+    }
+    if (report->to.images == NULL) {
+        return CLI_OK;
+    }
+    char folder[PATH_BYTES];
+    int code = picture_folder(report, what, folder);
+    return code == CLI_OK ? evaluation_write_render(folder, views, what, row, render) : code;
+}
+
+/* ---- what is written at the end --------------------------------------------------------------------------------- */
+
+static void print_json(const evaluation_report *report, const evaluation_row *means, uint32_t mean_count)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON *rows = cJSON_AddArrayToObject(object, "rows");
+    for (uint32_t i = 0; i < report->row_count; i++) {
+        cJSON_AddItemToArray(rows, evaluation_json(&report->rows[i]));
+    }
+    cJSON *mean_rows = cJSON_AddArrayToObject(object, "means");
+    for (uint32_t i = 0; i < mean_count; i++) {
+        cJSON_AddItemToArray(mean_rows, evaluation_json(&means[i]));
+    }
+    json_print(object);
+}
+
+static void page_table(html_page *page, const char *heading, const evaluation_row *rows, uint32_t count, bool planar,
+                       bool folded)
+{
+    char text[256];
+    html_page_table(page, heading, folded);
+    for (uint32_t c = 0; c < EVALUATION_COLUMNS; c++) {
+        if (evaluation_glance(&rows[0], c, planar, text, sizeof text)) {
+            html_page_table_cell(page, evaluation_column_name(c));
+        }
+    }
+    html_page_table_end_row(page);
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t c = 0; c < EVALUATION_COLUMNS; c++) {
+            if (evaluation_glance(&rows[i], c, planar, text, sizeof text)) {
+                html_page_table_cell(page, text);
+            }
+        }
+        html_page_table_end_row(page);
+    }
+}
+
+static int finish_page(evaluation_report *report, const evaluation_row *means, uint32_t mean_count, bool several)
+{
+    char error[ERROR_BYTES] = "";
+    if (several) {
+        page_table(report->page, "Means", means, mean_count, report->to.planar, false);
+    }
+    page_table(report->page, "Scores", report->rows, report->row_count, report->to.planar, several);
+    if (html_page_write(report->page, report->page_file.stream) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s: out of memory for the page", report->to.page);
+    }
+    if (whole_file_commit(&report->page_file, NULL, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    return CLI_OK;
+}
+
+/* A mean of one row is no news. */
+static int finish(evaluation_report *report)
+{
+    evaluation_row *means = calloc(report->row_count, sizeof *means);
+    if (means == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    uint32_t mean_count = evaluation_means(report->rows, report->row_count, !report->to.planar, means);
+    bool several = mean_count < report->row_count;
+    if (report->to.json) {
+        print_json(report, means, mean_count);
+    }
+    for (uint32_t i = 0; several && !report->to.json && i < mean_count; i++) {
+        evaluation_print_row(stdout, &means[i], report->to.planar);
+    }
+    int code = report->page != NULL ? finish_page(report, means, mean_count, several) : CLI_OK;
+    free(means);
+    return code;
+}
+
+int evaluation_report_close(evaluation_report *report, int code)
+{
+    if (code == CLI_OK) {
+        code = finish(report);
+    }
+    if (report->csv.file != NULL) {
+        bool failed = ferror(report->csv.file) != 0;
+        failed |= fclose(report->csv.file) != 0;
+        if (failed && code == CLI_OK) {
+            code = cli_error(CLI_BAD_INPUT, "%s: %s", report->to.csv, strerror(errno));
+        }
+    }
+    whole_file_abandon(&report->page_file);
+    html_page_free(report->page);
+    free(report->rows);
+    return code;
+}

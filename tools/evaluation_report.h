@@ -1,0 +1,38 @@
+/* Where the rows of an evaluation go as they arrive: the terminal or one JSON object, a CSV file, pictures, a page. */
+#ifndef TRIM3R_TOOLS_EVALUATION_REPORT_H
+#define TRIM3R_TOOLS_EVALUATION_REPORT_H
+
+#include "csv.h"
+#include "evaluation.h"
+#include "html_page.h"
+#include "whole_file.h"
+
+typedef struct evaluation_outputs {
+    const char *csv, *images, *page; /* paths; NULL = none */
+    bool json, planar;
+    bool folder_each; /* a folder within `images` for each scene */
+} evaluation_outputs;
+
+typedef struct evaluation_report {
+    evaluation_outputs to;
+    csv_table csv;
+    html_page *page;
+    whole_file page_file;
+    evaluation_row *rows; /* room for all */
+    uint32_t row_count, row_total;
+} evaluation_report;
+
+/* These report on stderr and return an exit status of cli.h. */
+
+/* Opens all that can be opened, so that a bad path is told before the work. evaluation_report_close() in any case. */
+int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t row_total);
+/* The recorded views of the rows that follow. */
+int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what);
+/* The method of the rows that follow. */
+void evaluation_report_method(evaluation_report *report, evaluation_method method);
+int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const evaluation_case *what,
+                          const evaluation_row *row, uint8_t *render);
+/* Means, JSON and page when `code` is CLI_OK; no half page otherwise. `code`, or what went wrong here. */
+int evaluation_report_close(evaluation_report *report, int code);
+
+#endif

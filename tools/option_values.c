@@ -1,0 +1,50 @@
+#include "option_values.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#include "cli.h"
+#include "trim3r.h"
+
+uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
+{
+    uint32_t value = low, count;
+    if (cli_parse_list_u32(text, &value, 1, &count) != 0 || value < low || value > high) {
+        argp_error(state, "--%s takes a whole number %" PRIu32 "..%" PRIu32 ", not '%s'", option, low, high, text);
+    }
+    return value;
+}
+
+void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
+                 uint32_t *height)
+{
+    if (cli_parse_size(text, width, height) != 0 || *width < low || *height < low || *width > T3R_MAX_SIDE ||
+        *height > T3R_MAX_SIDE) {
+        argp_error(state, "--%s takes WxH, each side %" PRIu32 "..%u, not '%s'", option, low, T3R_MAX_SIDE, text);
+    }
+}
+
+void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count)
+{
+    if (cli_parse_list_u32(text, frames, T3R_MAX_VIEWS, count) != 0) {
+        argp_error(state, "--%s takes 1 to %u frame indices with commas between, not '%s'", option, T3R_MAX_VIEWS,
+                   text);
+    }
+}
+
+void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (*places[i] == NULL) {
+            *places[i] = argument;
+            return;
+        }
+    }
+    argp_error(state, "'%s' is too many", argument);
+}
+
+bool path_is_ply(const char *path)
+{
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".ply") == 0;
+}

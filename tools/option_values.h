@@ -1,0 +1,23 @@
+/* Values of options as the commands' argp parsers read them. A bad one is a usage error that names the option, which
+ * ends the process: nothing is returned then. */
+#ifndef TRIM3R_TOOLS_OPTION_VALUES_H
+#define TRIM3R_TOOLS_OPTION_VALUES_H
+
+#include <argp.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A whole number in [low, high]. */
+uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
+/* "WxH", each side in [low, T3R_MAX_SIDE]. */
+void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
+                 uint32_t *height);
+/* 1 to T3R_MAX_VIEWS frame indices with commas between. */
+void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
+/* The next free one of `count` places for arguments that are no options. */
+void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count);
+
+/* Whether a path ends as scene files do. */
+bool path_is_ply(const char *path);
+
+#endif
