@@ -84,11 +84,11 @@ typedef struct t3r_sink {
 /* The camera as the file holds it: doubles, straight from the source. */
 typedef struct t3r_recorded_camera {
     uint32_t width, height;
-    double fx, fy, cx, cy;      /* pixels; pixel (0, 0) is the centre of the top-left pixel */
+    double fx, fy, cx, cy; /* pixels; pixel (0, 0) is the centre of the top-left pixel */
     t3r_distortion distortion;
     double coefficients[5];
-    double position[3];         /* world units */
-    double rotation[4];         /* w x y z, camera to world */
+    double position[3]; /* world units */
+    double rotation[4]; /* w x y z, camera to world */
 } t3r_recorded_camera;
 
 typedef struct t3r_recorded_frame {
@@ -97,7 +97,7 @@ typedef struct t3r_recorded_frame {
     uint32_t width, height;
     const uint8_t *planes[2];
     uint32_t stride_bytes[2];
-    const uint16_t *depth;      /* NULL = none; host order */
+    const uint16_t *depth; /* NULL = none; host order */
     uint32_t depth_width, depth_height;
     t3r_recorded_camera camera;
 } t3r_recorded_frame;
@@ -109,10 +109,10 @@ typedef struct t3r_recorder t3r_recorder;
 size_t t3r_recorder_bytes(void);
 
 typedef struct t3r_recording_header {
-    const char *camera;         /* topic prefix, "camera" say: 1..47 of A-Z a-z 0-9 _ and, inside, / */
-    const char *source;         /* free text: what was imported */
-    const char *clock;          /* "synthetic", "monotonic", "boottime", ... */
-    double depth_unit;          /* world units a step; kept in Q40; more than 2^-41, less than 2^16 */
+    const char *camera; /* topic prefix, "camera" say: 1..47 of A-Z a-z 0-9 _ and, inside, / */
+    const char *source; /* free text: what was imported */
+    const char *clock;  /* "synthetic", "monotonic", "boottime", ... */
+    double depth_unit;  /* world units a step; kept in Q40; more than 2^-41, less than 2^16 */
     const t3r_triplet *triplets;
     uint32_t triplet_count;
 } t3r_recording_header;

@@ -257,7 +257,8 @@ static const char *parse_triplets(t3r_text text, t3r_recording *recording)
         for (uint32_t j = 0; j < 3; j++) {
             char behind = j < 2 ? ',' : ';';
             bool last = i + 1 == room && j == 2;
-            if (!number(text, &at, &members[j]) || (last ? at != text.count : at >= text.count || text.chars[at] != behind)) {
+            if (!number(text, &at, &members[j]) ||
+                (last ? at != text.count : at >= text.count || text.chars[at] != behind)) {
                 return "triplets is not 'a,b,target;a,b,target...'";
             }
             at += !last;

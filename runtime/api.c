@@ -1,14 +1,28 @@
-/* The C interface: arguments are checked here and nowhere deeper. */
+/* The C interface: what it is given is checked here (a render's in raster.c, a frame's content in the image stage), and
+ * nowhere deeper. */
 #include <string.h>
 
 #include "arena.h"
-#include "fixed.h"
+#include "camera.h"
 #include "hash.h"
+#include "image.h"
 #include "pipeline.h"
 #include "scene_frame.h"
 #include "state.h"
+#include "superclusters.h"
 
 /* --- the arena ---------------------------------------------------------------------------------------------------- */
+
+static bool is_frame(const t3r_scene_frame *frame)
+{
+    const int64_t most = (int64_t)1 << 62;
+    for (int i = 0; i < 3; i++) {
+        if (frame->origin_q32[i] <= -most || frame->origin_q32[i] >= most) {
+            return false;
+        }
+    }
+    return frame->exponent >= T3R_EXPONENT_LEAST && frame->exponent <= T3R_EXPONENT_MOST;
+}
 
 /* Changes with the layout: an arena laid out by another build is refused. */
 static uint64_t layout_hash(const t3r_layout *layout)
@@ -52,6 +66,66 @@ t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r
     return T3R_OK;
 }
 
+static bool is_sound(const t3r_gaussian *g)
+{
+    for (int i = 0; i < 3; i++) {
+        if (g->position_q20[i] < -T3R_POSITION_MOST_Q20 || g->position_q20[i] > T3R_POSITION_MOST_Q20 ||
+            g->colour_q7[i] > 255 * 128 || g->reserved[i] != 0) {
+            return false;
+        }
+    }
+    return g->factor_exponent >= -60 && g->factor_exponent <= 15 && g->opacity_q15 <= 32767;
+}
+
+/* Whether labels and SuperClusters of a copied analysis stay within what the budget stage counts on. */
+static bool is_analysis(const t3r_runtime *rt)
+{
+    size_t points = T3R_PIXELS_(rt->config.width, rt->config.height) * rt->views;
+    const uint16_t *labels = t3r_buffer_at(rt, T3R_BUFFER_LABELS);
+    const t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    for (size_t i = 0; i < points; i++) {
+        if (labels[i] >= rt->config.clusters && labels[i] != T3R_NO_LABEL) {
+            return false;
+        }
+    }
+    for (uint32_t k = 0; k < rt->config.clusters; k++) {
+        if (clusters[k].points > points || clusters[k].texture_q4 > UINT16_MAX ||
+            clusters[k].order >= rt->config.clusters) {
+            return false;
+        }
+    }
+    return rt->median_depth_q20 >= 1 << 20 && rt->median_depth_q20 < 2 << 20 && rt->valid_points <= points;
+}
+
+static bool is_scene(const t3r_runtime *rt)
+{
+    const t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
+    for (uint32_t i = 0; i < rt->gaussians; i++) {
+        if (!is_sound(&scene[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether a copied arena holds what the stages rely on. Planes may hold anything. */
+static bool is_consistent(const t3r_runtime *rt)
+{
+    if (rt->views > rt->config.views || rt->gaussians > rt->config.max_gaussians || rt->analysed > 1 ||
+        rt->has_scene > 1 || !is_frame(&rt->frame)) {
+        return false;
+    }
+    for (uint32_t v = 0; v < rt->views; v++) {
+        t3r_pose pose;
+        if (t3r_camera_check(&rt->camera[v]) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
+            rt->depth_unit_q40[v] > T3R_MAX_DEPTH_UNIT_Q40 ||
+            (rt->analysed && t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK)) {
+            return false;
+        }
+    }
+    return (!rt->analysed || is_analysis(rt)) && (!rt->has_scene || is_scene(rt));
+}
+
 t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
@@ -64,11 +138,13 @@ t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
     t3r_layout layout;
     if (state->magic != T3R_MAGIC || state->bits_epoch != T3R_BITS_EPOCH || state->arena_bytes != arena_bytes ||
         t3r_config_error(&state->config) != NULL || t3r_lay_out(&state->config, arena_bytes, &layout) != T3R_OK ||
-        state->layout_hash != layout_hash(&layout) || state->views > state->config.views ||
-        state->gaussians > state->config.max_gaussians) {
+        state->layout_hash != layout_hash(&layout)) {
         return T3R_ERR_EPOCH;
     }
     bind_layout(state, &layout);
+    if (!is_consistent(state)) {
+        return T3R_ERR_EPOCH;
+    }
     memset(&state->hooks, 0, sizeof state->hooks);
     *rt = state;
     return T3R_OK;
@@ -94,6 +170,19 @@ t3r_status t3r_reset(t3r_runtime *rt)
 
 /* --- views -------------------------------------------------------------------------------------------------------- */
 
+static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
+{
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(rt, views);
+    size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
+    for (size_t i = 0; i < pixels; i++) {
+        if (views[index].confidence[i] == T3R_CONFIDENCE_MEASURED) {
+            return true;
+        }
+    }
+    return false;
+}
+
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
 {
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
@@ -101,15 +190,18 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
     if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
+    rt->analysed = 0; /* the image stage works where later planes are */
     t3r_camera undistorted;
     t3r_status status = t3r_develop_view(rt, rt->views, frame, camera, &undistorted);
     if (status != T3R_OK) {
         return status;
     }
+    if (!has_measured_depth(rt, rt->views)) {
+        return T3R_ERR_NO_DEPTH;
+    }
     rt->camera[rt->views] = undistorted;
     rt->depth_unit_q40[rt->views] = frame->depth_unit_q40;
     rt->views++;
-    rt->analysed = 0;
     return T3R_OK;
 }
 
@@ -160,7 +252,7 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene)
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
     if (status == T3R_OK) {
-        status = t3r_spend(rt);
+        status = t3r_build_scene(rt);
     }
     return status == T3R_OK ? t3r_get_scene(rt, scene) : status;
 }
@@ -177,9 +269,14 @@ t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation al
         return T3R_ERR_ARGUMENT;
     }
     T3R_REFUSE_UNLESS(rt->config.keep_analysis && rt->analysed, T3R_ERR_STATE);
+    t3r_config before = rt->config;
     rt->config = config;
-    t3r_status status = t3r_spend(rt);
-    return status == T3R_OK ? t3r_get_scene(rt, scene) : status;
+    t3r_status status = t3r_build_scene(rt);
+    if (status != T3R_OK) {
+        rt->config = before;
+        return status;
+    }
+    return t3r_get_scene(rt, scene);
 }
 
 t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene)
@@ -191,29 +288,13 @@ t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene)
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame)
 {
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL, T3R_ERR_ARGUMENT);
-    if (frame->exponent < T3R_EXPONENT_LEAST || frame->exponent > T3R_EXPONENT_MOST) {
+    if (!is_frame(frame)) {
         return T3R_ERR_ARGUMENT;
-    }
-    for (int i = 0; i < 3; i++) {
-        if (frame->origin_q32[i] <= -((int64_t)1 << 62) || frame->origin_q32[i] >= (int64_t)1 << 62) {
-            return T3R_ERR_ARGUMENT;
-        }
     }
     (void)t3r_reset(rt);
     rt->frame = *frame;
     rt->has_scene = 1;
     return T3R_OK;
-}
-
-static bool is_sound(const t3r_gaussian *g)
-{
-    for (int i = 0; i < 3; i++) {
-        if (g->position_q20[i] < -T3R_POSITION_MOST_Q20 || g->position_q20[i] > T3R_POSITION_MOST_Q20 ||
-            g->colour_q7[i] > 255 * 128 || g->reserved[i] != 0) {
-            return false;
-        }
-    }
-    return g->factor_exponent >= -60 && g->factor_exponent <= 15 && g->opacity_q15 <= 32767;
 }
 
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian)

@@ -77,12 +77,12 @@ t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout 
     return T3R_OK;
 }
 
+#define NAME_OF(p, NAME, text, buffer_bytes, first_stage, last_stage) [T3R_BUFFER_##NAME] = text,
+
 const char *t3r_buffer_name(enum t3r_buffer buffer)
 {
-    buffer_row rows[T3R_BUFFER_COUNT];
-    t3r_config any = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
-    read_table(&any, rows);
-    return rows[buffer].name;
+    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
+    return names[buffer];
 }
 
 void t3r_buffer_lifetime(const t3r_config *config, enum t3r_buffer buffer, t3r_stage *first, t3r_stage *last)

@@ -9,6 +9,7 @@
 #define TEXTURE_FLOOR_Q4 8
 /* A pixel whose threshold (of 65536) is below this, 0.003, is retained first of all, whatever its texture. */
 #define SURE_THRESHOLD 197
+#define SURE_DENSITY_Q10 (-8579) /* log2(197 / 65536) */
 /* Keys are logarithms in Q10 above this zero. */
 #define KEY_ZERO (50 << 10)
 
@@ -45,7 +46,8 @@ void t3r_blur_texture(const t3r_view *views, uint32_t count)
 
 static bool precedes(const t3r_cluster *clusters, uint32_t a, uint32_t b)
 {
-    return clusters[a].texture_q4 < clusters[b].texture_q4 || (clusters[a].texture_q4 == clusters[b].texture_q4 && a < b);
+    return clusters[a].texture_q4 < clusters[b].texture_q4 ||
+           (clusters[a].texture_q4 == clusters[b].texture_q4 && a < b);
 }
 
 void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count)
@@ -87,7 +89,7 @@ static bool by_cluster(t3r_allocation allocation)
     return allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PAPER;
 }
 
-/* log2 of the wanted density, up to a constant, Q10: gamma log2(texture + floor), below 32 */
+/* log2 of the wanted density, up to a constant, Q10: gamma log2(texture + floor), at most 32 */
 static int32_t log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings)
 {
     if (!follows_texture(settings->allocation)) {
@@ -125,7 +127,8 @@ static void fill_keys(const t3r_view *views, uint32_t count, const t3r_budget_se
         for (uint32_t y = 0; y < views[v].height; y++) {
             for (uint32_t x = 0; x < views[v].width; x++) {
                 size_t i = (size_t)y * views[v].width + x;
-                views[v].key[i] = key_of(threshold_at(v, x, y, settings), log_wanted_q10(views[v].texture[i], settings));
+                views[v].key[i] =
+                    key_of(threshold_at(v, x, y, settings), log_wanted_q10(views[v].texture[i], settings));
             }
         }
     }
@@ -156,15 +159,16 @@ static void share_out(t3r_cluster *clusters, uint32_t count, const uint64_t *wei
 static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_budget_settings *settings,
                               uint64_t budget)
 {
-    uint64_t weight[T3R_MAX_CLUSTERS];
+    uint64_t weight[T3R_MAX_CLUSTERS]; /* points x factor: below 2^28 x 2^10, 2^38 in sum */
+    uint32_t factor_q10[T3R_MAX_CLUSTERS];
     int32_t most = 0;
     for (uint32_t k = 0; k < count; k++) {
         most = T3R_MAX(most, log_wanted_q10((uint16_t)clusters[k].texture_q4, settings));
     }
     for (uint32_t k = 0; k < count; k++) {
         int32_t below = log_wanted_q10((uint16_t)clusters[k].texture_q4, settings) - most;
-        uint32_t factor_q10 = below <= -(10 << 10) ? 1 : t3r_exp2_q16(below * 64) >> 6;
-        weight[k] = (uint64_t)clusters[k].points * T3R_MAX(factor_q10, 1u); /* below 2^28 x 2^10 */
+        factor_q10[k] = below <= -(10 << 10) ? 1 : T3R_MAX(t3r_exp2_q16(below * 64) >> 6, 1u);
+        weight[k] = (uint64_t)clusters[k].points * factor_q10[k];
     }
     for (uint32_t round = 0; round < count; round++) {
         uint64_t total = 0, taken = 0;
@@ -172,7 +176,8 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
             total += weight[k];
         }
         for (uint32_t k = 0; k < count; k++) {
-            if (weight[k] > 0 && weight[k] * budget >= total * clusters[k].points) {
+            /* weight budget / total >= points, divided by points */
+            if (weight[k] > 0 && factor_q10[k] * budget >= total) {
                 clusters[k].quota = clusters[k].points;
                 taken += clusters[k].points;
                 weight[k] = 0;
@@ -188,8 +193,8 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
 
 /* `paper`: from the lowest texture up each cluster keeps N % of its points until Z is met; the last is cut so that Z is
  * exact; if Z is below N % of all, N becomes Z / valid for all (definitions, "Allocation modes"). */
-static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_budget_settings *settings,
-                            uint64_t budget, uint64_t valid)
+static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_budget_settings *settings, uint64_t budget,
+                            uint64_t valid)
 {
     uint64_t left = valid;
     for (uint32_t k = 0; k < count; k++) {
@@ -252,14 +257,14 @@ static void find_thresholds(const t3r_view *views, uint32_t count, t3r_cluster *
 }
 
 /* log2 of the share of points retained about a pixel, Q10, if its group's density were `density_q10`: at most all, and
- * at least the sure ones, 0.003 = 2^-8.4. */
+ * at least the sure ones. */
 static int32_t local_density_q10(int32_t density_q10, int32_t wanted_q10)
 {
-    return t3r_clamp32(density_q10 + wanted_q10, -8602, 0);
+    return t3r_clamp32(density_q10 + wanted_q10, SURE_DENSITY_Q10, 0);
 }
 
-/* The density of each group for which its pixels' shares sum to its quota. The threshold alone, the key of one point, is
- * a noisy measure of it in small groups; two rounds of proportional correction from there settle it. */
+/* The density of each group for which its pixels' shares sum to its quota. The threshold alone, the key of one point,
+ * is a noisy measure of it in small groups; two rounds of proportional correction from there settle it. */
 static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
                                t3r_cluster *clusters, uint32_t groups, bool clustered)
 {
@@ -288,9 +293,8 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
     }
 }
 
-static uint32_t set_masks(const t3r_view *views, uint32_t count, t3r_cluster *clusters, bool clustered)
+static void set_masks(const t3r_view *views, uint32_t count, t3r_cluster *clusters, bool clustered)
 {
-    uint32_t retained = 0;
     for (uint32_t v = 0; v < count; v++) {
         const t3r_view *view = &views[v];
         size_t pixels = (size_t)view->width * view->height;
@@ -304,15 +308,12 @@ static uint32_t set_masks(const t3r_view *views, uint32_t count, t3r_cluster *cl
             group->ties -= tie;
             if (view->key[i] < group->threshold || tie) {
                 view->mask[i / 32] |= 1u << (i % 32);
-                retained++;
             }
         }
     }
-    return retained;
 }
 
-uint32_t t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                      t3r_cluster *clusters)
+void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
 {
     bool clustered = by_cluster(settings->allocation);
     uint64_t valid = 0;
@@ -332,7 +333,7 @@ uint32_t t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_se
     uint32_t groups = clustered ? settings->clusters : 1;
     find_thresholds(views, count, clusters, groups, clustered);
     estimate_densities(views, count, settings, clusters, groups, clustered);
-    return set_masks(views, count, clusters, clustered);
+    set_masks(views, count, clusters, clustered);
 }
 
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,

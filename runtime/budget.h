@@ -29,8 +29,8 @@ void t3r_blur_texture(const t3r_view *views, uint32_t count);
 /* Mean texture of every cluster (eq. 2) and its rank, from the texture planes before they are blurred. */
 void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);
 
-/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. Returns that number. */
-uint32_t t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. */
+void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
                       t3r_cluster *clusters);
 
 /* Log2 of the density of retained points about a pixel under the allocation made last, Q10, at most 0: they are

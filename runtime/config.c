@@ -1,8 +1,5 @@
-/* Settings: their defaults, their ranges, and what an arena for them needs. */
-#include "arena.h"
-#include "fixed.h"
-#include "state.h"
-#include "superclusters.h"
+/* Settings: their defaults and their ranges. */
+#include "trim3r.h"
 
 t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
 {
@@ -62,61 +59,8 @@ const char *t3r_config_error(const t3r_config *c)
             return range[i].text;
         }
     }
-    return NULL;
-}
-
-/* Upper bounds of inner-loop steps: what each stage's loops run to at most, whatever the frames hold. */
-static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_COUNT])
-{
-    uint64_t pixels = (uint64_t)c->width * c->height * c->views;
-    uint64_t across = (c->render_width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE;
-    uint64_t tiles = T3R_TILES_(c->render_width, c->render_height);
-    uint64_t clusters = c->clusters, gaussians = c->max_gaussians;
-    uint64_t frame = (uint64_t)T3R_MAX_SIDE * T3R_MAX_SIDE;
-
-    /* every source pixel twice (the box's two axes), every pixel once resized and once undistorted */
-    operations[T3R_STAGE_IMAGE] = c->views * 2 * frame + 2 * pixels;
-    operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2);
-    operations[T3R_STAGE_POINTMAP] = 2 * pixels; /* two looks at the depths for their median */
-    /* two lifting passes of three steps and a sum a level, the levels adding up to less than 4 / 3 */
-    operations[T3R_STAGE_WAVELET] = pixels * (7 * 4 / 3 + c->wavelet_levels + 1);
-    /* seeding: a draw and a sum for each trial, one update; neighbours a batch; a point against all centres at most */
-    operations[T3R_STAGE_SUPERCLUSTERS] =
-        T3R_DIMENSIONS *
-        (clusters * T3R_CLUSTER_SAMPLE * (2 * T3R_CLUSTER_TRIALS + 1) +
-         (c->cluster_batches + 1) * clusters * clusters * (1 + T3R_NEIGHBOURS) +
-         ((uint64_t)c->cluster_batches * T3R_CLUSTER_BATCH + pixels) * (clusters + T3R_NEIGHBOURS * 2));
-    /* textures, two blurs of nine taps, keys, 17 bisections, two density rounds, masks; ranking and quotas */
-    operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 1 + 17 + 2 + 1) + 2 * clusters * clusters;
-    /* the widest window of `analytic` is 15 x 15, of `moment` 31 x 31 after four sweeps of four offers */
-    operations[T3R_STAGE_HEAD] =
-        c->head == T3R_HEAD_MOMENT ? pixels * 17 + gaussians * (31 * 31 + 32) : pixels + gaussians * (15 * 15 + 32);
-    operations[T3R_STAGE_REFINE] = 0;
-    /* project; four radix passes and their counts; counting tiles; at most a pass a tile, which scans its row of tiles
-     * and the next; every pixel of every tile */
-    operations[T3R_STAGE_RASTER] =
-        gaussians * (32 + 8 + tiles + tiles * (1 + 2 * across) + tiles * T3R_TILE_SIDE * T3R_TILE_SIDE);
-}
-
-t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
-{
-    T3R_REFUSE_UNLESS(config != NULL && plan != NULL, T3R_ERR_ARGUMENT);
-    if (t3r_config_error(config) != NULL) {
-        return T3R_ERR_CONFIG;
-    }
-    t3r_layout layout;
-    (void)t3r_lay_out(config, 0, &layout); /* for the two sums */
-    (void)t3r_lay_out(config, layout.bytes, &layout);
-    plan->min_bytes = layout.min_bytes;
-    plan->bytes = layout.bytes;
-    plan->buffer_count = T3R_BUFFER_COUNT;
-    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
-        t3r_plan_buffer *row = &plan->buffers[b];
-        row->name = t3r_buffer_name((enum t3r_buffer)b);
-        row->offset = layout.offset[b];
-        row->bytes = layout.size[b];
-        t3r_buffer_lifetime(config, (enum t3r_buffer)b, &row->first, &row->last);
-    }
-    count_operations(config, plan->operations);
-    return T3R_OK;
+    /* Sizes are summed in size_t: an arena of more than half of what it can count is refused, generously estimated. */
+    uint64_t bytes = (uint64_t)c->width * c->height * (c->views * (uint64_t)24 + 32) +
+                     (uint64_t)c->render_width * c->render_height * 8 + (uint64_t)c->max_gaussians * 192;
+    return bytes > SIZE_MAX / 2 ? "the arena would be larger than this machine can address" : NULL;
 }

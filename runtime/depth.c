@@ -66,7 +66,7 @@ static uint16_t depth_between(const t3r_view *view, size_t at, const bracket *be
     int32_t before = (int32_t)between->before;
     int32_t after = (int32_t)between->after;
 
-    if (t3r_abs32(first - second) * T3R_DEPTH_AGREE <= T3R_MIN(first, second)) {
+    if (t3r_same_surface(view->depth[between->first], view->depth[between->second])) {
         return (uint16_t)t3r_round_div64((int64_t)first * after + (int64_t)second * before, before + after);
     }
     int32_t to_first = colour_distance(view, at, between->first);

@@ -2,12 +2,17 @@
 #ifndef T3R_DEPTH_H
 #define T3R_DEPTH_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "views.h"
 
-/* Two depths a and b belong to one surface when |a - b| x this <= the lesser of them. */
-#define T3R_DEPTH_AGREE 16
+/* Whether two depths of a view, in its steps, belong to one surface: |a - b| <= 1/16 of the lesser. */
+static inline bool t3r_same_surface(uint16_t a, uint16_t b)
+{
+    int32_t difference = a > b ? a - b : b - a;
+    return 16 * difference <= (a < b ? a : b);
+}
 
 /* Confidence from depth: T3R_CONFIDENCE_MEASURED where there is one, else T3R_CONFIDENCE_NONE. */
 void t3r_depth_confidence(t3r_view *view);

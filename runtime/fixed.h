@@ -93,7 +93,7 @@ static inline uint32_t t3r_msb64(uint64_t x)
     return high != 0 ? 32u + t3r_msb32(high) : t3r_msb32((uint32_t)x);
 }
 
-/* floor(sqrt x): 32 steps at most */
+/* floor(sqrt x) */
 uint32_t t3r_isqrt64(uint64_t x);
 /* log2(x) in Q16, error below 2^-14; x > 0 */
 int32_t t3r_log2_q16(uint32_t x);

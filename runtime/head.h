@@ -9,6 +9,8 @@
 #include "pointmap.h"
 #include "superclusters.h"
 
+#define T3R_HEAD_OPACITY_Q15 31457 /* 0.96, of heads that do not predict one */
+
 /* What a head sees of one view. */
 typedef struct t3r_head_input {
     t3r_pointmap map;

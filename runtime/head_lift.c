@@ -1,7 +1,8 @@
 #include "fixed.h"
 #include "head.h"
+#include "raster_splat.h"
 
-#define DILATION_Q12 1229   /* 0.3 px^2, as the rasterizer adds it */
+#define DILATION_Q12 ((T3R_DILATION_Q24 + 2048) >> 12) /* what the rasterizer will add */
 #define VARIANCE_LEAST_Q12 82 /* 0.02 px^2: what is left of a footprint narrower than the dilation */
 /* Thickness along the normal, of the narrower in-plane deviation, as a power of two: 1/8 */
 #define THICKNESS_SHIFT 3

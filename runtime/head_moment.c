@@ -1,20 +1,20 @@
-/* A head without weights, by closed-form moment matching (findings: +0.6 dB over discs): every pixel of the view joins the
- * retained pixel that is nearest in position and colour; a splat takes its pixels' mean, covariance and colour. */
+/* A head without weights, by closed-form moment matching (findings: +0.6 dB over discs): every pixel of the view joins
+ * the retained pixel that is nearest in position and colour; a splat takes its pixels' mean, covariance and colour. */
 #include <string.h>
 
+#include "depth.h"
 #include "fixed.h"
 #include "head.h"
 
-#define REACH 15            /* pixels join within +-15 */
+#define REACH 15 /* pixels join within +-15 */
 #define NONE (-128)
 #define COLOUR_WEIGHT_SHIFT 7 /* squared colour distance over 128 counts as squared pixels */
-#define SPREAD_Q12 14336    /* 3.5: a cell's second moment to the variance of the splat that fills it */
-#define OPACITY_Q15 31457
+#define SPREAD_Q12 14336      /* 3.5: a cell's second moment to the variance of the splat that fills it */
 
-typedef struct joined {
+typedef struct assignment {
     int8_t *offset; /* dx, dy a pixel to the retained pixel it joined; dx = NONE: none yet */
     const t3r_view *view;
-} joined;
+} assignment;
 
 /* Cost of pixel (x, y) joining the retained pixel at (x + dx, y + dy). */
 static uint32_t cost_of(const t3r_view *view, uint32_t x, uint32_t y, int32_t dx, int32_t dy)
@@ -26,14 +26,12 @@ static uint32_t cost_of(const t3r_view *view, uint32_t x, uint32_t y, int32_t dx
         int32_t d = view->colour[c][here] - view->colour[c][there];
         colour += (uint32_t)(d * d);
     }
-    uint32_t depth = view->depth[there], other = view->depth[here];
-    uint32_t apart = depth > other ? depth - other : other - depth;
-    uint32_t edge = apart > depth >> 4 ? 4096 : 0;
+    uint32_t edge = t3r_same_surface(view->depth[there], view->depth[here]) ? 0 : 4096;
     return (uint32_t)(dx * dx + dy * dy) + (colour >> COLOUR_WEIGHT_SHIFT) + edge;
 }
 
 /* Offers pixel (x, y) what its neighbour (x + sx, y + sy) joined. */
-static void offer(const joined *j, uint32_t x, uint32_t y, int32_t sx, int32_t sy)
+static void propagate(const assignment *j, uint32_t x, uint32_t y, int32_t sx, int32_t sy)
 {
     int64_t nx = (int64_t)x + sx, ny = (int64_t)y + sy;
     if (nx < 0 || ny < 0 || nx >= j->view->width || ny >= j->view->height) {
@@ -55,10 +53,10 @@ static void offer(const joined *j, uint32_t x, uint32_t y, int32_t sx, int32_t s
 }
 
 /* Four raster sweeps, two each way. */
-static void join(const t3r_head_input *input)
+static void assign_pixels(const t3r_head_input *input)
 {
     const t3r_view *view = input->map.view;
-    joined j = {input->work, view};
+    assignment j = {input->work, view};
     size_t pixels = (size_t)view->width * view->height;
     for (size_t i = 0; i < pixels; i++) {
         bool kept = t3r_retained(view, i);
@@ -74,10 +72,10 @@ static void join(const t3r_head_input *input)
                 continue;
             }
             int32_t s = down ? -1 : 1;
-            offer(&j, x, y, s, 0);
-            offer(&j, x, y, 0, s);
-            offer(&j, x, y, s, s);
-            offer(&j, x, y, -s, s);
+            propagate(&j, x, y, s, 0);
+            propagate(&j, x, y, 0, s);
+            propagate(&j, x, y, s, s);
+            propagate(&j, x, y, -s, s);
         }
     }
 }
@@ -117,7 +115,7 @@ static moments gather(const t3r_head_input *input, uint32_t u, uint32_t v, int32
 
 static t3r_footprint footprint_of(const moments *m)
 {
-    t3r_footprint f = {.opacity_q15 = OPACITY_Q15};
+    t3r_footprint f = {.opacity_q15 = T3R_HEAD_OPACITY_Q15};
     int64_t n = m->count;
     f.offset_q12[0] = m->x * 4096 / m->count;
     f.offset_q12[1] = m->y * 4096 / m->count;
@@ -137,7 +135,7 @@ static t3r_footprint footprint_of(const moments *m)
 uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
-    join(input);
+    assign_pixels(input);
     uint32_t count = 0;
     for (uint32_t v = 0; v < view->height; v++) {
         for (uint32_t u = 0; u < view->width; u++) {

@@ -36,8 +36,10 @@ void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
             .cy_q16 = camera->cy_q16,
             .depth_unit_q40 = rt->depth_unit_q40[v],
         };
-        /* The frame's range was checked when it was chosen. */
-        (void)t3r_pose_in_scene(camera, &rt->frame, &views[v].pose);
+        if (v < rt->views) {
+            /* In range once there is an analysis; t3r_analyse() asks again with the frame that it chooses. */
+            (void)t3r_pose_in_scene(camera, &rt->frame, &views[v].pose);
+        }
     }
 }
 
@@ -68,7 +70,7 @@ t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *fr
     uint8_t *work = t3r_buffer_at(rt, T3R_BUFFER_IMAGE_WORK);
     int32_t *grid = (int32_t *)(void *)work;
     uint8_t *rows = work + T3R_GRID_NODES_(width, height) * 8;
-    uint16_t *depth = (uint16_t *)(void *)(rows + (size_t)width * 32);
+    uint16_t *depth = (uint16_t *)(void *)(rows + t3r_image_work_bytes(width));
     uint8_t *colour = (uint8_t *)(depth + pixels);
     uint8_t *const raw[3] = {colour, colour + pixels, colour + 2 * pixels};
 
@@ -123,14 +125,9 @@ static bool pixel_features(const void *context, uint32_t index, int16_t feature_
     return true;
 }
 
-typedef struct cluster_step {
-    const t3r_runtime *rt;
-} cluster_step;
-
 static bool step_clusters(void *context, uint32_t done, uint32_t total)
 {
-    const cluster_step *step = context;
-    return t3r_progress(step->rt, T3R_STAGE_SUPERCLUSTERS, done, total);
+    return t3r_progress(context, T3R_STAGE_SUPERCLUSTERS, done, total);
 }
 
 static t3r_status cluster_pixels(t3r_runtime *rt, const t3r_view *views)
@@ -146,8 +143,7 @@ static t3r_status cluster_pixels(t3r_runtime *rt, const t3r_view *views)
     }
     t3r_point_source source = {&points, points.pixels * rt->views, pixel_features};
     t3r_cluster_settings settings = {rt->config.clusters, rt->config.cluster_batches, rt->config.seed};
-    cluster_step step = {rt};
-    t3r_cluster_progress progress = {&step, step_clusters};
+    t3r_cluster_progress progress = {rt, step_clusters};
     uint32_t valid = t3r_superclusters(&source, &settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
                                        t3r_buffer_at(rt, T3R_BUFFER_LABELS),
                                        t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_WORK), &progress);
@@ -178,6 +174,9 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     t3r_hash_image(rt, views);
 
     for (uint32_t v = 0; v < rt->views; v++) {
+        if (!t3r_progress(rt, T3R_STAGE_DEPTH, v, rt->views)) {
+            return T3R_ERR_CANCELLED;
+        }
         t3r_depth_fill(&views[v], config->fill_radius);
     }
     rt->valid_points = count_measured(rt, views);
@@ -223,7 +222,7 @@ static const head_function heads[T3R_HEAD_COUNT] = {
     [T3R_HEAD_NONE] = t3r_head_none,
 };
 
-t3r_status t3r_spend(t3r_runtime *rt)
+t3r_status t3r_build_scene(t3r_runtime *rt)
 {
     t3r_budget_settings settings = {
         .allocation = rt->config.allocation,
@@ -239,7 +238,10 @@ t3r_status t3r_spend(t3r_runtime *rt)
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
 
     rt->has_scene = 0;
-    (void)t3r_allocate(views, rt->views, &settings, clusters);
+    if (!t3r_progress(rt, T3R_STAGE_BUDGET, 0, 1)) {
+        return T3R_ERR_CANCELLED;
+    }
+    t3r_allocate(views, rt->views, &settings, clusters);
     t3r_hash_budget(rt, views);
 
     rt->gaussians = 0;

@@ -1,10 +1,9 @@
 #include "pointmap.h"
 
+#include "depth.h"
 #include "fixed.h"
 
 #define RAY_MOST_Q24 (16 << 24)
-/* Neighbours whose depths differ by more than 1/16 are not on one surface. */
-#define EDGE_SHIFT 4
 /* Farthest neighbour whose depth enters the slope */
 #define REACH 2
 /* tan 80 degrees, Q4 */
@@ -29,7 +28,7 @@ void t3r_ray_q24(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t ray_q2
     ray_q24[1] = (int32_t)t3r_clamp64(y, -RAY_MOST_Q24, RAY_MOST_Q24);
 }
 
-/* R v for a camera-frame vector, Q24 in and out: |v| <= 2^28.6, so the sums stay below 2^60. */
+/* R v for a camera-frame vector, Q24 in and out: |v| <= 2^30 sqrt 3, so the sums stay below 2^61. */
 static void to_scene(const int32_t *r_q30, const int64_t v[3], int64_t out[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -70,13 +69,11 @@ static int32_t slope_along(const t3r_pointmap *map, size_t pixel, uint32_t at, u
                 break;
             }
             size_t neighbour = side < 0 ? pixel - (size_t)t * stride : pixel + (size_t)t * stride;
-            if (view->confidence[neighbour] == T3R_CONFIDENCE_NONE) {
+            if (view->confidence[neighbour] == T3R_CONFIDENCE_NONE ||
+                !t3r_same_surface(view->depth[pixel], view->depth[neighbour])) {
                 break;
             }
             int32_t change = t3r_depth_q20(map->scale, view->depth[neighbour]) - here;
-            if (t3r_abs32(change) > here >> EDGE_SHIFT) {
-                break;
-            }
             rise += (int64_t)(side * t) * change;
             run += t * t;
         }
@@ -109,8 +106,7 @@ bool t3r_tangents(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t tange
     t3r_ray_q24(map, u, v, ray);
     t3r_slopes(map, u, v, slope);
     int64_t z = t3r_depth_q20(map->scale, view->depth[pixel]);
-    /* X = z (x, y, 1): dX/du = (z / fx, 0, 0) + dz/du (x, y, 1), Q24. z / f < 2^27 in Q20 (f >= 8): below 2^36 with
-     * the slope's share, so that to_scene's sums stay below 2^62 + 2^62 / 2^4. */
+    /* X = z (x, y, 1): dX/du = (z / fx, 0, 0) + dz/du (x, y, 1), Q24: below 2^38, then held. */
     int64_t across = t3r_round_shift64(z * map->inverse_fx_q32, 28);
     int64_t down = t3r_round_shift64(z * map->inverse_fy_q32, 28);
     int64_t du[3] = {across + t3r_round_shift64((int64_t)slope[0] * ray[0], 20),
@@ -126,8 +122,8 @@ bool t3r_tangents(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t tange
     to_scene(view->pose.rotation_q30, du, su);
     to_scene(view->pose.rotation_q30, dv, sv);
     for (int i = 0; i < 3; i++) {
-        tangent_u_q24[i] = (int32_t)t3r_clamp64(su[i], -INT32_MAX, INT32_MAX);
-        tangent_v_q24[i] = (int32_t)t3r_clamp64(sv[i], -INT32_MAX, INT32_MAX);
+        tangent_u_q24[i] = (int32_t)su[i]; /* at most 2^30 sqrt 3 */
+        tangent_v_q24[i] = (int32_t)sv[i];
     }
     return true;
 }

@@ -11,15 +11,19 @@
 typedef struct tile_job {
     const t3r_binning *bin;
     const t3r_target *target;
-    uint32_t first;
+    uint32_t pass_first; /* its list starts at 0 */
+    uint32_t first;      /* tile of index 0 */
 } tile_job;
+
+/* Tiles drawn between two looks at the progress hook. */
+#define DRAW_CHUNK 64u
 
 static void draw_job(void *context, uint32_t index)
 {
     const tile_job *job = context;
     const t3r_binning *bin = job->bin;
     uint32_t tile = job->first + index;
-    uint32_t begin = index == 0 ? 0 : bin->table[tile - 1];
+    uint32_t begin = tile == job->pass_first ? 0 : bin->table[tile - 1];
     t3r_draw_tile(bin->splats, bin->lists + begin, bin->table[tile] - begin, tile % bin->across, tile / bin->across,
                   job->target);
 }
@@ -64,6 +68,16 @@ static uint64_t hash_target(const t3r_target *target)
     for (uint32_t y = 0; y < target->height && target->rgb != NULL; y++) {
         hash = t3r_hash_bytes(hash, target->rgb + (size_t)y * target->rgb_stride_bytes, (size_t)3 * target->width);
     }
+    for (uint32_t y = 0; y < target->height && target->depth_q20 != NULL; y++) {
+        const uint32_t *row = target->depth_q20 + (size_t)y * (target->depth_stride_bytes / sizeof *row);
+        for (uint32_t x = 0; x < target->width; x++) {
+            hash = t3r_hash_u32(hash, row[x]);
+        }
+    }
+    for (uint32_t y = 0; y < target->height && target->alpha_q15 != NULL; y++) {
+        const uint16_t *row = target->alpha_q15 + (size_t)y * (target->alpha_stride_bytes / sizeof *row);
+        hash = t3r_hash_u16s(hash, row, target->width);
+    }
     return hash;
 }
 
@@ -90,6 +104,9 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};
     uint32_t *indices[2] = {keys[1] + most, keys[1] + 2 * (size_t)most};
 
+    if (!t3r_progress(rt, T3R_STAGE_RASTER, 0, (uint32_t)T3R_TILES_(target->width, target->height))) {
+        return T3R_ERR_CANCELLED;
+    }
     project_job projecting = {&projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, splats};
     t3r_parallel(rt, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
     uint32_t visible = 0;
@@ -113,12 +130,14 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     t3r_bin_count(&bin);
     uint32_t passes = 0;
     for (uint32_t first = 0; first < bin.tiles; passes++) {
-        if (!t3r_progress(rt, T3R_STAGE_RASTER, first, bin.tiles)) {
-            return T3R_ERR_CANCELLED;
-        }
         uint32_t end = t3r_bin_pass(&bin, first);
-        tile_job job = {&bin, target, first};
-        t3r_parallel(rt, end - first, draw_job, &job);
+        for (uint32_t tile = first; tile < end; tile += DRAW_CHUNK) {
+            if (!t3r_progress(rt, T3R_STAGE_RASTER, tile, bin.tiles)) {
+                return T3R_ERR_CANCELLED;
+            }
+            tile_job job = {&bin, target, first, tile};
+            t3r_parallel(rt, T3R_MIN(end - tile, DRAW_CHUNK), draw_job, &job);
+        }
         first = end;
     }
     rt->render_passes = passes;

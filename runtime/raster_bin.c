@@ -13,7 +13,7 @@ static tile_range tiles_of(const t3r_splat *splat)
 
 void t3r_bin_count(const t3r_binning *bin)
 {
-    for (uint32_t tile = 0; tile <= bin->tiles; tile++) {
+    for (uint32_t tile = 0; tile < bin->tiles; tile++) {
         bin->table[tile] = 0;
     }
     for (uint32_t i = 0; i < bin->visible; i++) {
@@ -49,11 +49,11 @@ uint32_t t3r_bin_pass(const t3r_binning *bin, uint32_t first)
         tile_range range = tiles_of(&bin->splats[index]);
         uint32_t y0 = T3R_MAX(range.y0, first_row), y1 = T3R_MIN(range.y1, last_row);
         for (uint32_t y = y0; y <= y1; y++) {
-            for (uint32_t x = range.x0; x <= range.x1; x++) {
-                uint32_t tile = y * bin->across + x;
-                if (tile >= first && tile < end) {
-                    bin->lists[bin->table[tile]++] = index;
-                }
+            /* the pass begins and ends within a row of tiles */
+            uint32_t x0 = y == first_row ? T3R_MAX(range.x0, first % bin->across) : range.x0;
+            uint32_t x1 = y == last_row ? T3R_MIN(range.x1, (end - 1) % bin->across) : range.x1;
+            for (uint32_t x = x0; x <= x1; x++) {
+                bin->lists[bin->table[y * bin->across + x]++] = index;
             }
         }
     }

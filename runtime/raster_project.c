@@ -5,7 +5,6 @@
 #include "raster_splat.h"
 #include "scene_frame.h"
 
-#define DILATION_Q24 5033165 /* 0.3 px^2 */
 #define EXTENT_MOST_Q12 (1 << 24) /* a footprint column is held within 4096 px */
 
 t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
@@ -106,13 +105,13 @@ static void conic_of(const int32_t a_q12[3], const int32_t b_q12[3], t3r_splat *
     /* Q(48 - 4n). |m| <= 2^31; by Lagrange the three squares sum to at most aa bb <= 9 x 2^60, the trace's term to
      * 6 x 2^30 x 2^23 and the constant to 2^45: below 2^64. */
     uint64_t det = (uint64_t)(m01 * m01) + (uint64_t)(m02 * m02) + (uint64_t)(m12 * m12) +
-                   (uint64_t)t3r_round_shift64((aa + bb) * DILATION_Q24, (uint32_t)(2 * n)) +
-                   ((((uint64_t)DILATION_Q24 * DILATION_Q24) >> (4 * n)));
+                   (uint64_t)t3r_round_shift64((aa + bb) * T3R_DILATION_Q24, (uint32_t)(2 * n)) +
+                   ((((uint64_t)T3R_DILATION_Q24 * T3R_DILATION_Q24) >> (4 * n)));
     /* det = normal 2^s, 1 / det = rd 2^(-62 - s) */
     int32_t s = (int32_t)t3r_msb64(det) - 31;
     uint32_t normal = (uint32_t)(s >= 0 ? det >> s : det << -s);
     int64_t rd = (int64_t)((UINT64_C(1) << 62) / normal);
-    int64_t dilation = t3r_round_shift64(DILATION_Q24, (uint32_t)(2 * n));
+    int64_t dilation = t3r_round_shift64(T3R_DILATION_Q24, (uint32_t)(2 * n));
     /* (aa + dilation) <= 2^31.6 and rd <= 2^31: the products stay below 2^63 */
     int32_t right = 9 + 2 * n + s;
     splat->a_q30 = to_q30((bb + dilation) * rd, right);
@@ -124,7 +123,7 @@ static void conic_of(const int32_t a_q12[3], const int32_t b_q12[3], t3r_splat *
  * with more than their error (2^-13 of it) added. log_level: log2 of 2 L in Q8. */
 static int64_t half_width_q8(const int32_t row_q12[3], int32_t log_level_q16)
 {
-    int64_t variance_q24 = DILATION_Q24;
+    int64_t variance_q24 = T3R_DILATION_Q24;
     for (int j = 0; j < 3; j++) {
         variance_q24 += (int64_t)row_q12[j] * row_q12[j]; /* at most 3 x 2^48 */
     }

@@ -11,6 +11,7 @@
 /* Splats at and nearer than 1/32 scene unit, and centres more than 16 times farther aside than ahead, are culled. */
 #define T3R_NEAR_Q20 (1 << 15)
 #define T3R_ASIDE 16
+#define T3R_DILATION_Q24 5033165 /* 0.3 px^2, added to every projected covariance */
 
 /* A Gaussian as one view sees it. q(dx, dy) = a dx^2 + 2 b dx dy + c dy^2 is half the squared Mahalanobis distance. */
 typedef struct t3r_splat {

@@ -19,6 +19,15 @@ static size_t pixels_of(const t3r_runtime *rt)
     return T3R_PIXELS_(rt->config.width, rt->config.height);
 }
 
+static uint64_t hash_frame(const t3r_runtime *rt)
+{
+    uint64_t hash = T3R_HASH_START;
+    for (int i = 0; i < 3; i++) {
+        hash = t3r_hash_u64(hash, (uint64_t)rt->frame.origin_q32[i]);
+    }
+    return t3r_hash_u32(hash, (uint32_t)rt->frame.exponent);
+}
+
 void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views)
 {
     if (silent(rt)) {
@@ -55,7 +64,7 @@ void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views)
     if (silent(rt)) {
         return;
     }
-    uint64_t hash = t3r_hash_u32(T3R_HASH_START, (uint32_t)rt->frame.exponent);
+    uint64_t hash = hash_frame(rt);
     for (uint32_t v = 0; v < rt->views; v++) {
         t3r_pointmap map = t3r_pointmap_of(&views[v], rt->frame.exponent);
         for (uint32_t y = 0; y < views[v].height; y++) {
@@ -122,7 +131,7 @@ void t3r_hash_scene(const t3r_runtime *rt)
     if (silent(rt)) {
         return;
     }
-    uint64_t hash = t3r_hash_u32(T3R_HASH_START, rt->gaussians);
+    uint64_t hash = t3r_hash_u32(hash_frame(rt), rt->gaussians);
     const t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
     for (uint32_t i = 0; i < rt->gaussians; i++) {
         const t3r_gaussian *g = &scene[i];

@@ -11,8 +11,8 @@
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 
-/* Misuse of the API (null pointers, calls out of order) is refused with a status in every build; a debug build may also
- * stop at it: compile the runtime with T3R_ASSERT(condition) defined. It never sees what files or cameras brought. */
+/* Misuse of the API (null pointers, calls out of order, going on after an error) is refused with a status in every build;
+ * a debug build may also stop at it: compile the runtime with T3R_ASSERT(condition) defined. */
 #ifndef T3R_ASSERT
 #define T3R_ASSERT(condition) ((void)0)
 #endif
@@ -35,7 +35,7 @@ struct t3r_runtime {
     uint32_t views;                  /* context views added */
     t3r_camera camera[T3R_MAX_VIEWS];/* of the working size, undistorted */
     uint64_t depth_unit_q40[T3R_MAX_VIEWS];
-    uint32_t analysed;               /* planes, labels and keys are those of the current views */
+    uint32_t analysed;               /* labels, clusters and blurred textures are those of the current views */
     uint32_t has_scene;
     t3r_scene_frame frame;
     int32_t median_depth_q20;        /* scene units, [1, 2) */

@@ -14,7 +14,7 @@
 
 /* How samples beyond the border are made. */
 typedef enum t3r_wavelet_border {
-    T3R_WAVELET_SYMMETRIC, /* by the nearest samples, as wavelet.c and the SPEC say; any size */
+    T3R_WAVELET_SYMMETRIC, /* by the nearest samples, as wavelet_level.h and the SPEC say; any size */
     T3R_WAVELET_PERIODIC   /* wraps; sizes divisible by 2^levels only: for comparison with other libraries */
 } t3r_wavelet_border;
 

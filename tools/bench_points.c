@@ -32,8 +32,8 @@ static int allocate(bench_points *p, uint32_t count, char *error, size_t error_b
     return 0;
 }
 
-/* Q11 around the middle of the range, halved until it fits: neither changes who is nearest to whom. */
-static void quantize(bench_points *p)
+/* Around the middle of the range, times `scale` halved until it fits: neither changes who is nearest to whom. */
+static void quantize(bench_points *p, double scale)
 {
     double half_range = 0;
     for (int d = 0; d < T3R_DIMENSIONS; d++) {
@@ -45,7 +45,7 @@ static void quantize(bench_points *p)
         p->middle[d] = (low + high) / 2;
         half_range = fmax(half_range, (high - low) / 2);
     }
-    p->scale = 2048;
+    p->scale = scale;
     while (half_range * p->scale > T3R_FEATURE_MOST) {
         p->scale /= 2;
     }
@@ -68,7 +68,7 @@ int bench_points_read(bench_points *points, const char *path, char *error, size_
     int result = -1;
     if (bytes % row != 0 || count == 0 || count > T3R_MAX_GAUSSIANS) {
         t3r_reason(error, error_bytes, "%s: %zu bytes are not N x 6 float32 with N in 1..%u", path, bytes,
-                 T3R_MAX_GAUSSIANS);
+                   T3R_MAX_GAUSSIANS);
     } else {
         result = allocate(points, (uint32_t)count, error, error_bytes);
     }
@@ -85,7 +85,7 @@ int bench_points_read(bench_points *points, const char *path, char *error, size_
     }
     free(data);
     if (result == 0) {
-        quantize(points);
+        quantize(points, 0x1p120); /* numbers of any size: as many steps as fit */
     }
     return result;
 }
@@ -131,7 +131,7 @@ int bench_points_unproject(bench_points *points, uint32_t views, uint32_t width,
             }
         }
     }
-    quantize(points);
+    quantize(points, 2048); /* Q11, as the runtime has them */
     return 0;
 }
 

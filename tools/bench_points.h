@@ -12,7 +12,7 @@
 typedef struct bench_points {
     uint32_t count;
     float (*value)[T3R_DIMENSIONS];         /* as given */
-    int16_t (*feature_q11)[T3R_DIMENSIONS]; /* less `middle`, times `scale` */
+    int16_t (*feature_q11)[T3R_DIMENSIONS]; /* less `middle`, times `scale`, a power of two */
     double middle[T3R_DIMENSIONS], scale;
     uint16_t *labels;
     t3r_cluster clusters[T3R_MAX_CLUSTERS];

@@ -74,18 +74,16 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static const struct argp_child children[] = {
     {&reconstruction_budget_argp, 0, NULL, 0}, {&reconstruction_settings_argp, 0, NULL, 0}, {0}};
 static const struct argp argp = {
-    options,
-    parse,
-    "REC.mcap",
-    "Makes exactly Z Gaussians of a recording's context frames."
-    "\vExamples:\n"
-    "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
-    "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
-    "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n\n"
-    "The scene stands in the recording's world frame unless --local is given.",
-    children,
-    NULL,
-    NULL,
+    .options = options,
+    .parser = parse,
+    .args_doc = "REC.mcap",
+    .doc = "Makes exactly Z Gaussians of a recording's context frames."
+           "\vExamples:\n"
+           "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+           "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
+           "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n\n"
+           "The scene stands in the recording's world frame unless --local is given.",
+    .children = children,
 };
 
 static void print_json(const build_options *o, const reconstruction *r)

@@ -51,17 +51,14 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp argp = {
-    options,
-    parse,
-    "A B",
-    "Compares two scenes (.ply) or two views (PNG)."
-    "\vExamples:\n"
-    "  trim3r diff scene.ply other.ply\n"
-    "  trim3r diff view.png other.png --json\n\n"
-    "Exit status: 0 equal, 1 different or unreadable, 2 bad usage.",
-    NULL,
-    NULL,
-    NULL,
+    .options = options,
+    .parser = parse,
+    .args_doc = "A B",
+    .doc = "Compares two scenes (.ply) or two views (PNG)."
+           "\vExamples:\n"
+           "  trim3r diff scene.ply other.ply\n"
+           "  trim3r diff view.png other.png --json\n\n"
+           "Exit status: 0 equal, 1 different or unreadable, 2 bad usage.",
 };
 
 /* ---- scenes ---------------------------------------------------------------------------------------------------- */

@@ -13,6 +13,7 @@
 #include "reconstruction.h"
 
 #define MOST_KEEPS 64u
+#define SCENE_NAME_BYTES 256
 
 typedef struct options {
     reconstruction_options settings;
@@ -93,11 +94,39 @@ static void parse_methods(struct argp_state *state, options *o, const char *text
     }
 }
 
+/* "room" of "recordings/room.mcap"; at most `bytes` - 1 characters. */
+static void scene_name(const char *path, char *name, size_t bytes)
+{
+    const char *slash = strrchr(path, '/');
+    const char *base = slash != NULL && slash[1] != '\0' ? slash + 1 : path;
+    snprintf(name, bytes, "%s", base);
+    char *dot = strrchr(name, '.');
+    if (dot != NULL && dot != name) {
+        *dot = '\0';
+    }
+}
+
+/* A scene's name stands for it in the tables and names its folder of pictures. */
+static void check_names(struct argp_state *state, const options *o)
+{
+    char name[SCENE_NAME_BYTES], other[SCENE_NAME_BYTES];
+    for (uint32_t i = 1; i < o->input_count; i++) {
+        scene_name(o->inputs[i], name, sizeof name);
+        for (uint32_t earlier = 0; earlier < i; earlier++) {
+            scene_name(o->inputs[earlier], other, sizeof other);
+            if (strcmp(name, other) == 0) {
+                argp_error(state, "%s and %s would both be called %s", o->inputs[earlier], o->inputs[i], name);
+            }
+        }
+    }
+}
+
 static void check_options(struct argp_state *state, options *o)
 {
     if (o->input_count == 0) {
         argp_error(state, o->planar ? "IMAGE... is missing" : "REC.mcap is missing");
     }
+    check_names(state, o);
     if (o->planar && (o->has_target || o->settings.context_count > 0)) {
         argp_error(state, "--planar takes images, not --context and --target");
     }
@@ -179,8 +208,8 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 
 static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is compared:", 1},
-    {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, one named twice counting once (all triplets that the recording carries)",
-     0},
+    {"context", KEY_CONTEXT, "A,B,...", 0,
+     "frames that the scene is made of, one named twice counting once (all triplets that the recording carries)", 0},
     {"target", KEY_TARGET, "T", 0, "the frame to be met; it is never shown to the method", 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
     {"methods", KEY_METHODS, "M,M,...", 0, "trim3r (default); random: random points, nothing adapted", 0},
@@ -261,18 +290,6 @@ static int open_report(evaluation_report *report, const options *o, uint32_t cas
     return evaluation_report_open(report, &to, cases * o->method_count * o->keep_count);
 }
 
-/* "room" of "recordings/room.mcap"; at most `bytes` - 1 characters. */
-static void scene_name(const char *path, char *name, size_t bytes)
-{
-    const char *slash = strrchr(path, '/');
-    const char *base = slash != NULL && slash[1] != '\0' ? slash + 1 : path;
-    snprintf(name, bytes, "%s", base);
-    char *dot = strrchr(name, '.');
-    if (dot != NULL && dot != name) {
-        *dot = '\0';
-    }
-}
-
 static uint32_t case_count(const options *o, const t3r_recording *recording)
 {
     return o->has_target ? 1 : t3r_recording_triplet_count(recording);
@@ -292,9 +309,10 @@ static void set_context(evaluation_case *what, const uint32_t *frames, uint32_t 
     }
 }
 
-static int evaluate_recording(evaluation_report *report, const options *o, const char *path, const t3r_recording *recording)
+static int evaluate_recording(evaluation_report *report, const options *o, const char *path,
+                              const t3r_recording *recording)
 {
-    char name[256];
+    char name[SCENE_NAME_BYTES];
     int code = CLI_OK;
     scene_name(path, name, sizeof name);
     for (uint32_t i = 0; i < case_count(o, recording) && code == CLI_OK; i++) {
@@ -362,7 +380,7 @@ static int evaluate_planar(const options *o)
     evaluation_report report;
     int code = open_report(&report, o, o->input_count);
     for (uint32_t i = 0; i < o->input_count && code == CLI_OK; i++) {
-        char name[256];
+        char name[SCENE_NAME_BYTES];
         uint8_t *bytes;
         scene_name(o->inputs[i], name, sizeof name);
         t3r_recording *recording = evaluation_planar_recording(o->inputs[i], o->width, o->height, &bytes);

@@ -92,17 +92,14 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp argp = {
-    options,
-    parse,
-    "",
-    "Prints the arena's buffers, the least and the full bytes, and upper bounds of each stage's inner-loop steps."
-    "\vExamples:\n"
-    "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
-    "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
-    "  trim3r plan --size 256x256 --gaussians 13107 --json",
-    NULL,
-    NULL,
-    NULL,
+    .options = options,
+    .parser = parse,
+    .doc =
+        "Prints the arena's buffers, the least and the full bytes, and upper bounds of each stage's inner-loop steps."
+        "\vExamples:\n"
+        "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
+        "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
+        "  trim3r plan --size 256x256 --gaussians 13107 --json",
 };
 
 static void print_json(const t3r_config *config, const t3r_plan_info *plan)

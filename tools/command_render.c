@@ -149,23 +149,20 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp argp = {
-    options,
-    parse,
-    "SCENE.ply [REC.mcap]",
-    "Draws a scene."
-    "\vExamples:\n"
-    "  trim3r render scene.ply room.mcap --view 1 -o view.png\n"
-    "  trim3r render scene.ply --pose pose.json --depth depth.png -o view.png\n"
-    "  trim3r render scene.ply --trajectory t.txt --fov 60 --size 640x480 -o v.png\n\n"
-    "A pose file holds the fields of one frame of transforms.json, or is a transforms.json:\n"
-    "  {\"fl_x\": 220, \"fl_y\": 220, \"cx\": 128, \"cy\": 128, \"w\": 256, \"h\": 256,\n"
-    "   \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}\n"
-    "transform_matrix: camera to world, x right, y up, z backward; cx, cy from the picture's corner; "
-    "fl_y, cx and cy may be left out. Several poses give view_0000.png, view_0001.png ...\n"
-    "A trajectory has lines `stamp tx ty tz qx qy qz qw`: camera to world, x right, y down, z forward.",
-    NULL,
-    NULL,
-    NULL,
+    .options = options,
+    .parser = parse,
+    .args_doc = "SCENE.ply [REC.mcap]",
+    .doc = "Draws a scene."
+           "\vExamples:\n"
+           "  trim3r render scene.ply room.mcap --view 1 -o view.png\n"
+           "  trim3r render scene.ply --pose pose.json --depth depth.png -o view.png\n"
+           "  trim3r render scene.ply --trajectory t.txt --fov 60 --size 640x480 -o v.png\n\n"
+           "A pose file holds the fields of one frame of transforms.json, or is a transforms.json:\n"
+           "  {\"fl_x\": 220, \"fl_y\": 220, \"cx\": 128, \"cy\": 128, \"w\": 256, \"h\": 256,\n"
+           "   \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}\n"
+           "transform_matrix: camera to world, x right, y up, z backward; cx, cy from the picture's corner; "
+           "fl_y, cx and cy may be left out. Several poses give view_0000.png, view_0001.png ...\n"
+           "A trajectory has lines `stamp tx ty tz qx qy qz qw`: camera to world, x right, y down, z forward.",
 };
 
 /* ---- viewpoints ------------------------------------------------------------------------------------------------ */

@@ -85,19 +85,19 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static const struct argp_child children[] = {
     {&reconstruction_budget_argp, 0, NULL, 0}, {&reconstruction_settings_argp, 0, NULL, 0}, {0}};
 static const struct argp argp = {
-    options,
-    parse,
-    "REC.mcap",
-    "Builds (10 % kept unless told otherwise), draws the first frame that is not a context view, and prints the hash "
-    "of every stage and of the whole."
-    "\vExamples:\n"
-    "  trim3r replay room.mcap\n"
-    "  trim3r replay room.mcap --json > golden.json\n"
-    "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n\n"
-    "With a file to compare with, the first stage that differs is named, and for the raster the first 16x16 tile.",
-    children,
-    NULL,
-    NULL,
+    .options = options,
+    .parser = parse,
+    .args_doc = "REC.mcap",
+    .doc =
+        "Builds (10 % kept unless told otherwise), draws the first frame that is not a context view, and prints the "
+        "hash "
+        "of every stage and of the whole."
+        "\vExamples:\n"
+        "  trim3r replay room.mcap\n"
+        "  trim3r replay room.mcap --json > golden.json\n"
+        "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n\n"
+        "With a file to compare with, the first stage that differs is named, and for the raster the first 16x16 tile.",
+    .children = children,
 };
 
 /* ---- the expectation ------------------------------------------------------------------------------------------ */

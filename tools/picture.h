@@ -7,9 +7,9 @@
 
 typedef struct picture {
     uint32_t width, height;
-    uint32_t channels;   /* 3 = RGB, 1 = grey */
-    uint32_t bits;       /* 8 or 16 */
-    void *samples;       /* uint8_t or uint16_t (host order), rows without gaps; picture_free() */
+    uint32_t channels; /* 3 = RGB, 1 = grey */
+    uint32_t bits;     /* 8 or 16 */
+    void *samples;     /* uint8_t or uint16_t (host order), rows without gaps; picture_free() */
 } picture;
 
 /* 0, or -1 with "what, where" in error[]. Sizes over T3R_MAX_SIDE are refused. PNG palettes and alpha become RGB;

@@ -137,9 +137,99 @@ static int read_property(const reader *r, size_t at, const char *line, ply_heade
     return 0;
 }
 
+/* Where the header's reader stands. */
+typedef struct header_walk {
+    bool has_format, has_vertex, in_vertex, any_element;
+    uint64_t element_count; /* of the element being read */
+    size_t row;             /* bytes of one of them */
+} header_walk;
+
+static void end_element(const header_walk *w, ply_header *h)
+{
+    if (w->in_vertex) {
+        h->row_bytes = w->row;
+    } else if (w->any_element && !w->has_vertex) {
+        h->skip += w->element_count * w->row; /* below 2^24 x 2^13 each, and below 2^13 of them fit the header */
+    }
+}
+
+static int begin_element(const reader *r, size_t at, const char *line, header_walk *w, ply_header *h)
+{
+    char name[64];
+    int end = 0;
+    if (sscanf(line, "element %63s %" SCNu64 "%n", name, &w->element_count, &end) != 2 || line[end] != '\0' ||
+        strchr(line, '-') != NULL) {
+        return FAIL(r, "byte %zu: '%.80s' is no element", at, line);
+    }
+    if (w->element_count > T3R_MAX_GAUSSIANS) {
+        return FAIL(r, "byte %zu: %" PRIu64 " elements '%s' are over the limit of %u", at, w->element_count, name,
+                    T3R_MAX_GAUSSIANS);
+    }
+    if (strcmp(name, "chunk") == 0) {
+        return FAIL(r, "byte %zu: packed .ply (SuperSplat) is not read; export it unpacked", at);
+    }
+    w->in_vertex = strcmp(name, "vertex") == 0;
+    if (w->in_vertex && w->has_vertex) {
+        return FAIL(r, "byte %zu: a second element vertex", at);
+    }
+    w->has_vertex = w->has_vertex || w->in_vertex;
+    h->count = w->in_vertex ? (uint32_t)w->element_count : h->count;
+    w->any_element = true;
+    w->row = 0;
+    return 0;
+}
+
+static int read_header_line(const reader *r, size_t at, const char *line, header_walk *w, ply_header *h)
+{
+    if (strncmp(line, "element ", 8) == 0) {
+        end_element(w, h);
+        return begin_element(r, at, line, w, h);
+    }
+    if (strncmp(line, "property ", 9) == 0) {
+        if (!w->any_element) {
+            return FAIL(r, "byte %zu: a property before the first element", at);
+        }
+        /* what follows the vertices is not read, so its properties may be anything */
+        return w->in_vertex || !w->has_vertex ? read_property(r, at, line, h, w->in_vertex, &w->row) : 0;
+    }
+    if (strncmp(line, "format ", 7) == 0) {
+        w->has_format = true;
+        return strcmp(line, "format binary_little_endian 1.0") == 0
+                   ? 0
+                   : FAIL(r, "byte %zu: '%.80s': only binary_little_endian 1.0 is read", at, line);
+    }
+    if (strncmp(line, "comment", 7) == 0) {
+        read_comment(line, h);
+        return 0;
+    }
+    return strncmp(line, "obj_info", 8) == 0 ? 0 : FAIL(r, "byte %zu: unknown header line '%.80s'", at, line);
+}
+
+static int check_header(const reader *r, const header_walk *w, const ply_header *h)
+{
+    if (!w->has_format || !w->has_vertex || h->count == 0) {
+        return FAIL(r, "%s",
+                    !w->has_format   ? "the header names no format"
+                    : !w->has_vertex ? "the header names no element vertex"
+                                     : "the file holds no Gaussians");
+    }
+    for (int i = 0; i < WANTED_COUNT; i++) {
+        if (!h->found[i]) {
+            return FAIL(r, "property %s is missing: not a file of Gaussians", wanted[i]);
+        }
+    }
+    uint64_t need = h->skip + (uint64_t)h->count * h->row_bytes;
+    if (r->count - h->data < need) {
+        return FAIL(r, "byte %zu: cut off: the header promises %" PRIu64 " bytes of data, %zu are there", r->count,
+                    need, r->count - h->data);
+    }
+    return 0;
+}
+
 static int read_header(const reader *r, ply_header *h)
 {
     char line[MAX_LINE_BYTES];
+    header_walk w = {0};
     size_t at = 0;
     *h = (ply_header){0};
     if (r->count < 4 || memcmp(r->bytes, "ply", 3) != 0 || (r->bytes[3] != '\n' && r->bytes[3] != '\r')) {
@@ -148,84 +238,21 @@ static int read_header(const reader *r, ply_header *h)
     if (next_line(r, &at, line) != 0) {
         return -1;
     }
-    bool has_format = false, has_vertex = false, in_vertex = false, any_element = false;
-    uint64_t element_count = 0; /* of the element being read, and the bytes of one */
-    size_t row = 0;
     for (;;) {
         size_t line_at = at;
-        char name[64];
-        int end = 0;
         if (next_line(r, &at, line) != 0) {
             return -1;
         }
-        bool element = strncmp(line, "element ", 8) == 0, last = strcmp(line, "end_header") == 0;
-        if ((element || last) && any_element) {
-            if (in_vertex) {
-                h->row_bytes = row;
-            } else if (!has_vertex) {
-                h->skip += element_count * row; /* below 2^24 x 2^13 each, and there are few */
-            }
-        }
-        if (last) {
+        if (strcmp(line, "end_header") == 0) {
             break;
         }
-        if (element) {
-            if (sscanf(line, "element %63s %" SCNu64 "%n", name, &element_count, &end) != 2 || line[end] != '\0' ||
-                strchr(line, '-') != NULL) {
-                return FAIL(r, "byte %zu: '%.80s' is no element", line_at, line);
-            }
-            if (element_count > T3R_MAX_GAUSSIANS) {
-                return FAIL(r, "byte %zu: %" PRIu64 " elements '%s' are over the limit of %u", line_at, element_count,
-                            name, T3R_MAX_GAUSSIANS);
-            }
-            if (strcmp(name, "chunk") == 0) {
-                return FAIL(r, "byte %zu: packed .ply (SuperSplat) is not read; export it unpacked", line_at);
-            }
-            in_vertex = strcmp(name, "vertex") == 0;
-            if (in_vertex && has_vertex) {
-                return FAIL(r, "byte %zu: a second element vertex", line_at);
-            }
-            has_vertex = has_vertex || in_vertex;
-            h->count = in_vertex ? (uint32_t)element_count : h->count;
-            any_element = true;
-            row = 0;
-        } else if (strncmp(line, "property ", 9) == 0) {
-            if (!any_element) {
-                return FAIL(r, "byte %zu: a property before the first element", line_at);
-            }
-            /* what follows the vertices is not read, so its properties may be anything */
-            if ((in_vertex || !has_vertex) && read_property(r, line_at, line, h, in_vertex, &row) != 0) {
-                return -1;
-            }
-        } else if (strncmp(line, "format ", 7) == 0) {
-            if (strcmp(line, "format binary_little_endian 1.0") != 0) {
-                return FAIL(r, "byte %zu: '%.80s': only binary_little_endian 1.0 is read", line_at, line);
-            }
-            has_format = true;
-        } else if (strncmp(line, "comment", 7) == 0) {
-            read_comment(line, h);
-        } else if (strncmp(line, "obj_info", 8) != 0) {
-            return FAIL(r, "byte %zu: unknown header line '%.80s'", line_at, line);
+        if (read_header_line(r, line_at, line, &w, h) != 0) {
+            return -1;
         }
     }
-    if (!has_format || !has_vertex || h->count == 0) {
-        return FAIL(r, "%s",
-                    !has_format   ? "the header names no format"
-                    : !has_vertex ? "the header names no element vertex"
-                                  : "the file holds no Gaussians");
-    }
-    for (int i = 0; i < WANTED_COUNT; i++) {
-        if (!h->found[i]) {
-            return FAIL(r, "property %s is missing: not a file of Gaussians", wanted[i]);
-        }
-    }
+    end_element(&w, h);
     h->data = at;
-    uint64_t need = h->skip + (uint64_t)h->count * h->row_bytes;
-    if (r->count - at < need) {
-        return FAIL(r, "byte %zu: cut off: the header promises %" PRIu64 " bytes of data, %zu are there", r->count,
-                    need, r->count - at);
-    }
-    return 0;
+    return check_header(r, &w, h);
 }
 
 /* ---- vertices --------------------------------------------------------------------------------------------- */

@@ -16,32 +16,32 @@
 typedef struct posed_intrinsics {
     double width, height;
     double fx, fy, cx, cy;
-    double angle_x, angle_y;       /* full field of view in radians, the fallback for fx and fy */
+    double angle_x, angle_y; /* full field of view in radians, the fallback for fx and fy */
     t3r_distortion distortion;
-    double coefficients[5];        /* in the order of t3r_distortion */
+    double coefficients[5]; /* in the order of t3r_distortion */
 } posed_intrinsics;
 
 typedef struct posed_frame {
-    char *image;                   /* path, relative to the folder as the folder spells it */
-    char *depth;                   /* likewise; NULL = none */
+    char *image; /* path, relative to the folder as the folder spells it */
+    char *depth; /* likewise; NULL = none */
     posed_intrinsics intrinsics;
-    double position[3];            /* camera centre, world units */
-    double rotation[4];            /* unit quaternion w x y z; camera (x right, y down, z forward) to world */
+    double position[3]; /* camera centre, world units */
+    double rotation[4]; /* unit quaternion w x y z; camera (x right, y down, z forward) to world */
 } posed_frame;
 
 typedef struct posed_folder {
-    const char *kind;              /* "transforms.json" or "TUM RGB-D" */
+    const char *kind; /* "transforms.json" or "TUM RGB-D" */
     posed_frame *frames;
     uint32_t frame_count;
     t3r_triplet *triplets;
     uint32_t triplet_count;
-    double depth_unit;             /* world units a step; 0.001 where no frame has depth and none is given */
-    uint32_t skipped;              /* pictures left out because no pose is near them in time */
+    double depth_unit; /* world units a step; 0.001 where no frame has depth and none is given */
+    uint32_t skipped;  /* pictures left out because no pose is near them in time */
 } posed_folder;
 
 typedef struct posed_folder_options {
-    const double *intrinsics;      /* TUM: fx fy cx cy [k1 k2 p1 p2 k3], cx and cy from the top-left pixel's centre */
-    uint32_t intrinsics_count;     /* 0, 4 or 9 */
+    const double *intrinsics;  /* TUM: fx fy cx cy [k1 k2 p1 p2 k3], cx and cy from the top-left pixel's centre */
+    uint32_t intrinsics_count; /* 0, 4 or 9 */
 } posed_folder_options;
 
 /* Reads DIR's lists. 0, or -1 with "file: frame: field: what" in error[]. posed_folder_close() in either case. */

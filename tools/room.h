@@ -11,8 +11,8 @@
 #include "recording.h"
 #include "trim3r.h"
 
-#define ROOM_SIDE 256u          /* default width and height */
-#define ROOM_FRAMES 6u          /* default number of frames */
+#define ROOM_SIDE 256u /* default width and height */
+#define ROOM_FRAMES 6u /* default number of frames */
 #define ROOM_MAX_FRAMES 1000u
 #define ROOM_MAX_TRIPLETS 3u
 #define ROOM_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* 1 mm, as t3r_frame has it */

@@ -5,16 +5,30 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define ROOM_MM(x) ((int64_t)(x) * 65536 / 1000)
+#define ROOM_MM(x) ((int64_t)(x)*65536 / 1000)
 
 typedef struct room_vector {
     int64_t v[3];
 } room_vector;
 
 typedef enum room_material {
-    ROOM_FLOOR, ROOM_CEILING, ROOM_BRICK, ROOM_BLANK, ROOM_PLASTER, /* the shell */
-    ROOM_WOOD, ROOM_CARDBOARD, ROOM_CRATE, ROOM_SHELF, ROOM_PAINTING, ROOM_FRAME_GOLD, ROOM_METAL, ROOM_PAINTED,
-    ROOM_GRANITE, ROOM_MARBLE, ROOM_LAMP, ROOM_CLOTH
+    ROOM_FLOOR,
+    ROOM_CEILING,
+    ROOM_BRICK,
+    ROOM_BLANK,
+    ROOM_PLASTER, /* the shell */
+    ROOM_WOOD,
+    ROOM_CARDBOARD,
+    ROOM_CRATE,
+    ROOM_SHELF,
+    ROOM_PAINTING,
+    ROOM_FRAME_GOLD,
+    ROOM_METAL,
+    ROOM_PAINTED,
+    ROOM_GRANITE,
+    ROOM_MARBLE,
+    ROOM_LAMP,
+    ROOM_CLOTH
 } room_material;
 
 #define ROOM_GROUPS 8
@@ -24,7 +38,7 @@ typedef enum room_material {
 typedef struct room_solid {
     room_vector low, high, middle;
     int64_t radius;
-    int64_t reach_squared;      /* Q32, of the sphere around `middle` that holds it */
+    int64_t reach_squared; /* Q32, of the sphere around `middle` that holds it */
     room_material material;
 } room_solid;
 
@@ -43,13 +57,13 @@ typedef struct room_scene {
 } room_scene;
 
 typedef struct room_hit {
-    int64_t distance;           /* Q20, in multiples of the ray's direction */
+    int64_t distance; /* Q20, in multiples of the ray's direction */
     room_material material;
-    uint32_t axis;              /* of the face; 3 = sphere */
-    uint32_t solid;             /* index; ROOM_SOLIDS = the shell */
-    room_vector point;          /* world */
-    room_vector local;          /* in the group's frame, from the box's low corner or the sphere's middle */
-    int32_t normal_q14[3];      /* world, towards the origin of the ray */
+    uint32_t axis;         /* of the face; 3 = sphere */
+    uint32_t solid;        /* index; ROOM_SOLIDS = the shell */
+    room_vector point;     /* world */
+    room_vector local;     /* in the group's frame, from the box's low corner or the sphere's middle */
+    int32_t normal_q14[3]; /* world, towards the origin of the ray */
 } room_hit;
 
 void room_scene_build(room_scene *scene);

@@ -84,7 +84,7 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
         view->camera.cy_q16 = to_q(camera.cy, 16);
         if (set_pose(&view->camera, camera.position, camera.rotation) != 0) {
             return t3r_reason(error, error_bytes,
-                     "the camera is out of range (focal length 8..16384 pixels, position below 2^30)");
+                              "the camera is out of range (focal length 8..16384 pixels, position below 2^30)");
         }
         out->count++;
     }

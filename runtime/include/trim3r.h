@@ -76,11 +76,11 @@ typedef struct t3r_frame {
     t3r_pixel_format format;
     uint32_t width, height;       /* pixels; 2..T3R_MAX_SIDE */
     const uint8_t *planes[2];     /* plane 1 only for NV12 */
-    uint32_t stride_bytes[2];     /* bytes from row to row */
+    uint32_t stride_bytes[2];     /* bytes from row to row, below 2^19 */
     const uint8_t *depth;         /* Z16: little-endian 16-bit steps along z, 0 = no measurement; NULL = none */
-    uint32_t depth_width, depth_height; /* registered to the colour image; may differ from its size */
+    uint32_t depth_width, depth_height; /* 2..T3R_MAX_SIDE; registered to the colour image, of which the size may differ */
     uint32_t depth_stride_bytes;
-    uint64_t depth_unit_q40;      /* world units a step, > 0; 1 mm in metres is 1099511628 */
+    uint64_t depth_unit_q40;      /* world units a step, 1..2^47 - 1; 1 mm in metres is 1099511628 */
 } t3r_frame;
 
 typedef enum t3r_distortion {
@@ -95,8 +95,8 @@ typedef struct t3r_camera {
     int32_t fx_q16, fy_q16;       /* focal lengths in pixels, [8, 16384) */
     int32_t cx_q16, cy_q16;       /* principal point in pixels, (-16384, 16384) */
     t3r_distortion distortion;
-    int32_t distortion_q24[5];
-    int64_t position_q32[3];      /* camera centre in world units */
+    int32_t distortion_q24[5];    /* |p1|, |p2| below 16 */
+    int64_t position_q32[3];      /* camera centre in world units, |x| < 2^62 */
     int32_t rotation_q30[4];      /* quaternion w x y z, camera to world; any norm in [0.5, 1.5]: normalised inside */
 } t3r_camera;
 
@@ -138,7 +138,7 @@ typedef struct t3r_config {
     t3r_head head;
     uint32_t fill_radius;           /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
     uint32_t keep_analysis;         /* 1 = planes outlive the build, so that t3r_rebudget() works */
-    uint32_t seed;                  /* of seeding and of the allocation `random` */
+    uint32_t seed;                  /* of the K-means, of the allocation `random`, and of blue-noise ties */
 } t3r_config;
 
 /* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */
@@ -182,9 +182,9 @@ typedef struct t3r_target {
 /* Optional callbacks, re-bound by t3r_attach(); zero-initialise what is not used. */
 typedef struct t3r_hooks {
     void *user;
-    /* Called between bounded pieces of long work; a return other than 0 cancels it. */
+    /* Called between bounded pieces of long work (a view, a batch, 64 tiles); a return other than 0 cancels it. */
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
-    /* When set, every stage of t3r_reconstruct()/t3r_render() is hashed (t3r_hash in runtime/hash.h, SPEC "Hash"). */
+    /* When set, every stage of t3r_reconstruct(), t3r_rebudget() and t3r_render() is hashed (SPEC, "Hash"). */
     void (*stage_hash)(void *user, t3r_stage stage, uint64_t hash);
     /* Runs task(context, 0..count-1) in any order, on any threads, and returns when all are done. */
     void (*parallel_for)(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context);
@@ -199,7 +199,7 @@ typedef struct t3r_plan_buffer {
 
 typedef struct t3r_plan_info {
     size_t min_bytes;               /* one byte less is refused */
-    size_t bytes;                   /* nothing runs slower for lack of room */
+    size_t bytes;                   /* a view takes one pass, unless most of its splats are many tiles wide */
     uint32_t buffer_count;
     t3r_plan_buffer buffers[T3R_BUFFER_COUNT];  /* as laid out in an arena of `bytes` */
     uint64_t operations[T3R_STAGE_COUNT];       /* upper bound of inner-loop steps, a stage */
@@ -219,38 +219,45 @@ const char *t3r_config_error(const t3r_config *config);
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
 t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config);
 
-/* Re-binds an arena that was copied or restored from bytes; hooks start empty. */
+/* Re-binds an arena that was copied or restored from bytes, of the very same size; hooks start empty. T3R_ERR_EPOCH when
+ * it was made by another version or is damaged. */
 t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes);
 
 /* Binds callbacks (NULL: none). */
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 
-/* Takes the next context view: to planes, resized to the working size, undistorted. On an error nothing
- * is added. The camera belongs to the frame's own pixel grid. T3R_ERR_NO_DEPTH when the frame has none. */
+/* Takes the next context view: to planes, resized to the working size, undistorted. The camera belongs to the frame's own
+ * pixel grid and must also be in range after resizing. On an error no view is added; an analysis that was kept is gone.
+ * T3R_ERR_FRAME, T3R_ERR_CAMERA (also when more than half of the picture lies beyond what the lens can show),
+ * T3R_ERR_NO_DEPTH (no plane, or not one measurement in it), T3R_ERR_STATE (no room, or there is a scene: t3r_reset()). */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
 /* Forgets views, analysis and scene; keeps the configuration. Needed before t3r_add_view() once there is a scene. */
 t3r_status t3r_reset(t3r_runtime *rt);
 
-/* From the views added so far to exactly min(gaussians, valid points) Gaussians. */
+/* From the views added so far to exactly min(gaussians, valid points) Gaussians. T3R_ERR_CAMERA when a view stands more
+ * than 1,024 scene units from the first; T3R_ERR_CANCELLED: no scene then, the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
 
-/* Another budget for the pair analysed last, without analysing again; needs keep_analysis. */
+/* Another budget for the pair analysed last, without analysing again; needs keep_analysis. A later t3r_reconstruct() goes
+ * on with it. T3R_ERR_CANCELLED: no scene then, the settings are as before, the analysis stays. */
 t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene);
 
-/* Another allocation and head as well as budget, likewise; a later t3r_reconstruct() goes on with them. */
+/* Another allocation and head as well as budget, likewise. */
 t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head, t3r_scene *scene);
 
 /* The scene in the arena, after t3r_attach() say. T3R_ERR_STATE when there is none. */
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);
 
-/* Starts an empty scene in the given frame and appends to it: for scenes that come from files. Every field
- * of the Gaussian is checked. */
+/* Starts an empty scene in the given frame (exponent -24..24, |origin| < 2^62) and forgets the views; appends to the scene
+ * there is. For scenes that come from files: every field of the Gaussian is checked, |position_q20| <= 2^30. */
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame);
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 
 /* Draws the scene in the arena as seen by the camera (its distortion is ignored: targets are pinhole). Without
- * keep_analysis the views are forgotten: their planes are where the raster works. */
+ * keep_analysis the views are forgotten: their planes are where the raster works. T3R_ERR_CAMERA when the camera stands
+ * more than 1,024 scene units from the origin; T3R_ERR_CANCELLED leaves the target part drawn. The target's depth and
+ * alpha must be aligned for their types. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);
 
 /* Passes over the scene that the last t3r_render() took: 1 when the arena had room for all. */

@@ -5,6 +5,8 @@
 #ifndef TRIM3R_ARENA_H
 #define TRIM3R_ARENA_H
 
+#include <stddef.h>
+
 #define T3R_ARENA_ALIGN 64
 
 /* Stages as plain numbers, usable in constant expressions; t3r_stage gives them a type. */
@@ -27,7 +29,7 @@
 #define T3R_GAUSSIAN_BYTES 44
 #define T3R_SPLAT_BYTES 40
 #define T3R_ORDER_BYTES 16       /* two keys and two indices a Gaussian: the radix sort's two sides */
-#define T3R_SORT_BYTES 8192      /* four histograms of 256 counts and their prefix sums */
+#define T3R_SORT_BYTES 4096      /* four histograms of 256 counts */
 #define T3R_CLUSTER_BYTES 52     /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
 #define T3R_TILE_SIDE 16
@@ -51,7 +53,7 @@
     X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_HEAD))                   \
     X(p, CONFIDENCE, "confidence planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_HEAD))             \
     X(p, IMAGE_WORK, "undistortion and resize work",                                                                      \
-      T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w) * 32), T3R_AT_IMAGE, T3R_AT_IMAGE)    \
+      T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w) * 24), T3R_AT_IMAGE, T3R_AT_IMAGE)    \
     X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_WAVELET, T3R_LAST_(keep, T3R_AT_HEAD))             \
     X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16), T3R_AT_WAVELET,   \
       T3R_AT_WAVELET)                                                                                                      \
@@ -64,14 +66,15 @@
     X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_PIXELS_(w, h) * 2, T3R_AT_HEAD, T3R_AT_HEAD)                            \
     X(p, SPLATS, "projected splats", (size_t)(z) * T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)                          \
     X(p, ORDER, "depth order", (size_t)(z) * T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)               \
-    X(p, TILES, "tile table", (T3R_TILES_(rw, rh) + 1) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                  \
+    X(p, TILES, "tile table", T3R_TILES_(rw, rh) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                        \
     X(p, LISTS, "tile lists", (size_t)(z) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                               \
     X(p, SCENE, "scene", (size_t)(z) * T3R_GAUSSIAN_BYTES, T3R_AT_HEAD, T3R_AT_RASTER)
 
 #define T3R_NAME_(p, NAME, text, bytes, first, last) T3R_BUFFER_##NAME,
 enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0) T3R_BUFFER_COUNT };
 
-/* Tile-list bytes with which a pass takes a whole view: four tiles a Gaussian and half a pixel's worth each. */
+/* Tile-list bytes with which a pass takes a whole view, unless most splats are many tiles wide: an entry for four tiles
+ * a Gaussian and one a pixel. */
 #define T3R_LISTS_BYTES_(z, rw, rh) (((size_t)(z) * 4 + T3R_PIXELS_(rw, rh)) * 4)
 
 #define T3R_LIVE_(stage, NAME, text, bytes, first, last) \
@@ -91,7 +94,7 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0) T3R_BUFFER_C
                  T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)))
 
 /* For the default configuration (300 SuperClusters, targets of the working size, analysis not kept):
- * the smallest arena that works, and the one with which nothing runs slower for lack of room. */
+ * the smallest arena that works, and the one with which a view takes one pass (views of wide splats may take more). */
 #define T3R_ARENA_MIN_BYTES(width, height, views, gaussians) \
     T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, 0)
 #define T3R_ARENA_BYTES(width, height, views, gaussians) \

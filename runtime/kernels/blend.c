@@ -2,8 +2,8 @@
 
 #include "fixed.h"
 
-/* exp(s - 0.75) on [0, 0.75] in Q16: C0 + s (C1 + s (C2 + s (C3 + s C4))), minimax, error below 2^-18 before rounding;
- * the two lowest coefficients lowered so that the result stays below 1. */
+/* exp(s - 0.75) on [0, 0.75] in Q16: C0 + s (C1 + s (C2 + s (C3 + s C4))), minimax, C0 and C1 lowered so that
+ * the result stays below 1: error below 2^-15, with the roundings below 2^-14. */
 #define C0 30957
 #define C1 30944
 #define C2 15597

@@ -25,6 +25,15 @@ void t3r_row_join(int16_t *restrict row, const int16_t *restrict even, const int
     }
 }
 
+void t3r_row_swap(int16_t *restrict a, int16_t *restrict b, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        int16_t held = a[i];
+        a[i] = b[i];
+        b[i] = held;
+    }
+}
+
 void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
                   const uint8_t *restrict b, size_t count)
 {
@@ -62,20 +71,6 @@ void t3r_row_db2_unupdate(int16_t *restrict low, const int16_t *high, const int1
     for (size_t i = 0; i < count; i++) {
         low[i] = (int16_t)(low[i] - t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_Q15) +
                            t3r_mulr_q15_small(high_next[i], T3R_DB2_UPDATE_NEXT_Q15));
-    }
-}
-
-void t3r_row_db2_pair_update(int16_t *restrict low, const int16_t *restrict high, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        low[i] = (int16_t)(low[i] + t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_PAIR_Q15));
-    }
-}
-
-void t3r_row_db2_pair_unupdate(int16_t *restrict low, const int16_t *restrict high, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        low[i] = (int16_t)(low[i] - t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_PAIR_Q15));
     }
 }
 
@@ -121,6 +116,24 @@ void t3r_row_db2_unlast(int16_t *restrict last, const int16_t *restrict before, 
     for (size_t i = 0; i < count; i++) {
         last[i] = (int16_t)(last[i] + 2 * before[i] - before_that[i]);
     }
+}
+
+void t3r_row_db2_pair(int16_t *restrict low, int16_t *restrict high, size_t count)
+{
+    t3r_row_db2_predict(high, low, count);
+    for (size_t i = 0; i < count; i++) {
+        low[i] = (int16_t)(low[i] + t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_PAIR_Q15));
+        high[i] = (int16_t)(high[i] + low[i]);
+    }
+}
+
+void t3r_row_db2_unpair(int16_t *restrict low, int16_t *restrict high, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        high[i] = (int16_t)(high[i] - low[i]);
+        low[i] = (int16_t)(low[i] - t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_PAIR_Q15));
+    }
+    t3r_row_db2_unpredict(high, low, count);
 }
 
 void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count)
@@ -186,7 +199,8 @@ void t3r_row_texture_coarse(uint16_t *restrict texture, const int16_t *restrict 
                             const int16_t *restrict d, uint32_t gain_q8, uint32_t d_gain_q8, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        /* |h| + |v| < 2^14.4, |d| < 2^14.6 on levels above 1 (wavelet.c); gains < 2^15.7 and 2^13.8: below 2^31 */
+        /* |h| + |v| < 2^14.4, |d| < 2^14.6 on levels above 1 (wavelet_texture.c); gains < 2^15.7 and 2^13.8: the
+         * sum is below 2^31 */
         uint32_t sum = gain_q8 * (uint32_t)(absolute(h[i]) + absolute(v[i])) + d_gain_q8 * absolute(d[i]);
         texture[i] = (uint16_t)T3R_MIN((sum + 128) >> 8, 65535u);
     }

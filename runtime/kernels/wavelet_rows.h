@@ -27,6 +27,9 @@ static inline int16_t t3r_mulr_q15_small(int16_t a, int16_t c)
 void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row, size_t count);
 void t3r_row_join(int16_t *restrict row, const int16_t *restrict even, const int16_t *restrict odd, size_t count);
 
+/* Exchanges two rows. */
+void t3r_row_swap(int16_t *restrict a, int16_t *restrict b, size_t count);
+
 /* (luma - 128) x 16 of count pixels */
 void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
                   const uint8_t *restrict b, size_t count);
@@ -37,9 +40,6 @@ void t3r_row_db2_unpredict(int16_t *restrict high, const int16_t *restrict low, 
 /* db2, 2: low += mulr(high, sqrt 3 / 4) - mulr(next high, (2 - sqrt 3) / 4) */
 void t3r_row_db2_update(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
 void t3r_row_db2_unupdate(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
-/* db2, 2, where the pair is all there is: low += mulr(high, (sqrt 3 - 1) / 2) */
-void t3r_row_db2_pair_update(int16_t *restrict low, const int16_t *restrict high, size_t count);
-void t3r_row_db2_pair_unupdate(int16_t *restrict low, const int16_t *restrict high, size_t count);
 /* db2, 3: high += previous low */
 void t3r_row_add(int16_t *restrict high, const int16_t *restrict low, size_t count);
 void t3r_row_subtract(int16_t *restrict high, const int16_t *restrict low, size_t count);
@@ -51,6 +51,9 @@ void t3r_row_db2_last(int16_t *restrict last, const int16_t *restrict before, co
                       size_t count);
 void t3r_row_db2_unlast(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
                         size_t count);
+/* db2, a line of two samples: step 1; low += mulr(high, (sqrt 3 - 1) / 2); high += low */
+void t3r_row_db2_pair(int16_t *restrict low, int16_t *restrict high, size_t count);
+void t3r_row_db2_unpair(int16_t *restrict low, int16_t *restrict high, size_t count);
 
 /* Haar: odd -= even (t3r_row_subtract); even += (odd + 1) >> 1 */
 void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count);
@@ -62,7 +65,7 @@ void t3r_row_cdf53_unpredict(int16_t *restrict odd, const int16_t *even, const i
 void t3r_row_cdf53_update(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count);
 void t3r_row_cdf53_unupdate(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count);
 
-/* Texture of a level-1 row: |h| + |v| + mulr(|d|, d_gain), Q4; the sum is below 2^15 (wavelet.c). */
+/* Texture of a level-1 row: |h| + |v| + mulr(|d|, d_gain), Q4; the sum is below 2^15 (wavelet_texture.c). */
 void t3r_row_texture_finest(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
                             const int16_t *restrict d, uint16_t d_gain_q16, size_t count);
 /* Of a coarser level: (gain (|h| + |v|) + d_gain |d|) with Q8 gains, one rounding, at most 65535. */

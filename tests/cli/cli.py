@@ -4,6 +4,7 @@
     cli.py PATH/TO/trim3r"""
 import json
 import os
+import resource
 import shutil
 import struct
 import subprocess
@@ -44,6 +45,21 @@ def expect(code, *arguments, err=None, out=None):
     return stdout
 
 
+def fill_disk():
+    """In the child: no file grows beyond 64 bytes, as on a full disk."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (64, resource.RLIM_INFINITY))
+
+
+def expect_full(target, *arguments):
+    """Exit 1 that names `target` when the disk is full, and neither a whole nor a partial file left there."""
+    # Python ignores the signal that would come first; the child must, too
+    done = subprocess.run([TRIM3R, *map(str, arguments)], capture_output=True, text=True, timeout=300,
+                          preexec_fn=fill_disk, restore_signals=False)
+    line = " ".join(map(str, arguments))
+    check(done.returncode == 1 and target in done.stderr, f"{line} on a full disk: {done.returncode} {done.stderr}")
+    check(not [name for name in os.listdir(".") if name.startswith(target)], f"{line} on a full disk leaves a file")
+
+
 def expect_json(*arguments):
     stdout = expect(0, *arguments, "--json")
     try:
@@ -82,7 +98,13 @@ def test_dispatch():
         text = expect(0, command, "--help", out="trim3r " + command)
         check("Example" in text, f"{command} --help has no examples")
         check(all(len(line) < 80 for line in text.splitlines()), f"{command} --help is wider than 79 columns")
+        check("--json" in text, f"{command} has no --json")
         expect(2, command, "--no-such-option", err="no-such-option")
+    # a result that cannot be printed is an error
+    with open("out.txt", "w") as out:
+        done = subprocess.run([TRIM3R, "plan", "--size", "64x64", "--gaussians", "5"], stdout=out, text=True,
+                              stderr=subprocess.PIPE, preexec_fn=fill_disk, restore_signals=False)
+    check(done.returncode == 1 and "standard output: " in done.stderr, f"plan to a full disk: {done.returncode}")
 
 
 def test_build(room):
@@ -119,9 +141,9 @@ def test_build(room):
     expect(2, "build", room, "--keep", 10, "--context", "1,1", "-o", "s.ply", err="twice")
     expect(1, "build", room, "--keep", 10, "--context", "0,99", "-o", "s.ply", err="no frame 99")
     expect(1, "build", room, "--keep", 10, "-o", "missing/s.ply", err="missing/s.ply")
-    if os.path.exists("/dev/full"):
-        os.symlink("/dev/full", "full.ply")
-        expect(1, "build", room, "--keep", 10, "-o", "full.ply", err="full.ply")
+    os.mkdir("folder.ply")
+    expect(1, "build", room, "--keep", 10, "-o", "folder.ply", err="folder.ply: not a regular file")
+    expect_full("full.ply", "build", room, "--keep", 10, "-o", "full.ply")
 
     found = expect_json("build", room, "--context", "0,2", "--keep", "10%", "-o", "scene.ply")
     for key in ("gaussians", "arena_bytes", "hash", "valid_points", "bits_epoch", "origin", "exponent"):
@@ -129,9 +151,11 @@ def test_build(room):
     check(found["gaussians"] == (found["valid_points"] * 10 + 50) // 100, "--keep 10% is not a tenth")
     exact = expect_json("build", room, "--gaussians", 777, "-o", "exact.ply")
     check(exact["gaussians"] == 777, "--gaussians is not met exactly")
-    text = expect(0, "build", room, "--working", "32x32", "--gaussians", 100000, "-o", "all.ply", out="all valid points are used")
+    text = expect(0, "build", room, "--working", "32x32", "--gaussians", 100000, "-o", "all.ply",
+                  out="all valid points are used")
     check("100000" in text, "the count asked for is not told")
-    expect(0, "build", room, "--working", "32x32", "--gaussians", 9, "--method", "random", "--comments", "-o", "named.ply")
+    expect(0, "build", room, "--working", "32x32", "--gaussians", 9, "--method", "random", "--comments",
+           "-o", "named.ply")
     check(b"comment trim3r bits_epoch" in open("named.ply", "rb").read(), "--comments writes none")
     check(b"comment" not in open("exact.ply", "rb").read(), "a comment is in the header unasked")
 
@@ -214,16 +238,21 @@ def test_render(room):
     expect(1, "render", "scene.ply", "--pose", "absent.json", "-o", "v.png", err="absent.json")
     expect(1, "render", "scene.ply", "--pose", "path.txt", "-o", "v.png", err="JSON")
     expect(1, "render", "scene.ply", "--pose", "pose.json", "--trajectory", "pose.json", "-o", "v.png", err="line 1")
-    expect(2, "render", "scene.ply", "--fov", 179.9, "--size", "64x64", "--trajectory", "path.txt", "-o", "v.png", err="focal")
+    expect(2, "render", "scene.ply", "--fov", 179.9, "--size", "64x64", "--trajectory", "path.txt", "-o", "v.png",
+           err="focal")
     expect(1, "render", "scene.ply", room, "--view", 1, "-o", "missing/v.png", err="missing/v.png")
+    expect(1, "render", "scene.ply", room, "--view", 1, "-o", "flat", err="flat: not a regular file")
+    expect_full("full.png", "render", "scene.ply", room, "--view", 1, "-o", "full.png")
 
-    found = expect_json("render", "scene.ply", room, "--view", 1, "--depth", "d.png", "--alpha", "a.png", "-o", "view.png")
+    found = expect_json("render", "scene.ply", room, "--view", 1, "--depth", "d.png", "--alpha", "a.png",
+                        "-o", "view.png")
     check(found["gaussians"] > 0 and found["width"] == 256, "render --json lacks its keys")
     for name in ("view.png", "d.png", "a.png"):
         check(open(name, "rb").read(8) == b"\x89PNG\r\n\x1a\n", f"{name} is no PNG")
     small = expect_json("render", "scene.ply", room, "--view", 1, "--size", "100x50", "-o", "small.png")
     check((small["width"], small["height"]) == (100, 50), "--size does not set the size")
-    check(expect_json("render", "scene.ply", "--pose", "pose.json", "-o", "p.png")["height"] == 48, "--pose sets no size")
+    found = expect_json("render", "scene.ply", "--pose", "pose.json", "-o", "p.png")
+    check(found["height"] == 48, "--pose sets no size")
     expect(0, "render", "scene.ply", "--trajectory", "path.txt", "--pose", "pose.json", "-o", "t.png", out="2 views")
     expect(0, "render", "scene.ply", "--trajectory", "path.txt", "--fov", 60, "--size", "32x32", "-o", "f.png")
     check(all(os.path.exists(n) for n in ("t_0000.png", "t_0001.png", "f_0001.png")), "numbered pictures are missing")
@@ -234,7 +263,8 @@ def test_replay(room):
     found = expect_json(*base)
     check(len(found.get("stages", {})) == 8 and len(found["tiles"]) == 16, "replay --json lacks stages or tiles")
     write("golden.json", json.dumps(found))
-    for more in ([], ["--threads", 2], ["--arena", "min"], ["--arena", 30000000], ["--cpu-mask", 0], ["--cpu-mask", 255]):
+    for more in ([], ["--threads", 2], ["--arena", "min"], ["--arena", 30000000], ["--cpu-mask", 0],
+                 ["--cpu-mask", 255]):
         expect(0, *base, "--expect", "golden.json", *more, out="as expected")
         expect(0, *base, "--expect", found["hash"], *more, out="as expected")
     check(expect_json(*base, "--expect", "golden.json")["match"] is True, "match is not told")
@@ -286,7 +316,7 @@ def test_diff():
 def test_plan():
     expect(2, "plan", err="--size")
     expect(2, "plan", "--size", "256x256", err="--gaussians")
-    expect(2, "plan", "--size", "4x4", "--gaussians", 5, err="width")
+    expect(2, "plan", "--size", "4x4", "--gaussians", 5, err="--size")
     expect(2, "plan", "--size", "256", "--gaussians", 5, err="--size")
     expect(2, "plan", "--size", "256x256", "--gaussians", 0, err="--gaussians")
     expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--views", 17, err="--views")
@@ -294,6 +324,8 @@ def test_plan():
     expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--json", "--markdown", err="exclude")
     expect(2, "plan", "more", err="too many")
     expect(1, "plan", "--size", "256x256", "--gaussians", 5, "--svg", "missing/a.svg", err="missing/a.svg")
+    expect_full("full.svg", "plan", "--size", "256x256", "--gaussians", 5, "--svg", "full.svg")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--render", "0x9", err="--render")
     base = ["plan", "--size", "256x256", "--views", 2, "--gaussians", 13107]
     found = expect_json(*base, "--svg", "arena.svg")
     check(found["min_bytes"] <= found["arena_bytes"] and len(found["operations"]) == 9, "plan --json lacks its keys")
@@ -301,7 +333,8 @@ def test_plan():
         check(buffer["offset"] + buffer["bytes"] <= found["arena_bytes"], f"{buffer['name']} leaves the arena")
     xml.dom.minidom.parse("arena.svg")
     table = expect(0, *base, "--markdown", out="|---|")
-    check(all(f"| {b['name']} | {b['bytes']} |" in table for b in found["buffers"]), "the Markdown table lacks a buffer")
+    check(all(f"| {b['name']} | {b['bytes']} |" in table for b in found["buffers"]),
+          "the Markdown table lacks a buffer")
     check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
 
 
@@ -316,7 +349,16 @@ def test_bench():
     corners = [[1000.0 + 3 * (i & 1), 2.0 * (i >> 1 & 1), -4.0 * (i >> 2 & 1), 0, 0.5, 1] for i in range(8)] * 50
     found = expect_json("bench", "--runs", 1, "--points",
                         write("corners.f32", b"".join(struct.pack("<6f", *row) for row in corners)))
-    check(found["kmeans_points"] == 400 and found["kmeans_msd"] < 1e-4, f"eight places need eight clusters: {found['kmeans_msd']}")
+    check(found["kmeans_points"] == 400 and found["kmeans_msd"] < 1e-4,
+          f"eight places need eight clusters: {found['kmeans_msd']}")
+    # any scale: a power of two less changes the distances by just that
+    cloud = [[((i * (7919 + 2 * d)) % 4093) / 4093 for d in range(6)] for i in range(2000)]
+    distance = {}
+    for scale in (1.0, 2.0 ** -20, 2.0 ** 60):
+        rows = b"".join(struct.pack("<6f", *[scale * v for v in row]) for row in cloud)
+        found = expect_json("bench", "--runs", 1, "--points", write("cloud.f32", rows))
+        distance[scale] = found["kmeans_msd"] / scale ** 2
+    check(0 < distance[1.0] < 0.5 and max(distance.values()) <= 1.0001 * min(distance.values()), f"scales: {distance}")
     for key in ("raster_131k_ms", "raster_13k_ms", "kmeans_ms", "wavelet_ns_per_pixel", "build_analytic_ms"):
         check(found[key] > 0 and found[key + "_min"] <= found[key] <= found[key + "_max"], f"bench lacks {key}")
     for key in ("head_gmac_per_s", "stereo_ms", "build_small_ms"):

@@ -14,27 +14,18 @@
 #include "fixed.h"
 #include "gaussian_shape.h"
 #include "scene_file.h"
+#include "scratch.h"
 
 #define COUNT 2000u
 #define ROW_FLOATS 17
 
-static char path[] = "trim3r-ply-XXXXXX";
+static const char *path; /* in a folder of the test's own */
 
-static int make_file(void **state)
+static int make_path(void **state)
 {
-    (void)state;
-    int file = mkstemp(path);
-    if (file < 0) {
-        return -1;
-    }
-    close(file);
-    return 0;
-}
-
-static int remove_file(void **state)
-{
-    (void)state;
-    return unlink(path);
+    int failed = scratch_setup(state);
+    path = failed ? NULL : scratch_path(*state, "file");
+    return failed;
 }
 
 /* White noise in [-most, most]. */
@@ -421,5 +412,5 @@ int main(void)
         cmocka_unit_test(refuses_foreign_headers),    cmocka_unit_test(refuses_bad_numbers),
         cmocka_unit_test(reads_foreign_layouts),      cmocka_unit_test(fits_outliers),
     };
-    return cmocka_run_group_tests(tests, make_file, remove_file);
+    return cmocka_run_group_tests(tests, make_path, scratch_teardown);
 }

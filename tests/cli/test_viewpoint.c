@@ -10,27 +10,18 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "scratch.h"
 #include "viewpoint.h"
 
 #define ONE_Q30 (1 << 30)
 
-static char path[] = "trim3r-viewpoint-XXXXXX";
+static const char *path; /* in a folder of the test's own */
 
-static int make_file(void **state)
+static int make_path(void **state)
 {
-    (void)state;
-    int file = mkstemp(path);
-    if (file < 0) {
-        return -1;
-    }
-    close(file);
-    return 0;
-}
-
-static int remove_file(void **state)
-{
-    (void)state;
-    return unlink(path);
+    int failed = scratch_setup(state);
+    path = failed ? NULL : scratch_path(*state, "file");
+    return failed;
 }
 
 static void write_text(const char *text)
@@ -164,5 +155,5 @@ int main(void)
         cmocka_unit_test(reads_a_trajectory),
         cmocka_unit_test(refuses_bad_trajectories),
     };
-    return cmocka_run_group_tests(tests, make_file, remove_file);
+    return cmocka_run_group_tests(tests, make_path, scratch_teardown);
 }

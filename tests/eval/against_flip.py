@@ -25,7 +25,8 @@ def correlate(plane, kernel):
 
 def opponent(rgb):
     xyz = rgb @ TO_XYZ.T / WHITE
-    return numpy.stack([116 * xyz[..., 1] - 16, 500 * (xyz[..., 0] - xyz[..., 1]), 200 * (xyz[..., 1] - xyz[..., 2])], -1)
+    x, y, z = xyz[..., 0], xyz[..., 1], xyz[..., 2]
+    return numpy.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], -1)
 
 
 def from_opponent(planes):
@@ -68,7 +69,8 @@ def features(luma, points):
 
 
 def flip(target, render):
-    kernels = [contrast_kernel(1, 0.0047, 0, 1e-5), contrast_kernel(1, 0.0053, 0, 1e-5), contrast_kernel(34.1, 0.04, 13.5, 0.025)]
+    kernels = [contrast_kernel(1, 0.0047, 0, 1e-5), contrast_kernel(1, 0.0053, 0, 1e-5),
+               contrast_kernel(34.1, 0.04, 13.5, 0.025)]
     labs, edges, points = [], [], []
     for image in (target, render):
         s = image / 255.0

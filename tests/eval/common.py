@@ -46,7 +46,8 @@ def load_scorer(path):
 
 
 def run(*command, expect=0):
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    # restore_signals: a child under a limit of file sizes must get the error, not the signal
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, restore_signals=False)
     check(done.returncode == expect,
           f"{' '.join(map(str, command))}: exit status {done.returncode}, not {expect}\n{done.stdout}{done.stderr}")
     return done

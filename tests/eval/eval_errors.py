@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """eval_errors.py TRIM3R: every wrong use of `trim3r eval` says what and where, with the right exit status."""
 import os
+import resource
 import struct
 import sys
 import tempfile
@@ -39,7 +40,6 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(USAGE, "--keep is missing", one)
     refuse(USAGE, "--context and --target", [room, "--context", "0,2", "--keep", "10"])
     refuse(USAGE, "--context and --target", [room, "--target", "1", "--keep", "10"])
-    refuse(USAGE, "twice", [room, "--context", "0,0", "--target", "1", "--keep", "10"])
     for keep in ("0", "101", "10,", "ten", "-5", ""):
         refuse(USAGE, "--keep takes percentages", [*one, f"--keep={keep}"])
     for context in ("0,", "a", ",".join(str(i) for i in range(17))):
@@ -56,6 +56,7 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(USAGE, "--size takes", ["--planar", room, "--keep", "10", "--size", "4x4"])
     refuse(USAGE, "--planar takes images", ["--planar", *one, "--keep", "10"])
     refuse(USAGE, "--working belongs", ["--planar", room, "--keep", "10", "--working", "32x32"])
+    refuse(USAGE, "both be called room", [room, "room.mcap", "--keep", "10"])
     refuse(USAGE, "IMAGE... is missing", ["--planar", "--keep", "10"])
 
     refuse(INPUT, f"{folder}/none.mcap", [f"{folder}/none.mcap", "--keep", "10"])
@@ -78,8 +79,19 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(INPUT, below, [*one, "--keep", "10", "--csv", below])
     refuse(INPUT, room, [*one, "--keep", "10", "--images", below])
     refuse(INPUT, below, [*one, "--keep", "10", "--html", below])
-    if os.path.exists("/dev/full"):
-        refuse(INPUT, "/dev/full", [*one, "--keep", "10", "--csv", "/dev/full"])
+    # a full disk: no file grows beyond 256 bytes
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    for option in ("--csv", "--html", "--images"):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (256, limits[1]))
+        refuse(INPUT, f"{folder}/full", [*one, "--keep", "100,50,20,10", option, f"{folder}/full"])
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        if option == "--html":
+            check(not [name for name in os.listdir(folder) if "full" in name], "half a page is left")
+        elif option == "--csv":
+            os.remove(f"{folder}/full")
+    # told before the work: no row is printed
+    result = run(trim3r, "eval", *one, "--keep", "10", "--html", folder, expect=INPUT)
+    check("not a regular file" in result.stderr and result.stdout == "", "a folder as page")
     os.environ["TMPDIR"] = below
     refuse(INPUT, "TMPDIR", [*one, "--keep", "10", "--from-file"])
     text = run(trim3r, "eval", "--help").stdout

@@ -58,7 +58,8 @@ def evaluate_triplet(folder, room):
                  [f"{m}_{k}.png" for m in ("trim3r", "random") for k in keeps]), "the pictures' names")
     target, mask = read(f"{pictures}/1/target.png"), read(f"{pictures}/1/mask.png", grey=True)
     check(target.shape == (64, 64, 3), "pictures have the working size")
-    check(set(numpy.unique(mask)) <= {0, 255} and (mask == 255).mean() > 0.2, "the mask is black and white, and not empty")
+    check(set(numpy.unique(mask)) <= {0, 255} and (mask == 255).mean() > 0.2,
+          "the mask is black and white, and not empty")
     mask = mask > 127
     everything = numpy.ones_like(mask)
     for row in rows:
@@ -102,9 +103,10 @@ def evaluate_all(folder, room):
 def evaluate_several(folder, room):
     other = f"{folder}/other.mcap"
     shutil.copy(room, other)
-    answer = json.loads(run(trim3r, "eval", room, other, "--context", "0,2", "--target", "1", "--keep", "5,10", "--images",
-                            f"{folder}/both", "--json").stdout)
-    check([(r["scene"], r["keep"]) for r in answer["rows"]] == [(s, k) for s in ("room", "other") for k in (5, 10)], "scenes")
+    answer = json.loads(run(trim3r, "eval", room, other, "--context", "0,2", "--target", "1", "--keep", "5,10",
+                            "--images", f"{folder}/both", "--json").stdout)
+    check([(r["scene"], r["keep"]) for r in answer["rows"]] == [(s, k) for s in ("room", "other") for k in (5, 10)],
+          "scenes")
     check([m["scene"] for m in answer["means"]] == ["room", "room", "other", "other"], "means stay within a recording")
     for scene in ("room", "other"):
         check(os.path.exists(f"{folder}/both/{scene}/1/trim3r_5.png"), "a folder a recording")
@@ -122,9 +124,11 @@ def evaluate_variants(folder, room):
     least = row("--arena", "min")
     check([least[s] for s in scores] == [plain[s] for s in scores], "the smallest arena scores the same")
     check(least["arena_bytes"] < plain["arena_bytes"], "and is smaller")
+    check(row("--context", "2,2")["context"] == "2", "a context frame named twice counts once")
     near(row("--from-file")["psnr"], plain["psnr"], 0.05, "the exported file looks like the memory it came from")
     moment = row("--head", "moment", "--allocate", "uniform")
-    check((moment["head"], moment["allocate"]) == ("moment", "uniform") and moment["psnr"] != plain["psnr"], "settings count")
+    check((moment["head"], moment["allocate"]) == ("moment", "uniform") and moment["psnr"] != plain["psnr"],
+          "settings count")
 
 
 def evaluate_planar(folder):
@@ -136,7 +140,8 @@ def evaluate_planar(folder):
     run(trim3r, "eval", "--planar", f"{folder}/photo.png", f"{folder}/grey.png", "--size", "48x48", "--keep", "100,10",
         "--csv", f"{folder}/planar.csv", "--images", f"{folder}/planar")
     rows = read_csv(f"{folder}/planar.csv")
-    check([(r["scene"], r["keep"]) for r in rows] == [(s, k) for s in ("photo", "grey") for k in ("100", "10")], "planar rows")
+    check([(r["scene"], r["keep"]) for r in rows] == [(s, k) for s in ("photo", "grey") for k in ("100", "10")],
+          "planar rows")
     target = read(f"{folder}/planar/photo/target.png")
     check(target.shape == (48, 48, 3), "the size of planar pictures")
     expected = cv2.resize(image[:, 15:105], (48, 48), interpolation=cv2.INTER_AREA)
@@ -148,7 +153,8 @@ def evaluate_planar(folder):
         render = read(f"{folder_of}/trim3r_{row['keep']}.png")
         check_scores(row, read(f"{folder_of}/target.png"), render, numpy.ones((48, 48), bool), "planar_psnr")
     check(int(rows[0]["gaussians"]) == 48 * 48 and int(rows[1]["gaussians"]) == 230, "every pixel is a point")
-    check(float(rows[0]["planar_psnr"]) > 25 and float(rows[0]["planar_psnr"]) > float(rows[1]["planar_psnr"]), "likeness")
+    check(float(rows[0]["planar_psnr"]) > 25 and float(rows[0]["planar_psnr"]) > float(rows[1]["planar_psnr"]),
+          "likeness")
 
 
 with tempfile.TemporaryDirectory() as folder:

@@ -182,8 +182,10 @@ static void test_page_escapes_and_embeds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_csv_quotes_what_needs_it), cmocka_unit_test(test_columns_and_empty_cells),
-        cmocka_unit_test(test_json_of_a_row),            cmocka_unit_test(test_means_group_by_settings),
+        cmocka_unit_test(test_csv_quotes_what_needs_it),
+        cmocka_unit_test(test_columns_and_empty_cells),
+        cmocka_unit_test(test_json_of_a_row),
+        cmocka_unit_test(test_means_group_by_settings),
         cmocka_unit_test(test_page_escapes_and_embeds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -161,7 +161,8 @@ def test_bad_folders():
     refused("sizes_differ", folder, ["frame 2: c2.png: 44x30 pixels, but frame 0 has 40x30; give --size"])
     status, _, error = run("import", folder, "--size", "16x16", "-o", f"{work}/mixed.mcap")
     check(status == 0, f"sizes that differ with --size: {error}")
-    refused("tiny_focal", scene(f"{work}/b13", change=lambda top: top.update(fl_x=20)), ["c0.png: fl_x, fl_y"], "--size", "8x8")
+    refused("tiny_focal", scene(f"{work}/b13", change=lambda top: top.update(fl_x=20)), ["c0.png: fl_x, fl_y"],
+            "--size", "8x8")
     good = scene(f"{work}/b14")
     status, _, error = run("import", good, "-o", f"{work}/no/such/place.mcap")
     check(status == 1 and "place.mcap: No such file" in error, f"unwritable target: {status} {error}")
@@ -216,20 +217,40 @@ def test_info_refuses():
         check(status == 1 and out == "" and name in error, f"info {name}: {status} {error.strip()}")
 
 
-def test_hololens():
-    if not os.path.isdir(f"{data}/hololens_b"):
-        print(f"SKIPPED: no {data}/hololens_b")
+def test_stereo_pair():
+    """Two views: the triplet's context names the one that is not the target twice."""
+    def pair(top):
+        top.update(trim3r_triplets=[{"context": [1, 1], "target": 0}])
+
+    target = f"{work}/pair.mcap"
+    status, out, error = run("import", scene(f"{work}/pair", 2, pair), "-o", target)
+    check(status == 0, f"pair: {error}")
+    status, out, error = run("eval", target, "--keep", "50", "--json")
+    check(status == 0, f"pair: {error}")
+    row = json.loads(out)["rows"][0] if status == 0 else {}
+    check((row.get("context"), row.get("target"), row.get("gaussians")) == ("1", "0", 600), f"pair: {row}")
+
+
+def test_scenes():
+    if not os.path.isdir(data):
+        print(f"without the real scenes: nothing at {data}")
         return
-    target = f"{work}/b.mcap"
-    status, out, error = run("import", f"{data}/hololens_b", "--size", "256x256", "-o", target, "--json")
-    check(status == 0, f"hololens_b: {error}")
-    report = json.loads(out)
-    check((report["frames"], report["depth_frames"], report["triplets"]) == (12, 12, 4), f"hololens_b: {report}")
+    for name in sorted(os.listdir(data)):
+        if not os.path.exists(f"{data}/{name}/transforms.json"):
+            continue
+        with open(f"{data}/{name}/transforms.json") as file:
+            top = json.load(file)
+        status, out, error = run("import", f"{data}/{name}", "--size", "256x256", "-o", f"{work}/s.mcap", "--json")
+        check(status == 0, f"{name}: {error}")
+        report = json.loads(out) if status == 0 else {}
+        expected = {"frames": len(top["frames"]), "depth_frames": sum("depth_path" in f for f in top["frames"]),
+                    "triplets": len(top["trim3r_triplets"]), "width": 256, "height": 256}
+        check({k: report.get(k) for k in expected} == expected, f"{name}: {report}")
 
 
 with tempfile.TemporaryDirectory() as work:
     for test in (test_good_folder, test_tum_folder, test_bad_folders, test_usage, test_room, test_info_refuses,
-                 test_hololens):
+                 test_stereo_pair, test_scenes):
         test()
 print("failed:" if failures else "all passed", len(failures) or "")
 sys.exit(1 if failures else 0)

@@ -15,19 +15,6 @@
 #include "picture.h"
 #include "scratch.h"
 
-static int open_folder(void **state)
-{
-    *state = malloc(sizeof(scratch));
-    return *state == NULL ? -1 : scratch_open(*state);
-}
-
-static int close_folder(void **state)
-{
-    scratch_close(*state);
-    free(*state);
-    return 0;
-}
-
 static void write_picture(scratch *s, const char *name, const picture *p)
 {
     char error[256];
@@ -293,11 +280,11 @@ static void test_hololens_scene(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_points_stay_where_they_are, open_folder, close_folder),
+        cmocka_unit_test_setup_teardown(test_points_stay_where_they_are, scratch_setup, scratch_teardown),
         cmocka_unit_test(test_the_crop_is_the_largest),
-        cmocka_unit_test_setup_teardown(test_depth_of_another_resolution, open_folder, close_folder),
-        cmocka_unit_test_setup_teardown(test_bad_pictures_are_named, open_folder, close_folder),
-        cmocka_unit_test_setup_teardown(test_the_ending_may_be_left_out, open_folder, close_folder),
+        cmocka_unit_test_setup_teardown(test_depth_of_another_resolution, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(test_bad_pictures_are_named, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(test_the_ending_may_be_left_out, scratch_setup, scratch_teardown),
         cmocka_unit_test(test_hololens_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,11 +1,13 @@
 /* Pictures: what is written is read back, what is damaged is refused. */
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include <cmocka.h>
 #include <jpeglib.h>
@@ -13,19 +15,6 @@
 
 #include "picture.h"
 #include "scratch.h"
-
-static int open_folder(void **state)
-{
-    *state = malloc(sizeof(scratch));
-    return *state == NULL ? -1 : scratch_open(*state);
-}
-
-static int close_folder(void **state)
-{
-    scratch_close(*state);
-    free(*state);
-    return 0;
-}
 
 static void fill(uint8_t *bytes, size_t count)
 {
@@ -238,10 +227,20 @@ static void test_writing_fails_cleanly(void **state)
     assert_int_equal(picture_write_png(scratch_path(s, "no/such/folder.png"), &p, error, sizeof error), -1);
     assert_non_null(strstr(error, "folder.png: No such file"));
     assert_int_equal(picture_write_png(scratch_path(s, "odd.png"), &odd, error, sizeof error), -1);
-    if (access("/dev/full", W_OK) == 0) {
-        assert_int_equal(picture_write_png("/dev/full", &p, error, sizeof error), -1);
-        assert_int_equal(access("/dev/full", W_OK), 0); /* only what is a file of ours is removed */
-    }
+    /* a full disk: no file grows beyond 16 bytes */
+    struct rlimit before, full;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    full = (struct rlimit){16, before.rlim_max};
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &full), 0);
+    int status = picture_write_png(scratch_path(s, "full.png"), &p, error, sizeof error);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_int_equal(status, -1);
+    assert_non_null(strstr(error, "full.png: "));
+    assert_int_not_equal(access(s->path, F_OK), 0);
+    /* a device is written as it is, and stays */
+    assert_int_equal(picture_write_png("/dev/null", &p, error, sizeof error), 0);
+    assert_int_equal(access("/dev/null", W_OK), 0);
 }
 
 int main(void)
@@ -252,5 +251,5 @@ int main(void)
         cmocka_unit_test(test_bad_files_are_named),   cmocka_unit_test(test_sizes_over_the_limit_are_refused),
         cmocka_unit_test(test_writing_fails_cleanly),
     };
-    return cmocka_run_group_tests(tests, open_folder, close_folder);
+    return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

@@ -17,19 +17,6 @@
 static const double lens[9] = {500, 510, 319.5, 239.5, 0.1, 0, 0, 0, 0.2};
 static const posed_folder_options with_lens = {lens, 9};
 
-static int open_folder(void **state)
-{
-    *state = malloc(sizeof(scratch));
-    return *state == NULL ? -1 : scratch_open(*state);
-}
-
-static int close_folder(void **state)
-{
-    scratch_close(*state);
-    free(*state);
-    return 0;
-}
-
 static void put(scratch *s, const char *name, const char *text)
 {
     assert_int_equal(scratch_write(s, name, text, strlen(text)), 0);
@@ -166,10 +153,10 @@ static void test_bad_lists_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_association, open_folder, close_folder),
-        cmocka_unit_test_setup_teardown(test_depth_is_optional, open_folder, close_folder),
-        cmocka_unit_test_setup_teardown(test_known_intrinsics, open_folder, close_folder),
-        cmocka_unit_test_setup_teardown(test_bad_lists_are_named, open_folder, close_folder),
+        cmocka_unit_test_setup_teardown(test_association, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(test_depth_is_optional, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(test_known_intrinsics, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(test_bad_lists_are_named, scratch_setup, scratch_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -210,6 +210,14 @@ static void config_ranges(void **state)
     assert_non_null(t3r_config_error(&c));
 }
 
+/* One more of bad[n]: `good` but for one field. */
+#define BAD(field, value)                                                                                              \
+    do {                                                                                                               \
+        bad[n] = good;                                                                                                 \
+        bad[n].field = (value);                                                                                        \
+        n++;                                                                                                           \
+    } while (0)
+
 static void frame_ranges(void **state)
 {
     (void)state;
@@ -218,12 +226,6 @@ static void frame_ranges(void **state)
     const t3r_frame good = good_frame();
     t3r_frame bad[40];
     size_t n = 0;
-#define BAD(field, value)                                                                                              \
-    do {                                                                                                               \
-        bad[n] = good;                                                                                                 \
-        bad[n].field = (value);                                                                                        \
-        n++;                                                                                                           \
-    } while (0)
     BAD(format, T3R_PIXEL_FORMAT_COUNT);
     BAD(format, (t3r_pixel_format)-1);
     BAD(width, 0);
@@ -274,7 +276,6 @@ static void frame_ranges(void **state)
     remember(&b);
     status = t3r_add_view(b.rt, &missing, &camera);
     refused_at(&b, status, status == T3R_ERR_ARGUMENT ? T3R_ERR_ARGUMENT : T3R_ERR_FRAME, __LINE__);
-#undef BAD
     /* what the documentation allows is taken: a frame of 2 x 2, depth of another size, no depth where none is needed */
     assert_int_equal(t3r_add_view(b.rt, &good, &camera), T3R_OK);
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
@@ -302,12 +303,6 @@ static void camera_ranges(void **state)
     const t3r_camera good = plain_camera(30, W, H);
     t3r_camera bad[64];
     size_t n = 0;
-#define BAD(field, value)                                                                                              \
-    do {                                                                                                               \
-        bad[n] = good;                                                                                                 \
-        bad[n].field = (value);                                                                                        \
-        n++;                                                                                                           \
-    } while (0)
     BAD(fx_q16, 0);
     BAD(fx_q16, (8 << 16) - 1);
     BAD(fx_q16, 16384 << 16);
@@ -330,7 +325,6 @@ static void camera_ranges(void **state)
     const size_t of_target_too = n;
     BAD(distortion, T3R_DISTORTION_COUNT);
     BAD(distortion, (t3r_distortion)-1);
-#undef BAD
     for (size_t i = 0; i < n; i++) {
         REFUSED(&b, t3r_add_view(b.rt, &frame, &bad[i]), T3R_ERR_CAMERA);
     }
@@ -375,12 +369,6 @@ static void gaussian_ranges(void **state)
     const t3r_gaussian good = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
     t3r_gaussian bad[16];
     size_t n = 0;
-#define BAD(field, value)                                                                                              \
-    do {                                                                                                               \
-        bad[n] = good;                                                                                                 \
-        bad[n].field = (value);                                                                                        \
-        n++;                                                                                                           \
-    } while (0)
     BAD(factor_exponent, -61);
     BAD(factor_exponent, 16);
     BAD(factor_exponent, INT8_MIN);
@@ -392,7 +380,6 @@ static void gaussian_ranges(void **state)
     BAD(opacity_q15, UINT16_MAX);
     BAD(reserved[0], 1);
     BAD(reserved[2], 255);
-#undef BAD
     for (size_t i = 0; i < n; i++) {
         REFUSED(&b, t3r_scene_append(b.rt, &bad[i]), T3R_ERR_ARGUMENT);
     }
@@ -436,12 +423,6 @@ static void target_ranges(void **state)
     };
     t3r_target bad[16];
     size_t n = 0;
-#define BAD(field, value)                                                                                              \
-    do {                                                                                                               \
-        bad[n] = good;                                                                                                 \
-        bad[n].field = (value);                                                                                        \
-        n++;                                                                                                           \
-    } while (0)
     BAD(width, 0);
     BAD(width, W + 1);
     BAD(width, UINT32_MAX);
@@ -452,7 +433,6 @@ static void target_ranges(void **state)
     BAD(depth_stride_bytes, W * 4 + 2);
     BAD(alpha_stride_bytes, W * 2 - 2);
     BAD(alpha_stride_bytes, W * 2 + 1);
-#undef BAD
     for (size_t i = 0; i < n; i++) {
         REFUSED(&b, t3r_render(b.rt, &camera, &bad[i]), T3R_ERR_ARGUMENT);
     }

@@ -16,7 +16,7 @@ typedef struct scratch {
 static inline int scratch_open(scratch *s)
 {
     const char *base = getenv("TMPDIR");
-    snprintf(s->directory, sizeof s->directory, "%s/t3r-import-XXXXXX", base != NULL ? base : P_tmpdir);
+    snprintf(s->directory, sizeof s->directory, "%s/trim3r-test-XXXXXX", base != NULL ? base : P_tmpdir);
     return mkdtemp(s->directory) != NULL ? 0 : -1;
 }
 
@@ -44,6 +44,20 @@ static inline void scratch_close(scratch *s)
         closedir(all);
     }
     rmdir(s->directory);
+}
+
+/* For cmocka: *state is the folder. */
+static inline int scratch_setup(void **state)
+{
+    *state = malloc(sizeof(scratch));
+    return *state == NULL ? -1 : scratch_open(*state);
+}
+
+static inline int scratch_teardown(void **state)
+{
+    scratch_close(*state);
+    free(*state);
+    return 0;
 }
 
 #endif

@@ -1,0 +1,64 @@
+/* What a configuration needs: bytes by buffer, steps by stage. */
+#include "arena.h"
+#include "state.h"
+#include "superclusters.h"
+
+/* Upper bounds of inner-loop steps: what each stage's loops run to at most, whatever the frames hold. */
+static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_COUNT])
+{
+    const uint64_t side = T3R_MAX_SIDE, frame = side * side; /* the largest frame */
+    const uint64_t tile = T3R_TILE_SIDE * T3R_TILE_SIDE;
+    uint64_t view = (uint64_t)c->width * c->height, pixels = view * c->views;
+    uint64_t tiles = T3R_TILES_(c->render_width, c->render_height);
+    uint64_t clusters = c->clusters, gaussians = c->max_gaussians;
+    uint64_t assigned = (uint64_t)c->cluster_batches * T3R_CLUSTER_BATCH + pixels;
+
+    /* source pixels converted and summed along x, rows summed along y, planes and depth written, undistorted; the lens
+     * search and the grid */
+    operations[T3R_STAGE_IMAGE] = c->views * (4 * frame + 3 * (side + c->height) * c->width + 6 * view +
+                                              64 * T3R_GRID_NODES_(c->width, c->height) + 8192);
+    operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2);
+    operations[T3R_STAGE_POINTMAP] = 2 * pixels + 1120; /* two looks at the depths for their median */
+    /* two lifting passes of three steps and a sum a level, the levels adding up to less than 4 / 3 */
+    operations[T3R_STAGE_WAVELET] = pixels * (7 * 4 / 3 + c->wavelet_levels + 1);
+    /* seeding: a draw and a sum for each trial, one update; neighbours a batch; a point against all centres at most */
+    operations[T3R_STAGE_SUPERCLUSTERS] =
+        T3R_DIMENSIONS * (clusters * T3R_CLUSTER_SAMPLE * (2 * T3R_CLUSTER_TRIALS + 1) +
+                          (c->cluster_batches + 1) * clusters * clusters * (1 + T3R_NEIGHBOURS) +
+                          assigned * (clusters + T3R_NEIGHBOURS * 2));
+    /* textures, two blurs of nine taps, keys, 17 bisections, two density rounds, masks; ranking and quotas */
+    operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 1 + 17 + 2 + 1) + 3 * clusters * clusters + 64 * clusters;
+    /* the widest window of `analytic` is 15 x 15, of `moment` 31 x 31 after four sweeps of four offers, two costs each
+     */
+    operations[T3R_STAGE_HEAD] = c->head == T3R_HEAD_MOMENT
+                                     ? 3 * (pixels * (2 + 4 * 4 * 2) + gaussians * (31 * 31 + 32))
+                                     : pixels + 3 * gaussians * (15 * 15 + 32);
+    operations[T3R_STAGE_REFINE] = 0;
+    /* project; four radix passes and their counts; counting and listing tiles; at most a pass a tile; each pixel of
+     * each tile blended and its depth noted, a look for stopped tiles every 16 splats; tiles cleared and written */
+    operations[T3R_STAGE_RASTER] =
+        gaussians * (32 + 8 + tiles * (1 + 2 + 2 * tile + tile / 16)) + tiles * 3 * tile + 2048;
+}
+
+t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
+{
+    T3R_REFUSE_UNLESS(config != NULL && plan != NULL, T3R_ERR_ARGUMENT);
+    if (t3r_config_error(config) != NULL) {
+        return T3R_ERR_CONFIG;
+    }
+    t3r_layout layout;
+    (void)t3r_lay_out(config, 0, &layout); /* for the two sums */
+    (void)t3r_lay_out(config, layout.bytes, &layout);
+    plan->min_bytes = layout.min_bytes;
+    plan->bytes = layout.bytes;
+    plan->buffer_count = T3R_BUFFER_COUNT;
+    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
+        t3r_plan_buffer *row = &plan->buffers[b];
+        row->name = t3r_buffer_name((enum t3r_buffer)b);
+        row->offset = layout.offset[b];
+        row->bytes = layout.size[b];
+        t3r_buffer_lifetime(config, (enum t3r_buffer)b, &row->first, &row->last);
+    }
+    count_operations(config, plan->operations);
+    return T3R_OK;
+}

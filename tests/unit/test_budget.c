@@ -1,0 +1,155 @@
+/* The budget stage alone: exact quotas in every mode, nested sets, and counts as large as configurations allow. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "budget.h"
+#include "fixed.h"
+
+enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };
+
+static uint16_t texture[PIXELS], key[PIXELS], label[PIXELS];
+static uint32_t mask[WORDS];
+
+static t3r_view made_up_view(t3r_cluster *clusters)
+{
+    memset(clusters, 0, CLUSTERS * sizeof *clusters);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        uint32_t noise = t3r_mix32(i);
+        texture[i] = (uint16_t)(noise % 7 == 0 ? noise >> 18 : (i % SIDE) * 8);
+        label[i] = i % 11 == 0 ? T3R_NO_LABEL : (uint16_t)((i / 64) % (CLUSTERS - 3)); /* three stay empty */
+        if (label[i] != T3R_NO_LABEL) {
+            clusters[label[i]].points++;
+        }
+    }
+    return (t3r_view){.width = SIDE, .height = SIDE, .texture = texture, .key = key, .label = label, .mask = mask};
+}
+
+static uint32_t retained_of(const t3r_view *view)
+{
+    uint32_t count = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        if (t3r_retained(view, i)) {
+            assert_int_not_equal(label[i], T3R_NO_LABEL);
+            count++;
+        }
+    }
+    return count;
+}
+
+static t3r_budget_settings settings_of(t3r_allocation allocation, uint32_t gaussians)
+{
+    return (t3r_budget_settings){.allocation = allocation,
+                                 .gaussians = gaussians,
+                                 .keep_percent = 10,
+                                 .gamma_q8 = 179,
+                                 .clusters = CLUSTERS,
+                                 .seed = 1};
+}
+
+static void every_mode_meets_every_budget(void **state)
+{
+    (void)state;
+    t3r_cluster clusters[CLUSTERS];
+    t3r_view view = made_up_view(clusters);
+    t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
+    uint32_t valid = 0;
+    for (uint32_t k = 0; k < CLUSTERS; k++) {
+        valid += clusters[k].points;
+    }
+    for (int mode = 0; mode < T3R_ALLOCATE_COUNT; mode++) {
+        const uint32_t budgets[] = {1, 2, 39, 40, 41, 500, valid / 2, valid - 1, valid, valid + 1, 1u << 24};
+        for (size_t b = 0; b < sizeof budgets / sizeof budgets[0]; b++) {
+            t3r_budget_settings settings = settings_of((t3r_allocation)mode, budgets[b]);
+            t3r_allocate(&view, 1, &settings, clusters);
+            assert_int_equal(retained_of(&view), budgets[b] < valid ? budgets[b] : valid);
+        }
+    }
+}
+
+static void sets_are_nested(void **state)
+{
+    (void)state;
+    t3r_cluster clusters[CLUSTERS];
+    t3r_view view = made_up_view(clusters);
+    const t3r_allocation flat[] = {T3R_ALLOCATE_PIXEL, T3R_ALLOCATE_UNIFORM, T3R_ALLOCATE_RANDOM};
+    for (size_t m = 0; m < 3; m++) {
+        uint32_t before[WORDS] = {0};
+        for (uint32_t budget = 10; budget < PIXELS; budget += 371) {
+            t3r_budget_settings settings = settings_of(flat[m], budget);
+            t3r_allocate(&view, 1, &settings, clusters);
+            for (size_t w = 0; w < WORDS; w++) {
+                assert_int_equal(before[w] & ~mask[w], 0);
+                before[w] = mask[w];
+            }
+        }
+    }
+}
+
+/* `paper`: the lowest textures give first, a cluster is cut only so far that Z is exact. */
+static void paper_takes_the_lowest_textures_first(void **state)
+{
+    (void)state;
+    t3r_cluster clusters[CLUSTERS];
+    t3r_view view = made_up_view(clusters);
+    t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
+    uint32_t valid = 0;
+    for (uint32_t k = 0; k < CLUSTERS; k++) {
+        valid += clusters[k].points;
+        assert_true(k == 0 || clusters[clusters[k - 1].order].texture_q4 <= clusters[clusters[k].order].texture_q4);
+    }
+    t3r_budget_settings settings = settings_of(T3R_ALLOCATE_PAPER, valid * 6 / 10);
+    t3r_allocate(&view, 1, &settings, clusters);
+    int stage = 0; /* 0: at N %, 1: the cut one, 2: whole */
+    for (uint32_t k = 0; k < CLUSTERS; k++) {
+        const t3r_cluster *c = &clusters[clusters[k].order];
+        uint32_t least = (c->points * 10 + 50) / 100;
+        if (c->points == 0) {
+            continue;
+        }
+        if (stage == 0 && c->quota != least) {
+            stage = 1;
+        } else if (stage >= 1) {
+            stage = 2;
+        }
+        assert_true(stage == 0 ? c->quota == least : stage == 1 ? c->quota >= least : c->quota == c->points);
+    }
+    assert_int_equal(stage, 2);
+}
+
+/* Points as given, no planes of that size needed: products must hold 2^28 points. */
+static void largest_counts_do_not_overflow(void **state)
+{
+    (void)state;
+    t3r_cluster scratch[CLUSTERS];
+    t3r_view view = made_up_view(scratch);
+    for (uint32_t shared = 1; shared <= 4; shared++) {
+        t3r_cluster clusters[CLUSTERS];
+        memset(clusters, 0, sizeof clusters);
+        for (uint32_t k = 0; k < shared; k++) {
+            clusters[k].points = (1u << 28) / shared;
+        }
+        t3r_budget_settings settings = settings_of(T3R_ALLOCATE_DENSITY, 1000);
+        t3r_allocate(&view, 1, &settings, clusters);
+        uint64_t sum = 0;
+        for (uint32_t k = 0; k < CLUSTERS; k++) {
+            sum += clusters[k].quota;
+        }
+        assert_int_equal(sum, 1000);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_mode_meets_every_budget),
+        cmocka_unit_test(sets_are_nested),
+        cmocka_unit_test(paper_takes_the_lowest_textures_first),
+        cmocka_unit_test(largest_counts_do_not_overflow),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

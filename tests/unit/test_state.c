@@ -1,0 +1,200 @@
+/* The state after errors and cancels: refused calls leave what they promise to leave, and a damaged copy is refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "fixed.h"
+#include "hash.h"
+#include "state.h"
+#include "superclusters.h"
+
+enum { SIDE = 48, BUDGET = 300 };
+
+static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[1 << 20], copy[1 << 20];
+static uint8_t colour[SIDE * SIDE * 3], depth[SIDE * SIDE * 2];
+static size_t arena_bytes;
+static int cancel_at = -1;
+
+static int cancel(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    (void)user;
+    (void)done;
+    (void)total;
+    return (int)stage == cancel_at;
+}
+
+static t3r_frame made_up_frame(void)
+{
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        uint32_t noise = t3r_mix32(i), step = 1500 + (i % SIDE) * 3;
+        colour[3 * i] = (uint8_t)noise;
+        colour[3 * i + 1] = (uint8_t)(i / SIDE * 4);
+        colour[3 * i + 2] = (uint8_t)(noise >> 8);
+        depth[2 * i] = (uint8_t)step;
+        depth[2 * i + 1] = (uint8_t)(step >> 8);
+    }
+    return (t3r_frame){.format = T3R_PIXEL_RGB24,
+                       .width = SIDE,
+                       .height = SIDE,
+                       .planes = {colour},
+                       .stride_bytes = {SIDE * 3},
+                       .depth = depth,
+                       .depth_width = SIDE,
+                       .depth_height = SIDE,
+                       .depth_stride_bytes = SIDE * 2,
+                       .depth_unit_q40 = 1099511628};
+}
+
+static t3r_camera made_up_camera(void)
+{
+    return (t3r_camera){.fx_q16 = SIDE << 16,
+                        .fy_q16 = SIDE << 16,
+                        .cx_q16 = SIDE << 15,
+                        .cy_q16 = SIDE << 15,
+                        .rotation_q30 = {1 << 30}};
+}
+
+static t3r_runtime *analysed(t3r_scene *scene)
+{
+    t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
+    config.keep_analysis = 1;
+    config.clusters = 12;
+    t3r_plan_info plan;
+    assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
+    assert_true(plan.bytes <= sizeof arena);
+    arena_bytes = plan.bytes;
+    cancel_at = -1;
+    t3r_runtime *rt;
+    assert_int_equal(t3r_init(&rt, arena, arena_bytes, &config), T3R_OK);
+    t3r_frame frame = made_up_frame();
+    t3r_camera camera = made_up_camera();
+    assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, scene), T3R_OK);
+    t3r_hooks hooks = {.progress = cancel};
+    assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
+    return rt;
+}
+
+static uint64_t hash_of(const t3r_scene *scene)
+{
+    return t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)scene->gaussians, scene->count * sizeof *scene->gaussians);
+}
+
+static void cancelled_reallocation_keeps_settings_and_analysis(void **state)
+{
+    (void)state;
+    t3r_scene scene, again;
+    t3r_runtime *rt = analysed(&scene);
+    uint64_t before = hash_of(&scene);
+    for (cancel_at = T3R_STAGE_BUDGET; cancel_at <= T3R_STAGE_HEAD; cancel_at++) {
+        assert_int_equal(t3r_reallocate(rt, 100, T3R_ALLOCATE_RANDOM, T3R_HEAD_NONE, &again), T3R_ERR_CANCELLED);
+        assert_int_equal(t3r_get_scene(rt, &again), T3R_ERR_STATE);
+    }
+    cancel_at = -1;
+    assert_int_equal(rt->config.gaussians, BUDGET);
+    assert_int_equal(rt->config.allocation, T3R_ALLOCATE_DENSITY);
+    assert_int_equal(t3r_rebudget(rt, BUDGET, &again), T3R_OK);
+    assert_true(hash_of(&again) == before);
+}
+
+static void refused_view_gives_no_stale_scene(void **state)
+{
+    (void)state;
+    t3r_scene scene;
+    t3r_runtime *rt = analysed(&scene);
+    uint64_t before = hash_of(&scene);
+    cancel_at = T3R_STAGE_HEAD;
+    assert_int_equal(t3r_rebudget(rt, BUDGET, &scene), T3R_ERR_CANCELLED);
+    cancel_at = -1;
+    t3r_frame frame = made_up_frame();
+    t3r_camera folded = made_up_camera();
+    folded.distortion = T3R_DISTORTION_RADTAN;
+    folded.distortion_q24[0] = -(100 << 24);
+    assert_int_equal(t3r_add_view(rt, &frame, &folded), T3R_ERR_CAMERA);
+    assert_int_equal(t3r_rebudget(rt, BUDGET, &scene), T3R_ERR_STATE); /* its planes were written over */
+    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_true(hash_of(&scene) == before);
+}
+
+static void empty_depth_is_refused_at_the_door(void **state)
+{
+    (void)state;
+    t3r_scene scene;
+    t3r_runtime *rt = analysed(&scene);
+    assert_int_equal(t3r_reset(rt), T3R_OK);
+    t3r_frame frame = made_up_frame();
+    t3r_camera camera = made_up_camera();
+    memset(depth, 0, sizeof depth);
+    assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_ERR_NO_DEPTH);
+    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_ERR_STATE);
+}
+
+typedef void (*damage)(t3r_runtime *rt);
+
+static void no_focal_length(t3r_runtime *rt)
+{
+    rt->camera[0].fx_q16 = 0;
+}
+static void no_depth_unit(t3r_runtime *rt)
+{
+    rt->depth_unit_q40[0] = 0;
+}
+static void wild_exponent(t3r_runtime *rt)
+{
+    rt->frame.exponent = INT32_MAX;
+}
+static void wild_median(t3r_runtime *rt)
+{
+    rt->median_depth_q20 = 0;
+}
+static void wild_label(t3r_runtime *rt)
+{
+    *(uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) = 12;
+}
+static void wild_cluster(t3r_runtime *rt)
+{
+    ((t3r_cluster *)t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS))->points = UINT32_MAX;
+}
+static void wild_gaussian(t3r_runtime *rt)
+{
+    ((t3r_gaussian *)t3r_buffer_at(rt, T3R_BUFFER_SCENE))->factor_exponent = 99;
+}
+static void too_many_views(t3r_runtime *rt)
+{
+    rt->views = 3;
+}
+
+static void damaged_copies_are_refused(void **state)
+{
+    (void)state;
+    const damage damages[] = {no_focal_length, no_depth_unit, wild_exponent, wild_median,
+                              wild_label,      wild_cluster,  wild_gaussian, too_many_views};
+    t3r_scene scene;
+    (void)analysed(&scene);
+    uint64_t before = hash_of(&scene);
+    t3r_runtime *rt;
+    memcpy(copy, arena, arena_bytes);
+    assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_OK);
+    assert_int_equal(t3r_rebudget(rt, BUDGET, &scene), T3R_OK);
+    assert_true(hash_of(&scene) == before);
+    for (size_t d = 0; d < sizeof damages / sizeof damages[0]; d++) {
+        memcpy(copy, arena, arena_bytes);
+        damages[d]((t3r_runtime *)(void *)copy);
+        assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_ERR_EPOCH);
+        assert_null(rt);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cancelled_reallocation_keeps_settings_and_analysis),
+        cmocka_unit_test(refused_view_gives_no_stale_scene),
+        cmocka_unit_test(empty_depth_is_refused_at_the_door),
+        cmocka_unit_test(damaged_copies_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
