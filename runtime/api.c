@@ -4,6 +4,7 @@
 
 #include "arena.h"
 #include "camera.h"
+#include "develop.h"
 #include "hash.h"
 #include "image.h"
 #include "pipeline.h"

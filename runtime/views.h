@@ -33,4 +33,7 @@ typedef struct t3r_view {
 
 #define T3R_NO_LABEL UINT16_MAX
 
+/* The planes of every view there is room for, as the stages take them; poses only of those added. */
+void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS]);
+
 #endif

@@ -1,0 +1,34 @@
+#include "views.h"
+
+#include "scene_frame.h"
+#include "state.h"
+
+void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
+{
+    size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
+    size_t words = (pixels + 31) / 32;
+    for (uint32_t v = 0; v < rt->config.views; v++) {
+        uint8_t *colour = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_COLOUR) + 3 * pixels * v;
+        const t3r_camera *camera = &rt->camera[v];
+        views[v] = (t3r_view){
+            .width = rt->config.width,
+            .height = rt->config.height,
+            .colour = {colour, colour + pixels, colour + 2 * pixels},
+            .depth = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_DEPTH) + pixels * v,
+            .confidence = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_CONFIDENCE) + pixels * v,
+            .texture = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_TEXTURE) + pixels * v,
+            .key = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_KEYS) + pixels * v,
+            .label = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * v,
+            .mask = (uint32_t *)t3r_buffer_at(rt, T3R_BUFFER_MASK) + words * v,
+            .fx_q16 = camera->fx_q16,
+            .fy_q16 = camera->fy_q16,
+            .cx_q16 = camera->cx_q16,
+            .cy_q16 = camera->cy_q16,
+            .depth_unit_q40 = rt->depth_unit_q40[v],
+        };
+        if (v < rt->views) {
+            /* In range once there is an analysis; t3r_analyse() asks again with the frame that it chooses. */
+            (void)t3r_pose_in_scene(camera, &rt->frame, &views[v].pose);
+        }
+    }
+}
