@@ -14,6 +14,7 @@
 
 #define MOST_KEEPS 64u
 #define SCENE_NAME_BYTES 256
+#define NAME_PARTS_MOST 8u /* parts of a path that a scene's name takes at most */
 
 typedef struct options {
     reconstruction_options settings;
@@ -26,6 +27,7 @@ typedef struct options {
     uint32_t keep_count;
     evaluation_method methods[EVALUATION_METHOD_COUNT];
     uint32_t method_count;
+    uint32_t name_parts;
     evaluation_outputs to;
 } options;
 
@@ -94,31 +96,56 @@ static void parse_methods(struct argp_state *state, options *o, const char *text
     }
 }
 
-/* "room" of "recordings/room.mcap"; at most `bytes` - 1 characters. */
-static void scene_name(const char *path, char *name, size_t bytes)
+/* "room" of "recordings/room.mcap", or "recordings-room" with two parts of the path; at most `bytes` - 1 characters. */
+static void scene_name(const char *path, uint32_t parts, char *name, size_t bytes)
 {
-    const char *slash = strrchr(path, '/');
-    const char *base = slash != NULL && slash[1] != '\0' ? slash + 1 : path;
-    snprintf(name, bytes, "%s", base);
+    const char *start = path + strlen(path);
+    for (uint32_t seen = 0; start > path; start--) {
+        if (start[-1] == '/' && start[0] != '/' && start[0] != '\0' && ++seen == parts) {
+            break;
+        }
+    }
+    snprintf(name, bytes, "%s", start);
     char *dot = strrchr(name, '.');
-    if (dot != NULL && dot != name) {
+    if (dot != NULL && dot != name && strchr(dot, '/') == NULL) {
         *dot = '\0';
+    }
+    for (char *c = name; *c != '\0'; c++) {
+        if (*c == '/') {
+            *c = '-';
+        }
     }
 }
 
-/* A scene's name stands for it in the tables and names its folder of pictures. */
-static void check_names(struct argp_state *state, const options *o)
+/* The first pair of inputs that would share a name; false = all differ. */
+static bool share_name(const options *o, uint32_t parts, uint32_t *first, uint32_t *second)
 {
     char name[SCENE_NAME_BYTES], other[SCENE_NAME_BYTES];
     for (uint32_t i = 1; i < o->input_count; i++) {
-        scene_name(o->inputs[i], name, sizeof name);
+        scene_name(o->inputs[i], parts, name, sizeof name);
         for (uint32_t earlier = 0; earlier < i; earlier++) {
-            scene_name(o->inputs[earlier], other, sizeof other);
+            scene_name(o->inputs[earlier], parts, other, sizeof other);
             if (strcmp(name, other) == 0) {
-                argp_error(state, "%s and %s would both be called %s", o->inputs[earlier], o->inputs[i], name);
+                *first = earlier;
+                *second = i;
+                return true;
             }
         }
     }
+    return false;
+}
+
+/* A scene's name stands for it in the tables and names its folder of pictures: as many parts of the paths as tell the
+ * inputs apart. */
+static void choose_names(struct argp_state *state, options *o)
+{
+    uint32_t first = 0, second = 0;
+    for (o->name_parts = 1; o->name_parts <= NAME_PARTS_MOST; o->name_parts++) {
+        if (!share_name(o, o->name_parts, &first, &second)) {
+            return;
+        }
+    }
+    argp_error(state, "%s and %s would have the same name", o->inputs[first], o->inputs[second]);
 }
 
 static void check_options(struct argp_state *state, options *o)
@@ -126,7 +153,7 @@ static void check_options(struct argp_state *state, options *o)
     if (o->input_count == 0) {
         argp_error(state, o->planar ? "IMAGE... is missing" : "REC.mcap is missing");
     }
-    check_names(state, o);
+    choose_names(state, o);
     if (o->planar && (o->has_target || o->settings.context_count > 0)) {
         argp_error(state, "--planar takes images, not --context and --target");
     }
@@ -314,7 +341,7 @@ static int evaluate_recording(evaluation_report *report, const options *o, const
 {
     char name[SCENE_NAME_BYTES];
     int code = CLI_OK;
-    scene_name(path, name, sizeof name);
+    scene_name(path, o->name_parts, name, sizeof name);
     for (uint32_t i = 0; i < case_count(o, recording) && code == CLI_OK; i++) {
         evaluation_case what = {.recording = recording, .path = path, .scene = name};
         if (o->has_target) {
@@ -382,7 +409,7 @@ static int evaluate_planar(const options *o)
     for (uint32_t i = 0; i < o->input_count && code == CLI_OK; i++) {
         char name[SCENE_NAME_BYTES];
         uint8_t *bytes;
-        scene_name(o->inputs[i], name, sizeof name);
+        scene_name(o->inputs[i], o->name_parts, name, sizeof name);
         t3r_recording *recording = evaluation_planar_recording(o->inputs[i], o->width, o->height, &bytes);
         if (recording == NULL) {
             code = CLI_BAD_INPUT;

@@ -56,7 +56,7 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(USAGE, "--size takes", ["--planar", room, "--keep", "10", "--size", "4x4"])
     refuse(USAGE, "--planar takes images", ["--planar", *one, "--keep", "10"])
     refuse(USAGE, "--working belongs", ["--planar", room, "--keep", "10", "--working", "32x32"])
-    refuse(USAGE, "both be called room", [room, "room.mcap", "--keep", "10"])
+    refuse(USAGE, "the same name", [room, room, "--keep", "10"])
     refuse(USAGE, "IMAGE... is missing", ["--planar", "--keep", "10"])
 
     refuse(INPUT, f"{folder}/none.mcap", [f"{folder}/none.mcap", "--keep", "10"])

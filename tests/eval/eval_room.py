@@ -157,6 +157,16 @@ def evaluate_planar(folder):
           "likeness")
 
 
+def evaluate_namesakes(folder):
+    for name in ("one", "two"):
+        os.mkdir(f"{folder}/{name}")
+        shutil.copy(f"{folder}/photo.png", f"{folder}/{name}/photo.png")
+    run(trim3r, "eval", "--planar", f"{folder}/one/photo.png", f"{folder}/two/photo.png", "--size", "48x48", "--keep", "10",
+        "--csv", f"{folder}/namesakes.csv")
+    check([r["scene"] for r in read_csv(f"{folder}/namesakes.csv")] == ["one-photo", "two-photo"],
+          "images of one name are told apart by their folders")
+
+
 with tempfile.TemporaryDirectory() as folder:
     room = f"{folder}/room.mcap"
     run(trim3r, "room", "--size", "64x64", "-o", room)
@@ -165,6 +175,7 @@ with tempfile.TemporaryDirectory() as folder:
     evaluate_several(folder, room)
     evaluate_variants(folder, room)
     evaluate_planar(folder)
+    evaluate_namesakes(folder)
 if scorer is None:
     print(f"without the scorer: nothing at {sys.argv[2]}")
 done()
