@@ -16,14 +16,14 @@ typedef struct buffer_row {
     t3r_stage first, last;
 } buffer_row;
 
-#define ROW(p, NAME, text, buffer_bytes, first_stage, last_stage) \
-    rows[T3R_BUFFER_##NAME] =                                     \
+#define ROW(p, NAME, text, buffer_bytes, first_stage, last_stage)                                                      \
+    rows[T3R_BUFFER_##NAME] =                                                                                          \
         (buffer_row){text, T3R_UP_(buffer_bytes), (t3r_stage)(first_stage), (t3r_stage)(last_stage)};
 
 static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
 {
-    T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width,
-                c->render_height, c->keep_analysis)
+    T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,
+                c->keep_analysis)
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)

@@ -192,7 +192,7 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
 }
 
 /* `paper`: from the lowest texture up each cluster keeps N % of its points until Z is met; the last is cut so that Z is
- * exact; if Z is below N % of all, N becomes Z / valid for all (definitions, "Allocation modes"). */
+ * exact; if Z is below N % of all, N becomes Z / valid for all. */
 static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_budget_settings *settings, uint64_t budget,
                             uint64_t valid)
 {

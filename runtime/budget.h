@@ -1,8 +1,8 @@
-/* The budget: which Z of the valid points are retained (GaussianTrim3R 3.1.2; definitions, "Allocation modes").
+/* The budget: which Z of the valid points are retained (GaussianTrim3R 3.1.2; SPEC.md, "Budget").
  *
  * One mechanism serves every mode. Each point has a key, log2 of its blue-noise threshold over its wanted density;
  * a group of points (a SuperCluster, or all) with a quota retains those with the smallest keys. So Z is met exactly,
- * retained sets are nested as Z grows, and another Z costs no new analysis. */
+ * a group's retained set grows with its quota, and another Z costs no new analysis. */
 #ifndef T3R_BUDGET_H
 #define T3R_BUDGET_H
 
@@ -30,8 +30,7 @@ void t3r_blur_texture(const t3r_view *views, uint32_t count);
 void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);
 
 /* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. */
-void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                      t3r_cluster *clusters);
+void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters);
 
 /* Log2 of the density of retained points about a pixel under the allocation made last, Q10, at most 0: they are
  * 2^(-density / 2) pixels apart. */

@@ -1,5 +1,5 @@
-/* A head without weights: a disc on the surface, sigma 0.6 of the spacing of its kept neighbours, coloured by the mean of
- * the pixels it stands for; and `none`, the unpruned pixel's own disc whatever the spacing. */
+/* A head without weights: a disc on the surface, sigma 0.6 of the spacing of its kept neighbours, coloured by the mean
+ * of the pixels it stands for; and `none`, the unpruned pixel's own disc whatever the spacing. */
 #include "depth.h"
 #include "fixed.h"
 #include "head.h"

@@ -15,12 +15,12 @@
 
 /* A Gaussian as one view sees it. q(dx, dy) = a dx^2 + 2 b dx dy + c dy^2 is half the squared Mahalanobis distance. */
 typedef struct t3r_splat {
-    int32_t x_q12, y_q12;         /* centre, pixels */
-    int32_t a_q30, b_q30, c_q30;  /* conic, 1 / px^2; a, c <= 1 / 0.6 */
-    int32_t z_q20;                /* depth along the optical axis, scene units */
+    int32_t x_q12, y_q12;        /* centre, pixels */
+    int32_t a_q30, b_q30, c_q30; /* conic, 1 / px^2; a, c <= 1 / 0.6 */
+    int32_t z_q20;               /* depth along the optical axis, scene units */
     uint16_t colour_q7[3];
     uint16_t opacity_q15;
-    uint16_t x0, y0, x1, y1;      /* inclusive pixels outside of which alpha < 1/255 */
+    uint16_t x0, y0, x1, y1; /* inclusive pixels outside of which alpha < 1/255 */
 } t3r_splat;
 
 /* The camera of a render in the scene's frame. */

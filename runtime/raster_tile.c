@@ -6,7 +6,8 @@
 #include "kernels/blend.h"
 
 /* A splat centred at most this far from a tile needs no test against its columns: within 24 + 16 px of the centre,
- * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6); Q17 holds 16,383. */
+ * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6); Q17 holds 16,383.
+ */
 #define SMALL_SPLAT 24
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
 #define LEVEL_MOST 6

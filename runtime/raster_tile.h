@@ -12,7 +12,7 @@ typedef struct t3r_binning {
     const uint32_t *order;
     uint32_t visible;
     uint32_t across, tiles;
-    uint32_t *table;  /* an entry a tile: counts, then list ends as passes open */
+    uint32_t *table; /* an entry a tile: counts, then list ends as passes open */
     uint32_t *lists;
     uint64_t capacity; /* entries of lists; at least `visible` */
 } t3r_binning;

@@ -11,17 +11,17 @@
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 
-/* Misuse of the API (null pointers, calls out of order, going on after an error) is refused with a status in every build;
- * a debug build may also stop at it: compile the runtime with T3R_ASSERT(condition) defined. */
+/* Misuse of the API (null pointers, calls out of order, going on after an error) is refused with a status in every
+ * build; a debug build may also stop at it: compile the runtime with T3R_ASSERT(condition) defined. */
 #ifndef T3R_ASSERT
 #define T3R_ASSERT(condition) ((void)0)
 #endif
-#define T3R_REFUSE_UNLESS(condition, status) \
-    do {                                     \
-        T3R_ASSERT(condition);               \
-        if (!(condition)) {                  \
-            return (status);                 \
-        }                                    \
+#define T3R_REFUSE_UNLESS(condition, status)                                                                           \
+    do {                                                                                                               \
+        T3R_ASSERT(condition);                                                                                         \
+        if (!(condition)) {                                                                                            \
+            return (status);                                                                                           \
+        }                                                                                                              \
     } while (0)
 
 struct t3r_runtime {
@@ -31,16 +31,16 @@ struct t3r_runtime {
     uint64_t layout_hash;
     t3r_config config;
     uint64_t offset[T3R_BUFFER_COUNT];
-    uint64_t list_capacity;          /* entries of the tile lists */
-    uint32_t views;                  /* context views added */
-    t3r_camera camera[T3R_MAX_VIEWS];/* of the working size, undistorted */
+    uint64_t list_capacity;           /* entries of the tile lists */
+    uint32_t views;                   /* context views added */
+    t3r_camera camera[T3R_MAX_VIEWS]; /* of the working size, undistorted */
     uint64_t depth_unit_q40[T3R_MAX_VIEWS];
-    uint32_t analysed;               /* labels, clusters and blurred textures are those of the current views */
+    uint32_t analysed; /* labels, clusters and blurred textures are those of the current views */
     uint32_t has_scene;
     t3r_scene_frame frame;
-    int32_t median_depth_q20;        /* scene units, [1, 2) */
+    int32_t median_depth_q20; /* scene units, [1, 2) */
     uint32_t valid_points;
-    uint32_t gaussians;              /* in the scene */
+    uint32_t gaussians; /* in the scene */
     uint32_t render_passes;
     t3r_hooks hooks;
 };

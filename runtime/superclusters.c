@@ -163,7 +163,8 @@ static void run_batch(const t3r_point_source *source, uint32_t batch, uint32_t c
             uint32_t index = low + t3r_mix32(s * 1031u + batch) % (high - low);
             valid += source->features(source->context, index, feature[valid]);
         }
-        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess, label);
+        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess,
+                    label);
         for (uint32_t i = 0; i < valid; i++) {
             guess = label[i];
             add_point(work, label[i], feature[i]);
@@ -206,7 +207,8 @@ static uint32_t assign(const t3r_point_source *source, uint32_t count, t3r_clust
             place[valid] = index;
             valid += source->features(source->context, index, feature[valid]);
         }
-        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess, label);
+        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess,
+                    label);
         for (uint32_t i = 0; i < valid; i++) {
             guess = label[i];
             labels[place[i]] = label[i];

@@ -25,13 +25,13 @@ typedef struct t3r_point_source {
 /* A SuperCluster, and what the budget stage notes about it. */
 typedef struct t3r_cluster {
     int32_t centre_q19[T3R_DIMENSIONS];
-    uint32_t points;      /* valid points with its label; 0 = empty */
-    uint32_t texture_q4;  /* their mean texture energy (eq. 2) */
-    uint32_t quota;       /* points to be retained */
-    uint32_t threshold;   /* the largest key retained */
-    uint32_t ties;        /* points retained among those whose key is the threshold */
-    uint32_t order;       /* entry k: which cluster is k-th from the lowest texture */
-    int32_t density_q10;  /* log2 of the share of points retained, for a texture power of 1 */
+    uint32_t points;     /* valid points with its label; 0 = empty */
+    uint32_t texture_q4; /* their mean texture energy (eq. 2) */
+    uint32_t quota;      /* points to be retained */
+    uint32_t threshold;  /* the largest key retained */
+    uint32_t ties;       /* points retained among those whose key is the threshold */
+    uint32_t order;      /* entry k: which cluster is k-th from the lowest texture */
+    int32_t density_q10; /* log2 of the share of points retained, for a texture power of 1 */
 } t3r_cluster;
 
 /* The K-means' working memory: the seeding's sample and the sums share their bytes. */

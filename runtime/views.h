@@ -12,20 +12,20 @@
 
 /* A rigid pose in fixed point, expanded once from t3r_camera. */
 typedef struct t3r_pose {
-    int32_t rotation_q30[9];  /* row-major, camera to scene */
-    int32_t position_q20[3];  /* scene units */
+    int32_t rotation_q30[9]; /* row-major, camera to scene */
+    int32_t position_q20[3]; /* scene units */
 } t3r_pose;
 
 /* The planes of one view, each width x height, rows without gaps. */
 typedef struct t3r_view {
     uint32_t width, height;
-    uint8_t *colour[3];       /* r, g, b */
-    uint16_t *depth;          /* steps of depth_unit; 0 = none */
-    uint8_t *confidence;      /* T3R_CONFIDENCE_...: the validity plane */
-    uint16_t *texture;        /* energy_q4; blurred from budget on */
-    uint16_t *key;            /* budget only: the smaller, the earlier retained */
-    uint16_t *label;          /* SuperCluster, or T3R_NO_LABEL where there is no depth */
-    uint32_t *mask;           /* bit i of word i / 32: the pixel is retained */
+    uint8_t *colour[3];  /* r, g, b */
+    uint16_t *depth;     /* steps of depth_unit; 0 = none */
+    uint8_t *confidence; /* T3R_CONFIDENCE_...: the validity plane */
+    uint16_t *texture;   /* energy_q4; blurred from budget on */
+    uint16_t *key;       /* budget only: the smaller, the earlier retained */
+    uint16_t *label;     /* SuperCluster, or T3R_NO_LABEL where there is no depth */
+    uint32_t *mask;      /* bit i of word i / 32: the pixel is retained */
     int32_t fx_q16, fy_q16, cx_q16, cy_q16;
     uint64_t depth_unit_q40;
     t3r_pose pose;

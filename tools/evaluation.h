@@ -1,4 +1,4 @@
-/* How well a reconstruction shows a view it was not given (design: definitions, "Measures").
+/* How well a reconstruction shows a view it was not given.
  *
  * A case is one (scene, context, target). evaluation_views_make() prepares what all of its rows share: the recorded
  * pictures through the image stage, their cameras and their masks. evaluation_measure() builds one scene and scores

@@ -1,4 +1,4 @@
-/* How a view is judged (design: definitions, "Measures"); ../shared/eval/score.py gives the same figures. */
+/* How a view is judged; a scorer that knows nothing of this code gives the same figures in a test. */
 #ifndef TRIM3R_TOOLS_METRICS_H
 #define TRIM3R_TOOLS_METRICS_H
 

@@ -26,12 +26,12 @@ extern "C" {
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
 #define T3R_BITS_EPOCH 1
 
-#define T3R_MAX_SIDE 4096u     /* largest width or height of working size, frame or target, in pixels */
-#define T3R_MIN_SIDE 8u        /* smallest working width or height, in pixels */
-#define T3R_MAX_VIEWS 16u      /* most context views */
-#define T3R_MAX_CLUSTERS 512u  /* most SuperClusters */
+#define T3R_MAX_SIDE 4096u    /* largest width or height of working size, frame or target, in pixels */
+#define T3R_MIN_SIDE 8u       /* smallest working width or height, in pixels */
+#define T3R_MAX_VIEWS 16u     /* most context views */
+#define T3R_MAX_CLUSTERS 512u /* most SuperClusters */
 #define T3R_MAX_GAUSSIANS (1u << 24)
-#define T3R_MAX_LEVELS 5u      /* most wavelet levels */
+#define T3R_MAX_LEVELS 5u /* most wavelet levels */
 
 typedef enum t3r_status {
     T3R_OK = 0,
@@ -74,13 +74,13 @@ typedef enum t3r_pixel_format {
 /* One captured instant. The memory stays the caller's and is read only during t3r_add_view(). */
 typedef struct t3r_frame {
     t3r_pixel_format format;
-    uint32_t width, height;       /* pixels; 2..T3R_MAX_SIDE */
-    const uint8_t *planes[2];     /* plane 1 only for NV12 */
-    uint32_t stride_bytes[2];     /* bytes from row to row, below 2^19 */
-    const uint8_t *depth;         /* Z16: little-endian 16-bit steps along z, 0 = no measurement; NULL = none */
-    uint32_t depth_width, depth_height; /* 2..T3R_MAX_SIDE; registered to the colour image, of which the size may differ */
+    uint32_t width, height;             /* pixels; 2..T3R_MAX_SIDE */
+    const uint8_t *planes[2];           /* plane 1 only for NV12 */
+    uint32_t stride_bytes[2];           /* bytes from row to row, below 2^19 */
+    const uint8_t *depth;               /* Z16: little-endian 16-bit steps along z, 0 = no measurement; NULL = none */
+    uint32_t depth_width, depth_height; /* 2..T3R_MAX_SIDE; registered to the colour image, not always of its size */
     uint32_t depth_stride_bytes;
-    uint64_t depth_unit_q40;      /* world units a step, 1..2^47 - 1; 1 mm in metres is 1099511628 */
+    uint64_t depth_unit_q40; /* world units a step, 1..2^47 - 1; 1 mm in metres is 1099511628 */
 } t3r_frame;
 
 typedef enum t3r_distortion {
@@ -92,17 +92,17 @@ typedef enum t3r_distortion {
 
 /* A calibrated, posed pinhole camera, for the pixel grid of the frame or target it comes with. */
 typedef struct t3r_camera {
-    int32_t fx_q16, fy_q16;       /* focal lengths in pixels, [8, 16384) */
-    int32_t cx_q16, cy_q16;       /* principal point in pixels, (-16384, 16384) */
+    int32_t fx_q16, fy_q16; /* focal lengths in pixels, [8, 16384) */
+    int32_t cx_q16, cy_q16; /* principal point in pixels, (-16384, 16384) */
     t3r_distortion distortion;
-    int32_t distortion_q24[5];    /* |p1|, |p2| below 16 */
-    int64_t position_q32[3];      /* camera centre in world units, |x| < 2^62 */
-    int32_t rotation_q30[4];      /* quaternion w x y z, camera to world; any norm in [0.5, 1.5]: normalised inside */
+    int32_t distortion_q24[5]; /* |p1|, |p2| below 16 */
+    int64_t position_q32[3];   /* camera centre in world units, |x| < 2^62 */
+    int32_t rotation_q30[4];   /* quaternion w x y z, camera to world; any norm in [0.5, 1.5]: normalised inside */
 } t3r_camera;
 
 typedef enum t3r_wavelet { T3R_WAVELET_DB2, T3R_WAVELET_HAAR, T3R_WAVELET_CDF53, T3R_WAVELET_COUNT } t3r_wavelet;
 
-/* How the budget Z is spread over the valid points (design: definitions, "Allocation modes"). */
+/* How the budget Z is spread over the valid points (runtime/SPEC.md, "Budget"). */
 typedef enum t3r_allocation {
     T3R_ALLOCATE_DENSITY, /* over SuperClusters by |SC| x Texture(SC)^gamma, inside one by texture density */
     T3R_ALLOCATE_PAPER,   /* GaussianTrim3R eq. 2: lowest texture first, each keeps N % */
@@ -121,43 +121,43 @@ typedef enum t3r_head {
 
 /* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). */
 typedef struct t3r_config {
-    uint32_t width, height;         /* working size of the context views, T3R_MIN_SIDE..T3R_MAX_SIDE */
-    uint32_t views;                 /* most context views, 0..T3R_MAX_VIEWS; 0 = an arena that only renders */
-    uint32_t max_gaussians;         /* hard cap on the scene, 1..T3R_MAX_GAUSSIANS */
-    uint32_t gaussians;             /* the budget Z, 1..max_gaussians */
-    uint32_t render_width;          /* largest target, 1..T3R_MAX_SIDE */
+    uint32_t width, height; /* working size of the context views, T3R_MIN_SIDE..T3R_MAX_SIDE */
+    uint32_t views;         /* most context views, 0..T3R_MAX_VIEWS; 0 = an arena that only renders */
+    uint32_t max_gaussians; /* hard cap on the scene, 1..T3R_MAX_GAUSSIANS */
+    uint32_t gaussians;     /* the budget Z, 1..max_gaussians */
+    uint32_t render_width;  /* largest target, 1..T3R_MAX_SIDE */
     uint32_t render_height;
     t3r_wavelet wavelet;
-    uint32_t wavelet_levels;        /* 1..T3R_MAX_LEVELS */
-    uint32_t clusters;              /* K, 1..T3R_MAX_CLUSTERS */
-    uint32_t cluster_batches;       /* mini-batches before the assignment pass, 0..1024 */
-    uint32_t colour_weight_q8;      /* weight of r, g, b against x, y, z in the K-means metric, 0..1024; 256 = 1 */
+    uint32_t wavelet_levels;   /* 1..T3R_MAX_LEVELS */
+    uint32_t clusters;         /* K, 1..T3R_MAX_CLUSTERS */
+    uint32_t cluster_batches;  /* mini-batches before the assignment pass, 0..1024 */
+    uint32_t colour_weight_q8; /* weight of r, g, b against x, y, z in the K-means metric, 0..1024; 256 = 1 */
     t3r_allocation allocation;
-    uint32_t keep_percent;          /* N of the allocation `paper`, 0..100 */
-    uint32_t gamma_q8;              /* exponent of texture, 0..512; 256 = 1 */
+    uint32_t keep_percent; /* N of the allocation `paper`, 0..100 */
+    uint32_t gamma_q8;     /* exponent of texture, 0..512; 256 = 1 */
     t3r_head head;
-    uint32_t fill_radius;           /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
-    uint32_t keep_analysis;         /* 1 = planes outlive the build, so that t3r_rebudget() works */
-    uint32_t seed;                  /* of the K-means, of the allocation `random`, and of blue-noise ties */
+    uint32_t fill_radius;   /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
+    uint32_t keep_analysis; /* 1 = planes outlive the build, so that t3r_rebudget() works */
+    uint32_t seed;          /* of the K-means, of the allocation `random`, and of blue-noise ties */
 } t3r_config;
 
 /* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */
 typedef struct t3r_scene_frame {
-    int64_t origin_q32[3];          /* world units: the first context camera's centre */
-    int32_t exponent;               /* so chosen that the median depth is in [1, 2) scene units */
+    int64_t origin_q32[3]; /* world units: the first context camera's centre */
+    int32_t exponent;      /* so chosen that the median depth is in [1, 2) scene units */
 } t3r_scene_frame;
 
 /* One Gaussian. Its covariance is F F^T with F = factor x 2^factor_exponent, row-major 3x3, in scene
  * units: positive semi-definite by construction and precise over the whole dynamic range. */
 typedef struct t3r_gaussian {
-    int32_t position_q20[3];        /* mean, scene units */
-    int16_t factor[9];              /* mantissas of F */
-    int8_t factor_exponent;         /* F = factor x 2^factor_exponent; -60..15 */
-    uint8_t view;                   /* index of the source view */
-    uint16_t colour_q7[3];          /* r g b, 0..255 in Q7 (0..32640) */
-    uint16_t opacity_q15;           /* 0..32767 */
-    uint8_t confidence;             /* 255 = measured, less = filled or doubtful */
-    uint8_t reserved[3];            /* 0 */
+    int32_t position_q20[3]; /* mean, scene units */
+    int16_t factor[9];       /* mantissas of F */
+    int8_t factor_exponent;  /* F = factor x 2^factor_exponent; -60..15 */
+    uint8_t view;            /* index of the source view */
+    uint16_t colour_q7[3];   /* r g b, 0..255 in Q7 (0..32640) */
+    uint16_t opacity_q15;    /* 0..32767 */
+    uint8_t confidence;      /* 255 = measured, less = filled or doubtful */
+    uint8_t reserved[3];     /* 0 */
 } t3r_gaussian;
 
 /* A view on the scene in the arena; valid until the next call that builds or edits it. */
@@ -165,18 +165,18 @@ typedef struct t3r_scene {
     t3r_scene_frame frame;
     const t3r_gaussian *gaussians;
     uint32_t count;
-    uint32_t valid_points;          /* pixels of the context views with a depth before hole filling */
+    uint32_t valid_points; /* pixels of the context views with a depth before hole filling */
 } t3r_scene;
 
 /* Where a render goes. rgb may be NULL when only depth or alpha are wanted. Black background. */
 typedef struct t3r_target {
-    uint32_t width, height;         /* 1..render_width, 1..render_height */
-    uint8_t *rgb;                   /* R G B, 3 bytes a pixel */
+    uint32_t width, height; /* 1..render_width, 1..render_height */
+    uint8_t *rgb;           /* R G B, 3 bytes a pixel */
     uint32_t rgb_stride_bytes;
-    uint32_t *depth_q20;            /* camera z, scene units, of the splat at which transmittance falls below 1/2; 0 = none */
-    uint32_t depth_stride_bytes;    /* a multiple of 4 */
-    uint16_t *alpha_q15;            /* 1 - transmittance, 0..32767 */
-    uint32_t alpha_stride_bytes;    /* a multiple of 2 */
+    uint32_t *depth_q20; /* camera z, scene units, of the splat at which transmittance falls below 1/2; 0 = none */
+    uint32_t depth_stride_bytes; /* a multiple of 4 */
+    uint16_t *alpha_q15;         /* 1 - transmittance, 0..32767 */
+    uint32_t alpha_stride_bytes; /* a multiple of 2 */
 } t3r_target;
 
 /* Optional callbacks, re-bound by t3r_attach(); zero-initialise what is not used. */
@@ -193,21 +193,21 @@ typedef struct t3r_hooks {
 /* One line of the plan: a buffer of the arena. */
 typedef struct t3r_plan_buffer {
     const char *name;
-    size_t offset, bytes;           /* within an arena of `bytes` (t3r_plan_info) */
+    size_t offset, bytes; /* within an arena of `bytes` (t3r_plan_info) */
     t3r_stage first, last;
 } t3r_plan_buffer;
 
 typedef struct t3r_plan_info {
-    size_t min_bytes;               /* one byte less is refused */
-    size_t bytes;                   /* a view takes one pass, unless most of its splats are many tiles wide */
+    size_t min_bytes; /* one byte less is refused */
+    size_t bytes;     /* a view takes one pass, unless most of its splats are many tiles wide */
     uint32_t buffer_count;
-    t3r_plan_buffer buffers[T3R_BUFFER_COUNT];  /* as laid out in an arena of `bytes` */
-    uint64_t operations[T3R_STAGE_COUNT];       /* upper bound of inner-loop steps, a stage */
+    t3r_plan_buffer buffers[T3R_BUFFER_COUNT]; /* as laid out in an arena of `bytes` */
+    uint64_t operations[T3R_STAGE_COUNT];      /* upper bound of inner-loop steps, a stage */
 } t3r_plan_info;
 
 typedef struct t3r_runtime t3r_runtime;
 
-/* Defaults of definitions.md for a working size, number of views and budget. Never fails. */
+/* Defaults for a working size, number of views and budget. Never fails. */
 t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians);
 
 /* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does. */
@@ -219,17 +219,18 @@ const char *t3r_config_error(const t3r_config *config);
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
 t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config);
 
-/* Re-binds an arena that was copied or restored from bytes, of the very same size; hooks start empty. T3R_ERR_EPOCH when
- * it was made by another version or is damaged. */
+/* Re-binds an arena that was copied or restored from bytes, of the very same size; hooks start empty. T3R_ERR_EPOCH
+ * when it was made by another version or is damaged. */
 t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes);
 
 /* Binds callbacks (NULL: none). */
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 
-/* Takes the next context view: to planes, resized to the working size, undistorted. The camera belongs to the frame's own
- * pixel grid and must also be in range after resizing. On an error no view is added; an analysis that was kept is gone.
- * T3R_ERR_FRAME, T3R_ERR_CAMERA (also when more than half of the picture lies beyond what the lens can show),
- * T3R_ERR_NO_DEPTH (no plane, or not one measurement in it), T3R_ERR_STATE (no room, or there is a scene: t3r_reset()). */
+/* Takes the next context view: to planes, resized to the working size, undistorted. The camera belongs to the frame's
+ * own pixel grid and must also be in range after resizing. On an error no view is added; an analysis that was kept is
+ * gone. T3R_ERR_FRAME, T3R_ERR_CAMERA (also when more than half of the picture lies beyond what the lens can show),
+ * T3R_ERR_NO_DEPTH (no plane, or not one measurement in it), T3R_ERR_STATE (no room, or there is a scene: t3r_reset()).
+ */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
 /* Forgets views, analysis and scene; keeps the configuration. Needed before t3r_add_view() once there is a scene. */
@@ -239,18 +240,19 @@ t3r_status t3r_reset(t3r_runtime *rt);
  * than 1,024 scene units from the first; T3R_ERR_CANCELLED: no scene then, the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
 
-/* Another budget for the pair analysed last, without analysing again; needs keep_analysis. A later t3r_reconstruct() goes
- * on with it. T3R_ERR_CANCELLED: no scene then, the settings are as before, the analysis stays. */
+/* Another budget for the pair analysed last, without analysing again; needs keep_analysis. A later t3r_reconstruct()
+ * goes on with it. T3R_ERR_CANCELLED: no scene then, the settings are as before, the analysis stays. */
 t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene);
 
 /* Another allocation and head as well as budget, likewise. */
-t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head, t3r_scene *scene);
+t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head,
+                          t3r_scene *scene);
 
 /* The scene in the arena, after t3r_attach() say. T3R_ERR_STATE when there is none. */
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);
 
-/* Starts an empty scene in the given frame (exponent -24..24, |origin| < 2^62) and forgets the views; appends to the scene
- * there is. For scenes that come from files: every field of the Gaussian is checked, |position_q20| <= 2^30. */
+/* Starts an empty scene in the given frame (exponent -24..24, |origin| < 2^62) and forgets the views; appends to the
+ * scene there is. For scenes that come from files: every field of the Gaussian is checked, |position_q20| <= 2^30. */
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame);
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 

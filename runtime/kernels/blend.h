@@ -10,8 +10,9 @@
 
 /* A tile's pixels, row by row. Transmittance starts at T3R_ONE_Q16.
  *
- * Why 16 bits are enough for colour: a contribution needs a weight w >= 1 (Q16), which transmittance loses, so there are
- * at most 65,535; their weighted colours sum to at most 32,640 (Q7) and their roundings to half a step each, 32,768. */
+ * Why 16 bits are enough for colour: a contribution needs a weight w >= 1 (Q16), which transmittance loses, so there
+ * are at most 65,535; their weighted colours sum to at most 32,640 (Q7) and their roundings to half a step each,
+ * 32,768. */
 typedef struct t3r_tile {
     uint16_t transmittance_q16[T3R_TILE_SIDE][T3R_TILE_SIDE];
     uint16_t colour_q7[3][T3R_TILE_SIDE][T3R_TILE_SIDE];
@@ -23,7 +24,8 @@ typedef struct t3r_tile {
 #define T3R_ALPHA_LEAST_Q16 257  /* 1/255 */
 #define T3R_STOP_Q16 7           /* below 1e-4 a pixel takes no more: 6.55 rounded up */
 
-/* A splat in the coordinates of eight columns, (0, 0) their topmost left pixel in the tile: q(i, j) = q + i gx + j gy + i^2 a + i j b + j^2 c, Q17. */
+/* A splat in the coordinates of eight columns, (0, 0) their topmost left pixel in the tile: q(i, j) = q + i gx + j gy +
+ * i^2 a + i j b + j^2 c, Q17. */
 typedef struct t3r_lane_splat {
     int32_t q, gx, gy, a, b, c;
     uint16_t opacity_q16;

@@ -54,8 +54,8 @@ static uint16_t nearest_of_all(const t3r_centres *centres, const int16_t *p)
     const int16_t(*c)[T3R_MAX_CLUSTERS] = centres->feature_q11;
     const int16_t p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3], p4 = p[4], p5 = p[5];
     for (uint32_t k = 0; k < centres->count; k++) {
-        score[k] = centres->half_norm[k] - (p0 * c[0][k] + p1 * c[1][k] + p2 * c[2][k] + p3 * c[3][k] +
-                                            p4 * c[4][k] + p5 * c[5][k]);
+        score[k] = centres->half_norm[k] -
+                   (p0 * c[0][k] + p1 * c[1][k] + p2 * c[2][k] + p3 * c[3][k] + p4 * c[4][k] + p5 * c[5][k]);
     }
     int32_t least = INT32_MAX;
     for (uint32_t k = 0; k < centres->count; k++) {
