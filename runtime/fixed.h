@@ -12,7 +12,7 @@ _Static_assert((-3 >> 1) == -2, "right shift of negative numbers must be arithme
 #define T3R_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define T3R_MAX(a, b) ((a) > (b) ? (a) : (b))
 
-/* x / 2^shift, round-half-up; shift 0..62, |x| < 2^62 */
+/* x / 2^shift, round-half-up; shift 0..62, |x| + 2^(shift - 1) < 2^63 */
 static inline int64_t t3r_round_shift64(int64_t x, uint32_t shift)
 {
     return shift == 0 ? x : (x + ((int64_t)1 << (shift - 1))) >> shift;

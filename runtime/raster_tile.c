@@ -6,8 +6,8 @@
 #include "kernels/blend.h"
 
 /* A splat centred at most this far from a tile needs no test against its columns: within 24 + 16 px of the centre,
- * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6); Q17 holds 16,383.
- */
+ * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6), and Q17 holds
+ * 16,383. */
 #define SMALL_SPLAT 24
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
 #define LEVEL_MOST 6
@@ -53,8 +53,9 @@ static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
     return least < (int64_t)LEVEL_MOST << 18;
 }
 
-/* The quadratic about the columns' first pixel. With the columns touched the half-gradients are below 2^6, and each
- * product below 2^63 (SPEC.md). */
+/* The quadratic about the columns' first pixel. With the columns touched it is below 885 there (the root of 6 and the
+ * group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.3; the centre is less than 2^14.6
+ * px away: the two products of q sum to less than 2^62.8. */
 static void lane_splat_of(const t3r_splat *s, uint32_t x, uint32_t y, t3r_lane_splat *out)
 {
     int64_t dx = ((int64_t)x << 12) - s->x_q12, dy = ((int64_t)y << 12) - s->y_q12;
