@@ -1,0 +1,71 @@
+/* The .t3w weight file: a quantized head as it lies in flash (SPEC.md, "Weights").
+ *
+ * Little-endian throughout and used in place. A header of 64 bytes, a table of layers of 32 bytes each, then the
+ * blocks that the table points to, each aligned to 16. Nothing in it is trusted: t3r_weights_check() reads it once,
+ * when a head is bound; after that the layers are walked without further checks.
+ *
+ *   header   0 "T3RW" | 4 u16 format (1) | 6 u16 bits epoch | 8 u32 bytes in all | 12 u32 CRC-32 (IEEE) of bytes 16..end
+ *           16 u8 weight bits (8, 16) | 17 u8 activation bits (8, 16) | 18 u8 layers | 19 u8 feature set (1)
+ *           20 u32 multiply-accumulates a pixel at 100 % kept, Q8 | 24 u32 parameters | 28 u32 0
+ *           32 name, 16 bytes, zero-terminated | 48 16 bytes 0
+ *   layer    0 u8 kind | 1 u8 level | 2 u8 source[2] | 4 u16 inputs | 6 u16 outputs
+ *            8 u8 kernel | 9 u8 stride | 10 u8 phases | 11 u8 0 | 12 i16 output zero | 14 u16 0
+ *           16 u32 weights | 20 u32 bias | 24 u32 multiplier | 28 u32 shift: offsets from the start of the file
+ *
+ * Layers come in the order in which they run. Source 0 is the feature planes (level 0, T3R_FEATURES channels, zero
+ * point 0), source n the output of layer n (counted from 1), source 255 none; a source comes before its reader. A layer
+ * of level l has ceil(width / 2^l) x ceil(height / 2^l) pixels. Where it reads two sources their channels follow each
+ * other, first the first's; a source coarser than wanted is read at x >> difference: nearest-neighbour upsampling.
+ *
+ *   conv       kernel k of 1..6, stride s of 1 or 2, its sources' grid being of level (level - log2 s) or coarser. Output
+ *              (x, y) reads columns s x - p .. s x - p + k - 1, p = (k - s + 1) / 2 rounded down, rows likewise; outside
+ *              the grid is the source's zero point. Weights [outputs][k][k][inputs].
+ *   depthwise  the same with outputs = inputs, kernel of 1..5, one source. Weights [k][k][outputs].
+ *   point      evaluated at retained pixels only: each source at (x >> level, y >> level) of its own level, or the
+ *              output of the point layer before (source = that layer). phases 1, or 4: weights of phase
+ *              2 (y & 1) + (x & 1). Weights [phases][outputs][inputs], bias [phases][outputs]; multiplier and shift
+ *              [outputs] in every kind.
+ *
+ * Arithmetic: acc = bias + sum weight x (activation - zero point of its source); zero points are folded into the bias
+ * (bias' = bias - sum weight x zero), so that padding reads the zero point itself. int8 activations: int32 accumulators,
+ * output = clamp(output zero + round_half_up(acc x multiplier / 2^(31 - shift))), multiplier an int32 in
+ * [2^30, 2^31), shift an int8 in [-30, 15]: TFLite's single-rounding reference. int16 activations: int64
+ * accumulators, multiplier reduced to 16 bits first, ((multiplier + 2^15) >> 16, at most 32767), over
+ * 2^(15 - shift), as TFLite's int64 reference. ReLU is the clamp at an output zero of -128 (int16: -32768); a linear
+ * layer has output zero 0. Weights int8 or int16; bias int32 (int16 activations: int64); multiplier int32; shift int8.
+ *
+ * The last layer is a point layer of T3R_HEAD_OUTPUTS channels whose output is always int16, output zero 0, in the
+ * formats of t3r_head_output. */
+#ifndef T3R_WEIGHTS_H
+#define T3R_WEIGHTS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define T3R_WEIGHTS_FORMAT 1
+#define T3R_WEIGHTS_HEADER_BYTES 64
+#define T3R_WEIGHTS_LAYER_BYTES 32
+#define T3R_WEIGHTS_ALIGN 16
+#define T3R_FEATURE_SET 1
+#define T3R_FEATURES 9 /* channels of the feature planes, head_features.h */
+#define T3R_MAX_LAYERS 24
+#define T3R_MAX_LEVEL 4
+#define T3R_MAX_CHANNELS 128 /* of a layer's inputs, and of its outputs */
+#define T3R_SOURCE_FEATURES 0
+#define T3R_SOURCE_NONE 255
+
+/* The last layer's channels. */
+typedef enum t3r_head_output {
+    T3R_OUT_OFFSET_X, /* Q14, in units of the local spacing: +-2 */
+    T3R_OUT_OFFSET_Y,
+    T3R_OUT_LOG_L11, /* Q13, log2 of the Cholesky factor's diagonal over the spacing: +-4 */
+    T3R_OUT_LOG_L22,
+    T3R_OUT_L21,     /* Q14, over the spacing: +-2 */
+    T3R_OUT_OPACITY, /* Q15: below 0 is 0 */
+    T3R_OUT_RED,     /* Q7, 8-bit levels added to the pixel's own colour: +-256 */
+    T3R_OUT_GREEN,
+    T3R_OUT_BLUE,
+    T3R_HEAD_OUTPUTS
+} t3r_head_output;
+
+#endif
