@@ -23,7 +23,7 @@ import tempfile
 
 import numpy as np
 
-SOURCES = ("procedural_material.c", "procedural_camera.c", "procedural_leaves.c")
+SOURCES = ("procedural_material.c", "procedural_camera.c", "procedural_leaves.c", "procedural_room.c")
 HEADERS = ("procedural.h",)
 # No contraction and no fast-math: -march=native must not change what is drawn
 FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC")
@@ -61,6 +61,7 @@ def _library(folder):
         library.procedural_atlas.restype = ctypes.c_void_p
         pointer, number, seed = ctypes.c_void_p, ctypes.c_int, ctypes.c_uint64
         library.procedural_leaves.argtypes = [pointer, seed, number, number, pointer, pointer]
+        library.procedural_room.argtypes = [pointer, seed, number, number, number] + [pointer] * 4
         atlas = library.procedural_atlas()
         if not atlas:
             raise MemoryError("procedural: no memory for the texture tiles")
@@ -99,3 +100,19 @@ class Procedural:
         if status:
             raise ValueError(f"procedural: no picture of {width} x {height}: sides are 16 to 2048")
         return image, depth
+
+    def room(self, width, height, views=3):
+        """`views` (1 to 16) of one room along a hand-held path: with three, the middle one lies between the others.
+
+        A list of dictionaries: image uint8 [height, width, 3] RGB; depth float32 [height, width] metres along the axis;
+        intrinsics float32 [4] fx fy cx cy, pixels; pose float32 [4, 4] camera-to-world, axes x right, y down,
+        z forward, metres. Pixel (0, 0) is the centre of the top-left pixel. All views share one exposure."""
+        images, depths = np.empty((views, height, width, 3), np.uint8), np.empty((views, height, width), np.float32)
+        intrinsics, poses = np.empty((views, 4), np.float32), np.empty((views, 4, 4), np.float32)
+        pointers = (a.ctypes.data for a in (images, depths, intrinsics, poses))
+        if self._call.procedural_room(self._atlas, self._next(2), width, height, views, *pointers):
+            raise ValueError(f"procedural: no room of {views} views, {width} x {height}: 1 to 16 views, sides 16 to 2048")
+        return [
+            {"image": images[i], "depth": depths[i], "intrinsics": intrinsics[i], "pose": poses[i]}
+            for i in range(views)
+        ]
