@@ -147,6 +147,7 @@ typedef struct {
     tile_kind tile; /* of the pattern */
     tile_kind weave; /* a tile that varies lightness everywhere */
     float weave_width, weave_amount, tint_amount;
+    float grain_amount; /* of the same tile 9 times finer */
     float offset[2];
 } material;
 
@@ -165,6 +166,8 @@ void palette_draw(palette *made, generator *g);
 void palette_colour(const palette *from, generator *g, float rgb[3]);
 /* `size`: the extent of the thing in u's unit; `texture`: 0 plain .. 1 busy */
 void material_draw(material *made, const palette *from, generator *g, float size, float texture);
+/* The same for what fills the view: walls, floors, large things. Their colours are calm as people paint them. */
+void material_draw_calm(material *made, const palette *from, generator *g, float size, float texture);
 void material_at(const atlas *shared, const material *m, float u, float v, float footprint, float rgb[3]);
 
 /* ---- the camera ------------------------------------------------------------------------------------------------- */

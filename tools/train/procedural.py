@@ -17,16 +17,18 @@ import argparse
 import ctypes
 import hashlib
 import os
+import struct
 import subprocess
-import sys
 import tempfile
+import zlib
 
 import numpy as np
 
 SOURCES = ("procedural_material.c", "procedural_camera.c", "procedural_leaves.c", "procedural_room.c")
 HEADERS = ("procedural.h",)
 # No contraction and no fast-math: -march=native must not change what is drawn
-FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC")
+FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
+SHARED = ("-shared", "-fPIC")
 
 _loaded = {}
 
@@ -46,7 +48,7 @@ def build(folder=None):
         handle, fresh = tempfile.mkstemp(suffix=".so", dir=folder)  # several trainers may build at once
         os.close(handle)
         try:
-            subprocess.run([compiler, *FLAGS, "-o", fresh, *(os.path.join(here, s) for s in SOURCES), "-lm"], check=True)
+            subprocess.run([compiler, *FLAGS, *SHARED, "-o", fresh, *(os.path.join(here, s) for s in SOURCES), "-lm"], check=True)
             os.replace(fresh, library)
         finally:
             if os.path.exists(fresh):
@@ -116,3 +118,170 @@ class Procedural:
             {"image": images[i], "depth": depths[i], "intrinsics": intrinsics[i], "pose": poses[i]}
             for i in range(views)
         ]
+
+
+def _rng(rng):
+    return rng if isinstance(rng, np.random.Generator) else np.random.default_rng(rng)
+
+
+def _smooth(field, width):
+    """Box means of 2 width + 1 samples, twice each way, borders repeated."""
+    for axis in (0, 1, 0, 1):
+        padded = np.pad(field, [(width + 1, width) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
+        sums = np.cumsum(padded, axis, dtype=np.float64)
+        field = np.diff(np.stack((np.roll(sums, 2 * width + 1, axis), sums)), axis=0)[0] / (2 * width + 1)
+        field = field[2 * width + 1 :] if axis == 0 else field[:, 2 * width + 1 :]
+    return field.astype(np.float32)
+
+
+def _blobs(rng, shape, share):
+    """A mask of irregular patches that covers about `share` of the picture."""
+    width = int(rng.integers(2, max(3, min(shape) // 16)))
+    field = _smooth(rng.standard_normal(shape, dtype=np.float32), width)
+    return field < np.quantile(field, share)
+
+
+def depth_edges(depth, ratio=0.03):
+    """Pixels beside a jump of depth by more than `ratio` of it."""
+    edge = np.zeros(depth.shape, bool)
+    for axis in (0, 1):
+        near, far = (depth[1:], depth[:-1]) if axis == 0 else (depth[:, 1:], depth[:, :-1])
+        jump = np.abs(near - far) > ratio * np.minimum(near, far)
+        (edge[1:] if axis == 0 else edge[:, 1:])[jump] = True
+        (edge[:-1] if axis == 0 else edge[:, :-1])[jump] = True
+    return edge
+
+
+def depth_lattice(rng, shape):
+    """A mask of the pixels that another camera's depth samples fall on, a coarser lattice turned and stretched."""
+    height, width = shape
+    step, angle = rng.uniform(1.2, 4.0), rng.uniform(-0.2, 0.2)
+    aspect, bend = rng.uniform(0.9, 1.1), rng.uniform(-0.02, 0.02)
+    reach = int(np.hypot(height, width) / step / min(aspect, 1.0)) // 2 + 2
+    v, u = np.mgrid[-reach : reach + 1, -reach : reach + 1] * step
+    bent = u * (1 + bend * v / height)
+    x = np.cos(angle) * bent - np.sin(angle) * aspect * v + width / 2 + rng.uniform(0, step)
+    y = np.sin(angle) * bent + np.cos(angle) * aspect * v + height / 2 + rng.uniform(0, step)
+    x, y = np.rint(x).astype(int), np.rint(y).astype(int)
+    inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
+    seen = np.zeros(shape, bool)
+    seen[y[inside], x[inside]] = True
+    return seen
+
+
+def degrade_depth(rng, depth, holes=True, noise=True):
+    """What a depth sensor might have measured: float32 metres, 0 where it measured nothing. `depth` is left alone.
+
+    rng: a numpy Generator, or a seed for one. Noise: a deviation of 0.05 to 0.5 % of a metre at 1 m, growing with the
+    square of depth, smooth over a few pixels; then steps that grow likewise (disparity is counted) or of a
+    millimetre. Holes, each on some pictures only: the lattice of a coarser sensor projected into the camera, borders
+    without overlap, patches (gloss, black), depth edges, and what lies beyond the sensor's range."""
+    rng, made = _rng(rng), np.array(depth, np.float32)
+    shape = made.shape
+    edges = depth_edges(made)
+    if noise and rng.random() < 0.8:
+        per_metre = 10 ** rng.uniform(-3.3, -2.3)
+        grain = rng.standard_normal(shape, dtype=np.float32)
+        if rng.random() < 0.6:
+            soft = _smooth(grain, 1)
+            grain = 0.5 * grain + 0.5 * soft / max(float(soft.std()), 1e-6)
+        made += np.float32(per_metre) * made * made * grain
+        if rng.random() < 0.5:  # disparity in fractions of a pixel: f x baseline of 20 to 80 pixel metres, eighths
+            scale = np.float32(8 * rng.uniform(20, 80))
+            made = scale / np.maximum(np.rint(scale / np.maximum(made, np.float32(0.01))), 1)
+        made = np.rint(np.maximum(made, 0.001) * 1000) / np.float32(1000)
+    if holes:
+        height, width = shape
+        gone = np.zeros(shape, bool)
+        if rng.random() < 0.4:
+            gone |= ~depth_lattice(rng, shape)
+        if rng.random() < 0.35:
+            sides = rng.integers(0, np.maximum(np.array([height, height, width, width]) // 6, 1) + 1)
+            sides = sides * (rng.random(4) < 0.6)
+            gone[: sides[0]] = gone[height - sides[1] :] = True
+            gone[:, : sides[2]] = gone[:, width - sides[3] :] = True
+        if rng.random() < 0.5:
+            gone |= _blobs(rng, shape, rng.uniform(0.01, 0.3))
+        if rng.random() < 0.5:
+            reach = int(rng.integers(0, 3))
+            wide = edges
+            for _ in range(reach):
+                grown = wide.copy()
+                grown[1:] |= wide[:-1]
+                grown[:-1] |= wide[1:]
+                grown[:, 1:] |= wide[:, :-1]
+                grown[:, :-1] |= wide[:, 1:]
+                wide = grown
+            gone |= wide & (rng.random(shape) < rng.uniform(0.5, 1.0))
+        if rng.random() < 0.2:
+            gone |= made > np.quantile(made, rng.uniform(0.7, 0.99))
+        if rng.random() < 0.2:
+            gone |= rng.random(shape) < rng.uniform(0.0, 0.1)
+        if gone.mean() < 0.95:  # a frame without depth teaches nothing
+            made[gone] = 0
+    return made.astype(np.float32, copy=False)
+
+
+def expose(rng, image):
+    """The same picture as another exposure shows it: gain within 0.7 stops, white balance within a few per cent, a
+    slight change of contrast; computed in linear light. uint8 to uint8, `image` is left alone."""
+    rng = _rng(rng)
+    gain = 2 ** float(np.clip(0.3 * rng.standard_normal(), -0.7, 0.7))
+    gains, gamma = gain * (1 + 0.03 * rng.standard_normal(3)), 2 ** (0.06 * rng.standard_normal())
+    levels = np.arange(256) / 255
+    linear = np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4)
+    made = np.empty_like(image)
+    for c in range(3):
+        x = np.clip(linear * gains[c], 0, 1) ** gamma
+        curve = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+        made[..., c] = np.rint(255 * curve).astype(np.uint8)[image[..., c]]
+    return made
+
+
+def _depth_picture(depth):
+    """Near is light; 0 is dark blue."""
+    seen = depth > 0
+    near = np.where(seen, 1 / np.maximum(depth, 1e-6), 0)
+    grey = (255 * near / max(float(near.max()), 1e-9)).astype(np.uint8)
+    return np.where(seen[..., None], grey[..., None], np.array([0, 0, 80], np.uint8)).astype(np.uint8)
+
+
+def contact_sheet(seed, rooms=False, size=256, columns=6, rows=4):
+    """Leaves: a picture a cell. Rooms: rows of three views, their middle one's depth, that depth degraded, and the
+    middle view exposed otherwise."""
+    source, cells = Procedural(seed), []
+    while len(cells) < rows * columns:
+        if rooms:
+            views = source.room(size, size, 3)
+            depth = views[1]["depth"]
+            cells += [v["image"] for v in views] + [_depth_picture(depth)]
+            cells += [_depth_picture(degrade_depth(len(cells), depth)), expose(len(cells), views[1]["image"])]
+        else:
+            cells.append(source.leaves(size, size)[0])
+    return np.vstack([np.hstack(cells[i : i + columns]) for i in range(0, rows * columns, columns)])
+
+
+def write_png(path, image):
+    """uint8 [height, width, 3] RGB as a PNG, without a library for it."""
+    height, width, _ = image.shape
+    rows = np.hstack((np.zeros((height, 1), np.uint8), image.reshape(height, width * 3))).tobytes()
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Draw a contact sheet of the made-up training pictures.")
+    parser.add_argument("--out", required=True, metavar="SHEET.png", help="the PNG to write")
+    parser.add_argument("--seed", type=int, default=1, help="another seed, other pictures (default 1)")
+    parser.add_argument("--rooms", action="store_true", help="rooms: three views, depth, degraded depth, other exposure")
+    options = parser.parse_args()
+    write_png(options.out, contact_sheet(options.seed, options.rooms))
+
+
+if __name__ == "__main__":
+    main()

@@ -10,12 +10,12 @@ void look_draw(camera_look *made, generator *g)
         made->balance[i] = 1.0f + 0.03f * draw_normal(g);
     }
     made->vignette = draw_chance(g, 0.6f) ? draw_in(g, 0.0f, 0.4f) : 0.0f;
-    made->blur = draw_in(g, 0.25f, 0.75f);
-    made->sharpen = draw_chance(g, 0.5f) ? draw_in(g, 0.0f, 0.6f) : 0.0f;
-    made->contrast = draw_in(g, 0.0f, 0.7f);
-    made->shot_noise = 0.03f * noisy * noisy * noisy + 0.002f;
+    made->blur = draw_in(g, 0.2f, 0.6f);
+    made->sharpen = draw_chance(g, 0.6f) ? draw_in(g, 0.0f, 0.8f) : 0.0f;
+    made->contrast = draw_in(g, 0.3f, 1.3f);
+    made->shot_noise = 0.02f * noisy * noisy * noisy * noisy + 0.001f;
     made->read_noise = 0.25f * made->shot_noise;
-    made->saturation = draw_in(g, 0.75f, 1.15f);
+    made->saturation = draw_in(g, 0.8f, 1.3f);
 }
 
 float look_exposure(const float *linear, int width, int height, float key)

@@ -118,7 +118,7 @@ static void leaf_draw(const painting *p, const group *from, generator *g, leaf *
     float x = clampf(draw_normal(g), -2.0f, 2.0f), y = clampf(draw_normal(g), -2.0f, 2.0f);
     made->wx = wall->wx * ratio + slant * x;
     made->wy = wall->wy * ratio + slant * y;
-    made->gain = draw_in(g, 0.7f, 1.15f) * (1.0f + 0.4f * (p->light[0] * x + p->light[1] * y) * from->slant * 5.0f);
+    made->gain = draw_in(g, 0.5f, 1.2f) * (1.0f + 0.4f * (p->light[0] * x + p->light[1] * y) * from->slant * 5.0f);
     made->gain = clampf(made->gain, 0.25f, 1.6f);
     float varied = draw(g);
     made->shade_s = 0.3f * varied * draw_normal(g);
@@ -241,15 +241,15 @@ static void mark_leaf(painting *p, int index)
 static void group_draw(const painting *p, group *made, generator *g, float fine)
 {
     float side = (float)(p->width < p->height ? p->width : p->height);
-    bool everywhere = draw_chance(g, 0.35f);
-    made->x = draw(g) * (float)p->width;
-    made->y = draw(g) * (float)p->height;
-    made->spread_x = everywhere ? 1.1f * (float)p->width : side * draw_in(g, 0.1f, 0.5f);
-    made->spread_y = everywhere ? 1.1f * (float)p->height : side * draw_in(g, 0.1f, 0.5f);
+    bool everywhere = draw_chance(g, 0.25f);
+    made->x = everywhere ? 0.5f * (float)p->width : draw(g) * (float)p->width;
+    made->y = everywhere ? 0.5f * (float)p->height : draw(g) * (float)p->height;
+    made->spread_x = everywhere ? 0.55f * (float)p->width : side * draw_in(g, 0.08f, 0.5f);
+    made->spread_y = everywhere ? 0.55f * (float)p->height : side * draw_in(g, 0.1f, 0.5f);
     float size = draw(g);
-    made->low = side * (0.004f + 0.06f * size * size * (1.0f - fine));
-    made->high = side * draw_in(g, 0.12f, 0.5f);
-    if (draw_chance(g, 0.3f)) {
+    made->low = side * (0.004f + 0.08f * size * size * size * (1.2f - fine) + (draw_chance(g, 0.4f) ? 0.03f : 0.0f));
+    made->high = side * draw_in(g, 0.15f, 0.6f);
+    if (draw_chance(g, 0.25f)) {
         made->high = made->low * draw_in(g, 2.0f, 6.0f); /* things of one kind: leaves, tins, keys */
     }
     made->far = 1.0f + 0.3f * draw(g) * draw(g);
@@ -300,15 +300,54 @@ static void add_surface(painting *p, generator *g, float texture)
     l->wx = wall->wx - l->sa * rise;
     l->wy = wall->wy + l->ca * rise;
     l->w = at + l->wx * (l->x - x) + l->wy * (l->y - y);
-    l->material = add_material(p, g, (float)p->height * 0.6f, texture * draw(g));
-    l->gain = draw_in(g, 0.6f, 1.1f);
+    l->material = p->material_count++;
+    material_draw_calm(&p->materials[l->material], &p->colours, g, (float)p->height * 0.6f, texture * draw(g));
+    l->gain = draw_in(g, 0.4f, 1.2f);
     l->offset[0] = draw_in(g, -1000.0f, 1000.0f);
+}
+
+/* What lies on a leaf or is printed on it: in its box, on its plane, along its axes mostly */
+static void add_parts(painting *p, generator *g, const leaf *on, int first, int count, int parts)
+{
+    float size = minf(on->half_s, on->half_t);
+    shape_kind usual = (shape_kind)draw_index(g, SHAPE_COUNT);
+    bool rows = draw_chance(g, 0.3f);
+    int material_of_all = first + draw_index(g, count);
+    for (int i = 0; i < parts && p->leaf_count < MAX_LEAVES; i++) {
+        leaf *l = &p->leaves[p->leaf_count++];
+        float s = 0.8f * draw_in(g, -1.0f, 1.0f), t = 0.8f * draw_in(g, -1.0f, 1.0f);
+        *l = *on;
+        l->shape = draw_chance(g, 0.6f) ? usual : (shape_kind)draw_index(g, SHAPE_COUNT);
+        if (l->shape == SHAPE_POLYGON) {
+            polygon_draw(l, g);
+        }
+        l->extra = l->shape == SHAPE_BLOB ? draw_in(g, 2.0f, 8.0f) : draw_in(g, 0.1f, 0.4f);
+        l->half_s = draw_radius(g, 0.05f, 0.6f) * size;
+        l->half_t = l->half_s * draw_in(g, 0.2f, 1.0f);
+        if (rows) { /* drawers, windows, keys, lines */
+            s = 0.0f;
+            t = 1.6f * ((float)i + 0.5f) / (float)parts - 0.8f;
+            l->half_s = 0.8f * on->half_s;
+            l->half_t = 0.6f * on->half_t / (float)parts;
+            l->shape = SHAPE_BAR;
+        }
+        float u = s * on->half_s, v = t * on->half_t, dx = on->ca * u - on->sa * v, dy = on->sa * u + on->ca * v;
+        l->x = on->x + dx;
+        l->y = on->y + dy;
+        l->w = (on->w + on->wx * dx + on->wy * dy) * 1.004f;
+        l->material = rows ? material_of_all : first + draw_index(g, count);
+        l->gain = on->gain * draw_in(g, 0.7f, 1.3f);
+        l->round = draw_chance(g, 0.3f) ? draw(g) : 0.0f;
+        l->shine = 0.0f;
+        l->glyph = (uint32_t)draw_bits(g);
+        l->offset[0] = draw_in(g, -1000.0f, 1000.0f);
+    }
 }
 
 static void place_draw(painting *p, generator *g)
 {
     float side = (float)(p->width < p->height ? p->width : p->height);
-    float busy = draw(g), texture = draw_in(g, 0.0f, 0.8f), metres = 1.2f * powf(10.0f, draw(g));
+    float busy = draw(g), texture = draw_in(g, 0.1f, 0.9f), metres = 1.2f * powf(10.0f, draw(g));
     palette_draw(&p->colours, g);
     float angle = draw_in(g, 0.0f, 6.2831853f);
     p->light[0] = 0.6f * cosf(angle);
@@ -320,7 +359,7 @@ static void place_draw(painting *p, generator *g)
     p->light_width = 1.0f / (side * draw_in(g, 2.0f, 6.0f));
     p->light_offset = draw(g);
     p->occlusion = draw_in(g, 0.2f, 1.0f);
-    p->shadow_width = side * draw_in(g, 0.008f, 0.05f);
+    p->shadow_width = side * draw_in(g, 0.006f, 0.03f);
     p->shadow_x = -p->light[0] * p->shadow_width;
     p->shadow_y = -p->light[1] * p->shadow_width;
 
@@ -336,8 +375,9 @@ static void place_draw(painting *p, generator *g)
     wall->wx = wall->w * draw_in(g, -0.6f, 0.6f) / (float)p->width; /* 1/z keeps to 0.4..1.6 of the middle's */
     wall->wy = wall->w * draw_in(g, -0.6f, 0.6f) / (float)p->height;
     wall->gain = 1.0f;
-    wall->material = add_material(p, g, side, 0.7f * texture);
-    for (int n = draw_index(g, 5); n > 0; n--) {
+    wall->material = p->material_count++;
+    material_draw_calm(&p->materials[wall->material], &p->colours, g, side, 0.7f * texture);
+    for (int n = draw_index(g, 7); n > 0; n--) {
         add_surface(p, g, texture);
     }
 
@@ -356,18 +396,21 @@ static void place_draw(painting *p, generator *g)
         /* enough to cover the group's own area `cover` times; mean area of a leaf 2 low^2 ln(high / low) x 0.7 pi */
         float mean = 4.4f * made.low * made.low * logf(made.high / made.low);
         float area = minf(4.0f * made.spread_x * made.spread_y, 1.3f * (float)(p->width * p->height));
-        float cover = 0.02f + 2.0f * busy * draw(g);
+        float cover = 0.02f + 2.2f * busy * sqrtf(busy) * draw(g);
         int wanted = 1 + (int)minf(cover * area / mean, 6000.0f);
         for (int k = 0; k < wanted && p->leaf_count < MAX_LEAVES; k++) {
             leaf *l = &p->leaves[p->leaf_count];
             leaf_draw(p, &made, g, l);
             l->material = first + draw_index(g, count);
             p->leaf_count++;
+            if (maxf(l->half_s, l->half_t) > 0.07f * side && draw_chance(g, 0.55f)) {
+                add_parts(p, g, l, first, count, 1 + draw_index(g, 24));
+            }
         }
     }
-    p->layers = draw_chance(g, 0.3f) ? MAX_LAYERS : 1;
+    p->layers = draw_chance(g, 0.2f) ? MAX_LAYERS : 1;
     p->focus = wall->w * (draw_chance(g, 0.5f) ? 1.0f : draw_in(g, 1.0f, 3.0f));
-    p->aperture = side * 0.012f * draw(g) / wall->w;
+    p->aperture = side * 0.008f * draw(g) / wall->w;
 }
 
 /* ---- light ------------------------------------------------------------------------------------------------------ */

@@ -312,9 +312,25 @@ void material_draw(material *made, const palette *from, generator *g, float size
     made->weave_width = size * draw_in(g, 0.7f, 6.0f);
     float u = draw(g);
     made->weave_amount = 0.02f + 0.30f * u * u * (0.2f + texture);
+    made->grain_amount = draw_chance(g, 0.7f) ? 0.4f * made->weave_amount * draw(g) + 0.04f * draw(g) : 0.0f;
     made->tint_amount = 0.25f * draw(g) * made->weave_amount;
     made->offset[0] = draw(g);
     made->offset[1] = draw(g);
+}
+
+void material_draw_calm(material *made, const palette *from, generator *g, float size, float texture)
+{
+    material_draw(made, from, g, size, texture);
+    float keep = draw_chance(g, 0.2f) ? 0.9f : draw_in(g, 0.1f, 0.7f); /* of the saturation */
+    float lift = draw_chance(g, 0.35f) ? 0.0f : draw_in(g, 0.05f, 0.6f); /* lighter, as most walls are */
+    for (int i = 0; i < 3; i++) {
+        float *rgb = made->colour[i], grey = 0.25f * rgb[0] + 0.6f * rgb[1] + 0.15f * rgb[2];
+        for (int c = 0; c < 3; c++) {
+            rgb[c] = grey * from->light[c] + keep * (rgb[c] - grey * from->light[c]);
+            rgb[c] += lift * (0.7f * from->light[c] - rgb[c]);
+        }
+    }
+    made->weave_amount *= 0.6f;
 }
 
 /* Share of [x - w/2, x + w/2] that lies in the first `duty` of a unit period: an exact box filter */
@@ -405,7 +421,11 @@ void material_at(const atlas *shared, const material *m, float u, float v, float
     float tint = 1.0f, share = pattern_at(shared, m, u, v, footprint, &tint);
     float a = u / m->weave_width + m->offset[1], b = v / m->weave_width + m->offset[0];
     float weave = tile_at(shared, m->weave, a, b, footprint / m->weave_width);
-    float shade = maxf(tint * (1.0f + m->weave_amount * weave), 0.05f), warm = m->tint_amount * weave;
+    float fine = 0.0f;
+    if (m->grain_amount > 0.0f && footprint * 40.0f < m->weave_width) {
+        fine = m->grain_amount * tile_at(shared, m->weave, 9.0f * b, 9.0f * a, 9.0f * footprint / m->weave_width);
+    }
+    float shade = maxf(tint * (1.0f + m->weave_amount * weave + fine), 0.05f), warm = m->tint_amount * weave;
     rgb[0] = shade * (1.0f + warm) * (m->colour[1][0] + share * (m->colour[0][0] - m->colour[1][0]));
     rgb[1] = shade * (m->colour[1][1] + share * (m->colour[0][1] - m->colour[1][1]));
     rgb[2] = shade * (1.0f - warm) * (m->colour[1][2] + share * (m->colour[0][2] - m->colour[1][2]));

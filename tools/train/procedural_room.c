@@ -13,7 +13,7 @@ enum {
     SKY_RAYS = 6,
     POSTERS = 3,
     POSTER_SIDE = 160,
-    ROOM_MATERIALS = 64,
+    ROOM_MATERIALS = 96,
     MAX_VIEWS = 16,
     NO_FACE = 7,
 };
@@ -58,6 +58,9 @@ typedef struct {
     palette colours;
     float ambient[3];
     vec size; /* full extents; size.y = height */
+    /* what casts shadows that the stored light can hold: neither lamps nor things of a few centimetres */
+    float caster_x[MAX_BODIES], caster_y[MAX_BODIES], caster_z[MAX_BODIES], caster_reach2[MAX_BODIES];
+    int casters[MAX_BODIES], caster_count;
     float (*luxels)[3];
 } room;
 
@@ -168,15 +171,22 @@ static inline float hit(const body *b, vec at, vec along, int *face)
 /* Whether something other than the room and `except` lies between at and at + along */
 static bool blocked(const room *r, vec at, vec along, int except)
 {
-    float length2 = dot(along, along);
-    for (int i = 1; i < r->body_count; i++) {
-        const body *b = &r->bodies[i];
-        vec to = sub(b->centre, at);
-        float t = clampf(dot(to, along) / length2, 0.0f, 1.0f);
-        vec miss = sub(to, times(along, t));
-        if (i == except || b->glow > 0.0f || dot(miss, miss) > b->reach * b->reach) {
+    float scale = 1.0f / dot(along, along);
+    bool near[MAX_BODIES];
+    for (int i = 0; i < r->caster_count; i++) { /* a loop of its own: it vectorises */
+        float x = r->caster_x[i] - at.x, y = r->caster_y[i] - at.y, z = r->caster_z[i] - at.z;
+        float t = clampf((x * along.x + y * along.y + z * along.z) * scale, 0.0f, 1.0f);
+        x -= t * along.x;
+        y -= t * along.y;
+        z -= t * along.z;
+        near[i] = x * x + y * y + z * z <= r->caster_reach2[i];
+    }
+    for (int i = 0; i < r->caster_count; i++) {
+        if (!near[i] || r->casters[i] == except) {
             continue;
         }
+        const body *b = &r->bodies[r->casters[i]];
+        vec to = sub(b->centre, at);
         int face;
         if (hit(b, to_body(b, times(to, -1.0f)), to_body(b, along), &face) < 1.0f) {
             return true;
@@ -189,10 +199,19 @@ static bool blocked(const room *r, vec at, vec along, int except)
 
 static int new_material(room *r, generator *g, float size, float texture)
 {
-    if (r->material_count == ROOM_MATERIALS) {
-        return draw_index(g, ROOM_MATERIALS);
+    if (r->material_count == ROOM_MATERIALS) { /* the first are walls and lamps */
+        return 8 + draw_index(g, ROOM_MATERIALS - 8);
     }
     material_draw(&r->materials[r->material_count], &r->colours, g, size, texture);
+    return r->material_count++;
+}
+
+static int new_calm_material(room *r, generator *g, float size, float texture)
+{
+    if (r->material_count == ROOM_MATERIALS) {
+        return new_material(r, g, size, texture);
+    }
+    material_draw_calm(&r->materials[r->material_count], &r->colours, g, size, texture);
     return r->material_count++;
 }
 
@@ -244,7 +263,7 @@ static void table(room *r, generator *g, vec foot, float yaw)
 {
     float half_x = draw_in(g, 0.35f, 0.9f), half_z = draw_in(g, 0.3f, 0.5f), high = draw_in(g, 0.4f, 0.95f);
     float thick = draw_in(g, 0.01f, 0.03f), c = cosf(yaw), s = sinf(yaw);
-    int top = new_material(r, g, 1.0f, 0.4f), legs = new_material(r, g, 0.5f, 0.1f);
+    int top = new_calm_material(r, g, 1.0f, 0.4f), legs = new_material(r, g, 0.5f, 0.1f);
     new_body(r, g, BODY_BOX, (vec){foot.x, -high, foot.z}, (vec){half_x, thick, half_z}, yaw, top);
     float leg = draw_in(g, 0.015f, 0.04f);
     body_kind kind = draw_chance(g, 0.4f) ? BODY_CYLINDER : BODY_BOX;
@@ -253,7 +272,7 @@ static void table(room *r, generator *g, vec foot, float yaw)
         new_body(r, g, kind, (vec){foot.x + c * x - s * z, -0.5f * (high - thick), foot.z + c * z + s * x},
                  (vec){leg, 0.5f * (high - thick), leg}, yaw, legs);
     }
-    clutter(r, g, (vec){foot.x, -high - thick, foot.z}, half_x, half_z, yaw, draw_index(g, 14));
+    clutter(r, g, (vec){foot.x, -high - thick, foot.z}, half_x, half_z, yaw, 2 + draw_index(g, 16));
 }
 
 static void chair(room *r, generator *g, vec foot, float yaw)
@@ -276,7 +295,7 @@ static void shelf(room *r, generator *g, vec foot, float yaw)
 {
     float half_x = draw_in(g, 0.3f, 0.6f), half_z = draw_in(g, 0.13f, 0.2f), high = draw_in(g, 0.8f, 2.0f);
     float c = cosf(yaw), s = sinf(yaw), pitch = draw_in(g, 0.28f, 0.4f);
-    int wood = new_material(r, g, 1.0f, 0.3f);
+    int wood = new_calm_material(r, g, 1.0f, 0.3f);
     for (int i = -1; i <= 1; i += 2) {
         float x = (float)i * half_x;
         new_body(r, g, BODY_BOX, (vec){foot.x + c * x, -0.5f * high, foot.z + s * x},
@@ -308,12 +327,12 @@ static void cabinet(room *r, generator *g, vec foot, float yaw)
 {
     vec half = {draw_in(g, 0.25f, 0.7f), draw_in(g, 0.2f, 1.0f), draw_in(g, 0.2f, 0.35f)};
     float c = cosf(yaw), s = sinf(yaw);
-    body *b = new_body(r, g, BODY_BOX, (vec){foot.x, -half.y, foot.z}, half, yaw, new_material(r, g, 1.0f, 0.4f));
+    body *b = new_body(r, g, BODY_BOX, (vec){foot.x, -half.y, foot.z}, half, yaw, new_calm_material(r, g, 1.0f, 0.4f));
     b->material[2] = new_material(r, g, 1.0f, 0.2f);
     if (draw_chance(g, 0.3f)) {
         b->poster[4] = draw_index(g, POSTERS);
     }
-    int drawers = draw_index(g, 5), front = new_material(r, g, 1.0f, 0.3f), knob = new_material(r, g, 0.1f, 0.0f);
+    int drawers = draw_index(g, 5), front = new_calm_material(r, g, 1.0f, 0.3f), knob = new_material(r, g, 0.1f, 0.0f);
     for (int i = 0; i < drawers; i++) {
         float y = -2.0f * half.y * ((float)i + 0.5f) / (float)drawers, z = -half.z - 0.008f;
         new_body(r, g, BODY_BOX, (vec){foot.x - s * z, y, foot.z + c * z},
@@ -321,7 +340,7 @@ static void cabinet(room *r, generator *g, vec foot, float yaw)
         new_body(r, g, BODY_BOX, (vec){foot.x - s * (z - 0.02f), y, foot.z + c * (z - 0.02f)},
                  (vec){0.06f, 0.008f, 0.012f}, yaw, knob);
     }
-    clutter(r, g, (vec){foot.x, -2.0f * half.y, foot.z}, half.x, half.z, yaw, draw_index(g, 6));
+    clutter(r, g, (vec){foot.x, -2.0f * half.y, foot.z}, half.x, half.z, yaw, 1 + draw_index(g, 9));
 }
 
 /* A place at one of the walls: yaw turns -z, a thing's front, into the room */
@@ -344,7 +363,7 @@ static vec at_wall(const room *r, generator *g, float depth, float *yaw)
 
 static void hang_on_walls(room *r, generator *g)
 {
-    for (int n = 2 + draw_index(g, 8); n > 0; n--) {
+    for (int n = 3 + draw_index(g, 11); n > 0; n--) {
         float yaw;
         vec at = at_wall(r, g, 0.012f, &yaw), half = {draw_in(g, 0.12f, 0.6f), draw_in(g, 0.12f, 0.5f), 0.012f};
         at.y = -draw_in(g, 1.0f, maxf(r->size.y - half.y, 1.1f));
@@ -393,7 +412,7 @@ static void light_room(room *r, generator *g)
         }
         r->materials[b->material[0]].weave_amount = 0.0f;
     }
-    float base = draw_in(g, 0.12f, 0.5f);
+    float base = draw_in(g, 0.08f, 0.4f);
     for (int c = 0; c < 3; c++) {
         r->ambient[c] = base * r->colours.light[c];
     }
@@ -401,16 +420,16 @@ static void light_room(room *r, generator *g)
 
 static void furnish(room *r, generator *g)
 {
-    float texture = draw_in(g, 0.1f, 0.8f);
+    float texture = draw_in(g, 0.2f, 0.9f);
     palette_draw(&r->colours, g);
     r->size = (vec){draw_in(g, 2.6f, 7.0f), draw_in(g, 2.2f, 3.2f), draw_in(g, 2.6f, 7.0f)};
     body *walls = new_body(r, g, BODY_BOX, (vec){0.0f, -0.5f * r->size.y, 0.0f}, times(r->size, 0.5f), 0.0f,
-                           new_material(r, g, 2.0f, texture * draw(g)));
+                           new_calm_material(r, g, 2.0f, texture * draw(g)));
     walls->inside_out = true;
-    walls->material[3] = new_material(r, g, 1.5f, texture); /* floor */
-    walls->material[2] = new_material(r, g, 2.0f, 0.1f);
+    walls->material[3] = new_calm_material(r, g, 1.5f, texture); /* floor */
+    walls->material[2] = new_calm_material(r, g, 2.0f, 0.1f);
     if (draw_chance(g, 0.5f)) {
-        walls->material[draw_index(g, 2)] = new_material(r, g, 2.0f, texture);
+        walls->material[draw_index(g, 2)] = new_calm_material(r, g, 2.0f, texture);
     }
     light_room(r, g);
     hang_on_walls(r, g);
@@ -426,7 +445,7 @@ static void furnish(room *r, generator *g)
                      (vec){x ? 0.5f * r->size.x : 0.008f, high, x ? 0.008f : 0.5f * r->size.z}, 0.0f, m);
         }
     }
-    for (int n = 1 + draw_index(g, 7); n > 0 && r->body_count < MAX_BODIES - 40; n--) {
+    for (int n = 3 + draw_index(g, 8); n > 0 && r->body_count < MAX_BODIES - 40; n--) {
         float yaw;
         vec foot = at_wall(r, g, 0.36f, &yaw);
         yaw += draw_chance(g, 0.2f) ? 0.2f * draw_normal(g) : 0.0f;
@@ -451,7 +470,7 @@ static void furnish(room *r, generator *g)
             table(r, g, foot, draw_chance(g, 0.5f) ? 0.0f : yaw);
         }
     }
-    clutter(r, g, (vec){0.0f, 0.0f, 0.0f}, 0.45f * r->size.x, 0.45f * r->size.z, 0.0f, draw_index(g, 12));
+    clutter(r, g, (vec){0.0f, 0.0f, 0.0f}, 0.45f * r->size.x, 0.45f * r->size.z, 0.0f, draw_index(g, 20));
 }
 
 /* ---- light ------------------------------------------------------------------------------------------------------ */
@@ -531,9 +550,20 @@ static void light_at(const room *r, vec at, vec normal, int self, float rgb[3])
     }
 }
 
-/* Light is stored on a lattice over every box face, 10 cm apart where that is not too many */
+/* Light is stored on a lattice over every box face, 13 to 18 cm apart where that is not too many */
 static void store_light(room *r)
 {
+    for (int i = 1; i < r->body_count; i++) {
+        const body *b = &r->bodies[i];
+        if (b->glow > 0.0f || b->reach < 0.08f) {
+            continue;
+        }
+        r->caster_x[r->caster_count] = b->centre.x;
+        r->caster_y[r->caster_count] = b->centre.y;
+        r->caster_z[r->caster_count] = b->centre.z;
+        r->caster_reach2[r->caster_count] = b->reach * b->reach;
+        r->casters[r->caster_count++] = i;
+    }
     for (int i = 0; i < r->body_count; i++) {
         body *b = &r->bodies[i];
         if (b->kind != BODY_BOX) {
@@ -551,7 +581,7 @@ static void store_light(room *r)
             vec middle, along, across, normal;
             face_frame(b, face, &middle, &along, &across, &normal);
             float wide = sqrtf(dot(along, along)), high = sqrtf(dot(across, across));
-            float pitch = b->inside_out ? 0.16f : 0.1f;
+            float pitch = b->inside_out ? 0.18f : 0.13f;
             b->columns[face] = 2 + (int)minf(2.0f * wide / pitch, 40.0f);
             b->rows[face] = 2 + (int)minf(2.0f * high / pitch, 40.0f);
             if (r->luxel_count + b->columns[face] * b->rows[face] > MAX_LUXELS) {
@@ -569,6 +599,20 @@ static void store_light(room *r)
                              r->luxels[b->luxels[face] + y * b->columns[face] + x]);
                 }
             }
+        }
+    }
+}
+
+/* Round bodies: the body's share of each lamp, without shadows on itself but its own */
+static void open_light(const room *r, const body *b, vec at, vec normal, float rgb[3])
+{
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = r->ambient[c] * (0.6f - 0.35f * normal.y);
+    }
+    for (int k = 0; k < r->lamp_count; k++) {
+        float reach = b->open[k] * lamp_reaches(&r->lamps[k], at, normal);
+        for (int c = 0; c < 3; c++) {
+            rgb[c] += reach * r->lamps[k].colour[c];
         }
     }
 }
@@ -730,7 +774,7 @@ static void shade_hit(const room *r, const viewpoint *v, int owner, float x, flo
         if (b->kind == BODY_BOX) {
             stored_light(r, b, face, ss, tt, light);
         } else {
-            light_at(r, add(b->centre, from_body(b, p)), from_body(b, normal), owner >> 3, light);
+            open_light(r, b, add(b->centre, from_body(b, p)), from_body(b, normal), light);
         }
     } else {
         int ignored;
@@ -746,16 +790,7 @@ static void shade_hit(const room *r, const viewpoint *v, int owner, float x, flo
         normal = unit(normal);
         bool flat = fabsf(normal.x) > fabsf(normal.z);
         material_at(r->shared, m, (flat ? p.z : p.x) + b->offset[0], p.y + b->offset[1], z / v->fx, rgb);
-        vec world = add(b->centre, from_body(b, p)), out = from_body(b, normal);
-        for (int c = 0; c < 3; c++) {
-            light[c] = r->ambient[c] * (0.6f - 0.35f * out.y);
-        }
-        for (int k = 0; k < r->lamp_count; k++) {
-            float reach = b->open[k] * lamp_reaches(&r->lamps[k], world, out);
-            for (int c = 0; c < 3; c++) {
-                light[c] += reach * r->lamps[k].colour[c];
-            }
-        }
+        open_light(r, b, add(b->centre, from_body(b, p)), from_body(b, normal), light);
     }
     for (int c = 0; c < 3; c++) {
         rgb[c] *= light[c] + b->glow;
@@ -853,7 +888,7 @@ static void path_draw(const room *r, generator *g, int width, int height, int vi
     for (int attempt = 0; attempt < 60; attempt++) {
         vec middle = {draw_in(g, -0.45f, 0.45f) * r->size.x, -draw_in(g, 0.7f, 1.8f),
                       draw_in(g, -0.45f, 0.45f) * r->size.z};
-        const body *aim = &r->bodies[draw_index(g, r->body_count)];
+        const body *aim = &r->bodies[1 + draw_index(g, r->body_count - 1)];
         vec target = add(aim->centre, (vec){0.3f * draw_normal(g), 0.2f * draw_normal(g), 0.3f * draw_normal(g)});
         viewpoint v = {.at = middle};
         look_at(&v, target, 0.0f);
@@ -862,7 +897,7 @@ static void path_draw(const room *r, generator *g, int width, int height, int vi
         if (fabsf(v.z.y) > 0.75f) {
             continue;
         }
-        bool good = far > 0.7f && far < 20.0f;
+        bool good = far > 0.7f && far < 4.5f;
         vec focus = add(middle, times(v.z, minf(far, 20.0f)));
         for (int i = 0; i < views; i++) {
             float along = views > 1 ? (float)i / (float)(views - 1) - 0.5f : 0.0f;
