@@ -11,8 +11,8 @@ draws a contact sheet. For training:
     depth = degrade_depth(rng, depth)           # rng: numpy.random.Generator; 0 = nothing measured
     image = expose(rng, image)
 
-The pictures come from C (procedural.h tells how), compiled when first asked for into $TRIM3R_BUILD, else into
-~/.cache/trim3r. The same seed gives the same pictures, on other machines up to what libm rounds otherwise."""
+The pictures come from C (procedural.h tells how), compiled when first asked for into the build folder named, else
+$TRIM3R_BUILD, else ~/.cache/trim3r. The same seed gives the same pictures, on other machines up to what libm rounds otherwise."""
 import argparse
 import ctypes
 import hashlib
@@ -33,12 +33,12 @@ SHARED = ("-shared", "-fPIC")
 _loaded = {}
 
 
-def build(folder=None):
+def build(folder=None, flags=FLAGS):
     """The compiled generator's path in `folder`; compiled only where sources, flags or machine changed."""
     here = os.path.dirname(os.path.abspath(__file__))
     folder = folder or os.environ.get("TRIM3R_BUILD") or os.path.expanduser("~/.cache/trim3r")
     compiler = os.environ.get("CC", "cc")
-    digest = hashlib.sha256(" ".join((compiler, os.uname().nodename) + FLAGS).encode())
+    digest = hashlib.sha256(" ".join((compiler, os.uname().nodename) + flags).encode())
     for name in SOURCES + HEADERS:
         with open(os.path.join(here, name), "rb") as file:
             digest.update(file.read())
@@ -47,8 +47,9 @@ def build(folder=None):
         os.makedirs(folder, exist_ok=True)
         handle, fresh = tempfile.mkstemp(suffix=".so", dir=folder)  # several trainers may build at once
         os.close(handle)
+        sources = [os.path.join(here, name) for name in SOURCES]
         try:
-            subprocess.run([compiler, *FLAGS, *SHARED, "-o", fresh, *(os.path.join(here, s) for s in SOURCES), "-lm"], check=True)
+            subprocess.run([compiler, *flags, *SHARED, "-o", fresh, *sources, "-lm"], check=True)
             os.replace(fresh, library)
         finally:
             if os.path.exists(fresh):
@@ -56,8 +57,8 @@ def build(folder=None):
     return library
 
 
-def _library(folder):
-    path = build(folder)
+def _library(folder, flags):
+    path = build(folder, flags)
     if path not in _loaded:
         library = ctypes.CDLL(path)
         library.procedural_atlas.restype = ctypes.c_void_p
@@ -85,9 +86,9 @@ def _mix(*parts):
 class Procedural:
     """A stream of pictures. `index` counts what was drawn: set it to go on where a stream stopped."""
 
-    def __init__(self, seed, index=0, build_folder=None):
+    def __init__(self, seed, index=0, build_folder=None, flags=FLAGS):
         self.seed, self.index = seed, index
-        self._call, self._atlas = _library(build_folder)
+        self._call, self._atlas = _library(build_folder, flags)
 
     def _next(self, kind):
         self.index += 1

@@ -701,15 +701,23 @@ static void screen_box(const body *b, const viewpoint *v, int columns, int rows,
     box[0] = box[1] = 0;
     box[2] = columns;
     box[3] = rows;
+    /* beside the picture's four sides with all of its sphere? */
+    vec middle = sub(b->centre, v->at);
+    float mx = v->fx * dot(middle, v->x), my = v->fy * dot(middle, v->y), mz = dot(middle, v->z);
+    float right = (float)columns / SUBSAMPLES - 0.5f - v->cx, low = (float)rows / SUBSAMPLES - 0.5f - v->cy;
+    float left = v->cx + 0.5f, top = v->cy + 0.5f;
+    if (!b->inside_out && (mz < -b->reach || mx + left * mz < -b->reach * sqrtf(v->fx * v->fx + left * left) ||
+                           right * mz - mx < -b->reach * sqrtf(v->fx * v->fx + right * right) ||
+                           my + top * mz < -b->reach * sqrtf(v->fy * v->fy + top * top) ||
+                           low * mz - my < -b->reach * sqrtf(v->fy * v->fy + low * low))) {
+        box[2] = box[3] = 0;
+        return;
+    }
     for (int i = 0; i < 8 && !b->inside_out; i++) {
         vec corner = {i & 1 ? b->half.x : -b->half.x, i & 2 ? b->half.y : -b->half.y, i & 4 ? b->half.z : -b->half.z};
         vec p = sub(add(b->centre, from_body(b, corner)), v->at);
         float z = dot(p, v->z);
         if (z < 0.05f) {
-            vec middle = sub(b->centre, v->at);
-            if (dot(middle, v->z) < -b->reach) {
-                box[2] = box[3] = 0;
-            }
             return;
         }
         float x = v->fx * dot(p, v->x) / z + v->cx, y = v->fy * dot(p, v->y) / z + v->cy;
@@ -726,6 +734,24 @@ static void screen_box(const body *b, const viewpoint *v, int columns, int rows,
     }
 }
 
+/* hit_box() along a row of rays, without branches, so that it vectorises; faces: 0..5 */
+static void hit_box_row(const body *b, vec at, vec row, vec right, int from, int to, float *depths, int *faces)
+{
+    vec h = b->half;
+    for (int x = from; x < to; x++) {
+        vec along = {row.x + right.x * (float)x, row.y + right.y * (float)x, row.z + right.z * (float)x};
+        float ix = safe_inverse(along.x), iy = safe_inverse(along.y), iz = safe_inverse(along.z);
+        float ax = (-h.x - at.x) * ix, bx = (h.x - at.x) * ix, ay = (-h.y - at.y) * iy, by = (h.y - at.y) * iy;
+        float az = (-h.z - at.z) * iz, bz = (h.z - at.z) * iz;
+        float nx = minf(ax, bx), ny = minf(ay, by), nz = minf(az, bz);
+        float enter = maxf(nx, maxf(ny, nz)), leave = minf(maxf(ax, bx), minf(maxf(ay, by), maxf(az, bz)));
+        int face_x = along.x < 0.0f, face_y = 2 + (along.y < 0.0f), face_z = 4 + (along.z < 0.0f);
+        int face = enter == ny ? face_y : face_z;
+        faces[x] = enter == nx ? face_x : face;
+        depths[x] = (enter <= leave) & (enter >= 1e-4f) ? enter : INFINITY;
+    }
+}
+
 static void see_body(const body *b, int index, const viewpoint *v, int columns, int rows, float *near, uint16_t *owner)
 {
     int box[4];
@@ -734,8 +760,22 @@ static void see_body(const body *b, int index, const viewpoint *v, int columns, 
     vec at = to_body(b, sub(v->at, b->centre));
     vec corner = to_body(b, ray_of(v, first, first));
     vec right = to_body(b, times(v->x, step / v->fx)), down = to_body(b, times(v->y, step / v->fy));
+    bool rows_at_once = b->kind == BODY_BOX && !b->inside_out;
     for (int y = box[1]; y < box[3]; y++) {
         vec row = add(corner, times(down, (float)y));
+        if (rows_at_once) {
+            float depths[2048 * SUBSAMPLES];
+            int faces[2048 * SUBSAMPLES];
+            hit_box_row(b, at, row, right, box[0], box[2], depths, faces);
+            for (int x = box[0]; x < box[2]; x++) {
+                size_t i = (size_t)y * columns + x;
+                if (depths[x] < near[i]) {
+                    near[i] = depths[x];
+                    owner[i] = (uint16_t)(index * 8 + faces[x]);
+                }
+            }
+            continue;
+        }
         for (int x = box[0]; x < box[2]; x++) {
             int face = NO_FACE;
             float z = hit(b, at, add(row, times(right, (float)x)), &face);
