@@ -107,7 +107,8 @@ class Leaves(unittest.TestCase):
             other = plain.leaves(SIDE, SIDE)
             self.assertTrue(np.array_equal(image, other[0]) and np.array_equal(depth, other[1]))
         ours = procedural.Procedural(5, build_folder=BUILD).room(64, 64)
-        room = procedural.Procedural(5, build_folder=BUILD, flags=("-std=gnu11", "-O1", "-ffp-contract=off")).room(64, 64)
+        plain.seed, plain.index = 5, 0
+        room = plain.room(64, 64)
         for a, b in zip(ours, room):
             self.assertTrue(all(np.array_equal(a[key], b[key]) for key in a))
 
@@ -246,7 +247,8 @@ class Degradations(unittest.TestCase):
         for seed in range(60):
             made = procedural.degrade_depth(seed, depth, noise=False)
             self.assertTrue(np.array_equal(made[made > 0], depth[made > 0]))
-            self.assertTrue(np.array_equal(made, procedural.degrade_depth(np.random.default_rng(seed), depth, noise=False)))
+            again = procedural.degrade_depth(np.random.default_rng(seed), depth, noise=False)
+            self.assertTrue(np.array_equal(made, again))
             kept.append((made > 0).mean())
         self.assertTrue(np.array_equal(depth, before))
         self.assertTrue(min(kept) >= 0.04 and min(kept) < 0.3 and max(kept) > 0.97, (min(kept), max(kept)))

@@ -107,11 +107,11 @@ enum {
 };
 
 typedef enum {
-    TILE_ROUGH,  /* 1/f^0.8 */
+    TILE_ROUGH,   /* 1/f^0.8 */
     TILE_NATURAL, /* 1/f^1.1 */
-    TILE_SMOOTH, /* 1/f^1.7 */
-    TILE_RIDGED, /* cracks, veins */
-    TILE_LEAVES, /* grey dead leaves, large ones seldom */
+    TILE_SMOOTH,  /* 1/f^1.7 */
+    TILE_RIDGED,  /* cracks, veins */
+    TILE_LEAVES,  /* grey dead leaves, large ones seldom */
     TILE_PEBBLES, /* grey dead leaves of one order of sizes */
     TILE_COUNT,
 } tile_kind;
@@ -141,10 +141,10 @@ typedef struct {
     float colour[3][3];
     pattern_kind pattern;
     uint32_t seed;
-    float period;   /* of stripes, checks, bricks, text lines; the whole tile's width for tiles; in u's unit */
-    float duty;     /* share of the first colour, 0..1 */
-    float ca, sa;   /* the pattern's rotation */
-    tile_kind tile; /* of the pattern */
+    float period;    /* of stripes, checks, bricks, text lines; the whole tile's width for tiles; in u's unit */
+    float duty;      /* share of the first colour, 0..1 */
+    float ca, sa;    /* the pattern's rotation */
+    tile_kind tile;  /* of the pattern */
     tile_kind weave; /* a tile that varies lightness everywhere */
     float weave_width, weave_amount, tint_amount;
     float grain_amount; /* of the same tile 9 times finer */
@@ -157,7 +157,8 @@ typedef struct {
     float light[3];
 } palette;
 
-void atlas_fill(atlas *shared, uint64_t seed);
+/* false: no memory */
+bool atlas_fill(atlas *shared, uint64_t seed);
 /* A tile's value at (u, v) in turns of the tile, seen at `footprint` turns a pixel */
 float tile_at(const atlas *shared, tile_kind tile, float u, float v, float footprint);
 /* The glyph's signed distance at (x, y) in 0..1, in glyph heights, positive inside */
@@ -175,12 +176,12 @@ void material_at(const atlas *shared, const material *m, float u, float v, float
 enum { SUBSAMPLES = 3 }; /* a pixel is seen by 3 x 3 rays */
 
 typedef struct {
-    float exposure;  /* linear gain */
+    float exposure; /* linear gain */
     float balance[3];
-    float vignette;  /* loss of light in the corner, 0..1 */
-    float blur;      /* standard deviation of the optics, pixels */
-    float sharpen;   /* unsharp masking after the tone curve */
-    float contrast;  /* of the S-shaped tone curve, 0 = sRGB's */
+    float vignette;               /* loss of light in the corner, 0..1 */
+    float blur;                   /* standard deviation of the optics, pixels */
+    float sharpen;                /* unsharp masking after the tone curve */
+    float contrast;               /* of the S-shaped tone curve, 0 = sRGB's */
     float shot_noise, read_noise; /* standard deviations at white and black, of full scale */
     float saturation;
 } camera_look;

@@ -12,7 +12,8 @@ draws a contact sheet. For training:
     image = expose(rng, image)
 
 The pictures come from C (procedural.h tells how), compiled when first asked for into the build folder named, else
-$TRIM3R_BUILD, else ~/.cache/trim3r. The same seed gives the same pictures, on other machines up to what libm rounds otherwise."""
+$TRIM3R_BUILD, else ~/.cache/trim3r. The same seed gives the same pictures, on other machines up to what libm rounds
+otherwise."""
 import argparse
 import ctypes
 import hashlib
@@ -114,7 +115,8 @@ class Procedural:
         intrinsics, poses = np.empty((views, 4), np.float32), np.empty((views, 4, 4), np.float32)
         pointers = (a.ctypes.data for a in (images, depths, intrinsics, poses))
         if self._call.procedural_room(self._atlas, self._next(2), width, height, views, *pointers):
-            raise ValueError(f"procedural: no room of {views} views, {width} x {height}: 1 to 16 views, sides 16 to 2048")
+            asked = f"{views} views, {width} x {height}"
+            raise ValueError(f"procedural: no room of {asked}: 1 to 16 views, sides 16 to 2048")
         return [
             {"image": images[i], "depth": depths[i], "intrinsics": intrinsics[i], "pose": poses[i]}
             for i in range(views)
@@ -271,15 +273,16 @@ def write_png(path, image):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    chunks = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(rows)), chunk(b"IEND", b"")
     with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+        file.write(b"\x89PNG\r\n\x1a\n" + b"".join(chunks))
 
 
 def main():
     parser = argparse.ArgumentParser(description="Draw a contact sheet of the made-up training pictures.")
     parser.add_argument("--out", required=True, metavar="SHEET.png", help="the PNG to write")
     parser.add_argument("--seed", type=int, default=1, help="another seed, other pictures (default 1)")
-    parser.add_argument("--rooms", action="store_true", help="rooms: three views, depth, degraded depth, other exposure")
+    parser.add_argument("--rooms", action="store_true", help="three views, depth, worse depth, other exposure")
     options = parser.parse_args()
     write_png(options.out, contact_sheet(options.seed, options.rooms))
 

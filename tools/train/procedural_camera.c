@@ -121,7 +121,8 @@ void blur_planes(float *data, float *scratch, int width, int height, int channel
     }
 }
 
-/* sRGB with an S-curve mixed in, 0..1 to 0..1 over 1024 steps of the square root: fine steps where the curve is steep */
+/* sRGB with an S-curve mixed in, 0..1 to 0..1 over 1024 steps of the square root: fine steps where the curve is steep
+ */
 enum { TONE_STEPS = 1024 };
 
 static void tone_curve(float *curve, float contrast)

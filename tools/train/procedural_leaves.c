@@ -24,8 +24,8 @@ typedef struct {
     shape_kind shape;
     float x, y, ca, sa, half_s, half_t;
     float w, wx, wy;
-    float extra;               /* ring, frame, arc: the thin part's share; blob: the tile's width */
-    float side[MAX_SIDES][3];  /* polygon: inside where nx s + ny t < d for all */
+    float extra;              /* ring, frame, arc: the thin part's share; blob: the tile's width */
+    float side[MAX_SIDES][3]; /* polygon: inside where nx s + ny t < d for all */
     int sides, material;
     uint32_t glyph;
     float gain, shade_s, shade_t; /* lightness = gain (1 + shade_s s + shade_t t) */
@@ -39,8 +39,8 @@ typedef struct {
     float low, high;                /* sizes */
     float near, far;                /* 1/z of the leaves over that of what lies behind */
     float shapes[SHAPE_COUNT];
-    float upright;                  /* share of leaves along the picture's axes */
-    float stretch;                  /* largest aspect ratio */
+    float upright; /* share of leaves along the picture's axes */
+    float stretch; /* largest aspect ratio */
     float slant, round, shine;
 } group;
 
@@ -50,10 +50,10 @@ typedef struct {
     leaf *leaves;
     material *materials;
     palette colours;
-    float light[3];              /* towards the light, as seen in the picture */
+    float light[3]; /* towards the light, as seen in the picture */
     float gradient[2], unevenness, light_width, light_offset;
     float occlusion, shadow_x, shadow_y, shadow_width;
-    float focus, aperture;       /* 1/metre; pixels of blur per 1/metre */
+    float focus, aperture; /* 1/metre; pixels of blur per 1/metre */
     /* per subsample */
     float *near;
     uint16_t *owner;
@@ -494,7 +494,8 @@ static void shade_pixel(painting *p, int x, int y)
     }
 }
 
-/* Far to near; the farthest layer is stretched into what hides it, nearer ones keep their blurred coverage */
+/* Far to near. The farthest layer is stretched into what hides it; a nearer one knows only what is seen of it, so that
+ * beside a blurred edge of the nearest the farthest may shine through the middle one: a soft edge all the same. */
 static void compose(painting *p, float *linear)
 {
     int count = p->width * p->height;
@@ -513,7 +514,6 @@ static void compose(painting *p, float *linear)
                 }
                 continue;
             }
-            /* coverage is of what is seen: under a nearer layer it is thin, so what lies over it comes next */
             float cover = minf(from[3], 1.0f), behind = 1.0f - cover;
             for (int c = 0; c < 3; c++) {
                 linear[3 * i + c] = linear[3 * i + c] * behind + from[c];
@@ -610,8 +610,9 @@ int procedural_leaves(const atlas *shared, uint64_t seed, int width, int height,
 atlas *procedural_atlas(void)
 {
     atlas *shared = malloc(sizeof *shared);
-    if (shared) {
-        atlas_fill(shared, 0x7472696d3372u);
+    if (shared && !atlas_fill(shared, 0x7472696d3372u)) {
+        free(shared);
+        shared = NULL;
     }
     return shared;
 }

@@ -15,7 +15,7 @@ static int level_offset(int level)
 }
 
 /* Octaves of smooth noise on a torus, each `keep` as strong as the one twice as wide: amplitude 1/f^(1 - log2 keep) */
-static void add_octaves(float *plane, generator *g, float keep)
+static bool add_octaves(float *plane, generator *g, float keep)
 {
     static const int coarsest = 2;
     float strength = 1.0f;
@@ -23,7 +23,7 @@ static void add_octaves(float *plane, generator *g, float keep)
         int side = 1 << level, shift = TILE_SIDE_LOG2 - level;
         float *knots = malloc((size_t)side * side * sizeof *knots);
         if (!knots) {
-            return;
+            return false;
         }
         for (int i = 0; i < side * side; i++) {
             knots[i] = draw_normal(g);
@@ -44,6 +44,7 @@ static void add_octaves(float *plane, generator *g, float keep)
         free(knots);
         strength *= keep;
     }
+    return true;
 }
 
 /* Grey discs, ellipses and lenses on a torus, later ones hidden by earlier ones */
@@ -170,25 +171,26 @@ float glyph_at(const atlas *shared, uint32_t glyph, float x, float y)
     return (a + t * (b - a)) * (1.0f / 256.0f);
 }
 
-void atlas_fill(atlas *shared, uint64_t seed)
+bool atlas_fill(atlas *shared, uint64_t seed)
 {
     generator g = {seed};
     float *plane = malloc((size_t)TILE_SIDE * TILE_SIDE * sizeof *plane);
     memset(shared, 0, sizeof *shared);
-    for (int tile = 0; plane && tile < TILE_COUNT; tile++) {
+    bool good = plane != NULL;
+    for (int tile = 0; good && tile < TILE_COUNT; tile++) {
         memset(plane, 0, (size_t)TILE_SIDE * TILE_SIDE * sizeof *plane);
         switch (tile) {
         case TILE_ROUGH:
-            add_octaves(plane, &g, 1.0f);
+            good = add_octaves(plane, &g, 1.0f);
             break;
         case TILE_NATURAL:
-            add_octaves(plane, &g, 0.8f);
+            good = add_octaves(plane, &g, 0.8f);
             break;
         case TILE_SMOOTH:
-            add_octaves(plane, &g, 0.55f);
+            good = add_octaves(plane, &g, 0.55f);
             break;
         case TILE_RIDGED:
-            add_octaves(plane, &g, 0.65f);
+            good = add_octaves(plane, &g, 0.65f);
             for (int i = 0; i < TILE_SIDE * TILE_SIDE; i++) {
                 plane[i] = -sqrtf(fabsf(plane[i]));
             }
@@ -206,6 +208,7 @@ void atlas_fill(atlas *shared, uint64_t seed)
     for (int i = 0; i < GLYPH_COUNT; i++) {
         fill_glyph(shared->glyphs[i], &g);
     }
+    return good;
 }
 
 /* ---- colours ---------------------------------------------------------------------------------------------------- */
@@ -216,14 +219,14 @@ typedef struct {
 } family;
 
 static const family FAMILIES[] = {
-    {{0.06f, 0.14f}, {0.02f, 0.18f}, {0.70f, 0.96f}, 10, 3},  /* walls, paper */
-    {{0.00f, 1.00f}, {0.00f, 0.06f}, {0.30f, 0.85f}, 7, 6},   /* greys */
-    {{0.05f, 0.12f}, {0.10f, 0.35f}, {0.40f, 0.75f}, 8, 6},   /* beige, stone, skin */
-    {{0.04f, 0.11f}, {0.35f, 0.75f}, {0.22f, 0.70f}, 9, 5},   /* wood, leather, earth */
-    {{0.00f, 1.00f}, {0.00f, 0.30f}, {0.04f, 0.22f}, 8, 5},   /* black things, shade */
-    {{0.55f, 0.64f}, {0.10f, 0.55f}, {0.25f, 0.80f}, 4, 5},   /* blues, sky */
-    {{0.18f, 0.36f}, {0.25f, 0.70f}, {0.12f, 0.60f}, 2, 12},  /* foliage */
-    {{0.97f, 1.04f}, {0.50f, 0.90f}, {0.30f, 0.80f}, 2, 1},   /* reds, brick */
+    {{0.06f, 0.14f}, {0.02f, 0.18f}, {0.70f, 0.96f}, 10, 3},   /* walls, paper */
+    {{0.00f, 1.00f}, {0.00f, 0.06f}, {0.30f, 0.85f}, 7, 6},    /* greys */
+    {{0.05f, 0.12f}, {0.10f, 0.35f}, {0.40f, 0.75f}, 8, 6},    /* beige, stone, skin */
+    {{0.04f, 0.11f}, {0.35f, 0.75f}, {0.22f, 0.70f}, 9, 5},    /* wood, leather, earth */
+    {{0.00f, 1.00f}, {0.00f, 0.30f}, {0.04f, 0.22f}, 8, 5},    /* black things, shade */
+    {{0.55f, 0.64f}, {0.10f, 0.55f}, {0.25f, 0.80f}, 4, 5},    /* blues, sky */
+    {{0.18f, 0.36f}, {0.25f, 0.70f}, {0.12f, 0.60f}, 2, 12},   /* foliage */
+    {{0.97f, 1.04f}, {0.50f, 0.90f}, {0.30f, 0.80f}, 2, 1},    /* reds, brick */
     {{0.10f, 0.17f}, {0.50f, 0.90f}, {0.55f, 0.95f}, 1.5f, 1}, /* yellow */
     {{0.00f, 1.00f}, {0.35f, 0.95f}, {0.30f, 0.95f}, 2, 0.5f}, /* anything dyed */
 };
@@ -321,7 +324,7 @@ void material_draw(material *made, const palette *from, generator *g, float size
 void material_draw_calm(material *made, const palette *from, generator *g, float size, float texture)
 {
     material_draw(made, from, g, size, texture);
-    float keep = draw_chance(g, 0.2f) ? 0.9f : draw_in(g, 0.1f, 0.7f); /* of the saturation */
+    float keep = draw_chance(g, 0.2f) ? 0.9f : draw_in(g, 0.1f, 0.7f);   /* of the saturation */
     float lift = draw_chance(g, 0.35f) ? 0.0f : draw_in(g, 0.05f, 0.6f); /* lighter, as most walls are */
     for (int i = 0; i < 3; i++) {
         float *rgb = made->colour[i], grey = 0.25f * rgb[0] + 0.6f * rgb[1] + 0.15f * rgb[2];
@@ -368,7 +371,8 @@ static float pattern_at(const atlas *shared, const material *m, float u, float v
     case PATTERN_BRICKS: {
         float joint = 0.04f + 0.1f * m->offset[0];
         int32_t row = floori(y);
-        float shift = m->offset[1] > 0.4f ? 0.5f * (float)(row & 1) : 0.0f, across = x / (1.0f + 2.0f * m->duty) + shift;
+        float shift = m->offset[1] > 0.4f ? 0.5f * (float)(row & 1) : 0.0f,
+              across = x / (1.0f + 2.0f * m->duty) + shift;
         float fade = clampf(1.5f - 2.0f * w, 0.0f, 1.0f);
         *tint = 1.0f + fade * 0.5f * m->offset[0] * (unit_of(hash2(m->seed, floori(across), row)) - 0.5f);
         return pulse(y, w, 1.0f - joint) * pulse(across, w / (1.0f + 2.0f * m->duty), 1.0f - joint);
@@ -401,7 +405,8 @@ static float pattern_at(const atlas *shared, const material *m, float u, float v
         int32_t cell = floori(column);
         uint32_t hash = hash2(m->seed, cell, row);
         bool blank = (hash & 7) == 0 || (hash2(m->seed, cell >> 4, row) & 3) == 0;
-        float ink = blank ? -1.0f : glyph_at(shared, hash >> 8, column - (float)cell, (line - (float)row) * 1.5f - 0.25f);
+        float ink =
+            blank ? -1.0f : glyph_at(shared, hash >> 8, column - (float)cell, (line - (float)row) * 1.5f - 0.25f);
         float below = (line - (float)row) * 1.5f - 0.25f;
         if (below < 0.0f || below > 1.0f) {
             ink = -1.0f;

@@ -32,8 +32,8 @@ typedef struct {
     float reach;     /* radius of the sphere around it */
     bool inside_out; /* the room itself */
     int material[6];
-    int poster[6];   /* -1 = none */
-    float glow;      /* emitted light, times the material's colour; 0 for most */
+    int poster[6]; /* -1 = none */
+    float glow;    /* emitted light, times the material's colour; 0 for most */
     float offset[2];
     int luxels[6], columns[6], rows[6]; /* boxes: where a face's light is stored */
     float open[MAX_LIGHTS];             /* round bodies: share of each light that reaches them */
@@ -251,8 +251,11 @@ static void clutter(room *r, generator *g, vec middle, float half_x, float half_
             half.z = half.x = 0.5f * size;
         }
         vec at = {middle.x + c * x - s * z, middle.y - half.y, middle.z + c * z + s * x};
-        body *b = new_body(r, g, kind < 4 ? BODY_BOX : kind == 4 ? BODY_CYLINDER : BODY_ELLIPSOID, at, half, turn,
-                           new_material(r, g, 2.0f * size, 0.6f));
+        body *b = new_body(r, g,
+                           kind < 4    ? BODY_BOX
+                           : kind == 4 ? BODY_CYLINDER
+                                       : BODY_ELLIPSOID,
+                           at, half, turn, new_material(r, g, 2.0f * size, 0.6f));
         if (kind == 1) {
             b->poster[draw_index(g, 6)] = draw_index(g, POSTERS);
         }
@@ -315,8 +318,8 @@ static void shelf(room *r, generator *g, vec foot, float yaw)
             m->sa = 0.0f;
             float wide = half_x * draw_in(g, 0.3f, 0.95f), tall = pitch * draw_in(g, 0.25f, 0.42f);
             float x = draw_in(g, -1.0f, 1.0f) * (half_x - wide);
-            new_body(r, g, BODY_BOX, (vec){foot.x + c * x, -y - tall, foot.z + s * x},
-                     (vec){wide, tall, 0.8f * half_z}, yaw, books);
+            new_body(r, g, BODY_BOX, (vec){foot.x + c * x, -y - tall, foot.z + s * x}, (vec){wide, tall, 0.8f * half_z},
+                     yaw, books);
         } else {
             clutter(r, g, (vec){foot.x, -y - 0.01f, foot.z}, 0.8f * half_x, 0.5f * half_z, yaw, draw_index(g, 4));
         }
@@ -394,8 +397,8 @@ static void light_room(room *r, generator *g)
             l->along = (vec){half.x * cosf(yaw), 0.0f, half.x * sinf(yaw)};
             l->across = (vec){0.0f, half.y, 0.0f};
         } else {
-            l->centre = (vec){draw_in(g, -0.35f, 0.35f) * r->size.x, -r->size.y + 0.04f,
-                              draw_in(g, -0.35f, 0.35f) * r->size.z};
+            l->centre =
+                (vec){draw_in(g, -0.35f, 0.35f) * r->size.x, -r->size.y + 0.04f, draw_in(g, -0.35f, 0.35f) * r->size.z};
             half = (vec){draw_in(g, 0.1f, 0.6f), 0.02f, draw_in(g, 0.1f, 0.6f)};
             l->normal = (vec){0.0f, 1.0f, 0.0f};
             l->along = (vec){half.x, 0.0f, 0.0f};
@@ -515,9 +518,10 @@ static float lamp_reaches(const lamp *l, vec at, vec normal)
 
 static void light_at(const room *r, vec at, vec normal, int self, float rgb[3])
 {
-    static const float spot[LIGHT_RAYS][2] = {{0.0f, 0.0f}, {0.7f, 0.35f}, {-0.35f, 0.7f}, {-0.7f, -0.35f}, {0.35f, -0.7f}};
-    static const float sky[SKY_RAYS][3] = {{0.0f, 0.0f, 1.0f},    {0.8f, 0.0f, 0.6f},    {-0.8f, 0.1f, 0.6f},
-                                           {0.1f, 0.8f, 0.6f},    {-0.1f, -0.8f, 0.6f}, {0.6f, 0.6f, 0.52f}};
+    static const float spot[LIGHT_RAYS][2] = {
+        {0.0f, 0.0f}, {0.7f, 0.35f}, {-0.35f, 0.7f}, {-0.7f, -0.35f}, {0.35f, -0.7f}};
+    static const float sky[SKY_RAYS][3] = {{0.0f, 0.0f, 1.0f}, {0.8f, 0.0f, 0.6f},   {-0.8f, 0.1f, 0.6f},
+                                           {0.1f, 0.8f, 0.6f}, {-0.1f, -0.8f, 0.6f}, {0.6f, 0.6f, 0.52f}};
     vec side = unit(fabsf(normal.y) > 0.9f ? (vec){1.0f, 0.0f, 0.0f} : cross(normal, (vec){0.0f, 1.0f, 0.0f}));
     vec other = cross(normal, side);
     at = add(at, times(normal, 0.003f));
@@ -641,8 +645,8 @@ static bool poster_draw(poster *made, const atlas *shared, uint64_t seed)
     made->rgb = malloc(2 * texels * 3 * sizeof *made->rgb);
     uint8_t *image = malloc(texels * 3);
     float *depth = malloc(texels * sizeof *depth);
-    bool good = made->rgb && image && depth &&
-                procedural_leaves(shared, seed, POSTER_SIDE, POSTER_SIDE, image, depth) == 0;
+    bool good =
+        made->rgb && image && depth && procedural_leaves(shared, seed, POSTER_SIDE, POSTER_SIDE, image, depth) == 0;
     if (good) {
         for (size_t i = 0; i < 3 * texels; i++) {
             float x = (float)image[i] * (1.0f / 255.0f);
@@ -855,7 +859,8 @@ static void see_room(const room *r, const viewpoint *v, int width, int height, f
             bool done[SUBSAMPLES * SUBSAMPLES] = {false};
             uint16_t owners[SUBSAMPLES * SUBSAMPLES];
             for (int j = 0; j < SUBSAMPLES * SUBSAMPLES; j++) {
-                owners[j] = owner[(size_t)(y * SUBSAMPLES + j / SUBSAMPLES) * columns + x * SUBSAMPLES + j % SUBSAMPLES];
+                owners[j] =
+                    owner[(size_t)(y * SUBSAMPLES + j / SUBSAMPLES) * columns + x * SUBSAMPLES + j % SUBSAMPLES];
             }
             for (int j = 0; j < SUBSAMPLES * SUBSAMPLES; j++) {
                 if (done[j]) {
