@@ -187,7 +187,8 @@ typedef struct {
 } camera_look;
 
 void look_draw(camera_look *made, generator *g);
-/* Gain that brings the picture's geometric mean to `key` of full scale, without clipping over 2 % of it */
+/* Gain that brings the picture's geometric mean to `key` of full scale, lowered by up to 0.7 stops where
+ * over 2 % would clip */
 float look_exposure(const float *linear, int width, int height, float key);
 /* linear: [height][width][3], overwritten; scratch: as large; image: [height][width][3] */
 void develop(const camera_look *look, generator *noise, int width, int height, float *linear, float *scratch,

@@ -252,13 +252,13 @@ def _depth_picture(depth):
 def contact_sheet(seed, rooms=False, size=256, columns=6, rows=4):
     """Leaves: a picture a cell. Rooms: rows of three views, their middle one's depth, that depth degraded, and the
     middle view exposed otherwise."""
-    source, cells = Procedural(seed), []
+    source, rng, cells = Procedural(seed), np.random.default_rng(seed), []
     while len(cells) < rows * columns:
         if rooms:
             views = source.room(size, size, 3)
             depth = views[1]["depth"]
             cells += [v["image"] for v in views] + [_depth_picture(depth)]
-            cells += [_depth_picture(degrade_depth(len(cells), depth)), expose(len(cells), views[1]["image"])]
+            cells += [_depth_picture(degrade_depth(rng, depth)), expose(rng, views[1]["image"])]
         else:
             cells.append(source.leaves(size, size)[0])
     return np.vstack([np.hstack(cells[i : i + columns]) for i in range(0, rows * columns, columns)])

@@ -36,7 +36,8 @@ float look_exposure(const float *linear, int width, int height, float key)
         top--;
     }
     float white = exp2f(0.5f * (float)(top + 1) - 12.5f);
-    return minf(key / exp2f((float)(sum / count) + 0.5f), 1.1f / white);
+    float gain = key / exp2f((float)(sum / count) + 0.5f);
+    return minf(gain, maxf(1.1f / white, 0.6f * gain)); /* a window may burn out before the room drowns */
 }
 
 /* One running mean of 2 r + 1 samples, borders repeated; from and to do not overlap */
