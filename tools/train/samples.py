@@ -1,0 +1,231 @@
+"""What a head is trained on: crops of pictures with depth, and pairs of posed views with a third to be predicted.
+
+Pictures are made up without end (procedural.py) and read from whatever folders the user names: images, or posed folders
+with a transforms.json (instant-ngp; depth as NeRFCapture writes it). Every draw follows from its own generator, so a run
+can stop and go on, and processes can share the work."""
+import ctypes
+import glob
+import json
+import os
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+import native
+from procedural import Procedural, degrade_depth, expose
+
+ALLOCATIONS = {"density": 0, "paper": 1, "pixel": 2, "uniform": 3, "random": 4}
+PLANE = 2000  # mm: a picture without depth is a wall two metres away
+TRIPLET = (0, 2, 1)  # context, context, target
+
+
+class _Settings(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_uint32) for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed")]
+
+
+POINT = np.dtype(
+    [("x", "f4"), ("y", "f4"), ("spacing", "f4"), ("position", "f4", 3), ("tangent_u", "f4", 3), ("tangent_v", "f4", 3)]
+)
+_library = None
+
+
+@dataclass
+class Prepared:
+    """One view as the runtime prepared it: image uint8 [h, w, 3]; features int8 [h, w, 9]; confidence uint8 [h, w];
+    points: POINT [n], raster order."""
+
+    image: np.ndarray
+    features: np.ndarray
+    confidence: np.ndarray
+    points: np.ndarray
+
+
+def prepare(image, depth, intrinsics, kept, allocation="density", gamma=0.7, clusters=300, seed=1):
+    """Analysis, budget and features by the runtime. depth: uint16 [h, w], mm; kept: share of the pixels."""
+    global _library
+    _library = _library or native.preparer()
+    height, width = depth.shape
+    image, depth = np.ascontiguousarray(image), np.ascontiguousarray(depth, np.uint16)
+    wanted = max(1, round(kept * int((depth > 0).sum())))
+    settings = _Settings(wanted, ALLOCATIONS[allocation], round(gamma * 256), clusters, 4, seed)
+    camera = np.asarray(intrinsics, np.float64)
+    features, confidence = np.empty((height, width, 9), np.int8), np.empty((height, width), np.uint8)
+    points, valid = np.empty(height * width, POINT), np.zeros(1, np.int32)
+    count = _library.prepare(
+        width, height, image.ctypes.data, depth.ctypes.data, camera.ctypes.data, ctypes.addressof(settings),
+        features.ctypes.data, confidence.ctypes.data, points.ctypes.data, valid.ctypes.data,
+    )  # fmt: skip
+    if count < 0:
+        raise ValueError(f"the runtime refuses a picture of {width} x {height}: status {count}")
+    return Prepared(image, features, confidence, points[:count])
+
+
+def millimetres(depth):
+    return np.clip(np.rint(depth * 1000), 0, 65535).astype(np.uint16)
+
+
+def square(image):
+    """The largest centred square."""
+    height, width = image.shape[:2]
+    side = min(height, width)
+    top, left = (height - side) // 2, (width - side) // 2
+    return image[top : top + side, left : left + side], top, left
+
+
+@dataclass
+class Posed:
+    """A frame of a posed folder: image uint8 [s, s, 3]; depth float32 [s, s] m, 0 = none; fx fy cx cy; camera to world."""
+
+    image: np.ndarray
+    depth: np.ndarray
+    intrinsics: np.ndarray
+    pose: np.ndarray
+
+
+def _read_posed(folder, frame, unit, side):
+    image = cv2.imread(os.path.join(folder, frame["file_path"]), cv2.IMREAD_COLOR)
+    if image is None:
+        raise ValueError(f"{folder}: {frame['file_path']} cannot be read as an image")
+    image, top, left = square(image[:, :, ::-1])
+    scale = side / image.shape[0]
+    depth = np.zeros((side, side), np.float32)
+    if frame.get("depth_path"):
+        raw = cv2.imread(os.path.join(folder, frame["depth_path"]), cv2.IMREAD_UNCHANGED)
+        if raw is None:
+            raise ValueError(f"{folder}: {frame['depth_path']} cannot be read as an image")
+        across = frame["w"] / raw.shape[1]
+        centres = (np.arange(side) + 0.5) / scale
+        rows, columns = ((top + centres) / across).astype(int), ((left + centres) / across).astype(int)
+        depth = raw[np.ix_(rows, columns)].astype(np.float32) * unit
+    axes = np.diag([1.0, -1.0, -1.0, 1.0])  # OpenGL's y up, z backward
+    camera = [frame["fl_x"] * scale, frame["fl_y"] * scale, (frame["cx"] - left) * scale - 0.5, (frame["cy"] - top) * scale - 0.5]
+    image = cv2.resize(np.ascontiguousarray(image), (side, side), interpolation=cv2.INTER_AREA)
+    return Posed(image, depth, np.array(camera), np.array(frame["transform_matrix"]) @ axes)
+
+
+class Folder:
+    """Images of a folder, and the triplets of posed views with depth where it tells any."""
+
+    def __init__(self, path):
+        self.path, self.images, self.triplets, self._posed = path, [], [], {}
+        listing = os.path.join(path, "transforms.json")
+        if os.path.exists(listing):
+            with open(listing, encoding="utf-8") as file:
+                scene = json.load(file)
+            self.frames = [{**{k: v for k, v in scene.items() if k != "frames"}, **f} for f in scene["frames"]]
+            self.unit = scene.get("integer_depth_scale", 0.001)
+            names = [os.path.join(path, f["file_path"]) for f in self.frames]
+            if all(f.get("depth_path") and "fl_x" in f and not any(f.get(k) for k in ("k1", "k2", "p1", "p2")) for f in self.frames):
+                self.triplets = [(*t["context"], t["target"]) for t in scene.get("trim3r_triplets", [])]
+        else:
+            names = sorted(n for e in ("png", "jpg", "jpeg", "JPG", "ppm") for n in glob.glob(os.path.join(path, "**", "*." + e), recursive=True))
+        for name in names:
+            image = cv2.imread(name, cv2.IMREAD_COLOR)
+            if image is None:
+                raise ValueError(f"{name} cannot be read as an image")
+            image = square(image[:, :, ::-1])[0]
+            side = min(image.shape[0], 512)  # twice the working size: crops vary in scale
+            self.images.append(cv2.resize(np.ascontiguousarray(image), (side, side), interpolation=cv2.INTER_AREA))
+        if not self.images:
+            raise ValueError(f"{path}: no images")
+
+    def posed(self, index, side):
+        if (index, side) not in self._posed:
+            self._posed[index, side] = _read_posed(self.path, self.frames[index], self.unit, side)
+        return self._posed[index, side]
+
+
+class Samples:
+    """Draws of training data. made_up: share of pictures that procedural.py makes."""
+
+    def __init__(self, folders, crop, made_up, build_folder=None):
+        self.folders, self.crop, self.build_folder = [Folder(f) for f in folders], crop, build_folder
+        self.made_up = made_up if self.folders else 1.0
+        self.images = [i for f in self.folders for i in f.images]
+        self.triplets = [(f, t) for f in self.folders for t in f.triplets]
+
+    def _turned(self, rng, image, depth):
+        if rng.random() < 0.5:
+            image, depth = image[:, ::-1], depth[:, ::-1]
+        if rng.random() < 0.5:
+            image, depth = image[::-1], depth[::-1]
+        if rng.random() < 0.5:
+            image, depth = image.transpose(1, 0, 2), depth.T
+        return image, depth
+
+    def _crop(self, rng, picture):
+        n = self.crop
+        if rng.random() < self.made_up:
+            image, depth = picture
+            top, left = rng.integers(0, image.shape[0] - n + 1, 2)
+            image, depth = image[top : top + n, left : left + n], depth[top : top + n, left : left + n]
+        else:
+            source = self.images[rng.integers(len(self.images))]
+            side = source.shape[0]
+            size = min(side, int(n * rng.uniform(max(1.0, side / 400), max(1.0, side / 200))))
+            top, left = rng.integers(0, side - size + 1, 2)
+            image = cv2.resize(source[top : top + size, left : left + size], (n, n), interpolation=cv2.INTER_AREA)
+            depth = np.full((n, n), PLANE / 1000, np.float32)
+        image, depth = self._turned(rng, image, depth)
+        if rng.random() < 0.5:
+            depth = np.full((n, n), PLANE / 1000, np.float32)
+        elif rng.random() < 0.6:
+            depth = degrade_depth(rng, np.ascontiguousarray(depth))
+        if rng.random() < 0.3:
+            image = expose(rng, np.ascontiguousarray(image))
+        return image, depth
+
+    def _budget(self, rng):
+        kept = float(np.exp(rng.uniform(np.log(0.02), np.log(0.35)))) if rng.random() < 0.85 else rng.uniform(0.35, 1)
+        allocation = str(rng.choice(["density", "pixel", "uniform", "random"], p=[0.5, 0.3, 0.12, 0.08]))
+        clusters = 300 if allocation == "density" and rng.random() < 0.5 else 40
+        return dict(kept=kept, allocation=allocation, gamma=rng.uniform(0.4, 1.0), clusters=clusters,
+                    seed=int(rng.integers(1 << 31)))  # fmt: skip
+
+    def crops(self, rng, count):
+        """`count` pictures, prepared, each with a budget of its own."""
+        picture = Procedural(int(rng.integers(1 << 62)), build_folder=self.build_folder).leaves(256, 256)
+        made = []
+        while len(made) < count:
+            image, depth = self._crop(rng, picture)
+            depth = millimetres(depth)
+            if (depth > 0).sum() < 64:
+                continue
+            n, f = self.crop, self.crop * rng.uniform(0.8, 1.3)
+            made.append(prepare(image, depth, (f, f, (n - 1) / 2, (n - 1) / 2), **self._budget(rng)))
+        return made
+
+    def triplet(self, rng):
+        """Two prepared context views and the target: [(Prepared, Posed), (Prepared, Posed)], Posed."""
+        n = self.crop
+        if self.triplets and rng.random() >= self.made_up:
+            folder, indices = self.triplets[rng.integers(len(self.triplets))]
+            posed = [folder.posed(i, n) for i in indices]
+        else:
+            room = Procedural(int(rng.integers(1 << 62)), build_folder=self.build_folder).room(n, n, 3)
+            posed = [Posed(*(room[i][k] for k in ("image", "depth", "intrinsics", "pose"))) for i in TRIPLET]
+        budget, context = self._budget(rng), []
+        for view in posed[:2]:
+            depth = degrade_depth(rng, view.depth) if rng.random() < 0.5 else view.depth
+            if (depth > 0).sum() < 64:
+                depth = np.where(view.depth > 0, view.depth, PLANE / 1000).astype(np.float32)
+            context.append((prepare(view.image, millimetres(depth), view.intrinsics, **budget), view))
+        return context, posed[2]
+
+
+def seen_by(target, source, tolerance=0.03):
+    """Pixels of `target` whose surface `source` shows too, by both depths: bool [s, s]."""
+    side = target.depth.shape[0]
+    v, u = np.mgrid[0:side, 0:side]
+    fx, fy, cx, cy = target.intrinsics
+    z = target.depth
+    points = np.stack(((u - cx) / fx * z, (v - cy) / fy * z, z), -1)
+    move = np.linalg.inv(source.pose) @ target.pose
+    x, y, depth = np.moveaxis(points @ move[:3, :3].T + move[:3, 3], -1, 0)
+    fx, fy, cx, cy = source.intrinsics
+    safe = np.maximum(depth, 1e-6)
+    column, row = np.rint(fx * x / safe + cx), np.rint(fy * y / safe + cy)
+    inside = (z > 0) & (depth > 0.05) & (column >= 0) & (row >= 0) & (column < side) & (row < side)
+    there = source.depth[np.where(inside, row, 0).astype(int), np.where(inside, column, 0).astype(int)]
+    return inside & (there > 0) & (np.abs(there - depth) < tolerance * depth)

@@ -1,0 +1,344 @@
+#!/usr/bin/env python3
+"""Train a Gaussian head.
+
+    tools/train/train.py --head small --out build/small                     made-up pictures alone, two cores: ~80 minutes
+    tools/train/train.py --head small --out build/small --data DIR --data DIR2
+    torchrun --standalone --nproc_per_node 2 tools/train/train.py ...       shares every step among processes
+    tools/train/train.py --smoke --out build/smoke                          two minutes; fails unless the loss falls
+
+A step draws pictures (samples.py), lets the runtime analyse, prune and prepare them with a budget drawn at random, asks
+the head for footprints, draws these, refines them twice as the runtime does, and draws again. Triplets are lifted to
+their surfaces and drawn in a third view as well. The loss of a picture is log(MSE + lambda x perceptual term): its mean
+over pictures is minus the mean PSNR, but for the perceptual term (GaussianTrim3R eq. 3). The last share of the steps runs
+with weights and activations rounded as `trim3r quantize` will round them.
+
+OUT gets checkpoint.pt (run the same command again to go on), log.csv, curves.png and NAME.safetensors. The same command
+and seed give the same head on the same machine with as many processes."""
+import argparse
+import csv
+import math
+import os
+import sys
+import time
+
+import numpy as np
+import torch
+import torch.distributed as distributed
+
+import head_net
+import perceptual
+import samples
+import splatting
+
+FLOOR = 1e-5  # of the MSE: 50 dB are enough
+REFINEMENTS = 2
+COLUMNS = ("step", "seconds", "psnr_plain", "psnr_refined", "psnr_novel", "loss", "rate", "phase")
+SMOKE_STEPS, SMOKE_FACTOR = 260, 0.55  # the loss's squared error must fall below this share of the analytic head's
+
+
+def options_of(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--head", choices=sorted(head_net.HEADS), default="small")
+    parser.add_argument("--out", required=True, metavar="DIR")
+    parser.add_argument("--name", help="name in the weight file (default: the head's)")
+    parser.add_argument("--data", action="append", default=[], metavar="DIR", help="a folder of images or posed views; repeat")
+    parser.add_argument("--made-up", type=float, default=0.6, metavar="SHARE", help="of pictures that are made up (0.6)")
+    parser.add_argument("--steps", type=int, default=12000)
+    parser.add_argument("--batch", type=int, default=4, help="pictures a step, over all processes (4)")
+    parser.add_argument("--crop", type=int, default=128, help="side of a picture, pixels (128)")
+    parser.add_argument("--novel", type=float, default=0.25, metavar="SHARE", help="of steps with a triplet (0.25)")
+    parser.add_argument("--quantized", type=float, default=0.15, metavar="SHARE", help="of steps with rounding, at the end")
+    parser.add_argument("--rate", type=float, default=3e-3, help="highest learning rate (0.003)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--threads", type=int, default=1, help="of each process")
+    parser.add_argument("--device", default="cpu", help="where the network runs; splats are drawn on the processor")
+    parser.add_argument("--start", metavar="FILE.safetensors", help="begin with this head's weights")
+    parser.add_argument("--lpips", nargs=2, metavar=("TRUNK.pth", "HEADS.pth"), help="LPIPS instead of the stand-in")
+    parser.add_argument("--validate", action="append", default=[], metavar="DIR", help="images to report on; repeat")
+    parser.add_argument("--smoke", action="store_true", help=f"{SMOKE_STEPS} steps; exit status 1 unless the loss falls")
+    options = parser.parse_args(arguments)
+    if options.smoke:
+        options.steps, options.crop, options.rate = SMOKE_STEPS, 96, 5e-3
+    return options
+
+
+# --- one step ---------------------------------------------------------------------------------------------------------
+
+
+def as_tensor(image):
+    return torch.from_numpy(np.ascontiguousarray(image.transpose(2, 0, 1))).float() / 255
+
+
+class Batch:
+    """Prepared pictures as the network and the splatter take them."""
+
+    def __init__(self, prepared, device):
+        self.prepared = prepared
+        self.height, self.width = prepared[0].confidence.shape
+        features = np.stack([p.features for p in prepared])
+        self.features = torch.from_numpy(features).permute(0, 3, 1, 2).float().mul(head_net.FEATURE_STEP).to(device)
+        points = np.concatenate([p.points for p in prepared])
+        picture = np.concatenate([np.full(len(p.points), b) for b, p in enumerate(prepared)])
+        self.start = np.cumsum([0] + [len(p.points) for p in prepared]).astype(np.int32)
+        self.index = tuple(torch.from_numpy(a.astype(np.int64)) for a in (picture, points["y"], points["x"]))
+        self.spacing = torch.from_numpy(points["spacing"].copy())
+        self.pixel = torch.from_numpy(np.stack((points["x"], points["y"]), 1))
+        self.pictures = torch.stack([as_tensor(p.image) for p in prepared])
+        self.counts = np.ascontiguousarray(np.stack([p.confidence > 0 for p in prepared]).astype(np.uint8))
+        near = torch.nn.functional.max_pool2d(torch.from_numpy(self.counts).float()[:, None], 3, 1, 1)
+        self.weight = near  # a splat reaches a pixel beyond its depth
+        b, y, x = self.index
+        self.own_colour = self.pictures[b, :, y, x]
+
+    def footprints(self, head, device):
+        outputs = head(self.features, tuple(i.to(device) for i in self.index)).cpu()
+        return splatting.footprints(outputs, self.spacing, self.own_colour)
+
+
+def drawing_order(rng, start):
+    """Another order at every step: a head shall not lean on one."""
+    return splatting.order_by(rng.random(start[-1]), start)
+
+
+def errors(drawn, wanted, weight, term):
+    """MSE over the weighted pixels and MSE + lambda x perceptual term, [b] each."""
+    drawn, wanted = drawn * weight, wanted * weight
+    share = weight.mean((1, 2, 3)).clamp(min=1e-3)
+    mse = ((drawn - wanted) ** 2).mean((1, 2, 3)) / share
+    return mse, mse + perceptual.LAMBDA * term(drawn, wanted)
+
+
+def decibels(mse):
+    return float(-10 * torch.log10(mse.detach() + 1e-9).mean())
+
+
+def planar_loss(head, batch, rng, term, device):
+    """Loss of plain and refined pictures in their own view; PSNR of both."""
+    footprints = batch.footprints(head, device)
+    splats = splatting.planar_splats(*footprints, batch.pixel)
+    order = drawing_order(rng, batch.start)
+    half = (len(batch.prepared) + 1) // 2  # the others are drawn as they are: refining costs as much as the rest
+    start, some = batch.start[: half + 1], slice(0, batch.start[half])
+    first, pictures = splats[some], batch.pictures[:half]
+    corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS)
+    refined = first + (corrected - first).detach()  # the corrections count as constants
+    loss, seen = 0, []
+    for drawn, begin, places, wanted, weight, share in (
+        (splats, batch.start, order, batch.pictures, batch.weight, 0.3),
+        (refined, start, order[some], pictures, batch.weight[:half], 0.7),
+    ):
+        picture = splatting.draw(drawn, begin, places, batch.width, batch.height)
+        mse, both = errors(picture, wanted, weight, term)
+        loss = loss + share * torch.log(both + FLOOR).mean()
+        seen.append(decibels(mse))
+    return loss, seen
+
+
+def novel_loss(head, context, target, term, device):
+    """Loss of a third view of the two context views' splats, over what either shows of it."""
+    splats, depths = [], []
+    for prepared, view in context:
+        batch = Batch([prepared], device)
+        points = {k: torch.from_numpy(prepared.points[k].copy()) for k in ("position", "tangent_u", "tangent_v")}
+        move = torch.from_numpy(np.linalg.inv(target.pose) @ view.pose).float()
+        made, depth, front = splatting.lifted_splats(
+            *batch.footprints(head, device), points, move[:3, :3], move[:3, 3], [float(v) for v in target.intrinsics]
+        )
+        splats.append(made[front])
+        depths.append(depth[front].detach().numpy())
+    splats, key = torch.cat(splats), np.concatenate(depths)
+    start = np.array([0, len(key)], np.int32)
+    height, width = target.depth.shape
+    picture = splatting.draw(splats, start, splatting.order_by(key, start), width, height)
+    seen = samples.seen_by(target, context[0][1]) | samples.seen_by(target, context[1][1])
+    if seen.mean() < 0.1:
+        return None, None
+    weight = torch.from_numpy(seen.astype(np.float32))[None, None]
+    mse, both = errors(picture, as_tensor(target.image)[None], weight, term)
+    return torch.log(both + 1e-4).mean(), decibels(mse)
+
+
+# --- the run ----------------------------------------------------------------------------------------------------------
+
+
+class Run:
+    def __init__(self, options):
+        self.options, self.step, self.rows, self.seconds = options, 0, [], 0.0
+        self.rank, self.world = int(os.environ.get("RANK", 0)), int(os.environ.get("WORLD_SIZE", 1))
+        torch.set_num_threads(options.threads)
+        torch.manual_seed(options.seed)
+        torch.use_deterministic_algorithms(options.device == "cpu")
+        if self.world > 1:
+            distributed.init_process_group("gloo")
+        self.device = options.device
+        if self.device == "cuda" and self.world > 1:
+            self.device = f"cuda:{int(os.environ['LOCAL_RANK'])}"
+        if options.start:
+            self.head = head_net.load_safetensors(options.start)[0]
+        else:
+            self.head = head_net.Head(head_net.HEADS[options.head], options.seed)
+        self.head.to(self.device)
+        self.optimizer = torch.optim.Adam(self.head.parameters(), lr=options.rate)
+        self.term = perceptual.Lpips(*options.lpips) if options.lpips else perceptual.StandIn()
+        self.samples = samples.Samples(options.data, options.crop, options.made_up)
+        os.makedirs(options.out, exist_ok=True)
+        self.checkpoint = os.path.join(options.out, "checkpoint.pt")
+        if os.path.exists(self.checkpoint):
+            self._resume()
+
+    def _identity(self):
+        o = self.options
+        return [o.head, o.steps, o.batch, o.crop, o.seed, o.made_up, o.novel, o.quantized, o.rate, sorted(o.data), self.world]
+
+    def _resume(self):
+        state = torch.load(self.checkpoint, map_location="cpu")
+        if state["identity"] != self._identity():
+            sys.exit(f"train: {self.checkpoint} belongs to a run with other options; choose another --out")
+        self.head.load_state_dict(state["head"])
+        self.optimizer.load_state_dict(state["optimizer"])
+        self.step, self.rows, self.seconds = state["step"], state["rows"], state["seconds"]
+
+    def save(self):
+        if self.rank == 0:
+            state = {"identity": self._identity(), "head": self.head.state_dict(), "step": self.step, "rows": self.rows,
+                     "optimizer": self.optimizer.state_dict(), "seconds": self.seconds}  # fmt: skip
+            torch.save(state, self.checkpoint + ".new")
+            os.replace(self.checkpoint + ".new", self.checkpoint)  # a run cut off here keeps the checkpoint before
+            with open(os.path.join(self.options.out, "log.csv"), "w", newline="", encoding="utf-8") as file:
+                csv.writer(file).writerows([COLUMNS, *self.rows])
+            draw_curves(self.rows, os.path.join(self.options.out, "curves.png"))
+
+    def phase(self):
+        quantized_from = self.options.steps * (1 - self.options.quantized)
+        if self.step >= quantized_from:
+            return "quantized"
+        return "observe" if self.step >= quantized_from - max(20, self.options.steps // 20) else "float"
+
+    def rate(self):
+        done = self.step / self.options.steps
+        return self.options.rate * (min(1, (self.step + 1) / 100) * 0.5 * (1 + math.cos(math.pi * done)) + 0.003)
+
+    def one_step(self):
+        o = self.options
+        rng = np.random.default_rng([o.seed, self.step, self.rank])
+        shared = np.random.default_rng([o.seed, self.step, 1 << 20])
+        self.head.mode = self.phase()
+        for group in self.optimizer.param_groups:
+            group["lr"] = self.rate()
+        batch = Batch(self.samples.crops(rng, max(1, o.batch // self.world)), self.device)
+        loss, seen = planar_loss(self.head, batch, rng, self.term, self.device)
+        novel = math.nan
+        if shared.random() < o.novel:
+            context, target = self.samples.triplet(rng)
+            extra, decibel = novel_loss(self.head, context, target, self.term, self.device)
+            if extra is not None:
+                loss, novel = loss + 0.5 * extra, decibel
+        self.optimizer.zero_grad()
+        loss.backward()
+        self._share_gradients()
+        torch.nn.utils.clip_grad_norm_(self.head.parameters(), 1.0)
+        self.optimizer.step()
+        self.step += 1
+        return [seen[0], seen[1], novel, float(loss)]
+
+    def _share_gradients(self):
+        if self.world == 1:
+            return
+        gradients = [p.grad for p in self.head.parameters()]
+        flat = torch.cat([g.flatten().cpu() for g in gradients])
+        distributed.all_reduce(flat)
+        at = 0
+        for g in gradients:
+            g.copy_((flat[at : at + g.numel()] / self.world).reshape(g.shape))
+            at += g.numel()
+        for n in range(1, len(self.head.layers) + 1):  # ranges followed alike
+            seen = getattr(self.head, f"range{n}")
+            most = seen.cpu()
+            distributed.all_reduce(most, distributed.ReduceOp.MAX)
+            seen.copy_(most)
+
+    def train(self, every=50, keep_every=250):
+        o, since, gathered = self.options, time.time(), []
+        while self.step < o.steps:
+            phase, rate = self.phase(), self.rate()
+            gathered.append(self.one_step())
+            if self.step % every == 0 or self.step == o.steps:
+                now = time.time()
+                self.seconds, since = self.seconds + now - since, now
+                plain, refined, novel, loss = np.nanmean(np.array(gathered, float), 0) if gathered else [math.nan] * 4
+                gathered = []
+                self.rows.append([self.step, round(self.seconds, 1)] + [round(float(v), 3) for v in (plain, refined, novel, loss)] + [round(rate, 6), phase])
+                if self.rank == 0:
+                    left = self.seconds / self.step * (o.steps - self.step) / 60
+                    print(f"step {self.step}/{o.steps} {phase}: {plain:.2f} dB, refined {refined:.2f}, novel {novel:.2f}; {left:.0f} min left", flush=True)
+            if self.step % keep_every == 0 or self.step == o.steps:
+                self.save()
+        self.head.mode = "quantized" if o.quantized > 0 else "float"
+        if self.rank == 0:
+            name = o.name or o.head
+            head_net.save_safetensors(self.head, os.path.join(o.out, f"{name}.safetensors"), name)
+
+
+def draw_curves(rows, path):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(8, 4.5))
+    steps = [r[0] for r in rows]
+    for column, label in ((2, "own view"), (3, f"own view, {REFINEMENTS} refinements"), (4, "third view")):
+        values = np.array([r[column] for r in rows], float)
+        smooth = [np.nanmean(values[max(0, i - 7) : i + 1]) if np.isfinite(values[max(0, i - 7) : i + 1]).any() else np.nan for i in range(len(values))]
+        (line,) = axes.plot(steps, smooth, label=label)
+        axes.plot(steps, values, color=line.get_color(), alpha=0.25, linewidth=0.8)
+    changes = [r[0] for before, r in zip(rows, rows[1:]) if before[7] != r[7]]
+    for step in changes:
+        axes.axvline(step, color="grey", linewidth=0.6, linestyle=":")
+    axes.set(xlabel="step", ylabel="PSNR of training pictures, dB", title="A head learns")
+    axes.grid(alpha=0.3)
+    axes.legend(loc="lower right")
+    figure.tight_layout()
+    figure.savefig(path, dpi=100)
+    pyplot.close(figure)
+
+
+def validate(head, folders, keeps=(1.0, 0.1, 0.05), side=256):
+    """The planar protocol in float: {keep: (PSNR plain, PSNR refined)}, means over the folders' images."""
+    images = [i for f in folders for i in samples.Folder(f).images]
+    out = {}
+    with torch.no_grad():
+        for kept in keeps:
+            rows = []
+            for image in images:
+                image = samples.cv2.resize(image, (side, side), interpolation=samples.cv2.INTER_AREA)
+                depth = np.full((side, side), samples.PLANE, np.uint16)
+                batch = Batch([samples.prepare(image, depth, (side, side, (side - 1) / 2, (side - 1) / 2), kept)], "cpu")
+                splats = splatting.planar_splats(*batch.footprints(head, "cpu"), batch.pixel)
+                order = np.arange(len(splats), dtype=np.int32)
+                better = splatting.refine(splats, batch.start, order, batch.pictures, batch.counts, REFINEMENTS)
+                drawn = [splatting.draw(s, batch.start, order, side, side) for s in (splats, better)]
+                rows.append([decibels(((d.clamp(0, 1) * 255).round() / 255 - batch.pictures).square().mean((1, 2, 3))) for d in drawn])
+            out[kept] = tuple(np.mean(rows, 0))
+    return out
+
+
+def smoke_verdict(rows):
+    """The first row is the analytic head, all but; squared error is 10^(-PSNR / 10)."""
+    factor = 10 ** (-(rows[-1][2] - rows[0][2]) / 10)
+    print(f"smoke: squared error fell to {factor:.2f} of the first 20 steps' (must be below {SMOKE_FACTOR})")
+    return 0 if factor < SMOKE_FACTOR else 1
+
+
+def main(arguments=None):
+    options = options_of(arguments)
+    run = Run(options)
+    run.train(every=20 if options.smoke else 50)
+    if run.rank == 0 and options.validate:
+        for kept, (plain, refined) in validate(run.head.cpu(), options.validate).items():
+            print(f"planar, {100 * kept:g} % kept: {plain:.2f} dB, refined {refined:.2f}")
+    return smoke_verdict(run.rows) if options.smoke and run.rank == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
