@@ -4,6 +4,8 @@
 
 #include "quant_reason.h"
 
+#define MOST_MACS 65536u /* a pixel, all points kept */
+
 typedef struct checker {
     const head_graph *graph;
     uint32_t n; /* the layer's number */
@@ -48,7 +50,7 @@ static int check_source(const checker *c, uint32_t source)
         return from_point && source != c->n - 1 ? fail(c, "reads a point layer that is not the one before it") : 0;
     }
     if (from_point) {
-        return fail(c, "reads a point layer, which only the next point layer may");
+        return fail(c, "a layer that is no point layer stands behind one");
     }
     if ((from == NULL ? 0 : from->level) + layer->stride - 1 < layer->level) {
         return fail(c, "a source is finer than its stride allows");
@@ -116,6 +118,29 @@ static int check_layer(const checker *c)
     return check_sources(c);
 }
 
+/* What holds of all layers together. */
+static int check_whole(checker *c)
+{
+    uint64_t macs_q8 = 0;
+    for (c->n = 1; c->n <= c->graph->count; c->n++) {
+        const head_layer *layer = &c->graph->layers[c->n - 1];
+        if (c->n > 1 && layer->kind != T3R_LAYER_POINT && layer[-1].kind == T3R_LAYER_POINT) {
+            return fail(c, "a layer that is no point layer stands behind one");
+        }
+        bool is_read = c->n == c->graph->count;
+        for (uint32_t m = c->n; m < c->graph->count && !is_read; m++) {
+            is_read = c->graph->layers[m].sources[0] == c->n || c->graph->layers[m].sources[1] == c->n;
+        }
+        if (!is_read) {
+            return fail(c, "no later layer reads it");
+        }
+        macs_q8 += head_macs_q8(layer);
+    }
+    return macs_q8 <= (uint64_t)MOST_MACS << 8
+               ? 0
+               : quant_reason(c->error, c->error_bytes, "over 65536 multiply-accumulates a pixel");
+}
+
 int head_graph_check(const head_graph *graph, char *error, size_t error_bytes)
 {
     if (head_name_check(graph->name, error, error_bytes) != 0) {
@@ -129,6 +154,9 @@ int head_graph_check(const head_graph *graph, char *error, size_t error_bytes)
         if (check_layer(&c) != 0) {
             return -1;
         }
+    }
+    if (check_whole(&c) != 0) {
+        return -1;
     }
     c.n = graph->count;
     const head_layer *last = &graph->layers[graph->count - 1];

@@ -216,3 +216,23 @@ void quantized_head_free(quantized_head *head)
     }
     *head = (quantized_head){0};
 }
+
+double quantized_weight_snr(const quantized_head *out, const float_head *head, uint32_t n)
+{
+    const head_layer *layer = &out->graph.layers[n - 1];
+    const quantized_layer *to = &out->layers[n - 1];
+    double signal = 0, noise = 0;
+    for (uint32_t o = 0; o < layer->outputs; o++) {
+        for (uint32_t i = 0; i < head_fan_in(layer); i++) {
+            double scale = quantized_input_scale(out, layer, input_of(layer, o, i));
+            for (uint32_t t = 0; t < head_taps(layer); t++) {
+                size_t at = head_weight_index(layer, o, i, t);
+                double exact = head->layers[n - 1].weight[at] * scale;
+                double off = to->weight[at] * to->weight_scale[o] - exact;
+                signal += exact * exact;
+                noise += off * off;
+            }
+        }
+    }
+    return 10 * log10(signal / noise);
+}

@@ -26,6 +26,10 @@ int quantize_head(quantized_head *out, const float_head *head, uint32_t weight_b
                   char *error, size_t error_bytes);
 void quantized_head_free(quantized_head *head);
 
+/* Signal to noise of the weights of layer n (from 1) as they went into its accumulators, dB; infinite where there is no
+ * noise. */
+double quantized_weight_snr(const quantized_head *out, const float_head *head, uint32_t n);
+
 /* scale > 0 as multiplier / 2^31 x 2^shift, as TFLite's QuantizeMultiplier: multiplier in [2^30, 2^31), rounded to
  * nearest. 0, or -1 where shift would leave [-30, 15]. */
 int quantize_multiplier(double scale, int32_t *multiplier, int8_t *shift);

@@ -7,6 +7,8 @@
 #include "quant_reason.h"
 #include "trim3r.h"
 
+#define MOST_BYTES (1u << 24)
+
 typedef struct reader {
     weight_info *info;
     const uint8_t *bytes;
@@ -44,6 +46,9 @@ static int read_frame(const reader *r)
     if (bytes != r->count) {
         return quant_reason(r->error, r->error_bytes,
                             "header: %" PRIu64 " bytes in all, but the file has %zu: cut off?", bytes, r->count);
+    }
+    if (bytes > MOST_BYTES) {
+        return fail_header(r, "the number of bytes", bytes, "at most 16 MiB");
     }
     r->info->bytes = (uint32_t)bytes;
     r->info->crc = (uint32_t)le_get(b + WEIGHT_AT_CRC, 4);
