@@ -6,9 +6,10 @@
  *
  *   header   0 "T3RW" | 4 u16 format (1) | 6 u16 bits epoch | 8 u32 bytes in all | 12 u32 CRC-32 (IEEE) of bytes 16..end
  *           16 u8 weight bits (8, 16) | 17 u8 activation bits (8, 16) | 18 u8 layers | 19 u8 feature set (1)
- *           20 u32 multiply-accumulates a pixel at 100 % kept, Q8 | 24 u32 parameters | 28 u32 0
- *           32 name, 16 bytes, zero-terminated | 48 16 bytes 0
- *   layer    0 u8 kind | 1 u8 level | 2 u8 source[2] | 4 u16 inputs | 6 u16 outputs
+ *           20 u32 multiply-accumulates a pixel at 100 % kept, Q8 (exact: level 4 is 1/256 of the pixels)
+ *           24 u32 parameters: weights and biases | 28 u32 0
+ *           32 name, 16 bytes: 1..15 of a-z 0-9 _, the rest 0 | 48 16 bytes 0
+ *   layer    0 u8 kind (t3r_layer_kind) | 1 u8 level | 2 u8 source[2] | 4 u16 inputs | 6 u16 outputs
  *            8 u8 kernel | 9 u8 stride | 10 u8 phases | 11 u8 0 | 12 i16 output zero | 14 u16 0
  *           16 u32 weights | 20 u32 bias | 24 u32 multiplier | 28 u32 shift: offsets from the start of the file
  *
@@ -24,15 +25,21 @@
  *   point      evaluated at retained pixels only: each source at (x >> level, y >> level) of its own level, or the
  *              output of the point layer before (source = that layer). phases 1, or 4: weights of phase
  *              2 (y & 1) + (x & 1). Weights [phases][outputs][inputs], bias [phases][outputs]; multiplier and shift
- *              [outputs] in every kind.
+ *              [outputs] in every kind. Level 0, kernel and stride 1. No other layer reads a point layer, and a point
+ *              layer none but the one directly before it. Phases are 1 in the other kinds.
  *
- * Arithmetic: acc = bias + sum weight x (activation - zero point of its source); zero points are folded into the bias
- * (bias' = bias - sum weight x zero), so that padding reads the zero point itself. int8 activations: int32 accumulators,
- * output = clamp(output zero + round_half_up(acc x multiplier / 2^(31 - shift))), multiplier an int32 in
- * [2^30, 2^31), shift an int8 in [-30, 15]: TFLite's single-rounding reference. int16 activations: int64
- * accumulators, multiplier reduced to 16 bits first, ((multiplier + 2^15) >> 16, at most 32767), over
- * 2^(15 - shift), as TFLite's int64 reference. ReLU is the clamp at an output zero of -128 (int16: -32768); a linear
- * layer has output zero 0. Weights int8 or int16; bias int32 (int16 activations: int64); multiplier int32; shift int8.
+ * Arithmetic: acc = bias + sum weight x (activation - zero point of its source). Zero points are folded into the bias
+ * (bias' = bias - sum weight x zero), so that padding reads the zero point itself; bias' is what the file holds, and
+ * acc = bias' + sum weight x activation. In no order of the sum can it overflow: for every output (and phase)
+ * |bias'| + 2^7 sum |weight| < 2^31 with int8 activations, |bias'| + 2^15 sum |weight| < 2^47 with int16 ones, so that
+ * the product with the multiplier stays within 2^62. Features are the same int8 numbers in both, widened in the latter.
+ *
+ * int8 activations: int32 accumulators, output = clamp(output zero + round_half_up(acc x multiplier / 2^(31 - shift))),
+ * multiplier an int32 in [2^30, 2^31), shift an int8 in [-30, 15], the quotient 64 bits wide until it is clamped:
+ * TFLite's single-rounding reference. int16 activations: int64 accumulators, multiplier reduced to 16 bits first,
+ * ((multiplier + 2^15) >> 16, at most 32767), over 2^(15 - shift), as TFLite's int64 reference. ReLU is the clamp at an
+ * output zero of -128 (int16: -32768); a linear layer has output zero 0. Weights int8 or int16; bias int32 (int16
+ * activations: int64); multiplier int32; shift int8.
  *
  * The last layer is a point layer of T3R_HEAD_OUTPUTS channels whose output is always int16, output zero 0, in the
  * formats of t3r_head_output. */
@@ -53,6 +60,8 @@
 #define T3R_MAX_CHANNELS 128 /* of a layer's inputs, and of its outputs */
 #define T3R_SOURCE_FEATURES 0
 #define T3R_SOURCE_NONE 255
+
+typedef enum t3r_layer_kind { T3R_LAYER_CONV, T3R_LAYER_DEPTHWISE, T3R_LAYER_POINT, T3R_LAYER_KINDS } t3r_layer_kind;
 
 /* The last layer's channels. */
 typedef enum t3r_head_output {
