@@ -28,6 +28,9 @@
  *              [outputs] in every kind. Level 0, kernel and stride 1. No other layer reads a point layer, and a point
  *              layer none but the one directly before it. Phases are 1 in the other kinds.
  *
+ * Point layers stand behind all others, and every layer but the last is read by a later one. The blocks may lie in any
+ * order behind the table, and may share bytes.
+ *
  * Arithmetic: acc = bias + sum weight x (activation - zero point of its source). Zero points are folded into the bias
  * (bias' = bias - sum weight x zero), so that padding reads the zero point itself; bias' is what the file holds, and
  * acc = bias' + sum weight x activation. In no order of the sum can it overflow: for every output (and phase)
@@ -49,6 +52,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "trim3r.h"
+
 #define T3R_WEIGHTS_FORMAT 1
 #define T3R_WEIGHTS_HEADER_BYTES 64
 #define T3R_WEIGHTS_LAYER_BYTES 32
@@ -58,6 +63,9 @@
 #define T3R_MAX_LAYERS 24
 #define T3R_MAX_LEVEL 4
 #define T3R_MAX_CHANNELS 128 /* of a layer's inputs, and of its outputs */
+#define T3R_MAX_KERNEL 6
+#define T3R_MAX_WEIGHTS_BYTES (1u << 24)
+#define T3R_MAX_HEAD_MACS 65536u /* multiply-accumulates a pixel at 100 % kept; the plan counts on it */
 #define T3R_SOURCE_FEATURES 0
 #define T3R_SOURCE_NONE 255
 
@@ -76,5 +84,37 @@ typedef enum t3r_head_output {
     T3R_OUT_BLUE,
     T3R_HEAD_OUTPUTS
 } t3r_head_output;
+
+/* The header of a file that was checked. */
+typedef struct t3r_weights_header {
+    uint32_t weight_bits, activation_bits; /* 8 or 16 */
+    uint32_t layers;
+    uint32_t macs_q8;
+    uint32_t parameters;
+    uint32_t bytes;
+    uint32_t crc;
+} t3r_weights_header;
+
+/* A layer of it; the last four are offsets from the start of the file. */
+typedef struct t3r_layer {
+    t3r_layer_kind kind;
+    uint8_t level, source[2], kernel, stride, phases;
+    uint16_t inputs, outputs;
+    int16_t zero;
+    uint32_t weights, bias, multiplier, shift;
+} t3r_layer;
+
+/* T3R_ERR_ARGUMENT: null or not aligned to T3R_WEIGHTS_ALIGN; T3R_ERR_WEIGHTS: t3r_weights_error() says why. */
+t3r_status t3r_weights_check(const void *weights, size_t bytes);
+
+/* Both of weights that were checked; index counts from 0. */
+t3r_weights_header t3r_weights_header_of(const void *weights);
+t3r_layer t3r_weights_layer(const void *weights, uint32_t index);
+
+/* Weights a layer reads for one output of one pixel, next to each other but in a depthwise layer. */
+static inline uint32_t t3r_layer_taps(const t3r_layer *layer)
+{
+    return (uint32_t)layer->kernel * layer->kernel * (layer->kind == T3R_LAYER_DEPTHWISE ? 1u : layer->inputs);
+}
 
 #endif
