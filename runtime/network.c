@@ -103,7 +103,11 @@ static uint64_t lay_out(t3r_network *net, const void *weights, uint32_t width, u
     net->width = width;
     net->height = height;
     net->planes = 0;
-    net->nodes[0] = (t3r_node){.channels = T3R_FEATURES, .bytes = 1, .width = width, .height = height};
+    net->nodes[0] = (t3r_node){.channels = T3R_FEATURES,
+                               .bytes = 1,
+                               .factor = net->header.activation_bits == 16 ? 256 : 1,
+                               .width = width,
+                               .height = height};
     uint32_t column = 0;
     for (uint32_t n = 0; n < net->header.layers; n++) {
         t3r_layer *layer = &net->layers[n];
@@ -115,6 +119,7 @@ static uint64_t lay_out(t3r_network *net, const void *weights, uint32_t width, u
                 .level = layer->level,
                 .channels = layer->outputs,
                 .bytes = net->header.activation_bits / 8,
+                .factor = 1,
                 .zero = layer->zero,
                 .width = level_size(width, layer->level),
                 .height = level_size(height, layer->level),
@@ -159,7 +164,7 @@ static void widen(const t3r_node *node, const uint8_t *row, size_t first, uint32
     if (node->bytes == 1) {
         const int8_t *from = (const int8_t *)row + first;
         for (uint32_t i = 0; i < count; i++) {
-            to[i] = from[i];
+            to[i] = (int16_t)(from[i] * node->factor);
         }
     } else {
         const int16_t *from = (const int16_t *)(const void *)row + first;
@@ -425,7 +430,7 @@ static void gather_point(const t3r_network *net, uint32_t n, uint32_t x, uint32_
         uint32_t source = layer->source[i], channels = T3R_FEATURES;
         if (source == T3R_SOURCE_FEATURES) {
             for (uint32_t c = 0; c < T3R_FEATURES; c++) {
-                column[c] = features[c];
+                column[c] = (int16_t)(features[c] * net->nodes[0].factor);
             }
         } else if (source <= net->planes) {
             const t3r_node *node = &net->nodes[source];

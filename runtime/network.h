@@ -25,6 +25,7 @@
 typedef struct t3r_node {
     uint32_t level, channels;
     uint32_t bytes; /* of an activation: 1 or 2 */
+    int16_t factor; /* what activations of one byte are multiplied with: 256 of features beside int16 ones, else 1 */
     int16_t zero;
     uint32_t width, height; /* of its level */
     uint32_t ring;          /* rows kept; row y lies at y mod ring; 0 = no plane layer reads it */

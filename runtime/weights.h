@@ -35,7 +35,8 @@
  * (bias' = bias - sum weight x zero), so that padding reads the zero point itself; bias' is what the file holds, and
  * acc = bias' + sum weight x activation. In no order of the sum can it overflow: for every output (and phase)
  * |bias'| + 2^7 sum |weight| < 2^31 with int8 activations, |bias'| + 2^15 sum |weight| < 2^47 with int16 ones, so that
- * the product with the multiplier stays within 2^62. Features are the same int8 numbers in both, widened in the latter.
+ * the product with the multiplier stays within 2^62. With int16 activations features are the int8 numbers times 2^8: of
+ * the size of the activations beside them, so that weights of 8 bits resolve both.
  *
  * int8 activations: int32 accumulators, output = clamp(output zero + round_half_up(acc x multiplier / 2^(31 - shift))),
  * multiplier an int32 in [2^30, 2^31), shift an int8 in [-30, 15], the quotient 64 bits wide until it is clamped:
