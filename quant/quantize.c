@@ -28,7 +28,10 @@ int quantize_multiplier(double scale, int32_t *multiplier, int8_t *shift)
 double quantized_input_scale(const quantized_head *head, const head_layer *layer, uint32_t input)
 {
     uint32_t channel, source = head_input_source(&head->graph, layer, input, &channel);
-    return source == T3R_SOURCE_FEATURES ? FLOAT_FEATURE_SCALE : head->layers[source - 1].output_scale[channel];
+    if (source == T3R_SOURCE_FEATURES) {
+        return head->activation_bits == 8 ? FLOAT_FEATURE_SCALE : FLOAT_FEATURE_SCALE / 256;
+    }
+    return head->layers[source - 1].output_scale[channel];
 }
 
 /* ---- one layer --------------------------------------------------------------------------------------------------- */

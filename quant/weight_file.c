@@ -136,7 +136,7 @@ uint8_t *weight_file_make(const quantized_head *head, size_t *count)
             uint32_t step = weight_block_step(block, head->weight_bits, head->activation_bits);
             size_t length = weight_block_bytes(layer, block, head->weight_bits, head->activation_bits);
             le_put(row + LAYER_AT_WEIGHTS + 4 * b, at, 4);
-            for (size_t i = 0; i < length / step; i++) {
+            for (size_t i = 0; i < length / step && head->layers[n].weight != NULL; i++) {
                 le_put(bytes + at + i * step, (uint64_t)block_number(&head->layers[n], block, i), step);
             }
             at += aligned(length);

@@ -58,7 +58,8 @@ uint32_t weight_parameters(const head_graph *graph);
 /* CRC-32 (IEEE 802.3, reflected) of bytes 16..end. */
 uint32_t weight_file_crc(const uint8_t *bytes, size_t count);
 
-/* The file's bytes, free() them; NULL without memory. */
+/* The file's bytes, free() them; NULL without memory. Blocks of layers without numbers (all pointers NULL) are 0: such
+ * a file tells what the head needs, but t3r_weights_check() refuses it. */
 uint8_t *weight_file_make(const quantized_head *head, size_t *count);
 
 #endif

@@ -11,10 +11,10 @@
 #include "file_bytes.h"
 #include "float_head.h"
 #include "json_output.h"
+#include "network.h"
 #include "option_values.h"
 #include "trim3r.h"
 #include "weight_info.h"
-#include "work_rows.h"
 
 #define MOST_FILE_BYTES (256u << 20)
 
@@ -28,9 +28,9 @@ typedef struct options {
 typedef struct head_summary {
     weight_info info;
     bool is_float;
-    bool has_range[T3R_MAX_LAYERS]; /* of a float head */
-    size_t work_bytes[T3R_MAX_LAYERS + 1];
-    size_t work_total;
+    bool has_range[T3R_MAX_LAYERS];        /* of a float head */
+    size_t work_bytes[T3R_MAX_LAYERS + 1]; /* rows held of the features and of each layer */
+    size_t work_total;                     /* the columns under a kernel included */
 } head_summary;
 
 enum { KEY_SIZE = 0x100, KEY_JSON };
@@ -81,6 +81,49 @@ static const struct argp parser = {
         "  trim3r head-info small.t3w --json",
 };
 
+/* The work that the runtime itself lays out for a file, checked or an outline. */
+static void measure_work(head_summary *head, const uint8_t *file, uint32_t width, uint32_t height)
+{
+    t3r_network network;
+    t3r_network_begin(&network, file, width, height, NULL);
+    for (uint32_t n = 0; n <= network.planes; n++) {
+        head->work_bytes[n] = network.nodes[n].pitch * network.nodes[n].ring;
+    }
+    head->work_total = t3r_network_work_bytes(file, width);
+}
+
+static int read_weights(const options *o, head_summary *head, const uint8_t *bytes, size_t count)
+{
+    char error[512] = "";
+    if (weight_info_read(&head->info, bytes, count, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s: %s", o->path, error);
+    }
+    measure_work(head, bytes, o->width, o->height);
+    return CLI_OK;
+}
+
+static int read_floats(const options *o, head_summary *head, const uint8_t *bytes, size_t count)
+{
+    char error[512] = "";
+    float_head floats;
+    if (float_head_parse(&floats, bytes, count, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s: %s", o->path, error);
+    }
+    for (uint32_t i = 0; i < floats.graph.count; i++) {
+        head->has_range[i] = floats.layers[i].range != NULL;
+    }
+    quantized_head outline = {.graph = floats.graph, .weight_bits = 8, .activation_bits = 8};
+    float_head_free(&floats);
+    weight_info_of_graph(&head->info, &outline.graph, 8, 8);
+    uint8_t *file = weight_file_make(&outline, &count);
+    if (file == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    measure_work(head, file, o->width, o->height);
+    free(file);
+    return CLI_OK;
+}
+
 static int read_head(const options *o, head_summary *head)
 {
     char error[512] = "";
@@ -90,31 +133,9 @@ static int read_head(const options *o, head_summary *head)
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     *head = (head_summary){.is_float = count < 4 || memcmp(bytes, "T3RW", 4) != 0};
-    float_head floats;
-    int failed;
-    if (head->is_float) {
-        failed = float_head_parse(&floats, bytes, count, error, sizeof error);
-    } else {
-        failed = weight_info_read(&head->info, bytes, count, error, sizeof error);
-    }
+    int code = head->is_float ? read_floats(o, head, bytes, count) : read_weights(o, head, bytes, count);
     free(bytes);
-    if (failed) {
-        return cli_error(CLI_BAD_INPUT, "%s: %s", o->path, error);
-    }
-    if (head->is_float) {
-        weight_info_of_graph(&head->info, &floats.graph, 8, 8);
-        for (uint32_t i = 0; i < floats.graph.count; i++) {
-            head->has_range[i] = floats.layers[i].range != NULL;
-        }
-        float_head_free(&floats);
-    }
-    uint32_t rows[T3R_MAX_LAYERS + 1];
-    head_work_rows(&head->info.graph, o->height, rows);
-    for (uint32_t n = 0; n <= head->info.graph.count; n++) {
-        head->work_bytes[n] = head_work_bytes(&head->info.graph, n, rows[n], o->width, head->info.activation_bits);
-        head->work_total += head->work_bytes[n];
-    }
-    return CLI_OK;
+    return code;
 }
 
 static cJSON *layer_json(const head_summary *head, uint32_t n)

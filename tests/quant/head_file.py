@@ -59,11 +59,11 @@ def plain():
 
 
 def random_tensors(description, random):
-    """Weights that keep the activations' size, over two orders of magnitude between channels."""
+    """Weights that keep the activations' size, over one order of magnitude between channels."""
     tensors = {}
     for n, l in enumerate(description["layers"], 1):
         k, fan_in = l["kernel"], 1 if l["kind"] == "depthwise" else l["inputs"]
-        gain = 10 ** random.uniform(-1, 1, l["outputs"]) * numpy.sqrt(2 / (fan_in * k * k))
+        gain = 10 ** random.uniform(-0.5, 0.5, l["outputs"]) * numpy.sqrt(2 / (fan_in * k * k))
         if l["kind"] == "point":
             gain = gain if n < len(description["layers"]) else 0.2 / numpy.sqrt(l["inputs"])
             weight = random.normal(size=(l["phases"], l["outputs"], l["inputs"])) * numpy.reshape(gain, (-1, 1))
@@ -181,7 +181,7 @@ def requantize(acc, multiplier, shift, activation_bits):
 def run_integers(head, features, mask):
     """Every layer's output, as the runtime has to have it."""
     layers, bits, (height, width) = head["layers"], head["activation_bits"], mask.shape
-    planes, zeros = [features.astype(numpy.int64)], [0]
+    planes, zeros = [features.astype(numpy.int64) * (256 if bits == 16 else 1)], [0]
     for n, l in enumerate(layers, 1):
         grid, zero = gather(layers, planes, zeros, n, height, width)
         if l["kind"] == "point":
