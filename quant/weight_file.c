@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "little_endian.h"
+#include "le_bytes.h"
 #include "trim3r.h"
 
 static size_t aligned(size_t bytes)

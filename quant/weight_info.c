@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "little_endian.h"
+#include "le_bytes.h"
 #include "quant_reason.h"
 #include "trim3r.h"
 

@@ -1,6 +1,6 @@
 /* Numbers in a file's bytes, little-endian whatever the machine. */
-#ifndef T3R_QUANT_LITTLE_ENDIAN_H
-#define T3R_QUANT_LITTLE_ENDIAN_H
+#ifndef T3R_QUANT_LE_BYTES_H
+#define T3R_QUANT_LE_BYTES_H
 
 #include <stdint.h>
 
