@@ -62,6 +62,11 @@ static size_t block(maker *m, size_t bytes)
     return start;
 }
 
+static uint32_t channels_of(const made_layer *layers, uint32_t source)
+{
+    return source == T3R_SOURCE_FEATURES ? T3R_FEATURES : layers[source - 1].outputs;
+}
+
 /* floor(log2 sqrt n) */
 static int32_t half_log(uint32_t n)
 {
@@ -81,26 +86,32 @@ uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_
         abort();
     }
     memset(m.file, 0, most);
+    int64_t zero[T3R_MAX_LAYERS + 1] = {0};
     uint32_t macs_q8 = 0, parameters = 0, bias_bytes = activation_bits == 16 ? 8 : 4;
     for (uint32_t n = 0; n < count; n++) {
         const made_layer *l = &layers[n];
         uint32_t inputs = 0;
         for (int i = 0; i < 2; i++) {
-            inputs += l->source[i] == NONE ? 0u : l->source[i] == 0 ? T3R_FEATURES : layers[l->source[i] - 1].outputs;
+            inputs += l->source[i] == NONE ? 0 : channels_of(layers, l->source[i]);
         }
         uint32_t taps = (uint32_t)l->kernel * l->kernel * (l->kind == T3R_LAYER_DEPTHWISE ? 1 : inputs);
         uint32_t rows = (uint32_t)l->phases * l->outputs;
         size_t weights = block(&m, (size_t)rows * taps * weight_bits / 8), bias = block(&m, (size_t)rows * bias_bytes);
         size_t multiplier = block(&m, (size_t)l->outputs * 4), shift = block(&m, l->outputs);
+        int64_t folded[4 * T3R_MAX_CHANNELS] = {0}; /* sum weight x zero point, a row */
         for (size_t i = 0; i < (size_t)rows * taps; i++) {
-            int64_t w = (int64_t)(next(&m.random) % 129) - 64;
-            put(m.file + weights + i * weight_bits / 8, (uint64_t)(weight_bits == 8 ? w : w * 100), weight_bits / 8);
+            int64_t w = ((int64_t)(next(&m.random) % 129) - 64) * (weight_bits == 8 ? 1 : 100);
+            bool second = l->source[1] != NONE && i % inputs >= channels_of(layers, l->source[0]);
+            bool depthwise = l->kind == T3R_LAYER_DEPTHWISE;
+            folded[depthwise ? i % rows : i / taps] += w * zero[l->source[second]];
+            put(m.file + weights + i * weight_bits / 8, (uint64_t)w, weight_bits / 8);
         }
         for (uint32_t o = 0; o < rows; o++) {
-            put(m.file + bias + o * bias_bytes, next(&m.random) % 4001 - 2000, bias_bytes);
+            put(m.file + bias + o * bias_bytes, next(&m.random) % 4001 - 2000 - (uint64_t)folded[o], bias_bytes);
         }
         /* sums spread over about sqrt(taps) x 37 x 50; outputs over 2^5, in 16 bits 2^12 */
         bool last = n + 1 == count;
+        zero[n + 1] = last || l->kind == POINT ? 0 : activation_bits == 8 ? -128 : -32768; /* ReLU but at points */
         int32_t gain = (activation_bits == 8 && !last ? 6 : 13) - 11 - half_log(taps);
         gain -= (weight_bits == 16 ? 6 : 0) + (activation_bits == 16 && n > 0 ? 7 : 0);
         for (uint32_t o = 0; o < l->outputs; o++) {
@@ -115,7 +126,7 @@ uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_
         row[8] = l->kernel;
         row[9] = l->stride;
         row[10] = l->phases;
-        put(row + 12, last || l->kind == POINT ? 0 : activation_bits == 8 ? (uint64_t)-128 : (uint64_t)-32768, 2);
+        put(row + 12, (uint64_t)zero[n + 1], 2);
         put(row + 16, weights, 4);
         put(row + 20, bias, 4);
         put(row + 24, multiplier, 4);
