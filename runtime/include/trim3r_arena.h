@@ -33,7 +33,7 @@
 #define T3R_CLUSTER_BYTES 52     /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
 /* Work of the learned head: rows of activations, and the activations under its largest kernel */
-#define T3R_HEAD_COLUMN_BYTES 1024
+#define T3R_HEAD_COLUMN_BYTES 1280
 #define T3R_HEAD_KERNEL_BYTES 16384
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8          /* undistortion grid, pixels */
