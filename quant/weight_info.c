@@ -123,8 +123,11 @@ static int read_row(const reader *r, uint32_t n)
     if (row[LAYER_AT_RESERVED] != 0 || le_get(row + LAYER_AT_RESERVED_2, 2) != 0) {
         return fail_layer(r, n, "reserved bytes are not 0");
     }
-    if (zero != 0 && zero != lowest) {
-        return fail_layer(r, n, "the output zero is neither 0 nor the lowest activation");
+    if (n == info->graph.count && zero != 0) {
+        return fail_layer(r, n, "the output zero of the last layer is not 0");
+    }
+    if (zero < lowest || zero >= -lowest) {
+        return fail_layer(r, n, "the output zero is no activation");
     }
     info->zero[n - 1] = zero;
     info->graph.layers[n - 1] = (head_layer){
@@ -136,7 +139,7 @@ static int read_row(const reader *r, uint32_t n)
         .kernel = row[LAYER_AT_KERNEL],
         .stride = row[LAYER_AT_STRIDE],
         .phases = row[LAYER_AT_PHASES],
-        .relu = zero != 0,
+        .relu = zero == lowest,
     };
     for (int b = 0; b < WEIGHT_BLOCKS; b++) {
         info->offset[n - 1][b] = (uint32_t)le_get(row + LAYER_AT_WEIGHTS + 4 * b, 4);

@@ -239,8 +239,8 @@ static const char *layer_error(const uint8_t *file, const t3r_weights_header *he
     if (error == NULL) {
         error = source_error(file, n, &layer);
     }
-    if (error == NULL && layer.zero != 0 && layer.zero != (header->activation_bits == 8 ? INT8_MIN : INT16_MIN)) {
-        error = "an output zero is neither 0 nor the lowest activation";
+    if (error == NULL && header->activation_bits == 8 && n < header->layers && (layer.zero < -128 || layer.zero > 127)) {
+        error = "an output zero is no int8";
     }
     return error != NULL ? error : block_error(file, header, &layer);
 }

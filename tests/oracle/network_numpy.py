@@ -38,7 +38,8 @@ class Network:
 
     def __init__(self, rng, weight_bits, activation_bits, features, edge):
         self.rng, self.weight_bits, self.activation_bits, self.edge = rng, weight_bits, activation_bits, edge
-        self.layers, self.planes, self.zeros = [], [features], [0]
+        self.layers, self.zeros = [], [0]
+        self.planes = [features * (256 if activation_bits == 16 else 1)]
         self.height, self.width = features.shape[:2]
 
     def channels(self, source):

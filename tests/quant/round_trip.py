@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Random heads through `trim3r quantize` and back: the float graph of quant/ against numpy's, every layer of the weight
-file, run in numpy's integers, against exact bounds, and the whole against the float graph.
+file, run in numpy's integers, against exact bounds, the runtime's bits against those, and the whole against the float
+graph.
 
-    round_trip.py PATH/TO/trim3r PATH/TO/float_driver"""
+    round_trip.py PATH/TO/trim3r PATH/TO/float_driver PATH/TO/network_driver"""
 import json
 import os
 import subprocess
@@ -13,7 +14,7 @@ import numpy
 
 import head_file
 
-TRIM3R, DRIVER = map(os.path.abspath, sys.argv[1:3])
+TRIM3R, DRIVER, NETWORK = map(os.path.abspath, sys.argv[1:4])
 HEIGHT, WIDTH = 37, 50  # no level divides them
 # signal to noise of the whole head's outputs, dB, at least, by (weight bits, activation bits); every_kind is 13 layers
 LEAST_SNR = {"plain": {(8, 8): 33, (16, 8): 42, (8, 16): 33, (16, 16): 77},
@@ -111,6 +112,22 @@ def check_layers(head, description, tensors, planes, mask):
               f"{which}: the weights' bits are not used: {most}")
 
 
+def check_runtime(path, features, mask, integers):
+    """What the runtime makes of the file at the retained pixels, bit for bit."""
+    done = subprocess.run([NETWORK, path, str(WIDTH), str(HEIGHT)], capture_output=True,
+                          input=features.tobytes() + mask.astype("u1").tobytes())
+    check(done.returncode == 0, f"network_driver {path}: {done.stderr.decode()}")
+    at, outputs = 0, []
+    while at < len(done.stdout):
+        layer, _, size = numpy.frombuffer(done.stdout, "u4", 3, at)
+        if layer == 0xffffffff:
+            outputs.append(numpy.frombuffer(done.stdout, "i2", size // 2, at + 12))
+        at += 12 + int(size)
+    got = numpy.concatenate(outputs).reshape(-1, head_file.OUTPUTS)
+    expected = integers[-1][mask]
+    check(got.shape == expected.shape and (got == expected).all(), f"{path}: the runtime's bits are others")
+
+
 def macs(description):
     return sum(l["outputs"] * l["kernel"]**2 * (1 if l["kind"] == "depthwise" else l["inputs"]) / 4**l["level"]
                for l in description["layers"])
@@ -170,6 +187,7 @@ def check_head(description, seed):
         head = head_file.read_t3w(data)
         integers = head_file.run_integers(head, features, mask)
         check_layers(head, description, tensors, integers, mask)
+        check_runtime(path, features, mask, integers)
         got = integers[-1][mask] / head_file.OUTPUT_SCALES
         reached = snr(exact, got)
         print(f"{description['name']:10} seed {seed} weights {bits[0]:2} activations {bits[1]:2}: {reached:5.1f} dB, "

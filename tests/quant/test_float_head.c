@@ -3,6 +3,7 @@
 
 #include <cjson/cJSON.h>
 
+#include "sample_head.h"
 #include "unit/unit.h"
 
 static const char DESCRIPTION[] =
@@ -124,6 +125,34 @@ static void test_reads(void **state)
     float_head_free(&head);
 }
 
+/* A head written out comes back as it was. */
+static void test_round_trip(void **state)
+{
+    (void)state;
+    size_t count;
+    float_head head, back;
+    char error[256] = "";
+    sample_head(&head, 9);
+    uint8_t *file = sample_safetensors(&head, &count);
+    if (float_head_parse(&back, file, count, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+    free(file);
+    assert_memory_equal(&back.graph, &head.graph, sizeof back.graph);
+    for (uint32_t i = 0; i < head.graph.count; i++) {
+        const head_layer *layer = &head.graph.layers[i];
+        assert_memory_equal(back.layers[i].weight, head.layers[i].weight, head_weight_count(layer) * sizeof(float));
+        assert_memory_equal(back.layers[i].bias, head.layers[i].bias, head_bias_count(layer) * sizeof(float));
+        if (i + 1 < head.graph.count) {
+            assert_memory_equal(back.layers[i].range, head.layers[i].range, layer->outputs * sizeof(float));
+        } else {
+            assert_null(back.layers[i].range);
+        }
+    }
+    float_head_free(&back);
+    float_head_free(&head);
+}
+
 static void test_description(void **state)
 {
     (void)state;
@@ -220,7 +249,8 @@ static void test_tensors(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reads), cmocka_unit_test(test_description),
-                                       cmocka_unit_test(test_layers), cmocka_unit_test(test_tensors)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reads), cmocka_unit_test(test_round_trip),
+                                       cmocka_unit_test(test_description), cmocka_unit_test(test_layers),
+                                       cmocka_unit_test(test_tensors)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

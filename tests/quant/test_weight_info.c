@@ -134,7 +134,7 @@ static void test_header(void **state)
     refuse_header(WEIGHT_AT_ACTIVATION_BITS, 1, 32, "the activations' width is 32");
     refuse_header(WEIGHT_AT_LAYERS, 1, 0, "the number of layers is 0");
     refuse_header(WEIGHT_AT_LAYERS, 1, 25, "the number of layers is 25");
-    refuse_header(WEIGHT_AT_LAYERS, 1, 5, "the last one is not");
+    refuse_header(WEIGHT_AT_LAYERS, 1, 5, "layer 5: the output zero of the last layer");
     refuse_header(WEIGHT_AT_FEATURE_SET, 1, 2, "the feature set is 2");
     refuse_header(WEIGHT_AT_MACS, 4, 1, "the number of multiply-accumulates is 1");
     refuse_header(WEIGHT_AT_PARAMETERS, 4, 1, "the number of parameters is 1");
@@ -189,9 +189,9 @@ static void test_layers(void **state)
     refuse_layer(5, LAYER_AT_PHASES, 1, 3, "phases are neither");
     refuse_layer(1, LAYER_AT_RESERVED, 1, 1, "reserved bytes");
     refuse_layer(1, LAYER_AT_RESERVED_2, 2, 256, "reserved bytes");
-    refuse_layer(1, LAYER_AT_ZERO, 2, 1, "the output zero");
-    refuse_layer(1, LAYER_AT_ZERO, 2, 0x8000, "the output zero");
-    refuse_layer(6, LAYER_AT_ZERO, 2, 0xff80, "the last one is not");
+    refuse_layer(1, LAYER_AT_ZERO, 2, 128, "the output zero is no activation");
+    refuse_layer(1, LAYER_AT_ZERO, 2, 0xff7f, "the output zero is no activation");
+    refuse_layer(6, LAYER_AT_ZERO, 2, 0xff80, "the output zero of the last layer");
     for (uint32_t n = 1; n <= 6; n++) {
         refuse_layer(n, LAYER_AT_WEIGHTS, 4, 72, "weights are not aligned");
         refuse_layer(n, LAYER_AT_BIAS, 4, 1000 * 16 + 8, "bias is not aligned");
@@ -237,10 +237,47 @@ static void test_numbers(void **state)
     free(file.bytes);
 }
 
+/* Fields of many values, sealed again: the two readers, written apart, take and refuse the same files. */
+static void test_agreement(void **state)
+{
+    (void)state;
+    static const uint32_t variants[4][2] = {{8, 8}, {8, 16}, {16, 8}, {16, 16}};
+    static const uint8_t values[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 10, 16, 64, 127, 128, 129, 254, 255};
+    const size_t table = T3R_WEIGHTS_HEADER_BYTES + 6 * T3R_WEIGHTS_LAYER_BYTES;
+    uint32_t taken = 0, refused = 0;
+    for (int v = 0; v < 4; v++) {
+        sample_file file = make(variants[v][0], variants[v][1]);
+        for (size_t at = 0; at < table + 64; at++) {
+            uint8_t before = file.bytes[at];
+            for (size_t i = 0; i < sizeof values; i++) {
+                file.bytes[at] = values[i];
+                if (at < WEIGHT_AT_CRC || at >= WEIGHT_AT_WEIGHT_BITS) {
+                    seal(&file);
+                }
+                weight_info info;
+                char error[256] = "";
+                int status = weight_info_read(&info, file.bytes, file.count, error, sizeof error);
+                bool sound = t3r_weights_check(file.bytes, file.count) == T3R_OK;
+                if ((status == 0) != sound) {
+                    fail_msg("byte %zu as %u: '%s', the runtime %s it", at, values[i], error,
+                             sound ? "takes" : "refuses");
+                }
+                taken += sound;
+                refused += !sound;
+            }
+            file.bytes[at] = before;
+            seal(&file);
+        }
+        free(file.bytes);
+    }
+    assert_true(taken > 1000);
+    assert_true(refused > 10000);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reads), cmocka_unit_test(test_damage),
-                                       cmocka_unit_test(test_header), cmocka_unit_test(test_layers),
-                                       cmocka_unit_test(test_numbers)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reads),   cmocka_unit_test(test_damage),
+                                       cmocka_unit_test(test_header),  cmocka_unit_test(test_layers),
+                                       cmocka_unit_test(test_numbers), cmocka_unit_test(test_agreement)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
