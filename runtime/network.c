@@ -81,9 +81,9 @@ static void choose_rings(t3r_network *net)
                     continue; /* points bring their features; a point layer has no plane */
                 }
                 t3r_node *node = &net->nodes[source];
-                int32_t first = point ? y >> node->level
-                                      : (layer->stride * before[n + 1] - padding(layer)) >>
-                                            (node->level - grid_level(layer));
+                int32_t first =
+                    point ? y >> node->level
+                          : (layer->stride * before[n + 1] - padding(layer)) >> (node->level - grid_level(layer));
                 int32_t rows = T3R_MAX(now[source] - first, 1);
                 node->ring = T3R_MAX(node->ring, (uint32_t)rows);
             }
@@ -94,8 +94,8 @@ static void choose_rings(t3r_network *net)
     }
 }
 
-/* Shape, rings and places of everything, one function for sizing and for running. Returns the bytes. 64 bits suffice: 25
- * nodes of 2^12 x 2^8 bytes a row and, as a layer looks at most 6 x 16 rows ahead, below 2^12 rows. */
+/* Shape, rings and places of everything, one function for sizing and for running. Returns the bytes. 64 bits suffice:
+ * 25 nodes of 2^12 x 2^8 bytes a row and, as a layer looks at most 6 x 16 rows ahead, below 2^12 rows. */
 static uint64_t lay_out(t3r_network *net, const void *weights, uint32_t width, uint32_t height, uint8_t *work)
 {
     net->file = weights;

@@ -1,4 +1,4 @@
-/* The weight file checked: after this, every offset, index, shift and sum of it is within what the network counts on. */
+/* The weight file checked: afterwards every offset, index, shift and sum of it is what the network counts on. */
 #include "weights.h"
 
 #include <stdbool.h>
@@ -128,8 +128,8 @@ static const char *shape_error(const uint8_t *row, const t3r_layer *layer)
     }
     bool point = layer->kind == T3R_LAYER_POINT, depthwise = layer->kind == T3R_LAYER_DEPTHWISE;
     if (point) {
-        bool sound = layer->level == 0 && layer->kernel == 1 && layer->stride == 1 &&
-                     (layer->phases == 1 || layer->phases == 4);
+        bool sound =
+            layer->level == 0 && layer->kernel == 1 && layer->stride == 1 && (layer->phases == 1 || layer->phases == 4);
         return sound ? NULL : "a point layer's level, kernel, stride and phases must be 0, 1, 1 and 1 or 4";
     }
     if (layer->level > T3R_MAX_LEVEL || layer->stride < 1 || layer->stride > 2 || layer->level + 1 < layer->stride ||
@@ -239,7 +239,8 @@ static const char *layer_error(const uint8_t *file, const t3r_weights_header *he
     if (error == NULL) {
         error = source_error(file, n, &layer);
     }
-    if (error == NULL && header->activation_bits == 8 && n < header->layers && (layer.zero < -128 || layer.zero > 127)) {
+    if (error == NULL && header->activation_bits == 8 && n < header->layers &&
+        (layer.zero < -128 || layer.zero > 127)) {
         error = "an output zero is no int8";
     }
     return error != NULL ? error : block_error(file, header, &layer);

@@ -4,7 +4,7 @@
  * blocks that the table points to, each aligned to 16. Nothing in it is trusted: t3r_weights_check() reads it once,
  * when a head is bound; after that the layers are walked without further checks.
  *
- *   header   0 "T3RW" | 4 u16 format (1) | 6 u16 bits epoch | 8 u32 bytes in all | 12 u32 CRC-32 (IEEE) of bytes 16..end
+ *   header   0 "T3RW" | 4 u16 format (1) | 6 u16 bits epoch | 8 u32 bytes in all | 12 u32 CRC-32 (IEEE) of byte 16 on
  *           16 u8 weight bits (8, 16) | 17 u8 activation bits (8, 16) | 18 u8 layers | 19 u8 feature set (1)
  *           20 u32 multiply-accumulates a pixel at 100 % kept, Q8 (exact: level 4 is 1/256 of the pixels)
  *           24 u32 parameters: weights and biases | 28 u32 0
@@ -18,9 +18,9 @@
  * of level l has ceil(width / 2^l) x ceil(height / 2^l) pixels. Where it reads two sources their channels follow each
  * other, first the first's; a source coarser than wanted is read at x >> difference: nearest-neighbour upsampling.
  *
- *   conv       kernel k of 1..6, stride s of 1 or 2, its sources' grid being of level (level - log2 s) or coarser. Output
- *              (x, y) reads columns s x - p .. s x - p + k - 1, p = (k - s + 1) / 2 rounded down, rows likewise; outside
- *              the grid is the source's zero point. Weights [outputs][k][k][inputs].
+ *   conv       kernel k of 1..6, stride s of 1 or 2, its sources' grid being of level (level - log2 s) or coarser.
+ *              Output (x, y) reads columns s x - p .. s x - p + k - 1, p = (k - s + 1) / 2 rounded down, rows likewise;
+ *              outside the grid is the source's zero point. Weights [outputs][k][k][inputs].
  *   depthwise  the same with outputs = inputs, kernel of 1..5, one source. Weights [k][k][outputs].
  *   point      evaluated at retained pixels only: each source at (x >> level, y >> level) of its own level, or the
  *              output of the point layer before (source = that layer). phases 1, or 4: weights of phase

@@ -67,6 +67,18 @@ static uint32_t channels_of(const made_layer *layers, uint32_t source)
     return source == T3R_SOURCE_FEATURES ? T3R_FEATURES : layers[source - 1].outputs;
 }
 
+static uint32_t inputs_of(const made_layer *layers, uint32_t n)
+{
+    const uint8_t *source = layers[n].source;
+    return channels_of(layers, source[0]) + (source[1] == NONE ? 0 : channels_of(layers, source[1]));
+}
+
+static uint32_t taps_of(const made_layer *layers, uint32_t n)
+{
+    uint32_t inputs = layers[n].kind == T3R_LAYER_DEPTHWISE ? 1 : inputs_of(layers, n);
+    return (uint32_t)layers[n].kernel * layers[n].kernel * inputs;
+}
+
 /* floor(log2 sqrt n) */
 static int32_t half_log(uint32_t n)
 {
@@ -80,7 +92,12 @@ static int32_t half_log(uint32_t n)
 uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_bits, uint32_t activation_bits,
                       uint64_t seed, size_t *bytes)
 {
-    const size_t most = 4u << 20;
+    size_t most = 64 + 32 * (size_t)count;
+    for (uint32_t n = 0; n < count; n++) { /* weights, biases, multipliers, shifts and what aligns them, at most */
+        size_t rows = (size_t)layers[n].phases * layers[n].outputs;
+        most += rows * taps_of(layers, n) * 2 + rows * 16 + 64;
+    }
+    most = (most + T3R_WEIGHTS_ALIGN - 1) / T3R_WEIGHTS_ALIGN * T3R_WEIGHTS_ALIGN;
     maker m = {.file = aligned_alloc(T3R_WEIGHTS_ALIGN, most), .at = 64 + 32 * (size_t)count, .random = seed};
     if (m.file == NULL) {
         abort();
@@ -90,11 +107,7 @@ uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_
     uint32_t macs_q8 = 0, parameters = 0, bias_bytes = activation_bits == 16 ? 8 : 4;
     for (uint32_t n = 0; n < count; n++) {
         const made_layer *l = &layers[n];
-        uint32_t inputs = 0;
-        for (int i = 0; i < 2; i++) {
-            inputs += l->source[i] == NONE ? 0 : channels_of(layers, l->source[i]);
-        }
-        uint32_t taps = (uint32_t)l->kernel * l->kernel * (l->kind == T3R_LAYER_DEPTHWISE ? 1 : inputs);
+        uint32_t inputs = inputs_of(layers, n), taps = taps_of(layers, n);
         uint32_t rows = (uint32_t)l->phases * l->outputs;
         size_t weights = block(&m, (size_t)rows * taps * weight_bits / 8), bias = block(&m, (size_t)rows * bias_bytes);
         size_t multiplier = block(&m, (size_t)l->outputs * 4), shift = block(&m, l->outputs);

@@ -1,6 +1,6 @@
 /* The innermost loops of depthwise layers: sum[c] = sum over taps of column[t][c] x weights[t][c], one pixel.
  *
- * 32-bit sums: with int8 activations t3r_weights_check() has bounded them; with int8 weights at most 25 x 2^15 x 2^7. */
+ * 32-bit sums: with int8 activations t3r_weights_check() has bounded them; with int8 weights 25 x 2^15 x 2^7. */
 #ifndef T3R_KERNEL_DEPTHWISE_H
 #define T3R_KERNEL_DEPTHWISE_H
 

@@ -2,8 +2,8 @@
 
 #include "fixed.h"
 
-/* Four sums over one run of weights: 16-bit factors, 32-bit sums, which compilers know as one instruction (SSE2 pmaddwd,
- * NEON smlal). */
+/* Four sums over one run of weights: 16-bit factors, 32-bit sums, which compilers know as one instruction (SSE2
+ * pmaddwd, NEON smlal). */
 #define DOT(WEIGHT)                                                                                                    \
     const int16_t *x0 = columns, *x1 = x0 + pitch, *x2 = x1 + pitch, *x3 = x2 + pitch;                                 \
     int32_t s0 = 0, s1 = 0, s2 = 0, s3 = 0;                                                                            \

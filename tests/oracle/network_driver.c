@@ -1,7 +1,7 @@
-/* network_driver WEIGHTS WIDTH HEIGHT: features (int8, [height][width][9]) and a mask (a byte a pixel) on stdin. Runs the
- * network row by row in exactly the work memory it asks for and writes, in host order, a record for every row of a plane
- * layer as it is made (uint32 layer, row, bytes; the row), then the outputs at the masked pixels in raster order (layer
- * 0xffffffff). For network_numpy.py. */
+/* network_driver WEIGHTS WIDTH HEIGHT: features (int8, [height][width][9]) and a mask (a byte a pixel) on stdin. Runs
+ * the network row by row in exactly the work memory it asks for and writes, in host order, a record for every row of a
+ * plane layer as it is made (uint32 layer, row, bytes; the row), then the outputs at the masked pixels in raster order
+ * (layer 0xffffffff). For network_numpy.py. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,8 @@ static void *read_file(const char *path, size_t *bytes)
         return NULL;
     }
     *bytes = (size_t)ftell(file);
-    void *all = aligned_alloc(T3R_WEIGHTS_ALIGN, (*bytes + T3R_WEIGHTS_ALIGN - 1) / T3R_WEIGHTS_ALIGN * T3R_WEIGHTS_ALIGN);
+    void *all =
+        aligned_alloc(T3R_WEIGHTS_ALIGN, (*bytes + T3R_WEIGHTS_ALIGN - 1) / T3R_WEIGHTS_ALIGN * T3R_WEIGHTS_ALIGN);
     rewind(file);
     size_t count = all == NULL ? 0 : fread(all, 1, *bytes, file);
     fclose(file);
@@ -35,7 +36,8 @@ static void put_new_rows(const t3r_network *net, const uint32_t *before)
         const t3r_node *node = &net->nodes[n];
         for (uint32_t y = before[n]; y < node->made; y++) {
             if (node->made - y <= node->ring) {
-                put(n, y, node->rows + y % node->ring * node->pitch, (size_t)node->width * node->channels * node->bytes);
+                put(n, y, node->rows + y % node->ring * node->pitch,
+                    (size_t)node->width * node->channels * node->bytes);
             }
         }
     }

@@ -1,4 +1,4 @@
-/* The learned head through the C interface: binding weights, the same bits in every arena, and what its outputs mean. */
+/* The learned head through the C interface: binding weights, the same bits in every arena, what its outputs mean. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -68,13 +68,14 @@ static void same_scene(const t3r_scene *a, const t3r_scene *b)
     assert_memory_equal(a->gaussians, b->gaussians, a->count * sizeof *a->gaussians);
 }
 
-/* Every width of weights and activations; arenas of all sizes, whatever they held; a moved arena; a budget on the way. */
+/* Every width of weights and activations; arenas of all sizes, whatever they held; a moved arena; budgets between. */
 static void same_bits_everywhere(void **state)
 {
     (void)state;
     for (uint32_t bits = 0; bits < 4; bits++) {
         size_t bytes;
-        uint8_t *weights = make_weights(small_shape, small_layers, bits & 1 ? 16 : 8, bits & 2 ? 16 : 8, 40 + bits, &bytes);
+        uint8_t *weights =
+            make_weights(small_shape, small_layers, bits & 1 ? 16 : 8, bits & 2 ? 16 : 8, 40 + bits, &bytes);
         t3r_config config = learned_config(400);
         arena first = arena_of(&config, ARENA_AT_FULL);
         t3r_runtime *rt = with_views(&first, &config, 1);
@@ -262,8 +263,8 @@ static void footprints(void **state)
     memcpy(centres, constant_head(out, T3R_HEAD_LEARNED), sizeof centres);
     const struct {
         double x, y, l11, l21, l22;
-    } wanted[] = {{0.5, -0.25, 1, 0, 1},  {-1.75, 1.5, 2, 1, 1.5},  {0, 0, 3, -1.9, 0.8},
-                  {1, 1, 0.7, 0.4, 2.5},  {0, 0, 15.5, 0, 15.5},    {0, 0, 0.07, 0, 0.07}};
+    } wanted[] = {{0.5, -0.25, 1, 0, 1}, {-1.75, 1.5, 2, 1, 1.5}, {0, 0, 3, -1.9, 0.8},
+                  {1, 1, 0.7, 0.4, 2.5}, {0, 0, 15.5, 0, 15.5},   {0, 0, 0.07, 0, 0.07}};
     for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
         double l11 = wanted[k].l11, l21 = wanted[k].l21, l22 = wanted[k].l22;
         out[T3R_OUT_OFFSET_X] = (int16_t)lrint(wanted[k].x * 0x1p14);
@@ -295,8 +296,8 @@ static void footprints(void **state)
                 in_the_image(&g[i], tu, tv, s);
                 double most = xx > yy ? xx : yy;
                 if (fabs(s[0] - xx) > 0.03 * most || fabs(s[1] - xy) > 0.03 * most || fabs(s[2] - yy) > 0.03 * most) {
-                    fail_msg("footprint %zu at %u, %u: %.3f %.3f %.3f, wanted %.3f %.3f %.3f", k, x, y, s[0], s[1], s[2],
-                             xx, xy, yy);
+                    fail_msg("footprint %zu at %u, %u: %.3f %.3f %.3f, wanted %.3f %.3f %.3f", k, x, y, s[0], s[1],
+                             s[2], xx, xy, yy);
                 }
             }
         }
@@ -350,8 +351,8 @@ static void scaled_by_the_spacing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bits_everywhere), cmocka_unit_test(binding),
-        cmocka_unit_test(colour_and_opacity),   cmocka_unit_test(footprints),
+        cmocka_unit_test(same_bits_everywhere),  cmocka_unit_test(binding),
+        cmocka_unit_test(colour_and_opacity),    cmocka_unit_test(footprints),
         cmocka_unit_test(scaled_by_the_spacing),
     };
     return cmocka_run_group_tests_name("learned", tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* The weight file's checker: what is sound passes, every field beyond its range is refused with its reason, whatever the
- * CRC says. */
+/* The weight file's checker: what is sound passes, every field beyond its range is refused with its reason, whatever
+ * the CRC says. */
 #include "unit.h"
 
 #include <stdbool.h>
@@ -11,9 +11,12 @@ enum { HEADER = T3R_WEIGHTS_HEADER_BYTES, ROW = T3R_WEIGHTS_LAYER_BYTES };
 
 /* conv to level 1, conv to level 2, depthwise there, a join back on level 1, two point layers */
 static const made_layer shape[] = {
-    {T3R_LAYER_CONV, 1, {0, T3R_SOURCE_NONE}, 6, 2, 1, 4},  {T3R_LAYER_CONV, 2, {1, T3R_SOURCE_NONE}, 3, 2, 1, 5},
-    {T3R_LAYER_DEPTHWISE, 2, {2, T3R_SOURCE_NONE}, 5, 1, 1, 5}, {T3R_LAYER_CONV, 1, {1, 3}, 3, 1, 1, 6},
-    {T3R_LAYER_POINT, 0, {4, 0}, 1, 1, 4, 7},               {T3R_LAYER_POINT, 0, {5, T3R_SOURCE_NONE}, 1, 1, 1, 9},
+    {T3R_LAYER_CONV, 1, {0, T3R_SOURCE_NONE}, 6, 2, 1, 4},
+    {T3R_LAYER_CONV, 2, {1, T3R_SOURCE_NONE}, 3, 2, 1, 5},
+    {T3R_LAYER_DEPTHWISE, 2, {2, T3R_SOURCE_NONE}, 5, 1, 1, 5},
+    {T3R_LAYER_CONV, 1, {1, 3}, 3, 1, 1, 6},
+    {T3R_LAYER_POINT, 0, {4, 0}, 1, 1, 4, 7},
+    {T3R_LAYER_POINT, 0, {5, T3R_SOURCE_NONE}, 1, 1, 1, 9},
 };
 enum { LAYERS = sizeof shape / sizeof *shape };
 
@@ -178,9 +181,12 @@ static void numbers_are_bounded(void **state)
         uint32_t taps = t3r_layer_taps(&layer), last = (uint32_t)layer.phases * layer.outputs - 1;
         size_t multiplier = layer.multiplier + 4u * (layer.outputs - 1u), shift = layer.shift + layer.outputs - 1u;
         const damage damages[] = {
-            {multiplier, (1u << 30) - 1, 4, "multiplier"}, {multiplier, 0x80000000u, 4, "multiplier"},
-            {shift, 16, 1, "shift"},                       {shift, (uint8_t)-31, 1, "shift"},
-            {layer.bias + 4u * last, INT32_MAX, 4, "sums"}, {layer.bias + 4u * last, 0x80000000u, 4, "sums"},
+            {multiplier, (1u << 30) - 1, 4, "multiplier"},
+            {multiplier, 0x80000000u, 4, "multiplier"},
+            {shift, 16, 1, "shift"},
+            {shift, (uint8_t)-31, 1, "shift"},
+            {layer.bias + 4u * last, INT32_MAX, 4, "sums"},
+            {layer.bias + 4u * last, 0x80000000u, 4, "sums"},
         };
         for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
             memcpy(file, good, bytes);
@@ -286,9 +292,9 @@ static void graphs_are_checked(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sound_ones_pass),     cmocka_unit_test(every_field_is_checked),
+        cmocka_unit_test(sound_ones_pass),        cmocka_unit_test(every_field_is_checked),
         cmocka_unit_test(blocks_lie_in_the_file), cmocka_unit_test(numbers_are_bounded),
-        cmocka_unit_test(damage_is_noticed),   cmocka_unit_test(graphs_are_checked),
+        cmocka_unit_test(damage_is_noticed),      cmocka_unit_test(graphs_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
