@@ -4,8 +4,6 @@
 
 #include "quant_reason.h"
 
-#define MOST_MACS 65536u /* a pixel, all points kept */
-
 typedef struct checker {
     const head_graph *graph;
     uint32_t n; /* the layer's number */
@@ -136,7 +134,7 @@ static int check_whole(checker *c)
         }
         macs_q8 += head_macs_q8(layer);
     }
-    return macs_q8 <= (uint64_t)MOST_MACS << 8
+    return macs_q8 <= (uint64_t)T3R_MAX_HEAD_MACS << 8
                ? 0
                : quant_reason(c->error, c->error_bytes, "over 65536 multiply-accumulates a pixel");
 }

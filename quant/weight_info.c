@@ -7,8 +7,6 @@
 #include "quant_reason.h"
 #include "trim3r.h"
 
-#define MOST_BYTES (1u << 24)
-
 typedef struct reader {
     weight_info *info;
     const uint8_t *bytes;
@@ -47,7 +45,7 @@ static int read_frame(const reader *r)
         return quant_reason(r->error, r->error_bytes,
                             "header: %" PRIu64 " bytes in all, but the file has %zu: cut off?", bytes, r->count);
     }
-    if (bytes > MOST_BYTES) {
+    if (bytes > T3R_MAX_WEIGHTS_BYTES) {
         return fail_header(r, "the number of bytes", bytes, "at most 16 MiB");
     }
     r->info->bytes = (uint32_t)bytes;
