@@ -6,11 +6,13 @@
 #include "camera.h"
 #include "develop.h"
 #include "hash.h"
+#include "head.h"
 #include "image.h"
 #include "pipeline.h"
 #include "scene_frame.h"
 #include "state.h"
 #include "superclusters.h"
+#include "weights.h"
 
 /* --- the arena ---------------------------------------------------------------------------------------------------- */
 
@@ -147,6 +149,7 @@ t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
         return T3R_ERR_EPOCH;
     }
     memset(&state->hooks, 0, sizeof state->hooks);
+    state->weights = NULL;
     *rt = state;
     return T3R_OK;
 }
@@ -156,6 +159,37 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks)
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     rt->hooks = hooks != NULL ? *hooks : (t3r_hooks){0};
     return T3R_OK;
+}
+
+t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes)
+{
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
+    if (weights == NULL) {
+        rt->weights = NULL;
+        return T3R_OK;
+    }
+    T3R_REFUSE_UNLESS(rt->config.views > 0, T3R_ERR_STATE);
+    t3r_status status = t3r_weights_check(weights, bytes);
+    if (status != T3R_OK) {
+        return status;
+    }
+    if (t3r_head_learned_work_bytes(weights, rt->config.width) > T3R_HEAD_WORK_(rt->config.width, rt->config.height)) {
+        return T3R_ERR_WEIGHTS;
+    }
+    rt->weights = weights;
+    rt->head_crc = t3r_weights_header_of(weights).crc;
+    return T3R_OK;
+}
+
+uint32_t t3r_head_crc(const t3r_runtime *rt)
+{
+    return rt == NULL ? 0 : rt->head_crc;
+}
+
+/* Whether what the head needs is there. */
+static bool has_head(const t3r_runtime *rt, t3r_head head)
+{
+    return head != T3R_HEAD_LEARNED || rt->weights != NULL;
 }
 
 t3r_status t3r_reset(t3r_runtime *rt)
@@ -248,7 +282,7 @@ t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene)
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene)
 {
     T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(rt->views > 0, T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(rt->views > 0 && has_head(rt, rt->config.head), T3R_ERR_STATE);
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
@@ -269,7 +303,7 @@ t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation al
     if (t3r_config_error(&config) != NULL) {
         return T3R_ERR_ARGUMENT;
     }
-    T3R_REFUSE_UNLESS(rt->config.keep_analysis && rt->analysed, T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(rt->config.keep_analysis && rt->analysed && has_head(rt, head), T3R_ERR_STATE);
     t3r_config before = rt->config;
     rt->config = config;
     t3r_status status = t3r_build_scene(rt);

@@ -61,6 +61,7 @@ const char *t3r_config_error(const t3r_config *c)
     }
     /* Sizes are summed in size_t: an arena of more than half of what it can count is refused, generously estimated. */
     uint64_t bytes = (uint64_t)c->width * c->height * (c->views * (uint64_t)24 + 32) +
-                     (uint64_t)c->render_width * c->render_height * 8 + (uint64_t)c->max_gaussians * 192;
+                     (uint64_t)c->render_width * c->render_height * 8 + (uint64_t)c->max_gaussians * 192 +
+                     (uint64_t)c->width * T3R_HEAD_COLUMN_BYTES + T3R_HEAD_KERNEL_BYTES;
     return bytes > SIZE_MAX / 2 ? "the arena would be larger than this machine can address" : NULL;
 }

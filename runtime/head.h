@@ -17,7 +17,8 @@ typedef struct t3r_head_input {
     uint32_t view_index;
     const t3r_budget_settings *settings;
     const t3r_cluster *clusters;
-    int8_t *work; /* two bytes a pixel */
+    const void *weights; /* of `learned`, checked; NULL for the others */
+    void *work;          /* two bytes a pixel; `learned`: t3r_head_learned_work_bytes() */
 } t3r_head_input;
 
 /* A total footprint in the image plane: mean and covariance in pixels, as the source view shall show it. */
@@ -40,5 +41,9 @@ uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
 uint32_t t3r_head_analytic(const t3r_head_input *input, t3r_gaussian *out);
 uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out);
 uint32_t t3r_head_none(const t3r_head_input *input, t3r_gaussian *out);
+uint32_t t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out);
+
+/* Bytes of work that a learned head needs for views of this width. */
+size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width);
 
 #endif

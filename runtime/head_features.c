@@ -22,28 +22,32 @@ static int8_t slope(uint16_t before, uint16_t here, uint16_t after)
     return held((int32_t)t3r_clamp64(t3r_round_div64(rise, 2 * (int64_t)here), -127, 127));
 }
 
-void t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row)
+void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, int8_t features[T3R_FEATURES])
 {
     const t3r_view *view = input->map.view;
     const uint32_t w = view->width;
-    for (uint32_t x = 0; x < w; x++) {
-        size_t i = (size_t)y * w + x;
-        int8_t *f = row + (size_t)x * T3R_FEATURES;
-        for (int c = 0; c < 3; c++) {
-            f[c] = (int8_t)(view->colour[c][i] - 128);
-        }
-        f[3] = t3r_retained(view, i) ? 127 : 0;
-        f[4] = (int8_t)(view->confidence[i] >> 1);
-        f[5] = LOG_DENSITY_NONE;
-        f[6] = f[7] = f[8] = 0;
-        if (view->label[i] == T3R_NO_LABEL) {
-            continue;
-        }
-        const uint16_t *depth = view->depth + i;
-        f[5] = held(t3r_round_shift32(t3r_log_density_q10(view, i, input->settings, input->clusters), 6) + 64);
-        f[6] = held(t3r_round_shift32(
-            t3r_log2_q16((uint32_t)view->texture[i] + TEXTURE_FLOOR_Q4) - TEXTURE_MIDDLE_Q16, 12));
-        f[7] = slope(depth[x > 0 ? -1 : 0], *depth, depth[x + 1 < w ? 1 : 0]);
-        f[8] = slope(depth[y > 0 ? -(ptrdiff_t)w : 0], *depth, depth[y + 1 < view->height ? w : 0]);
+    const size_t i = (size_t)y * w + x;
+    for (int c = 0; c < 3; c++) {
+        features[c] = (int8_t)(view->colour[c][i] - 128);
+    }
+    features[3] = t3r_retained(view, i) ? 127 : 0;
+    features[4] = (int8_t)(view->confidence[i] >> 1);
+    features[5] = LOG_DENSITY_NONE;
+    features[6] = features[7] = features[8] = 0;
+    if (view->label[i] == T3R_NO_LABEL) {
+        return;
+    }
+    const uint16_t *depth = view->depth + i;
+    features[5] = held(t3r_round_shift32(t3r_log_density_q10(view, i, input->settings, input->clusters), 6) + 64);
+    features[6] =
+        held(t3r_round_shift32(t3r_log2_q16((uint32_t)view->texture[i] + TEXTURE_FLOOR_Q4) - TEXTURE_MIDDLE_Q16, 12));
+    features[7] = slope(depth[x > 0 ? -1 : 0], *depth, depth[x + 1 < w ? 1 : 0]);
+    features[8] = slope(depth[y > 0 ? -(ptrdiff_t)w : 0], *depth, depth[y + 1 < view->height ? w : 0]);
+}
+
+void t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row)
+{
+    for (uint32_t x = 0; x < input->map.view->width; x++) {
+        t3r_head_features_at(input, x, y, row + (size_t)x * T3R_FEATURES);
     }
 }

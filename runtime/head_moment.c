@@ -88,6 +88,7 @@ typedef struct moments {
 static moments gather(const t3r_head_input *input, uint32_t u, uint32_t v, int32_t reach)
 {
     const t3r_view *view = input->map.view;
+    const int8_t *joined = input->work;
     moments m = {0};
     for (int32_t dy = -reach; dy <= reach; dy++) {
         for (int32_t dx = -reach; dx <= reach; dx++) {
@@ -96,7 +97,7 @@ static moments gather(const t3r_head_input *input, uint32_t u, uint32_t v, int32
                 continue;
             }
             size_t i = (size_t)y * view->width + (size_t)x;
-            if (input->work[2 * i] != -dx || input->work[2 * i + 1] != -dy) {
+            if (joined[2 * i] != -dx || joined[2 * i + 1] != -dy) {
                 continue;
             }
             m.count++;

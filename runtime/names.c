@@ -31,6 +31,8 @@ const char *t3r_error_text(t3r_status status)
         return "the arena was made by another version or settings";
     case T3R_ERR_FULL:
         return "the scene has no room for another Gaussian";
+    case T3R_ERR_WEIGHTS:
+        return "the weights are damaged, of another version, or too large a head for this arena";
     }
     return "unknown status";
 }
@@ -50,7 +52,7 @@ const char *t3r_allocation_name(t3r_allocation allocation)
 
 const char *t3r_head_name(t3r_head head)
 {
-    static const char *const names[] = {"analytic", "moment", "none"};
+    static const char *const names[] = {"analytic", "moment", "none", "learned"};
     return pick(names, T3R_HEAD_COUNT, (uint32_t)head);
 }
 

@@ -123,6 +123,7 @@ static const head_function heads[T3R_HEAD_COUNT] = {
     [T3R_HEAD_ANALYTIC] = t3r_head_analytic,
     [T3R_HEAD_MOMENT] = t3r_head_moment,
     [T3R_HEAD_NONE] = t3r_head_none,
+    [T3R_HEAD_LEARNED] = t3r_head_learned,
 };
 
 static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
@@ -138,6 +139,7 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
             .view_index = v,
             .settings = settings,
             .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
+            .weights = rt->weights,
             .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
         };
         rt->gaussians += heads[rt->config.head](&input, scene + rt->gaussians);

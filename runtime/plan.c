@@ -1,7 +1,31 @@
 /* What a configuration needs: bytes by buffer, steps by stage. */
 #include "arena.h"
+#include "network.h"
 #include "state.h"
 #include "superclusters.h"
+
+/* Multiply-accumulates of the largest head there may be, views rounded up to whole blocks of pixels at the coarsest
+ * level; gathering a layer's inputs and requantizing its outputs take no more steps than that each. Features twice. */
+static uint64_t learned_operations(const t3r_config *c)
+{
+    const uint64_t block = T3R_DOT_PIXELS << T3R_MAX_LEVEL;
+    uint64_t across = (c->width + block - 1) / block, down = (c->height + block - 1) / block;
+    return 3 * T3R_MAX_HEAD_MACS * across * down * block * block * c->views +
+           ((uint64_t)c->width * c->height * c->views + c->max_gaussians) * 2 * T3R_FEATURES;
+}
+
+static uint64_t head_operations(const t3r_config *c)
+{
+    uint64_t pixels = (uint64_t)c->width * c->height * c->views, gaussians = c->max_gaussians;
+    switch (c->head) {
+    case T3R_HEAD_LEARNED:
+        return learned_operations(c);
+    case T3R_HEAD_MOMENT: /* 31 x 31 after four sweeps of four offers, two costs each */
+        return 3 * (pixels * (2 + 4 * 4 * 2) + gaussians * (31 * 31 + 32));
+    default: /* the widest window of `analytic` is 15 x 15 */
+        return pixels + 3 * gaussians * (15 * 15 + 32);
+    }
+}
 
 /* Upper bounds of inner-loop steps: what each stage's loops run to at most, whatever the frames hold. */
 static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_COUNT])
@@ -28,11 +52,7 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
                           assigned * (clusters + T3R_NEIGHBOURS * 2));
     /* textures, two blurs of nine taps, keys, 17 bisections, two density rounds, masks; ranking and quotas */
     operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 1 + 17 + 2 + 1) + 3 * clusters * clusters + 64 * clusters;
-    /* the widest window of `analytic` is 15 x 15, of `moment` 31 x 31 after four sweeps of four offers, two costs each
-     */
-    operations[T3R_STAGE_HEAD] = c->head == T3R_HEAD_MOMENT
-                                     ? 3 * (pixels * (2 + 4 * 4 * 2) + gaussians * (31 * 31 + 32))
-                                     : pixels + 3 * gaussians * (15 * 15 + 32);
+    operations[T3R_STAGE_HEAD] = head_operations(c);
     operations[T3R_STAGE_REFINE] = 0;
     /* project; four radix passes and their counts; counting and listing tiles; at most a pass a tile; each pixel of
      * each tile blended and its depth noted, a look for stopped tiles every 16 splats; tiles cleared and written */

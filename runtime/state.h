@@ -1,5 +1,6 @@
 /* The head of the arena: everything the runtime remembers besides the planes. Offsets, never pointers, so
- * that a copied arena goes on working; the hooks are the one exception and are cleared by t3r_attach(). */
+ * that a copied arena goes on working; the hooks and the bound weights are the exceptions and are cleared by
+ * t3r_attach(). */
 #ifndef T3R_STATE_H
 #define T3R_STATE_H
 
@@ -42,6 +43,8 @@ struct t3r_runtime {
     uint32_t valid_points;
     uint32_t gaussians; /* in the scene */
     uint32_t render_passes;
+    uint32_t head_crc; /* of the weights bound last */
+    const void *weights;
     t3r_hooks hooks;
 };
 

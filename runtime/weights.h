@@ -4,11 +4,12 @@
  * blocks that the table points to, each aligned to 16. Nothing in it is trusted: t3r_weights_check() reads it once,
  * when a head is bound; after that the layers are walked without further checks.
  *
- *   header   0 "T3RW" | 4 u16 format (1) | 6 u16 bits epoch | 8 u32 bytes in all | 12 u32 CRC-32 (IEEE) of bytes 16..end
+ *   header   0 "T3RW" | 4 u16 format (1) | 6 u16 bits epoch | 8 u32 bytes in all | 12 u32 CRC-32 (IEEE) of byte 16 on
  *           16 u8 weight bits (8, 16) | 17 u8 activation bits (8, 16) | 18 u8 layers | 19 u8 feature set (1)
- *           20 u32 multiply-accumulates a pixel at 100 % kept, Q8 | 24 u32 parameters | 28 u32 0
- *           32 name, 16 bytes, zero-terminated | 48 16 bytes 0
- *   layer    0 u8 kind | 1 u8 level | 2 u8 source[2] | 4 u16 inputs | 6 u16 outputs
+ *           20 u32 multiply-accumulates a pixel at 100 % kept, Q8 (exact: level 4 is 1/256 of the pixels)
+ *           24 u32 parameters: weights and biases | 28 u32 0
+ *           32 name, 16 bytes: 1..15 of a-z 0-9 _, the rest 0 | 48 16 bytes 0
+ *   layer    0 u8 kind (t3r_layer_kind) | 1 u8 level | 2 u8 source[2] | 4 u16 inputs | 6 u16 outputs
  *            8 u8 kernel | 9 u8 stride | 10 u8 phases | 11 u8 0 | 12 i16 output zero | 14 u16 0
  *           16 u32 weights | 20 u32 bias | 24 u32 multiplier | 28 u32 shift: offsets from the start of the file
  *
@@ -17,22 +18,32 @@
  * of level l has ceil(width / 2^l) x ceil(height / 2^l) pixels. Where it reads two sources their channels follow each
  * other, first the first's; a source coarser than wanted is read at x >> difference: nearest-neighbour upsampling.
  *
- *   conv       kernel k of 1..6, stride s of 1 or 2, its sources' grid being of level (level - log2 s) or coarser. Output
- *              (x, y) reads columns s x - p .. s x - p + k - 1, p = (k - s + 1) / 2 rounded down, rows likewise; outside
- *              the grid is the source's zero point. Weights [outputs][k][k][inputs].
+ *   conv       kernel k of 1..6, stride s of 1 or 2, its sources' grid being of level (level - log2 s) or coarser.
+ *              Output (x, y) reads columns s x - p .. s x - p + k - 1, p = (k - s + 1) / 2 rounded down, rows likewise;
+ *              outside the grid is the source's zero point. Weights [outputs][k][k][inputs].
  *   depthwise  the same with outputs = inputs, kernel of 1..5, one source. Weights [k][k][outputs].
  *   point      evaluated at retained pixels only: each source at (x >> level, y >> level) of its own level, or the
  *              output of the point layer before (source = that layer). phases 1, or 4: weights of phase
  *              2 (y & 1) + (x & 1). Weights [phases][outputs][inputs], bias [phases][outputs]; multiplier and shift
- *              [outputs] in every kind.
+ *              [outputs] in every kind. Level 0, kernel and stride 1. No other layer reads a point layer, and a point
+ *              layer none but the one directly before it. Phases are 1 in the other kinds.
  *
- * Arithmetic: acc = bias + sum weight x (activation - zero point of its source); zero points are folded into the bias
- * (bias' = bias - sum weight x zero), so that padding reads the zero point itself. int8 activations: int32 accumulators,
- * output = clamp(output zero + round_half_up(acc x multiplier / 2^(31 - shift))), multiplier an int32 in
- * [2^30, 2^31), shift an int8 in [-30, 15]: TFLite's single-rounding reference. int16 activations: int64
- * accumulators, multiplier reduced to 16 bits first, ((multiplier + 2^15) >> 16, at most 32767), over
- * 2^(15 - shift), as TFLite's int64 reference. ReLU is the clamp at an output zero of -128 (int16: -32768); a linear
- * layer has output zero 0. Weights int8 or int16; bias int32 (int16 activations: int64); multiplier int32; shift int8.
+ * Point layers stand behind all others, and every layer but the last is read by a later one. The blocks may lie in any
+ * order behind the table, and may share bytes.
+ *
+ * Arithmetic: acc = bias + sum weight x (activation - zero point of its source). Zero points are folded into the bias
+ * (bias' = bias - sum weight x zero), so that padding reads the zero point itself; bias' is what the file holds, and
+ * acc = bias' + sum weight x activation. In no order of the sum can it overflow: for every output (and phase)
+ * |bias'| + 2^7 sum |weight| < 2^31 with int8 activations, |bias'| + 2^15 sum |weight| < 2^47 with int16 ones, so that
+ * the product with the multiplier stays within 2^62. With int16 activations features are the int8 numbers times 2^8: of
+ * the size of the activations beside them, so that weights of 8 bits resolve both.
+ *
+ * int8 activations: int32 accumulators, output = clamp(output zero + round_half_up(acc x multiplier / 2^(31 - shift))),
+ * multiplier an int32 in [2^30, 2^31), shift an int8 in [-30, 15], the quotient 64 bits wide until it is clamped:
+ * TFLite's single-rounding reference. int16 activations: int64 accumulators, multiplier reduced to 16 bits first,
+ * ((multiplier + 2^15) >> 16, at most 32767), over 2^(15 - shift), as TFLite's int64 reference. ReLU is the clamp at an
+ * output zero of -128 (int16: -32768); a linear layer has output zero 0. Weights int8 or int16; bias int32 (int16
+ * activations: int64); multiplier int32; shift int8.
  *
  * The last layer is a point layer of T3R_HEAD_OUTPUTS channels whose output is always int16, output zero 0, in the
  * formats of t3r_head_output. */
@@ -41,6 +52,8 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+#include "trim3r.h"
 
 #define T3R_WEIGHTS_FORMAT 1
 #define T3R_WEIGHTS_HEADER_BYTES 64
@@ -51,8 +64,13 @@
 #define T3R_MAX_LAYERS 24
 #define T3R_MAX_LEVEL 4
 #define T3R_MAX_CHANNELS 128 /* of a layer's inputs, and of its outputs */
+#define T3R_MAX_KERNEL 6
+#define T3R_MAX_WEIGHTS_BYTES (1u << 24)
+#define T3R_MAX_HEAD_MACS 65536u /* multiply-accumulates a pixel at 100 % kept; the plan counts on it */
 #define T3R_SOURCE_FEATURES 0
 #define T3R_SOURCE_NONE 255
+
+typedef enum t3r_layer_kind { T3R_LAYER_CONV, T3R_LAYER_DEPTHWISE, T3R_LAYER_POINT, T3R_LAYER_KINDS } t3r_layer_kind;
 
 /* The last layer's channels. */
 typedef enum t3r_head_output {
@@ -67,5 +85,37 @@ typedef enum t3r_head_output {
     T3R_OUT_BLUE,
     T3R_HEAD_OUTPUTS
 } t3r_head_output;
+
+/* The header of a file that was checked. */
+typedef struct t3r_weights_header {
+    uint32_t weight_bits, activation_bits; /* 8 or 16 */
+    uint32_t layers;
+    uint32_t macs_q8;
+    uint32_t parameters;
+    uint32_t bytes;
+    uint32_t crc;
+} t3r_weights_header;
+
+/* A layer of it; the last four are offsets from the start of the file. */
+typedef struct t3r_layer {
+    t3r_layer_kind kind;
+    uint8_t level, source[2], kernel, stride, phases;
+    uint16_t inputs, outputs;
+    int16_t zero;
+    uint32_t weights, bias, multiplier, shift;
+} t3r_layer;
+
+/* T3R_ERR_ARGUMENT: null or not aligned to T3R_WEIGHTS_ALIGN; T3R_ERR_WEIGHTS: t3r_weights_error() says why. */
+t3r_status t3r_weights_check(const void *weights, size_t bytes);
+
+/* Both of weights that were checked; index counts from 0. */
+t3r_weights_header t3r_weights_header_of(const void *weights);
+t3r_layer t3r_weights_layer(const void *weights, uint32_t index);
+
+/* Weights a layer reads for one output of one pixel, next to each other but in a depthwise layer. */
+static inline uint32_t t3r_layer_taps(const t3r_layer *layer)
+{
+    return (uint32_t)layer->kernel * layer->kernel * (layer->kind == T3R_LAYER_DEPTHWISE ? 1u : layer->inputs);
+}
 
 #endif

@@ -13,5 +13,7 @@ int command_diff(int argc, char **argv);
 int command_plan(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_room(int argc, char **argv);
+int command_quantize(int argc, char **argv);
+int command_head_info(int argc, char **argv);
 
 #endif

@@ -23,6 +23,8 @@ static const struct {
     {"diff", command_diff, "what differs between two scenes or two views"},
     {"plan", command_plan, "the arena's buffers, its bytes and the operation counts, before anything runs"},
     {"bench", command_bench, "the speed of each stage on this machine"},
+    {"quantize", command_quantize, "a trained head to integers: a weight file or a C source"},
+    {"head-info", command_head_info, "what a head consists of: layers, multiply-accumulates, bytes"},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
@@ -32,7 +34,7 @@ static void print_help(FILE *out)
           "A few camera frames to a budgeted set of 3-D Gaussians, and views of it, in integers.\n\n",
           out);
     for (int i = 0; i < COMMAND_COUNT; i++) {
-        fprintf(out, "  %-8s %s\n", commands[i].name, commands[i].summary);
+        fprintf(out, "  %-9s %s\n", commands[i].name, commands[i].summary);
     }
     fputs("\nThe way of the data:\n"
           "  import|room > REC.mcap > build > SCENE.ply > render > view.png\n"

@@ -44,7 +44,8 @@ typedef enum t3r_status {
     T3R_ERR_NO_DEPTH = -7,  /* a context view without a single valid depth */
     T3R_ERR_CANCELLED = -8, /* the progress callback asked to stop */
     T3R_ERR_EPOCH = -9,     /* a copied arena made by another version, layout or bits epoch */
-    T3R_ERR_FULL = -10      /* no room for another Gaussian in the scene */
+    T3R_ERR_FULL = -10,     /* no room for another Gaussian in the scene */
+    T3R_ERR_WEIGHTS = -11   /* weights that are foreign, damaged, of another epoch, or too large a head for the arena */
 } t3r_status;
 
 /* The stages in the order in which the data passes them. */
@@ -116,6 +117,7 @@ typedef enum t3r_head {
     T3R_HEAD_ANALYTIC, /* a disc on the surface, as wide as its kept neighbours are apart */
     T3R_HEAD_MOMENT,   /* moments of the pruned pixels that lie nearest in position and colour */
     T3R_HEAD_NONE,     /* the unpruned pixel's own splat, nothing adapted (the baseline `random`) */
+    T3R_HEAD_LEARNED,  /* a network sees image, mask and density: t3r_bind_head() */
     T3R_HEAD_COUNT
 } t3r_head;
 
@@ -219,12 +221,26 @@ const char *t3r_config_error(const t3r_config *config);
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
 t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config);
 
-/* Re-binds an arena that was copied or restored from bytes, of the very same size; hooks start empty. T3R_ERR_EPOCH
- * when it was made by another version or is damaged. */
+/* Re-binds an arena that was copied or restored from bytes, of the very same size; hooks start empty and no weights are
+ * bound. T3R_ERR_EPOCH when it was made by another version or is damaged. */
 t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes);
 
 /* Binds callbacks (NULL: none). */
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
+
+/* Binds the weights of the head T3R_HEAD_LEARNED, a whole .t3w file in memory aligned to 16 (NULL: none). Only the
+ * pointer is kept: the memory stays the caller's, is read in place, and must not change or go while it is bound. Bind
+ * after t3r_init() and again after t3r_attach(). The analysis does not depend on the head, so another may be bound to one
+ * that was kept; t3r_head_crc() tells which made the last scene possible. T3R_ERR_ARGUMENT (misaligned), T3R_ERR_WEIGHTS,
+ * T3R_ERR_STATE (no room for views): what was bound stays. */
+t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
+
+/* Why t3r_bind_head() refuses a weight file, as text; NULL when it is sound: then the head is too large for the arena
+ * (over T3R_HEAD_COLUMN_BYTES of work a column). */
+const char *t3r_weights_error(const void *weights, size_t bytes);
+
+/* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it. */
+uint32_t t3r_head_crc(const t3r_runtime *rt);
 
 /* Takes the next context view: to planes, resized to the working size, undistorted. The camera belongs to the frame's
  * own pixel grid and must also be in range after resizing. On an error no view is added; an analysis that was kept is
@@ -237,7 +253,8 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
 t3r_status t3r_reset(t3r_runtime *rt);
 
 /* From the views added so far to exactly min(gaussians, valid points) Gaussians. T3R_ERR_CAMERA when a view stands more
- * than 1,024 scene units from the first; T3R_ERR_CANCELLED: no scene then, the views stay. */
+ * than 1,024 scene units from the first; T3R_ERR_STATE: no views, or the learned head without weights; T3R_ERR_CANCELLED:
+ * no scene then, the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
 
 /* Another budget for the pair analysed last, without analysing again; needs keep_analysis. A later t3r_reconstruct()

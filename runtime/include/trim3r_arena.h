@@ -32,6 +32,9 @@
 #define T3R_SORT_BYTES 4096      /* four histograms of 256 counts */
 #define T3R_CLUSTER_BYTES 52     /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
+/* Work of the learned head: rows of activations, and the activations under its largest kernel */
+#define T3R_HEAD_COLUMN_BYTES 1280
+#define T3R_HEAD_KERNEL_BYTES 16384
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8          /* undistortion grid, pixels */
 
@@ -39,6 +42,8 @@
 #define T3R_TILES_(w, h) \
     ((((size_t)(w) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE) * (((size_t)(h) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE))
 #define T3R_GRID_NODES_(w, h) (((size_t)(w) / T3R_GRID_STEP + 2) * ((size_t)(h) / T3R_GRID_STEP + 2))
+#define T3R_HEAD_WORK_(w, h) \
+    T3R_MAX_(T3R_PIXELS_(w, h) * 2, (size_t)(w) * T3R_HEAD_COLUMN_BYTES + T3R_HEAD_KERNEL_BYTES)
 #define T3R_ANY_(v) ((v) > 0 ? (size_t)1 : (size_t)0)
 
 /* X(p, NAME, text, bytes, first, last); p is handed through.
@@ -63,7 +68,7 @@
     X(p, CLUSTER_WORK, "K-means work", T3R_ANY_(v) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)   \
     X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * (v) * 4, T3R_AT_BUDGET, T3R_LAST_(keep, T3R_AT_HEAD))              \
     X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_BUDGET, T3R_AT_BUDGET)                                   \
-    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_PIXELS_(w, h) * 2, T3R_AT_HEAD, T3R_AT_HEAD)                            \
+    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_HEAD_WORK_(w, h), T3R_AT_HEAD, T3R_AT_HEAD)                             \
     X(p, SPLATS, "projected splats", (size_t)(z) * T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)                          \
     X(p, ORDER, "depth order", (size_t)(z) * T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)               \
     X(p, TILES, "tile table", T3R_TILES_(rw, rh) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                        \

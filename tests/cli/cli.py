@@ -84,7 +84,8 @@ def png(width, height):
             + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
-COMMANDS = ["import", "room", "info", "build", "render", "eval", "replay", "diff", "plan", "bench"]
+COMMANDS = ["import", "room", "info", "build", "render", "eval", "replay", "diff", "plan", "bench", "quantize",
+            "head-info"]
 POSE = {"fl_x": 220, "w": 64, "h": 48, "transform_matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}
 
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "trim3r.h"
+#include "weights_maker.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
@@ -68,7 +69,7 @@ static void *allocate(size_t bytes)
 
 static void require_status(t3r_status status)
 {
-    REQUIRE((int)status <= T3R_OK && (int)status >= T3R_ERR_FULL);
+    REQUIRE((int)status <= T3R_OK && (int)status >= T3R_ERR_WEIGHTS);
     REQUIRE(t3r_error_text(status)[0] != '\0');
 }
 
@@ -411,10 +412,28 @@ static void call_all(session *s, input *in)
     call_render(s, in);
 }
 
+/* A head, one cut short, or none. */
+static void call_bind(session *s, input *in)
+{
+    static uint8_t *weights;
+    static size_t bytes;
+    if (weights == NULL) {
+        weights = make_weights(small_shape, small_layers, 8, 8, 1, &bytes);
+    }
+    uint32_t kind = below(in, 6);
+    t3r_status status = t3r_bind_head(s->rt, kind == 0 ? NULL : weights, kind == 1 ? bytes - 1 : bytes);
+    require_status(status);
+    REQUIRE(kind != 1 || status != T3R_OK);
+    REQUIRE(kind != 0 || status == T3R_OK);
+}
+
 static void call(session *s, input *in)
 {
     t3r_scene scene;
-    switch (take8(in) % 14) {
+    switch (take8(in) % 15) {
+    case 14:
+        call_bind(s, in);
+        break;
     case 0:
     case 1:
         call_add_view(s, in);
@@ -482,6 +501,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     t3r_status status = t3r_init(&s.rt, s.arena, s.arena_bytes, &s.config);
     REQUIRE(status == (s.arena_bytes < plan.min_bytes ? T3R_ERR_ARENA : T3R_OK));
     REQUIRE((s.rt != NULL) == (status == T3R_OK));
+    if (status == T3R_OK && s.config.head == T3R_HEAD_LEARNED) {
+        call_bind(&s, &in);
+    }
     for (uint32_t i = 0; status == T3R_OK && i < MOST_CALLS && in.left > 0; i++) {
         call(&s, &in);
     }

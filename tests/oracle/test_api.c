@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "drawing.h"
+#include "weights_maker.h"
 
 enum { W = 32, H = 24, POINTS = W * H };
 
@@ -122,6 +123,7 @@ static void null_pointers(void **state)
     REFUSED(&b, t3r_attach(&rt, NULL, b.memory.count), T3R_ERR_ARGUMENT);
     assert_null(rt);
     REFUSED(&b, t3r_set_hooks(NULL, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_bind_head(NULL, NULL, 0), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_add_view(NULL, &frame, &camera), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_add_view(b.rt, NULL, &camera), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_add_view(b.rt, &frame, NULL), T3R_ERR_ARGUMENT);
@@ -518,6 +520,8 @@ static void budgets(void **state)
         measured--;
     }
     t3r_camera camera = plain_camera(30, W, H);
+    size_t weights_bytes;
+    uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 1, &weights_bytes);
     for (int allocation = 0; allocation < T3R_ALLOCATE_COUNT; allocation++) {
         for (int head = 0; head < T3R_HEAD_COUNT; head++) {
             const uint32_t wanted[] = {1, 2, measured / 20, measured / 2, measured - 1, measured, measured + 1, POINTS};
@@ -528,6 +532,7 @@ static void budgets(void **state)
             config.keep_analysis = 1;
             bench b = bench_of(config);
             t3r_scene scene;
+            assert_int_equal(t3r_bind_head(b.rt, weights, weights_bytes), T3R_OK);
             assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
             assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
             assert_int_equal(scene.valid_points, measured);
@@ -543,6 +548,7 @@ static void budgets(void **state)
             bench_free(&b);
         }
     }
+    free(weights);
 }
 
 /* What the planes' bytes are lent to once the scene is built must never come back as an analysis: a second
@@ -690,7 +696,7 @@ static void texts(void **state)
         const char *text = t3r_error_text((t3r_status)status);
         assert_non_null(text);
         assert_true(text[0] != '\0');
-        for (int other = -10; other < status && status <= 0; other++) {
+        for (int other = T3R_ERR_WEIGHTS; other < status && status <= 0; other++) {
             assert_string_not_equal(text, t3r_error_text((t3r_status)other));
         }
     }

@@ -1,0 +1,23 @@
+/* The shipped heads: weight files (runtime/weights.h) as constants, each in a source file of its own, so that a
+ * firmware holds only the ones that it names. */
+#ifndef TRIM3R_HEADS_H
+#define TRIM3R_HEADS_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Aligned to 16; to be bound in place, from flash. */
+extern const uint8_t t3r_head_nano[];  /* at most 1.5 k multiply-accumulates a pixel, 16 KB */
+extern const uint8_t t3r_head_small[]; /* 5 k, 48 KB */
+extern const uint8_t t3r_head_base[];  /* 16 k, 128 KB */
+extern const uint32_t t3r_head_nano_bytes;
+extern const uint32_t t3r_head_small_bytes;
+extern const uint32_t t3r_head_base_bytes;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,25 @@
+#include "weight_source.h"
+
+#define BYTES_A_LINE 24
+
+void weight_source_write(FILE *to, const char *name, const char *note, const uint8_t *bytes, size_t count)
+{
+    fprintf(to,
+            "/* The head `%s` as a weight file (runtime/weights.h): %s. Written by trim3r quantize. */\n"
+            "#include <stdint.h>\n"
+            "\n"
+            "extern const uint8_t t3r_head_%s[];\n"
+            "extern const uint32_t t3r_head_%s_bytes;\n"
+            "\n"
+            "/* clang-format off */\n"
+            "_Alignas(16) const uint8_t t3r_head_%s[] = {",
+            name, note, name, name, name);
+    for (size_t i = 0; i < count; i++) {
+        fprintf(to, "%s%u,", i % BYTES_A_LINE == 0 ? "\n" : "", (unsigned)bytes[i]);
+    }
+    fprintf(to,
+            "\n};\n"
+            "/* clang-format on */\n"
+            "const uint32_t t3r_head_%s_bytes = sizeof t3r_head_%s;\n",
+            name, name);
+}

@@ -1,0 +1,69 @@
+/* A learned head's layers, run row by row (SPEC.md, "Learned head: order").
+ *
+ * A plane layer keeps a ring of the rows that its readers still need, so activations take a few rows a layer, never a
+ * plane. Point layers are evaluated at single pixels of the row just completed. All of it works on weights that
+ * t3r_weights_check() passed.
+ *
+ *     for (y = t3r_network_first(net); y < height; y++) {
+ *         while (t3r_network_wants_features(net, y)) { fill t3r_network_feature_row(net, &row) }
+ *         t3r_network_step(net, y);
+ *         if (y >= 0) { t3r_network_points(net, y, ...) any number of times }
+ *     } */
+#ifndef T3R_NETWORK_H
+#define T3R_NETWORK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "kernels/dot.h"
+#include "weights.h"
+
+#define T3R_NETWORK_POINTS T3R_DOT_PIXELS /* most points a call: they share the weights' loads */
+
+/* What layers read: the features (node 0), or what plane layer n makes (node n). */
+typedef struct t3r_node {
+    uint32_t level, channels;
+    uint32_t bytes; /* of an activation: 1 or 2 */
+    int16_t factor; /* what activations of one byte are multiplied with: 256 of features beside int16 ones, else 1 */
+    int16_t zero;
+    uint32_t width, height; /* of its level */
+    uint32_t ring;          /* rows kept; row y lies at y mod ring; 0 = no plane layer reads it */
+    uint32_t made;          /* rows made so far, from the top */
+    size_t pitch;           /* bytes a row */
+    uint8_t *rows;
+} t3r_node;
+
+typedef struct t3r_network {
+    const uint8_t *file;
+    t3r_weights_header header;
+    uint32_t width, height;
+    uint32_t planes; /* layers before the first point layer */
+    t3r_layer layers[T3R_MAX_LAYERS];
+    t3r_node nodes[T3R_MAX_LAYERS + 1];
+    int16_t *columns;      /* T3R_DOT_PIXELS times column_pitch: the activations under a kernel, 16 bits each */
+    uint32_t column_pitch; /* a multiple of 16 */
+} t3r_network;
+
+/* Bytes of work for images of this width and any height; SIZE_MAX when that is more than can be counted. */
+size_t t3r_network_work_bytes(const void *weights, uint32_t width);
+
+/* Prepares a pass over one image. work: t3r_network_work_bytes() bytes, aligned to 16. */
+void t3r_network_begin(t3r_network *net, const void *weights, uint32_t width, uint32_t height, void *work);
+
+/* The first step, at most 0: above the image, so that rows at its top are made at the same pace as below. */
+int32_t t3r_network_first(const t3r_network *net);
+
+/* Whether step y needs another row of features; which row that is, and where it goes: width x T3R_FEATURES. */
+bool t3r_network_wants_features(const t3r_network *net, int32_t y);
+int8_t *t3r_network_feature_row(t3r_network *net, uint32_t *row);
+
+/* Makes the rows of all plane layers that the points of image row y need. */
+void t3r_network_step(t3r_network *net, int32_t y);
+
+/* The head's outputs at `count` (1..T3R_NETWORK_POINTS) pixels of row y whose columns x are all even or all odd, given
+ * their own features. */
+void t3r_network_points(const t3r_network *net, uint32_t y, uint32_t count, const uint32_t *x,
+                        const int8_t (*features)[T3R_FEATURES], int16_t (*out)[T3R_HEAD_OUTPUTS]);
+
+#endif

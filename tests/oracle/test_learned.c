@@ -1,0 +1,359 @@
+/* The learned head through the C interface: binding weights, the same bits in every arena, what its outputs mean. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "drawing.h"
+#include "weights_maker.h"
+
+enum { W = 45, H = 34, POINTS = W * H };
+
+static uint8_t colours[POINTS * 3], depths[POINTS * 2];
+
+/* A slanted plane with made-up colours, some of it without depth. */
+static t3r_frame made_up_frame(int holes)
+{
+    for (size_t i = 0; i < POINTS; i++) {
+        uint32_t step = (uint32_t)(1500 + i % W * 4 + i / W * 3);
+        step = holes && (i % 31 == 0 || (i % W < 9 && i / W > 20)) ? 0 : step;
+        depths[i * 2] = (uint8_t)step;
+        depths[i * 2 + 1] = (uint8_t)(step >> 8);
+        for (size_t c = 0; c < 3; c++) {
+            colours[i * 3 + c] = (uint8_t)(i * (7 + c) + (i / W) * 13 + (i * i >> 5));
+        }
+    }
+    return (t3r_frame){.format = T3R_PIXEL_RGB24,
+                       .width = W,
+                       .height = H,
+                       .planes = {colours, NULL},
+                       .stride_bytes = {W * 3, 0},
+                       .depth = depths,
+                       .depth_width = W,
+                       .depth_height = H,
+                       .depth_stride_bytes = W * 2,
+                       .depth_unit_q40 = 1099511628};
+}
+
+static t3r_config learned_config(uint32_t gaussians)
+{
+    t3r_config c = t3r_default_config(W, H, 2, gaussians);
+    c.clusters = 9;
+    c.head = T3R_HEAD_LEARNED;
+    c.keep_analysis = 1;
+    return c;
+}
+
+static t3r_runtime *with_views(const arena *memory, const t3r_config *config, int holes)
+{
+    t3r_runtime *rt;
+    assert_int_equal(t3r_init(&rt, memory->bytes, memory->count, config), T3R_OK);
+    t3r_frame frame = made_up_frame(holes);
+    t3r_camera camera = plain_camera(40, W, H);
+    for (uint32_t v = 0; v < config->views; v++) {
+        camera.position_q32[0] = (int64_t)v << 28;
+        assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_OK);
+    }
+    return rt;
+}
+
+static void same_scene(const t3r_scene *a, const t3r_scene *b)
+{
+    assert_int_equal(a->count, b->count);
+    assert_memory_equal(a->gaussians, b->gaussians, a->count * sizeof *a->gaussians);
+}
+
+/* Every width of weights and activations; arenas of all sizes, whatever they held; a moved arena; budgets between. */
+static void same_bits_everywhere(void **state)
+{
+    (void)state;
+    for (uint32_t bits = 0; bits < 4; bits++) {
+        size_t bytes;
+        uint8_t *weights =
+            make_weights(small_shape, small_layers, bits & 1 ? 16 : 8, bits & 2 ? 16 : 8, 40 + bits, &bytes);
+        t3r_config config = learned_config(400);
+        arena first = arena_of(&config, ARENA_AT_FULL);
+        t3r_runtime *rt = with_views(&first, &config, 1);
+        t3r_scene expected, scene;
+        assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, &expected), T3R_OK);
+        assert_int_equal(expected.count, 400);
+        uint32_t different = 0;
+        for (uint32_t i = 1; i < expected.count; i++) { /* the network says something, not always the same */
+            different += expected.gaussians[i].opacity_q15 != expected.gaussians[i - 1].opacity_q15;
+        }
+        assert_true(different > expected.count / 2);
+        const int sizes[] = {ARENA_AT_MINIMUM, ARENA_AT_TEN_TIMES};
+        for (int i = 0; i < 2; i++) {
+            arena other = arena_of(&config, sizes[i]), moved = arena_of_bytes(other.count);
+            memset(other.bytes, 0x7e, other.count);
+            rt = with_views(&other, &config, 1);
+            assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+            assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+            same_scene(&scene, &expected);
+            assert_int_equal(t3r_rebudget(rt, 123, &scene), T3R_OK);
+            memcpy(moved.bytes, other.bytes, other.count);
+            assert_int_equal(t3r_attach(&rt, moved.bytes, moved.count), T3R_OK);
+            assert_int_equal(t3r_rebudget(rt, 400, &scene), T3R_ERR_STATE); /* weights do not move along */
+            assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+            assert_int_equal(t3r_rebudget(rt, 400, &scene), T3R_OK);
+            same_scene(&scene, &expected);
+            arena_free(&moved);
+            arena_free(&other);
+        }
+        arena_free(&first);
+        free(weights);
+    }
+}
+
+static void binding(void **state)
+{
+    (void)state;
+    const made_layer wide[] = {
+        {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 128},
+        {T3R_LAYER_DEPTHWISE, 0, {1, T3R_SOURCE_NONE}, 5, 1, 1, 128},
+        {T3R_LAYER_POINT, 0, {2, T3R_SOURCE_NONE}, 1, 1, 1, 9},
+    };
+    size_t bytes, wide_bytes;
+    uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 1, &bytes);
+    uint8_t *too_large = make_weights(wide, 3, 8, 16, 1, &wide_bytes);
+    t3r_config config = learned_config(100);
+    arena memory = arena_of(&config, ARENA_AT_MINIMUM);
+    t3r_runtime *rt = with_views(&memory, &config, 0);
+    t3r_scene scene;
+    assert_int_equal(t3r_bind_head(NULL, weights, bytes), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_head_crc(NULL), 0);
+    assert_int_equal(t3r_head_crc(rt), 0);
+    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_bind_head(rt, weights + 8, bytes - 8), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_bind_head(rt, weights, bytes - 16), T3R_ERR_WEIGHTS);
+    assert_int_equal(t3r_bind_head(rt, too_large, wide_bytes), T3R_ERR_WEIGHTS);
+    assert_null(t3r_weights_error(too_large, wide_bytes));
+    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_ERR_STATE);
+
+    assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+    uint32_t crc = t3r_head_crc(rt);
+    assert_int_not_equal(crc, 0);
+    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_int_equal(t3r_bind_head(rt, too_large, wide_bytes), T3R_ERR_WEIGHTS); /* the bound one stays */
+    assert_int_equal(t3r_rebudget(rt, 50, &scene), T3R_OK);
+    assert_int_equal(t3r_bind_head(rt, NULL, 0), T3R_OK);
+    assert_int_equal(t3r_rebudget(rt, 50, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reallocate(rt, 50, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_OK);
+    assert_int_equal(t3r_reallocate(rt, 50, T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_get_scene(rt, &scene), T3R_OK); /* refused before anything changed */
+    assert_int_equal(t3r_attach(&rt, memory.bytes, memory.count), T3R_OK);
+    assert_int_equal(t3r_head_crc(rt), crc);
+
+    t3r_config only_renders = render_config(10, W, H);
+    arena small = arena_of(&only_renders, ARENA_AT_MINIMUM);
+    assert_int_equal(t3r_init(&rt, small.bytes, small.count, &only_renders), T3R_OK);
+    assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_ERR_STATE);
+    arena_free(&small);
+    arena_free(&memory);
+    free(too_large);
+    free(weights);
+}
+
+/* --- what the outputs mean ---------------------------------------------------------------------------------------- */
+
+static t3r_gaussian constant_scene[POINTS];
+
+/* Every pixel retained, one point layer without weights: the outputs are its biases. */
+static const t3r_gaussian *constant_head(const int16_t outputs[T3R_HEAD_OUTPUTS], t3r_head head)
+{
+    const made_layer one[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 9}};
+    size_t bytes;
+    uint8_t *weights = make_weights(one, 1, 8, 8, 1, &bytes);
+    t3r_layer layer = t3r_weights_layer(weights, 0);
+    memset(weights + layer.weights, 0, 9 * T3R_FEATURES);
+    for (uint32_t o = 0; o < 9; o++) {
+        const uint32_t numbers[2] = {(uint32_t)(int32_t)outputs[o], 1u << 30};
+        for (uint32_t b = 0; b < 4; b++) {
+            weights[layer.bias + 4 * o + b] = (uint8_t)(numbers[0] >> (8 * b));
+            weights[layer.multiplier + 4 * o + b] = (uint8_t)(numbers[1] >> (8 * b));
+        }
+        weights[layer.shift + o] = 1; /* x 2^30 / 2^30 */
+    }
+    seal_weights(weights, bytes);
+    t3r_config config = learned_config(POINTS);
+    config.views = 1;
+    config.head = head;
+    arena memory = arena_of(&config, ARENA_AT_MINIMUM);
+    t3r_runtime *rt = with_views(&memory, &config, 0);
+    t3r_scene scene;
+    assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_int_equal(scene.count, POINTS);
+    memcpy(constant_scene, scene.gaussians, sizeof constant_scene);
+    arena_free(&memory);
+    free(weights);
+    return constant_scene;
+}
+
+static void colour_and_opacity(void **state)
+{
+    (void)state;
+    const struct {
+        int16_t out;
+        int32_t opacity;
+    } opacities[] = {{20000, 20000}, {32767, 32440}, {32440, 32440}, {0, 0}, {-1, 0}, {-32768, 0}};
+    for (size_t k = 0; k < sizeof opacities / sizeof *opacities; k++) {
+        int16_t out[T3R_HEAD_OUTPUTS] = {0};
+        out[T3R_OUT_OPACITY] = opacities[k].out;
+        out[T3R_OUT_RED] = 1234;
+        out[T3R_OUT_GREEN] = -20000;
+        out[T3R_OUT_BLUE] = (int16_t)(k % 2 == 0 ? 32767 : -32768);
+        const t3r_gaussian *g = constant_head(out, T3R_HEAD_LEARNED);
+        for (uint32_t i = 0; i < POINTS; i++) {
+            assert_int_equal(g[i].opacity_q15, opacities[k].opacity);
+            for (int c = 0; c < 3; c++) {
+                int32_t want = colours[3 * i + (size_t)c] * 128 + out[T3R_OUT_RED + c];
+                assert_int_equal(g[i].colour_q7[c], want < 0 ? 0 : want > 32640 ? 32640 : want);
+            }
+        }
+    }
+}
+
+static void difference(const t3r_gaussian *a, const t3r_gaussian *b, double d[3])
+{
+    for (int i = 0; i < 3; i++) {
+        d[i] = (b->position_q20[i] - a->position_q20[i]) * 0x1p-20;
+    }
+}
+
+static double product(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The Gaussian's covariance in the coordinates of the tangents tu and tv, px^2: xx, xy, yy. */
+static void in_the_image(const t3r_gaussian *g, const double tu[3], const double tv[3], double s[3])
+{
+    double uu = product(tu, tu), uv = product(tu, tv), vv = product(tv, tv), det = uu * vv - uv * uv;
+    double du[3], dv[3];
+    for (int i = 0; i < 3; i++) {
+        du[i] = (vv * tu[i] - uv * tv[i]) / det;
+        dv[i] = (uu * tv[i] - uv * tu[i]) / det;
+    }
+    s[0] = s[1] = s[2] = 0;
+    for (int k = 0; k < 3; k++) {
+        double column[3];
+        for (int i = 0; i < 3; i++) {
+            column[i] = ldexp(g->factor[3 * i + k], g->factor_exponent);
+        }
+        double a = product(column, du), b = product(column, dv);
+        s[0] += a * a;
+        s[1] += a * b;
+        s[2] += b * b;
+    }
+}
+
+/* Footprints against the same in doubles, the spacing being one pixel where all are kept. */
+static void footprints(void **state)
+{
+    (void)state;
+    static t3r_gaussian centres[POINTS];
+    int16_t out[T3R_HEAD_OUTPUTS] = {0};
+    memcpy(centres, constant_head(out, T3R_HEAD_LEARNED), sizeof centres);
+    const struct {
+        double x, y, l11, l21, l22;
+    } wanted[] = {{0.5, -0.25, 1, 0, 1}, {-1.75, 1.5, 2, 1, 1.5}, {0, 0, 3, -1.9, 0.8},
+                  {1, 1, 0.7, 0.4, 2.5}, {0, 0, 15.5, 0, 15.5},   {0, 0, 0.07, 0, 0.07}};
+    for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
+        double l11 = wanted[k].l11, l21 = wanted[k].l21, l22 = wanted[k].l22;
+        out[T3R_OUT_OFFSET_X] = (int16_t)lrint(wanted[k].x * 0x1p14);
+        out[T3R_OUT_OFFSET_Y] = (int16_t)lrint(wanted[k].y * 0x1p14);
+        out[T3R_OUT_LOG_L11] = (int16_t)lrint(log2(l11) * 0x1p13);
+        out[T3R_OUT_LOG_L22] = (int16_t)lrint(log2(l22) * 0x1p13);
+        out[T3R_OUT_L21] = (int16_t)lrint(l21 * 0x1p14);
+        const t3r_gaussian *g = constant_head(out, T3R_HEAD_LEARNED);
+        double xx = fmax(l11 * l11 - 0.3, 0.02), xy = l11 * l21, yy = fmax(l21 * l21 + l22 * l22 - 0.3, 0.02);
+        yy = fmax(yy, xy * xy / xx + 0.02); /* t3r_lift() keeps it positive definite */
+        for (uint32_t y = 3; y < H - 3; y += 5) {
+            for (uint32_t x = 3; x < W - 3; x += 5) {
+                uint32_t i = y * W + x;
+                double left[3], right[3], up[3], down[3], tu[3], tv[3], moved[3], s[3];
+                difference(&centres[i - 1], &centres[i], left);
+                difference(&centres[i], &centres[i + 1], right);
+                difference(&centres[i - W], &centres[i], up);
+                difference(&centres[i], &centres[i + W], down);
+                for (int c = 0; c < 3; c++) {
+                    tu[c] = (left[c] + right[c]) / 2;
+                    tv[c] = (up[c] + down[c]) / 2;
+                }
+                difference(&centres[i], &g[i], moved);
+                double pixel = sqrt(product(tu, tu));
+                for (int c = 0; c < 3; c++) {
+                    double want = wanted[k].x * tu[c] + wanted[k].y * tv[c];
+                    assert_true(fabs(moved[c] - want) < 0.02 * pixel);
+                }
+                in_the_image(&g[i], tu, tv, s);
+                double most = xx > yy ? xx : yy;
+                if (fabs(s[0] - xx) > 0.03 * most || fabs(s[1] - xy) > 0.03 * most || fabs(s[2] - yy) > 0.03 * most) {
+                    fail_msg("footprint %zu at %u, %u: %.3f %.3f %.3f, wanted %.3f %.3f %.3f", k, x, y, s[0], s[1],
+                             s[2], xx, xy, yy);
+                }
+            }
+        }
+    }
+}
+
+/* Outputs are in units of the spacing: at a tenth kept a constant head that copies `analytic` gives its discs. */
+static void scaled_by_the_spacing(void **state)
+{
+    (void)state;
+    const made_layer one[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 9}};
+    size_t bytes;
+    uint8_t *weights = make_weights(one, 1, 8, 8, 1, &bytes);
+    t3r_layer layer = t3r_weights_layer(weights, 0);
+    memset(weights + layer.weights, 0, 9 * T3R_FEATURES);
+    memset(weights + layer.bias, 0, 4 * 9);
+    for (uint32_t o = 0; o < 9; o++) {
+        uint32_t log = o == T3R_OUT_LOG_L11 || o == T3R_OUT_LOG_L22 ? (uint32_t)(int32_t)lrint(log2(0.6) * 0x1p13) : 0;
+        for (uint32_t b = 0; b < 4; b++) {
+            weights[layer.bias + 4 * o + b] = (uint8_t)(log >> (8 * b));
+            weights[layer.multiplier + 4 * o + b] = (uint8_t)((1u << 30) >> (8 * b));
+        }
+        weights[layer.shift + o] = 1;
+    }
+    seal_weights(weights, bytes);
+    t3r_config config = learned_config(POINTS / 10);
+    arena memory = arena_of(&config, ARENA_AT_MINIMUM);
+    t3r_runtime *rt = with_views(&memory, &config, 1);
+    static t3r_gaussian learned[POINTS];
+    t3r_scene scene;
+    assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    memcpy(learned, scene.gaussians, scene.count * sizeof *learned);
+    assert_int_equal(t3r_reallocate(rt, POINTS / 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_OK);
+    assert_int_equal(scene.count, POINTS / 10);
+    for (uint32_t i = 0; i < scene.count; i++) {
+        const t3r_gaussian *a = &scene.gaussians[i], *b = &learned[i];
+        assert_memory_equal(a->position_q20, b->position_q20, sizeof a->position_q20);
+        double size = 0, error = 0;
+        for (int k = 0; k < 9; k++) {
+            double fa = ldexp(a->factor[k], a->factor_exponent), fb = ldexp(b->factor[k], b->factor_exponent);
+            size += fa * fa;
+            error += (fa - fb) * (fa - fb);
+        }
+        assert_true(error < 1e-4 * size);
+    }
+    arena_free(&memory);
+    free(weights);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_bits_everywhere),  cmocka_unit_test(binding),
+        cmocka_unit_test(colour_and_opacity),    cmocka_unit_test(footprints),
+        cmocka_unit_test(scaled_by_the_spacing),
+    };
+    return cmocka_run_group_tests_name("learned", tests, NULL, NULL);
+}

@@ -1,0 +1,236 @@
+/* Calibration: maxima and percentiles against a sort, and views of a runtime. */
+#include "calibrate.h"
+
+#include "budget.h"
+#include "sample_head.h"
+#include "state.h"
+#include "unit/unit.h"
+
+enum { WIDTH = 40, HEIGHT = 30, PIXELS = WIDTH * HEIGHT, VIEWS = 3 };
+
+typedef struct sample_views {
+    int8_t features[VIEWS][PIXELS * T3R_FEATURES];
+    uint8_t retained[VIEWS][PIXELS];
+} sample_views;
+
+static void fill(sample_views *views)
+{
+    uint64_t seed = 5;
+    for (int v = 0; v < VIEWS; v++) {
+        for (int i = 0; i < PIXELS * T3R_FEATURES; i++) {
+            views->features[v][i] = (int8_t)unit_between(&seed, -128, 127);
+        }
+        for (int i = 0; i < PIXELS; i++) {
+            views->retained[v][i] = unit_between(&seed, 0, 3) == 0;
+        }
+    }
+}
+
+static void forget_ranges(float_head *head, uint32_t but)
+{
+    for (uint32_t i = 0; i < head->graph.count; i++) {
+        if (i + 1 != but) {
+            free(head->layers[i].range);
+            head->layers[i].range = NULL;
+        }
+    }
+}
+
+static int by_size(const void *left, const void *right)
+{
+    float a = *(const float *)left, b = *(const float *)right;
+    return (a > b) - (a < b);
+}
+
+/* All values of a channel over the views, sorted by amount; of a point layer at retained pixels. */
+static float *sorted(const float_head *head, const sample_views *views, uint32_t n, uint32_t channel, size_t *count)
+{
+    float *all = unit_array(VIEWS * PIXELS, sizeof *all);
+    *count = 0;
+    for (int v = 0; v < VIEWS; v++) {
+        float_planes planes;
+        assert_int_equal(float_run(&planes, head, views->features[v], views->retained[v], WIDTH, HEIGHT), 0);
+        const float_plane *plane = &planes.planes[n];
+        bool point = head->graph.layers[n - 1].kind == T3R_LAYER_POINT;
+        for (size_t i = 0; i < (size_t)plane->width * plane->height; i++) {
+            if (!point || views->retained[v][i]) {
+                all[(*count)++] = fabsf(plane->values[i * plane->channels + channel]);
+            }
+        }
+        float_planes_free(&planes);
+    }
+    qsort(all, *count, sizeof *all, by_size);
+    return all;
+}
+
+static void test_ranges(void **state)
+{
+    (void)state;
+    static const double percentiles[] = {100, 99.99, 99, 50};
+    sample_views *views = unit_array(1, sizeof *views);
+    fill(views);
+    for (size_t p = 0; p < sizeof percentiles / sizeof *percentiles; p++) {
+        float_head head;
+        sample_head(&head, 2);
+        forget_ranges(&head, 0);
+        calibration *c = calibration_start(&head);
+        assert_non_null(c);
+        for (int v = 0; v < VIEWS; v++) {
+            assert_int_equal(calibration_add(c, views->features[v], views->retained[v], WIDTH, HEIGHT), 0);
+        }
+        assert_int_equal(calibration_pixels(c), VIEWS * PIXELS);
+        assert_int_equal(calibration_finish(c, &head, percentiles[p], 2), 5);
+        assert_null(head.layers[5].range);
+        for (uint32_t n = 1; n < head.graph.count; n++) {
+            for (uint32_t o = 0; o < head.graph.layers[n - 1].outputs; o++) {
+                size_t count;
+                float *all = sorted(&head, views, n, o, &count);
+                size_t at = (size_t)ceil(percentiles[p] / 100 * (double)count);
+                float exact = all[at == 0 ? 0 : at - 1], most = all[count - 1], got = head.layers[n - 1].range[o] / 2;
+                if (exact > 0) {
+                    assert_true(got >= exact && (got <= exact * (1 + 1.0f / 64) || (most <= 0 && got > 0)));
+                }
+                if (percentiles[p] >= 100 && most > 0) {
+                    assert_true(got >= most && got <= most);
+                }
+                assert_true(got > 0);
+                free(all);
+            }
+        }
+        calibration_free(c);
+        float_head_free(&head);
+    }
+    free(views);
+}
+
+/* Ranges that the head brings along stay; without a pixel there are none to give. */
+static void test_own_ranges(void **state)
+{
+    (void)state;
+    sample_views *views = unit_array(1, sizeof *views);
+    fill(views);
+    float_head head;
+    sample_head(&head, 2);
+    forget_ranges(&head, 3);
+    float before = head.layers[2].range[4];
+    calibration *c = calibration_start(&head);
+    assert_int_equal(calibration_finish(c, &head, 100, 1), -1);
+    forget_ranges(&head, 3);
+    assert_int_equal(calibration_add(c, views->features[0], views->retained[0], WIDTH, HEIGHT), 0);
+    assert_int_equal(calibration_finish(c, &head, 100, 1), 4);
+    assert_true(head.layers[2].range[4] >= before && head.layers[2].range[4] <= before);
+    assert_int_equal(calibration_finish(c, &head, 100, 1), 0);
+    calibration_free(c);
+    float_head_free(&head);
+    free(views);
+}
+
+/* A channel that is always 0 gets the layer's largest range. */
+static void test_dead_channel(void **state)
+{
+    (void)state;
+    sample_views *views = unit_array(1, sizeof *views);
+    fill(views);
+    float_head head;
+    sample_head(&head, 2);
+    forget_ranges(&head, 0);
+    const head_layer *layer = &head.graph.layers[0];
+    for (uint32_t t = 0; t < head_taps(layer); t++) {
+        for (uint32_t i = 0; i < layer->inputs; i++) {
+            head.layers[0].weight[head_weight_index(layer, 3, i, t)] = 0;
+        }
+    }
+    head.layers[0].bias[3] = -1;
+    calibration *c = calibration_start(&head);
+    assert_int_equal(calibration_add(c, views->features[0], views->retained[0], WIDTH, HEIGHT), 0);
+    assert_int_equal(calibration_finish(c, &head, 100, 1), 5);
+    float largest = 0;
+    for (uint32_t o = 0; o < layer->outputs; o++) {
+        largest = o == 3 ? largest : fmaxf(largest, head.layers[0].range[o]);
+    }
+    assert_true(largest > 0 && head.layers[0].range[3] >= largest && head.layers[0].range[3] <= largest);
+    calibration_free(c);
+    float_head_free(&head);
+    free(views);
+}
+
+/* A head whose first layer hands the features on: its ranges are the features' own. */
+static void test_runtime_views(void **state)
+{
+    (void)state;
+    enum { SIDE = 16, BUDGET = 60 };
+    float_head head = {.graph = {.name = "identity",
+                                 .count = 2,
+                                 .layers = {{T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 9, 9, 1, 1, 1, false},
+                                            {T3R_LAYER_POINT, 0, {1, T3R_SOURCE_NONE}, 9, 9, 1, 1, 1, false}}}};
+    for (int n = 0; n < 2; n++) {
+        head.layers[n].weight = unit_array(81, sizeof(float));
+        head.layers[n].bias = unit_array(9, sizeof(float));
+        for (int i = 0; i < 9; i++) {
+            head.layers[n].weight[i * 10] = 1;
+        }
+    }
+    uint8_t colour[SIDE][SIDE][3], depth[SIDE][SIDE][2];
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) {
+            colour[y][x][0] = x < 8 ? 200 : 100; /* 72, -28 */
+            colour[y][x][1] = 128;               /* 0 */
+            colour[y][x][2] = 28;                /* -100 */
+            depth[y][x][0] = 2000 & 255;
+            depth[y][x][1] = 2000 >> 8;
+        }
+    }
+    t3r_frame frame = {.format = T3R_PIXEL_RGB24,
+                       .width = SIDE,
+                       .height = SIDE,
+                       .planes = {&colour[0][0][0]},
+                       .stride_bytes = {SIDE * 3},
+                       .depth = &depth[0][0][0],
+                       .depth_width = SIDE,
+                       .depth_height = SIDE,
+                       .depth_stride_bytes = SIDE * 2,
+                       .depth_unit_q40 = 1099511628};
+    t3r_camera camera = {.fx_q16 = SIDE << 16,
+                         .fy_q16 = SIDE << 16,
+                         .cx_q16 = (SIDE - 1) << 15,
+                         .cy_q16 = (SIDE - 1) << 15,
+                         .rotation_q30 = {1 << 30}};
+    for (uint32_t keep = 0; keep < 2; keep++) {
+        t3r_config config = t3r_default_config(SIDE, SIDE, 1, BUDGET);
+        config.keep_analysis = keep;
+        t3r_plan_info plan;
+        assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
+        void *arena = NULL;
+        assert_int_equal(posix_memalign(&arena, T3R_ARENA_ALIGN, plan.bytes), 0);
+        t3r_runtime *runtime;
+        t3r_scene scene;
+        assert_int_equal(t3r_init(&runtime, arena, plan.bytes, &config), T3R_OK);
+        assert_int_equal(t3r_add_view(runtime, &frame, &camera), T3R_OK);
+        calibration *c = calibration_start(&head);
+        assert_int_equal(calibration_add_views(c, runtime), -1);
+        assert_int_equal(t3r_reconstruct(runtime, &scene), T3R_OK);
+        if (!keep) {
+            assert_int_equal(calibration_add_views(c, runtime), -1);
+        } else {
+            assert_int_equal(calibration_add_views(c, runtime), 0);
+            assert_int_equal(t3r_rebudget(runtime, BUDGET / 4, &scene), T3R_OK);
+            assert_int_equal(calibration_add_views(c, runtime), 0);
+            assert_int_equal(calibration_pixels(c), 2 * SIDE * SIDE);
+            assert_int_equal(calibration_finish(c, &head, 100, 1), 1);
+            const float *range = head.layers[0].range;
+            assert_true(range[0] * 64 == 72 && range[2] * 64 == 100 && range[3] * 64 == 127 && range[4] * 64 == 127);
+            /* nothing was ever green, so it has the largest there is */
+            assert_true(range[1] * 64 == 127 && range[7] * 64 == 127);
+        }
+        calibration_free(c);
+        free(arena);
+    }
+    float_head_free(&head);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_ranges), cmocka_unit_test(test_own_ranges),
+                                       cmocka_unit_test(test_dead_channel), cmocka_unit_test(test_runtime_views)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,28 @@
+/* Weight files for tests: a head's graph as a list, its numbers at random but lively, written by runtime/weights.h's
+ * text. */
+#ifndef T3R_TESTS_WEIGHTS_MAKER_H
+#define T3R_TESTS_WEIGHTS_MAKER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "weights.h"
+
+typedef struct made_layer {
+    t3r_layer_kind kind;
+    uint8_t level, source[2], kernel, stride, phases;
+    uint16_t outputs;
+} made_layer;
+
+/* Shapes of the size of the shipped heads; their length. */
+extern const made_layer small_shape[], base_shape[];
+extern const uint32_t small_layers, base_layers;
+
+/* The file, aligned to 16 and to be freed; *bytes its length. */
+uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_bits, uint32_t activation_bits,
+                      uint64_t seed, size_t *bytes);
+
+/* Sets the length and CRC right after the file was changed. */
+void seal_weights(uint8_t *file, size_t bytes);
+
+#endif
