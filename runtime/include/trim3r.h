@@ -230,16 +230,16 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 
 /* Binds the weights of the head T3R_HEAD_LEARNED, a whole .t3w file in memory aligned to 16 (NULL: none). Only the
  * pointer is kept: the memory stays the caller's, is read in place, and must not change or go while it is bound. Bind
- * after t3r_init() and again after t3r_attach(). The analysis does not depend on the head, so another may be bound to one
- * that was kept; t3r_head_crc() tells which made the last scene possible. T3R_ERR_ARGUMENT (misaligned), T3R_ERR_WEIGHTS,
- * T3R_ERR_STATE (no room for views): what was bound stays. */
+ * after t3r_init() and again after t3r_attach(). The analysis does not depend on the head, so another may be bound to
+ * one that was kept. T3R_ERR_ARGUMENT (misaligned), T3R_ERR_WEIGHTS, T3R_ERR_STATE (no room for views): what was bound
+ * stays. */
 t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 
 /* Why t3r_bind_head() refuses a weight file, as text; NULL when it is sound: then the head is too large for the arena
  * (over T3R_HEAD_COLUMN_BYTES of work a column). */
 const char *t3r_weights_error(const void *weights, size_t bytes);
 
-/* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it. */
+/* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it, and so which file to bind again. */
 uint32_t t3r_head_crc(const t3r_runtime *rt);
 
 /* Takes the next context view: to planes, resized to the working size, undistorted. The camera belongs to the frame's
@@ -253,8 +253,8 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
 t3r_status t3r_reset(t3r_runtime *rt);
 
 /* From the views added so far to exactly min(gaussians, valid points) Gaussians. T3R_ERR_CAMERA when a view stands more
- * than 1,024 scene units from the first; T3R_ERR_STATE: no views, or the learned head without weights; T3R_ERR_CANCELLED:
- * no scene then, the views stay. */
+ * than 1,024 scene units from the first; T3R_ERR_STATE: no views, or the learned head without weights;
+ * T3R_ERR_CANCELLED: no scene then, the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
 
 /* Another budget for the pair analysed last, without analysing again; needs keep_analysis. A later t3r_reconstruct()

@@ -3,7 +3,7 @@
 
     tools/train/train.py --head small --out build/small                     made-up pictures alone, two cores: ~80 minutes
     tools/train/train.py --head small --out build/small --data DIR --data DIR2
-    torchrun --standalone --nproc_per_node 2 tools/train/train.py ...       shares every step among processes
+    tools/train/train.py --processes 2 ...                                  shares every step; so does torchrun
     tools/train/train.py --smoke --out build/smoke                          two minutes; fails unless the loss falls
 
 A step draws pictures (samples.py), lets the runtime analyse, prune and prepare them with a budget drawn at random, asks
@@ -18,6 +18,8 @@ import argparse
 import csv
 import math
 import os
+import socket
+import subprocess
 import sys
 import time
 
@@ -50,6 +52,7 @@ def options_of(arguments):
     parser.add_argument("--quantized", type=float, default=0.15, metavar="SHARE", help="of steps with rounding, at the end")
     parser.add_argument("--rate", type=float, default=3e-3, help="highest learning rate (0.003)")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=1, help="that share every step on this machine (1)")
     parser.add_argument("--threads", type=int, default=1, help="of each process")
     parser.add_argument("--device", default="cpu", help="where the network runs; splats are drawn on the processor")
     parser.add_argument("--start", metavar="FILE.safetensors", help="begin with this head's weights")
@@ -330,8 +333,30 @@ def smoke_verdict(rows):
     return 0 if factor < SMOKE_FACTOR else 1
 
 
+def launch(options, arguments):
+    """Processes that share the steps, as torchrun would start them; the first failure ends all."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    ranks = []
+    for rank in range(options.processes):
+        environment = {**os.environ, "RANK": str(rank), "LOCAL_RANK": str(rank), "WORLD_SIZE": str(options.processes),
+                       "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": str(port)}  # fmt: skip
+        ranks.append(subprocess.Popen([sys.executable, os.path.abspath(__file__), *arguments], env=environment))
+    try:
+        while (codes := [r.poll() for r in ranks]).count(None) and not any(codes):
+            time.sleep(0.2)
+        return next((c for c in codes if c), 0)
+    finally:
+        for r in ranks:
+            r.kill()
+
+
 def main(arguments=None):
+    arguments = sys.argv[1:] if arguments is None else arguments
     options = options_of(arguments)
+    if options.processes > 1 and "RANK" not in os.environ:
+        return launch(options, arguments)
     run = Run(options)
     run.train(every=20 if options.smoke else 50)
     if run.rank == 0 and options.validate:
