@@ -129,6 +129,7 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.fill_radius = 0;
     options.head = T3R_HEAD_ANALYTIC;
     options.allocation = T3R_ALLOCATE_UNIFORM;
+    options.flying = options.redundancy = options.exposure = 0;
     options.keep_analysis = false;
     options.refine = 0;
     options.hash = false;
