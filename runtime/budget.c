@@ -304,9 +304,9 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
             }
         }
         for (uint32_t g = 0; g < settings->clusters; g++) {
-            if (clusters[g].quota > 0) {
+            if (clusters[g].quota > 0 && expected_q16[g] > 0) {
                 int32_t log_ratio_q16 = t3r_log2_wide_q16((uint64_t)clusters[g].quota << 16) -
-                                        t3r_log2_wide_q16(expected_q16[g]); /* a quota's points make it above 0 */
+                                        t3r_log2_wide_q16(expected_q16[g]);
                 clusters[g].density_q10 += t3r_round_shift32(log_ratio_q16, 6);
             }
         }

@@ -273,6 +273,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     if (method == EVALUATION_RANDOM) {
         options.allocation = T3R_ALLOCATE_RANDOM;
         options.head = T3R_HEAD_NONE;
+        options.flying = options.redundancy = options.exposure = 0;
     }
 
     *row = (evaluation_row){0};
