@@ -258,6 +258,23 @@ static void the_nearer_of_two(void **state)
     }
 }
 
+/* A later view that is only a little nearer does not take over; the earlier one is kept whole. */
+static void a_little_nearer_is_as_good(void **state)
+{
+    (void)state;
+    const double nearer[] = {0.08, 0.16}; /* 1/25 and 2/25 of the depth: one part in 16 is between */
+    for (int turn = 0; turn < 2; turn++) {
+        rig *s = unit_array(1, sizeof *s);
+        place_view(s, 0, 0, 0, 2);
+        place_view(s, 1, 0, nearer[turn], 2);
+        assert_true(mark_covered(s, 2) > PIXELS * 3 / 4);
+        for (int i = 0; i < PIXELS; i++) {
+            assert_int_equal(s->confidence[turn][i], T3R_CONFIDENCE_MEASURED);
+        }
+        free(s);
+    }
+}
+
 static void other_surfaces_stay(void **state)
 {
     (void)state;
@@ -540,6 +557,7 @@ int main(void)
         cmocka_unit_test(seen_through),
         cmocka_unit_test(the_earlier_of_two),
         cmocka_unit_test(the_nearer_of_two),
+        cmocka_unit_test(a_little_nearer_is_as_good),
         cmocka_unit_test(other_surfaces_stay),
         cmocka_unit_test(no_surface_is_lost),
         cmocka_unit_test(gain_recovered),
