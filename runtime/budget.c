@@ -127,14 +127,23 @@ static void fill_keys(const t3r_view *views, uint32_t count, const t3r_budget_se
         for (uint32_t y = 0; y < views[v].height; y++) {
             for (uint32_t x = 0; x < views[v].width; x++) {
                 size_t i = (size_t)y * views[v].width + x;
-                views[v].key[i] =
-                    key_of(threshold_at(v, x, y, settings), log_wanted_q10(views[v].texture[i], settings));
+                uint16_t key = key_of(threshold_at(v, x, y, settings), log_wanted_q10(views[v].texture[i], settings));
+                if (t3r_set_aside(&views[v], i, settings)) { /* among these the doubtful ones last */
+                    key = (uint16_t)((key >> 1) | (t3r_is_doubtful(views[v].confidence[i]) ? 0x8000u : 0));
+                }
+                views[v].key[i] = key;
             }
         }
     }
 }
 
 /* --- quotas ------------------------------------------------------------------------------------------------------- */
+
+/* Those of a cluster's points that are there to be retained. */
+static inline uint32_t open_points(const t3r_cluster *cluster)
+{
+    return cluster->points - T3R_MIN(cluster->aside, cluster->points);
+}
 
 /* Shares `budget` among the clusters in proportion to weight[k]; cumulative rounding makes the sum exact and each
  * quota one of the two integers next to its share. Weights sum to less than 2^39, the budget is below 2^24. */
@@ -168,7 +177,7 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
     for (uint32_t k = 0; k < count; k++) {
         int32_t below = log_wanted_q10((uint16_t)clusters[k].texture_q4, settings) - most;
         factor_q10[k] = below <= -(10 << 10) ? 1 : T3R_MAX(t3r_exp2_q16(below * 64) >> 6, 1u);
-        weight[k] = (uint64_t)clusters[k].points * factor_q10[k];
+        weight[k] = (uint64_t)open_points(&clusters[k]) * factor_q10[k];
     }
     for (uint32_t round = 0; round < count; round++) {
         uint64_t total = 0, taken = 0;
@@ -178,8 +187,8 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
         for (uint32_t k = 0; k < count; k++) {
             /* weight budget / total >= points, divided by points */
             if (weight[k] > 0 && factor_q10[k] * budget >= total) {
-                clusters[k].quota = clusters[k].points;
-                taken += clusters[k].points;
+                clusters[k].quota = open_points(&clusters[k]);
+                taken += open_points(&clusters[k]);
                 weight[k] = 0;
             }
         }
@@ -198,19 +207,19 @@ static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_bud
 {
     uint64_t left = valid;
     for (uint32_t k = 0; k < count; k++) {
-        clusters[k].quota = clusters[k].points;
+        clusters[k].quota = open_points(&clusters[k]);
     }
     for (uint32_t i = 0; i < count && left > budget; i++) {
         t3r_cluster *cluster = &clusters[clusters[i].order];
-        uint64_t kept = ((uint64_t)cluster->points * settings->keep_percent + 50) / 100;
-        uint64_t dropped = T3R_MIN(cluster->points - kept, left - budget);
-        cluster->quota = (uint32_t)(cluster->points - dropped);
+        uint64_t kept = ((uint64_t)open_points(cluster) * settings->keep_percent + 50) / 100;
+        uint64_t dropped = T3R_MIN(open_points(cluster) - kept, left - budget);
+        cluster->quota = (uint32_t)(open_points(cluster) - dropped);
         left -= dropped;
     }
     if (left > budget) {
         uint64_t weight[T3R_MAX_CLUSTERS];
         for (uint32_t k = 0; k < count; k++) {
-            weight[k] = clusters[k].points;
+            weight[k] = open_points(&clusters[k]);
         }
         share_out(clusters, count, weight, budget);
     }
@@ -218,18 +227,29 @@ static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_bud
 
 /* --- selection ---------------------------------------------------------------------------------------------------- */
 
-/* The groups that have a quota: SuperClusters, or cluster 0 standing for all points. */
-static inline uint32_t group_of(const t3r_view *view, size_t pixel, bool clustered)
+#define NO_GROUP UINT32_MAX
+
+/* The group whose quota a pixel falls under: its SuperCluster, or cluster 0 standing for all points; the one behind the
+ * last SuperCluster for points set aside, and none without depth. */
+static inline uint32_t group_of(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
-    return clustered ? view->label[pixel] : 0;
+    uint32_t label = view->label[pixel];
+    if (label == T3R_NO_LABEL) {
+        return NO_GROUP;
+    }
+    if (t3r_set_aside(view, pixel, settings)) {
+        return settings->clusters;
+    }
+    return by_cluster(settings->allocation) ? label : 0;
 }
 
 /* Finds each group's threshold, the least key of which at least `quota` points are not above it, by bisection over
  * the 16 bits of all groups at once; then how many points at the threshold itself are wanted. */
-static void find_thresholds(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t groups,
-                            bool clustered)
+static void find_thresholds(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                            t3r_cluster *clusters)
 {
-    uint32_t below[T3R_MAX_CLUSTERS];
+    uint32_t groups = settings->clusters + 1;
+    uint32_t below[T3R_MAX_CLUSTERS + 1];
     for (uint32_t g = 0; g < groups; g++) {
         clusters[g].threshold = 0;
     }
@@ -240,8 +260,8 @@ static void find_thresholds(const t3r_view *views, uint32_t count, t3r_cluster *
         for (uint32_t v = 0; v < count; v++) {
             size_t pixels = (size_t)views[v].width * views[v].height;
             for (size_t i = 0; i < pixels; i++) {
-                if (views[v].label[i] != T3R_NO_LABEL) {
-                    uint32_t g = group_of(&views[v], i, clustered);
+                uint32_t g = group_of(&views[v], i, settings);
+                if (g != NO_GROUP) {
                     below[g] += views[v].key[i] < clusters[g].threshold + step;
                 }
             }
@@ -266,9 +286,9 @@ static int32_t local_density_q10(int32_t density_q10, int32_t wanted_q10)
 /* The density of each group for which its pixels' shares sum to its quota. The threshold alone, the key of one point,
  * is a noisy measure of it in small groups; two rounds of proportional correction from there settle it. */
 static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                               t3r_cluster *clusters, uint32_t groups, bool clustered)
+                               t3r_cluster *clusters)
 {
-    for (uint32_t g = 0; g < groups; g++) {
+    for (uint32_t g = 0; g < settings->clusters; g++) {
         clusters[g].density_q10 = (int32_t)clusters[g].threshold - KEY_ZERO;
     }
     for (int round = 0; round < 2; round++) {
@@ -276,34 +296,35 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
         for (uint32_t v = 0; v < count; v++) {
             size_t pixels = (size_t)views[v].width * views[v].height;
             for (size_t i = 0; i < pixels; i++) {
-                if (views[v].label[i] != T3R_NO_LABEL) {
-                    uint32_t g = group_of(&views[v], i, clustered);
+                uint32_t g = group_of(&views[v], i, settings);
+                if (g < settings->clusters) {
                     int32_t wanted = log_wanted_q10(views[v].texture[i], settings);
                     expected_q16[g] += t3r_exp2_q16(local_density_q10(clusters[g].density_q10, wanted) * 64);
                 }
             }
         }
-        for (uint32_t g = 0; g < groups; g++) {
-            if (clusters[g].quota > 0) {
+        for (uint32_t g = 0; g < settings->clusters; g++) {
+            if (clusters[g].quota > 0 && expected_q16[g] > 0) {
                 int32_t log_ratio_q16 = t3r_log2_wide_q16((uint64_t)clusters[g].quota << 16) -
-                                        t3r_log2_wide_q16(expected_q16[g]); /* a quota's points make it above 0 */
+                                        t3r_log2_wide_q16(expected_q16[g]);
                 clusters[g].density_q10 += t3r_round_shift32(log_ratio_q16, 6);
             }
         }
     }
 }
 
-static void set_masks(const t3r_view *views, uint32_t count, t3r_cluster *clusters, bool clustered)
+static void set_masks(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
 {
     for (uint32_t v = 0; v < count; v++) {
         const t3r_view *view = &views[v];
         size_t pixels = (size_t)view->width * view->height;
         memset(view->mask, 0, (pixels + 31) / 32 * sizeof *view->mask);
         for (size_t i = 0; i < pixels; i++) {
-            if (view->label[i] == T3R_NO_LABEL) {
+            uint32_t g = group_of(view, i, settings);
+            if (g == NO_GROUP) {
                 continue;
             }
-            t3r_cluster *group = &clusters[group_of(view, i, clustered)];
+            t3r_cluster *group = &clusters[g];
             bool tie = view->key[i] == group->threshold && group->ties > 0;
             group->ties -= tie;
             if (view->key[i] < group->threshold || tie) {
@@ -313,12 +334,46 @@ static void set_masks(const t3r_view *views, uint32_t count, t3r_cluster *cluste
     }
 }
 
+bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians)
+{
+    uint64_t plain = 0;
+    for (uint32_t v = 0; v < count; v++) {
+        size_t pixels = (size_t)views[v].width * views[v].height;
+        for (size_t i = 0; i < pixels; i++) {
+            uint8_t confidence = views[v].confidence[i];
+            plain += confidence != T3R_CONFIDENCE_NONE && !t3r_is_doubtful(confidence) && !t3r_is_covered(confidence);
+        }
+    }
+    return 4 * (uint64_t)gaussians <= plain;
+}
+
+/* The points that this budget sets aside: of each cluster, and all as a group of their own behind the last. */
+static void count_aside(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                        t3r_cluster *clusters)
+{
+    t3r_cluster *all = &clusters[settings->clusters];
+    *all = (t3r_cluster){0};
+    for (uint32_t k = 0; k < settings->clusters; k++) {
+        clusters[k].aside = 0;
+    }
+    for (uint32_t v = 0; v < count; v++) {
+        size_t pixels = (size_t)views[v].width * views[v].height;
+        for (size_t i = 0; i < pixels; i++) {
+            uint32_t label = views[v].label[i];
+            if (label != T3R_NO_LABEL && t3r_set_aside(&views[v], i, settings)) {
+                clusters[label].aside++;
+                all->points++;
+            }
+        }
+    }
+}
+
 void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
 {
-    bool clustered = by_cluster(settings->allocation);
+    count_aside(views, count, settings, clusters);
     uint64_t valid = 0;
     for (uint32_t k = 0; k < settings->clusters; k++) {
-        valid += clusters[k].points;
+        valid += open_points(&clusters[k]);
         clusters[k].quota = 0;
     }
     uint64_t budget = T3R_MIN(settings->gaussians, valid);
@@ -329,16 +384,21 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     } else {
         clusters[0].quota = (uint32_t)budget;
     }
+    t3r_cluster *aside = &clusters[settings->clusters];
+    aside->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, aside->points);
     fill_keys(views, count, settings);
-    uint32_t groups = clustered ? settings->clusters : 1;
-    find_thresholds(views, count, clusters, groups, clustered);
-    estimate_densities(views, count, settings, clusters, groups, clustered);
-    set_masks(views, count, clusters, clustered);
+    find_thresholds(views, count, settings, clusters);
+    estimate_densities(views, count, settings, clusters);
+    set_masks(views, count, settings, clusters);
 }
 
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
                             const t3r_cluster *clusters)
 {
-    const t3r_cluster *group = &clusters[group_of(view, pixel, by_cluster(settings->allocation))];
+    uint32_t g = group_of(view, pixel, settings);
+    if (g >= settings->clusters) {
+        return 0; /* retained where all others are, so that nothing about it is left for it to cover */
+    }
+    const t3r_cluster *group = &clusters[g];
     return local_density_q10(group->density_q10, log_wanted_q10(view->texture[pixel], settings));
 }

@@ -21,7 +21,19 @@ typedef struct t3r_budget_settings {
     uint32_t gamma_q8;
     uint32_t clusters;
     uint32_t seed;
+    bool pass_over_covered; /* the budget is so small that points of surfaces seen twice are wanted once */
 } t3r_budget_settings;
+
+/* Whether a point is retained only once all others are: the doubtful ones, and with pass_over_covered those that
+ * another view covers. Heads let the splats of other points not grow over them. */
+static inline bool t3r_set_aside(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
+{
+    uint8_t confidence = view->confidence[pixel];
+    return t3r_is_doubtful(confidence) || (settings->pass_over_covered && t3r_is_covered(confidence));
+}
+
+/* Whether Z is at most a quarter of the points that are neither doubtful nor covered by another view. */
+bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 
 /* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */
 void t3r_blur_texture(const t3r_view *views, uint32_t count);

@@ -21,6 +21,9 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .gamma_q8 = 179, /* 0.7 */
         .head = T3R_HEAD_ANALYTIC,
         .fill_radius = 4,
+        .flying = 1,
+        .redundancy = 1,
+        .exposure = 1,
         .keep_analysis = 0,
         .seed = 1,
     };
@@ -52,6 +55,9 @@ const char *t3r_config_error(const t3r_config *c)
         {"gamma_q8 must be 0..512", c->gamma_q8, 0, 512},
         {"head is none of t3r_head", (uint32_t)c->head, 0, T3R_HEAD_COUNT - 1},
         {"fill_radius must be 0..8", c->fill_radius, 0, 8},
+        {"flying must be 0 or 1", c->flying, 0, 1},
+        {"redundancy must be 0 or 1", c->redundancy, 0, 1},
+        {"exposure must be 0 or 1", c->exposure, 0, 1},
         {"keep_analysis must be 0 or 1", c->keep_analysis, 0, 1},
     };
     for (size_t i = 0; i < sizeof range / sizeof range[0]; i++) {

@@ -6,6 +6,8 @@
 #define TEXTURE_FLOOR_Q4 8
 #define TEXTURE_MIDDLE_Q16 622592 /* 9.5 */
 #define SLOPE_GAIN 4064
+#define MEASURED 127
+#define FILLED 64
 
 static int8_t held(int32_t x)
 {
@@ -31,12 +33,13 @@ void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, i
         features[c] = (int8_t)(view->colour[c][i] - 128);
     }
     features[3] = t3r_retained(view, i) ? 127 : 0;
-    features[4] = (int8_t)(view->confidence[i] >> 1);
+    features[4] = 0;
     features[5] = LOG_DENSITY_NONE;
     features[6] = features[7] = features[8] = 0;
-    if (view->label[i] == T3R_NO_LABEL) {
-        return;
+    if (view->label[i] == T3R_NO_LABEL || (!t3r_retained(view, i) && t3r_set_aside(view, i, input->settings))) {
+        return; /* what is set aside is not to be covered */
     }
+    features[4] = t3r_is_measured(view->confidence[i]) ? MEASURED : FILLED;
     const uint16_t *depth = view->depth + i;
     features[5] = held(t3r_round_shift32(t3r_log_density_q10(view, i, input->settings, input->clusters), 6) + 64);
     features[6] =

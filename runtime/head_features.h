@@ -2,13 +2,14 @@
  *
  *   0..2  red, green, blue - 128
  *   3     retained: 127 or 0
- *   4     confidence / 2: measured 127, filled 64, none 0
+ *   4     measured 127, filled 64, none 0
  *   5     log2 of the density of retained points, Q4, + 64: spacing 2^(-density / 2)
  *   6     log2 of the blurred texture (floor added as in the budget), Q3 centred: (log2(texture_q4 + 8) - 9.5) x 16
  *   7, 8  gradient of depth along x and y over depth, central difference, x 4064, held within +-127: 16 is a surface
  *         at 45 degrees seen with f = 256 px; 0 where a neighbour has no depth
  *
- * Channels 4..8 are 0, 0, -70, and 0 where a pixel has no depth. Channels lie together: row[x][channel]. */
+ * Channels 4..8 are 0, -70, 0, 0, 0 where a pixel has no depth, and where it was set aside (budget.h) and not retained.
+ * Channels lie together: row[x][channel]. */
 #ifndef T3R_HEAD_FEATURES_H
 #define T3R_HEAD_FEATURES_H
 

@@ -9,10 +9,13 @@
 
 #include "budget.h"
 #include "depth.h"
+#include "exposure.h"
 #include "fixed.h"
+#include "flying_pixels.h"
 #include "head.h"
 #include "pixel_clusters.h"
 #include "pointmap.h"
+#include "redundancy.h"
 #include "scene_frame.h"
 #include "stage_hash.h"
 #include "state.h"
@@ -55,10 +58,48 @@ static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
     for (uint32_t v = 0; v < rt->views && status == T3R_OK; v++) {
         status = t3r_pose_in_scene(&rt->camera[v], &rt->frame, &views[v].pose);
     }
-    if (status == T3R_OK) {
-        t3r_hash_pointmap(rt, views);
-    }
     return status;
+}
+
+/* What the views say of each other: pixels that cannot be, colours of one exposure, surfaces seen twice. */
+static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
+{
+    for (uint32_t v = 0; v < rt->views && rt->config.flying; v++) {
+        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, v, 3 * rt->views)) {
+            return T3R_ERR_CANCELLED;
+        }
+        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent);
+    }
+    return T3R_OK;
+}
+
+static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
+{
+    for (uint32_t v = 0; v < T3R_MAX_VIEWS; v++) {
+        for (int c = 0; c < 3; c++) {
+            rt->gain_q14[v][c] = T3R_GAIN_ONE_Q14;
+        }
+    }
+    if (rt->config.exposure) {
+        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, rt->views, 3 * rt->views)) {
+            return T3R_ERR_CANCELLED;
+        }
+        t3r_exposure_gains(views, rt->views, rt->frame.exponent, rt->gain_q14);
+    }
+    return T3R_OK;
+}
+
+static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
+{
+    for (uint32_t v = rt->views; v-- > 0 && rt->config.redundancy;) {
+        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 3 * rt->views - v - 1, 3 * rt->views)) {
+            return T3R_ERR_CANCELLED;
+        }
+        (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent);
+    }
+    t3r_forget_witnesses(views, rt->views);
+    t3r_hash_pointmap(rt, views);
+    return T3R_OK;
 }
 
 static t3r_status wavelet(t3r_runtime *rt, t3r_view *views)
@@ -93,11 +134,21 @@ t3r_status t3r_analyse(t3r_runtime *rt)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
+    t3r_forget_marks(views, rt->views); /* of an earlier analysis of the same planes */
     t3r_hash_image(rt, views);
 
     t3r_status status = depth(rt, views);
     if (status == T3R_OK) {
         status = pointmap(rt, views);
+    }
+    if (status == T3R_OK) {
+        status = flying_pixels(rt, views);
+    }
+    if (status == T3R_OK) {
+        status = exposure(rt, views);
+    }
+    if (status == T3R_OK) {
+        status = redundancy(rt, views);
     }
     if (status == T3R_OK) {
         status = wavelet(rt, views);
@@ -115,6 +166,16 @@ static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_sett
 {
     t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
     t3r_hash_budget(rt, views);
+}
+
+/* The colours of a view's Gaussians brought to the mean exposure. */
+static void level(t3r_gaussian *gaussians, uint32_t count, const uint16_t gain_q14[3])
+{
+    for (uint32_t i = 0; i < count; i++) {
+        for (int c = 0; c < 3; c++) {
+            gaussians[i].colour_q7[c] = t3r_level_q7(gaussians[i].colour_q7[c], gain_q14[c]);
+        }
+    }
 }
 
 typedef uint32_t (*head_function)(const t3r_head_input *input, t3r_gaussian *out);
@@ -142,7 +203,9 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
             .weights = rt->weights,
             .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
         };
-        rt->gaussians += heads[rt->config.head](&input, scene + rt->gaussians);
+        uint32_t added = heads[rt->config.head](&input, scene + rt->gaussians);
+        level(scene + rt->gaussians, added, rt->gain_q14[v]);
+        rt->gaussians += added;
     }
     t3r_hash_scene(rt);
     return T3R_OK;
@@ -165,6 +228,7 @@ t3r_status t3r_build_scene(t3r_runtime *rt)
     if (!t3r_progress(rt, T3R_STAGE_BUDGET, 0, 1)) {
         return T3R_ERR_CANCELLED;
     }
+    settings.pass_over_covered = rt->config.redundancy && t3r_is_sparse(views, rt->views, settings.gaussians);
     budget(rt, views, &settings);
     t3r_status status = head(rt, views, &settings);
     rt->has_scene = status == T3R_OK;

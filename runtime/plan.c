@@ -42,7 +42,12 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
     operations[T3R_STAGE_IMAGE] = c->views * (4 * frame + 3 * (side + c->height) * c->width + 6 * view +
                                               64 * T3R_GRID_NODES_(c->width, c->height) + 8192);
     operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2);
-    operations[T3R_STAGE_POINTMAP] = 2 * pixels + 1120; /* two looks at the depths for their median */
+    /* two looks at the depths for their median, marks forgotten twice; every pixel sought in all other views: nine
+     * looks for flying ones, one for redundant ones, a quarter of them for exposure, its medians */
+    uint64_t others = c->views > 0 ? c->views - 1 : 0;
+    operations[T3R_STAGE_POINTMAP] =
+        pixels * (4 + c->flying * (4 + 10 * others) + c->redundancy * 2 * others + c->exposure * 2 * others) +
+        c->views * 3 * 512 + 1120;
     /* two lifting passes of three steps and a sum a level, the levels adding up to less than 4 / 3 */
     operations[T3R_STAGE_WAVELET] = pixels * (7 * 4 / 3 + c->wavelet_levels + 1);
     /* seeding: a draw and a sum for each trial, one update; neighbours a batch; a point against all centres at most */
@@ -50,8 +55,9 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
         T3R_DIMENSIONS * (clusters * T3R_CLUSTER_SAMPLE * (2 * T3R_CLUSTER_TRIALS + 1) +
                           (c->cluster_batches + 1) * clusters * clusters * (1 + T3R_NEIGHBOURS) +
                           assigned * (clusters + T3R_NEIGHBOURS * 2));
-    /* textures, two blurs of nine taps, keys, 17 bisections, two density rounds, masks; ranking and quotas */
-    operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 1 + 17 + 2 + 1) + 3 * clusters * clusters + 64 * clusters;
+    /* textures, two blurs of nine taps, points counted twice, keys, 17 bisections, two density rounds, masks; ranking
+     * and quotas */
+    operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 2 + 1 + 17 + 2 + 1) + 3 * clusters * clusters + 64 * clusters;
     operations[T3R_STAGE_HEAD] = head_operations(c);
     operations[T3R_STAGE_REFINE] = 0;
     /* project; four radix passes and their counts; counting and listing tiles; at most a pass a tile; each pixel of

@@ -78,6 +78,12 @@ void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views)
             }
         }
     }
+    for (uint32_t v = 0; v < rt->views; v++) {
+        for (int c = 0; c < 3; c++) {
+            hash = t3r_hash_u16(hash, rt->gain_q14[v][c]);
+        }
+        hash = t3r_hash_bytes(hash, views[v].confidence, pixels_of(rt));
+    }
     tell(rt, T3R_STAGE_POINTMAP, hash);
 }
 

@@ -27,6 +27,7 @@ typedef struct t3r_cluster {
     int32_t centre_q19[T3R_DIMENSIONS];
     uint32_t points;     /* valid points with its label; 0 = empty */
     uint32_t texture_q4; /* their mean texture energy (eq. 2) */
+    uint32_t aside;      /* of its points, those that this budget sets aside */
     uint32_t quota;      /* points to be retained */
     uint32_t threshold;  /* the largest key retained */
     uint32_t ties;       /* points retained among those whose key is the threshold */

@@ -32,3 +32,16 @@ void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
         }
     }
 }
+
+void t3r_forget_marks(const t3r_view *views, uint32_t count)
+{
+    for (uint32_t v = 0; v < count; v++) {
+        size_t pixels = T3R_PIXELS_(views[v].width, views[v].height);
+        for (size_t i = 0; i < pixels; i++) {
+            uint8_t confidence = views[v].confidence[i];
+            if (confidence != T3R_CONFIDENCE_NONE) {
+                views[v].confidence[i] = t3r_is_measured(confidence) ? T3R_CONFIDENCE_MEASURED : T3R_CONFIDENCE_FILLED;
+            }
+        }
+    }
+}

@@ -2,13 +2,35 @@
 #ifndef T3R_VIEWS_H
 #define T3R_VIEWS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "trim3r.h"
 
 #define T3R_CONFIDENCE_MEASURED 255u
+#define T3R_CONFIDENCE_WITNESS 254u /* measured, and covers another view's pixel; only within stage pointmap */
+#define T3R_CONFIDENCE_COVERED 192u /* measured, but another view has the surface as finely */
 #define T3R_CONFIDENCE_FILLED 128u
+#define T3R_CONFIDENCE_FILLED_COVERED 96u
+#define T3R_CONFIDENCE_DOUBTFUL 64u /* measured, but contradicted: a flying pixel */
+#define T3R_CONFIDENCE_FILLED_DOUBTFUL 32u
 #define T3R_CONFIDENCE_NONE 0u
+
+static inline bool t3r_is_covered(uint8_t confidence)
+{
+    return confidence == T3R_CONFIDENCE_COVERED || confidence == T3R_CONFIDENCE_FILLED_COVERED;
+}
+
+static inline bool t3r_is_doubtful(uint8_t confidence)
+{
+    return confidence == T3R_CONFIDENCE_DOUBTFUL || confidence == T3R_CONFIDENCE_FILLED_DOUBTFUL;
+}
+
+/* Whether the sensor gave the depth, whatever was thought of it since. */
+static inline bool t3r_is_measured(uint8_t confidence)
+{
+    return confidence >= T3R_CONFIDENCE_COVERED || confidence == T3R_CONFIDENCE_DOUBTFUL;
+}
 
 /* A rigid pose in fixed point, expanded once from t3r_camera. */
 typedef struct t3r_pose {
@@ -35,5 +57,8 @@ typedef struct t3r_view {
 
 /* The planes of every view there is room for, as the stages take them; poses only of those added. */
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS]);
+
+/* Confidences as they were before views were compared: measured, filled or none. */
+void t3r_forget_marks(const t3r_view *views, uint32_t count);
 
 #endif

@@ -129,6 +129,7 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.fill_radius = 0;
     options.head = T3R_HEAD_ANALYTIC;
     options.allocation = T3R_ALLOCATE_UNIFORM;
+    options.flying = options.redundancy = options.exposure = 0;
     options.keep_analysis = false;
     options.refine = 0;
     options.hash = false;
@@ -272,6 +273,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     if (method == EVALUATION_RANDOM) {
         options.allocation = T3R_ALLOCATE_RANDOM;
         options.head = T3R_HEAD_NONE;
+        options.flying = options.redundancy = options.exposure = 0;
     }
 
     *row = (evaluation_row){0};

@@ -23,6 +23,9 @@ void reconstruction_defaults(reconstruction_options *options)
         .gamma_q8 = c.gamma_q8,
         .paper_keep_percent = c.keep_percent,
         .fill_radius = c.fill_radius,
+        .flying = c.flying,
+        .redundancy = c.redundancy,
+        .exposure = c.exposure,
         .seed = c.seed,
         .hash = true,
         .arena = ARENA_FULL,
@@ -255,6 +258,9 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
     r->config.gamma_q8 = options->gamma_q8;
     r->config.keep_percent = options->paper_keep_percent;
     r->config.fill_radius = options->fill_radius;
+    r->config.flying = options->flying;
+    r->config.redundancy = options->redundancy;
+    r->config.exposure = options->exposure;
     r->config.seed = options->seed;
     r->config.keep_analysis = options->keep_analysis;
     if (options->render_width != 0) {

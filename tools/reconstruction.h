@@ -33,6 +33,7 @@ typedef struct reconstruction_options {
     uint32_t gamma_q8;
     uint32_t paper_keep_percent; /* N of the allocation `paper` */
     uint32_t fill_radius;
+    uint32_t flying, redundancy, exposure; /* 0 or 1 each: what views tell of each other */
     uint32_t seed;
     uint32_t refine;    /* passes of refinement; 0 */
     bool keep_analysis; /* so that t3r_rebudget() and t3r_reallocate() work afterwards */

@@ -22,6 +22,9 @@ enum {
     KEY_GAMMA,
     KEY_KEEP_PERCENT,
     KEY_FILL_RADIUS,
+    KEY_FLYING,
+    KEY_REDUNDANCY,
+    KEY_EXPOSURE,
     KEY_SEED,
     KEY_WORKING,
     KEY_DEPTH,
@@ -59,6 +62,11 @@ static const struct argp_option settings[] = {
     {"keep-percent", KEY_KEEP_PERCENT, "N", 0, "percent that a trimmed SuperCluster keeps with --allocate paper (10)",
      0},
     {"fill-radius", KEY_FILL_RADIUS, "N", 0, "depth holes bracketed within N pixels are filled, 0..8 (4)", 0},
+    {"flying", KEY_FLYING, "on|off", 0,
+     "points between surfaces, or in front of what another view measured, are left out (on)", 0},
+    {"redundancy", KEY_REDUNDANCY, "on|off", 0,
+     "small budgets pass over points whose surface another view has as finely (on)", 0},
+    {"exposure", KEY_EXPOSURE, "on|off", 0, "colours of all views are brought to their mean exposure (on)", 0},
     {"seed", KEY_SEED, "N", 0, "of the K-means seeding and of --allocate random (1)", 0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0, "sensor", 0},
@@ -101,6 +109,14 @@ static void parse_gamma(struct argp_state *state, const char *text, reconstructi
     o->gamma_q8 = (uint32_t)(gamma * 256 + 0.5);
 }
 
+static uint32_t parse_switch(struct argp_state *state, const char *option, const char *text)
+{
+    if (strcmp(text, "on") != 0 && strcmp(text, "off") != 0) {
+        argp_error(state, "--%s takes on or off, not '%s'", option, text);
+    }
+    return strcmp(text, "on") == 0;
+}
+
 static error_t parse_setting(int key, char *arg, struct argp_state *state)
 {
     reconstruction_options *o = state->input;
@@ -128,6 +144,15 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_FILL_RADIUS:
         o->fill_radius = option_number(state, "fill-radius", arg, 0, 8);
+        return 0;
+    case KEY_FLYING:
+        o->flying = parse_switch(state, "flying", arg);
+        return 0;
+    case KEY_REDUNDANCY:
+        o->redundancy = parse_switch(state, "redundancy", arg);
+        return 0;
+    case KEY_EXPOSURE:
+        o->exposure = parse_switch(state, "exposure", arg);
         return 0;
     case KEY_SEED:
         o->seed = option_number(state, "seed", arg, 0, UINT32_MAX);
@@ -195,6 +220,7 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         if (strcmp(arg, "random") == 0) {
             o->allocation = T3R_ALLOCATE_RANDOM;
             o->head = T3R_HEAD_NONE;
+            o->flying = o->redundancy = o->exposure = 0;
         } else if (strcmp(arg, "trim3r") != 0) {
             argp_error(state, "--method does not know '%s'", arg);
         }

@@ -30,7 +30,7 @@
 #define T3R_SPLAT_BYTES 40
 #define T3R_ORDER_BYTES 16       /* two keys and two indices a Gaussian: the radix sort's two sides */
 #define T3R_SORT_BYTES 4096      /* four histograms of 256 counts */
-#define T3R_CLUSTER_BYTES 52     /* centre and statistics of a SuperCluster */
+#define T3R_CLUSTER_BYTES 56     /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
 /* Work of the learned head: rows of activations, and the activations under its largest kernel */
 #define T3R_HEAD_COLUMN_BYTES 1280
@@ -63,7 +63,7 @@
     X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16), T3R_AT_WAVELET,   \
       T3R_AT_WAVELET)                                                                                                      \
     X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_SUPERCLUSTERS, T3R_LAST_(keep, T3R_AT_HEAD))   \
-    X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * (k) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                           \
+    X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * ((k) + 1) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                           \
       T3R_LAST_(keep, T3R_AT_HEAD))                                                                                        \
     X(p, CLUSTER_WORK, "K-means work", T3R_ANY_(v) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)   \
     X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * (v) * 4, T3R_AT_BUDGET, T3R_LAST_(keep, T3R_AT_HEAD))              \

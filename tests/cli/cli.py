@@ -127,6 +127,9 @@ def test_build(room):
         "--gamma": ["-1", "2.1", "x", "nan"],
         "--keep-percent": ["101"],
         "--fill-radius": ["9"],
+        "--flying": ["1", ""],
+        "--redundancy": ["yes"],
+        "--exposure": ["On"],
         "--seed": ["-1", "4294967296"],
         "--working": ["64", "4x64", "64x5000"],
         "--arena": ["x", "-1", "1k", ""],
@@ -272,6 +275,7 @@ def test_replay(room):
 
     expect(1, *base, "--expect", "0" * 16, err=found["hash"])
     expect(1, *base, "--expect", "golden.json", "--seed", 9, err="stage superclusters")
+    expect(1, *base, "--expect", "golden.json", "--redundancy", "off", err="stage pointmap")
     expect(1, *base, "--expect", "golden.json", "--wavelet", "haar", err="stage wavelet")
     expect(1, *base, "--expect", "golden.json", "--context", "0,2", err="stage image")
     expect(1, *base, "--expect", "golden.json", "--head", "moment", err="stage head")

@@ -95,6 +95,9 @@ static t3r_config take_config(input *in)
     c.gamma_q8 = below(in, 513);
     c.keep_percent = below(in, 101);
     c.seed = take8(in);
+    c.flying = flags >> 7;
+    c.redundancy = c.seed & 1;
+    c.exposure = c.seed >> 1 & 1;
     return c;
 }
 

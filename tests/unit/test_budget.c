@@ -13,6 +13,7 @@
 enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };
 
 static uint16_t texture[PIXELS], key[PIXELS], label[PIXELS];
+static uint8_t confidence[PIXELS];
 static uint32_t mask[WORDS];
 
 static t3r_view made_up_view(t3r_cluster *clusters)
@@ -22,11 +23,18 @@ static t3r_view made_up_view(t3r_cluster *clusters)
         uint32_t noise = t3r_mix32(i);
         texture[i] = (uint16_t)(noise % 7 == 0 ? noise >> 18 : (i % SIDE) * 8);
         label[i] = i % 11 == 0 ? T3R_NO_LABEL : (uint16_t)((i / 64) % (CLUSTERS - 3)); /* three stay empty */
+        confidence[i] = label[i] == T3R_NO_LABEL ? T3R_CONFIDENCE_NONE : T3R_CONFIDENCE_MEASURED;
         if (label[i] != T3R_NO_LABEL) {
             clusters[label[i]].points++;
         }
     }
-    return (t3r_view){.width = SIDE, .height = SIDE, .texture = texture, .key = key, .label = label, .mask = mask};
+    return (t3r_view){.width = SIDE,
+                      .height = SIDE,
+                      .confidence = confidence,
+                      .texture = texture,
+                      .key = key,
+                      .label = label,
+                      .mask = mask};
 }
 
 static uint32_t retained_of(const t3r_view *view)
@@ -54,7 +62,7 @@ static t3r_budget_settings settings_of(t3r_allocation allocation, uint32_t gauss
 static void every_mode_meets_every_budget(void **state)
 {
     (void)state;
-    t3r_cluster clusters[CLUSTERS];
+    t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
     uint32_t valid = 0;
@@ -74,7 +82,7 @@ static void every_mode_meets_every_budget(void **state)
 static void sets_are_nested(void **state)
 {
     (void)state;
-    t3r_cluster clusters[CLUSTERS];
+    t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     const t3r_allocation flat[] = {T3R_ALLOCATE_PIXEL, T3R_ALLOCATE_UNIFORM, T3R_ALLOCATE_RANDOM};
     for (size_t m = 0; m < 3; m++) {
@@ -94,7 +102,7 @@ static void sets_are_nested(void **state)
 static void paper_takes_the_lowest_textures_first(void **state)
 {
     (void)state;
-    t3r_cluster clusters[CLUSTERS];
+    t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
     uint32_t valid = 0;
@@ -125,10 +133,10 @@ static void paper_takes_the_lowest_textures_first(void **state)
 static void largest_counts_do_not_overflow(void **state)
 {
     (void)state;
-    t3r_cluster scratch[CLUSTERS];
+    t3r_cluster scratch[CLUSTERS + 1];
     t3r_view view = made_up_view(scratch);
     for (uint32_t shared = 1; shared <= 4; shared++) {
-        t3r_cluster clusters[CLUSTERS];
+        t3r_cluster clusters[CLUSTERS + 1];
         memset(clusters, 0, sizeof clusters);
         for (uint32_t k = 0; k < shared; k++) {
             clusters[k].points = (1u << 28) / shared;
@@ -143,6 +151,63 @@ static void largest_counts_do_not_overflow(void **state)
     }
 }
 
+/* Covered and doubtful points: none until all others are retained, the doubtful last of all; Z stays exact. */
+static void set_aside_comes_last(void **state)
+{
+    (void)state;
+    t3r_cluster clusters[CLUSTERS + 1];
+    t3r_view view = made_up_view(clusters);
+    t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
+    uint32_t plain = 0, covered = 0, doubtful = 0;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        if (label[i] != T3R_NO_LABEL) {
+            uint32_t kind = label[i] == 3 ? 1 : t3r_mix32(i + 99) % 8; /* all of one cluster is covered */
+            confidence[i] = kind == 0  ? T3R_CONFIDENCE_DOUBTFUL
+                            : kind < 4 ? T3R_CONFIDENCE_COVERED
+                                       : T3R_CONFIDENCE_MEASURED;
+            doubtful += kind == 0;
+            covered += kind > 0 && kind < 4;
+            plain += kind >= 4;
+        }
+    }
+    for (int mode = 0; mode < T3R_ALLOCATE_COUNT; mode++) {
+        for (int pass_over = 0; pass_over < 2; pass_over++) {
+            const uint32_t open = pass_over ? plain : plain + covered;
+            const uint32_t budgets[] = {1,
+                                        40,
+                                        open / 2,
+                                        open - 1,
+                                        open,
+                                        open + 1,
+                                        plain + covered,
+                                        plain + covered + 1,
+                                        plain + covered + doubtful - 1,
+                                        plain + covered + doubtful,
+                                        1u << 24};
+            for (size_t b = 0; b < sizeof budgets / sizeof budgets[0]; b++) {
+                t3r_budget_settings settings = settings_of((t3r_allocation)mode, budgets[b]);
+                settings.pass_over_covered = pass_over;
+                t3r_allocate(&view, 1, &settings, clusters);
+                uint32_t z = T3R_MIN(budgets[b], plain + covered + doubtful), passed = 0, flying = 0;
+                assert_int_equal(retained_of(&view), z);
+                for (size_t i = 0; i < PIXELS; i++) {
+                    if (t3r_retained(&view, i)) {
+                        passed += pass_over && t3r_is_covered(confidence[i]);
+                        flying += t3r_is_doubtful(confidence[i]);
+                        if (t3r_set_aside(&view, i, &settings)) {
+                            assert_int_equal(t3r_log_density_q10(&view, i, &settings, clusters), 0);
+                        }
+                    }
+                }
+                assert_int_equal(flying, z > plain + covered ? z - plain - covered : 0);
+                assert_int_equal(passed, pass_over && z > plain ? T3R_MIN(z - plain, covered) : 0);
+            }
+        }
+    }
+    assert_true(t3r_is_sparse(&view, 1, plain / 4));
+    assert_false(t3r_is_sparse(&view, 1, plain / 4 + 1));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -150,6 +215,7 @@ int main(void)
         cmocka_unit_test(sets_are_nested),
         cmocka_unit_test(paper_takes_the_lowest_textures_first),
         cmocka_unit_test(largest_counts_do_not_overflow),
+        cmocka_unit_test(set_aside_comes_last),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

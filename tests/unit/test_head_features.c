@@ -17,7 +17,7 @@ static t3r_view view = {.width = W,
                         .label = label,
                         .mask = mask};
 static t3r_cluster clusters[CLUSTERS] = {{.density_q10 = -4000}, {.density_q10 = -900}, {.density_q10 = 700}};
-static const t3r_budget_settings settings = {.gamma_q8 = 179, .clusters = CLUSTERS};
+static const t3r_budget_settings settings = {.gamma_q8 = 179, .clusters = CLUSTERS, .pass_over_covered = true};
 
 static void fill_view(uint64_t seed)
 {
@@ -27,7 +27,8 @@ static void fill_view(uint64_t seed)
         for (int c = 0; c < 3; c++) {
             colour[c][i] = (uint8_t)unit_random(&seed);
         }
-        confidence[i] = valid ? (uint8_t)(unit_between(&seed, 0, 3) > 0 ? 255 : 128) : 0;
+        static const uint8_t kinds[] = {255, 255, 255, 192, 128, 96, 64, 32};
+        confidence[i] = valid ? kinds[unit_between(&seed, 0, 7)] : 0;
         depth[i] = valid ? (uint16_t)(unit_between(&seed, 0, 5) > 0 ? 1500 + 9 * (i % W) + unit_between(&seed, -3, 3)
                                                                     : unit_between(&seed, 1, 65535))
                          : 0;
@@ -59,12 +60,14 @@ static void check_pixel(const t3r_head_input *input, uint32_t x, uint32_t y, con
         assert_int_equal(f[c], colour[c][i] - 128);
     }
     assert_int_equal(f[3], (mask[i / 32] >> i % 32 & 1) != 0 ? 127 : 0);
-    assert_int_equal(f[4], confidence[i] / 2);
-    if (label[i] == T3R_NO_LABEL) {
+    bool doubtful = confidence[i] == 64 || confidence[i] == 32, covered = confidence[i] == 192 || confidence[i] == 96;
+    bool aside = doubtful || (covered && settings.pass_over_covered);
+    if (label[i] == T3R_NO_LABEL || (aside && f[3] == 0)) {
         assert_int_equal(f[5], -70);
-        assert_true(f[6] == 0 && f[7] == 0 && f[8] == 0);
+        assert_true(f[4] == 0 && f[6] == 0 && f[7] == 0 && f[8] == 0);
         return;
     }
+    assert_int_equal(f[4], confidence[i] == 255 || confidence[i] == 192 || confidence[i] == 64 ? 127 : 64);
     double log_density = t3r_log_density_q10(&view, i, &settings, input->clusters) / 1024.0;
     assert_int_equal(f[5], held(floor(log_density * 16 + 64 + 0.5)));
     assert_true(fabs(f[6] - held((log2(texture[i] + 8.0) - 9.5) * 16)) < 0.51);
