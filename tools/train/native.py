@@ -32,9 +32,9 @@ def build(name, sources, flags, headers=(), folder=None):
     return library
 
 
-def splatter():
-    """splat.c: the differentiable splatter and the refinement."""
-    flags = ("-std=gnu11", "-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-fopenmp")
+def splatter(*more):
+    """splat.c: the differentiable splatter and the refinement. more: compiler flags."""
+    flags = ("-std=gnu11", "-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-fopenmp", *more)
     library = ctypes.CDLL(build("splat", [os.path.join(HERE, "splat.c")], flags))
     pointer, number = ctypes.c_void_p, ctypes.c_int32
     library.splat_forward.argtypes = [number] * 3 + [pointer] * 4

@@ -16,46 +16,26 @@ $TRIM3R_BUILD, else ~/.cache/trim3r. The same seed gives the same pictures, on o
 otherwise."""
 import argparse
 import ctypes
-import hashlib
 import os
 import struct
-import subprocess
-import tempfile
 import zlib
 
 import numpy as np
+
+import native
 
 SOURCES = ("procedural_material.c", "procedural_camera.c", "procedural_leaves.c", "procedural_room.c")
 HEADERS = ("procedural.h",)
 # No contraction and no fast-math: -march=native must not change what is drawn
 FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
-SHARED = ("-shared", "-fPIC")
 
 _loaded = {}
 
 
 def build(folder=None, flags=FLAGS):
-    """The compiled generator's path in `folder`; compiled only where sources, flags or machine changed."""
-    here = os.path.dirname(os.path.abspath(__file__))
-    folder = folder or os.environ.get("TRIM3R_BUILD") or os.path.expanduser("~/.cache/trim3r")
-    compiler = os.environ.get("CC", "cc")
-    digest = hashlib.sha256(" ".join((compiler, os.uname().nodename) + flags).encode())
-    for name in SOURCES + HEADERS:
-        with open(os.path.join(here, name), "rb") as file:
-            digest.update(file.read())
-    library = os.path.join(folder, f"procedural-{digest.hexdigest()[:16]}.so")
-    if not os.path.exists(library):
-        os.makedirs(folder, exist_ok=True)
-        handle, fresh = tempfile.mkstemp(suffix=".so", dir=folder)  # several trainers may build at once
-        os.close(handle)
-        sources = [os.path.join(here, name) for name in SOURCES]
-        try:
-            subprocess.run([compiler, *flags, *SHARED, "-o", fresh, *sources, "-lm"], check=True)
-            os.replace(fresh, library)
-        finally:
-            if os.path.exists(fresh):
-                os.unlink(fresh)
-    return library
+    """The compiled generator's path in `folder`."""
+    sources, headers = ([os.path.join(native.HERE, name) for name in names] for names in (SOURCES, HEADERS))
+    return native.build("procedural", sources, flags, headers, folder)
 
 
 def _library(folder, flags):
