@@ -1,0 +1,236 @@
+#include "refine_tile.h"
+
+#include <string.h>
+
+#include "fixed.h"
+
+#define ALONG_MOST_Q8 896           /* |e| <= 3.5: where alpha is not 0, q < 6 and |e| <= sqrt(2 q) < 3.47 */
+#define AXIS_MOST_Q20 (2 << 20)     /* |K| <= sqrt(t^2 / (t^2 + 0.3)^2) < 0.92 */
+#define ORIGIN_MOST_Q20 (1024 << 20)
+
+/* The tile as it will be, and what is missing from it. */
+typedef struct wanted {
+    t3r_tile drawn;
+    int16_t residual_q4[3][T3R_TILE_SIDE][T3R_TILE_SIDE]; /* target - drawn, levels: +-4080 */
+    uint8_t counts[T3R_TILE_SIDE][T3R_TILE_SIDE];
+} wanted;
+
+/* A splat's own coordinates over eight columns: e = K d, K = T^T S^-1 with the first two columns of T, so that
+ * d q = -e . step for a shift by `step` of them. Q20; the first pixel's e and its steps to the right and down. */
+typedef struct own_axes {
+    int32_t origin[2], right[2], down[2];
+} own_axes;
+
+/* Sums over eight columns of a tile, at most 128 pixels. By |g|, |r| <= 255 sqrt 3 levels, a pixel adds at most
+ * 195,075 x 3.5^4 < 2^24.81 to the highest moment and 195,075 x 3.5^2 < 2^21.2 to a gradient. */
+typedef struct block_sums {
+    int64_t colour[3], weight;
+    int64_t gradient[T3R_REFINE_MOMENTS_2];
+    int64_t curvature[T3R_REFINE_MOMENTS_4];
+} block_sums;
+
+static own_axes axes_of(const t3r_refine_view *job, uint32_t index, uint32_t x, uint32_t y)
+{
+    const t3r_splat *s = &job->splats[index];
+    int32_t row[2][3];
+    (void)t3r_footprint_rows(job->projection, &job->scene[index], row[0], row[1]);
+    int64_t dx = ((int64_t)x << 12) - s->x_q12, dy = ((int64_t)y << 12) - s->y_q12;
+    own_axes axes;
+    for (int k = 0; k < 2; k++) {
+        /* S^-1 is the conic doubled: Q29. |T| <= 2^24: the sums stay below 2^56. */
+        int64_t along_x = t3r_round_shift64((int64_t)row[0][k] * s->a_q30 + (int64_t)row[1][k] * s->b_q30, 21);
+        int64_t along_y = t3r_round_shift64((int64_t)row[0][k] * s->b_q30 + (int64_t)row[1][k] * s->c_q30, 21);
+        axes.right[k] = (int32_t)t3r_clamp64(along_x, -AXIS_MOST_Q20, AXIS_MOST_Q20);
+        axes.down[k] = (int32_t)t3r_clamp64(along_y, -AXIS_MOST_Q20, AXIS_MOST_Q20);
+        int64_t origin = t3r_round_shift64(axes.right[k] * dx + axes.down[k] * dy, 12);
+        axes.origin[k] = (int32_t)t3r_clamp64(origin, -ORIGIN_MOST_Q20, ORIGIN_MOST_Q20);
+    }
+    return axes;
+}
+
+static int32_t halve(int32_t x, uint32_t shift)
+{
+    return (x + (1 << (shift - 1))) >> shift; /* |x| < 2^31 - 2^(shift - 1), argued where it is called */
+}
+
+/* value e^ij for i + j <= 2. |value| <= 195,075, so products are below 195,075 x 896 and x 784. */
+static void moments_2(int32_t value, const int32_t e_q8[2], const int32_t ee_q6[3], int32_t out[T3R_REFINE_MOMENTS_2])
+{
+    out[0] = value;
+    out[1] = halve(value * e_q8[0], 8);
+    out[2] = halve(value * e_q8[1], 8);
+    out[3] = halve(value * ee_q6[0], 6);
+    out[4] = halve(value * ee_q6[1], 6);
+    out[5] = halve(value * ee_q6[2], 6);
+}
+
+/* The third and fourth moments from the second, which are below 195,075 x 3.5^2 + 1/2: times 896 below 2,141,145,000,
+ * with the half still below 2^31. */
+static void moments_4(const int32_t second[T3R_REFINE_MOMENTS_2], const int32_t e_q8[2], const int32_t ee_q6[3],
+                      int32_t out[9])
+{
+    out[0] = halve(second[3] * e_q8[0], 8);
+    out[1] = halve(second[3] * e_q8[1], 8);
+    out[2] = halve(second[5] * e_q8[0], 8);
+    out[3] = halve(second[5] * e_q8[1], 8);
+    out[4] = halve(second[3] * ee_q6[0], 6);
+    out[5] = halve(second[3] * ee_q6[1], 6);
+    out[6] = halve(second[3] * ee_q6[2], 6);
+    out[7] = halve(second[5] * ee_q6[1], 6);
+    out[8] = halve(second[5] * ee_q6[2], 6);
+}
+
+/* One pixel, to which the splat contributed `weight` of transmittance. What shows behind it is what is still to come,
+ * over the transmittance left: g = alpha dC/d alpha = w (c - behind). */
+static void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat *s, uint32_t i, uint32_t j,
+                      uint16_t weight_q16, const int32_t e_q8[2], block_sums *sums)
+{
+    uint32_t left = tile->transmittance_q16[j][i];
+    uint32_t inverse = left == 0 ? 0 : UINT32_MAX / left; /* 2^32 / left, a little less */
+    int32_t weight_q12 = (weight_q16 + 8) >> 4;
+    int32_t gr_q8 = 0, gg_q8 = 0; /* each of three products at most 4080^2 */
+    sums->weight += weight_q12;
+    for (int c = 0; c < 3; c++) {
+        uint32_t rest_q7 = (uint32_t)(want->drawn.colour_q7[c][j][i] - tile->colour_q7[c][j][i]);
+        uint32_t behind_q7 = (uint32_t)(((uint64_t)rest_q7 * inverse) >> 16);
+        int32_t change_q7 = (int32_t)s->colour_q7[c] - (int32_t)T3R_MIN(behind_q7, 32640u);
+        int32_t g_q4 = (int32_t)t3r_round_shift64((int64_t)weight_q16 * change_q7, 19);
+        int32_t r_q4 = want->residual_q4[c][j][i];
+        gr_q8 += g_q4 * r_q4;
+        gg_q8 += g_q4 * g_q4;
+        sums->colour[c] += halve(weight_q12 * r_q4, 8);
+    }
+    const int32_t ee_q6[3] = {halve(e_q8[0] * e_q8[0], 10), halve(e_q8[0] * e_q8[1], 10), halve(e_q8[1] * e_q8[1], 10)};
+    int32_t first[T3R_REFINE_MOMENTS_2], second[T3R_REFINE_MOMENTS_2], fourth[9];
+    moments_2(halve(gr_q8, 8), e_q8, ee_q6, first);
+    moments_2(halve(gg_q8, 8), e_q8, ee_q6, second);
+    moments_4(second, e_q8, ee_q6, fourth);
+    for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
+        sums->gradient[k] += first[k];
+        sums->curvature[k] += second[k];
+    }
+    for (int k = 0; k < T3R_REFINE_MOMENTS_4 - T3R_REFINE_MOMENTS_2; k++) {
+        sums->curvature[T3R_REFINE_MOMENTS_2 + k] += fourth[k];
+    }
+}
+
+/* Over `area` pixels a sum is below 2^24.81 area + a half a block, and area 2^-shift <= 64: below 2^31. */
+static void add_block(const block_sums *block, t3r_refine_sums *sums)
+{
+    uint32_t shift = t3r_refine_shift(sums->area);
+    for (int c = 0; c < 3; c++) {
+        sums->colour[c] += (int32_t)t3r_round_shift64(block->colour[c] * 8, shift);
+    }
+    sums->weight += (int32_t)t3r_round_shift64(block->weight * 8, shift);
+    for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
+        sums->gradient[k] += (int32_t)t3r_round_shift64(block->gradient[k] * 8, shift);
+    }
+    for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
+        sums->curvature[k] += (int32_t)t3r_round_shift64(block->curvature[k], shift);
+    }
+}
+
+/* Blends eight columns by the rasterizer's own kernel; what transmittance loses is the weight. */
+static void scatter_block(const t3r_refine_view *job, const wanted *want, t3r_tile *tile, uint32_t index, uint32_t left,
+                          uint32_t top, uint32_t column, const t3r_tile_blocks *blocks)
+{
+    const t3r_splat *s = &job->splats[index];
+    t3r_lane_splat lane;
+    if (!t3r_tile_lane(s, left, top, column, &lane)) {
+        return;
+    }
+    uint32_t slot = index - job->first; /* wraps below the slice */
+    if (slot >= job->count) {
+        t3r_blend_rows(tile, &lane, column, blocks->first, blocks->last);
+        return;
+    }
+    uint16_t before_q16[T3R_TILE_SIDE][T3R_LANES];
+    for (uint32_t j = blocks->first; j <= blocks->last; j++) {
+        memcpy(before_q16[j], &tile->transmittance_q16[j][column], sizeof before_q16[j]);
+    }
+    t3r_blend_rows(tile, &lane, column, blocks->first, blocks->last);
+
+    own_axes axes = axes_of(job, index, left + column, top);
+    /* the box's columns alone: beyond it alpha is 0 anyway, and `area` counts the box */
+    uint32_t x0 = T3R_MAX(s->x0, left + column) - left, x1 = T3R_MIN(s->x1, left + column + T3R_LANES - 1) - left;
+    block_sums sums = {0};
+    for (uint32_t j = blocks->first; j <= blocks->last; j++) {
+        for (uint32_t i = x0; i <= x1; i++) {
+            uint16_t weight_q16 = (uint16_t)(before_q16[j][i - column] - tile->transmittance_q16[j][i]);
+            if (weight_q16 == 0 || !want->counts[j][i]) {
+                continue;
+            }
+            int32_t e_q8[2];
+            for (int k = 0; k < 2; k++) {
+                /* below 2^30 + 23 x 2^21 */
+                int32_t e_q20 = axes.origin[k] + (int32_t)(i - column) * axes.right[k] + (int32_t)j * axes.down[k];
+                e_q8[k] = t3r_clamp32(halve(e_q20, 12), -ALONG_MOST_Q8, ALONG_MOST_Q8);
+            }
+            add_pixel(want, tile, s, i, j, weight_q16, e_q8, &sums);
+        }
+    }
+    if (sums.weight != 0) {
+        add_block(&sums, &job->sums[slot]);
+    }
+}
+
+static void scatter_splat(const t3r_refine_view *job, const wanted *want, t3r_tile *tile, uint32_t index, uint32_t left,
+                          uint32_t top)
+{
+    t3r_tile_blocks blocks = t3r_blocks_of(&job->splats[index], left, top);
+    for (uint32_t i = 0; i < blocks.count; i++) {
+        scatter_block(job, want, tile, index, left, top, blocks.column + i * T3R_LANES, &blocks);
+    }
+}
+
+static void blend_splat(t3r_tile *tile, const t3r_splat *s, uint32_t left, uint32_t top)
+{
+    t3r_tile_blocks blocks = t3r_blocks_of(s, left, top);
+    for (uint32_t i = 0; i < blocks.count; i++) {
+        uint32_t column = blocks.column + i * T3R_LANES;
+        t3r_lane_splat lane;
+        if (t3r_tile_lane(s, left, top, column, &lane)) {
+            t3r_blend_rows(tile, &lane, column, blocks.first, blocks.last);
+        }
+    }
+}
+
+/* What the drawn tile lacks; columns and rows beyond the image count for nothing. */
+static void compare(const t3r_view *view, uint32_t left, uint32_t top, wanted *want)
+{
+    uint32_t columns = T3R_MIN(view->width - left, (uint32_t)T3R_TILE_SIDE);
+    uint32_t rows = T3R_MIN(view->height - top, (uint32_t)T3R_TILE_SIDE);
+    memset(want->counts, 0, sizeof want->counts);
+    for (uint32_t j = 0; j < rows; j++) {
+        size_t row = (size_t)(top + j) * view->width + left;
+        for (uint32_t i = 0; i < columns; i++) {
+            want->counts[j][i] = view->confidence[row + i] != T3R_CONFIDENCE_NONE;
+            for (int c = 0; c < 3; c++) {
+                int32_t drawn_q7 = T3R_MIN((int32_t)want->drawn.colour_q7[c][j][i], 32640);
+                int32_t residual_q7 = view->colour[c][row + i] * 128 - drawn_q7;
+                want->residual_q4[c][j][i] = (int16_t)t3r_round_shift32(residual_q7, 3);
+            }
+        }
+    }
+}
+
+void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y)
+{
+    uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
+    wanted want;
+    t3r_tile_clear(&want.drawn);
+    uint32_t used = 0; /* splats before all pixels are done */
+    for (; used < count; used++) {
+        if (used % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&want.drawn)) {
+            break;
+        }
+        blend_splat(&want.drawn, &job->splats[list[used]], left, top);
+    }
+    compare(job->view, left, top, &want);
+
+    t3r_tile tile;
+    t3r_tile_clear(&tile);
+    for (uint32_t i = 0; i < used; i++) {
+        scatter_splat(job, &want, &tile, list[i], left, top);
+    }
+}
