@@ -4,10 +4,10 @@
 #include "refine.h"
 #include "scene_frame.h"
 
-#define COLOUR_STEP_Q5 29 /* 0.9 of the weighted mean residual: neighbours correct the same pixels */
+#define COLOUR_STEP_Q5 26 /* 0.8 of the weighted mean residual: neighbours correct the same pixels */
 #define STEP_Q4 5         /* 5/16 of the Gauss-Newton step, likewise */
 #define RELATIVE_DAMPING_Q4 5
-#define DAMPING 256          /* levels^2: below it a direction is noise */
+#define DAMPING 64 /* levels^2: below it a direction is noise */
 #define OPACITY_MOST 32767   /* largest step of log opacity, Q16: 1/2 */
 #define SHIFT_MOST 13107     /* of the position, in deviations: 0.2 */
 #define SHAPE_MOST 6554      /* of log scale and shear: 0.1 */

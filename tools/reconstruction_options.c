@@ -192,6 +192,7 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         if (strcmp(arg, "random") == 0) {
             o->allocation = T3R_ALLOCATE_RANDOM;
             o->head = T3R_HEAD_NONE;
+            o->refine = 0;
         } else if (strcmp(arg, "trim3r") != 0) {
             argp_error(state, "--method does not know '%s'", arg);
         }

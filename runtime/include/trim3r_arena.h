@@ -56,7 +56,7 @@
 #define T3R_REFINE_FULL_BYTES_(w, h, v, z, n)                                                                         \
     (T3R_ANY_(v) * T3R_ANY_(n) *                                                                                      \
      (T3R_REFINE_FIXED_BYTES_(w, h, z) + T3R_UP_((size_t)(z) * T3R_REFINE_SUMS_BYTES) +                               \
-      T3R_UP_(T3R_LISTS_BYTES_(z, w, h))))
+      T3R_UP_((size_t)(z) * 16)))
 
 /* X(p, NAME, text, bytes, first, last); p is handed through.
  * w x h working size, v views, z Gaussians, k clusters, rw x rh largest target; keep: the analysis outlives

@@ -133,7 +133,7 @@ def test_build(room):
         "--cpu-mask": ["all"],
         "--method": ["best"],
         "--depth": ["stereo", "radar"],
-        "--refine": ["2", "x"],
+        "--refine": ["17", "x"],
     }.items():
         for value in values:
             expect(2, "build", room, "-o", "s.ply", f"{option}={value}", err=option)
