@@ -14,13 +14,13 @@
 #define T3R_REFINE_MOMENTS_2 6
 #define T3R_REFINE_MOMENTS_4 15
 
-/* What one Gaussian's pixels add up to, over all views. Times 2^t3r_refine_shift(area); colour, weight and gradient 8
- * times finer. Integers, so the order of adding does not show. */
+/* What one Gaussian's pixels add up to, over all views, shifted right by t3r_refine_shift(area). Integers, so the order
+ * of adding does not show. */
 typedef struct t3r_refine_sums {
-    int32_t colour[3];                       /* sum of w r, levels, Q8 */
-    int32_t weight;                          /* sum of w, Q12 */
-    int32_t gradient[T3R_REFINE_MOMENTS_2];  /* sum of (g . r) e^ij, levels^2 */
-    int32_t curvature[T3R_REFINE_MOMENTS_4]; /* sum of |g|^2 e^ij, levels^2 */
+    int32_t colour[3];                       /* sum of w r, levels, Q11 */
+    int32_t weight;                          /* sum of w, Q15 */
+    int32_t gradient[T3R_REFINE_MOMENTS_2];  /* sum of (g . r) e^ij, levels^2, Q7 */
+    int32_t curvature[T3R_REFINE_MOMENTS_4]; /* sum of |g|^2 e^ij, levels^2, Q7 */
     uint32_t area;                           /* pixels of its boxes in the views added so far, below 2^28 */
 } t3r_refine_sums;
 
@@ -31,7 +31,7 @@ typedef struct t3r_correction {
     int16_t unused;
 } t3r_correction;
 
-/* Sums of so many pixels are kept shifted right by ceil(log2 area) - 6, at least 0. */
+/* Sums of so many pixels are kept shifted right by ceil(log2 area) - 6, at least 0: 64 pixels' worth at most. */
 uint32_t t3r_refine_shift(uint32_t area);
 
 /* The damped Gauss-Newton step of one Gaussian. */

@@ -23,7 +23,7 @@ uint32_t t3r_refine_shift(uint32_t area)
 
 typedef struct equations {
     int64_t a[T3R_REFINE_PARAMETERS][T3R_REFINE_PARAMETERS]; /* below 2^35 */
-    int64_t b[T3R_REFINE_PARAMETERS];                        /* 8 times as fine; below 2^35 */
+    int64_t b[T3R_REFINE_PARAMETERS];                        /* below 2^35 */
 } equations;
 
 /* The normal equations in phi = (1, x, y, xx - 1/2, 2 xy, yy - 1/2), both sides 4 times. Lower triangle first. */
@@ -57,7 +57,7 @@ static equations normal_equations(const t3r_refine_sums *s)
 /* Gauss-Seidel, a fixed number of sweeps: the matrix is positive and its diagonal raised by 5/16, so they close in. */
 static void solve(const equations *e, uint32_t shift, int32_t x_q16[T3R_REFINE_PARAMETERS])
 {
-    int64_t damping = 4 * (int64_t)T3R_MAX(DAMPING >> shift, 1);
+    int64_t damping = 4 * (int64_t)T3R_MAX((128 * DAMPING) >> shift, 1);
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
         x_q16[i] = 0;
     }
@@ -66,7 +66,7 @@ static void solve(const equations *e, uint32_t shift, int32_t x_q16[T3R_REFINE_P
             /* roundings may leave a square's sum a little below 0 */
             int64_t square = T3R_MAX(e->a[i][i], 0);
             int64_t divisor = square + ((square * RELATIVE_DAMPING_Q4) >> 4) + damping;
-            int64_t rest = e->b[i] * (1 << 13); /* below 2^48 */
+            int64_t rest = e->b[i] * (1 << 16); /* below 2^51 */
             for (int j = 0; j < T3R_REFINE_PARAMETERS; j++) {
                 rest -= j == i ? 0 : e->a[i][j] * x_q16[j]; /* below 2^35 x 2^19 */
             }
@@ -83,7 +83,7 @@ t3r_correction t3r_refine_solve(const t3r_refine_sums *s)
         return c;
     }
     for (int i = 0; i < 3; i++) {
-        /* Q8 over Q12, to Q7 and times Q5 */
+        /* Q11 over Q15, to Q7 and times Q5 */
         int64_t change = t3r_round_div64((int64_t)s->colour[i] * (COLOUR_STEP_Q5 << 6), s->weight);
         c.colour_q7[i] = (int16_t)t3r_clamp64(change, -32640, 32640);
     }

@@ -21,8 +21,12 @@ typedef struct own_axes {
     int32_t origin[2], right[2], down[2];
 } own_axes;
 
-/* Sums over eight columns of a tile, at most 128 pixels. By |g|, |r| <= 255 sqrt 3 levels, a pixel adds at most
- * 195,075 x 3.5^4 < 2^24.81 to the highest moment and 195,075 x 3.5^2 < 2^21.2 to a gradient. */
+/* What one pixel adds at most, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 / 2),
+ * and no |e|^k exp(-|e|^2 / 2) with |g| |r|, k <= 2, or |e|^k exp(-|e|^2) with |g|^2, k <= 4, is above 1. Held there, so
+ * that roundings cannot carry it beyond. */
+#define MOMENT_MOST_Q7 (195075 * 128)
+
+/* Sums over eight columns of a tile, at most 128 pixels. */
 typedef struct block_sums {
     int64_t colour[3], weight;
     int64_t gradient[T3R_REFINE_MOMENTS_2];
@@ -53,31 +57,38 @@ static int32_t halve(int32_t x, uint32_t shift)
     return (x + (1 << (shift - 1))) >> shift; /* |x| < 2^31 - 2^(shift - 1), argued where it is called */
 }
 
-/* value e^ij for i + j <= 2. |value| <= 195,075, so products are below 195,075 x 896 and x 784. */
-static void moments_2(int32_t value, const int32_t e_q8[2], const int32_t ee_q6[3], int32_t out[T3R_REFINE_MOMENTS_2])
+/* value e^ij */
+static int32_t moment(int32_t value_q7, int32_t factor, uint32_t shift)
 {
-    out[0] = value;
-    out[1] = halve(value * e_q8[0], 8);
-    out[2] = halve(value * e_q8[1], 8);
-    out[3] = halve(value * ee_q6[0], 6);
-    out[4] = halve(value * ee_q6[1], 6);
-    out[5] = halve(value * ee_q6[2], 6);
+    int64_t product = t3r_round_shift64((int64_t)value_q7 * factor, shift);
+    return (int32_t)t3r_clamp64(product, -MOMENT_MOST_Q7, MOMENT_MOST_Q7);
 }
 
-/* The third and fourth moments from the second, which are below 195,075 x 3.5^2 + 1/2: times 896 below 2,141,145,000,
- * with the half still below 2^31. */
-static void moments_4(const int32_t second[T3R_REFINE_MOMENTS_2], const int32_t e_q8[2], const int32_t ee_q6[3],
-                      int32_t out[9])
+/* i + j <= 2; |value| is at most MOMENT_MOST_Q7 */
+static void moments_2(int32_t value_q7, const int32_t e_q8[2], const int32_t ee_q6[3],
+                      int32_t out[T3R_REFINE_MOMENTS_2])
 {
-    out[0] = halve(second[3] * e_q8[0], 8);
-    out[1] = halve(second[3] * e_q8[1], 8);
-    out[2] = halve(second[5] * e_q8[0], 8);
-    out[3] = halve(second[5] * e_q8[1], 8);
-    out[4] = halve(second[3] * ee_q6[0], 6);
-    out[5] = halve(second[3] * ee_q6[1], 6);
-    out[6] = halve(second[3] * ee_q6[2], 6);
-    out[7] = halve(second[5] * ee_q6[1], 6);
-    out[8] = halve(second[5] * ee_q6[2], 6);
+    out[0] = value_q7;
+    out[1] = moment(value_q7, e_q8[0], 8);
+    out[2] = moment(value_q7, e_q8[1], 8);
+    out[3] = moment(value_q7, ee_q6[0], 6);
+    out[4] = moment(value_q7, ee_q6[1], 6);
+    out[5] = moment(value_q7, ee_q6[2], 6);
+}
+
+/* i + j = 3 and 4, from the second moments */
+static void moments_4(const int32_t second[T3R_REFINE_MOMENTS_2], const int32_t e_q8[2], const int32_t ee_q6[3],
+                      int32_t out[T3R_REFINE_MOMENTS_4 - T3R_REFINE_MOMENTS_2])
+{
+    out[0] = moment(second[3], e_q8[0], 8);
+    out[1] = moment(second[3], e_q8[1], 8);
+    out[2] = moment(second[5], e_q8[0], 8);
+    out[3] = moment(second[5], e_q8[1], 8);
+    out[4] = moment(second[3], ee_q6[0], 6);
+    out[5] = moment(second[3], ee_q6[1], 6);
+    out[6] = moment(second[3], ee_q6[2], 6);
+    out[7] = moment(second[5], ee_q6[1], 6);
+    out[8] = moment(second[5], ee_q6[2], 6);
 }
 
 /* One pixel, to which the splat contributed `weight` of transmittance. What shows behind it is what is still to come,
@@ -88,22 +99,24 @@ static void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat 
     uint32_t left = tile->transmittance_q16[j][i];
     uint32_t inverse = left == 0 ? 0 : UINT32_MAX / left; /* 2^32 / left, a little less */
     int32_t weight_q12 = (weight_q16 + 8) >> 4;
-    int32_t gr_q8 = 0, gg_q8 = 0; /* each of three products at most 4080^2 */
+    int32_t gr_q12 = 0;  /* three of 65,280 x 4,080 */
+    int64_t gg_q16 = 0;
     sums->weight += weight_q12;
     for (int c = 0; c < 3; c++) {
         uint32_t rest_q7 = (uint32_t)(want->drawn.colour_q7[c][j][i] - tile->colour_q7[c][j][i]);
         uint32_t behind_q7 = (uint32_t)(((uint64_t)rest_q7 * inverse) >> 16);
         int32_t change_q7 = (int32_t)s->colour_q7[c] - (int32_t)T3R_MIN(behind_q7, 32640u);
-        int32_t g_q4 = (int32_t)t3r_round_shift64((int64_t)weight_q16 * change_q7, 19);
+        int32_t g_q8 = (int32_t)t3r_round_shift64((int64_t)weight_q16 * change_q7, 15);
         int32_t r_q4 = want->residual_q4[c][j][i];
-        gr_q8 += g_q4 * r_q4;
-        gg_q8 += g_q4 * g_q4;
+        gr_q12 += g_q8 * r_q4;
+        gg_q16 += (int64_t)g_q8 * g_q8;
         sums->colour[c] += halve(weight_q12 * r_q4, 8);
     }
     const int32_t ee_q6[3] = {halve(e_q8[0] * e_q8[0], 10), halve(e_q8[0] * e_q8[1], 10), halve(e_q8[1] * e_q8[1], 10)};
-    int32_t first[T3R_REFINE_MOMENTS_2], second[T3R_REFINE_MOMENTS_2], fourth[9];
-    moments_2(halve(gr_q8, 8), e_q8, ee_q6, first);
-    moments_2(halve(gg_q8, 8), e_q8, ee_q6, second);
+    int32_t first[T3R_REFINE_MOMENTS_2], second[T3R_REFINE_MOMENTS_2];
+    int32_t fourth[T3R_REFINE_MOMENTS_4 - T3R_REFINE_MOMENTS_2];
+    moments_2(halve(gr_q12, 5), e_q8, ee_q6, first);
+    moments_2((int32_t)t3r_round_shift64(gg_q16, 9), e_q8, ee_q6, second);
     moments_4(second, e_q8, ee_q6, fourth);
     for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
         sums->gradient[k] += first[k];
@@ -114,7 +127,8 @@ static void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat 
     }
 }
 
-/* Over `area` pixels a sum is below 2^24.81 area + a half a block, and area 2^-shift <= 64: below 2^31. */
+/* Over `area` pixels a sum is below 2^24.6 area + a half a block, a block holding at least a pixel, and area 2^-shift is
+ * at most 64: below 2^31. */
 static void add_block(const block_sums *block, t3r_refine_sums *sums)
 {
     uint32_t shift = t3r_refine_shift(sums->area);
@@ -123,7 +137,7 @@ static void add_block(const block_sums *block, t3r_refine_sums *sums)
     }
     sums->weight += (int32_t)t3r_round_shift64(block->weight * 8, shift);
     for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
-        sums->gradient[k] += (int32_t)t3r_round_shift64(block->gradient[k] * 8, shift);
+        sums->gradient[k] += (int32_t)t3r_round_shift64(block->gradient[k], shift);
     }
     for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
         sums->curvature[k] += (int32_t)t3r_round_shift64(block->curvature[k], shift);
