@@ -1,4 +1,5 @@
-/* Everything of a view that comes before its tiles: projection, depth order, counts. Rendering and refinement share it. */
+/* Everything of a view that comes before its tiles: projection, depth order, counts. Rendering and refinement share it.
+ */
 #ifndef T3R_RASTER_LIST_H
 #define T3R_RASTER_LIST_H
 

@@ -70,7 +70,8 @@ static void measure(const t3r_runtime *rt, const workshop *w, const t3r_view *vi
             widen(&w->sums[i], &w->room.splats[first + i]);
         }
     }
-    t3r_refine_view job = {view, projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), w->room.splats, w->sums, first, count};
+    t3r_refine_view job = {view,  projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), w->room.splats, w->sums,
+                           first, count};
     for (uint32_t begin = 0; begin < bin.tiles;) {
         uint32_t end = t3r_bin_pass(&bin, begin);
         for (uint32_t tile = begin; tile < end; tile++) {
@@ -96,8 +97,8 @@ t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
                     return T3R_ERR_CANCELLED;
                 }
                 t3r_projection projection;
-                t3r_status status = t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width,
-                                                        rt->config.height, &projection);
+                t3r_status status =
+                    t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width, rt->config.height, &projection);
                 if (status != T3R_OK) {
                     return status;
                 }

@@ -1,5 +1,6 @@
-/* Refinement: the context views are drawn, what they miss is scattered back to the Gaussians that drew it, and these are
- * corrected (SPEC.md, "Refinement"). Everything of one pass is measured on one scene; then all of it changes at once. */
+/* Refinement: the context views are drawn, what they miss is scattered back to the Gaussians that drew it, and these
+ * are corrected (SPEC.md, "Refinement"). Everything of one pass is measured on one scene; then all of it changes at
+ * once. */
 #ifndef T3R_REFINE_H
 #define T3R_REFINE_H
 

@@ -7,10 +7,10 @@
 #define COLOUR_STEP_Q5 26 /* 0.8 of the weighted mean residual: neighbours correct the same pixels */
 #define STEP_Q4 5         /* 5/16 of the Gauss-Newton step, likewise */
 #define RELATIVE_DAMPING_Q4 5
-#define DAMPING 64 /* levels^2: below it a direction is noise */
-#define OPACITY_MOST 32767   /* largest step of log opacity, Q16: 1/2 */
-#define SHIFT_MOST 13107     /* of the position, in deviations: 0.2 */
-#define SHAPE_MOST 6554      /* of log scale and shear: 0.1 */
+#define DAMPING 64         /* levels^2: below it a direction is noise */
+#define OPACITY_MOST 32767 /* largest step of log opacity, Q16: 1/2 */
+#define SHIFT_MOST 13107   /* of the position, in deviations: 0.2 */
+#define SHAPE_MOST 6554    /* of log scale and shear: 0.1 */
 #define OPACITY_LEAST_Q15 256
 #define OPACITY_MOST_Q15 32440 /* 0.99: what the rasterizer draws at most */
 #define SWEEPS 8

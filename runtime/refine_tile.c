@@ -4,8 +4,8 @@
 
 #include "fixed.h"
 
-#define ALONG_MOST_Q8 896           /* |e| <= 3.5: where alpha is not 0, q < 6 and |e| <= sqrt(2 q) < 3.47 */
-#define AXIS_MOST_Q20 (2 << 20)     /* |K| <= sqrt(t^2 / (t^2 + 0.3)^2) < 0.92 */
+#define ALONG_MOST_Q8 896       /* |e| <= 3.5: where alpha is not 0, q < 6 and |e| <= sqrt(2 q) < 3.47 */
+#define AXIS_MOST_Q20 (2 << 20) /* |K| <= sqrt(t^2 / (t^2 + 0.3)^2) < 0.92 */
 #define ORIGIN_MOST_Q20 (1024 << 20)
 
 /* The tile as it will be, and what is missing from it. */
@@ -22,8 +22,8 @@ typedef struct own_axes {
 } own_axes;
 
 /* What one pixel adds at most, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 / 2),
- * and no |e|^k exp(-|e|^2 / 2) with |g| |r|, k <= 2, or |e|^k exp(-|e|^2) with |g|^2, k <= 4, is above 1. Held there, so
- * that roundings cannot carry it beyond. */
+ * and no |e|^k exp(-|e|^2 / 2) with |g| |r|, k <= 2, or |e|^k exp(-|e|^2) with |g|^2, k <= 4, is above 1. Held there,
+ * so that roundings cannot carry it beyond. */
 #define MOMENT_MOST_Q7 (195075 * 128)
 
 /* Sums over eight columns of a tile, at most 128 pixels. */
@@ -99,7 +99,7 @@ static void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat 
     uint32_t left = tile->transmittance_q16[j][i];
     uint32_t inverse = left == 0 ? 0 : UINT32_MAX / left; /* 2^32 / left, a little less */
     int32_t weight_q12 = (weight_q16 + 8) >> 4;
-    int32_t gr_q12 = 0;  /* three of 65,280 x 4,080 */
+    int32_t gr_q12 = 0; /* three of 65,280 x 4,080 */
     int64_t gg_q16 = 0;
     sums->weight += weight_q12;
     for (int c = 0; c < 3; c++) {
@@ -127,8 +127,8 @@ static void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat 
     }
 }
 
-/* Over `area` pixels a sum is below 2^24.6 area + a half a block, a block holding at least a pixel, and area 2^-shift is
- * at most 64: below 2^31. */
+/* Over `area` pixels a sum is below 2^24.6 area + a half a block, a block holding at least a pixel, and area 2^-shift
+ * is at most 64: below 2^31. */
 static void add_block(const block_sums *block, t3r_refine_sums *sums)
 {
     uint32_t shift = t3r_refine_shift(sums->area);

@@ -7,7 +7,7 @@
 /* A context view: what it shows, and which pixels count. */
 typedef struct oracle_context {
     oracle_camera camera;
-    const uint8_t *rgb;     /* width x height x 3 */
+    const uint8_t *rgb;    /* width x height x 3 */
     const uint8_t *counts; /* width x height, 0 = no depth */
 } oracle_context;
 

@@ -115,7 +115,8 @@ static void follows_the_oracle(void **state)
         assert_true(scene != NULL && want != NULL);
         oracle_context views[VIEWS];
         for (uint32_t v = 0; v < VIEWS; v++) {
-            views[v] = (oracle_context){oracle_camera_from_t3r(&camera[v], &plain.frame, SIDE, SIDE), rgb[v], counts[v]};
+            views[v] =
+                (oracle_context){oracle_camera_from_t3r(&camera[v], &plain.frame, SIDE, SIDE), rgb[v], counts[v]};
         }
         for (uint32_t i = 0; i < plain.count; i++) {
             oracle_from_t3r(&before[i], &scene[i]);

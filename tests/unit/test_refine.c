@@ -1,5 +1,5 @@
-/* Refinement on the built-in room: it gains what it promises, changes nothing where nothing is missing, can be cancelled
- * anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
+/* Refinement on the built-in room: it gains what it promises, changes nothing where nothing is missing, can be
+ * cancelled anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
 #include "unit.h"
 
 #include "hash.h"
