@@ -261,7 +261,7 @@ def test_render(room):
 def test_replay(room):
     base = ["replay", room, "--working", "64x64"]
     found = expect_json(*base)
-    check(len(found.get("stages", {})) == 8 and len(found["tiles"]) == 16, "replay --json lacks stages or tiles")
+    check(len(found.get("stages", {})) == 9 and len(found["tiles"]) == 16, "replay --json lacks stages or tiles")
     write("golden.json", json.dumps(found))
     for more in ([], ["--threads", 2], ["--arena", "min"], ["--arena", 30000000], ["--cpu-mask", 0],
                  ["--cpu-mask", 255]):
