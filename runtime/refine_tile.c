@@ -22,8 +22,8 @@ typedef struct own_axes {
 } own_axes;
 
 /* What one pixel adds at most, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 / 2),
- * and no |e|^k exp(-|e|^2 / 2) with |g| |r|, k <= 2, or |e|^k exp(-|e|^2) with |g|^2, k <= 4, is above 1. Held there,
- * so that roundings cannot carry it beyond. */
+ * and no |e|^k exp(-|e|^2 / 2) with |g| |r|, k <= 2, or |e|^k exp(-|e|^2) with |g|^2, k <= 4, is above 3/4. A block is
+ * held to as many times that as it has pixels, so that the bound does not hang on roundings. */
 #define MOMENT_MOST_Q7 (195075 * 128)
 
 /* Sums over eight columns of a tile, at most 128 pixels. */
@@ -31,6 +31,7 @@ typedef struct block_sums {
     int64_t colour[3], weight;
     int64_t gradient[T3R_REFINE_MOMENTS_2];
     int64_t curvature[T3R_REFINE_MOMENTS_4];
+    int32_t pixels;
 } block_sums;
 
 static own_axes axes_of(const t3r_refine_view *job, uint32_t index, uint32_t x, uint32_t y)
@@ -57,44 +58,42 @@ static int32_t halve(int32_t x, uint32_t shift)
     return (x + (1 << (shift - 1))) >> shift; /* |x| < 2^31 - 2^(shift - 1), argued where it is called */
 }
 
-/* value e^ij */
-static int32_t moment(int32_t value_q7, int32_t factor, uint32_t shift)
+/* value e^ij. The first value is below 2^24.6, |e| <= 896 and a product of two e at most 784: what comes of it stays
+ * below 2^24.6 x 3.5^4 = 2^31.9, and products below 2^40.5. */
+static inline int64_t moment(int64_t value_q7, int32_t factor, uint32_t shift)
 {
-    int64_t product = t3r_round_shift64((int64_t)value_q7 * factor, shift);
-    return (int32_t)t3r_clamp64(product, -MOMENT_MOST_Q7, MOMENT_MOST_Q7);
+    return t3r_round_shift64(value_q7 * factor, shift);
 }
 
-/* i + j <= 2; |value| is at most MOMENT_MOST_Q7 */
-static void moments_2(int32_t value_q7, const int32_t e_q8[2], const int32_t ee_q6[3],
-                      int32_t out[T3R_REFINE_MOMENTS_2])
+static inline void add_moments_2(int64_t value_q7, const int32_t e_q8[2], const int32_t ee_q6[3], int64_t *sum)
 {
-    out[0] = value_q7;
-    out[1] = moment(value_q7, e_q8[0], 8);
-    out[2] = moment(value_q7, e_q8[1], 8);
-    out[3] = moment(value_q7, ee_q6[0], 6);
-    out[4] = moment(value_q7, ee_q6[1], 6);
-    out[5] = moment(value_q7, ee_q6[2], 6);
+    sum[0] += value_q7;
+    sum[1] += moment(value_q7, e_q8[0], 8);
+    sum[2] += moment(value_q7, e_q8[1], 8);
+    sum[3] += moment(value_q7, ee_q6[0], 6);
+    sum[4] += moment(value_q7, ee_q6[1], 6);
+    sum[5] += moment(value_q7, ee_q6[2], 6);
 }
 
 /* i + j = 3 and 4, from the second moments */
-static void moments_4(const int32_t second[T3R_REFINE_MOMENTS_2], const int32_t e_q8[2], const int32_t ee_q6[3],
-                      int32_t out[T3R_REFINE_MOMENTS_4 - T3R_REFINE_MOMENTS_2])
+static inline void add_moments_4(int64_t value_q7, const int32_t e_q8[2], const int32_t ee_q6[3], int64_t *sum)
 {
-    out[0] = moment(second[3], e_q8[0], 8);
-    out[1] = moment(second[3], e_q8[1], 8);
-    out[2] = moment(second[5], e_q8[0], 8);
-    out[3] = moment(second[5], e_q8[1], 8);
-    out[4] = moment(second[3], ee_q6[0], 6);
-    out[5] = moment(second[3], ee_q6[1], 6);
-    out[6] = moment(second[3], ee_q6[2], 6);
-    out[7] = moment(second[5], ee_q6[1], 6);
-    out[8] = moment(second[5], ee_q6[2], 6);
+    int64_t xx = moment(value_q7, ee_q6[0], 6), yy = moment(value_q7, ee_q6[2], 6);
+    sum[0] += moment(xx, e_q8[0], 8);
+    sum[1] += moment(xx, e_q8[1], 8);
+    sum[2] += moment(yy, e_q8[0], 8);
+    sum[3] += moment(yy, e_q8[1], 8);
+    sum[4] += moment(xx, ee_q6[0], 6);
+    sum[5] += moment(xx, ee_q6[1], 6);
+    sum[6] += moment(xx, ee_q6[2], 6);
+    sum[7] += moment(yy, ee_q6[1], 6);
+    sum[8] += moment(yy, ee_q6[2], 6);
 }
 
 /* One pixel, to which the splat contributed `weight` of transmittance. What shows behind it is what is still to come,
  * over the transmittance left: g = alpha dC/d alpha = w (c - behind). */
-static void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat *s, uint32_t i, uint32_t j,
-                      uint16_t weight_q16, const int32_t e_q8[2], block_sums *sums)
+static inline void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat *s, uint32_t i, uint32_t j,
+                             uint16_t weight_q16, const int32_t e_q8[2], block_sums *sums)
 {
     uint32_t left = tile->transmittance_q16[j][i];
     uint32_t inverse = left == 0 ? 0 : UINT32_MAX / left; /* 2^32 / left, a little less */
@@ -113,18 +112,11 @@ static void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat 
         sums->colour[c] += halve(weight_q12 * r_q4, 8);
     }
     const int32_t ee_q6[3] = {halve(e_q8[0] * e_q8[0], 10), halve(e_q8[0] * e_q8[1], 10), halve(e_q8[1] * e_q8[1], 10)};
-    int32_t first[T3R_REFINE_MOMENTS_2], second[T3R_REFINE_MOMENTS_2];
-    int32_t fourth[T3R_REFINE_MOMENTS_4 - T3R_REFINE_MOMENTS_2];
-    moments_2(halve(gr_q12, 5), e_q8, ee_q6, first);
-    moments_2((int32_t)t3r_round_shift64(gg_q16, 9), e_q8, ee_q6, second);
-    moments_4(second, e_q8, ee_q6, fourth);
-    for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
-        sums->gradient[k] += first[k];
-        sums->curvature[k] += second[k];
-    }
-    for (int k = 0; k < T3R_REFINE_MOMENTS_4 - T3R_REFINE_MOMENTS_2; k++) {
-        sums->curvature[T3R_REFINE_MOMENTS_2 + k] += fourth[k];
-    }
+    int64_t gg_q7 = t3r_round_shift64(gg_q16, 9);
+    add_moments_2(halve(gr_q12, 5), e_q8, ee_q6, sums->gradient);
+    add_moments_2(gg_q7, e_q8, ee_q6, sums->curvature);
+    add_moments_4(gg_q7, e_q8, ee_q6, sums->curvature + T3R_REFINE_MOMENTS_2);
+    sums->pixels++;
 }
 
 /* Over `area` pixels a sum is below 2^24.6 area + a half a block, a block holding at least a pixel, and area 2^-shift
@@ -132,15 +124,16 @@ static void add_pixel(const wanted *want, const t3r_tile *tile, const t3r_splat 
 static void add_block(const block_sums *block, t3r_refine_sums *sums)
 {
     uint32_t shift = t3r_refine_shift(sums->area);
+    int64_t most = (int64_t)MOMENT_MOST_Q7 * block->pixels;
     for (int c = 0; c < 3; c++) {
         sums->colour[c] += (int32_t)t3r_round_shift64(block->colour[c] * 8, shift);
     }
     sums->weight += (int32_t)t3r_round_shift64(block->weight * 8, shift);
     for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
-        sums->gradient[k] += (int32_t)t3r_round_shift64(block->gradient[k], shift);
+        sums->gradient[k] += (int32_t)t3r_round_shift64(t3r_clamp64(block->gradient[k], -most, most), shift);
     }
     for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
-        sums->curvature[k] += (int32_t)t3r_round_shift64(block->curvature[k], shift);
+        sums->curvature[k] += (int32_t)t3r_round_shift64(t3r_clamp64(block->curvature[k], -most, most), shift);
     }
 }
 
@@ -183,7 +176,7 @@ static void scatter_block(const t3r_refine_view *job, const wanted *want, t3r_ti
             add_pixel(want, tile, s, i, j, weight_q16, e_q8, &sums);
         }
     }
-    if (sums.weight != 0) {
+    if (sums.pixels != 0) {
         add_block(&sums, &job->sums[slot]);
     }
 }
