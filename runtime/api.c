@@ -43,6 +43,7 @@ static void bind_layout(t3r_runtime *rt, const t3r_layout *layout)
         rt->offset[b] = layout->offset[b];
     }
     rt->list_capacity = layout->list_capacity;
+    rt->refine_bytes = layout->refine_bytes;
     rt->layout_hash = layout_hash(layout);
 }
 

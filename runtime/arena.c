@@ -2,6 +2,7 @@
 
 #include "fixed.h"
 #include "raster_splat.h"
+#include "refine.h"
 #include "state.h"
 #include "superclusters.h"
 
@@ -9,6 +10,8 @@ _Static_assert(sizeof(t3r_gaussian) == T3R_GAUSSIAN_BYTES, "trim3r_arena.h knows
 _Static_assert(sizeof(t3r_splat) == T3R_SPLAT_BYTES, "trim3r_arena.h knows the splat's size");
 _Static_assert(sizeof(t3r_cluster) == T3R_CLUSTER_BYTES, "trim3r_arena.h knows the SuperCluster's size");
 _Static_assert(sizeof(t3r_cluster_work) <= T3R_CLUSTER_WORK_BYTES, "trim3r_arena.h knows the K-means' work");
+_Static_assert(sizeof(t3r_refine_sums) == T3R_REFINE_SUMS_BYTES, "trim3r_arena.h knows refinement's sums");
+_Static_assert(sizeof(t3r_correction) == T3R_CORRECTION_BYTES, "trim3r_arena.h knows the correction's size");
 
 typedef struct buffer_row {
     const char *name;
@@ -23,7 +26,7 @@ typedef struct buffer_row {
 static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
 {
     T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,
-                c->keep_analysis)
+                c->keep_analysis, c->refinements)
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)
@@ -60,16 +63,23 @@ t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout 
     read_table(config, rows);
     layout->min_bytes = stack_buffers(rows, layout->offset);
 
-    buffer_row *lists = &rows[T3R_BUFFER_LISTS];
+    buffer_row *lists = &rows[T3R_BUFFER_LISTS], *refine = &rows[T3R_BUFFER_REFINE_WORK];
     size_t full_lists = T3R_UP_(T3R_LISTS_BYTES_(config->max_gaussians, config->render_width, config->render_height));
+    size_t full_refine = T3R_REFINE_FULL_BYTES_(config->width, config->height, config->views, config->max_gaussians,
+                                                config->refinements);
     size_t raster_top = layout->offset[T3R_BUFFER_LISTS] + full_lists + rows[T3R_BUFFER_SCENE].bytes;
-    layout->bytes = T3R_MAX(layout->min_bytes, raster_top);
+    size_t refine_top = layout->offset[T3R_BUFFER_REFINE_WORK] + full_refine + rows[T3R_BUFFER_SCENE].bytes;
+    layout->bytes = T3R_MAX(layout->min_bytes, T3R_MAX(raster_top, refine_top));
     if (arena_bytes < layout->min_bytes) {
         return T3R_ERR_ARENA;
     }
 
     layout->offset[T3R_BUFFER_SCENE] = arena_bytes / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN - rows[T3R_BUFFER_SCENE].bytes;
     lists->bytes = layout->offset[T3R_BUFFER_SCENE] - layout->offset[T3R_BUFFER_LISTS];
+    if (refine->bytes > 0) {
+        refine->bytes = layout->offset[T3R_BUFFER_SCENE] - layout->offset[T3R_BUFFER_REFINE_WORK];
+    }
+    layout->refine_bytes = refine->bytes;
     layout->list_capacity = T3R_MIN(lists->bytes / sizeof(uint32_t), (size_t)UINT32_MAX);
     for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
         layout->size[b] = rows[b].bytes;
@@ -81,7 +91,7 @@ t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout 
 
 const char *t3r_buffer_name(enum t3r_buffer buffer)
 {
-    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
+    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
     return names[buffer];
 }
 

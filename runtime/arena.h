@@ -12,6 +12,7 @@ typedef struct t3r_layout {
     size_t offset[T3R_BUFFER_COUNT];
     size_t size[T3R_BUFFER_COUNT];
     size_t list_capacity; /* entries of the tile lists */
+    size_t refine_bytes;  /* of the refinement work */
 } t3r_layout;
 
 /* Lays an arena of arena_bytes out (T3R_ERR_ARENA when that is too few; layout->min_bytes and bytes are set all

@@ -34,6 +34,10 @@ typedef struct t3r_footprint {
 void t3r_lift(const t3r_pointmap *map, uint32_t view_index, uint32_t u, uint32_t v, const t3r_footprint *footprint,
               t3r_gaussian *gaussian);
 
+/* Writes a factor, entries of `fraction` fraction bits below 2^62, as mantissas with a shared exponent: the largest
+ * gets 14 bits. */
+void t3r_pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gaussian);
+
 /* Kept neighbours are this far apart about a retained pixel: pixels, Q12, at least 1. */
 uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
 

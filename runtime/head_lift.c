@@ -24,8 +24,7 @@ static void narrowed_factor(const t3r_footprint *f, int64_t lower_q12[3])
     lower_q12[2] = t3r_isqrt64((uint64_t)T3R_MAX(rest_q24, (int64_t)VARIANCE_LEAST_Q12 << 12));
 }
 
-/* Three columns to mantissas with a shared exponent: the largest entry gets 15 bits. */
-static void pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gaussian)
+void t3r_pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gaussian)
 {
     uint64_t most = 1;
     for (int i = 0; i < 9; i++) {
@@ -79,7 +78,7 @@ void t3r_lift(const t3r_pointmap *map, uint32_t view_index, uint32_t u, uint32_t
     for (int i = 0; i < 3; i++) {
         entry[3 * i + 2] = length == 0 ? 0 : t3r_round_shift64(normal[i] * (1 << 16) / length * thickness, 16);
     }
-    pack_factor(entry, 24, gaussian);
+    t3r_pack_factor(entry, 24, gaussian);
 
     for (int i = 0; i < 3; i++) {
         int64_t moved = tu[i] * (int64_t)footprint->offset_q12[0] + tv[i] * (int64_t)footprint->offset_q12[1];

@@ -1,7 +1,8 @@
 /* The way of the data. The image stage comes before, frame by frame (develop.c), the raster behind (raster.c):
  *
  *     frames - image -+- wavelet ------- texture energy --+
- *                     |                                   +- superclusters - budget - mask - head - scene - raster
+ *                     |                                   +- superclusters - budget - mask - head - scene - refine -
+ * raster
  *                     +- depth --------- pointmap --------+
  *
  * Each stage tells what it made through the stage_hash hook. */
@@ -16,6 +17,7 @@
 #include "pixel_clusters.h"
 #include "pointmap.h"
 #include "redundancy.h"
+#include "refine.h"
 #include "scene_frame.h"
 #include "stage_hash.h"
 #include "state.h"
@@ -207,8 +209,20 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
         level(scene + rt->gaussians, added, rt->gain_q14[v]);
         rt->gaussians += added;
     }
-    t3r_hash_scene(rt);
+    t3r_hash_scene(rt, T3R_STAGE_HEAD);
     return T3R_OK;
+}
+
+static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
+{
+    if (rt->config.refinements == 0) {
+        return T3R_OK;
+    }
+    t3r_status status = t3r_refine(rt, views);
+    if (status == T3R_OK) {
+        t3r_hash_scene(rt, T3R_STAGE_REFINE);
+    }
+    return status;
 }
 
 t3r_status t3r_build_scene(t3r_runtime *rt)
@@ -231,6 +245,9 @@ t3r_status t3r_build_scene(t3r_runtime *rt)
     settings.pass_over_covered = rt->config.redundancy && t3r_is_sparse(views, rt->views, settings.gaussians);
     budget(rt, views, &settings);
     t3r_status status = head(rt, views, &settings);
+    if (status == T3R_OK) {
+        status = refine(rt, views);
+    }
     rt->has_scene = status == T3R_OK;
     return status;
 }

@@ -34,6 +34,7 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
     const uint64_t tile = T3R_TILE_SIDE * T3R_TILE_SIDE;
     uint64_t view = (uint64_t)c->width * c->height, pixels = view * c->views;
     uint64_t tiles = T3R_TILES_(c->render_width, c->render_height);
+    uint64_t tiles_of_view = T3R_TILES_(c->width, c->height);
     uint64_t clusters = c->clusters, gaussians = c->max_gaussians;
     uint64_t assigned = (uint64_t)c->cluster_batches * T3R_CLUSTER_BATCH + pixels;
 
@@ -59,7 +60,10 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
      * and quotas */
     operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 2 + 1 + 17 + 2 + 1) + 3 * clusters * clusters + 64 * clusters;
     operations[T3R_STAGE_HEAD] = head_operations(c);
-    operations[T3R_STAGE_REFINE] = 0;
+    /* at most eight slices, each view drawn for each: as the raster below, once more with a look at every pixel; eight
+     * sweeps over six equations a Gaussian */
+    uint64_t drawn = gaussians * (32 + 8 + tiles_of_view * (1 + 2 + 3 * tile + tile / 16)) + tiles_of_view * 4 * tile;
+    operations[T3R_STAGE_REFINE] = c->refinements * (8 * c->views * (drawn + 2048) + gaussians * (8 * 36 + 64));
     /* project; four radix passes and their counts; counting and listing tiles; at most a pass a tile; each pixel of
      * each tile blended and its depth noted, a look for stopped tiles every 16 splats; tiles cleared and written */
     operations[T3R_STAGE_RASTER] =

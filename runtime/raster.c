@@ -2,7 +2,7 @@
  *
  * Fewer bytes never change a pixel: the depth order is global, a pass takes as many whole tiles as its lists have
  * room for (one tile always fits), and a tile's pixels depend on nothing but its own list. */
-#include "raster_tile.h"
+#include "raster_list.h"
 
 #include "fixed.h"
 #include "hash.h"
@@ -26,27 +26,6 @@ static void draw_job(void *context, uint32_t index)
     uint32_t begin = tile == job->pass_first ? 0 : bin->table[tile - 1];
     t3r_draw_tile(bin->splats, bin->lists + begin, bin->table[tile] - begin, tile % bin->across, tile / bin->across,
                   job->target);
-}
-
-#define PROJECT_CHUNK 4096u
-
-typedef struct project_job {
-    const t3r_projection *projection;
-    const t3r_gaussian *gaussians;
-    uint32_t count;
-    t3r_splat *splats;
-} project_job;
-
-/* A culled Gaussian leaves z = 0 behind. */
-static void project_chunk(void *context, uint32_t index)
-{
-    const project_job *job = context;
-    uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
-    for (uint32_t i = first; i < end; i++) {
-        if (!t3r_project(job->projection, &job->gaussians[i], &job->splats[i])) {
-            job->splats[i].z_q20 = 0;
-        }
-    }
 }
 
 static t3r_status check_target(const t3r_runtime *rt, const t3r_target *t)
@@ -98,36 +77,17 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
         rt->analysed = 0;
     }
 
-    uint32_t count = rt->gaussians, most = rt->config.max_gaussians;
-    t3r_splat *splats = t3r_buffer_at(rt, T3R_BUFFER_SPLATS);
-    uint32_t *histogram = t3r_buffer_at(rt, T3R_BUFFER_ORDER);
-    uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};
-    uint32_t *indices[2] = {keys[1] + most, keys[1] + 2 * (size_t)most};
-
     if (!t3r_progress(rt, T3R_STAGE_RASTER, 0, (uint32_t)T3R_TILES_(target->width, target->height))) {
         return T3R_ERR_CANCELLED;
     }
-    project_job projecting = {&projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, splats};
-    t3r_parallel(rt, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
-    uint32_t visible = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        keys[0][visible] = (uint32_t)splats[i].z_q20;
-        indices[0][visible] = i;
-        visible += splats[i].z_q20 != 0;
-    }
-    t3r_order(keys, indices, visible, histogram);
-
-    t3r_binning bin = {
-        .splats = splats,
-        .order = indices[0],
-        .visible = visible,
-        .across = (target->width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE,
-        .tiles = (uint32_t)T3R_TILES_(target->width, target->height),
+    t3r_raster_room room = {
+        .splats = t3r_buffer_at(rt, T3R_BUFFER_SPLATS),
+        .order = t3r_buffer_at(rt, T3R_BUFFER_ORDER),
         .table = t3r_buffer_at(rt, T3R_BUFFER_TILES),
         .lists = t3r_buffer_at(rt, T3R_BUFFER_LISTS),
         .capacity = rt->list_capacity,
     };
-    t3r_bin_count(&bin);
+    t3r_binning bin = t3r_raster_list(rt, &projection, &room);
     uint32_t passes = 0;
     for (uint32_t first = 0; first < bin.tiles; passes++) {
         uint32_t end = t3r_bin_pass(&bin, first);

@@ -149,11 +149,16 @@ static bool clip_range(int32_t centre_q12, int64_t half_q8, uint32_t size, uint1
     return true;
 }
 
-bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *splat)
+/* Where a camera sees a Gaussian's mean. */
+typedef struct sight {
+    int64_t z_q20; /* in (T3R_NEAR_Q20, 2^31) */
+    reciprocal inverse;
+    int64_t u_q24, v_q24; /* x / z and y / z, at most 16 and 2^-23 */
+} sight;
+
+/* false = culled */
+static bool see(const t3r_projection *p, const t3r_gaussian *g, sight *seen)
 {
-    if (g->opacity_q15 <= 128) { /* below 1/255 everywhere */
-        return false;
-    }
     int64_t d[3]; /* positions and centres are within 2^30: below 2^31 */
     for (int i = 0; i < 3; i++) {
         d[i] = (int64_t)g->position_q20[i] - p->centre_q20[i];
@@ -167,20 +172,46 @@ bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *spla
         t3r_abs64(c[1]) > T3R_ASIDE * c[2]) {
         return false;
     }
-    reciprocal inverse = invert((uint32_t)c[2]);
+    seen->z_q20 = c[2];
+    seen->inverse = invert((uint32_t)c[2]);
     /* x / z in Q24: |c| < 2^31.8 times rn <= 2^31 stays below 2^63 */
-    int64_t u_q24 = t3r_round_shift64(c[0] * inverse.rn, (uint32_t)(38 - inverse.lz));
-    int64_t v_q24 = t3r_round_shift64(c[1] * inverse.rn, (uint32_t)(38 - inverse.lz));
-    /* |u| <= 16 + 2^-23 and f < 2^30: below 2^59 */
-    int64_t x_q12 = t3r_round_shift64(u_q24 * p->fx_q16 + (int64_t)p->cx_q16 * (1 << 24), 28);
-    int64_t y_q12 = t3r_round_shift64(v_q24 * p->fy_q16 + (int64_t)p->cy_q16 * (1 << 24), 28);
+    seen->u_q24 = t3r_round_shift64(c[0] * seen->inverse.rn, (uint32_t)(38 - seen->inverse.lz));
+    seen->v_q24 = t3r_round_shift64(c[1] * seen->inverse.rn, (uint32_t)(38 - seen->inverse.lz));
+    return true;
+}
 
+/* Both rows of T, pixels, Q12. */
+static void footprint(const t3r_projection *p, const t3r_gaussian *g, const sight *seen, int32_t a_q12[3],
+                      int32_t b_q12[3])
+{
     const int32_t *w = p->world_to_camera_q30;
-    int32_t hold_u = (int32_t)t3r_clamp64(u_q24, -p->limit_x_q24, p->limit_x_q24);
-    int32_t hold_v = (int32_t)t3r_clamp64(v_q24, -p->limit_y_q24, p->limit_y_q24);
+    int32_t hold_u = (int32_t)t3r_clamp64(seen->u_q24, -p->limit_x_q24, p->limit_x_q24);
+    int32_t hold_v = (int32_t)t3r_clamp64(seen->v_q24, -p->limit_y_q24, p->limit_y_q24);
+    footprint_row(w, w + 6, hold_u, p->fx_q16, seen->inverse, g, a_q12);
+    footprint_row(w + 3, w + 6, hold_v, p->fy_q16, seen->inverse, g, b_q12);
+}
+
+bool t3r_footprint_rows(const t3r_projection *p, const t3r_gaussian *g, int32_t a_q12[3], int32_t b_q12[3])
+{
+    sight seen;
+    if (!see(p, g, &seen)) {
+        return false;
+    }
+    footprint(p, g, &seen, a_q12, b_q12);
+    return true;
+}
+
+bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *splat)
+{
+    sight seen;
+    if (g->opacity_q15 <= 128 || !see(p, g, &seen)) { /* below 1/255 everywhere, or out of sight */
+        return false;
+    }
+    /* |u| <= 16 + 2^-23 and f < 2^30: below 2^59 */
+    int64_t x_q12 = t3r_round_shift64(seen.u_q24 * p->fx_q16 + (int64_t)p->cx_q16 * (1 << 24), 28);
+    int64_t y_q12 = t3r_round_shift64(seen.v_q24 * p->fy_q16 + (int64_t)p->cy_q16 * (1 << 24), 28);
     int32_t a_q12[3], b_q12[3];
-    footprint_row(w, w + 6, hold_u, p->fx_q16, inverse, g, a_q12);
-    footprint_row(w + 3, w + 6, hold_v, p->fy_q16, inverse, g, b_q12);
+    footprint(p, g, &seen, a_q12, b_q12);
 
     /* L = ln 2 (log2(255 opacity_q15) - 15), Q8; ln 2 = 45426 / 65536; 16 / 256 of margin */
     int64_t level_q8 = ((((int64_t)t3r_log2_q16(255u * g->opacity_q15) - (15 << 16)) * 45426) >> 24) + 16;
@@ -192,7 +223,7 @@ bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *spla
         return false;
     }
     conic_of(a_q12, b_q12, splat);
-    splat->z_q20 = (int32_t)c[2];
+    splat->z_q20 = (int32_t)seen.z_q20;
     for (int i = 0; i < 3; i++) {
         splat->colour_q7[i] = g->colour_q7[i];
     }

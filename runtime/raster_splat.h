@@ -39,6 +39,11 @@ t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *
 /* One Gaussian to one splat; false = culled. */
 bool t3r_project(const t3r_projection *projection, const t3r_gaussian *gaussian, t3r_splat *splat);
 
+/* The rows of T, pixels in Q12: the Gaussian's footprint in the image is T T^T + 0.3 I, T's columns being the projected
+ * columns of its factor. False when its mean is out of sight. */
+bool t3r_footprint_rows(const t3r_projection *projection, const t3r_gaussian *gaussian, int32_t a_q12[3],
+                        int32_t b_q12[3]);
+
 /* Sorts `count` (key, index) pairs by key, stable: four passes of a byte. Both sides hold `count` entries; the
  * result is in keys[0] and indices[0]. histogram: 4 x 256 counts. */
 void t3r_order(uint32_t *keys[2], uint32_t *indices[2], uint32_t count, uint32_t *histogram);

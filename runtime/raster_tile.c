@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "fixed.h"
-#include "kernels/blend.h"
 
 /* A splat centred at most this far from a tile needs no test against its columns: within 24 + 16 px of the centre,
  * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6), and Q17 holds
@@ -11,8 +10,6 @@
 #define SMALL_SPLAT 24
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
 #define LEVEL_MOST 6
-/* Every so many splats a tile looks whether all its pixels are done. */
-#define STOP_INTERVAL 16
 
 typedef struct tile_state {
     t3r_tile pixels;
@@ -93,36 +90,49 @@ static bool is_near(int32_t centre_q12, uint32_t tile)
     return offset >= -(SMALL_SPLAT << 12) && offset <= (SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12;
 }
 
-static void blend_columns(tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top, uint32_t column,
-                          bool with_depth)
+bool t3r_tile_lane(const t3r_splat *s, uint32_t left, uint32_t top, uint32_t column, t3r_lane_splat *lane)
 {
-    uint32_t first = T3R_MAX(s->y0, top) - top, last = T3R_MIN(s->y1, top + T3R_TILE_SIDE - 1) - top;
     bool small = is_near(s->x_q12, left) && is_near(s->y_q12, top);
     if (!small && !touches(s, left + column, top)) {
-        return;
+        return false;
     }
-    t3r_lane_splat lane;
-    lane_splat_of(s, left + column, top, &lane);
-    t3r_blend_rows(&tile->pixels, &lane, column, first, last);
-    if (with_depth) {
-        note_depth(tile, column, first, last, s->z_q20);
-    }
+    lane_splat_of(s, left + column, top, lane);
+    return true;
 }
 
-/* A splat at most eight columns wide takes one step wherever it lies, a wider one each half of the tile it reaches. */
-static void blend_splat(tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top, bool with_depth)
+t3r_tile_blocks t3r_blocks_of(const t3r_splat *s, uint32_t left, uint32_t top)
 {
     uint32_t x0 = T3R_MAX(s->x0, left) - left, x1 = T3R_MIN(s->x1, left + T3R_TILE_SIDE - 1) - left;
-    if (x1 - x0 < T3R_LANES) {
-        blend_columns(tile, s, left, top, T3R_MIN(x0, (uint32_t)T3R_TILE_SIDE - T3R_LANES), with_depth);
-        return;
+    t3r_tile_blocks blocks = {
+        .count = 1,
+        .column = T3R_MIN(x0, (uint32_t)T3R_TILE_SIDE - T3R_LANES),
+        .first = T3R_MAX(s->y0, top) - top,
+        .last = T3R_MIN(s->y1, top + T3R_TILE_SIDE - 1) - top,
+    };
+    if (x1 - x0 >= T3R_LANES) {
+        blocks.count = T3R_TILE_SIDE / T3R_LANES;
+        blocks.column = 0;
     }
-    for (uint32_t column = 0; column < T3R_TILE_SIDE; column += T3R_LANES) {
-        blend_columns(tile, s, left, top, column, with_depth);
+    return blocks;
+}
+
+static void blend_splat(tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top, bool with_depth)
+{
+    t3r_tile_blocks blocks = t3r_blocks_of(s, left, top);
+    for (uint32_t i = 0; i < blocks.count; i++) {
+        uint32_t column = blocks.column + i * T3R_LANES;
+        t3r_lane_splat lane;
+        if (!t3r_tile_lane(s, left, top, column, &lane)) {
+            continue;
+        }
+        t3r_blend_rows(&tile->pixels, &lane, column, blocks.first, blocks.last);
+        if (with_depth) {
+            note_depth(tile, column, blocks.first, blocks.last, s->z_q20);
+        }
     }
 }
 
-static bool all_stopped(const t3r_tile *tile)
+bool t3r_tile_stopped(const t3r_tile *tile)
 {
     uint16_t most = 0;
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
@@ -166,20 +176,26 @@ static void write_tile(const tile_state *tile, uint32_t left, uint32_t top, cons
     }
 }
 
+void t3r_tile_clear(t3r_tile *tile)
+{
+    memset(tile, 0, sizeof *tile);
+    for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
+        for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
+            tile->transmittance_q16[j][i] = T3R_ONE_Q16;
+        }
+    }
+}
+
 void t3r_draw_tile(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y,
                    const t3r_target *target)
 {
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
     bool with_depth = target->depth_q20 != NULL;
     tile_state tile;
-    memset(&tile, 0, sizeof tile);
-    for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
-        for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
-            tile.pixels.transmittance_q16[j][i] = T3R_ONE_Q16;
-        }
-    }
+    memset(tile.depth_q20, 0, sizeof tile.depth_q20);
+    t3r_tile_clear(&tile.pixels);
     for (uint32_t i = 0; i < count; i++) {
-        if (i % STOP_INTERVAL == STOP_INTERVAL - 1 && all_stopped(&tile.pixels)) {
+        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile.pixels)) {
             break; /* the rest would add nothing: the same pixels, sooner */
         }
         blend_splat(&tile, &splats[list[i]], left, top, with_depth);

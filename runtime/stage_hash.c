@@ -132,7 +132,7 @@ void t3r_hash_budget(const t3r_runtime *rt, const t3r_view *views)
     tell(rt, T3R_STAGE_BUDGET, hash);
 }
 
-void t3r_hash_scene(const t3r_runtime *rt)
+void t3r_hash_scene(const t3r_runtime *rt, t3r_stage stage)
 {
     if (silent(rt)) {
         return;
@@ -153,5 +153,5 @@ void t3r_hash_scene(const t3r_runtime *rt)
         }
         hash = t3r_hash_u8(t3r_hash_u16(hash, g->opacity_q15), g->confidence);
     }
-    tell(rt, T3R_STAGE_HEAD, hash);
+    tell(rt, stage, hash);
 }

@@ -11,6 +11,6 @@ void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views);
 void t3r_hash_wavelet(const t3r_runtime *rt, const t3r_view *views);
 void t3r_hash_superclusters(const t3r_runtime *rt, const t3r_view *views);
 void t3r_hash_budget(const t3r_runtime *rt, const t3r_view *views);
-void t3r_hash_scene(const t3r_runtime *rt);
+void t3r_hash_scene(const t3r_runtime *rt, t3r_stage stage); /* after head, or after refine */
 
 #endif

@@ -33,6 +33,7 @@ struct t3r_runtime {
     t3r_config config;
     uint64_t offset[T3R_BUFFER_COUNT];
     uint64_t list_capacity;           /* entries of the tile lists */
+    uint64_t refine_bytes;            /* of the refinement work */
     uint32_t views;                   /* context views added */
     t3r_camera camera[T3R_MAX_VIEWS]; /* of the working size, undistorted */
     uint64_t depth_unit_q40[T3R_MAX_VIEWS];

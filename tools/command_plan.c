@@ -14,7 +14,7 @@
 #include "whole_file.h"
 
 typedef struct plan_options {
-    uint32_t width, height, views, gaussians, clusters, render_width, render_height;
+    uint32_t width, height, views, gaussians, clusters, render_width, render_height, refine;
     bool has_clusters, keep_analysis, json, markdown;
     const char *svg;
 } plan_options;
@@ -25,6 +25,7 @@ enum {
     KEY_GAUSSIANS,
     KEY_CLUSTERS,
     KEY_RENDER,
+    KEY_REFINE,
     KEY_KEEP,
     KEY_SVG,
     KEY_MARKDOWN,
@@ -37,6 +38,7 @@ static const struct argp_option options[] = {
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "the budget (needed)", 0},
     {"clusters", KEY_CLUSTERS, "K", 0, "SuperClusters, 1..512 (300)", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
+    {"refine", KEY_REFINE, "N", 0, "refinement passes, 0..16 (2)", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
     {"svg", KEY_SVG, "FILE", 0, "the arena as a picture: stages across, bytes upwards", 0},
     {"markdown", KEY_MARKDOWN, NULL, 0, "the table in Markdown", 0},
@@ -63,6 +65,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_RENDER:
         option_size(state, "render", arg, 1, &o->render_width, &o->render_height);
+        return 0;
+    case KEY_REFINE:
+        o->refine = option_number(state, "refine", arg, 0, T3R_MAX_REFINEMENTS);
         return 0;
     case KEY_KEEP:
         o->keep_analysis = true;
@@ -169,11 +174,12 @@ static int write_svg(const char *path, const t3r_plan_info *plan)
 
 int command_plan(int argc, char **argv)
 {
-    plan_options o = {.views = 2};
+    plan_options o = {.views = 2, .refine = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1).refinements};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
     t3r_config config = t3r_default_config(o.width, o.height, o.views, o.gaussians);
     config.keep_analysis = o.keep_analysis;
+    config.refinements = o.refine;
     if (o.has_clusters) {
         config.clusters = o.clusters;
     }

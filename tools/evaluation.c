@@ -243,7 +243,7 @@ static void name_row(evaluation_row *row, const evaluation_case *what, evaluatio
     row->method = evaluation_method_name(method);
     row->head = t3r_head_name(options->head);
     row->bits = ""; /* of a learned head's weights */
-    row->refine = "0";
+    snprintf(row->refine, sizeof row->refine, "%" PRIu32, options->refine);
     row->allocate = t3r_allocation_name(options->allocation);
     row->depth = what->planar ? "plane" : "sensor";
 }
@@ -273,7 +273,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     if (method == EVALUATION_RANDOM) {
         options.allocation = T3R_ALLOCATE_RANDOM;
         options.head = T3R_HEAD_NONE;
-        options.flying = options.redundancy = options.exposure = 0;
+        options.flying = options.redundancy = options.exposure = options.refine = 0;
     }
 
     *row = (evaluation_row){0};

@@ -22,6 +22,7 @@ void reconstruction_defaults(reconstruction_options *options)
         .clusters = c.clusters,
         .gamma_q8 = c.gamma_q8,
         .paper_keep_percent = c.keep_percent,
+        .refine = c.refinements,
         .fill_radius = c.fill_radius,
         .flying = c.flying,
         .redundancy = c.redundancy,
@@ -257,6 +258,7 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
     r->config.clusters = options->clusters;
     r->config.gamma_q8 = options->gamma_q8;
     r->config.keep_percent = options->paper_keep_percent;
+    r->config.refinements = options->refine;
     r->config.fill_radius = options->fill_radius;
     r->config.flying = options->flying;
     r->config.redundancy = options->redundancy;

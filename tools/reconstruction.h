@@ -35,7 +35,7 @@ typedef struct reconstruction_options {
     uint32_t fill_radius;
     uint32_t flying, redundancy, exposure; /* 0 or 1 each: what views tell of each other */
     uint32_t seed;
-    uint32_t refine;    /* passes of refinement; 0 */
+    uint32_t refine;    /* passes of refinement */
     bool keep_analysis; /* so that t3r_rebudget() and t3r_reallocate() work afterwards */
     bool hash;          /* collect the stages' hashes */
     arena_choice arena;

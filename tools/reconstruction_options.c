@@ -70,7 +70,7 @@ static const struct argp_option settings[] = {
     {"seed", KEY_SEED, "N", 0, "of the K-means seeding and of --allocate random (1)", 0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0, "sensor", 0},
-    {"refine", KEY_REFINE, "N", 0, "refinement passes; 0 is the only value so far", 0},
+    {"refine", KEY_REFINE, "N", 0, "refinement passes on the context views, 0..16 (2)", 0},
     {NULL, 0, NULL, 0, "What must not change a bit:", 30},
     {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
     {"threads", KEY_THREADS, "N", 0, "1..64 (1)", 0},
@@ -168,10 +168,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         }
         return 0;
     case KEY_REFINE:
-        o->refine = option_number(state, "refine", arg, 0, UINT32_MAX);
-        if (o->refine != 0) {
-            argp_error(state, "--refine %s: refinement is not yet available; 0 is the only value", arg);
-        }
+        o->refine = option_number(state, "refine", arg, 0, T3R_MAX_REFINEMENTS);
         return 0;
     case KEY_ARENA:
         reconstruction_parse_arena(state, arg, o);
@@ -220,7 +217,7 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         if (strcmp(arg, "random") == 0) {
             o->allocation = T3R_ALLOCATE_RANDOM;
             o->head = T3R_HEAD_NONE;
-            o->flying = o->redundancy = o->exposure = 0;
+            o->flying = o->redundancy = o->exposure = o->refine = 0;
         } else if (strcmp(arg, "trim3r") != 0) {
             argp_error(state, "--method does not know '%s'", arg);
         }

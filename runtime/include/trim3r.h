@@ -31,6 +31,7 @@ extern "C" {
 #define T3R_MAX_VIEWS 16u     /* most context views */
 #define T3R_MAX_CLUSTERS 512u /* most SuperClusters */
 #define T3R_MAX_GAUSSIANS (1u << 24)
+#define T3R_MAX_REFINEMENTS 16u
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
 
 typedef enum t3r_status {
@@ -138,6 +139,7 @@ typedef struct t3r_config {
     uint32_t keep_percent; /* N of the allocation `paper`, 0..100 */
     uint32_t gamma_q8;     /* exponent of texture, 0..512; 256 = 1 */
     t3r_head head;
+    uint32_t refinements;   /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
     uint32_t fill_radius;   /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
     uint32_t flying;        /* 1 = points between surfaces, or in front of what another view measured, come last */
     uint32_t redundancy;    /* 1 = small budgets pass over points that another view covers */

@@ -137,7 +137,7 @@ def test_build(room):
         "--cpu-mask": ["all"],
         "--method": ["best"],
         "--depth": ["stereo", "radar"],
-        "--refine": ["2", "x"],
+        "--refine": ["17", "x"],
     }.items():
         for value in values:
             expect(2, "build", room, "-o", "s.ply", f"{option}={value}", err=option)
@@ -265,7 +265,7 @@ def test_render(room):
 def test_replay(room):
     base = ["replay", room, "--working", "64x64"]
     found = expect_json(*base)
-    check(len(found.get("stages", {})) == 8 and len(found["tiles"]) == 16, "replay --json lacks stages or tiles")
+    check(len(found.get("stages", {})) == 9 and len(found["tiles"]) == 16, "replay --json lacks stages or tiles")
     write("golden.json", json.dumps(found))
     for more in ([], ["--threads", 2], ["--arena", "min"], ["--arena", 30000000], ["--cpu-mask", 0],
                  ["--cpu-mask", 255]):

@@ -90,6 +90,7 @@ static t3r_config take_config(input *in)
     c.head = (t3r_head)((flags >> 3) % T3R_HEAD_COUNT);
     c.wavelet = (t3r_wavelet)((flags >> 5) % T3R_WAVELET_COUNT);
     c.wavelet_levels = 1 + below(in, T3R_MAX_LEVELS);
+    c.refinements = below(in, 3);
     c.fill_radius = below(in, 9);
     c.colour_weight_q8 = below(in, 1025);
     c.gamma_q8 = below(in, 513);

@@ -42,6 +42,7 @@ static t3r_config random_config(dice *d, uint32_t most_side, uint32_t most_gauss
     c.wavelet_levels = 1 + dice_below(d, T3R_MAX_LEVELS);
     c.wavelet = (t3r_wavelet)dice_below(d, T3R_WAVELET_COUNT);
     c.keep_analysis = dice_below(d, 2);
+    c.refinements = dice_below(d, 3);
     c.fill_radius = dice_below(d, 9);
     return c;
 }
@@ -86,9 +87,11 @@ static void plan_equals_macros(void **state)
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                     c.render_width, c.render_height, c.keep_analysis));
+                                                     c.render_width, c.render_height, c.keep_analysis,
+                                                     c.refinements));
         assert_true(plan.bytes == T3R_FULL_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                  c.render_width, c.render_height, c.keep_analysis));
+                                                  c.render_width, c.render_height, c.keep_analysis,
+                                                     c.refinements));
         /* the two public macros speak of the defaults */
         c = t3r_default_config(c.width, c.height, c.views, c.max_gaussians);
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);

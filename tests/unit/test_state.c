@@ -89,7 +89,7 @@ static void cancelled_reallocation_keeps_settings_and_analysis(void **state)
     t3r_scene scene, again;
     t3r_runtime *rt = analysed(&scene);
     uint64_t before = hash_of(&scene);
-    for (cancel_at = T3R_STAGE_BUDGET; cancel_at <= T3R_STAGE_HEAD; cancel_at++) {
+    for (cancel_at = T3R_STAGE_BUDGET; cancel_at <= T3R_STAGE_REFINE; cancel_at++) {
         assert_int_equal(t3r_reallocate(rt, 100, T3R_ALLOCATE_RANDOM, T3R_HEAD_NONE, &again), T3R_ERR_CANCELLED);
         assert_int_equal(t3r_get_scene(rt, &again), T3R_ERR_STATE);
     }

@@ -1,0 +1,21 @@
+/* Everything of a view that comes before its tiles: projection, depth order, counts. Rendering and refinement share it.
+ */
+#ifndef T3R_RASTER_LIST_H
+#define T3R_RASTER_LIST_H
+
+#include "raster_tile.h"
+
+/* Where a view is listed: room for max_gaussians splats and their order, a table entry a tile, lists. */
+typedef struct t3r_raster_room {
+    t3r_splat *splats;
+    uint32_t *order; /* histogram, two keys and two indices a Gaussian */
+    uint32_t *table;
+    uint32_t *lists;
+    uint64_t capacity; /* entries of lists; at least max_gaussians */
+} t3r_raster_room;
+
+/* Projects the scene (through the parallel hook), orders it and counts it into tiles; a culled Gaussian's splat has
+ * z_q20 = 0. t3r_bin_pass() goes on from there. */
+t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_raster_room *room);
+
+#endif

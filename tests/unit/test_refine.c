@@ -1,0 +1,302 @@
+/* Refinement on the built-in room: it gains what it promises, changes nothing where nothing is missing, can be
+ * cancelled anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
+#include "unit.h"
+
+#include "hash.h"
+#include "refine.h"
+#include "room.h"
+#include "state.h"
+
+enum { SIDE = 96, POINTS = 2 * SIDE * SIDE, BUDGET = POINTS / 10 };
+
+static uint8_t rgb[2][SIDE * SIDE * 3], depth[2][SIDE * SIDE * 2];
+static t3r_camera camera[2];
+static void *memory;
+static size_t memory_bytes;
+
+typedef struct counter {
+    uint32_t calls, cancel_at; /* 0 = never */
+} counter;
+
+static int count_refine(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    counter *c = user;
+    assert_true(done <= total);
+    return stage == T3R_STAGE_REFINE && ++c->calls == c->cancel_at;
+}
+
+static void reversed(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context)
+{
+    (void)user;
+    while (count > 0) {
+        task(context, --count);
+    }
+}
+
+static int draw_room(void **state)
+{
+    (void)state;
+    static uint16_t depth_mm[SIDE * SIDE];
+    for (uint32_t v = 0; v < 2; v++) {
+        room_camera(2 * v, SIDE, SIDE, &camera[v]);
+        room_frame(2 * v, SIDE, SIDE, 1, rgb[v], depth_mm);
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            depth[v][2 * i] = (uint8_t)depth_mm[i];
+            depth[v][2 * i + 1] = (uint8_t)(depth_mm[i] >> 8);
+        }
+    }
+    return 0;
+}
+
+static t3r_config settings(uint32_t refinements)
+{
+    t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
+    config.refinements = refinements;
+    config.clusters = 64;
+    return config;
+}
+
+/* Least arena plus `share` sixteenths of what full speed takes more. */
+static t3r_runtime *open_arena(const t3r_config *config, uint32_t share)
+{
+    t3r_plan_info plan;
+    assert_int_equal(t3r_plan(config, &plan), T3R_OK);
+    memory_bytes = plan.min_bytes + (plan.bytes - plan.min_bytes) * share / 16;
+    assert_int_equal(posix_memalign(&memory, T3R_ARENA_ALIGN, memory_bytes), 0);
+    t3r_runtime *rt;
+    assert_int_equal(t3r_init(&rt, memory, memory_bytes, config), T3R_OK);
+    for (uint32_t v = 0; v < 2; v++) {
+        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
+                           .width = SIDE,
+                           .height = SIDE,
+                           .planes = {rgb[v]},
+                           .stride_bytes = {3 * SIDE},
+                           .depth = depth[v],
+                           .depth_width = SIDE,
+                           .depth_height = SIDE,
+                           .depth_stride_bytes = 2 * SIDE,
+                           .depth_unit_q40 = ROOM_DEPTH_UNIT_Q40};
+        assert_int_equal(t3r_add_view(rt, &frame, &camera[v]), T3R_OK);
+    }
+    return rt;
+}
+
+static uint64_t hash_of(const t3r_scene *scene)
+{
+    return t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)scene->gaussians, scene->count * sizeof *scene->gaussians);
+}
+
+static double context_psnr(t3r_runtime *rt)
+{
+    static uint8_t drawn[SIDE * SIDE * 3];
+    t3r_target target = {.width = SIDE, .height = SIDE, .rgb = drawn, .rgb_stride_bytes = 3 * SIDE};
+    double sum = 0;
+    for (uint32_t v = 0; v < 2; v++) {
+        assert_int_equal(t3r_render(rt, &camera[v], &target), T3R_OK);
+        for (uint32_t i = 0; i < sizeof drawn; i++) {
+            double d = (double)drawn[i] - rgb[v][i];
+            sum += d * d;
+        }
+    }
+    return 10 * log10(255.0 * 255.0 * 2 * sizeof drawn / sum);
+}
+
+static double refined_psnr(t3r_head head, uint32_t refinements)
+{
+    t3r_config config = settings(refinements);
+    config.head = head;
+    config.flying = config.redundancy = config.exposure = 0; /* measured against the pictures as they came */
+    t3r_runtime *rt = open_arena(&config, 16);
+    t3r_scene scene;
+    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    double db = context_psnr(rt);
+    free(memory);
+    return db;
+}
+
+static void gains_what_it_promises(void **state)
+{
+    (void)state;
+    static const struct {
+        t3r_head head;
+        double least[3]; /* dB gained by 1, 2 and 4 passes */
+    } promises[] = {{T3R_HEAD_ANALYTIC, {2.2, 3.5, 4.9}}, {T3R_HEAD_MOMENT, {2.7, 4.0, 5.8}}};
+    for (size_t i = 0; i < 2; i++) {
+        double plain = refined_psnr(promises[i].head, 0);
+        for (uint32_t k = 0; k < 3; k++) {
+            double gain = refined_psnr(promises[i].head, 1u << k) - plain;
+            print_message("%s, %u passes: %.2f dB and %.2f\n", t3r_head_name(promises[i].head), 1u << k, plain, gain);
+            assert_true(gain >= promises[i].least[k]);
+        }
+    }
+}
+
+static void black_stays_as_it_is(void **state)
+{
+    (void)state;
+    memset(rgb, 0, sizeof rgb);
+    uint64_t hash[2];
+    for (uint32_t n = 0; n < 2; n++) {
+        t3r_config config = settings(3 * n);
+        t3r_runtime *rt = open_arena(&config, 16);
+        t3r_scene scene;
+        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        hash[n] = hash_of(&scene);
+        free(memory);
+    }
+    assert_true(hash[0] == hash[1]);
+    draw_room(state);
+}
+
+static void nothing_missing_changes_nothing(void **state)
+{
+    (void)state;
+    uint64_t seed = 1;
+    for (int i = 0; i < 1000; i++) {
+        t3r_refine_sums sums = {.weight = (int32_t)unit_between(&seed, 0, 1 << 20),
+                                .area = (uint32_t)unit_between(&seed, 1, 1 << 28)};
+        for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
+            sums.curvature[k] = (int32_t)unit_between(&seed, -INT32_MAX, INT32_MAX);
+        }
+        t3r_correction correction = t3r_refine_solve(&sums);
+        t3r_gaussian before = {.position_q20 = {1, -2, 3 << 20},
+                               .factor = {100, -7, 3, 9000, 32767, 0, -32768, 12, 1},
+                               .factor_exponent = (int8_t)unit_between(&seed, -60, 15),
+                               .colour_q7 = {0, 128, 32640},
+                               .opacity_q15 = (uint16_t)unit_between(&seed, 0, 32767)};
+        t3r_gaussian after = before;
+        t3r_refine_apply(&correction, &after);
+        assert_memory_equal(&before, &after, sizeof before);
+    }
+}
+
+/* Sums at their bounds, whatever their signs: no overflow (the sanitizers' word), and a sound Gaussian. */
+static void extremes_stay_in_range(void **state)
+{
+    (void)state;
+    uint64_t seed = 2;
+    for (int i = 0; i < 20000; i++) {
+        t3r_refine_sums sums = {.area = (uint32_t)unit_between(&seed, 0, 1 << 28)};
+        int32_t words[4 + T3R_REFINE_MOMENTS_2 + T3R_REFINE_MOMENTS_4];
+        for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
+            words[k] = unit_random(&seed) % 3 == 0 ? (unit_random(&seed) % 2 ? INT32_MAX : -INT32_MAX)
+                                                   : (int32_t)unit_between(&seed, -1000, 1000);
+        }
+        memcpy(&sums, words, sizeof words);
+        t3r_correction c = t3r_refine_solve(&sums);
+        assert_true(abs(c.step_q16[0]) <= 32767);
+        for (int k = 1; k < T3R_REFINE_PARAMETERS; k++) {
+            assert_true(abs(c.step_q16[k]) <= (k < 3 ? 13107 : 6554));
+        }
+        t3r_gaussian g = {.factor_exponent = (int8_t)unit_between(&seed, -60, 15),
+                          .opacity_q15 = (uint16_t)unit_between(&seed, 0, 32767)};
+        for (int k = 0; k < 9; k++) {
+            g.factor[k] = (int16_t)unit_between(&seed, -32768, 32767);
+        }
+        for (int k = 0; k < 3; k++) {
+            g.position_q20[k] = (int32_t)unit_between(&seed, -(1 << 30), 1 << 30);
+            g.colour_q7[k] = (uint16_t)unit_between(&seed, 0, 32640);
+        }
+        t3r_refine_apply(&c, &g);
+        assert_true(g.opacity_q15 <= 32767 && g.factor_exponent >= -60 && g.factor_exponent <= 15);
+        for (int k = 0; k < 3; k++) {
+            assert_true(abs(g.position_q20[k]) <= 1 << 30 && g.colour_q7[k] <= 32640);
+        }
+    }
+}
+
+/* The scale of sums holds its bound for every area: at most 64 times what one pixel may add. */
+static void scale_follows_area(void **state)
+{
+    (void)state;
+    for (uint32_t area = 0; area <= 1u << 28; area += 1 + area / 1000) {
+        uint32_t shift = t3r_refine_shift(area);
+        assert_true(area <= (uint64_t)64 << shift);
+        assert_true(shift == 0 || area > (uint64_t)32 << shift);
+    }
+}
+
+static void arena_and_order_do_not_show(void **state)
+{
+    (void)state;
+    uint64_t first = 0;
+    for (uint32_t share = 0; share <= 20; share += 4) {
+        for (int order = 0; order < 2; order++) {
+            t3r_config config = settings(2);
+            t3r_runtime *rt = open_arena(&config, share);
+            t3r_hooks hooks = {.parallel_for = order ? reversed : NULL};
+            assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
+            t3r_scene scene;
+            assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+            uint64_t hash = hash_of(&scene);
+            assert_true(first == 0 || hash == first);
+            first = hash;
+            free(memory);
+        }
+    }
+}
+
+static void cancelled_anywhere_it_can_be_done_again(void **state)
+{
+    (void)state;
+    for (int keep = 0; keep < 2; keep++) {
+        t3r_config config = settings(2);
+        config.keep_analysis = (uint32_t)keep;
+        t3r_runtime *rt = open_arena(&config, 16);
+        counter c = {0, 0};
+        t3r_hooks hooks = {.user = &c, .progress = count_refine};
+        assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
+        t3r_scene scene;
+        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        uint64_t whole = hash_of(&scene);
+        uint32_t calls = c.calls;
+        assert_int_equal(calls, 4); /* two passes, two views, one slice */
+        for (uint32_t at = 1; at <= calls; at++) {
+            c = (counter){0, at};
+            t3r_status status = keep ? t3r_rebudget(rt, BUDGET, &scene) : t3r_reconstruct(rt, &scene);
+            assert_int_equal(status, T3R_ERR_CANCELLED);
+            assert_int_equal(t3r_get_scene(rt, &scene), T3R_ERR_STATE);
+            c = (counter){0, 0};
+            status = keep ? t3r_rebudget(rt, BUDGET, &scene) : t3r_reconstruct(rt, &scene);
+            assert_int_equal(status, T3R_OK);
+            assert_true(hash_of(&scene) == whole);
+        }
+        free(memory);
+    }
+}
+
+/* Another budget refines likewise: the same scene as built with it from the start. */
+static void rebudget_refines(void **state)
+{
+    (void)state;
+    uint64_t hash[2];
+    for (uint32_t n = 0; n < 2; n++) {
+        t3r_config config = settings(2);
+        config.keep_analysis = 1;
+        config.gaussians = n == 0 ? BUDGET / 2 : BUDGET;
+        t3r_runtime *rt = open_arena(&config, 16);
+        t3r_scene scene;
+        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        if (n == 1) {
+            assert_int_equal(t3r_rebudget(rt, BUDGET / 2, &scene), T3R_OK);
+        }
+        hash[n] = hash_of(&scene);
+        free(memory);
+    }
+    assert_true(hash[0] == hash[1]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gains_what_it_promises),
+        cmocka_unit_test(black_stays_as_it_is),
+        cmocka_unit_test(nothing_missing_changes_nothing),
+        cmocka_unit_test(extremes_stay_in_range),
+        cmocka_unit_test(scale_follows_area),
+        cmocka_unit_test(arena_and_order_do_not_show),
+        cmocka_unit_test(cancelled_anywhere_it_can_be_done_again),
+        cmocka_unit_test(rebudget_refines),
+    };
+    return cmocka_run_group_tests_name("refine", tests, draw_room, NULL);
+}
