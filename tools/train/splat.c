@@ -298,10 +298,10 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
 #define MOMENTS 15
 #define DILATION 0.3f
 #define VARIANCE_LEAST 0.02f
-#define COLOUR_STEP 0.90625f      /* 29 / 32 */
+#define COLOUR_STEP 0.8125f
 #define STEP 0.3125f              /* 5 / 16 of the Gauss-Newton step */
 #define RELATIVE_DAMPING 0.3125f
-#define DAMPING (256.0f / 65025.0f)
+#define DAMPING (64.0f / 65025.0f)
 #define OPACITY_STEP_MOST 0.5f
 #define SHIFT_MOST 0.2f
 #define SHAPE_MOST 0.1f
