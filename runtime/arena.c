@@ -26,7 +26,7 @@ typedef struct buffer_row {
 static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
 {
     T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,
-                c->keep_analysis, c->refinements)
+                c->head_column_bytes, c->keep_analysis, c->refinements)
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)
