@@ -91,7 +91,7 @@ t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout 
 
 const char *t3r_buffer_name(enum t3r_buffer buffer)
 {
-    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
+    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
     return names[buffer];
 }
 
