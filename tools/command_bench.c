@@ -105,8 +105,8 @@ typedef struct workload {
     t3r_camera camera[VIEWS];
     t3r_camera viewpoint;
     scene_bench full, trimmed;
-    scene_bench learned;       /* `trimmed` with the head small */
-    scene_bench headed;        /* `full` with the measured head, analysis kept */
+    scene_bench learned; /* `trimmed` with the head small */
+    scene_bench headed;  /* `full` with the measured head, analysis kept */
     chosen_head small, measured;
     t3r_threads *threads;
     uint8_t *view; /* where renders go */

@@ -141,13 +141,13 @@ typedef struct t3r_config {
     uint32_t gamma_q8;     /* exponent of texture, 0..512; 256 = 1 */
     t3r_head head;
     uint32_t head_column_bytes; /* work of a learned head, 0..65,536 a column: t3r_head_column_bytes() */
-    uint32_t refinements;   /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
-    uint32_t fill_radius;   /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
-    uint32_t flying;        /* 1 = points between surfaces, or in front of what another view measured, come last */
-    uint32_t redundancy;    /* 1 = small budgets pass over points that another view covers */
-    uint32_t exposure;      /* 1 = colours of all views are brought to their mean exposure */
-    uint32_t keep_analysis; /* 1 = planes outlive the build, so that t3r_rebudget() works */
-    uint32_t seed;          /* of the K-means, of the allocation `random`, and of blue-noise ties */
+    uint32_t refinements;       /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
+    uint32_t fill_radius;       /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
+    uint32_t flying;            /* 1 = points between surfaces, or in front of what another view measured, come last */
+    uint32_t redundancy;        /* 1 = small budgets pass over points that another view covers */
+    uint32_t exposure;          /* 1 = colours of all views are brought to their mean exposure */
+    uint32_t keep_analysis;     /* 1 = planes outlive the build, so that t3r_rebudget() works */
+    uint32_t seed;              /* of the K-means, of the allocation `random`, and of blue-noise ties */
 } t3r_config;
 
 /* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */

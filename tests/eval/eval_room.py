@@ -65,8 +65,9 @@ def evaluate_triplet(folder, room):
     for row in rows:
         check((row["scene"], row["context"], row["target"], row["depth"]) == ("room", "0,2", "1", "sensor"), "names")
         check((row["head"], row["allocate"]) ==
-              (("analytic", "density") if row["method"] == "trim3r" else ("none", "random")), "settings")
-        check(row["planar_psnr"] == "" and row["bits"] == "", "cells that do not apply are empty")
+              (("small", "density") if row["method"] == "trim3r" else ("none", "random")), "settings")
+        check(row["planar_psnr"] == "" and row["bits"] == ("8" if row["method"] == "trim3r" else ""),
+              "cells that do not apply are empty")
         render = read(f"{pictures}/1/{row['method']}_{row['keep']}.png")
         check_scores(row, target, render, mask, "psnr")
         error = ((target.astype(float) - render) ** 2)[everything].mean()
