@@ -1,5 +1,6 @@
 #include "chosen_head.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,7 +79,7 @@ static int describe(chosen_head *chosen, const char *text)
         return cli_error(CLI_BAD_INPUT, "%s: %s", text, error);
     }
     t3r_weights_header header = t3r_weights_header_of(chosen->weights);
-    chosen->crc = header.crc;
+    snprintf(chosen->crc, sizeof chosen->crc, "%08" PRIx32, header.crc);
     chosen->weight_bits = header.weight_bits;
     chosen->activation_bits = header.activation_bits;
     memcpy(chosen->name, (const char *)chosen->weights + WEIGHT_AT_NAME, sizeof chosen->name);

@@ -17,7 +17,8 @@ typedef struct chosen_head {
     char bits[8];        /* of a network's weights and activations: 8, 16, or W/A where they differ; else "" */
     const void *weights; /* NULL of the closed forms */
     size_t bytes;
-    uint32_t weight_bits, activation_bits, crc;
+    uint32_t weight_bits, activation_bits;
+    char crc[9]; /* of a network, 8 hexadecimal digits; else "" */
     void *owned; /* weights read from a file */
 } chosen_head;
 

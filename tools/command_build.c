@@ -100,7 +100,7 @@ static void print_json(const build_options *o, const reconstruction *r)
     cJSON_AddStringToObject(root, "head", r->head.name);
     if (r->head.weights != NULL) {
         cJSON_AddStringToObject(root, "head_bits", r->head.bits);
-        json_add_integer(root, "head_crc", r->head.crc);
+        cJSON_AddStringToObject(root, "head_crc", r->head.crc);
     }
     json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
     cJSON_AddNumberToObject(root, "build_ms", (r->add_views_seconds + r->build_seconds) * 1e3);
@@ -120,7 +120,7 @@ static void note_head(const chosen_head *head, char *text, size_t bytes)
 {
     int length = snprintf(text, bytes, "head %s", head->name);
     if (head->weights != NULL) {
-        snprintf(text + length, bytes - (size_t)length, " crc %08" PRIx32, head->crc);
+        snprintf(text + length, bytes - (size_t)length, " crc %s", head->crc);
     }
 }
 

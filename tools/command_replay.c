@@ -265,7 +265,7 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
     json_add_integer(root, "valid_points", r->valid_points);
     cJSON_AddStringToObject(root, "head", r->head.name);
     if (r->head.weights != NULL) {
-        json_add_integer(root, "head_crc", r->head.crc);
+        cJSON_AddStringToObject(root, "head_crc", r->head.crc);
     }
     json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
     cJSON *stages = cJSON_AddObjectToObject(root, "stages");
