@@ -20,6 +20,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .keep_percent = 10,
         .gamma_q8 = 179, /* 0.7 */
         .head = T3R_HEAD_ANALYTIC,
+        .head_column_bytes = T3R_HEAD_COLUMN_BYTES,
         .refinements = 2,
         .fill_radius = 4,
         .flying = 1,
@@ -55,6 +56,7 @@ const char *t3r_config_error(const t3r_config *c)
         {"keep_percent must be 0..100", c->keep_percent, 0, 100},
         {"gamma_q8 must be 0..512", c->gamma_q8, 0, 512},
         {"head is none of t3r_head", (uint32_t)c->head, 0, T3R_HEAD_COUNT - 1},
+        {"head_column_bytes must be 0..65536", c->head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES},
         {"refinements must be 0..16", c->refinements, 0, T3R_MAX_REFINEMENTS},
         {"fill_radius must be 0..8", c->fill_radius, 0, 8},
         {"flying must be 0 or 1", c->flying, 0, 1},
@@ -70,6 +72,6 @@ const char *t3r_config_error(const t3r_config *c)
     /* Sizes are summed in size_t: an arena of more than half of what it can count is refused, generously estimated. */
     uint64_t bytes = (uint64_t)c->width * c->height * (c->views * (uint64_t)24 + 32) +
                      (uint64_t)c->render_width * c->render_height * 8 + (uint64_t)c->max_gaussians * 320 +
-                     (uint64_t)c->width * T3R_HEAD_COLUMN_BYTES + T3R_HEAD_KERNEL_BYTES;
+                     (uint64_t)(c->width + 15) * c->head_column_bytes + T3R_HEAD_KERNEL_BYTES;
     return bytes > SIZE_MAX / 2 ? "the arena would be larger than this machine can address" : NULL;
 }

@@ -9,7 +9,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "bench_head.h"
 #include "bench_points.h"
+#include "chosen_head.h"
 #include "cli.h"
 #include "json_output.h"
 #include "option_values.h"
@@ -28,15 +30,16 @@
 #define ERROR_BYTES 512
 
 typedef struct bench_options {
-    const char *points;
+    const char *points, *head;
     uint32_t runs, threads;
     bool json;
 } bench_options;
 
-enum { KEY_POINTS = 0x1000, KEY_RUNS, KEY_THREADS, KEY_JSON };
+enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_RUNS, KEY_THREADS, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", 0, "cluster these points instead: raw float32, N x 6", 0},
+    {"head", KEY_HEAD, "HEAD", 0, "the network of head_gmac_per_s: nano, small (default), base, or FILE.t3w", 0},
     {"runs", KEY_RUNS, "N", 0, "timed runs of each stage, 1..101 (7)", 0},
     {"threads", KEY_THREADS, "N", 0, "1..64 (1); with more than one, elapsed time instead of processor time", 0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
@@ -49,6 +52,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case KEY_POINTS:
         o->points = arg;
+        return 0;
+    case KEY_HEAD:
+        o->head = option_head(state, "head", arg);
         return 0;
     case KEY_RUNS:
         o->runs = option_number(state, "runs", arg, 1, MAX_RUNS);
@@ -76,12 +82,14 @@ static const struct argp argp = {
         "the least and the most beside; processor time of one thread."
         "\vExamples:\n"
         "  trim3r bench\n"
+        "  trim3r bench --head base\n"
         "  trim3r bench --json --runs 21\n"
         "  trim3r bench --points cloud.f32 --json\n\n"
         "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of the "
         "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
         "255; "
-        "a file's (little-endian, any scale) are clustered and judged as they are.",
+        "a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
+        "multiply-accumulates of a head's layers a second of the whole head stage, every point kept.",
 };
 
 /* ---- the work ---------------------------------------------------------------------------------------------------- */
@@ -97,6 +105,9 @@ typedef struct workload {
     t3r_camera camera[VIEWS];
     t3r_camera viewpoint;
     scene_bench full, trimmed;
+    scene_bench learned; /* `trimmed` with the head small */
+    scene_bench headed;  /* `full` with the measured head, analysis kept */
+    chosen_head small, measured;
     t3r_threads *threads;
     uint8_t *view; /* where renders go */
     uint8_t *wavelet_rgb;
@@ -129,9 +140,15 @@ static t3r_status build(workload *w, t3r_runtime *runtime)
     return status == T3R_OK ? t3r_reconstruct(runtime, &scene) : status;
 }
 
-static t3r_status open_scene(workload *w, scene_bench *s, uint32_t gaussians)
+/* head NULL: the closed form `analytic`; keep: to run the head alone again */
+static t3r_status open_scene(workload *w, scene_bench *s, uint32_t gaussians, const chosen_head *head, bool keep)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, gaussians);
+    config.keep_analysis = keep;
+    config.refinements = keep ? 0 : config.refinements;
+    if (head != NULL) {
+        chosen_head_configure(head, &config);
+    }
     t3r_plan_info plan;
     t3r_status status = t3r_plan(&config, &plan);
     if (status != T3R_OK || posix_memalign(&s->arena, T3R_ARENA_ALIGN, plan.bytes) != 0) {
@@ -142,6 +159,9 @@ static t3r_status open_scene(workload *w, scene_bench *s, uint32_t gaussians)
     t3r_hooks hooks = {.user = w->threads, .parallel_for = w->threads != NULL ? t3r_threads_run : NULL};
     if (status == T3R_OK) {
         status = t3r_set_hooks(s->runtime, &hooks);
+    }
+    if (status == T3R_OK && head != NULL) {
+        status = t3r_bind_head(s->runtime, head->weights, head->bytes);
     }
     return status == T3R_OK ? build(w, s->runtime) : status;
 }
@@ -160,6 +180,10 @@ static void close_workload(workload *w)
     }
     free(w->full.arena);
     free(w->trimmed.arena);
+    free(w->learned.arena);
+    free(w->headed.arena);
+    chosen_head_close(&w->small);
+    chosen_head_close(&w->measured);
     free(w->view);
     free(w->wavelet_rgb);
     free(w->wavelet_planes);
@@ -189,8 +213,36 @@ static bool allocate(workload *w)
            w->wavelet_work != NULL && w->texture != NULL;
 }
 
+static int open_heads(workload *w, const bench_options *o)
+{
+    int code = chosen_head_open(&w->small, "small");
+    if (code == CLI_OK) {
+        code = chosen_head_open(&w->measured, o->head);
+    }
+    if (code == CLI_OK && w->measured.weights == NULL) {
+        code = cli_error(CLI_BAD_USAGE, "--head %s: a network is measured; nano, small, base, FILE.t3w", o->head);
+    }
+    return code;
+}
+
+static t3r_status open_scenes(workload *w)
+{
+    t3r_status status = open_scene(w, &w->full, POINTS, NULL, false);
+    if (status == T3R_OK) {
+        status = open_scene(w, &w->trimmed, TRIMMED, NULL, false);
+    }
+    if (status == T3R_OK) {
+        status = open_scene(w, &w->learned, TRIMMED, &w->small, false);
+    }
+    return status == T3R_OK ? open_scene(w, &w->headed, POINTS, &w->measured, true) : status;
+}
+
 static int open_workload(workload *w, const bench_options *o)
 {
+    int code = open_heads(w, o);
+    if (code != CLI_OK) {
+        return code;
+    }
     if (!allocate(w)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
@@ -208,10 +260,7 @@ static int open_workload(workload *w, const bench_options *o)
     for (size_t i = 0; i < pixels * 3; i++) {
         w->wavelet_planes[i % 3 * pixels + i / 3] = w->wavelet_rgb[i];
     }
-    t3r_status status = open_scene(w, &w->full, POINTS);
-    if (status == T3R_OK) {
-        status = open_scene(w, &w->trimmed, TRIMMED);
-    }
+    t3r_status status = open_scenes(w);
     if (status != T3R_OK) {
         return cli_error(CLI_BAD_INPUT, "the built-in room: %s", t3r_error_text(status));
     }
@@ -237,6 +286,16 @@ static bool run_raster_trimmed(workload *w)
 static bool run_build(workload *w)
 {
     return build(w, w->trimmed.runtime) == T3R_OK;
+}
+
+static bool run_build_learned(workload *w)
+{
+    return build(w, w->learned.runtime) == T3R_OK;
+}
+
+static bool run_head(workload *w)
+{
+    return bench_head_run(w->headed.runtime);
 }
 
 static bool run_kmeans(workload *w)
@@ -272,7 +331,7 @@ static bool run_texture(workload *w)
 static const struct {
     const char *key;
     bool (*run)(workload *w);
-    double unit; /* per second */
+    double unit; /* per second; 0: 10^9 multiply-accumulates of the head a second */
 } stages[] = {
     {"raster_131k_ms", run_raster_full, MILLISECONDS},
     {"raster_13k_ms", run_raster_trimmed, MILLISECONDS},
@@ -280,11 +339,13 @@ static const struct {
     {"wavelet_ns_per_pixel", run_wavelet, NANOSECONDS_A_PIXEL},
     {"texture_ns_per_pixel", run_texture, NANOSECONDS_A_PIXEL},
     {"build_analytic_ms", run_build, MILLISECONDS},
+    {"build_small_ms", run_build_learned, MILLISECONDS},
+    {"head_gmac_per_s", run_head, 0},
 };
 enum { STAGE_COUNT = sizeof stages / sizeof stages[0] };
 
 /* Keys of stages that do not exist yet. */
-static const char *const missing[] = {"head_gmac_per_s", "stereo_ms", "build_small_ms"};
+static const char *const missing[] = {"stereo_ms"};
 
 static double seconds(clockid_t clock)
 {
@@ -308,6 +369,7 @@ static double median(const double *sorted, uint32_t count)
  */
 static int time_stages(workload *w, const bench_options *o, double times[STAGE_COUNT][MAX_RUNS])
 {
+    const double giga_macs = bench_head_macs(w->measured.weights, SIDE, SIDE, VIEWS) / 1e9;
     clockid_t clock = o->threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
     for (uint32_t run = 0; run <= o->runs; run++) {
         for (int s = 0; s < STAGE_COUNT; s++) {
@@ -316,7 +378,8 @@ static int time_stages(workload *w, const bench_options *o, double times[STAGE_C
                 return cli_error(CLI_BAD_INPUT, "%s: the stage failed", stages[s].key);
             }
             if (run > 0) {
-                times[s][run - 1] = (seconds(clock) - start) * stages[s].unit;
+                double taken = seconds(clock) - start;
+                times[s][run - 1] = stages[s].unit > 0 ? taken * stages[s].unit : giga_macs / taken;
             }
             cli_progress(stages[s].key, run * STAGE_COUNT + (uint32_t)s, (o->runs + 1) * STAGE_COUNT);
         }
@@ -381,6 +444,8 @@ static void print_results(const workload *w, const bench_options *o, double time
     }
     cJSON_AddNumberToObject(root, "kmeans_msd", w->kmeans_msd);
     json_add_integer(root, "kmeans_points", w->points.count);
+    cJSON_AddStringToObject(root, "head", w->measured.name);
+    cJSON_AddStringToObject(root, "head_bits", w->measured.bits);
     cJSON *notes = cJSON_CreateObject();
     for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++) {
         cJSON_AddNullToObject(root, missing[i]);
@@ -395,7 +460,7 @@ static void print_results(const workload *w, const bench_options *o, double time
 
 int command_bench(int argc, char **argv)
 {
-    bench_options o = {.runs = 7, .threads = 1};
+    bench_options o = {.head = CHOSEN_HEAD_DEFAULT, .runs = 7, .threads = 1};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
     workload w = {0};

@@ -27,7 +27,7 @@ static const struct argp_option options[] = {
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
     {"comments", KEY_COMMENTS, NULL, 0,
-     "name bits epoch and scene frame in header comments (some readers choke on them)", 0},
+     "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
     {0},
 };
@@ -97,7 +97,11 @@ static void print_json(const build_options *o, const reconstruction *r)
     cJSON_AddNumberToObject(root, "width", r->config.width);
     cJSON_AddNumberToObject(root, "height", r->config.height);
     cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(r->config.allocation));
-    cJSON_AddStringToObject(root, "head", t3r_head_name(r->config.head));
+    cJSON_AddStringToObject(root, "head", r->head.name);
+    if (r->head.weights != NULL) {
+        cJSON_AddStringToObject(root, "head_bits", r->head.bits);
+        cJSON_AddStringToObject(root, "head_crc", r->head.crc);
+    }
     json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
     cJSON_AddNumberToObject(root, "build_ms", (r->add_views_seconds + r->build_seconds) * 1e3);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
@@ -109,6 +113,15 @@ static void print_json(const build_options *o, const reconstruction *r)
     cJSON_AddNumberToObject(root, "exponent", r->scene.frame.exponent);
     json_add_hash(root, "hash", reconstruction_hash(r));
     json_print(root);
+}
+
+/* "head small crc 1a2b3c4d" */
+static void note_head(const chosen_head *head, char *text, size_t bytes)
+{
+    int length = snprintf(text, bytes, "head %s", head->name);
+    if (head->weights != NULL) {
+        snprintf(text + length, bytes - (size_t)length, " crc %s", head->crc);
+    }
 }
 
 int command_build(int argc, char **argv)
@@ -125,7 +138,9 @@ int command_build(int argc, char **argv)
     reconstruction r;
     int code = reconstruction_build(&r, recording, o.recording, &o.settings);
     if (code == CLI_OK) {
-        if (scene_file_write_ply(o.output, &r.scene, o.flags, error, sizeof error) != 0) {
+        char note[64];
+        note_head(&r.head, note, sizeof note);
+        if (scene_file_write_ply(o.output, &r.scene, o.flags, note, error, sizeof error) != 0) {
             code = cli_error(CLI_BAD_INPUT, "%s", error);
         } else if (o.json) {
             print_json(&o, &r);

@@ -13,8 +13,17 @@
 #include "reconstruction.h"
 
 #define MOST_KEEPS 64u
+#define MOST_HEADS 32u
+#define LABEL_BYTES 40
 #define SCENE_NAME_BYTES 256
 #define NAME_PARTS_MOST 8u /* parts of a path that a scene's name takes at most */
+
+/* What has rows of its own: a method, trim3r once a head. */
+typedef struct contestant {
+    evaluation_method method;
+    const char *head;        /* NULL: the settings' own */
+    char label[LABEL_BYTES]; /* over its pictures and in their names */
+} contestant;
 
 typedef struct options {
     reconstruction_options settings;
@@ -27,6 +36,10 @@ typedef struct options {
     uint32_t keep_count;
     evaluation_method methods[EVALUATION_METHOD_COUNT];
     uint32_t method_count;
+    char *heads[MOST_HEADS]; /* --heads; parts of one heap string */
+    uint32_t head_count;
+    contestant contestants[MOST_HEADS + 1];
+    uint32_t contestant_count;
     uint32_t name_parts;
     evaluation_outputs to;
 } options;
@@ -36,6 +49,7 @@ enum {
     KEY_TARGET,
     KEY_KEEP,
     KEY_METHODS,
+    KEY_HEADS,
     KEY_PLANAR,
     KEY_SIZE,
     KEY_CSV,
@@ -93,6 +107,27 @@ static void parse_methods(struct argp_state *state, options *o, const char *text
             return;
         }
         text += length + 1;
+    }
+}
+
+static void parse_heads(struct argp_state *state, options *o, const char *text)
+{
+    char *rest = NULL, *own = strdup(text);
+    if (own == NULL) {
+        argp_failure(state, CLI_BAD_INPUT, 0, "out of memory");
+        return;
+    }
+    o->head_count = 0;
+    for (char *part = own; part != NULL; part = rest) {
+        rest = strchr(part, ',');
+        if (rest != NULL) {
+            *rest++ = '\0';
+        }
+        if (o->head_count == MOST_HEADS) {
+            argp_error(state, "--heads takes at most %u heads", MOST_HEADS);
+        }
+        (void)option_head(state, "heads", part);
+        o->heads[o->head_count++] = part;
     }
 }
 
@@ -173,6 +208,12 @@ static void check_options(struct argp_state *state, options *o)
     if (o->method_count == 0) {
         o->methods[o->method_count++] = EVALUATION_TRIM3R;
     }
+    if (o->head_count > 0 && o->settings.head != NULL) {
+        argp_error(state, "--head and --heads exclude each other");
+    }
+    if (o->settings.head == NULL) {
+        o->settings.head = CHOSEN_HEAD_DEFAULT;
+    }
     if (o->planar && o->width == 0) {
         o->width = o->height = 256;
     }
@@ -199,6 +240,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_METHODS:
         parse_methods(state, o, arg);
+        return 0;
+    case KEY_HEADS:
+        parse_heads(state, o, arg);
         return 0;
     case KEY_PLANAR:
         o->planar = true;
@@ -240,13 +284,15 @@ static const struct argp_option argp_options[] = {
     {"target", KEY_TARGET, "T", 0, "the frame to be met; it is never shown to the method", 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
     {"methods", KEY_METHODS, "M,M,...", 0, "trim3r (default); random: random points, nothing adapted", 0},
+    {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
     {"planar", KEY_PLANAR, NULL, 0,
      "the arguments are images: each is one view on a plane of constant depth, drawn again from the same camera", 0},
     {"size", KEY_SIZE, "WxH", 0, "to which --planar crops and averages images (256x256)", 0},
     {"from-file", KEY_FROM_FILE, NULL, 0, "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
     {"csv", KEY_CSV, "FILE", 0, "the rows", 0},
-    {"images", KEY_IMAGES, "DIR", 0, "DIR/<target>/<method>_<keep>.png, target.png, mask.png, context_a.png, ...", 0},
+    {"images", KEY_IMAGES, "DIR", 0,
+     "DIR/<target>/<method>_<keep>.png (with --heads <head>_<keep>.png), target.png, mask.png, context_a.png, ...", 0},
     {"html", KEY_HTML, "PAGE.html", 0, "one page with the pictures side by side; it needs no other file", 0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, and means over the cases", 0},
     {0},
@@ -260,7 +306,8 @@ static const struct argp parser = {
     .args_doc = "REC.mcap...\n--planar IMAGE...",
     .doc =
         "Score views of a reconstruction against recorded ones.\v"
-        "A row is one scene, context, target, method and budget. psnr (dB), ssim, sharp (mean gradient over the "
+        "A row is one scene, context, target, method, head and budget; bits: of a network's weights (and of its "
+        "activations, where they differ). psnr (dB), ssim, sharp (mean gradient over the "
         "target's) and perceptual (FLIP at 67 pixels a degree, 0 = none) count the pixels of the mask: those that all "
         "points of the raw depth, drawn with the plain analytic head, leave a transmittance below 0.3. holes: share "
         "of the mask left above 0.5. psnr_all: all pixels over black. context_psnr: mean over the context views, each "
@@ -272,9 +319,58 @@ static const struct argp parser = {
         "  trim3r eval room.mcap --keep 100,20,10\n"
         "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
         "  trim3r eval a.mcap b.mcap --keep 20,5 --methods trim3r,random --csv ab.csv\n"
+        "  trim3r eval room.mcap --keep 10,5 --heads analytic,moment,small,my.t3w\n"
         "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
     .children = children,
 };
+
+/* ---- contestants ---------------------------------------------------------------------------------------------- */
+
+/* Opens every head once: a bad one is told before the work. */
+static int add_head(options *o, const char *text, bool named)
+{
+    chosen_head head;
+    int code = chosen_head_open(&head, text);
+    if (code != CLI_OK) {
+        return code;
+    }
+    contestant *it = &o->contestants[o->contestant_count++];
+    *it = (contestant){.method = EVALUATION_TRIM3R, .head = text};
+    if (!named) {
+        snprintf(it->label, LABEL_BYTES, "%s", evaluation_method_name(EVALUATION_TRIM3R));
+    } else if (head.weights == NULL || strcmp(head.bits, "8") == 0) {
+        snprintf(it->label, LABEL_BYTES, "%s", head.name);
+    } else {
+        snprintf(it->label, LABEL_BYTES, "%s_w%ua%u", head.name, head.weight_bits, head.activation_bits);
+    }
+    chosen_head_close(&head);
+    for (const contestant *earlier = o->contestants; earlier < it; earlier++) {
+        if (earlier->method == EVALUATION_TRIM3R && strcmp(earlier->label, it->label) == 0) {
+            return cli_error(CLI_BAD_USAGE, "--heads: %s and %s have the same name and bits (quantize --name)",
+                             earlier->head, text);
+        }
+    }
+    return CLI_OK;
+}
+
+static int choose_contestants(options *o)
+{
+    int code = CLI_OK;
+    for (uint32_t m = 0; m < o->method_count && code == CLI_OK; m++) {
+        if (o->methods[m] == EVALUATION_TRIM3R && o->head_count > 0) {
+            for (uint32_t h = 0; h < o->head_count && code == CLI_OK; h++) {
+                code = add_head(o, o->heads[h], true);
+            }
+        } else if (o->methods[m] == EVALUATION_TRIM3R) {
+            code = add_head(o, o->settings.head, false);
+        } else {
+            contestant *it = &o->contestants[o->contestant_count++];
+            it->method = o->methods[m];
+            snprintf(it->label, LABEL_BYTES, "%s", evaluation_method_name(it->method));
+        }
+    }
+    return code;
+}
 
 /* ---- cases ---------------------------------------------------------------------------------------------------- */
 
@@ -282,13 +378,16 @@ static int measure_all(evaluation_report *report, const options *o, const evalua
                        const evaluation_views *views, uint8_t *render)
 {
     int code = evaluation_report_case(report, views, what);
-    for (uint32_t m = 0; m < o->method_count && code == CLI_OK; m++) {
-        evaluation_report_method(report, o->methods[m]);
+    for (uint32_t c = 0; c < o->contestant_count && code == CLI_OK; c++) {
+        const contestant *it = &o->contestants[c];
+        reconstruction_options settings = o->settings;
+        settings.head = it->head != NULL ? it->head : settings.head;
+        evaluation_report_strip(report, it->label);
         for (uint32_t k = 0; k < o->keep_count && code == CLI_OK; k++) {
             evaluation_row row;
-            code = evaluation_measure(&row, render, views, what, o->methods[m], o->keep[k], o->from_file, &o->settings);
+            code = evaluation_measure(&row, render, views, what, it->method, o->keep[k], o->from_file, &settings);
             if (code == CLI_OK) {
-                code = evaluation_report_row(report, views, what, &row, render);
+                code = evaluation_report_row(report, views, what, it->label, &row, render);
             }
         }
     }
@@ -314,7 +413,7 @@ static int open_report(evaluation_report *report, const options *o, uint32_t cas
     evaluation_outputs to = o->to;
     to.planar = o->planar;
     to.folder_each = !o->planar && o->input_count > 1;
-    return evaluation_report_open(report, &to, cases * o->method_count * o->keep_count);
+    return evaluation_report_open(report, &to, cases * o->contestant_count * o->keep_count);
 }
 
 static uint32_t case_count(const options *o, const t3r_recording *recording)
@@ -428,6 +527,12 @@ int command_eval(int argc, char **argv)
 {
     options o = {0};
     reconstruction_defaults(&o.settings);
+    o.settings.head = NULL; /* until one is named */
     argp_parse(&parser, argc, argv, 0, NULL, &o);
-    return o.planar ? evaluate_planar(&o) : evaluate_recordings(&o);
+    int code = choose_contestants(&o);
+    if (code == CLI_OK) {
+        code = o.planar ? evaluate_planar(&o) : evaluate_recordings(&o);
+    }
+    free(o.heads[0]);
+    return code;
 }

@@ -16,7 +16,7 @@
 typedef struct plan_options {
     uint32_t width, height, views, gaussians, clusters, render_width, render_height, refine;
     bool has_clusters, keep_analysis, json, markdown;
-    const char *svg;
+    const char *svg, *head;
 } plan_options;
 
 enum {
@@ -26,6 +26,7 @@ enum {
     KEY_CLUSTERS,
     KEY_RENDER,
     KEY_REFINE,
+    KEY_HEAD,
     KEY_KEEP,
     KEY_SVG,
     KEY_MARKDOWN,
@@ -37,6 +38,7 @@ static const struct argp_option options[] = {
     {"views", KEY_VIEWS, "N", 0, "context views, 0..16; 0 = an arena that only renders (2)", 0},
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "the budget (needed)", 0},
     {"clusters", KEY_CLUSTERS, "K", 0, "SuperClusters, 1..512 (300)", 0},
+    {"head", KEY_HEAD, "HEAD", 0, "nano, small, base, FILE.t3w, moment, none or analytic (default)", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
     {"refine", KEY_REFINE, "N", 0, "refinement passes, 0..16 (2)", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
@@ -68,6 +70,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_REFINE:
         o->refine = option_number(state, "refine", arg, 0, T3R_MAX_REFINEMENTS);
+        return 0;
+    case KEY_HEAD:
+        o->head = option_head(state, "head", arg);
         return 0;
     case KEY_KEEP:
         o->keep_analysis = true;
@@ -115,6 +120,7 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan)
     json_add_integer(root, "views", config->views);
     json_add_integer(root, "gaussians", config->gaussians);
     json_add_integer(root, "clusters", config->clusters);
+    json_add_integer(root, "head_column_bytes", config->head_column_bytes);
     json_add_integer(root, "min_bytes", (int64_t)plan->min_bytes);
     json_add_integer(root, "arena_bytes", (int64_t)plan->bytes);
     cJSON *buffers = cJSON_AddArrayToObject(root, "buffers");
@@ -178,6 +184,15 @@ int command_plan(int argc, char **argv)
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
     t3r_config config = t3r_default_config(o.width, o.height, o.views, o.gaussians);
+    if (o.head != NULL) {
+        chosen_head head;
+        int code = chosen_head_open(&head, o.head);
+        if (code != CLI_OK) {
+            return code;
+        }
+        chosen_head_configure(&head, &config);
+        chosen_head_close(&head);
+    }
     config.keep_analysis = o.keep_analysis;
     config.refinements = o.refine;
     if (o.has_clusters) {

@@ -263,6 +263,10 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
     json_add_integer(root, "height", view->height);
     json_add_integer(root, "gaussians", r->scene.count);
     json_add_integer(root, "valid_points", r->valid_points);
+    cJSON_AddStringToObject(root, "head", r->head.name);
+    if (r->head.weights != NULL) {
+        cJSON_AddStringToObject(root, "head_crc", r->head.crc);
+    }
     json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
     cJSON *stages = cJSON_AddObjectToObject(root, "stages");
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
@@ -292,7 +296,8 @@ static void print_text(const replay_options *o, const reconstruction *r, const r
     for (uint32_t v = 0; v < r->context_count; v++) {
         printf("%s%" PRIu32, v == 0 ? " " : ",", r->context[v]);
     }
-    printf(", view %" PRIu32 ", %" PRIu32 " Gaussians, arena %zu bytes\n", view->frame, r->scene.count, r->arena_bytes);
+    printf(", view %" PRIu32 ", %" PRIu32 " Gaussians, head %s, arena %zu bytes\n", view->frame, r->scene.count,
+           r->head.name, r->arena_bytes);
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         if (r->stage_hashed[stage]) {
             hash_text(r->stage_hash[stage], text);

@@ -127,7 +127,7 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.gaussians = 0;
     options.keep_percent = 100;
     options.fill_radius = 0;
-    options.head = T3R_HEAD_ANALYTIC;
+    options.head = "analytic";
     options.allocation = T3R_ALLOCATE_UNIFORM;
     options.flying = options.redundancy = options.exposure = 0;
     options.keep_analysis = false;
@@ -215,7 +215,7 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     }
     close(file);
     scene_file scene;
-    int failed = scene_file_write_ply(path, &built->scene, 0, error, sizeof error);
+    int failed = scene_file_write_ply(path, &built->scene, 0, NULL, error, sizeof error);
     if (failed == 0) {
         failed = scene_file_read_ply(path, &scene, error, sizeof error);
     }
@@ -241,8 +241,6 @@ static void name_row(evaluation_row *row, const evaluation_case *what, evaluatio
         snprintf(row->target, sizeof row->target, "%" PRIu32, what->target);
     }
     row->method = evaluation_method_name(method);
-    row->head = t3r_head_name(options->head);
-    row->bits = ""; /* of a learned head's weights */
     snprintf(row->refine, sizeof row->refine, "%" PRIu32, options->refine);
     row->allocate = t3r_allocation_name(options->allocation);
     row->depth = what->planar ? "plane" : "sensor";
@@ -272,7 +270,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     memcpy(options.context, what->context, sizeof options.context);
     if (method == EVALUATION_RANDOM) {
         options.allocation = T3R_ALLOCATE_RANDOM;
-        options.head = T3R_HEAD_NONE;
+        options.head = "none";
         options.flying = options.redundancy = options.exposure = options.refine = 0;
     }
 
@@ -287,6 +285,8 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     if (code != CLI_OK) {
         return code;
     }
+    snprintf(row->head, sizeof row->head, "%s", built.head.name);
+    snprintf(row->bits, sizeof row->bits, "%s", built.head.bits);
     row->value[EVALUATION_KEEP] = keep;
     row->value[EVALUATION_GAUSSIANS] = built.scene.count;
     row->value[EVALUATION_BUILD_MS] = (built.add_views_seconds + built.build_seconds) * 1000;

@@ -69,8 +69,8 @@ typedef enum evaluation_value {
 } evaluation_value;
 
 typedef struct evaluation_row {
-    char scene[256], context[192], target[16], refine[16];
-    const char *method, *head, *bits, *allocate, *depth; /* "" = does not apply */
+    char scene[256], context[192], target[16], head[16], bits[8], refine[16];
+    const char *method, *allocate, *depth; /* "" = does not apply */
     double value[EVALUATION_VALUE_COUNT];
 } evaluation_row;
 

@@ -61,10 +61,10 @@ int evaluation_write_views(const char *folder, const evaluation_views *views, co
 }
 
 int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_case *what,
-                            const evaluation_row *row, uint8_t *render)
+                            const char *label, const evaluation_row *row, uint8_t *render)
 {
     char name[64];
-    snprintf(name, sizeof name, "%s_%.10g", row->method, row->value[EVALUATION_KEEP]);
+    snprintf(name, sizeof name, "%s_%.10g", label, row->value[EVALUATION_KEEP]);
     return write_png(folder, what, name, views, 3, render);
 }
 

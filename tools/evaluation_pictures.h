@@ -7,9 +7,9 @@
 
 /* FOLDER/<target>/target.png, mask.png, context_a.png, ... (planar: FOLDER/<scene>/target.png). */
 int evaluation_write_views(const char *folder, const evaluation_views *views, const evaluation_case *what);
-/* FOLDER/<target>/<method>_<keep>.png */
+/* FOLDER/<target>/<label>_<keep>.png */
 int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_case *what,
-                            const evaluation_row *row, uint8_t *render);
+                            const char *label, const evaluation_row *row, uint8_t *render);
 
 /* A section for a case: context views, target, mask. */
 void evaluation_page_views(html_page *page, const evaluation_views *views, const evaluation_case *what);

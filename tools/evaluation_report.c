@@ -75,15 +75,15 @@ int evaluation_report_case(evaluation_report *report, const evaluation_views *vi
     return code == CLI_OK ? evaluation_write_views(folder, views, what) : code;
 }
 
-void evaluation_report_method(evaluation_report *report, evaluation_method method)
+void evaluation_report_strip(evaluation_report *report, const char *label)
 {
     if (report->page != NULL) {
-        html_page_strip(report->page, evaluation_method_name(method));
+        html_page_strip(report->page, label);
     }
 }
 
 int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const evaluation_case *what,
-                          const evaluation_row *row, uint8_t *render)
+                          const char *label, const evaluation_row *row, uint8_t *render)
 {
     report->rows[report->row_count++] = *row;
     if (!report->to.json) {
@@ -104,7 +104,7 @@ int evaluation_report_row(evaluation_report *report, const evaluation_views *vie
     }
     char folder[PATH_BYTES];
     int code = picture_folder(report, what, folder);
-    return code == CLI_OK ? evaluation_write_render(folder, views, what, row, render) : code;
+    return code == CLI_OK ? evaluation_write_render(folder, views, what, label, row, render) : code;
 }
 
 /* ---- what is written at the end --------------------------------------------------------------------------------- */

@@ -28,10 +28,10 @@ typedef struct evaluation_report {
 int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t row_total);
 /* The recorded views of the rows that follow. */
 int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what);
-/* The method of the rows that follow. */
-void evaluation_report_method(evaluation_report *report, evaluation_method method);
+/* What the rows that follow have in common: a heading. */
+void evaluation_report_strip(evaluation_report *report, const char *label);
 int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const evaluation_case *what,
-                          const evaluation_row *row, uint8_t *render);
+                          const char *label, const evaluation_row *row, uint8_t *render);
 /* Means, JSON and page when `code` is CLI_OK; no half page otherwise. `code`, or what went wrong here. */
 int evaluation_report_close(evaluation_report *report, int code);
 

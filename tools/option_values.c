@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "chosen_head.h"
 #include "cli.h"
 #include "trim3r.h"
 
@@ -30,6 +31,14 @@ void option_frames(struct argp_state *state, const char *option, const char *tex
         argp_error(state, "--%s takes 1 to %u frame indices with commas between, not '%s'", option, T3R_MAX_VIEWS,
                    text);
     }
+}
+
+const char *option_head(struct argp_state *state, const char *option, const char *text)
+{
+    if (!chosen_head_is_one(text)) {
+        argp_error(state, "--%s does not know '%s'; there are " CHOSEN_HEAD_NAMES, option, text);
+    }
+    return text;
 }
 
 void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count)

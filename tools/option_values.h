@@ -14,6 +14,8 @@ void option_size(struct argp_state *state, const char *option, const char *text,
                  uint32_t *height);
 /* 1 to T3R_MAX_VIEWS frame indices with commas between. */
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
+/* A head's name, or a path that ends as weight files do. */
+const char *option_head(struct argp_state *state, const char *option, const char *text);
 /* The next free one of `count` places for arguments that are no options. */
 void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count);
 

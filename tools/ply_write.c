@@ -54,7 +54,7 @@ static void put_gaussian(uint8_t row[4 * PROPERTY_COUNT], const t3r_gaussian *g,
     }
 }
 
-static void write_header(FILE *file, const t3r_scene *scene, int flags)
+static void write_header(FILE *file, const t3r_scene *scene, int flags, const char *note)
 {
     fputs("ply\nformat binary_little_endian 1.0\n", file);
     if (flags & SCENE_FILE_COMMENTS) {
@@ -63,6 +63,9 @@ static void write_header(FILE *file, const t3r_scene *scene, int flags)
         fprintf(file, "comment trim3r origin_q32 %" PRId64 " %" PRId64 " %" PRId64 "\n", scene->frame.origin_q32[0],
                 scene->frame.origin_q32[1], scene->frame.origin_q32[2]);
         fprintf(file, "comment trim3r local %d\n", (flags & SCENE_FILE_LOCAL) != 0);
+        if (note != NULL) {
+            fprintf(file, "comment trim3r %s\n", note);
+        }
     }
     fprintf(file, "element vertex %" PRIu32 "\n", scene->count);
     for (int i = 0; i < PROPERTY_COUNT; i++) {
@@ -71,13 +74,14 @@ static void write_header(FILE *file, const t3r_scene *scene, int flags)
     fputs("end_header\n", file);
 }
 
-int scene_file_write_ply(const char *path, const t3r_scene *scene, int flags, char *error, size_t error_bytes)
+int scene_file_write_ply(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
+                         size_t error_bytes)
 {
     whole_file file;
     if (whole_file_begin(&file, path, error, error_bytes) != 0) {
         return -1;
     }
-    write_header(file.stream, scene, flags);
+    write_header(file.stream, scene, flags, note);
     for (uint32_t i = 0; i < scene->count; i++) {
         uint8_t row[4 * PROPERTY_COUNT];
         put_gaussian(row, &scene->gaussians[i], &scene->frame, flags & SCENE_FILE_LOCAL);

@@ -16,7 +16,7 @@ void reconstruction_defaults(reconstruction_options *options)
     t3r_config c = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
     *options = (reconstruction_options){
         .allocation = c.allocation,
-        .head = c.head,
+        .head = CHOSEN_HEAD_DEFAULT,
         .wavelet = c.wavelet,
         .wavelet_levels = c.wavelet_levels,
         .clusters = c.clusters,
@@ -139,6 +139,7 @@ void reconstruction_close(reconstruction *r)
     cli_progress_end();
     t3r_threads_stop(r->threads);
     free(r->arena);
+    chosen_head_close(&r->head);
     *r = (reconstruction){0};
 }
 
@@ -240,11 +241,20 @@ static int choose_context(reconstruction *r, const t3r_recording *recording, con
     return CLI_OK;
 }
 
+static int bind_head(reconstruction *r)
+{
+    t3r_status status = r->head.weights == NULL ? T3R_OK : t3r_bind_head(r->runtime, r->head.weights, r->head.bytes);
+    return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
+}
+
 static int build(reconstruction *r, const t3r_recording *recording, const char *path,
                  const reconstruction_options *options)
 {
     t3r_capture_frame frames[T3R_MAX_VIEWS];
-    int code = choose_context(r, recording, path, options, frames);
+    int code = chosen_head_open(&r->head, options->head);
+    if (code == CLI_OK) {
+        code = choose_context(r, recording, path, options, frames);
+    }
     if (code != CLI_OK) {
         return code;
     }
@@ -252,7 +262,7 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
     uint32_t height = options->height != 0 ? options->height : frames[0].frame.height;
     r->config = t3r_default_config(width, height, r->context_count, 1);
     r->config.allocation = options->allocation;
-    r->config.head = options->head;
+    chosen_head_configure(&r->head, &r->config);
     r->config.wavelet = options->wavelet;
     r->config.wavelet_levels = options->wavelet_levels;
     r->config.clusters = options->clusters;
@@ -286,6 +296,9 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
     r->config.max_gaussians = r->config.gaussians;
 
     code = open_arena(r, options);
+    if (code == CLI_OK) {
+        code = bind_head(r);
+    }
     if (code != CLI_OK) {
         return code;
     }

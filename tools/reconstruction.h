@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "chosen_head.h"
 #include "recording.h"
 #include "scene_file.h"
 #include "threads.h"
@@ -26,7 +27,7 @@ typedef struct reconstruction_options {
     uint32_t width, height;               /* working size; 0 = the first context frame's */
     uint32_t render_width, render_height; /* largest target; 0 = the working size */
     t3r_allocation allocation;
-    t3r_head head;
+    const char *head; /* a text that chosen_head_is_one() */
     t3r_wavelet wavelet;
     uint32_t wavelet_levels;
     uint32_t clusters;
@@ -56,6 +57,7 @@ void reconstruction_parse_arena(struct argp_state *state, const char *text, reco
 
 typedef struct reconstruction {
     t3r_config config;
+    chosen_head head;
     t3r_runtime *runtime;
     void *arena;
     size_t arena_bytes;

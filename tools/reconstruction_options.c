@@ -47,14 +47,14 @@ enum {
         return (type)0;                                                                                                \
     }
 CHOOSE(t3r_allocation, t3r_allocation_name)
-CHOOSE(t3r_head, t3r_head_name)
 CHOOSE(t3r_wavelet, t3r_wavelet_name)
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
     {"allocate", KEY_ALLOCATE, "MODE", 0, "how the budget is spread: density (default), paper, pixel, uniform, random",
      0},
-    {"head", KEY_HEAD, "HEAD", 0, "analytic (default), moment, none", 0},
+    {"head", KEY_HEAD, "HEAD", 0,
+     "the networks nano, small (default), base, or one in a FILE.t3w; without weights: analytic, moment, none", 0},
     {"wavelet", KEY_WAVELET, "NAME", 0, "db2 (default), haar, cdf53", 0},
     {"levels", KEY_LEVELS, "N", 0, "wavelet levels, 1..5 (2)", 0},
     {"clusters", KEY_CLUSTERS, "K", 0, "SuperClusters, 1..512 (300)", 0},
@@ -125,7 +125,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         o->allocation = choose_t3r_allocation(state, "allocate", arg);
         return 0;
     case KEY_HEAD:
-        o->head = choose_t3r_head(state, "head", arg);
+        o->head = option_head(state, "head", arg);
         return 0;
     case KEY_WAVELET:
         o->wavelet = choose_t3r_wavelet(state, "wavelet", arg);
@@ -216,7 +216,7 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
     case KEY_METHOD:
         if (strcmp(arg, "random") == 0) {
             o->allocation = T3R_ALLOCATE_RANDOM;
-            o->head = T3R_HEAD_NONE;
+            o->head = "none";
             o->flying = o->redundancy = o->exposure = o->refine = 0;
         } else if (strcmp(arg, "trim3r") != 0) {
             argp_error(state, "--method does not know '%s'", arg);

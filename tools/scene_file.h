@@ -19,12 +19,14 @@ typedef struct scene_file {
  * The scene frame (origin, exponent) is the one that SCENE_FILE_COMMENTS named, else chosen from the positions. */
 int scene_file_read_ply(const char *path, scene_file *out, char *error, size_t error_bytes);
 int scene_file_parse_ply(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
-/* Writes in the recording's world frame; flags: 0, or of these */
+/* Writes in the recording's world frame; flags: 0, or of these. `note` (NULL: none), one line, becomes another comment.
+ */
 enum {
     SCENE_FILE_LOCAL = 1,    /* without the frame's origin: metres from the first context camera, say */
     SCENE_FILE_COMMENTS = 2, /* header comments that name bits epoch and scene frame; some readers choke on comments */
 };
-int scene_file_write_ply(const char *path, const t3r_scene *scene, int flags, char *error, size_t error_bytes);
+int scene_file_write_ply(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
+                         size_t error_bytes);
 void scene_file_free(scene_file *scene);
 
 #endif

@@ -33,6 +33,7 @@ extern "C" {
 #define T3R_MAX_GAUSSIANS (1u << 24)
 #define T3R_MAX_REFINEMENTS 16u
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
+#define T3R_MAX_HEAD_COLUMN_BYTES 65536u
 
 typedef enum t3r_status {
     T3R_OK = 0,
@@ -139,13 +140,14 @@ typedef struct t3r_config {
     uint32_t keep_percent; /* N of the allocation `paper`, 0..100 */
     uint32_t gamma_q8;     /* exponent of texture, 0..512; 256 = 1 */
     t3r_head head;
-    uint32_t refinements;   /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
-    uint32_t fill_radius;   /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
-    uint32_t flying;        /* 1 = points between surfaces, or in front of what another view measured, come last */
-    uint32_t redundancy;    /* 1 = small budgets pass over points that another view covers */
-    uint32_t exposure;      /* 1 = colours of all views are brought to their mean exposure */
-    uint32_t keep_analysis; /* 1 = planes outlive the build, so that t3r_rebudget() works */
-    uint32_t seed;          /* of the K-means, of the allocation `random`, and of blue-noise ties */
+    uint32_t head_column_bytes; /* work of a learned head, 0..65,536 a column: t3r_head_column_bytes() */
+    uint32_t refinements;       /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
+    uint32_t fill_radius;       /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
+    uint32_t flying;            /* 1 = points between surfaces, or in front of what another view measured, come last */
+    uint32_t redundancy;        /* 1 = small budgets pass over points that another view covers */
+    uint32_t exposure;          /* 1 = colours of all views are brought to their mean exposure */
+    uint32_t keep_analysis;     /* 1 = planes outlive the build, so that t3r_rebudget() works */
+    uint32_t seed;              /* of the K-means, of the allocation `random`, and of blue-noise ties */
 } t3r_config;
 
 /* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */
@@ -241,8 +243,13 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 
 /* Why t3r_bind_head() refuses a weight file, as text; NULL when it is sound: then the head is too large for the arena
- * (over T3R_HEAD_COLUMN_BYTES of work a column). */
+ * (t3r_head_column_bytes()). */
 const char *t3r_weights_error(const void *weights, size_t bytes);
+
+/* The head_column_bytes with which this head works on views of this width, whatever their height: at least 1, 0 when
+ * t3r_weights_error() refuses the file or the width is not 1..T3R_MAX_SIDE. The default holds nano, small and base with
+ * 8-bit activations; every arena holds heads that need no more than two bytes a pixel. */
+uint32_t t3r_head_column_bytes(const void *weights, size_t bytes, uint32_t width);
 
 /* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it, and so which file to bind again. */
 uint32_t t3r_head_crc(const t3r_runtime *rt);

@@ -14,6 +14,7 @@ import xml.dom.minidom
 import zlib
 
 TRIM3R = os.path.abspath(sys.argv[1])
+HEADS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "quant", "heads")
 failures = []
 checks = 0
 
@@ -120,7 +121,7 @@ def test_build(room):
         "--gaussians": ["0", "x", "-1", "16777217", "1.5"],
         "--context": ["", "a", "0,", "-1", ",".join(map(str, range(17)))],
         "--allocate": ["evenly", ""],
-        "--head": ["big"],
+        "--head": ["big", "", "learned", ".t3w", "small.c"],
         "--wavelet": ["db9"],
         "--levels": ["0", "6"],
         "--clusters": ["0", "513"],
@@ -150,6 +151,7 @@ def test_build(room):
     expect_full("full.ply", "build", room, "--keep", 10, "-o", "full.ply")
 
     found = expect_json("build", room, "--context", "0,2", "--keep", "10%", "-o", "scene.ply")
+    check(found["head"] == "small" and found["head_bits"] == "8", "small is not the head unless another is named")
     for key in ("gaussians", "arena_bytes", "hash", "valid_points", "bits_epoch", "origin", "exponent"):
         check(key in found, f"build --json has no {key}")
     check(found["gaussians"] == (found["valid_points"] * 10 + 50) // 100, "--keep 10% is not a tenth")
@@ -160,8 +162,51 @@ def test_build(room):
     check("100000" in text, "the count asked for is not told")
     expect(0, "build", room, "--working", "32x32", "--gaussians", 9, "--method", "random", "--comments",
            "-o", "named.ply")
-    check(b"comment trim3r bits_epoch" in open("named.ply", "rb").read(), "--comments writes none")
+    named = open("named.ply", "rb").read()
+    check(b"comment trim3r bits_epoch" in named, "--comments writes none")
+    check(b"comment trim3r head none\n" in named, "--comments does not name the head")
     check(b"comment" not in open("exact.ply", "rb").read(), "a comment is in the header unasked")
+
+
+def weight_file(path, bits="8"):
+    """The float head small, quantized under the file's name; the file's bytes."""
+    expect(0, "quantize", os.path.join(HEADS, "small.safetensors"), "--calibrate", "tiny.mcap", "--weights", bits,
+           "--activations", bits, "--name", path.split(".")[0], "-o", path)
+    return open(path, "rb").read()
+
+
+def test_heads(room):
+    expect(0, "room", "--size", "32x32", "-o", "tiny.mcap")
+    whole = weight_file("mine.t3w")
+    weight_file("wide.t3w", "16")
+    base = ["build", room, "--working", "64x64", "--gaussians", 500, "-o", "head.ply"]
+    hashes = {}
+    for head in ("analytic", "moment", "none", "nano", "small", "base", "mine.t3w", "wide.t3w"):
+        found = expect_json(*base, "--head", head, "--comments")
+        hashes[head] = found["hash"]
+        name = head.split(".")[0]
+        check(found["head"] == name, f"--head {head}: build names {found['head']}")
+        comment = f"comment trim3r head {name}"
+        if "head_crc" in found:
+            comment += f" crc {found['head_crc']}"
+            check(found["head_bits"] == ("16" if head == "wide.t3w" else "8"), f"--head {head}: bits")
+        check((comment + "\n").encode() in open("head.ply", "rb").read(), f"--head {head}: not in the comments")
+        check(("head_crc" in found) == (head not in ("analytic", "moment", "none")), f"--head {head}: CRC")
+    check(len(set(hashes.values())) == len(hashes), f"heads give the same scene: {hashes}")
+    crc = expect_json(*base, "--head", "mine.t3w")["head_crc"]
+    check(crc == expect_json("head-info", "mine.t3w")["crc"] == whole[15:11:-1].hex(), "the CRC")
+    # the closed forms never see weights, networks the same bits however many bytes and threads there are
+    check(len({expect_json(*base, "--head", "wide.t3w", "--arena", arena, "--threads", threads)["hash"]
+               for arena, threads in (("min", 1), ("full", 3))}) == 1, "arena or threads change a learned scene")
+    # weights that are refused say why
+    for name, content, why in [("cut.t3w", whole[:-4], "not as long as it says"), ("foreign.t3w", b"RIFF" + whole[4:], "not a weight file"),
+                               ("empty.t3w", b"", "not a weight file"), ("bit.t3w", whole[:-1] + bytes([whole[-1] ^ 1]), "CRC"),
+                               ("epoch.t3w", whole[:6] + b"\xff\xff" + whole[8:], "epoch")]:
+        write(name, content)
+        for command in (base, ["replay", room], ["plan", "--size", "64x64", "--gaussians", 5], ["bench", "--runs", 1]):
+            expect(1, *command, "--head", name, err=name)
+        expect(1, *base, "--head", name, err=why)
+    expect(1, *base, "--head", "absent.t3w", err="absent.t3w")
 
 
 def test_recordings(room):
@@ -279,6 +324,8 @@ def test_replay(room):
     expect(1, *base, "--expect", "golden.json", "--wavelet", "haar", err="stage wavelet")
     expect(1, *base, "--expect", "golden.json", "--context", "0,2", err="stage image")
     expect(1, *base, "--expect", "golden.json", "--head", "moment", err="stage head")
+    expect(1, *base, "--expect", "golden.json", "--head", "nano", err="stage head")
+    check(found["head"] == "small" and len(found["head_crc"]) == 8, "replay --json does not name the head")
     broken = dict(found, hash="1" * 16, stages=dict(found["stages"], raster="2" * 16), tiles=list(found["tiles"]))
     broken["tiles"][6] = "3" * 16
     write("broken.json", json.dumps(broken))
@@ -341,6 +388,12 @@ def test_plan():
     check(all(f"| {b['name']} | {b['bytes']} |" in table for b in found["buffers"]),
           "the Markdown table lacks a buffer")
     check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
+    # a head needs what plan says: one with wider activations more, and a closed form nothing
+    small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
+    check(small["arena_bytes"] == analytic["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
+    check(wide["head_column_bytes"] > small["head_column_bytes"], "16-bit activations need no more")
+    check(small["operations"]["head"] > analytic["operations"]["head"] == found["operations"]["head"], "steps of heads")
+    expect(2, *base, "--head", "big", err="--head")
 
 
 def test_bench():
@@ -364,10 +417,13 @@ def test_bench():
         found = expect_json("bench", "--runs", 1, "--points", write("cloud.f32", rows))
         distance[scale] = found["kmeans_msd"] / scale ** 2
     check(0 < distance[1.0] < 0.5 and max(distance.values()) <= 1.0001 * min(distance.values()), f"scales: {distance}")
-    for key in ("raster_131k_ms", "raster_13k_ms", "kmeans_ms", "wavelet_ns_per_pixel", "build_analytic_ms"):
+    for key in ("raster_131k_ms", "raster_13k_ms", "kmeans_ms", "wavelet_ns_per_pixel", "build_analytic_ms",
+                "build_small_ms", "head_gmac_per_s"):
         check(found[key] > 0 and found[key + "_min"] <= found[key] <= found[key + "_max"], f"bench lacks {key}")
-    for key in ("head_gmac_per_s", "stereo_ms", "build_small_ms"):
-        check(key in found and found[key] is None, f"bench: {key} is not null")
+    check("stereo_ms" in found and found["stereo_ms"] is None, "bench: stereo_ms is not null")
+    check(found["head"] == "small" and found["head_bits"] == "8", "bench does not name the head")
+    expect(2, "bench", "--head", "moment", err="--head moment")
+    expect(2, "bench", "--head", "large", err="--head")
     check(isinstance(found["cpu_flags"], str), "bench lacks cpu_flags")
 
 
@@ -378,6 +434,7 @@ def main():
         expect(0, "room", "-o", "room.mcap")
         test_dispatch()
         test_build("room.mcap")
+        test_heads("room.mcap")
         test_recordings("room.mcap")
         test_arena("room.mcap")
         test_render("room.mcap")

@@ -108,7 +108,7 @@ static void round_trip(int flags, const double shift[3], int same_frame)
     scene_file back;
     char error[256] = "";
     make_scene(&scene, gaussians);
-    assert_int_equal(scene_file_write_ply(path, &scene, flags, error, sizeof error), 0);
+    assert_int_equal(scene_file_write_ply(path, &scene, flags, NULL, error, sizeof error), 0);
     if (scene_file_read_ply(path, &back, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
@@ -212,14 +212,14 @@ static void writes_the_expected_header(void **state)
     t3r_scene scene = {.gaussians = &g, .count = 1};
     char error[256] = "";
     uint8_t bytes[1024];
-    assert_int_equal(scene_file_write_ply(path, &scene, 0, error, sizeof error), 0);
+    assert_int_equal(scene_file_write_ply(path, &scene, 0, NULL, error, sizeof error), 0);
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
     size_t count = fread(bytes, 1, sizeof bytes, file);
     fclose(file);
     assert_int_equal(count, strlen(header) + 4 * ROW_FLOATS);
     assert_memory_equal(bytes, header, strlen(header));
-    assert_int_equal(scene_file_write_ply("/nonexistent/scene.ply", &scene, 0, error, sizeof error), -1);
+    assert_int_equal(scene_file_write_ply("/nonexistent/scene.ply", &scene, 0, NULL, error, sizeof error), -1);
     assert_non_null(strstr(error, "/nonexistent/scene.ply"));
 }
 

@@ -65,8 +65,9 @@ def evaluate_triplet(folder, room):
     for row in rows:
         check((row["scene"], row["context"], row["target"], row["depth"]) == ("room", "0,2", "1", "sensor"), "names")
         check((row["head"], row["allocate"]) ==
-              (("analytic", "density") if row["method"] == "trim3r" else ("none", "random")), "settings")
-        check(row["planar_psnr"] == "" and row["bits"] == "", "cells that do not apply are empty")
+              (("small", "density") if row["method"] == "trim3r" else ("none", "random")), "settings")
+        check(row["planar_psnr"] == "" and row["bits"] == ("8" if row["method"] == "trim3r" else ""),
+              "cells that do not apply are empty")
         render = read(f"{pictures}/1/{row['method']}_{row['keep']}.png")
         check_scores(row, target, render, mask, "psnr")
         error = ((target.astype(float) - render) ** 2)[everything].mean()
@@ -131,6 +132,34 @@ def evaluate_variants(folder, room):
           "settings count")
 
 
+def evaluate_heads(folder, room):
+    """Rows a head, each as if it had been evaluated alone; weight files beside shipped heads."""
+    heads = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "quant", "heads")
+    for bits in ("8", "16"):
+        run(trim3r, "quantize", f"{heads}/nano.safetensors", "--calibrate", room, "--name", "mine", "--weights", "8",
+            "--activations", bits, "-o", f"{folder}/mine{bits}.t3w")
+    common = ["--context", "0,2", "--target", "1", "--keep", "20,5"]
+    names = ["analytic", "moment", "nano", "small", "base", f"{folder}/mine8.t3w", f"{folder}/mine16.t3w"]
+    labels = ["analytic", "moment", "nano", "small", "base", "mine", "mine_w8a16"]
+    answer = json.loads(run(trim3r, "eval", room, *common, "--heads", ",".join(names), "--methods", "random,trim3r",
+                            "--images", f"{folder}/heads", "--html", f"{folder}/heads.html", "--json").stdout)
+    rows = answer["rows"]
+    check([(r["method"], r["head"], r["bits"], r["keep"]) for r in rows] ==
+          [("random", "none", None, k) for k in (20, 5)] +
+          [("trim3r", n, b, k) for n, b in zip(["analytic", "moment", "nano", "small", "base", "mine", "mine"],
+                                              [None, None, "8", "8", "8", "8", "8/16"]) for k in (20, 5)],
+          f"rows a head: {rows}")
+    check({f"{label}_{k}.png" for label in ["random", *labels] for k in (20, 5)} <= set(os.listdir(f"{folder}/heads/1")),
+          "pictures a head")
+    page = open(f"{folder}/heads.html").read()
+    check(all(label in page for label in labels), "the page tells the heads")
+    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "context_psnr", "perceptual")
+    for name, alone in zip(names, range(2, len(rows), 2)):
+        row = json.loads(run(trim3r, "eval", room, *common, "--head", name, "--json").stdout)["rows"][0]
+        check([row[s] for s in scores] == [rows[alone][s] for s in scores], f"{name} alone and beside others")
+    check(len({r["psnr"] for r in rows}) == len(rows), "heads differ")
+
+
 def evaluate_planar(folder):
     random = numpy.random.default_rng(2)
     image = cv2.GaussianBlur(random.integers(0, 256, (90, 120, 3)).astype(numpy.uint8), (0, 0), 2.5)
@@ -174,6 +203,7 @@ with tempfile.TemporaryDirectory() as folder:
     evaluate_all(folder, room)
     evaluate_several(folder, room)
     evaluate_variants(folder, room)
+    evaluate_heads(folder, room)
     evaluate_planar(folder)
     evaluate_namesakes(folder)
 if scorer is None:

@@ -18,7 +18,7 @@
 static evaluation_row make_row(const char *scene, const char *method, double keep, double psnr, double holes)
 {
     evaluation_row row = {
-        .method = method, .head = "analytic", .bits = "", .refine = "0", .allocate = "density", .depth = "sensor"};
+        .head = "analytic", .bits = "", .method = method, .refine = "0", .allocate = "density", .depth = "sensor"};
     snprintf(row.scene, sizeof row.scene, "%s", scene);
     snprintf(row.context, sizeof row.context, "0,2");
     snprintf(row.target, sizeof row.target, "1");

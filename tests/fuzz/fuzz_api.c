@@ -99,6 +99,7 @@ static t3r_config take_config(input *in)
     c.flying = flags >> 7;
     c.redundancy = c.seed & 1;
     c.exposure = c.seed >> 1 & 1;
+    c.head_column_bytes = c.seed & 4 ? below(in, 2048) : c.head_column_bytes;
     return c;
 }
 

@@ -21,7 +21,7 @@ ROOM = HERE / "room.json"
 WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--moved"],
         ["--arena", "min", "--tasks", "reverse", "--moved"]]
 REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"]]
-DRIVER_SOURCES = [HERE / "golden_driver.c", *sorted((ROOT / "tools").glob("room*.c"))]
+DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", *sorted((ROOT / "tools").glob("room*.c"))]
 
 
 def output_of(command):
@@ -74,7 +74,7 @@ def check_build(arguments):
     with tempfile.TemporaryDirectory(prefix="trim3r-golden-") as folder:
         driver = pathlib.Path(folder) / "golden_driver"
         output_of([*arguments, "-std=gnu11", "-I", ROOT / "runtime" / "include", "-I", ROOT / "runtime",
-                   "-I", ROOT / "platform", "-I", ROOT / "tools", *runtime_sources(), *DRIVER_SOURCES, "-o", driver])
+                   "-I", ROOT / "platform", "-I", ROOT / "tools", "-I", ROOT / "tests", *runtime_sources(), *DRIVER_SOURCES, "-o", driver])
         expected = STAGES.read_text()
         for way in ([], WAYS[-1]):
             same(" ".join([*emulator, *arguments, *way]), output_of([*emulator, driver, *way]), expected)

@@ -6,11 +6,13 @@
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "hash.h"
 #include "room.h"
 #include "trim3r.h"
+#include "weights_maker.h"
 
 enum { MOST_WIDTH = 128, MOST_HEIGHT = 96, MOST_PIXELS = MOST_WIDTH * MOST_HEIGHT, CONTEXT_VIEWS = 2, TARGET_VIEW = 1 };
 
@@ -26,23 +28,28 @@ typedef struct configuration {
     t3r_head head;
     uint32_t gaussians;
     bool holes;
+    uint32_t bits; /* of the learned head's weights, made up here, and activations; 0 = another head */
 } configuration;
 
 static const configuration configurations[] = {
     {"default", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, 1843, false},
+     T3R_HEAD_ANALYTIC, 1843, false, 0},
     {"small", 128, 96, 61, 45, T3R_PIXEL_GREY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 3, 17, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_MOMENT, 700, true},
+     T3R_HEAD_MOMENT, 700, true, 0},
     {"haar_paper", 128, 96, 64, 48, T3R_PIXEL_YUYV, T3R_DISTORTION_NONE, T3R_WAVELET_HAAR, 1, 32, T3R_ALLOCATE_PAPER,
-     T3R_HEAD_ANALYTIC, 3000, true},
+     T3R_HEAD_ANALYTIC, 3000, true, 0},
     {"cdf53_pixel", 128, 96, 64, 48, T3R_PIXEL_NV12, T3R_DISTORTION_RADTAN, T3R_WAVELET_CDF53, 4, 300,
-     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true},
+     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0},
     {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_UNIFORM, T3R_HEAD_ANALYTIC, 600, true},
+     T3R_ALLOCATE_UNIFORM, T3R_HEAD_ANALYTIC, 600, true, 0},
     {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_RANDOM,
-     T3R_HEAD_NONE, 600, false},
+     T3R_HEAD_NONE, 600, false, 0},
     {"everything", 96, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false},
+     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0},
+    {"learned", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
+     T3R_HEAD_LEARNED, 700, true, 8},
+    {"learned_wide", 128, 96, 64, 48, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64,
+     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16},
 };
 
 typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
@@ -54,7 +61,7 @@ typedef struct variation {
 } variation;
 
 /* Ten times what the largest configuration asks for; two, so that one can move to the other. */
-enum { ARENA_ROOM = 10 * T3R_FULL_BYTES_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, 1, 2) };
+enum { ARENA_ROOM = 10 * T3R_FULL_BYTES_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, T3R_HEAD_COLUMN_BYTES, 1, 2) };
 static _Alignas(T3R_ARENA_ALIGN) uint8_t arenas[2][ARENA_ROOM];
 
 /* ---- the frames ---------------------------------------------------------------------------------------- */
@@ -159,6 +166,8 @@ typedef struct run {
     t3r_runtime *rt;
     size_t arena_bytes;
     uint32_t here;    /* which of the two arenas holds the state */
+    uint8_t *weights; /* NULL but for the learned head */
+    size_t weights_bytes;
 } run;
 
 static void print_hash(const run *r, const char *what, uint64_t hash)
@@ -185,7 +194,7 @@ static int failed(const run *r, t3r_status status)
     return 1;
 }
 
-/* Names the step; moves the arena when asked; binds the hooks. */
+/* Names the step; moves the arena when asked; binds the hooks and the weights. */
 static t3r_status begin_step(run *r, const char *step)
 {
     r->step = step;
@@ -197,6 +206,10 @@ static t3r_status begin_step(run *r, const char *step)
         if (status != T3R_OK) {
             return status;
         }
+    }
+    t3r_status bound = t3r_bind_head(r->rt, r->weights, r->weights_bytes);
+    if (bound != T3R_OK) {
+        return bound;
     }
     t3r_hooks hooks = {.user = r, .stage_hash = on_stage_hash};
     hooks.parallel_for = r->ways.reverse_tasks ? run_in_reverse : NULL;
@@ -213,6 +226,10 @@ static t3r_status begin_run(run *r)
     config.allocation = c->allocation;
     config.head = c->head;
     config.keep_analysis = 1;
+    if (c->bits != 0) {
+        r->weights = make_weights(small_shape, small_layers, c->bits, c->bits, 1, &r->weights_bytes);
+        config.head_column_bytes = t3r_head_column_bytes(r->weights, r->weights_bytes, config.width);
+    }
     t3r_plan_info plan;
     r->step = "plan";
     t3r_status status = t3r_plan(&config, &plan);
@@ -294,6 +311,7 @@ static int run_configuration(const configuration *c, variation ways)
         printf("%s %s gaussians %" PRIu32 " of %" PRIu32 "\n", c->name, r.step, scene.count, scene.valid_points);
         status = draw(&r, "render_rebudgeted");
     }
+    free(r.weights);
     return status == T3R_OK ? 0 : failed(&r, status);
 }
 

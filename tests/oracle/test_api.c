@@ -179,6 +179,7 @@ static void config_ranges(void **state)
         RANGE(keep_percent, 0, 100),
         RANGE(gamma_q8, 0, 512),
         RANGE(head, 0, T3R_HEAD_COUNT - 1),
+        RANGE(head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES),
         RANGE(refinements, 0, 16),
         RANGE(fill_radius, 0, 8),
         RANGE(keep_analysis, 0, 1),

@@ -44,6 +44,7 @@ static t3r_config random_config(dice *d, uint32_t most_side, uint32_t most_gauss
     c.keep_analysis = dice_below(d, 2);
     c.refinements = dice_below(d, 3);
     c.fill_radius = dice_below(d, 9);
+    c.head_column_bytes = dice_below(d, 3) == 0 ? log_uniform(d, 1, T3R_MAX_HEAD_COLUMN_BYTES) : dice_below(d, 2) * 704;
     return c;
 }
 
@@ -87,10 +88,10 @@ static void plan_equals_macros(void **state)
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                     c.render_width, c.render_height, c.keep_analysis,
+                                                     c.render_width, c.render_height, c.head_column_bytes, c.keep_analysis,
                                                      c.refinements));
         assert_true(plan.bytes == T3R_FULL_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                  c.render_width, c.render_height, c.keep_analysis,
+                                                  c.render_width, c.render_height, c.head_column_bytes, c.keep_analysis,
                                                      c.refinements));
         /* the two public macros speak of the defaults */
         c = t3r_default_config(c.width, c.height, c.views, c.max_gaussians);

@@ -45,6 +45,7 @@ static t3r_config learned_config(uint32_t gaussians)
     t3r_config c = t3r_default_config(W, H, 2, gaussians);
     c.clusters = 9;
     c.head = T3R_HEAD_LEARNED;
+    c.refinements = 0;
     c.keep_analysis = 1;
     return c;
 }
@@ -77,6 +78,7 @@ static void same_bits_everywhere(void **state)
         uint8_t *weights =
             make_weights(small_shape, small_layers, bits & 1 ? 16 : 8, bits & 2 ? 16 : 8, 40 + bits, &bytes);
         t3r_config config = learned_config(400);
+        config.head_column_bytes = t3r_head_column_bytes(weights, bytes, W);
         arena first = arena_of(&config, ARENA_AT_FULL);
         t3r_runtime *rt = with_views(&first, &config, 1);
         t3r_scene expected, scene;
@@ -109,6 +111,80 @@ static void same_bits_everywhere(void **state)
         arena_free(&first);
         free(weights);
     }
+}
+
+/* head_column_bytes: what t3r_head_column_bytes() tells is enough and not one too many, whatever the width. */
+static void room_for_the_head(void **state)
+{
+    (void)state;
+    size_t bytes;
+    uint8_t *weights = make_weights(base_shape, base_layers, 8, 16, 3, &bytes);
+    assert_int_equal(t3r_head_column_bytes(NULL, 0, 64), 0);
+    assert_int_equal(t3r_head_column_bytes(weights, bytes - 16, 64), 0);
+    assert_int_equal(t3r_head_column_bytes(weights, bytes, 0), 0);
+    assert_int_equal(t3r_head_column_bytes(weights, bytes, T3R_MAX_SIDE + 1), 0);
+    for (uint32_t width = T3R_MIN_SIDE; width <= 200; width += 1 + width / 40) {
+        t3r_config config = t3r_default_config(width, T3R_MIN_SIDE, 1, 10);
+        uint32_t least = t3r_head_column_bytes(weights, bytes, width);
+        assert_true(least > T3R_HEAD_COLUMN_BYTES && least <= T3R_MAX_HEAD_COLUMN_BYTES);
+        for (uint32_t less = 0; less < 2; less++) {
+            t3r_runtime *rt;
+            config.head_column_bytes = least - less;
+            arena memory = arena_of(&config, ARENA_AT_MINIMUM);
+            assert_int_equal(t3r_init(&rt, memory.bytes, memory.count, &config), T3R_OK);
+            assert_int_equal(t3r_bind_head(rt, weights, bytes), less ? T3R_ERR_WEIGHTS : T3R_OK);
+            arena_free(&memory);
+        }
+    }
+    /* two bytes a pixel are always there */
+    t3r_config tall = t3r_default_config(16, 4096, 1, 10);
+    tall.head_column_bytes = 0;
+    arena memory = arena_of(&tall, ARENA_AT_MINIMUM);
+    t3r_runtime *rt;
+    assert_int_equal(t3r_init(&rt, memory.bytes, memory.count, &tall), T3R_OK);
+    assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+    arena_free(&memory);
+    free(weights);
+}
+
+static uint64_t told_hash;
+
+static void note_head_hash(void *user, t3r_stage stage, uint64_t hash)
+{
+    (void)user;
+    told_hash = stage == T3R_STAGE_HEAD ? hash : told_hash;
+}
+
+/* Heads that differ in their name alone make the same Gaussians; the stage's hash tells them apart. */
+static void hash_names_the_weights(void **state)
+{
+    (void)state;
+    static t3r_gaussian first[100];
+    uint64_t hashes[2];
+    size_t bytes;
+    uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 5, &bytes);
+    t3r_config config = learned_config(100);
+    arena memory = arena_of(&config, ARENA_AT_FULL);
+    const t3r_hooks hooks = {.stage_hash = note_head_hash};
+    for (int i = 0; i < 2; i++) {
+        t3r_runtime *rt = with_views(&memory, &config, 1);
+        t3r_scene scene;
+        weights[32] = (uint8_t)('a' + i);
+        seal_weights(weights, bytes);
+        assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
+        assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(scene.count, 100);
+        hashes[i] = told_hash;
+        if (i == 0) {
+            memcpy(first, scene.gaussians, sizeof first);
+        } else {
+            assert_memory_equal(first, scene.gaussians, sizeof first);
+        }
+    }
+    assert_true(hashes[0] != hashes[1]);
+    arena_free(&memory);
+    free(weights);
 }
 
 static void binding(void **state)
@@ -353,7 +429,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_bits_everywhere),  cmocka_unit_test(binding),
         cmocka_unit_test(colour_and_opacity),    cmocka_unit_test(footprints),
-        cmocka_unit_test(scaled_by_the_spacing),
+        cmocka_unit_test(scaled_by_the_spacing), cmocka_unit_test(room_for_the_head),
+        cmocka_unit_test(hash_names_the_weights),
     };
     return cmocka_run_group_tests_name("learned", tests, NULL, NULL);
 }

@@ -106,7 +106,7 @@ static void check_build(const t3r_recording *recording, const char *scene, t3r_t
     }
     char path[2 * PATH_BYTES], error[256] = "";
     (void)snprintf(path, sizeof path, "%s/%s.ply", folder, scene);
-    if (scene_file_write_ply(path, &built, 0, error, sizeof error) != 0) {
+    if (scene_file_write_ply(path, &built, 0, NULL, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
     size_t exported = 0;

@@ -82,7 +82,7 @@ def runtime_sources():
 
 
 def public_headers():
-    return sorted((RUNTIME / "include").glob("*.h"))
+    return sorted((RUNTIME / "include").glob("*.h")) + [ROOT / "quant" / "heads" / "trim3r_heads.h"]
 
 
 def public_functions():

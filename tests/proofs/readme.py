@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""readme.py example LIBRARY | table PROGRAM [--update]: what the README shows is what happens.
+"""readme.py example LIBRARY... | table PROGRAM [--update]: what the README shows is what happens.
 
-example: its C program compiles without a warning, links with the runtime alone and prints what the README says.
+example: its C program compiles without a warning, links with the runtime and the shipped heads alone and prints what the README says.
 table:   its arena table is what `trim3r plan --markdown` prints; --update writes it there.
 """
 import re
@@ -22,11 +22,12 @@ def example_of(text):
     return match.group(1), match.group(2)
 
 
-def check_example(text, library, folder):
+def check_example(text, libraries, folder):
     code, expected = example_of(text)
     source, program = folder / "example.c", folder / "example"
     source.write_text(code)
-    result = proof.run(["gcc", *STRICT, "-I", proof.RUNTIME / "include", source, library, "-o", program])
+    result = proof.run(["gcc", *STRICT, "-I", proof.RUNTIME / "include", "-I", proof.ROOT / "quant" / "heads", source,
+                        *libraries, "-o", program])
     if result.returncode != 0:
         return ["does not build: " + result.stderr.strip()]
     result = proof.run([program], timeout=60)
@@ -50,17 +51,17 @@ def check_table(text, printed):
 
 
 def main():
-    what, path = sys.argv[1:3]
+    what, *paths = [word for word in sys.argv[1:] if word != "--update"]
     text = README.read_text()
     if what == "example":
         with proof.scratch() as folder:
             for wrong, offence in [(text.replace("#include", "#inclde", 1), "does not build"),
                                    (text.replace("```text\n", "```text\n1 ", 1), "the README says")]:
-                proof.must_find(check_example(wrong, path, folder), offence, "the README's example")
+                proof.must_find(check_example(wrong, paths, folder), offence, "the README's example")
             proof.verdict("the README's example builds, runs and prints what the README says",
-                          check_example(text, path, folder))
+                          check_example(text, paths, folder))
         return
-    printed = proof.run([path, *PLAN], check=True).stdout
+    printed = proof.run([paths[0], *PLAN], check=True).stdout
     if "--update" in sys.argv:
         found = table_in(text)
         README.write_text(text[:found.start(2)] + printed + text[found.end(2):])

@@ -1,0 +1,75 @@
+/* A firmware without a C library, with one head: what a linker keeps of the runtime and of the shipped heads. */
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "trim3r.h"
+#include "trim3r_heads.h"
+
+#ifndef HEAD
+#define HEAD t3r_head_small
+#define HEAD_BYTES t3r_head_small_bytes
+#endif
+
+int firmware(void *arena, size_t bytes, const t3r_config *config, const t3r_frame *frame, const t3r_camera *camera,
+             const t3r_target *target);
+
+/* volatile: or the compiler would make the loops calls of these very functions */
+void *memcpy(void *restrict to, const void *restrict from, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        ((volatile uint8_t *)to)[i] = ((const uint8_t *)from)[i];
+    }
+    return to;
+}
+
+void *memmove(void *to, const void *from, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t k = (uintptr_t)to < (uintptr_t)from ? i : count - 1 - i;
+        ((volatile uint8_t *)to)[k] = ((const uint8_t *)from)[k];
+    }
+    return to;
+}
+
+void *memset(void *to, int byte, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        ((volatile uint8_t *)to)[i] = (uint8_t)byte;
+    }
+    return to;
+}
+
+int memcmp(const void *a, const void *b, size_t count)
+{
+    const uint8_t *p = a, *q = b;
+    for (size_t i = 0; i < count; i++) {
+        if (p[i] != q[i]) {
+            return p[i] < q[i] ? -1 : 1;
+        }
+    }
+    return 0;
+}
+
+int firmware(void *arena, size_t bytes, const t3r_config *config, const t3r_frame *frame, const t3r_camera *camera,
+             const t3r_target *target)
+{
+    t3r_runtime *rt;
+    t3r_scene scene;
+    t3r_status status = t3r_init(&rt, arena, bytes, config);
+    if (status == T3R_OK) {
+        status = t3r_bind_head(rt, HEAD, HEAD_BYTES);
+    }
+#ifdef SECOND_HEAD
+    if (status == T3R_OK) {
+        status = t3r_bind_head(rt, SECOND_HEAD, sizeof *config);
+    }
+#endif
+    if (status == T3R_OK) {
+        status = t3r_add_view(rt, frame, camera);
+    }
+    if (status == T3R_OK) {
+        status = t3r_reconstruct(rt, &scene);
+    }
+    return status == T3R_OK ? t3r_render(rt, camera, target) : status;
+}

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""shipped.py TRIM3R HEADS: the C arrays in HEADS are what tools/train/ship makes of the float heads beside them."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+trim3r, heads = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+ship = heads.parent.parent / "tools" / "train" / "ship"
+
+
+def integers(path):
+    return [int(n) for n in re.findall(r"\d+", path.read_text().split("= {", 1)[1].split("}", 1)[0])]
+
+
+def check(condition, what):
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    # a tree of its own, so that nothing of the repository is written
+    tree = pathlib.Path(folder)
+    (tree / "tools" / "train").mkdir(parents=True)
+    (tree / "quant" / "heads").mkdir(parents=True)
+    (tree / "tools" / "train" / "ship").write_bytes(ship.read_bytes())
+    names = sorted(path.stem for path in heads.glob("*.safetensors"))
+    check(names == ["base", "nano", "small"], f"float heads: {names}")
+    for name in names:
+        (tree / "quant" / "heads" / f"{name}.safetensors").write_bytes((heads / f"{name}.safetensors").read_bytes())
+
+    def run(*arguments, expected=0):
+        done = subprocess.run(["bash", tree / "tools" / "train" / "ship", *arguments], capture_output=True, text=True,
+                              env={**os.environ, "TRIM3R": trim3r})
+        check(done.returncode == expected, f"ship {arguments}: status {done.returncode}: {done.stdout}{done.stderr}")
+
+    run()
+    for name in names:
+        made, shipped = integers(tree / "quant" / "heads" / f"{name}.c"), integers(heads / f"{name}.c")
+        check(made == shipped, f"{name}.c is not what {name}.safetensors becomes: tools/train/ship")
+        check(made[:4] == list(b"T3RW"), f"{name}.c holds no weight file")
+    other = tree / "other.safetensors"
+    other.write_bytes((heads / "small.safetensors").read_bytes())
+    run("nano", other)
+    check((tree / "quant" / "heads" / "nano.safetensors").read_bytes() == other.read_bytes(), "the float copy")
+    check(bytes(integers(tree / "quant" / "heads" / "nano.c")[32:36]) == b"nano", "the name is the shipped one")
+    run("large", expected=2)
+print(f"{len(names)} heads")

@@ -1,0 +1,36 @@
+/* The heads that --head names: the closed forms, the shipped networks, weight files. */
+#ifndef TRIM3R_TOOLS_CHOSEN_HEAD_H
+#define TRIM3R_TOOLS_CHOSEN_HEAD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "trim3r.h"
+
+#define CHOSEN_HEAD_DEFAULT "small"
+#define CHOSEN_HEAD_NAMES "analytic, moment, none, nano, small, base, FILE.t3w"
+
+typedef struct chosen_head {
+    t3r_head head;
+    char name[16];       /* analytic, moment, none; of a network the name in its weights */
+    char bits[8];        /* of a network's weights and activations: 8, 16, or W/A where they differ; else "" */
+    const void *weights; /* NULL of the closed forms */
+    size_t bytes;
+    uint32_t weight_bits, activation_bits;
+    char crc[9]; /* of a network, 8 hexadecimal digits; else "" */
+    void *owned; /* weights read from a file */
+} chosen_head;
+
+/* Whether the text is one of the names or ends in .t3w. */
+bool chosen_head_is_one(const char *text);
+
+/* CLI_OK, and chosen_head_close() is due; or an exit status of cli.h after a message, and nothing is. A weight file is
+ * refused with the reason of t3r_weights_error(). */
+int chosen_head_open(chosen_head *chosen, const char *text);
+void chosen_head_close(chosen_head *chosen);
+
+/* Sets the configuration's head, and its head_column_bytes where the head needs more than there are. */
+void chosen_head_configure(const chosen_head *chosen, t3r_config *config);
+
+#endif
