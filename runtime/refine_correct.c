@@ -5,12 +5,13 @@
 #include "scene_frame.h"
 
 #define COLOUR_STEP_Q5 26 /* 0.8 of the weighted mean residual: neighbours correct the same pixels */
-#define STEP_Q4 5         /* 5/16 of the Gauss-Newton step, likewise */
-#define RELATIVE_DAMPING_Q4 5
+#define STEP_Q4 4         /* 1/4 of the Gauss-Newton step, likewise */
+#define RELATIVE_DAMPING_Q4 3
 #define DAMPING 64         /* levels^2: below it a direction is noise */
 #define OPACITY_MOST 32767 /* largest step of log opacity, Q16: 1/2 */
-#define SHIFT_MOST 13107   /* of the position, in deviations: 0.2 */
-#define SHAPE_MOST 6554    /* of log scale and shear: 0.1 */
+#define SHIFT_MOST 32767   /* of the position, in deviations: 1/2 */
+#define SHAPE_FIRST 6554   /* of log scale and shear: 0.1 in the first pass, 0.05 in those after it */
+#define SHAPE_LATER 3277
 #define OPACITY_LEAST_Q15 256
 #define OPACITY_MOST_Q15 32440 /* 0.99: what the rasterizer draws at most */
 #define SWEEPS 8
@@ -54,7 +55,7 @@ static equations normal_equations(const t3r_refine_sums *s)
     return e;
 }
 
-/* Gauss-Seidel, a fixed number of sweeps: the matrix is positive and its diagonal raised by 5/16, so they close in. */
+/* Gauss-Seidel, a fixed number of sweeps: the matrix is positive and its diagonal raised by 3/16, so they close in. */
 static void solve(const equations *e, uint32_t shift, int32_t x_q16[T3R_REFINE_PARAMETERS])
 {
     int64_t damping = 4 * (int64_t)T3R_MAX((128 * DAMPING) >> shift, 1);
@@ -76,7 +77,7 @@ static void solve(const equations *e, uint32_t shift, int32_t x_q16[T3R_REFINE_P
     }
 }
 
-t3r_correction t3r_refine_solve(const t3r_refine_sums *s)
+t3r_correction t3r_refine_solve(const t3r_refine_sums *s, uint32_t pass)
 {
     t3r_correction c = {{0}, {0}, 0};
     if (s->weight <= 0) {
@@ -94,8 +95,8 @@ t3r_correction t3r_refine_solve(const t3r_refine_sums *s)
         x[i] = t3r_round_shift32(x[i] * STEP_Q4, 4);
     }
     x[0] -= t3r_round_shift32(x[3] + x[5], 1); /* what phi's halves mean for the opacity */
-    static const int32_t most[T3R_REFINE_PARAMETERS] = {OPACITY_MOST, SHIFT_MOST, SHIFT_MOST,
-                                                        SHAPE_MOST,   SHAPE_MOST, SHAPE_MOST};
+    const int32_t shape = pass == 0 ? SHAPE_FIRST : SHAPE_LATER;
+    const int32_t most[T3R_REFINE_PARAMETERS] = {OPACITY_MOST, SHIFT_MOST, SHIFT_MOST, shape, shape, shape};
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
         c.step_q16[i] = (int16_t)t3r_clamp32(x[i], -most[i], most[i]);
     }

@@ -166,14 +166,14 @@ static void solve(const sums *s, double x[PARAMETERS])
             for (int j = 0; j < PARAMETERS; j++) {
                 rest -= j == i ? 0 : s->a[i][j] * x[j];
             }
-            x[i] = held(rest / (s->a[i][i] * (1 + 5.0 / 16) + 64), 8);
+            x[i] = held(rest / (s->a[i][i] * (1 + 3.0 / 16) + 64), 8);
         }
     }
     for (int i = 0; i < PARAMETERS; i++) {
-        x[i] *= 5.0 / 16;
+        x[i] *= 0.25;
     }
     x[0] -= (x[3] + x[5]) / 2;
-    static const double most[PARAMETERS] = {0.5, 0.2, 0.2, 0.1, 0.1, 0.1};
+    static const double most[PARAMETERS] = {0.5, 0.5, 0.5, 0.1, 0.1, 0.1};
     for (int i = 0; i < PARAMETERS; i++) {
         x[i] = held(x[i], most[i]);
     }

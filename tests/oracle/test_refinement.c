@@ -147,7 +147,7 @@ static void follows_the_oracle(void **state)
         assert_true(moved.colour > 1 && moved.opacity > 0.003 && moved.place > 0.01 && moved.shape > 0.01);
         assert_true(mean.colour < 0.02 * moved.colour && mean.opacity < 0.02 * moved.opacity);
         assert_true(mean.place < 0.02 * moved.place && mean.shape < 0.02 * moved.shape);
-        assert_true(most.colour < 4 && most.opacity < 0.15 && most.place < 0.06 && most.shape < 0.05);
+        assert_true(most.colour < 4 && most.opacity < 0.15 && most.place < 0.06 && most.shape < 0.06);
         free(want);
         free(scene);
         free(after);

@@ -171,6 +171,34 @@ class Head(nn.Module):
         return made[-1]
 
 
+def widened(head, layers, seed=0):
+    """A head of the same graph with at least as many channels everywhere, which at first does what `head` does: added
+    channels start at random, what reads them at 0 (Chen et al. 2016, "Net2Net")."""
+    made = Head(layers, seed)
+    width = [FEATURES] + [layer["outputs"] for layer in head.layers]
+    wide = [FEATURES] + [layer["outputs"] for layer in layers]
+    with torch.no_grad():
+        for n, (old, new) in enumerate(zip(head.layers, layers)):
+            if [old[k] for k in ("kind", "level", "sources", "kernel", "stride", "phases")] != [
+                new[k] for k in ("kind", "level", "sources", "kernel", "stride", "phases")
+            ] or old["outputs"] > new["outputs"]:
+                raise ValueError(f"layer {n + 1}: not a wider version of the same layer")
+            first, places = 0, []
+            for source in new["sources"]:  # channels of the old inputs among the new ones
+                places += range(first, first + width[source])
+                first += wide[source]
+            outputs, point = old["outputs"], new["kind"] == "point"
+            rows = made.weight[n][:, :outputs] if point else made.weight[n][:outputs]
+            rows.zero_()
+            if point:
+                rows[:, :, places] = head.weight[n]
+                made.bias[n][:, :outputs] = head.bias[n]
+            else:
+                rows[:, places] = head.weight[n]
+                made.bias[n][:outputs] = head.bias[n]
+    return made
+
+
 def save_safetensors(head, path, name):
     """The head for `trim3r quantize`: quant/README.md tells the tensors and the metadata."""
     tensors = {}

@@ -299,12 +299,12 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
 #define DILATION 0.3f
 #define VARIANCE_LEAST 0.02f
 #define COLOUR_STEP 0.8125f
-#define STEP 0.3125f              /* 5 / 16 of the Gauss-Newton step */
-#define RELATIVE_DAMPING 0.3125f
+#define STEP 0.25f                /* of the Gauss-Newton step */
+#define RELATIVE_DAMPING 0.1875f
 #define DAMPING (64.0f / 65025.0f)
 #define OPACITY_STEP_MOST 0.5f
-#define SHIFT_MOST 0.2f
-#define SHAPE_MOST 0.1f
+#define SHIFT_MOST 0.5f
+#define SHAPE_MOST 0.1f           /* in the first pass, half as much in those after it */
 
 /* Sums over the pixels of one splat: w r, w, (g . r) e^ij for i + j <= 2, |g|^2 e^ij for i + j <= 4. */
 typedef struct sums {
@@ -457,7 +457,7 @@ static float held(float x, float most)
     return x > most ? most : x < -most ? -most : x == x ? x : 0;
 }
 
-static void correct(const sums *z, float *s)
+static void correct(const sums *z, int32_t pass, float *s)
 {
     if (!(z->weight > 0)) {
         return;
@@ -469,8 +469,8 @@ static void correct(const sums *z, float *s)
     }
     float opacity = held(STEP * (step[0] - (step[3] + step[5]) / 2), OPACITY_STEP_MOST);
     float shift[2] = {held(STEP * step[1], SHIFT_MOST), held(STEP * step[2], SHIFT_MOST)};
-    float a = held(STEP * step[3], SHAPE_MOST), b = held(STEP * step[4], SHAPE_MOST);
-    float c = held(STEP * step[5], SHAPE_MOST);
+    float most = pass == 0 ? SHAPE_MOST : SHAPE_MOST / 2;
+    float a = held(STEP * step[3], most), b = held(STEP * step[4], most), c = held(STEP * step[5], most);
     axes l = axes_of(s);
     s[0] += l.l11 * shift[0];
     s[1] += l.l21 * shift[0] + l.l22 * shift[1];
@@ -485,10 +485,10 @@ static void correct(const sums *z, float *s)
     s[4] = xx / det;
 }
 
-/* One pass of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place towards `wanted`;
+/* Pass `pass`, from 0, of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place towards `wanted`;
  * `counts`, [pictures][height][width], is 0 where a pixel has no say. */
 int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t *start, float *splats,
-                 const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts)
+                 const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, int32_t pass)
 {
     int good = 1;
     size_t pixels = (size_t)width * height;
@@ -518,7 +518,7 @@ int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t 
             gather_tile(&p, t, behind, residual, totals);
         }
         for (int32_t n = 0; n < count; n++) {
-            correct(&totals[n], splats + (size_t)PARAMETERS * (start[b] + n));
+            correct(&totals[n], pass, splats + (size_t)PARAMETERS * (start[b] + n));
         }
         free(totals);
         free(p.first);

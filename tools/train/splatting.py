@@ -50,11 +50,11 @@ def refine(splats, start, order, pictures, counts, passes):
     """Splats corrected towards `pictures` by `passes` of the runtime's refinement; no derivatives."""
     made, pictures = splats.detach().clone().contiguous(), pictures.contiguous()
     height, width = pictures.shape[2:]
-    for _ in range(passes):
+    for n in range(passes):
         drawn = draw(made, start, order, width, height)
         if not _native().splat_refine(
             len(start) - 1, width, height, start.ctypes.data, made.data_ptr(), order.ctypes.data,
-            drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data,
+            drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data, n,
         ):  # fmt: skip
             raise MemoryError("splatter: out of memory")
     return made

@@ -60,7 +60,7 @@ def options_of(arguments):
     parser.add_argument("--processes", type=int, default=1, help="that share every step on this machine (1)")
     parser.add_argument("--threads", type=int, default=1, help="of each process")
     parser.add_argument("--device", default="cpu", help="where the network runs; splats are drawn on the processor")
-    parser.add_argument("--start", metavar="FILE.safetensors", help="begin with this head's weights")
+    parser.add_argument("--start", metavar="FILE.safetensors", help="begin with this head, widened if it is narrower")
     parser.add_argument("--lpips", nargs=2, metavar=("TRUNK.pth", "HEADS.pth"), help="LPIPS instead of the stand-in")
     parser.add_argument("--validate", action="append", default=[], metavar="DIR", help="images to report on; repeat")
     parser.add_argument("--smoke", action="store_true", help=f"{SMOKE_STEPS} steps; exit status 1 unless the loss falls")
@@ -77,10 +77,19 @@ def as_tensor(image):
     return torch.from_numpy(np.ascontiguousarray(image.transpose(2, 0, 1))).float() / 255
 
 
-class Batch:
-    """Prepared pictures as the network and the splatter take them."""
+def neighbours(picture, counts):
+    """A splat a pixel of its own colour wherever `counts` is 0: what another view's splats show there. [n, 9]"""
+    y, x = (torch.from_numpy(i) for i in np.nonzero(counts == 0))
+    variance, none = torch.full((len(x),), 0.36), torch.zeros(len(x))
+    centres = torch.stack((x, y), 1).float()
+    return splatting.pack(centres, variance, none, variance, torch.full((len(x),), 0.96), picture[:, y, x].T)
 
-    def __init__(self, prepared, device):
+
+class Batch:
+    """Prepared pictures as the network and the splatter take them. `covered`, a flag a picture: another view covers what
+    has no depth here, so that splats must end where it begins."""
+
+    def __init__(self, prepared, device, covered=None):
         self.prepared = prepared
         self.height, self.width = prepared[0].confidence.shape
         features = np.stack([p.features for p in prepared])
@@ -93,10 +102,23 @@ class Batch:
         self.pixel = torch.from_numpy(np.stack((points["x"], points["y"]), 1))
         self.pictures = torch.stack([as_tensor(p.image) for p in prepared])
         self.counts = np.ascontiguousarray(np.stack([p.confidence > 0 for p in prepared]).astype(np.uint8))
-        near = torch.nn.functional.max_pool2d(torch.from_numpy(self.counts).float()[:, None], 3, 1, 1)
-        self.weight = near  # a splat reaches a pixel beyond its depth
+        self.around = []
+        for b, flag in enumerate(covered if covered is not None else [False] * len(prepared)):
+            self.around.append(neighbours(self.pictures[b], self.counts[b] if flag else np.ones((1, 1), np.uint8)))
+            if flag:
+                self.counts[b] = 1
+        # a splat reaches a pixel beyond its depth
+        self.weight = torch.nn.functional.max_pool2d(torch.from_numpy(self.counts).float()[:, None], 3, 1, 1)
         b, y, x = self.index
         self.own_colour = self.pictures[b, :, y, x]
+
+    def with_neighbours(self, splats):
+        """The splats of each picture followed by those around them, and where each picture's begin."""
+        parts, start = [], [0]
+        for b, around in enumerate(self.around):
+            parts += [splats[self.start[b] : self.start[b + 1]], around]
+            start.append(start[-1] + len(parts[-2]) + len(around))
+        return torch.cat(parts), np.array(start, np.int32)
 
     def footprints(self, head, device):
         outputs = head(self.features, tuple(i.to(device) for i in self.index)).cpu()
@@ -123,16 +145,16 @@ def decibels(mse):
 def planar_loss(head, batch, rng, term, device):
     """Loss of plain and refined pictures in their own view; PSNR of both."""
     footprints = batch.footprints(head, device)
-    splats = splatting.planar_splats(*footprints, batch.pixel)
-    order = drawing_order(rng, batch.start)
+    splats, begins = batch.with_neighbours(splatting.planar_splats(*footprints, batch.pixel))
+    order = drawing_order(rng, begins)
     half = (len(batch.prepared) + 1) // 2  # the others are drawn as they are: refining costs as much as the rest
-    start, some = batch.start[: half + 1], slice(0, batch.start[half])
+    start, some = begins[: half + 1], slice(0, begins[half])
     first, pictures = splats[some], batch.pictures[:half]
     corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS)
     refined = first + (corrected - first).detach()  # the corrections count as constants
     loss, seen = 0, []
     for drawn, begin, places, wanted, weight, share in (
-        (splats, batch.start, order, batch.pictures, batch.weight, 0.3),
+        (splats, begins, order, batch.pictures, batch.weight, 0.3),
         (refined, start, order[some], pictures, batch.weight[:half], 0.7),
     ):
         picture = splatting.draw(drawn, begin, places, batch.width, batch.height)
@@ -188,7 +210,7 @@ class Run:
         if self.device == "cuda" and self.world > 1:
             self.device = f"cuda:{int(os.environ['LOCAL_RANK'])}"
         if options.start:
-            self.head = head_net.load_safetensors(options.start)[0]
+            self.head = head_net.widened(head_net.load_safetensors(options.start)[0], head_net.HEADS[options.head], options.seed)
         else:
             self.head = head_net.Head(head_net.HEADS[options.head], options.seed)
         self.head.to(self.device)
@@ -239,7 +261,8 @@ class Run:
         self.head.mode = self.phase()
         for group in self.optimizer.param_groups:
             group["lr"] = self.rate()
-        batch = Batch(self.samples.crops(rng, max(1, o.batch // self.world)), self.device)
+        drawn = self.samples.crops(rng, max(1, o.batch // self.world))
+        batch = Batch(drawn, self.device, rng.random(len(drawn)) < 0.6)
         loss, seen = planar_loss(self.head, batch, rng, self.term, self.device)
         novel = math.nan
         if shared.random() < o.novel:
