@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""The training's splatter against finite differences and against itself; usage: splatter.py TRAIN_FOLDER BUILD_FOLDER"""
+"""The training's splatter against finite differences and against itself.
+
+Usage: splatter.py TRAIN_FOLDER BUILD_FOLDER"""
 import os
 import sys
 import unittest
@@ -73,7 +75,10 @@ class Splatter(unittest.TestCase):
                 way = torch.zeros_like(splats)
                 way[:, column] = torch.from_numpy(rng.standard_normal(len(splats))).float()
                 way[:, column] *= 2e-3 * (splats[:, column].abs() if 2 <= column <= 4 else 1)
-                ends = [(splatting.draw(splats + s * way, start, order, SIDE, SIDE).double() * weight).sum() for s in (1, -1)]
+                ends = [
+                    (splatting.draw(splats + s * way, start, order, SIDE, SIDE).double() * weight).sum()
+                    for s in (1, -1)
+                ]
                 found, expected = float((leaf.grad * way).sum()), float(ends[0] - ends[1]) / 2
                 size = float((leaf.grad * way).norm())
                 self.assertLess(abs(found - expected), 0.02 * size + 1e-5, f"column {column}")

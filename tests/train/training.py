@@ -23,7 +23,20 @@ STEPS = 6
 
 
 def run_in(folder, *more):
-    common = ("--head", "nano", "--steps", str(STEPS), "--crop", "64", "--batch", "2", "--novel", "0.5", "--out", folder)
+    common = (
+        "--head",
+        "nano",
+        "--steps",
+        str(STEPS),
+        "--crop",
+        "64",
+        "--batch",
+        "2",
+        "--novel",
+        "0.5",
+        "--out",
+        folder,
+    )
     return train.Run(train.options_of([*common, *more]))
 
 
@@ -33,7 +46,8 @@ def same(a, b):
 
 class Training(unittest.TestCase):
     def test_the_same_seed_gives_the_same_head_also_after_a_stop(self):
-        with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two, tempfile.TemporaryDirectory() as three:
+        with tempfile.TemporaryDirectory() as folder:
+            one, two, three = (os.path.join(folder, name) for name in ("one", "two", "three"))
             whole = run_in(one)
             whole.train()
             first = run_in(two)

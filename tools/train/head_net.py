@@ -1,4 +1,4 @@
-"""The Gaussian head as torch trains it: the layers of runtime/weights.h in float, or rounded as quant will round them."""
+"""The Gaussian head as torch trains it: the layers of runtime/weights.h, in float or rounded as quant rounds."""
 import json
 import math
 import struct

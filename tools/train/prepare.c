@@ -1,4 +1,5 @@
-/* The runtime's own analysis, budget and head features for the training, so that a head learns from what it will see. */
+/* The runtime's own analysis, budget and head features for the training, so that a head learns from what it will see.
+ */
 #include <stdlib.h>
 
 #include "head.h"
@@ -11,9 +12,9 @@ typedef struct prepare_settings {
 
 /* What is known of a retained point. Lengths in metres, axes those of the camera. */
 typedef struct prepared_point {
-    float x, y;            /* pixel */
-    float spacing;         /* of retained points about it, pixels */
-    float position[3];     /* on the surface */
+    float x, y;                       /* pixel */
+    float spacing;                    /* of retained points about it, pixels */
+    float position[3];                /* on the surface */
     float tangent_u[3], tangent_v[3]; /* of the surface, metres a pixel */
 } prepared_point;
 
@@ -50,9 +51,9 @@ static void note_points(const t3r_runtime *rt, const t3r_head_input *input, prep
     }
 }
 
-/* One picture, [height][width][3], with its depth in millimetres and its fx, fy, cx, cy, taken through the runtime as the
- * only context view. Results: `features` [height][width][T3R_FEATURES]; `confidence` [height][width]; `points`, as many
- * as are returned, in raster order. A negative t3r_status when the runtime refuses. */
+/* One picture, [height][width][3], with its depth in millimetres and its fx, fy, cx, cy, taken through the runtime as
+ * the only context view. Results: `features` [height][width][T3R_FEATURES]; `confidence` [height][width]; `points`, as
+ * many as are returned, in raster order. A negative t3r_status when the runtime refuses. */
 int32_t prepare(uint32_t width, uint32_t height, const uint8_t *rgb, const uint16_t *depth, const double *intrinsics,
                 const prepare_settings *settings, int8_t *features, uint8_t *confidence, prepared_point *points,
                 int32_t *valid)
@@ -70,7 +71,8 @@ int32_t prepare(uint32_t width, uint32_t height, const uint8_t *rgb, const uint1
     if (status != T3R_OK) {
         return status;
     }
-    void *arena = aligned_alloc(T3R_ARENA_ALIGN, (plan.min_bytes + T3R_ARENA_ALIGN - 1) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN);
+    void *arena =
+        aligned_alloc(T3R_ARENA_ALIGN, (plan.min_bytes + T3R_ARENA_ALIGN - 1) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN);
     t3r_runtime *rt = NULL;
     t3r_frame frame = {.format = T3R_PIXEL_RGB24,
                        .width = width,

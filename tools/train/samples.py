@@ -1,8 +1,8 @@
 """What a head is trained on: crops of pictures with depth, and pairs of posed views with a third to be predicted.
 
 Pictures are made up without end (procedural.py) and read from whatever folders the user names: images, or posed folders
-with a transforms.json (instant-ngp; depth as NeRFCapture writes it). Every draw follows from its own generator, so a run
-can stop and go on, and processes can share the work."""
+with a transforms.json (instant-ngp; depth as NeRFCapture writes it). Every draw follows from its own generator, so a
+run can stop and go on, and processes can share the work."""
 import ctypes
 import glob
 import json
@@ -21,7 +21,9 @@ TRIPLET = (0, 2, 1)  # context, context, target
 
 
 class _Settings(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_uint32) for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed")]
+    _fields_ = [
+        (name, ctypes.c_uint32) for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed")
+    ]
 
 
 POINT = np.dtype(
@@ -75,7 +77,7 @@ def square(image):
 
 @dataclass
 class Posed:
-    """A frame of a posed folder: image uint8 [s, s, 3]; depth float32 [s, s] m, 0 = none; fx fy cx cy; camera to world."""
+    """A frame of a posed folder: image uint8 [s, s, 3]; depth float32 [s, s] m, 0: none; fx fy cx cy; camera to world."""
 
     image: np.ndarray
     depth: np.ndarray
@@ -99,7 +101,12 @@ def _read_posed(folder, frame, unit, side):
         rows, columns = ((top + centres) / across).astype(int), ((left + centres) / across).astype(int)
         depth = raw[np.ix_(rows, columns)].astype(np.float32) * unit
     axes = np.diag([1.0, -1.0, -1.0, 1.0])  # OpenGL's y up, z backward
-    camera = [frame["fl_x"] * scale, frame["fl_y"] * scale, (frame["cx"] - left) * scale - 0.5, (frame["cy"] - top) * scale - 0.5]
+    camera = [
+        frame["fl_x"] * scale,
+        frame["fl_y"] * scale,
+        (frame["cx"] - left) * scale - 0.5,
+        (frame["cy"] - top) * scale - 0.5,
+    ]
     image = cv2.resize(np.ascontiguousarray(image), (side, side), interpolation=cv2.INTER_AREA)
     return Posed(image, depth, np.array(camera), np.array(frame["transform_matrix"]) @ axes)
 
@@ -116,10 +123,17 @@ class Folder:
             self.frames = [{**{k: v for k, v in scene.items() if k != "frames"}, **f} for f in scene["frames"]]
             self.unit = scene.get("integer_depth_scale", 0.001)
             names = [os.path.join(path, f["file_path"]) for f in self.frames]
-            if all(f.get("depth_path") and "fl_x" in f and not any(f.get(k) for k in ("k1", "k2", "p1", "p2")) for f in self.frames):
+            if all(
+                f.get("depth_path") and "fl_x" in f and not any(f.get(k) for k in ("k1", "k2", "p1", "p2"))
+                for f in self.frames
+            ):
                 self.triplets = [(*t["context"], t["target"]) for t in scene.get("trim3r_triplets", [])]
         else:
-            names = sorted(n for e in ("png", "jpg", "jpeg", "JPG", "ppm") for n in glob.glob(os.path.join(path, "**", "*." + e), recursive=True))
+            names = sorted(
+                n
+                for e in ("png", "jpg", "jpeg", "JPG", "ppm")
+                for n in glob.glob(os.path.join(path, "**", "*." + e), recursive=True)
+            )
         for name in names:
             image = cv2.imread(name, cv2.IMREAD_COLOR)
             if image is None:

@@ -201,9 +201,9 @@ static void load_tile(const picture *p, int32_t t, const float *rgb, float out[3
     }
 }
 
-/* The tile drawn again, each splat's derivatives summed on the way. What lies behind a splat is the finished colour less
- * what was drawn so far, so no second walk back to front is needed:
- *   dC / d alpha = T c - (C - C_drawn) / (1 - alpha). */
+/* The tile drawn again, each splat's derivatives summed on the way. What lies behind a splat is the finished colour
+ * less what was drawn so far, so no second walk back to front is needed: dC / d alpha = T c - (C - C_drawn) / (1 -
+ * alpha). */
 static void tile_backward(const picture *p, int32_t t, float final[3][SIDE][SIDE], float g[3][SIDE][SIDE], float *out)
 {
     float left = (float)(t % p->tiles_across * SIDE), top = (float)(t / p->tiles_across * SIDE);
@@ -230,8 +230,7 @@ static void tile_backward(const picture *p, int32_t t, float final[3][SIDE][SIDE
                 final[1][j][i] -= w * s[7];
                 final[2][j][i] -= w * s[8];
                 float front = g[0][j][i] * s[6] + g[1][j][i] * s[7] + g[2][j][i] * s[8];
-                float behind =
-                    g[0][j][i] * final[0][j][i] + g[1][j][i] * final[1][j][i] + g[2][j][i] * final[2][j][i];
+                float behind = g[0][j][i] * final[0][j][i] + g[1][j][i] * final[1][j][i] + g[2][j][i] * final[2][j][i];
                 float d_alpha = T[j][i] * front - behind / (1.0f - alpha[i]);
                 float d_q = -d_alpha * alpha[i];
                 d_alpha = alpha[i] == 0.0f || alpha[i] == ALPHA_MOST ? 0.0f : d_alpha;
@@ -292,19 +291,20 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
     return good;
 }
 
-/* --- refinement, as runtime/refine.c does it in integers (runtime/SPEC.md, "Refinement") ---------------------------- */
+/* --- refinement, as runtime/refine.c does it in integers (runtime/SPEC.md, "Refinement") ----------------------------
+ */
 
 #define UNKNOWNS 6
 #define MOMENTS 15
 #define DILATION 0.3f
 #define VARIANCE_LEAST 0.02f
 #define COLOUR_STEP 0.8125f
-#define STEP 0.25f                /* of the Gauss-Newton step */
+#define STEP 0.25f /* of the Gauss-Newton step */
 #define RELATIVE_DAMPING 0.1875f
 #define DAMPING (64.0f / 65025.0f)
 #define OPACITY_STEP_MOST 0.5f
 #define SHIFT_MOST 0.5f
-#define SHAPE_MOST 0.1f           /* in the first pass, half as much in those after it */
+#define SHAPE_MOST 0.1f /* in the first pass, half as much in those after it */
 
 /* Sums over the pixels of one splat: w r, w, (g . r) e^ij for i + j <= 2, |g|^2 e^ij for i + j <= 4. */
 typedef struct sums {
@@ -419,14 +419,14 @@ static void gather_tile(const picture *p, int32_t t, float behind[3][SIDE][SIDE]
 static void solve(const sums *s, float step[UNKNOWNS])
 {
     const float *h = s->curvature, *r = s->gradient;
-    float m[UNKNOWNS][UNKNOWNS + 1] = {
-        {h[0]},
-        {h[1], h[3]},
-        {h[2], h[4], h[5]},
-        {h[3] - h[0] / 2, h[6] - h[1] / 2, h[7] - h[2] / 2, h[10] - h[3] + h[0] / 4},
-        {2 * h[4], 2 * h[7], 2 * h[8], 2 * h[11] - h[4], 4 * h[12]},
-        {h[5] - h[0] / 2, h[8] - h[1] / 2, h[9] - h[2] / 2, h[12] - h[3] / 2 - h[5] / 2 + h[0] / 4, 2 * h[13] - h[4],
-         h[14] - h[5] + h[0] / 4}};
+    float m[UNKNOWNS][UNKNOWNS + 1] = {{h[0]},
+                                       {h[1], h[3]},
+                                       {h[2], h[4], h[5]},
+                                       {h[3] - h[0] / 2, h[6] - h[1] / 2, h[7] - h[2] / 2, h[10] - h[3] + h[0] / 4},
+                                       {2 * h[4], 2 * h[7], 2 * h[8], 2 * h[11] - h[4], 4 * h[12]},
+                                       {h[5] - h[0] / 2, h[8] - h[1] / 2, h[9] - h[2] / 2,
+                                        h[12] - h[3] / 2 - h[5] / 2 + h[0] / 4, 2 * h[13] - h[4],
+                                        h[14] - h[5] + h[0] / 4}};
     const float right[UNKNOWNS] = {r[0], r[1], r[2], r[3] - r[0] / 2, 2 * r[4], r[5] - r[0] / 2};
     for (int i = 0; i < UNKNOWNS; i++) {
         for (int j = i + 1; j < UNKNOWNS; j++) {
@@ -485,8 +485,8 @@ static void correct(const sums *z, int32_t pass, float *s)
     s[4] = xx / det;
 }
 
-/* Pass `pass`, from 0, of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place towards `wanted`;
- * `counts`, [pictures][height][width], is 0 where a pixel has no say. */
+/* Pass `pass`, from 0, of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place
+ * towards `wanted`; `counts`, [pictures][height][width], is 0 where a pixel has no say. */
 int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t *start, float *splats,
                  const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, int32_t pass)
 {

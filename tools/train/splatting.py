@@ -88,8 +88,8 @@ held = _Held.apply
 
 
 def footprints(outputs, spacing, own_colour):
-    """What head_learned.c makes of a head's outputs [n, 9]: offset [n, 2] and the lower Cholesky factor l11, l21, l22 [n, 3]
-    of the total footprint, pixels; opacity [n]; colour [n, 3] in 0..1. spacing [n] pixels, own_colour [n, 3]."""
+    """What head_learned.c makes of a head's outputs [n, 9]: offset [n, 2] and the lower Cholesky factor l11, l21, l22
+    [n, 3] of the total footprint, pixels; opacity [n]; colour [n, 3] in 0..1. spacing [n] pixels, own_colour [n, 3]."""
     s = spacing[:, None]
     offset = held(outputs[:, 0:2], -2, 2) * s
     diagonal = s * torch.exp2(held(outputs[:, 2:4], -4, 2))

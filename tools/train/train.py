@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Train a Gaussian head.
 
-    tools/train/train.py --head small --out build/small                     made-up pictures alone, two cores: ~80 minutes
+    tools/train/train.py --head small --out build/small     made-up pictures alone
     tools/train/train.py --head small --out build/small --data DIR --data DIR2
     tools/train/train.py --processes 2 ...                                  shares every step; so does torchrun
     tools/train/train.py --smoke --out build/smoke                          two minutes; fails unless the loss falls
@@ -9,8 +9,8 @@
 A step draws pictures (samples.py), lets the runtime analyse, prune and prepare them with a budget drawn at random, asks
 the head for footprints, draws these, refines them twice as the runtime does, and draws again. Triplets are lifted to
 their surfaces and drawn in a third view as well. The loss of a picture is log(MSE + lambda x perceptual term): its mean
-over pictures is minus the mean PSNR, but for the perceptual term (GaussianTrim3R eq. 3). The last share of the steps runs
-with weights and activations rounded as `trim3r quantize` will round them.
+over pictures is minus the mean PSNR, but for the perceptual term (GaussianTrim3R eq. 3). The last share of the steps
+runs with weights and activations rounded as `trim3r quantize` will round them.
 
 OUT gets checkpoint.pt (run the same command again to go on), log.csv, curves.png and NAME.safetensors. The same command
 and seed give the same head on the same machine with as many processes."""
@@ -29,7 +29,10 @@ try:
     import torch
     import torch.distributed as distributed
 except ImportError as error:
-    print(f"SKIPPED: training needs Debian's python3-torch, python3-opencv and python3-matplotlib: {error}", file=sys.stderr)
+    print(
+        f"SKIPPED: training needs Debian's python3-torch, python3-opencv and python3-matplotlib: {error}",
+        file=sys.stderr,
+    )
     sys.exit(77)
 
 import head_net
@@ -48,13 +51,19 @@ def options_of(arguments):
     parser.add_argument("--head", choices=sorted(head_net.HEADS), default="small")
     parser.add_argument("--out", required=True, metavar="DIR")
     parser.add_argument("--name", help="name in the weight file (default: the head's)")
-    parser.add_argument("--data", action="append", default=[], metavar="DIR", help="a folder of images or posed views; repeat")
-    parser.add_argument("--made-up", type=float, default=0.6, metavar="SHARE", help="of pictures that are made up (0.6)")
+    parser.add_argument(
+        "--data", action="append", default=[], metavar="DIR", help="a folder of images or posed views; repeat"
+    )
+    parser.add_argument(
+        "--made-up", type=float, default=0.6, metavar="SHARE", help="of pictures that are made up (0.6)"
+    )
     parser.add_argument("--steps", type=int, default=12000)
     parser.add_argument("--batch", type=int, default=4, help="pictures a step, over all processes (4)")
     parser.add_argument("--crop", type=int, default=128, help="side of a picture, pixels (128)")
     parser.add_argument("--novel", type=float, default=0.25, metavar="SHARE", help="of steps with a triplet (0.25)")
-    parser.add_argument("--quantized", type=float, default=0.15, metavar="SHARE", help="of steps with rounding, at the end")
+    parser.add_argument(
+        "--quantized", type=float, default=0.15, metavar="SHARE", help="of steps with rounding, at the end"
+    )
     parser.add_argument("--rate", type=float, default=3e-3, help="highest learning rate (0.003)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--processes", type=int, default=1, help="that share every step on this machine (1)")
@@ -63,7 +72,9 @@ def options_of(arguments):
     parser.add_argument("--start", metavar="FILE.safetensors", help="begin with this head, widened if it is narrower")
     parser.add_argument("--lpips", nargs=2, metavar=("TRUNK.pth", "HEADS.pth"), help="LPIPS instead of the stand-in")
     parser.add_argument("--validate", action="append", default=[], metavar="DIR", help="images to report on; repeat")
-    parser.add_argument("--smoke", action="store_true", help=f"{SMOKE_STEPS} steps; exit status 1 unless the loss falls")
+    parser.add_argument(
+        "--smoke", action="store_true", help=f"{SMOKE_STEPS} steps; exit status 1 unless the loss falls"
+    )
     options = parser.parse_args(arguments)
     if options.smoke:
         options.steps, options.crop, options.rate = SMOKE_STEPS, 96, 5e-3
@@ -86,8 +97,8 @@ def neighbours(picture, counts):
 
 
 class Batch:
-    """Prepared pictures as the network and the splatter take them. `covered`, a flag a picture: another view covers what
-    has no depth here, so that splats must end where it begins."""
+    """Prepared pictures as the network and the splatter take them. `covered`, a flag a picture: another view covers
+    what has no depth here, so that splats must end where it begins."""
 
     def __init__(self, prepared, device, covered=None):
         self.prepared = prepared
@@ -210,7 +221,9 @@ class Run:
         if self.device == "cuda" and self.world > 1:
             self.device = f"cuda:{int(os.environ['LOCAL_RANK'])}"
         if options.start:
-            self.head = head_net.widened(head_net.load_safetensors(options.start)[0], head_net.HEADS[options.head], options.seed)
+            self.head = head_net.widened(
+                head_net.load_safetensors(options.start)[0], head_net.HEADS[options.head], options.seed
+            )
         else:
             self.head = head_net.Head(head_net.HEADS[options.head], options.seed)
         self.head.to(self.device)
@@ -224,7 +237,19 @@ class Run:
 
     def _identity(self):
         o = self.options
-        return [o.head, o.steps, o.batch, o.crop, o.seed, o.made_up, o.novel, o.quantized, o.rate, sorted(o.data), self.world]
+        return [
+            o.head,
+            o.steps,
+            o.batch,
+            o.crop,
+            o.seed,
+            o.made_up,
+            o.novel,
+            o.quantized,
+            o.rate,
+            sorted(o.data),
+            self.world,
+        ]
 
     def _resume(self):
         state = torch.load(self.checkpoint, map_location="cpu")
@@ -304,10 +329,18 @@ class Run:
                 self.seconds, since = self.seconds + now - since, now
                 plain, refined, novel, loss = means(gathered)
                 gathered = []
-                self.rows.append([self.step, round(self.seconds, 1)] + [round(float(v), 3) for v in (plain, refined, novel, loss)] + [round(rate, 6), phase])
+                self.rows.append(
+                    [self.step, round(self.seconds, 1)]
+                    + [round(float(v), 3) for v in (plain, refined, novel, loss)]
+                    + [round(rate, 6), phase]
+                )
                 if self.rank == 0:
                     left = self.seconds / self.step * (o.steps - self.step) / 60
-                    print(f"step {self.step}/{o.steps} {phase}: {plain:.2f} dB, refined {refined:.2f}, novel {novel:.2f}; {left:.0f} min left", flush=True)
+                    print(
+                        f"step {self.step}/{o.steps} {phase}: {plain:.2f} dB, refined {refined:.2f}, novel {novel:.2f};",
+                        f"{left:.0f} min left",
+                        flush=True,
+                    )
             if self.step % keep_every == 0 or self.step == o.steps:
                 self.save()
         self.head.mode = "quantized" if o.quantized > 0 else "float"
@@ -324,7 +357,10 @@ def draw_curves(rows, path):
     steps = [r[0] for r in rows]
     for column, label in ((2, "own view"), (3, f"own view, {REFINEMENTS} refinements"), (4, "third view")):
         values = np.array([r[column] for r in rows], float)
-        smooth = [np.nanmean(values[max(0, i - 7) : i + 1]) if np.isfinite(values[max(0, i - 7) : i + 1]).any() else np.nan for i in range(len(values))]
+        smooth = [
+            np.nanmean(values[max(0, i - 7) : i + 1]) if np.isfinite(values[max(0, i - 7) : i + 1]).any() else np.nan
+            for i in range(len(values))
+        ]
         (line,) = axes.plot(steps, smooth, label=label)
         axes.plot(steps, values, color=line.get_color(), alpha=0.25, linewidth=0.8)
     changes = [r[0] for before, r in zip(rows, rows[1:]) if before[7] != r[7]]
@@ -348,12 +384,19 @@ def validate(head, folders, keeps=(1.0, 0.1, 0.05), side=256):
             for image in images:
                 image = samples.cv2.resize(image, (side, side), interpolation=samples.cv2.INTER_AREA)
                 depth = np.full((side, side), samples.PLANE, np.uint16)
-                batch = Batch([samples.prepare(image, depth, (side, side, (side - 1) / 2, (side - 1) / 2), kept)], "cpu")
+                batch = Batch(
+                    [samples.prepare(image, depth, (side, side, (side - 1) / 2, (side - 1) / 2), kept)], "cpu"
+                )
                 splats = splatting.planar_splats(*batch.footprints(head, "cpu"), batch.pixel)
                 order = np.arange(len(splats), dtype=np.int32)
                 better = splatting.refine(splats, batch.start, order, batch.pictures, batch.counts, REFINEMENTS)
                 drawn = [splatting.draw(s, batch.start, order, side, side) for s in (splats, better)]
-                rows.append([decibels(((d.clamp(0, 1) * 255).round() / 255 - batch.pictures).square().mean((1, 2, 3))) for d in drawn])
+                rows.append(
+                    [
+                        decibels(((d.clamp(0, 1) * 255).round() / 255 - batch.pictures).square().mean((1, 2, 3)))
+                        for d in drawn
+                    ]
+                )
             out[kept] = tuple(np.mean(rows, 0))
     return out
 
