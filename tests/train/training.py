@@ -68,8 +68,8 @@ class Training(unittest.TestCase):
 
     def test_processes_share_a_step(self):
         with tempfile.TemporaryDirectory() as folder:
-            command = [sys.executable, os.path.join(TRAIN, "train.py"), "--processes", "2", "--head", "nano", "--steps", "2",
-                       "--crop", "64", "--batch", "2", "--novel", "0", "--quantized", "0", "--out", folder]  # fmt: skip
+            options = "--processes 2 --head nano --steps 2 --crop 64 --batch 2 --novel 0 --quantized 0 --out".split()
+            command = [sys.executable, os.path.join(TRAIN, "train.py"), *options, folder]
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=300)
             self.assertTrue(os.path.exists(os.path.join(folder, "nano.safetensors")))
 
