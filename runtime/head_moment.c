@@ -118,8 +118,7 @@ static moments gather(const t3r_head_input *input, uint32_t u, uint32_t v, int32
 /* What a pixel gathers that only it itself joined. */
 static moments alone(const t3r_view *view, size_t pixel)
 {
-    return (moments){.count = 1,
-                     .colour = {view->colour[0][pixel], view->colour[1][pixel], view->colour[2][pixel]}};
+    return (moments){.count = 1, .colour = {view->colour[0][pixel], view->colour[1][pixel], view->colour[2][pixel]}};
 }
 
 static t3r_footprint footprint_of(const moments *m)

@@ -488,8 +488,7 @@ int main(void)
         cmocka_unit_test(same_bits_everywhere),  cmocka_unit_test(binding),
         cmocka_unit_test(colour_and_opacity),    cmocka_unit_test(footprints),
         cmocka_unit_test(scaled_by_the_spacing), cmocka_unit_test(room_for_the_head),
-        cmocka_unit_test(unadapted_is_pruned),
-        cmocka_unit_test(hash_names_the_weights),
+        cmocka_unit_test(unadapted_is_pruned),   cmocka_unit_test(hash_names_the_weights),
     };
     return cmocka_run_group_tests_name("learned", tests, NULL, NULL);
 }

@@ -69,8 +69,7 @@ static void check_pixel(const t3r_head_input *input, uint32_t x, uint32_t y, con
         return;
     }
     assert_int_equal(f[4], confidence[i] == 255 || confidence[i] == 192 || confidence[i] == 64 ? 127 : 64);
-    double log_density =
-        input->unadapted ? 0 : t3r_log_density_q10(&view, i, &settings, input->clusters) / 1024.0;
+    double log_density = input->unadapted ? 0 : t3r_log_density_q10(&view, i, &settings, input->clusters) / 1024.0;
     assert_int_equal(f[5], held(floor(log_density * 16 + 64 + 0.5)));
     assert_true(fabs(f[6] - held((log2(texture[i] + 8.0) - 9.5) * 16)) < 0.51);
     assert_int_equal(f[7], slope(i, x > 0 ? i - 1 : i, x + 1 < W ? i + 1 : i));
