@@ -48,6 +48,7 @@ static const struct {
     {"no-exposure", EXPOSURE_OFF, 0},
 };
 enum { ABLATIONS = sizeof ablations / sizeof ablations[0] };
+_Static_assert(ABLATIONS <= ABLATIONS_MOST, "ablation.h promises too few");
 
 const char *ablation_name(uint32_t ablation)
 {
