@@ -64,9 +64,34 @@ void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clu
     for (uint32_t k = 0; k < cluster_count; k++) {
         uint32_t points = clusters[k].points;
         clusters[k].texture_q4 = points == 0 ? 0 : (uint32_t)((sums[k] + points / 2) / points);
-        clusters[k].order = k;
     }
+}
+
+void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t seed)
+{
+    uint16_t filled[T3R_MAX_CLUSTERS];
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < cluster_count; k++) {
+        if (clusters[k].points > 0) {
+            filled[count++] = (uint16_t)k;
+        }
+    }
+    /* Fisher and Yates: what is drawn lies at or before the place it comes to */
+    for (uint32_t i = count; i > 1; i--) {
+        t3r_cluster *last = &clusters[filled[i - 1]];
+        t3r_cluster *drawn = &clusters[filled[t3r_mix32(i ^ t3r_mix32(seed)) % i]];
+        uint32_t texture_q4 = last->texture_q4;
+        last->texture_q4 = drawn->texture_q4;
+        drawn->texture_q4 = texture_q4;
+    }
+}
+
+void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count)
+{
     /* Insertion sort: at most K^2 / 2 steps, K <= 512. */
+    for (uint32_t i = 0; i < cluster_count; i++) {
+        clusters[i].order = i;
+    }
     for (uint32_t i = 1; i < cluster_count; i++) {
         uint32_t moved = clusters[i].order, place = i;
         while (place > 0 && precedes(clusters, moved, clusters[place - 1].order)) {

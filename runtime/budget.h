@@ -38,8 +38,14 @@ bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 /* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */
 void t3r_blur_texture(const t3r_view *views, uint32_t count);
 
-/* Mean texture of every cluster (eq. 2) and its rank, from the texture planes before they are blurred. */
+/* Mean texture of every cluster (eq. 2), from the texture planes before they are blurred. */
 void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);
+
+/* Hands the textures of the clusters that have points round among them, every permutation alike likely. */
+void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t seed);
+
+/* Their order from the lowest texture up. */
+void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
 
 /* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. */
 void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters);

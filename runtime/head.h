@@ -3,6 +3,7 @@
 #ifndef T3R_HEAD_H
 #define T3R_HEAD_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "budget.h"
@@ -19,6 +20,7 @@ typedef struct t3r_head_input {
     const t3r_cluster *clusters;
     const void *weights; /* of `learned`, checked; NULL for the others */
     void *work;          /* two bytes a pixel; `learned`: t3r_head_learned_work_bytes() */
+    bool unadapted;      /* the head is told that nothing was pruned: every point retained, spacing 1 */
 } t3r_head_input;
 
 /* A total footprint in the image plane: mean and covariance in pixels, as the source view shall show it. */
@@ -38,7 +40,7 @@ void t3r_lift(const t3r_pointmap *map, uint32_t view_index, uint32_t u, uint32_t
  * gets 14 bits. */
 void t3r_pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gaussian);
 
-/* Kept neighbours are this far apart about a retained pixel: pixels, Q12, at least 1. */
+/* Kept neighbours are this far apart about a retained pixel: pixels, Q12, at least 1; 1 when unadapted. */
 uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
 
 /* Each writes the view's retained points in raster order to `out` and returns their number. */

@@ -32,16 +32,18 @@ void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, i
     for (int c = 0; c < 3; c++) {
         features[c] = (int8_t)(view->colour[c][i] - 128);
     }
-    features[3] = t3r_retained(view, i) ? 127 : 0;
+    bool retained = input->unadapted ? view->label[i] != T3R_NO_LABEL : t3r_retained(view, i);
+    features[3] = retained ? 127 : 0;
     features[4] = 0;
     features[5] = LOG_DENSITY_NONE;
     features[6] = features[7] = features[8] = 0;
-    if (view->label[i] == T3R_NO_LABEL || (!t3r_retained(view, i) && t3r_set_aside(view, i, input->settings))) {
+    if (view->label[i] == T3R_NO_LABEL || (!retained && t3r_set_aside(view, i, input->settings))) {
         return; /* what is set aside is not to be covered */
     }
     features[4] = t3r_is_measured(view->confidence[i]) ? MEASURED : FILLED;
     const uint16_t *depth = view->depth + i;
-    features[5] = held(t3r_round_shift32(t3r_log_density_q10(view, i, input->settings, input->clusters), 6) + 64);
+    int32_t density_q10 = input->unadapted ? 0 : t3r_log_density_q10(view, i, input->settings, input->clusters);
+    features[5] = held(t3r_round_shift32(density_q10, 6) + 64);
     features[6] =
         held(t3r_round_shift32(t3r_log2_q16((uint32_t)view->texture[i] + TEXTURE_FLOOR_Q4) - TEXTURE_MIDDLE_Q16, 12));
     features[7] = slope(depth[x > 0 ? -1 : 0], *depth, depth[x + 1 < w ? 1 : 0]);

@@ -9,6 +9,7 @@
  *         at 45 degrees seen with f = 256 px; 0 where a neighbour has no depth
  *
  * Channels 4..8 are 0, -70, 0, 0, 0 where a pixel has no depth, and where it was set aside (budget.h) and not retained.
+ * Unadapted (head.h), every pixel with a depth counts as retained at density 1, and none as set aside.
  * Channels lie together: row[x][channel]. */
 #ifndef T3R_HEAD_FEATURES_H
 #define T3R_HEAD_FEATURES_H

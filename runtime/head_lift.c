@@ -9,6 +9,9 @@
 
 uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel)
 {
+    if (input->unadapted) {
+        return 1 << 12;
+    }
     int32_t density_q10 = t3r_log_density_q10(input->map.view, pixel, input->settings, input->clusters);
     return t3r_exp2_q16(-density_q10 * 32) >> 4; /* 2^(-density / 2), Q12 */
 }

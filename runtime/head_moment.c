@@ -115,6 +115,12 @@ static moments gather(const t3r_head_input *input, uint32_t u, uint32_t v, int32
     return m;
 }
 
+/* What a pixel gathers that only it itself joined. */
+static moments alone(const t3r_view *view, size_t pixel)
+{
+    return (moments){.count = 1, .colour = {view->colour[0][pixel], view->colour[1][pixel], view->colour[2][pixel]}};
+}
+
 static t3r_footprint footprint_of(const moments *m)
 {
     t3r_footprint f = {.opacity_q15 = T3R_HEAD_OPACITY_Q15};
@@ -137,7 +143,9 @@ static t3r_footprint footprint_of(const moments *m)
 uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
-    assign_pixels(input);
+    if (!input->unadapted) {
+        assign_pixels(input);
+    }
     uint32_t count = 0;
     for (uint32_t v = 0; v < view->height; v++) {
         for (uint32_t u = 0; u < view->width; u++) {
@@ -146,7 +154,7 @@ uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out)
                 continue;
             }
             uint32_t reach = T3R_MIN((t3r_spacing_q12(input, pixel) * 2 >> 12) + 2, (uint32_t)REACH);
-            moments m = gather(input, u, v, (int32_t)reach);
+            moments m = input->unadapted ? alone(view, pixel) : gather(input, u, v, (int32_t)reach);
             t3r_footprint footprint = footprint_of(&m); /* the pixel joined itself: count >= 1 */
             t3r_lift(&input->map, input->view_index, u, v, &footprint, &out[count++]);
         }

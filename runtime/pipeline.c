@@ -127,7 +127,12 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
         return status;
     }
     t3r_hash_superclusters(rt, views);
-    t3r_cluster_texture(views, rt->views, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS), rt->config.clusters);
+    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    t3r_cluster_texture(views, rt->views, clusters, rt->config.clusters);
+    if (rt->config.shuffle) {
+        t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
+    }
+    t3r_rank_clusters(clusters, rt->config.clusters);
     t3r_blur_texture(views, rt->views); /* means are of the texture as it is, densities of it blurred */
     return T3R_OK;
 }
@@ -204,6 +209,7 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
             .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
             .weights = rt->weights,
             .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
+            .unadapted = !rt->config.adapt,
         };
         uint32_t added = heads[rt->config.head](&input, scene + rt->gaussians);
         level(scene + rt->gaussians, added, rt->gain_q14[v]);

@@ -7,6 +7,7 @@
 
 #include "cli.h"
 #include "file_bytes.h"
+#include "hidden_mask.h"
 #include "trim3r_heads.h"
 #include "weight_file.h"
 #include "weights.h"
@@ -52,24 +53,28 @@ bool chosen_head_is_one(const char *text)
            (length > end && strcmp(text + length - end, FILE_END) == 0);
 }
 
+/* The bytes, aligned, for the weights held so far; frees them. */
+static int own(chosen_head *chosen, uint8_t *bytes, size_t count)
+{
+    void *aligned;
+    if (posix_memalign(&aligned, T3R_WEIGHTS_ALIGN, count + 1) != 0) {
+        free(bytes);
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    memcpy(aligned, bytes, count);
+    free(bytes);
+    free(chosen->owned);
+    chosen->weights = chosen->owned = aligned;
+    chosen->bytes = count;
+    return CLI_OK;
+}
+
 static int read_file(chosen_head *chosen, const char *path)
 {
     char error[512] = "";
     size_t count;
     uint8_t *bytes = t3r_file_bytes(path, T3R_MAX_WEIGHTS_BYTES, &count, error, sizeof error);
-    if (bytes == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
-    }
-    if (posix_memalign(&chosen->owned, T3R_WEIGHTS_ALIGN, count + 1) != 0) {
-        chosen->owned = NULL;
-        free(bytes);
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    memcpy(chosen->owned, bytes, count);
-    free(bytes);
-    chosen->weights = chosen->owned;
-    chosen->bytes = count;
-    return CLI_OK;
+    return bytes == NULL ? cli_error(CLI_BAD_INPUT, "%s", error) : own(chosen, bytes, count);
 }
 
 static int describe(chosen_head *chosen, const char *text)
@@ -111,6 +116,17 @@ int chosen_head_open(chosen_head *chosen, const char *text)
         chosen_head_close(chosen);
     }
     return code;
+}
+
+int chosen_head_hide_mask(chosen_head *chosen)
+{
+    if (chosen->weights == NULL) {
+        return CLI_OK;
+    }
+    size_t count;
+    uint8_t *bytes = hidden_mask_make(chosen->weights, &count);
+    int code = bytes == NULL ? cli_error(CLI_BAD_INPUT, "out of memory") : own(chosen, bytes, count);
+    return code == CLI_OK ? describe(chosen, chosen->name) : code;
 }
 
 void chosen_head_close(chosen_head *chosen)

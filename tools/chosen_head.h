@@ -30,6 +30,10 @@ bool chosen_head_is_one(const char *text);
 int chosen_head_open(chosen_head *chosen, const char *text);
 void chosen_head_close(chosen_head *chosen);
 
+/* Has a network be told that every pixel was retained (hidden_mask.h); nothing of a closed form. CLI_OK, or a status
+ * after a message; chosen_head_close() is due still. */
+int chosen_head_hide_mask(chosen_head *chosen);
+
 /* Sets the configuration's head, and its head_column_bytes where the head needs more than there are. */
 void chosen_head_configure(const chosen_head *chosen, t3r_config *config);
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ablation.h"
 #include "cli.h"
 #include "evaluation.h"
 #include "evaluation_report.h"
@@ -14,14 +15,17 @@
 
 #define MOST_KEEPS 64u
 #define MOST_HEADS 32u
+#define MOST_CONTESTANTS (MOST_HEADS + ABLATIONS_MOST)
 #define LABEL_BYTES 40
 #define SCENE_NAME_BYTES 256
+#define ABLATE_KEEPS "60,40,20,10,5"
 #define NAME_PARTS_MOST 8u /* parts of a path that a scene's name takes at most */
 
-/* What has rows of its own: a method, trim3r once a head. */
+/* What has rows of its own: a method, trim3r once a head or once an ablation. */
 typedef struct contestant {
     evaluation_method method;
     const char *head;        /* NULL: the settings' own */
+    uint32_t ablation;       /* with --ablate */
     char label[LABEL_BYTES]; /* over its pictures and in their names */
 } contestant;
 
@@ -38,7 +42,10 @@ typedef struct options {
     uint32_t method_count;
     char *heads[MOST_HEADS]; /* --heads; parts of one heap string */
     uint32_t head_count;
-    contestant contestants[MOST_HEADS + 1];
+    bool ablate;
+    uint32_t ablations[ABLATIONS_MOST]; /* those named; none = all that apply */
+    uint32_t ablation_count;
+    contestant contestants[MOST_CONTESTANTS];
     uint32_t contestant_count;
     uint32_t name_parts;
     evaluation_outputs to;
@@ -50,6 +57,7 @@ enum {
     KEY_KEEP,
     KEY_METHODS,
     KEY_HEADS,
+    KEY_ABLATE,
     KEY_PLANAR,
     KEY_SIZE,
     KEY_CSV,
@@ -131,6 +139,36 @@ static void parse_heads(struct argp_state *state, options *o, const char *text)
     }
 }
 
+static void add_ablation(struct argp_state *state, options *o, const char *name, size_t length)
+{
+    uint32_t found = 0;
+    for (const char *known; (known = ablation_name(found)) != NULL; found++) {
+        if (strlen(known) == length && strncmp(name, known, length) == 0) {
+            break;
+        }
+    }
+    if (ablation_name(found) == NULL) {
+        argp_error(state, "--ablate does not know '%.*s'; --help lists what can be ablated", (int)length, name);
+    }
+    for (uint32_t i = 0; i < o->ablation_count; i++) {
+        if (o->ablations[i] == found) {
+            argp_error(state, "--ablate names %s twice", ablation_name(found));
+        }
+    }
+    o->ablations[o->ablation_count++] = found;
+}
+
+static void parse_ablations(struct argp_state *state, options *o, const char *text)
+{
+    o->ablate = true;
+    o->ablation_count = 0;
+    while (text != NULL) {
+        size_t length = strcspn(text, ",");
+        add_ablation(state, o, text, length);
+        text = text[length] == '\0' ? NULL : text + length + 1;
+    }
+}
+
 /* "room" of "recordings/room.mcap", or "recordings-room" with two parts of the path; at most `bytes` - 1 characters. */
 static void scene_name(const char *path, uint32_t parts, char *name, size_t bytes)
 {
@@ -202,6 +240,12 @@ static void check_options(struct argp_state *state, options *o)
         argp_error(state,
                    "--context and --target belong together; without both, all triplets of the recording are taken");
     }
+    if (o->ablate && (o->method_count > 0 || o->head_count > 0)) {
+        argp_error(state, "--ablate is of the method trim3r with one --head: it excludes --methods and --heads");
+    }
+    if (o->ablate && o->keep_count == 0) {
+        (void)cli_parse_list_percent(ABLATE_KEEPS, o->keep, MOST_KEEPS, &o->keep_count);
+    }
     if (o->keep_count == 0) {
         argp_error(state, "--keep is missing");
     }
@@ -244,6 +288,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case KEY_HEADS:
         parse_heads(state, o, arg);
         return 0;
+    case KEY_ABLATE:
+        parse_ablations(state, o, arg);
+        return 0;
     case KEY_PLANAR:
         o->planar = true;
         return 0;
@@ -285,6 +332,10 @@ static const struct argp_option argp_options[] = {
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
     {"methods", KEY_METHODS, "M,M,...", 0, "trim3r (default); random: random points, nothing adapted", 0},
     {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
+    {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
+     "what each part is worth: rows with one part taken away each (all), at 60, 40, 20, 10 and 5 % unless --keep says "
+     "otherwise, and one table at the end",
+     0},
     {"planar", KEY_PLANAR, NULL, 0,
      "the arguments are images: each is one view on a plane of constant depth, drawn again from the same camera", 0},
     {"size", KEY_SIZE, "WxH", 0, "to which --planar crops and averages images (256x256)", 0},
@@ -292,7 +343,9 @@ static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is written:", 2},
     {"csv", KEY_CSV, "FILE", 0, "the rows", 0},
     {"images", KEY_IMAGES, "DIR", 0,
-     "DIR/<target>/<method>_<keep>.png (with --heads <head>_<keep>.png), target.png, mask.png, context_a.png, ...", 0},
+     "DIR/<target>/<method>_<keep>.png (with --heads <head>, with --ablate <ablation>), target.png, mask.png, "
+     "context_a.png, ...",
+     0},
     {"html", KEY_HTML, "PAGE.html", 0, "one page with the pictures side by side; it needs no other file", 0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, and means over the cases", 0},
     {0},
@@ -315,11 +368,23 @@ static const struct argp parser = {
         "--planar, where ssim, sharp, holes and perceptual count all pixels too. Cells that do not apply are empty. "
         "Several cases end in lines of means (decibels are averaged as decibels), which the CSV leaves out; several "
         "recordings get a folder each in --images.\n\n"
+        "--ablate: each row changes one thing of the settings given, --refine among them, and names it in the column "
+        "ablation. full: nothing. no-adaptation: the head is told that nothing was pruned; its splats at 100 % are "
+        "pruned and, but for --refine, left as they are. no-mask: the network is told so, but its splats still grow "
+        "with the distance of kept neighbours. random, uniform, paper, pixel: --allocate. random-clusters: "
+        "SuperClusters exchange their textures at random; paper-random-clusters: so with --allocate paper. k-5, k-25,"
+        " k-50, k-100, k-200, k-300, k-400: --clusters. n-5, n-10, n-15, n-20: --allocate paper with that "
+        "--keep-percent. no-refinement: --refine 0. no-flying, no-redundancy, no-exposure: that switch off. Left out "
+        "are no-mask of heads without weights, no-adaptation of the head none, and the last three of --planar. The "
+        "table is Markdown, PSNR (dB) / SSIM, means over the cases of a recording; of several recordings the mean, "
+        "each counting once. It is long work: rows come to --csv as they are made.\n\n"
         "Examples:\n"
         "  trim3r eval room.mcap --keep 100,20,10\n"
         "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
         "  trim3r eval a.mcap b.mcap --keep 20,5 --methods trim3r,random --csv ab.csv\n"
         "  trim3r eval room.mcap --keep 10,5 --heads analytic,moment,small,my.t3w\n"
+        "  trim3r eval a.mcap b.mcap --ablate --csv ablations.csv\n"
+        "  trim3r eval room.mcap --ablate=full,no-mask,no-adaptation --keep 10,5 --refine 0\n"
         "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
     .children = children,
 };
@@ -353,9 +418,42 @@ static int add_head(options *o, const char *text, bool named)
     return CLI_OK;
 }
 
+/* All ablations that apply to the head, or those named, which must. */
+static int choose_ablations(options *o)
+{
+    chosen_head head;
+    int code = chosen_head_open(&head, o->settings.head);
+    if (code != CLI_OK) {
+        return code;
+    }
+    t3r_head kind = head.head;
+    chosen_head_close(&head);
+    for (uint32_t a = 0; o->ablation_count == 0 && ablation_name(a) != NULL; a++) {
+        if (ablation_applies(a, kind, o->planar)) {
+            o->contestants[o->contestant_count++] = (contestant){.ablation = a};
+        }
+    }
+    for (uint32_t i = 0; i < o->ablation_count; i++) {
+        if (!ablation_applies(o->ablations[i], kind, o->planar)) {
+            return cli_error(CLI_BAD_USAGE, "--ablate: %s does not apply to %s", ablation_name(o->ablations[i]),
+                             o->planar ? "a single image with this head" : "this head");
+        }
+        o->contestants[o->contestant_count++] = (contestant){.ablation = o->ablations[i]};
+    }
+    for (uint32_t c = 0; c < o->contestant_count; c++) {
+        contestant *it = &o->contestants[c];
+        it->method = EVALUATION_TRIM3R;
+        snprintf(it->label, LABEL_BYTES, "%s", ablation_name(it->ablation));
+    }
+    return CLI_OK;
+}
+
 static int choose_contestants(options *o)
 {
     int code = CLI_OK;
+    if (o->ablate) {
+        return choose_ablations(o);
+    }
     for (uint32_t m = 0; m < o->method_count && code == CLI_OK; m++) {
         if (o->methods[m] == EVALUATION_TRIM3R && o->head_count > 0) {
             for (uint32_t h = 0; h < o->head_count && code == CLI_OK; h++) {
@@ -382,10 +480,14 @@ static int measure_all(evaluation_report *report, const options *o, const evalua
         const contestant *it = &o->contestants[c];
         reconstruction_options settings = o->settings;
         settings.head = it->head != NULL ? it->head : settings.head;
+        if (o->ablate) {
+            ablation_apply(it->ablation, &settings);
+        }
         evaluation_report_strip(report, it->label);
         for (uint32_t k = 0; k < o->keep_count && code == CLI_OK; k++) {
             evaluation_row row;
             code = evaluation_measure(&row, render, views, what, it->method, o->keep[k], o->from_file, &settings);
+            row.ablation = o->ablate ? ablation_name(it->ablation) : "";
             if (code == CLI_OK) {
                 code = evaluation_report_row(report, views, what, it->label, &row, render);
             }
@@ -412,6 +514,7 @@ static int open_report(evaluation_report *report, const options *o, uint32_t cas
 {
     evaluation_outputs to = o->to;
     to.planar = o->planar;
+    to.ablate = o->ablate;
     to.folder_each = !o->planar && o->input_count > 1;
     return evaluation_report_open(report, &to, cases * o->contestant_count * o->keep_count);
 }

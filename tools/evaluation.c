@@ -244,6 +244,7 @@ static void name_row(evaluation_row *row, const evaluation_case *what, evaluatio
     snprintf(row->refine, sizeof row->refine, "%" PRIu32, options->refine);
     row->allocate = t3r_allocation_name(options->allocation);
     row->depth = what->planar ? "plane" : "sensor";
+    row->ablation = "";
 }
 
 static int score_all(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,

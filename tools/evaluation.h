@@ -71,6 +71,7 @@ typedef enum evaluation_value {
 typedef struct evaluation_row {
     char scene[256], context[192], target[16], head[16], bits[8], refine[16];
     const char *method, *allocate, *depth; /* "" = does not apply */
+    const char *ablation;                  /* ablation_name() of what was taken away; "" where nothing is told of it */
     double value[EVALUATION_VALUE_COUNT];
 } evaluation_row;
 

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "ablation.h"
 #include "cli.h"
 #include "evaluation_pictures.h"
 #include "evaluation_table.h"
@@ -44,7 +45,7 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
         }
         evaluation_csv_header(&report->csv);
     }
-    if (code == CLI_OK && !to->json) {
+    if (code == CLI_OK && !to->json && !to->ablate) {
         evaluation_print_header(stdout, to->planar);
     }
     return code;
@@ -86,7 +87,7 @@ int evaluation_report_row(evaluation_report *report, const evaluation_views *vie
                           const char *label, const evaluation_row *row, uint8_t *render)
 {
     report->rows[report->row_count++] = *row;
-    if (!report->to.json) {
+    if (!report->to.json && !report->to.ablate) {
         evaluation_print_row(stdout, row, report->to.planar);
         fflush(stdout);
     } else if (isatty(STDERR_FILENO)) {
@@ -172,10 +173,16 @@ static int finish(evaluation_report *report)
     if (report->to.json) {
         print_json(report, means, mean_count);
     }
-    for (uint32_t i = 0; several && !report->to.json && i < mean_count; i++) {
+    for (uint32_t i = 0; several && !report->to.json && !report->to.ablate && i < mean_count; i++) {
         evaluation_print_row(stdout, &means[i], report->to.planar);
     }
-    int code = report->page != NULL ? finish_page(report, means, mean_count, several) : CLI_OK;
+    int code = CLI_OK;
+    if (report->to.ablate && !report->to.json && !ablation_table(stdout, means, mean_count, report->to.planar)) {
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    if (code == CLI_OK && report->page != NULL) {
+        code = finish_page(report, means, mean_count, several);
+    }
     free(means);
     return code;
 }

@@ -10,6 +10,7 @@
 typedef struct evaluation_outputs {
     const char *csv, *images, *page; /* paths; NULL = none */
     bool json, planar;
+    bool ablate;      /* one table at the end in the place of rows as they arrive */
     bool folder_each; /* a folder within `images` for each scene */
 } evaluation_outputs;
 

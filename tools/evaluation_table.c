@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR } shown;
+typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */
 
 typedef struct column {
     const char *name;
@@ -23,6 +23,7 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"refine", -1, 0, 0, NEVER},
     {"allocate", -1, 0, 9, ALWAYS},
     {"depth", -1, 0, 0, NEVER},
+    {"ablation", -1, 0, 22, TOLD},
     {"keep", EVALUATION_KEEP, -1, 5, ALWAYS},
     {"gaussians", EVALUATION_GAUSSIANS, 0, 10, ALWAYS},
     {"psnr", EVALUATION_PSNR, 4, 7, RECORDING},
@@ -46,7 +47,7 @@ const char *evaluation_column_name(uint32_t index)
 static const char *text_of(const evaluation_row *row, uint32_t index)
 {
     const char *const texts[] = {row->scene, row->context, row->target,   row->method, row->head,
-                                 row->bits,  row->refine,  row->allocate, row->depth};
+                                 row->bits,  row->refine,  row->allocate, row->depth,  row->ablation};
     return texts[index];
 }
 
@@ -104,7 +105,7 @@ static bool belong_together(const evaluation_row *a, const evaluation_row *b, bo
     return (!by_scene || strcmp(a->scene, b->scene) == 0) && strcmp(a->method, b->method) == 0 &&
            strcmp(a->head, b->head) == 0 && strcmp(a->bits, b->bits) == 0 && strcmp(a->refine, b->refine) == 0 &&
            strcmp(a->allocate, b->allocate) == 0 && strcmp(a->depth, b->depth) == 0 &&
-           a->value[EVALUATION_KEEP] == b->value[EVALUATION_KEEP];
+           strcmp(a->ablation, b->ablation) == 0 && a->value[EVALUATION_KEEP] == b->value[EVALUATION_KEEP];
 }
 
 static evaluation_row mean_of(const evaluation_row *first, const evaluation_row *rows, uint32_t count, bool by_scene)
@@ -146,9 +147,9 @@ uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, bool by_sc
     return found;
 }
 
-static bool at_a_glance(const column *c, bool planar)
+static bool at_a_glance(const column *c, bool planar, bool told)
 {
-    return c->shown == ALWAYS || c->shown == (planar ? PLANAR : RECORDING);
+    return c->shown == ALWAYS || c->shown == (planar ? PLANAR : RECORDING) || (c->shown == TOLD && told);
 }
 
 bool evaluation_glance(const evaluation_row *row, uint32_t index, bool planar, char *text, size_t bytes)
@@ -158,7 +159,7 @@ bool evaluation_glance(const evaluation_row *row, uint32_t index, bool planar, c
     if (c->value >= 0 && c->decimals > 2 && !isnan(row->value[c->value])) {
         snprintf(text, bytes, "%.*f", c->decimals - 2, row->value[c->value]);
     }
-    return at_a_glance(c, planar);
+    return at_a_glance(c, planar, text[0] != '\0');
 }
 
 /* Texts to the left, numbers to the right. */
@@ -170,7 +171,7 @@ static void print_cell(FILE *out, const column *c, const char *text)
 void evaluation_print_header(FILE *out, bool planar)
 {
     for (uint32_t i = 0; i < EVALUATION_COLUMNS; i++) {
-        if (at_a_glance(&columns[i], planar)) {
+        if (at_a_glance(&columns[i], planar, false)) {
             print_cell(out, &columns[i], columns[i].name);
         }
     }

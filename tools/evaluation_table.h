@@ -11,7 +11,7 @@
 #include "csv.h"
 #include "evaluation.h"
 
-#define EVALUATION_COLUMNS 22u
+#define EVALUATION_COLUMNS 23u
 
 /* Stable order; NULL past the last. */
 const char *evaluation_column_name(uint32_t column);

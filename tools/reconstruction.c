@@ -22,6 +22,8 @@ void reconstruction_defaults(reconstruction_options *options)
         .clusters = c.clusters,
         .gamma_q8 = c.gamma_q8,
         .paper_keep_percent = c.keep_percent,
+        .shuffle = c.shuffle,
+        .adapt = c.adapt,
         .refine = c.refinements,
         .fill_radius = c.fill_radius,
         .flying = c.flying,
@@ -252,6 +254,9 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
 {
     t3r_capture_frame frames[T3R_MAX_VIEWS];
     int code = chosen_head_open(&r->head, options->head);
+    if (code == CLI_OK && options->hide_mask) {
+        code = chosen_head_hide_mask(&r->head);
+    }
     if (code == CLI_OK) {
         code = choose_context(r, recording, path, options, frames);
     }
@@ -268,6 +273,8 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
     r->config.clusters = options->clusters;
     r->config.gamma_q8 = options->gamma_q8;
     r->config.keep_percent = options->paper_keep_percent;
+    r->config.shuffle = options->shuffle;
+    r->config.adapt = options->adapt;
     r->config.refinements = options->refine;
     r->config.fill_radius = options->fill_radius;
     r->config.flying = options->flying;

@@ -118,7 +118,7 @@ typedef enum t3r_allocation {
 typedef enum t3r_head {
     T3R_HEAD_ANALYTIC, /* a disc on the surface, as wide as its kept neighbours are apart */
     T3R_HEAD_MOMENT,   /* moments of the pruned pixels that lie nearest in position and colour */
-    T3R_HEAD_NONE,     /* the unpruned pixel's own splat, nothing adapted (the baseline `random`) */
+    T3R_HEAD_NONE,     /* the unpruned pixel's own splat: `analytic` with adapt 0 (the baseline `random`) */
     T3R_HEAD_LEARNED,  /* a network sees image, mask and density: t3r_bind_head() */
     T3R_HEAD_COUNT
 } t3r_head;
@@ -139,7 +139,9 @@ typedef struct t3r_config {
     t3r_allocation allocation;
     uint32_t keep_percent; /* N of the allocation `paper`, 0..100 */
     uint32_t gamma_q8;     /* exponent of texture, 0..512; 256 = 1 */
+    uint32_t shuffle;      /* 1 = SuperClusters exchange their textures at random: how much the ranking is worth */
     t3r_head head;
+    uint32_t adapt;             /* 0 = the head is told that nothing was pruned: how much adapting is worth */
     uint32_t head_column_bytes; /* work of a learned head, 0..65,536 a column: t3r_head_column_bytes() */
     uint32_t refinements;       /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
     uint32_t fill_radius;       /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */

@@ -55,6 +55,12 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(USAGE, "--heads", [*one, "--keep", "10", "--heads", "small,"])
     refuse(USAGE, "exclude", [*one, "--keep", "10", "--heads", "small", "--head", "base"])
     refuse(USAGE, "same name and bits", [*one, "--keep", "10", "--heads", "small,nano,small"])
+    refuse(USAGE, "--ablate does not know 'texture'", [*one, "--ablate=full,texture"])
+    refuse(USAGE, "--ablate does not know ''", [*one, "--ablate="])
+    refuse(USAGE, "--ablate does not know ''", [*one, "--ablate=full,"])
+    refuse(USAGE, "--ablate names k-5 twice", [*one, "--ablate=k-5,full,k-5"])
+    refuse(USAGE, "excludes --methods and --heads", [*one, "--ablate", "--methods", "trim3r"])
+    refuse(USAGE, "excludes --methods and --heads", [*one, "--ablate", "--heads", "small,base"])
     with open(f"{folder}/bad.t3w", "wb") as file:
         file.write(b"T3RW" + bytes(100))
     result = run(trim3r, "eval", *one, "--keep", "10", "--heads", f"analytic,{folder}/bad.t3w", expect=INPUT)

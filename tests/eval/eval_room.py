@@ -14,7 +14,7 @@ from common import check, done, load_scorer, near, need_numpy, run
 numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]
 scorer = load_scorer(sys.argv[2])
-COLUMNS = ("scene context target method head bits refine allocate depth keep gaussians psnr ssim sharp holes psnr_all "
+COLUMNS = ("scene context target method head bits refine allocate depth ablation keep gaussians psnr ssim sharp holes psnr_all "
            "context_psnr perceptual build_ms render_ms arena_bytes planar_psnr").split()
 
 

@@ -17,8 +17,13 @@
 
 static evaluation_row make_row(const char *scene, const char *method, double keep, double psnr, double holes)
 {
-    evaluation_row row = {
-        .head = "analytic", .bits = "", .method = method, .refine = "0", .allocate = "density", .depth = "sensor"};
+    evaluation_row row = {.head = "analytic",
+                          .bits = "",
+                          .method = method,
+                          .refine = "0",
+                          .allocate = "density",
+                          .depth = "sensor",
+                          .ablation = ""};
     snprintf(row.scene, sizeof row.scene, "%s", scene);
     snprintf(row.context, sizeof row.context, "0,2");
     snprintf(row.target, sizeof row.target, "1");
@@ -77,9 +82,10 @@ static void test_columns_and_empty_cells(void **state)
     evaluation_row row = make_row("room", "trim3r", 2.5, 21.25, 0);
     char *text = csv_text(write_table, &row);
     assert_string_equal(
-        text, "scene,context,target,method,head,bits,refine,allocate,depth,keep,gaussians,psnr,ssim,sharp,holes,"
-              "psnr_all,context_psnr,perceptual,build_ms,render_ms,arena_bytes,planar_psnr\n"
-              "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,2.5,13107,21.2500,,,0.00000,,,,,,,\n");
+        text,
+        "scene,context,target,method,head,bits,refine,allocate,depth,ablation,keep,gaussians,psnr,ssim,sharp,holes,"
+        "psnr_all,context_psnr,perceptual,build_ms,render_ms,arena_bytes,planar_psnr\n"
+        "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,,2.5,13107,21.2500,,,0.00000,,,,,,,\n");
     free(text);
     assert_null(evaluation_column_name(EVALUATION_COLUMNS));
 }
@@ -127,6 +133,10 @@ static void test_means_group_by_settings(void **state)
     assert_string_equal(means[2].scene, "b");
     assert_string_equal(means[2].context, "mean");
     assert_true(means[2].value[EVALUATION_PSNR] == 30);
+    rows[2].ablation = "k-5"; /* beside "a", nothing ablated */
+    assert_int_equal(evaluation_means(rows, 5, false, means), 4);
+    assert_true(means[0].value[EVALUATION_PSNR] == 20);
+    assert_string_equal(means[2].ablation, "k-5");
 }
 
 static void test_page_escapes_and_embeds(void **state)

@@ -99,6 +99,8 @@ static t3r_config take_config(input *in)
     c.flying = flags >> 7;
     c.redundancy = c.seed & 1;
     c.exposure = c.seed >> 1 & 1;
+    c.adapt = c.seed >> 3 & 1;
+    c.shuffle = c.seed >> 4 & 1;
     c.head_column_bytes = c.seed & 4 ? below(in, 2048) : c.head_column_bytes;
     return c;
 }

@@ -147,6 +147,64 @@ static void room_for_the_head(void **state)
     free(weights);
 }
 
+/* Whether each Gaussian of `few` is one of `all`, in the same order. */
+static void is_part_of(const t3r_scene *few, const t3r_gaussian *all, uint32_t count)
+{
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < few->count; i++, at++) {
+        while (at < count && memcmp(&all[at], &few->gaussians[i], sizeof *all) != 0) {
+            at++;
+        }
+        assert_true(at < count);
+    }
+}
+
+/* adapt 0: what a head makes of all points, pruned and left as it is; with it on, another scene. */
+static void unadapted_is_pruned(void **state)
+{
+    (void)state;
+    static t3r_gaussian all[2 * POINTS], adapted[300];
+    size_t bytes;
+    uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 5, &bytes);
+    const t3r_head heads[] = {T3R_HEAD_ANALYTIC, T3R_HEAD_MOMENT, T3R_HEAD_LEARNED};
+    for (uint32_t h = 0; h < 3; h++) {
+        t3r_config config = learned_config(2 * POINTS);
+        config.head = heads[h];
+        config.allocation = T3R_ALLOCATE_UNIFORM; /* at 100 % the density is 1 everywhere */
+        config.fill_radius = 0;                   /* nor do filled points take measured ones' places */
+        arena memory = arena_of(&config, ARENA_AT_FULL);
+        uint32_t count = 0;
+        for (config.adapt = 1; config.adapt < 2; config.adapt--) {
+            t3r_runtime *rt = with_views(&memory, &config, 1);
+            t3r_scene scene;
+            assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+            assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+            if (config.adapt == 1) {
+                count = scene.count;
+                memcpy(all, scene.gaussians, count * sizeof *all);
+            } else {
+                assert_int_equal(scene.count, count);
+                assert_memory_equal(all, scene.gaussians, count * sizeof *all);
+            }
+            assert_int_equal(t3r_reallocate(rt, 300, T3R_ALLOCATE_DENSITY, config.head, &scene), T3R_OK);
+            assert_int_equal(scene.count, 300);
+            if (config.adapt == 1) {
+                memcpy(adapted, scene.gaussians, sizeof adapted);
+            } else {
+                is_part_of(&scene, all, count);
+                assert_memory_not_equal(adapted, scene.gaussians, sizeof adapted);
+            }
+            if (config.adapt == 0 && config.head == T3R_HEAD_ANALYTIC) {
+                memcpy(adapted, scene.gaussians, sizeof adapted);
+                assert_int_equal(t3r_reallocate(rt, 300, T3R_ALLOCATE_DENSITY, T3R_HEAD_NONE, &scene), T3R_OK);
+                assert_memory_equal(adapted, scene.gaussians, sizeof adapted);
+            }
+        }
+        arena_free(&memory);
+    }
+    free(weights);
+}
+
 static uint64_t told_hash;
 
 static void note_head_hash(void *user, t3r_stage stage, uint64_t hash)
@@ -430,7 +488,7 @@ int main(void)
         cmocka_unit_test(same_bits_everywhere),  cmocka_unit_test(binding),
         cmocka_unit_test(colour_and_opacity),    cmocka_unit_test(footprints),
         cmocka_unit_test(scaled_by_the_spacing), cmocka_unit_test(room_for_the_head),
-        cmocka_unit_test(hash_names_the_weights),
+        cmocka_unit_test(unadapted_is_pruned),   cmocka_unit_test(hash_names_the_weights),
     };
     return cmocka_run_group_tests_name("learned", tests, NULL, NULL);
 }

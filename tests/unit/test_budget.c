@@ -65,6 +65,7 @@ static void every_mode_meets_every_budget(void **state)
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
+    t3r_rank_clusters(clusters, CLUSTERS);
     uint32_t valid = 0;
     for (uint32_t k = 0; k < CLUSTERS; k++) {
         valid += clusters[k].points;
@@ -105,6 +106,7 @@ static void paper_takes_the_lowest_textures_first(void **state)
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
+    t3r_rank_clusters(clusters, CLUSTERS);
     uint32_t valid = 0;
     for (uint32_t k = 0; k < CLUSTERS; k++) {
         valid += clusters[k].points;
@@ -158,6 +160,7 @@ static void set_aside_comes_last(void **state)
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
+    t3r_rank_clusters(clusters, CLUSTERS);
     uint32_t plain = 0, covered = 0, doubtful = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
         if (label[i] != T3R_NO_LABEL) {
@@ -208,6 +211,55 @@ static void set_aside_comes_last(void **state)
     assert_false(t3r_is_sparse(&view, 1, plain / 4 + 1));
 }
 
+static int by_texture(const void *a, const void *b)
+{
+    uint32_t x = ((const t3r_cluster *)a)->texture_q4, y = ((const t3r_cluster *)b)->texture_q4;
+    return (x > y) - (x < y);
+}
+
+/* The same textures in other places, by the seed; empty clusters stay out of it, ranks and quotas follow. */
+static void textures_are_shuffled(void **state)
+{
+    (void)state;
+    t3r_cluster before[CLUSTERS + 1], clusters[CLUSTERS + 1];
+    t3r_view view = made_up_view(before);
+    t3r_cluster_texture(&view, 1, before, CLUSTERS);
+    uint32_t last[CLUSTERS] = {0}, first_came_to = 0;
+    for (uint32_t seed = 0; seed < 200; seed++) {
+        uint32_t moved = 0, other = 0;
+        memcpy(clusters, before, sizeof clusters);
+        t3r_shuffle_texture(clusters, CLUSTERS, seed);
+        for (uint32_t k = 0; k < CLUSTERS; k++) {
+            assert_int_equal(clusters[k].points, before[k].points);
+            assert_true(clusters[k].points > 0 || clusters[k].texture_q4 == 0);
+            moved += clusters[k].texture_q4 != before[k].texture_q4;
+            other += clusters[k].texture_q4 != last[k];
+            last[k] = clusters[k].texture_q4;
+        }
+        assert_true(moved > CLUSTERS / 2 && other > CLUSTERS / 2);
+        first_came_to += clusters[0].texture_q4 == before[1].texture_q4;
+        t3r_rank_clusters(clusters, CLUSTERS);
+        for (uint32_t k = 1; k < CLUSTERS; k++) {
+            assert_true(clusters[clusters[k - 1].order].texture_q4 <= clusters[clusters[k].order].texture_q4);
+        }
+        t3r_budget_settings settings = settings_of(seed % 2 ? T3R_ALLOCATE_DENSITY : T3R_ALLOCATE_PAPER, 1000);
+        t3r_allocate(&view, 1, &settings, clusters);
+        assert_int_equal(retained_of(&view), 1000);
+        t3r_cluster sorted[CLUSTERS], expected[CLUSTERS];
+        memcpy(sorted, clusters, sizeof sorted);
+        memcpy(expected, before, sizeof expected);
+        qsort(sorted, CLUSTERS, sizeof *sorted, by_texture);
+        qsort(expected, CLUSTERS, sizeof *expected, by_texture);
+        for (uint32_t k = 0; k < CLUSTERS; k++) {
+            assert_int_equal(sorted[k].texture_q4, expected[k].texture_q4);
+        }
+    }
+    assert_in_range(first_came_to, 1, 20); /* 200 / 37 expected */
+    t3r_cluster one = {.points = 3, .texture_q4 = 5};
+    t3r_shuffle_texture(&one, 1, 1);
+    assert_int_equal(one.texture_q4, 5);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -216,6 +268,7 @@ int main(void)
         cmocka_unit_test(paper_takes_the_lowest_textures_first),
         cmocka_unit_test(largest_counts_do_not_overflow),
         cmocka_unit_test(set_aside_comes_last),
+        cmocka_unit_test(textures_are_shuffled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
