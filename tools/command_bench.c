@@ -11,6 +11,7 @@
 
 #include "bench_head.h"
 #include "bench_points.h"
+#include "bench_refine.h"
 #include "chosen_head.h"
 #include "cli.h"
 #include "json_output.h"
@@ -23,6 +24,7 @@
 #define VIEWS 2u
 #define POINTS (SIDE * SIDE * VIEWS)
 #define TRIMMED 13107u /* 10 % of them */
+#define REFINEMENTS 2u
 #define SEED 1u
 #define WAVELET_WIDTH 1280u
 #define WAVELET_HEIGHT 720u
@@ -89,7 +91,9 @@ static const struct argp argp = {
         "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
         "255; "
         "a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
-        "multiply-accumulates of a head's layers a second of the whole head stage, every point kept.",
+        "multiply-accumulates of a head's layers a second of the whole head stage, every point kept. refine_ms: one "
+        "refinement pass "
+        "over both views, 13,107 Gaussians.",
 };
 
 /* ---- the work ---------------------------------------------------------------------------------------------------- */
@@ -105,8 +109,10 @@ typedef struct workload {
     t3r_camera camera[VIEWS];
     t3r_camera viewpoint;
     scene_bench full, trimmed;
-    scene_bench learned; /* `trimmed` with the head small */
-    scene_bench headed;  /* `full` with the measured head, analysis kept */
+    scene_bench learned;     /* `trimmed` with the head small */
+    scene_bench refined;     /* `trimmed` with one pass of refinement, analysis kept */
+    t3r_gaussian *unrefined; /* what each pass begins with: `refined` as it was built */
+    scene_bench headed;      /* `full` with the measured head, analysis kept */
     chosen_head small, measured;
     t3r_threads *threads;
     uint8_t *view; /* where renders go */
@@ -140,12 +146,13 @@ static t3r_status build(workload *w, t3r_runtime *runtime)
     return status == T3R_OK ? t3r_reconstruct(runtime, &scene) : status;
 }
 
-/* head NULL: the closed form `analytic`; keep: to run the head alone again */
-static t3r_status open_scene(workload *w, scene_bench *s, uint32_t gaussians, const chosen_head *head, bool keep)
+/* head NULL: the closed form `analytic`; keep: to run a stage alone again */
+static t3r_status open_scene(workload *w, scene_bench *s, uint32_t gaussians, const chosen_head *head, bool keep,
+                             uint32_t refinements)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, gaussians);
     config.keep_analysis = keep;
-    config.refinements = keep ? 0 : config.refinements;
+    config.refinements = refinements;
     if (head != NULL) {
         chosen_head_configure(head, &config);
     }
@@ -181,6 +188,8 @@ static void close_workload(workload *w)
     free(w->full.arena);
     free(w->trimmed.arena);
     free(w->learned.arena);
+    free(w->refined.arena);
+    free(w->unrefined);
     free(w->headed.arena);
     chosen_head_close(&w->small);
     chosen_head_close(&w->measured);
@@ -227,14 +236,26 @@ static int open_heads(workload *w, const bench_options *o)
 
 static t3r_status open_scenes(workload *w)
 {
-    t3r_status status = open_scene(w, &w->full, POINTS, NULL, false);
+    t3r_status status = open_scene(w, &w->full, POINTS, NULL, false, REFINEMENTS);
     if (status == T3R_OK) {
-        status = open_scene(w, &w->trimmed, TRIMMED, NULL, false);
+        status = open_scene(w, &w->trimmed, TRIMMED, NULL, false, REFINEMENTS);
     }
     if (status == T3R_OK) {
-        status = open_scene(w, &w->learned, TRIMMED, &w->small, false);
+        status = open_scene(w, &w->learned, TRIMMED, &w->small, false, REFINEMENTS);
     }
-    return status == T3R_OK ? open_scene(w, &w->headed, POINTS, &w->measured, true) : status;
+    if (status == T3R_OK) {
+        status = open_scene(w, &w->refined, TRIMMED, NULL, true, 1);
+    }
+    if (status == T3R_OK) {
+        w->unrefined = malloc(TRIMMED * sizeof *w->unrefined);
+        status = w->unrefined != NULL ? T3R_OK : T3R_ERR_ARENA;
+    }
+    if (status == T3R_OK) {
+        t3r_scene scene;
+        status = t3r_get_scene(w->refined.runtime, &scene);
+        memcpy(w->unrefined, scene.gaussians, scene.count * sizeof *w->unrefined);
+    }
+    return status == T3R_OK ? open_scene(w, &w->headed, POINTS, &w->measured, true, 0) : status;
 }
 
 static int open_workload(workload *w, const bench_options *o)
@@ -298,6 +319,11 @@ static bool run_head(workload *w)
     return bench_head_run(w->headed.runtime);
 }
 
+static bool run_refine(workload *w)
+{
+    return bench_refine_run(w->refined.runtime, w->unrefined);
+}
+
 static bool run_kmeans(workload *w)
 {
     return bench_points_cluster(&w->points);
@@ -335,6 +361,7 @@ static const struct {
 } stages[] = {
     {"raster_131k_ms", run_raster_full, MILLISECONDS},
     {"raster_13k_ms", run_raster_trimmed, MILLISECONDS},
+    {"refine_ms", run_refine, MILLISECONDS},
     {"kmeans_ms", run_kmeans, MILLISECONDS},
     {"wavelet_ns_per_pixel", run_wavelet, NANOSECONDS_A_PIXEL},
     {"texture_ns_per_pixel", run_texture, NANOSECONDS_A_PIXEL},

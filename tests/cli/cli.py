@@ -417,7 +417,7 @@ def test_bench():
         found = expect_json("bench", "--runs", 1, "--points", write("cloud.f32", rows))
         distance[scale] = found["kmeans_msd"] / scale ** 2
     check(0 < distance[1.0] < 0.5 and max(distance.values()) <= 1.0001 * min(distance.values()), f"scales: {distance}")
-    for key in ("raster_131k_ms", "raster_13k_ms", "kmeans_ms", "wavelet_ns_per_pixel", "build_analytic_ms",
+    for key in ("raster_131k_ms", "raster_13k_ms", "refine_ms", "kmeans_ms", "wavelet_ns_per_pixel", "build_analytic_ms",
                 "build_small_ms", "head_gmac_per_s"):
         check(found[key] > 0 and found[key + "_min"] <= found[key] <= found[key + "_max"], f"bench lacks {key}")
     check("stereo_ms" in found and found["stereo_ms"] is None, "bench: stereo_ms is not null")
