@@ -336,7 +336,8 @@ static void paint(rig *s, int v, int disparity, const double gain[3])
         uint32_t noise = t3r_mix32((uint32_t)(i + PIXELS * v) ^ 0x5555u);
         for (int c = 0; c < 3; c++) {
             double level = 60 + t3r_mix32(place * 3 + (uint32_t)c) % 120;
-            s->colour[v][c][i] = (uint8_t)(noise % 5 == 0 ? (noise >> (8 * c)) & 255 : (uint32_t)lround(level * gain[c]));
+            s->colour[v][c][i] =
+                (uint8_t)(noise % 5 == 0 ? (noise >> (8 * c)) & 255 : (uint32_t)lround(level * gain[c]));
         }
     }
 }
