@@ -224,6 +224,7 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
     if (rt->config.refinements == 0) {
         return T3R_OK;
     }
+    rt->analysed &= rt->config.keep_analysis; /* else refinement works where labels and clusters are */
     t3r_status status = t3r_refine(rt, views);
     if (status == T3R_OK) {
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
