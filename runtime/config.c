@@ -23,7 +23,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .head = T3R_HEAD_ANALYTIC,
         .adapt = 1,
         .head_column_bytes = T3R_HEAD_COLUMN_BYTES,
-        .refinements = 2,
+        .refinements = 4,
         .fill_radius = 4,
         .flying = 1,
         .redundancy = 1,

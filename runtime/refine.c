@@ -11,7 +11,7 @@
  * rest, lists what is left. */
 typedef struct workshop {
     t3r_raster_room room;
-    t3r_correction *corrections; /* of all Gaussians */
+    t3r_correction *corrections; /* of all Gaussians: the pass before's, as far as this one's are not there yet */
     t3r_refine_sums *sums;
     uint32_t slice; /* Gaussians whose sums fit */
 } workshop;
@@ -96,6 +96,7 @@ t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
     uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice, done = 0;
     uint32_t total = rt->config.refinements * slices * rt->views;
+    memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);
     for (uint32_t pass = 0; pass < rt->config.refinements; pass++) {
         for (uint32_t first = 0; first < rt->gaussians; first += w.slice) {
             uint32_t count = T3R_MIN(w.slice, rt->gaussians - first);
@@ -113,7 +114,7 @@ t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
                 measure(rt, &w, views, v, &projection, first, count);
             }
             for (uint32_t i = 0; i < count; i++) {
-                w.corrections[first + i] = t3r_refine_solve(&w.sums[i], pass);
+                w.corrections[first + i] = t3r_refine_solve(&w.sums[i], pass, &w.corrections[first + i]);
             }
         }
         for (uint32_t i = 0; i < rt->gaussians; i++) {

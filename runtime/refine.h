@@ -35,8 +35,9 @@ typedef struct t3r_correction {
 /* Sums of so many pixels are kept shifted right by ceil(log2 area) - 6, at least 0: 64 pixels' worth at most. */
 uint32_t t3r_refine_shift(uint32_t area);
 
-/* The damped Gauss-Newton step of one Gaussian in pass 0, 1, ... */
-t3r_correction t3r_refine_solve(const t3r_refine_sums *sums, uint32_t pass);
+/* The damped Gauss-Newton step of one Gaussian in pass 0, 1, ... with momentum (Polyak, "Some methods of speeding up
+ * the convergence of iteration methods", 1964): a share of the correction `before`, which is 0 for pass 0. */
+t3r_correction t3r_refine_solve(const t3r_refine_sums *sums, uint32_t pass, const t3r_correction *before);
 
 /* Takes that step. */
 void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);

@@ -8,10 +8,13 @@
 #define STEP_Q4 4         /* 1/4 of the Gauss-Newton step, likewise */
 #define RELATIVE_DAMPING_Q4 3
 #define DAMPING 64         /* levels^2: below it a direction is noise */
+#define MOMENTUM_Q4 3      /* of the pass before, added */
 #define OPACITY_MOST 32767 /* largest step of log opacity, Q16: 1/2 */
 #define SHIFT_MOST 32767   /* of the position, in deviations: 1/2 */
 #define SHAPE_FIRST 6554   /* of log scale and shear: 0.1 in the first pass, 0.05 in those after it */
 #define SHAPE_LATER 3277
+#define COLOUR_MOST 32640 /* with what is carried on, likewise the next */
+#define STEP_MOST 32767
 #define OPACITY_LEAST_Q15 256
 #define OPACITY_MOST_Q15 32440 /* 0.99: what the rasterizer draws at most */
 #define SWEEPS 8
@@ -77,7 +80,13 @@ static void solve(const equations *e, uint32_t shift, int32_t x_q16[T3R_REFINE_P
     }
 }
 
-t3r_correction t3r_refine_solve(const t3r_refine_sums *s, uint32_t pass)
+/* This pass's own change, and the pass before goes on a little. Both are within 16 bits. */
+static int16_t carried_on(int64_t change, int32_t before, int32_t most)
+{
+    return (int16_t)t3r_clamp64(change + t3r_round_shift32(before * MOMENTUM_Q4, 4), -most, most);
+}
+
+t3r_correction t3r_refine_solve(const t3r_refine_sums *s, uint32_t pass, const t3r_correction *before)
 {
     t3r_correction c = {{0}, {0}, 0};
     if (s->weight <= 0) {
@@ -86,7 +95,7 @@ t3r_correction t3r_refine_solve(const t3r_refine_sums *s, uint32_t pass)
     for (int i = 0; i < 3; i++) {
         /* Q11 over Q15, to Q7 and times Q5 */
         int64_t change = t3r_round_div64((int64_t)s->colour[i] * (COLOUR_STEP_Q5 << 6), s->weight);
-        c.colour_q7[i] = (int16_t)t3r_clamp64(change, -32640, 32640);
+        c.colour_q7[i] = carried_on(change, before->colour_q7[i], COLOUR_MOST);
     }
     equations e = normal_equations(s);
     int32_t x[T3R_REFINE_PARAMETERS];
@@ -98,7 +107,7 @@ t3r_correction t3r_refine_solve(const t3r_refine_sums *s, uint32_t pass)
     const int32_t shape = pass == 0 ? SHAPE_FIRST : SHAPE_LATER;
     const int32_t most[T3R_REFINE_PARAMETERS] = {OPACITY_MOST, SHIFT_MOST, SHIFT_MOST, shape, shape, shape};
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
-        c.step_q16[i] = (int16_t)t3r_clamp32(x[i], -most[i], most[i]);
+        c.step_q16[i] = carried_on(t3r_clamp32(x[i], -most[i], most[i]), before->step_q16[i], STEP_MOST);
     }
     return c;
 }

@@ -24,7 +24,7 @@
 #define VIEWS 2u
 #define POINTS (SIDE * SIDE * VIEWS)
 #define TRIMMED 13107u /* 10 % of them */
-#define REFINEMENTS 2u
+#define REFINEMENTS 4u
 #define SEED 1u
 #define WAVELET_WIDTH 1280u
 #define WAVELET_HEIGHT 720u

@@ -40,7 +40,7 @@ static const struct argp_option options[] = {
     {"clusters", KEY_CLUSTERS, "K", 0, "SuperClusters, 1..512 (300)", 0},
     {"head", KEY_HEAD, "HEAD", 0, "nano, small, base, FILE.t3w, moment, none or analytic (default)", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
-    {"refine", KEY_REFINE, "N", 0, "refinement passes, 0..16 (2)", 0},
+    {"refine", KEY_REFINE, "N", 0, "refinement passes, 0..16 (4)", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
     {"svg", KEY_SVG, "FILE", 0, "the arena as a picture: stages across, bytes upwards", 0},
     {"markdown", KEY_MARKDOWN, NULL, 0, "the table in Markdown", 0},

@@ -70,7 +70,7 @@ static const struct argp_option settings[] = {
     {"seed", KEY_SEED, "N", 0, "of the K-means seeding and of --allocate random (1)", 0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0, "sensor", 0},
-    {"refine", KEY_REFINE, "N", 0, "refinement passes on the context views, 0..16 (2)", 0},
+    {"refine", KEY_REFINE, "N", 0, "refinement passes on the context views, 0..16 (4)", 0},
     {NULL, 0, NULL, 0, "What must not change a bit:", 30},
     {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
     {"threads", KEY_THREADS, "N", 0, "1..64 (1)", 0},

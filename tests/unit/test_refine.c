@@ -3,6 +3,7 @@
 #include "unit.h"
 
 #include "hash.h"
+#include "fixed.h"
 #include "refine.h"
 #include "room.h"
 #include "state.h"
@@ -120,7 +121,7 @@ static void gains_what_it_promises(void **state)
     static const struct {
         t3r_head head;
         double least[3]; /* dB gained by 1, 2 and 4 passes */
-    } promises[] = {{T3R_HEAD_ANALYTIC, {2.2, 3.3, 4.5}}, {T3R_HEAD_MOMENT, {2.7, 3.8, 5.2}}};
+    } promises[] = {{T3R_HEAD_ANALYTIC, {2.2, 3.3, 4.5}}, {T3R_HEAD_MOMENT, {2.7, 3.8, 5.5}}};
     for (size_t i = 0; i < 2; i++) {
         double plain = refined_psnr(promises[i].head, 0);
         for (uint32_t k = 0; k < 3; k++) {
@@ -148,6 +149,8 @@ static void black_stays_as_it_is(void **state)
     draw_room(state);
 }
 
+static const t3r_correction still;
+
 static void nothing_missing_changes_nothing(void **state)
 {
     (void)state;
@@ -158,7 +161,7 @@ static void nothing_missing_changes_nothing(void **state)
         for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
             sums.curvature[k] = (int32_t)unit_between(&seed, -INT32_MAX, INT32_MAX);
         }
-        t3r_correction correction = t3r_refine_solve(&sums, 0);
+        t3r_correction correction = t3r_refine_solve(&sums, 0, &still);
         t3r_gaussian before = {.position_q20 = {1, -2, 3 << 20},
                                .factor = {100, -7, 3, 9000, 32767, 0, -32768, 12, 1},
                                .factor_exponent = (int8_t)unit_between(&seed, -60, 15),
@@ -183,10 +186,16 @@ static void extremes_stay_in_range(void **state)
                                                    : (int32_t)unit_between(&seed, -1000, 1000);
         }
         memcpy(&sums, words, sizeof words);
-        t3r_correction c = t3r_refine_solve(&sums, 0);
-        assert_true(abs(c.step_q16[0]) <= 32767);
-        for (int k = 1; k < T3R_REFINE_PARAMETERS; k++) {
-            assert_true(abs(c.step_q16[k]) <= (k < 3 ? 32767 : 6554));
+        t3r_correction c = {.step_q16 = {0}};
+        for (uint32_t pass = 0; pass < 4; pass++) { /* momentum adds up */
+            c = t3r_refine_solve(&sums, pass, &c);
+            assert_true(abs(c.step_q16[0]) <= 32767);
+            for (int k = 1; k < T3R_REFINE_PARAMETERS; k++) {
+                assert_true(abs(c.step_q16[k]) <= (k < 3 ? 32767 : 6554 * 2));
+            }
+            for (int k = 0; k < 3; k++) {
+                assert_true(abs(c.colour_q7[k]) <= 32640);
+            }
         }
         t3r_gaussian g = {.factor_exponent = (int8_t)unit_between(&seed, -60, 15),
                           .opacity_q15 = (uint16_t)unit_between(&seed, 0, 32767)};
@@ -206,6 +215,27 @@ static void extremes_stay_in_range(void **state)
 }
 
 /* The scale of sums holds its bound for every area: at most 64 times what one pixel may add. */
+/* Where nothing is missing any more a share of the pass before goes on, and no more than that. */
+static void momentum_fades(void **state)
+{
+    (void)state;
+    t3r_refine_sums sums = {.weight = 1 << 15, .area = 1};
+    t3r_correction c = {.colour_q7 = {32640, -32640, 100}, .step_q16 = {32767, -32767, 1600, 160, -160, 3}};
+    for (int i = 0; i < 3; i++) {
+        t3r_correction before = c;
+        c = t3r_refine_solve(&sums, 1, &before);
+        for (int k = 0; k < 3; k++) {
+            assert_int_equal(c.colour_q7[k], t3r_round_shift32(before.colour_q7[k] * 3, 4));
+        }
+        for (int k = 0; k < T3R_REFINE_PARAMETERS; k++) {
+            assert_int_equal(c.step_q16[k], t3r_round_shift32(before.step_q16[k] * 3, 4));
+        }
+    }
+    sums.weight = 0; /* not seen: nothing moves */
+    c = t3r_refine_solve(&sums, 1, &c);
+    assert_memory_equal(&c, &still, sizeof c);
+}
+
 static void scale_follows_area(void **state)
 {
     (void)state;
@@ -265,6 +295,29 @@ static void cancelled_anywhere_it_can_be_done_again(void **state)
     }
 }
 
+/* An arena moves at any time: what refinement left of the analysis is not taken for one. */
+static void moves_after_it(void **state)
+{
+    (void)state;
+    for (int keep = 0; keep < 2; keep++) {
+        t3r_config config = settings(2);
+        config.keep_analysis = (uint32_t)keep;
+        t3r_runtime *rt = open_arena(&config, 0);
+        t3r_scene scene;
+        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        uint64_t hash = hash_of(&scene);
+        void *moved = NULL;
+        assert_int_equal(posix_memalign(&moved, T3R_ARENA_ALIGN, memory_bytes), 0);
+        memcpy(moved, memory, memory_bytes);
+        free(memory);
+        assert_int_equal(t3r_attach(&rt, moved, memory_bytes), T3R_OK);
+        assert_int_equal(t3r_get_scene(rt, &scene), T3R_OK);
+        assert_true(hash_of(&scene) == hash);
+        assert_int_equal(t3r_rebudget(rt, BUDGET, &scene), keep ? T3R_OK : T3R_ERR_STATE);
+        free(moved);
+    }
+}
+
 /* Another budget refines likewise: the same scene as built with it from the start. */
 static void rebudget_refines(void **state)
 {
@@ -293,9 +346,11 @@ int main(void)
         cmocka_unit_test(black_stays_as_it_is),
         cmocka_unit_test(nothing_missing_changes_nothing),
         cmocka_unit_test(extremes_stay_in_range),
+        cmocka_unit_test(momentum_fades),
         cmocka_unit_test(scale_follows_area),
         cmocka_unit_test(arena_and_order_do_not_show),
         cmocka_unit_test(cancelled_anywhere_it_can_be_done_again),
+        cmocka_unit_test(moves_after_it),
         cmocka_unit_test(rebudget_refines),
     };
     return cmocka_run_group_tests_name("refine", tests, draw_room, NULL);

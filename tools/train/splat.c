@@ -302,6 +302,7 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
 #define STEP 0.25f /* of the Gauss-Newton step */
 #define RELATIVE_DAMPING 0.1875f
 #define DAMPING (64.0f / 65025.0f)
+#define MOMENTUM 0.1875f /* of the pass before */
 #define OPACITY_STEP_MOST 0.5f
 #define SHIFT_MOST 0.5f
 #define SHAPE_MOST 0.1f /* in the first pass, half as much in those after it */
@@ -457,24 +458,36 @@ static float held(float x, float most)
     return x > most ? most : x < -most ? -most : x == x ? x : 0;
 }
 
-static void correct(const sums *z, int32_t pass, float *s)
+/* A pass's changes of one splat: of red, green, blue; of log opacity, place along its two axes, log scale and shear. */
+#define CHANGES (3 + UNKNOWNS)
+
+/* `change` comes with what the pass before changed, 0 in the first, and leaves with what this one does. */
+static void correct(const sums *z, int32_t pass, float *change, float *s)
 {
+    float before[CHANGES];
+    memcpy(before, change, sizeof before);
+    memset(change, 0, sizeof before);
     if (!(z->weight > 0)) {
         return;
     }
     float step[UNKNOWNS];
     solve(z, step);
+    step[0] -= (step[3] + step[5]) / 2;
+    float shape = pass == 0 ? SHAPE_MOST : SHAPE_MOST / 2;
+    const float most[UNKNOWNS] = {OPACITY_STEP_MOST, SHIFT_MOST, SHIFT_MOST, shape, shape, shape};
     for (int c = 0; c < 3; c++) {
-        s[6 + c] = fminf(fmaxf(s[6 + c] + COLOUR_STEP * z->colour[c] / z->weight, 0), 1);
+        change[c] = COLOUR_STEP * z->colour[c] / z->weight + MOMENTUM * before[c];
+        s[6 + c] = fminf(fmaxf(s[6 + c] + change[c], 0), 1);
     }
-    float opacity = held(STEP * (step[0] - (step[3] + step[5]) / 2), OPACITY_STEP_MOST);
-    float shift[2] = {held(STEP * step[1], SHIFT_MOST), held(STEP * step[2], SHIFT_MOST)};
-    float most = pass == 0 ? SHAPE_MOST : SHAPE_MOST / 2;
-    float a = held(STEP * step[3], most), b = held(STEP * step[4], most), c = held(STEP * step[5], most);
+    for (int k = 0; k < UNKNOWNS; k++) {
+        change[3 + k] = held(STEP * step[k], most[k]) + MOMENTUM * before[3 + k];
+    }
+    const float *shift = change + 4;
+    float a = change[6], b = change[7], c = change[8];
     axes l = axes_of(s);
     s[0] += l.l11 * shift[0];
     s[1] += l.l21 * shift[0] + l.l22 * shift[1];
-    s[5] = fminf(fmaxf(s[5] * expf(opacity), fminf(s[5], 1 / 128.0f)), ALPHA_MOST);
+    s[5] = fminf(fmaxf(s[5] * expf(change[3]), fminf(s[5], 1 / 128.0f)), ALPHA_MOST);
     /* L (I + step), squared and dilated again */
     float t00 = l.l11 * (1 + a), t01 = l.l11 * b;
     float t10 = l.l21 * (1 + a) + l.l22 * b, t11 = l.l21 * b + l.l22 * (1 + c);
@@ -486,9 +499,11 @@ static void correct(const sums *z, int32_t pass, float *s)
 }
 
 /* Pass `pass`, from 0, of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place
- * towards `wanted`; `counts`, [pictures][height][width], is 0 where a pixel has no say. */
+ * towards `wanted`; `counts`, [pictures][height][width], is 0 where a pixel has no say; `changes`, [splats][CHANGES],
+ * goes from pass to pass, 0 before the first. */
 int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t *start, float *splats,
-                 const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, int32_t pass)
+                 const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, float *changes,
+                 int32_t pass)
 {
     int good = 1;
     size_t pixels = (size_t)width * height;
@@ -518,7 +533,8 @@ int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t 
             gather_tile(&p, t, behind, residual, totals);
         }
         for (int32_t n = 0; n < count; n++) {
-            correct(&totals[n], pass, splats + (size_t)PARAMETERS * (start[b] + n));
+            size_t at = (size_t)(start[b] + n);
+            correct(&totals[n], pass, changes + CHANGES * at, splats + PARAMETERS * at);
         }
         free(totals);
         free(p.first);

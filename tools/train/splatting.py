@@ -5,6 +5,7 @@ import torch
 import native
 
 DILATION, VARIANCE_LEAST = 0.3, 0.02
+CHANGES = 9  # of a splat in a pass of refinement
 _library = None
 
 
@@ -50,11 +51,12 @@ def refine(splats, start, order, pictures, counts, passes):
     """Splats corrected towards `pictures` by `passes` of the runtime's refinement; no derivatives."""
     made, pictures = splats.detach().clone().contiguous(), pictures.contiguous()
     height, width = pictures.shape[2:]
+    changes = torch.zeros(len(made), CHANGES)
     for n in range(passes):
         drawn = draw(made, start, order, width, height)
         if not _native().splat_refine(
             len(start) - 1, width, height, start.ctypes.data, made.data_ptr(), order.ctypes.data,
-            drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data, n,
+            drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data, changes.data_ptr(), n,
         ):  # fmt: skip
             raise MemoryError("splatter: out of memory")
     return made

@@ -42,6 +42,7 @@ import splatting
 
 FLOOR = 1e-5  # of the MSE: 50 dB are enough
 REFINEMENTS = 2
+WARM_UP = 300  # steps until the highest learning rate
 COLUMNS = ("step", "seconds", "psnr_plain", "psnr_refined", "psnr_novel", "loss", "rate", "phase")
 SMOKE_STEPS, SMOKE_FACTOR = 200, 0.4  # the squared error must fall below this share of the untrained head's
 
@@ -64,7 +65,7 @@ def options_of(arguments):
     parser.add_argument(
         "--quantized", type=float, default=0.15, metavar="SHARE", help="of steps with rounding, at the end"
     )
-    parser.add_argument("--rate", type=float, default=3e-3, help="highest learning rate (0.003)")
+    parser.add_argument("--rate", type=float, default=2e-3, help="highest learning rate (0.002)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--processes", type=int, default=1, help="that share every step on this machine (1)")
     parser.add_argument("--threads", type=int, default=1, help="of each process")
@@ -162,7 +163,9 @@ def planar_loss(head, batch, rng, term, device):
     start, some = begins[: half + 1], slice(0, begins[half])
     first, pictures = splats[some], batch.pictures[:half]
     corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS)
-    refined = first + (corrected - first).detach()  # the corrections count as constants
+    # Corrections count as constants, and colours as the refinement's own: with momentum it overshoots an even error, and a
+    # head that is told of the overshoot alone would go the wrong way.
+    refined = torch.cat((first[:, :6] + (corrected - first)[:, :6].detach(), corrected[:, 6:].detach()), 1)
     loss, seen = 0, []
     for drawn, begin, places, wanted, weight, share in (
         (splats, begins, order, batch.pictures, batch.weight, 0.3),
@@ -277,7 +280,8 @@ class Run:
 
     def rate(self):
         done = self.step / self.options.steps
-        return self.options.rate * (min(1, (self.step + 1) / 100) * 0.5 * (1 + math.cos(math.pi * done)) + 0.003)
+        warm_up = min(WARM_UP, self.options.steps // 4)
+        return self.options.rate * (min(1, (self.step + 1) / warm_up) * 0.5 * (1 + math.cos(math.pi * done)) + 0.003)
 
     def one_step(self):
         o = self.options
