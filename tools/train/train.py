@@ -163,8 +163,8 @@ def planar_loss(head, batch, rng, term, device):
     start, some = begins[: half + 1], slice(0, begins[half])
     first, pictures = splats[some], batch.pictures[:half]
     corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS)
-    # Corrections count as constants, and colours as the refinement's own: with momentum it overshoots an even error, and a
-    # head that is told of the overshoot alone would go the wrong way.
+    # Corrections count as constants, colours as the refinement's own: its momentum overshoots an even error, so that a
+    # constant correction would tell the head the wrong sign.
     refined = torch.cat((first[:, :6] + (corrected - first)[:, :6].detach(), corrected[:, 6:].detach()), 1)
     loss, seen = 0, []
     for drawn, begin, places, wanted, weight, share in (
