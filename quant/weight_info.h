@@ -1,5 +1,6 @@
 /* Reads a weight file back, checks every field of it and says what is wrong: the host's sister of t3r_weights_check(),
- * which refuses the same files with a status alone. */
+ * which refuses the same files in the device's few words. Two readers, written apart: each is the other's oracle under
+ * the fuzzer. */
 #ifndef T3R_QUANT_WEIGHT_INFO_H
 #define T3R_QUANT_WEIGHT_INFO_H
 

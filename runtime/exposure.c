@@ -99,7 +99,8 @@ void t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent,
         for (int c = 0; c < 3; c++) {
             int32_t mean_q8 = (int32_t)t3r_round_div64(sum_q8[c], links);
             int32_t over = linked[v] ? level_q8[v][c] - mean_q8 : 0; /* at most 2 octaves either way */
-            gain_q14[v][c] = (uint16_t)T3R_MIN(t3r_round_shift32((int32_t)t3r_exp2_q16(-over * 256), 2), (int32_t)UINT16_MAX);
+            int32_t gain = t3r_round_shift32((int32_t)t3r_exp2_q16(-over * 256), 2);
+            gain_q14[v][c] = (uint16_t)T3R_MIN(gain, (int32_t)UINT16_MAX);
         }
     }
 }

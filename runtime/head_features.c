@@ -17,7 +17,7 @@ static int8_t held(int32_t x)
 /* (after - before) / (2 here) x SLOPE_GAIN. A border pixel takes itself for the neighbour it lacks. */
 static int8_t slope(uint16_t before, uint16_t here, uint16_t after)
 {
-    if (before == 0 || after == 0) {
+    if (before == 0 || here == 0 || after == 0) {
         return 0;
     }
     int64_t rise = ((int64_t)after - before) * SLOPE_GAIN;

@@ -1,9 +1,8 @@
 /* The way of the data. The image stage comes before, frame by frame (develop.c), the raster behind (raster.c):
  *
- *     frames - image -+- wavelet ------- texture energy --+
- *                     |                                   +- superclusters - budget - mask - head - scene - refine -
- * raster
- *                     +- depth --------- pointmap --------+
+ *     frames - image -+- wavelet -- texture energy --+
+ *                     |                              +- superclusters - budget - mask - head - scene - refine - raster
+ *                     +- depth ---- pointmap --------+
  *
  * Each stage tells what it made through the stage_hash hook. */
 #include "pipeline.h"

@@ -19,6 +19,7 @@ static int add_scene(calibration *c, const t3r_recording *recording, const char 
     settings.keep_percent = 100; /* an arena for the largest */
     settings.keep_analysis = true;
     settings.hash = false;
+    settings.refine = 0;
     settings.head = "analytic"; /* what heads see does not depend on the head */
     settings.context_count = count;
     memcpy(settings.context, context, count * sizeof *context);

@@ -89,11 +89,9 @@ static const struct argp argp = {
         "  trim3r bench --points cloud.f32 --json\n\n"
         "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of the "
         "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
-        "255; "
-        "a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
+        "255; a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
         "multiply-accumulates of a head's layers a second of the whole head stage, every point kept. refine_ms: one "
-        "refinement pass "
-        "over both views, 13,107 Gaussians.",
+        "refinement pass over both views, 13,107 Gaussians.",
 };
 
 /* ---- the work ---------------------------------------------------------------------------------------------------- */
@@ -109,10 +107,10 @@ typedef struct workload {
     t3r_camera camera[VIEWS];
     t3r_camera viewpoint;
     scene_bench full, trimmed;
-    scene_bench learned;     /* `trimmed` with the head small */
-    scene_bench refined;     /* `trimmed` with one pass of refinement, analysis kept */
-    t3r_gaussian *unrefined; /* what each pass begins with: `refined` as it was built */
-    scene_bench headed;      /* `full` with the measured head, analysis kept */
+    scene_bench learned; /* `trimmed` with the head small */
+    scene_bench refined; /* `trimmed` with one pass of refinement, analysis kept */
+    t3r_gaussian *start; /* what each measured pass begins with: `refined` as it was built */
+    scene_bench headed;  /* `full` with the measured head, analysis kept */
     chosen_head small, measured;
     t3r_threads *threads;
     uint8_t *view; /* where renders go */
@@ -189,7 +187,7 @@ static void close_workload(workload *w)
     free(w->trimmed.arena);
     free(w->learned.arena);
     free(w->refined.arena);
-    free(w->unrefined);
+    free(w->start);
     free(w->headed.arena);
     chosen_head_close(&w->small);
     chosen_head_close(&w->measured);
@@ -247,13 +245,15 @@ static t3r_status open_scenes(workload *w)
         status = open_scene(w, &w->refined, TRIMMED, NULL, true, 1);
     }
     if (status == T3R_OK) {
-        w->unrefined = malloc(TRIMMED * sizeof *w->unrefined);
-        status = w->unrefined != NULL ? T3R_OK : T3R_ERR_ARENA;
+        w->start = malloc(TRIMMED * sizeof *w->start);
+        status = w->start != NULL ? T3R_OK : T3R_ERR_ARENA;
     }
     if (status == T3R_OK) {
         t3r_scene scene;
         status = t3r_get_scene(w->refined.runtime, &scene);
-        memcpy(w->unrefined, scene.gaussians, scene.count * sizeof *w->unrefined);
+        if (status == T3R_OK) {
+            memcpy(w->start, scene.gaussians, scene.count * sizeof *w->start);
+        }
     }
     return status == T3R_OK ? open_scene(w, &w->headed, POINTS, &w->measured, true, 0) : status;
 }
@@ -321,7 +321,7 @@ static bool run_head(workload *w)
 
 static bool run_refine(workload *w)
 {
-    return bench_refine_run(w->refined.runtime, w->unrefined);
+    return bench_refine_run(w->refined.runtime, w->start);
 }
 
 static bool run_kmeans(workload *w)

@@ -38,7 +38,7 @@ static const struct argp_option options[] = {
     {"views", KEY_VIEWS, "N", 0, "context views, 0..16; 0 = an arena that only renders (2)", 0},
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "the budget (needed)", 0},
     {"clusters", KEY_CLUSTERS, "K", 0, "SuperClusters, 1..512 (300)", 0},
-    {"head", KEY_HEAD, "HEAD", 0, "nano, small, base, FILE.t3w, moment, none or analytic (default)", 0},
+    {"head", KEY_HEAD, "HEAD", 0, "nano, small (default), base, FILE.t3w, analytic, moment or none", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
     {"refine", KEY_REFINE, "N", 0, "refinement passes, 0..16 (4)", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
@@ -180,19 +180,19 @@ static int write_svg(const char *path, const t3r_plan_info *plan)
 
 int command_plan(int argc, char **argv)
 {
-    plan_options o = {.views = 2, .refine = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1).refinements};
+    plan_options o = {.views = 2,
+                      .head = CHOSEN_HEAD_DEFAULT,
+                      .refine = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1).refinements};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
     t3r_config config = t3r_default_config(o.width, o.height, o.views, o.gaussians);
-    if (o.head != NULL) {
-        chosen_head head;
-        int code = chosen_head_open(&head, o.head);
-        if (code != CLI_OK) {
-            return code;
-        }
-        chosen_head_configure(&head, &config);
-        chosen_head_close(&head);
+    chosen_head head;
+    int code = chosen_head_open(&head, o.head);
+    if (code != CLI_OK) {
+        return code;
     }
+    chosen_head_configure(&head, &config);
+    chosen_head_close(&head);
     config.keep_analysis = o.keep_analysis;
     config.refinements = o.refine;
     if (o.has_clusters) {
@@ -207,11 +207,8 @@ int command_plan(int argc, char **argv)
     if (status != T3R_OK) {
         return reconstruction_error(status, "settings", &config, 0);
     }
-    if (o.svg != NULL) {
-        int code = write_svg(o.svg, &plan);
-        if (code != CLI_OK) {
-            return code;
-        }
+    if (o.svg != NULL && (code = write_svg(o.svg, &plan)) != CLI_OK) {
+        return code;
     }
     if (o.json) {
         print_json(&config, &plan);

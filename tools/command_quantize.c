@@ -24,7 +24,7 @@
 #define MOST_FILE_BYTES (256u << 20)
 #define PERCENTILE_8_BIT 99.99
 /* 16 bits resolve twice the largest value seen finer than any weight does, so nothing needs to be clipped. */
-#define HEADROOM_16_BIT 2.0
+#define HEADROOM_16_BIT 2.0f
 
 typedef struct options {
     const char *head, *output, *name;
@@ -174,11 +174,24 @@ static uint32_t without_range(const float_head *head)
     return 0;
 }
 
+/* Ranges that training settled on for 8 bits clip what is rare; 16 bits can hold it. */
+static void widen_ranges(float_head *head)
+{
+    for (uint32_t i = 0; i + 1 < head->graph.count; i++) {
+        for (uint32_t o = 0; head->layers[i].range != NULL && o < head->graph.layers[i].outputs; o++) {
+            head->layers[i].range[o] *= HEADROOM_16_BIT;
+        }
+    }
+}
+
 /* *calibrated: the layers whose ranges were measured. */
 static int calibrate(const options *o, float_head *head, int *calibrated)
 {
     uint32_t lacking = without_range(head);
     *calibrated = 0;
+    if (o->activation_bits == 16) {
+        widen_ranges(head);
+    }
     if (lacking == 0) {
         return CLI_OK;
     }

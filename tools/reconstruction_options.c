@@ -63,7 +63,7 @@ static const struct argp_option settings[] = {
      0},
     {"fill-radius", KEY_FILL_RADIUS, "N", 0, "depth holes bracketed within N pixels are filled, 0..8 (4)", 0},
     {"flying", KEY_FLYING, "on|off", 0,
-     "points between surfaces, or in front of what another view measured, are left out (on)", 0},
+     "points between surfaces, or in front of what another view measured, come last (on)", 0},
     {"redundancy", KEY_REDUNDANCY, "on|off", 0,
      "small budgets pass over points whose surface another view has as finely (on)", 0},
     {"exposure", KEY_EXPOSURE, "on|off", 0, "colours of all views are brought to their mean exposure (on)", 0},

@@ -275,7 +275,8 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
  * goes on with it. T3R_ERR_CANCELLED: no scene then, the settings are as before, the analysis stays. */
 t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene);
 
-/* Another allocation and head as well as budget, likewise. */
+/* Another allocation and head as well as budget, likewise. T3R_ERR_STATE: no analysis was kept, or the learned head
+ * without weights. */
 t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head,
                           t3r_scene *scene);
 

@@ -88,11 +88,11 @@ static void plan_equals_macros(void **state)
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                     c.render_width, c.render_height, c.head_column_bytes, c.keep_analysis,
-                                                     c.refinements));
+                                                     c.render_width, c.render_height, c.head_column_bytes,
+                                                     c.keep_analysis, c.refinements));
         assert_true(plan.bytes == T3R_FULL_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                  c.render_width, c.render_height, c.head_column_bytes, c.keep_analysis,
-                                                     c.refinements));
+                                                  c.render_width, c.render_height, c.head_column_bytes,
+                                                  c.keep_analysis, c.refinements));
         /* the two public macros speak of the defaults */
         c = t3r_default_config(c.width, c.height, c.views, c.max_gaussians);
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);

@@ -18,7 +18,7 @@ TRIM3R, DRIVER, NETWORK = map(os.path.abspath, sys.argv[1:4])
 HEIGHT, WIDTH = 37, 50  # no level divides them
 # signal to noise of the whole head's outputs, dB, at least, by (weight bits, activation bits); every_kind is 13 layers
 LEAST_SNR = {"plain": {(8, 8): 33, (16, 8): 42, (8, 16): 33, (16, 16): 77},
-             "every_kind": {(8, 8): 22, (16, 8): 30, (8, 16): 24, (16, 16): 70}}
+             "every_kind": {(8, 8): 22, (16, 8): 30, (8, 16): 24, (16, 16): 69}}  # one of 16 bits is headroom
 SOURCE_USER = """#include <stdint.h>
 #include <stdio.h>
 extern const uint8_t t3r_head_NAME[];
@@ -73,7 +73,8 @@ def scales(head, description, tensors):
         else:
             relu = description["layers"][n - 1]["relu"]
             steps = 2 ** (head["activation_bits"] - (0 if relu else 1)) - 1
-            step = tensors[f"layer{n}.range"].astype(float) / steps
+            headroom = 2 if head["activation_bits"] == 16 else 1  # ranges that come along are those of 8 bits
+            step = headroom * tensors[f"layer{n}.range"].astype(float) / steps
         outputs.append(step)
         sums.append(step * l["multiplier"] * 2.0 ** (l["shift"] - 31))
     return outputs, sums

@@ -214,7 +214,6 @@ static void extremes_stay_in_range(void **state)
     }
 }
 
-/* The scale of sums holds its bound for every area: at most 64 times what one pixel may add. */
 /* Where nothing is missing any more a share of the pass before goes on, and no more than that. */
 static void momentum_fades(void **state)
 {
@@ -236,6 +235,7 @@ static void momentum_fades(void **state)
     assert_memory_equal(&c, &still, sizeof c);
 }
 
+/* The scale of sums holds its bound for every area: at most 64 times what one pixel may add. */
 static void scale_follows_area(void **state)
 {
     (void)state;

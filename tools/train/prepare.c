@@ -66,6 +66,7 @@ int32_t prepare(uint32_t width, uint32_t height, const uint8_t *rgb, const uint1
     config.seed = settings->seed;
     config.head = T3R_HEAD_NONE;
     config.keep_analysis = 1;
+    config.refinements = 0; /* of the scene nothing is read */
     t3r_plan_info plan;
     t3r_status status = t3r_plan(&config, &plan);
     if (status != T3R_OK) {

@@ -291,9 +291,10 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
     return good;
 }
 
-/* --- refinement, as runtime/refine.c does it in integers (runtime/SPEC.md, "Refinement") ----------------------------
- */
+/* --- refinement -------------------------------------------------------------------------------------------------- */
 
+/* What runtime/refine.c does in integers (runtime/SPEC.md, "Refinement"), but for roundings, for the six equations, which
+ * are solved exactly here, and for a splat's own axes: in one view any factor of its covariance will do. */
 #define UNKNOWNS 6
 #define MOMENTS 15
 #define DILATION 0.3f
@@ -480,7 +481,7 @@ static void correct(const sums *z, int32_t pass, float *change, float *s)
         s[6 + c] = fminf(fmaxf(s[6 + c] + change[c], 0), 1);
     }
     for (int k = 0; k < UNKNOWNS; k++) {
-        change[3 + k] = held(STEP * step[k], most[k]) + MOMENTUM * before[3 + k];
+        change[3 + k] = held(held(STEP * step[k], most[k]) + MOMENTUM * before[3 + k], 0.5f);
     }
     const float *shift = change + 4;
     float a = change[6], b = change[7], c = change[8];

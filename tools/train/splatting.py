@@ -5,6 +5,7 @@ import torch
 import native
 
 DILATION, VARIANCE_LEAST = 0.3, 0.02
+L_LEAST, L_MOST = 580 / 4096, 64  # of a Cholesky factor, pixels, as runtime/head_learned.c has them
 CHANGES = 9  # of a splat in a pass of refinement
 _library = None
 
@@ -94,10 +95,10 @@ def footprints(outputs, spacing, own_colour):
     [n, 3] of the total footprint, pixels; opacity [n]; colour [n, 3] in 0..1. spacing [n] pixels, own_colour [n, 3]."""
     s = spacing[:, None]
     offset = held(outputs[:, 0:2], -2, 2) * s
-    diagonal = s * torch.exp2(held(outputs[:, 2:4], -4, 2))
-    across = held(outputs[:, 4:5], -2, 2) * s
+    diagonal = held(s * torch.exp2(held(outputs[:, 2:4], -4, 4)), L_LEAST, L_MOST)
+    across = held(held(outputs[:, 4:5], -2, 2) * s, -L_MOST, L_MOST)
     factor = torch.cat((diagonal[:, :1], across, diagonal[:, 1:]), 1)
-    opacity = held(outputs[:, 5], 0.01, 0.99)
+    opacity = held(outputs[:, 5], 0, 0.99)
     colour = held(own_colour + outputs[:, 6:9] * (64 / 255), 0, 1)
     return offset, factor, opacity, colour
 

@@ -49,8 +49,8 @@ SMOKE_STEPS, SMOKE_FACTOR = 200, 0.4  # the squared error must fall below this s
 
 def options_of(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--head", choices=sorted(head_net.HEADS), default="small")
-    parser.add_argument("--out", required=True, metavar="DIR")
+    parser.add_argument("--head", choices=sorted(head_net.HEADS), default="small", help="which network (small)")
+    parser.add_argument("--out", required=True, metavar="DIR", help="checkpoint, log, curves and the head (needed)")
     parser.add_argument("--name", help="name in the weight file (default: the head's)")
     parser.add_argument(
         "--data", action="append", default=[], metavar="DIR", help="a folder of images or posed views; repeat"
@@ -58,18 +58,18 @@ def options_of(arguments):
     parser.add_argument(
         "--made-up", type=float, default=0.6, metavar="SHARE", help="of pictures that are made up (0.6)"
     )
-    parser.add_argument("--steps", type=int, default=12000)
+    parser.add_argument("--steps", type=int, default=12000, help="(12000)")
     parser.add_argument("--batch", type=int, default=4, help="pictures a step, over all processes (4)")
     parser.add_argument("--crop", type=int, default=128, help="side of a picture, pixels (128)")
     parser.add_argument("--novel", type=float, default=0.25, metavar="SHARE", help="of steps with a triplet (0.25)")
     parser.add_argument(
-        "--quantized", type=float, default=0.15, metavar="SHARE", help="of steps with rounding, at the end"
+        "--quantized", type=float, default=0.15, metavar="SHARE", help="of steps with rounding, at the end (0.15)"
     )
     parser.add_argument("--rate", type=float, default=2e-3, help="highest learning rate (0.002)")
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=1, help="(1)")
     parser.add_argument("--processes", type=int, default=1, help="that share every step on this machine (1)")
-    parser.add_argument("--threads", type=int, default=1, help="of each process")
-    parser.add_argument("--device", default="cpu", help="where the network runs; splats are drawn on the processor")
+    parser.add_argument("--threads", type=int, default=1, help="of each process (1)")
+    parser.add_argument("--device", default="cpu", help="where the network runs (cpu); splats are drawn on the processor")
     parser.add_argument("--start", metavar="FILE.safetensors", help="begin with this head, widened if it is narrower")
     parser.add_argument("--lpips", nargs=2, metavar=("TRUNK.pth", "HEADS.pth"), help="LPIPS instead of the stand-in")
     parser.add_argument("--validate", action="append", default=[], metavar="DIR", help="images to report on; repeat")
@@ -251,6 +251,8 @@ class Run:
             o.quantized,
             o.rate,
             sorted(o.data),
+            o.start,
+            o.lpips,
             self.world,
         ]
 
@@ -280,7 +282,7 @@ class Run:
 
     def rate(self):
         done = self.step / self.options.steps
-        warm_up = min(WARM_UP, self.options.steps // 4)
+        warm_up = max(1, min(WARM_UP, self.options.steps // 4))
         return self.options.rate * (min(1, (self.step + 1) / warm_up) * 0.5 * (1 + math.cos(math.pi * done)) + 0.003)
 
     def one_step(self):
