@@ -97,7 +97,7 @@ class Training(unittest.TestCase):
     def test_rounding_changes_little_and_lets_derivatives_through(self):
         head = head_net.Head(head_net.HEADS["nano"], 5)
         drawn = samples.Samples([], 64, 1.0).crops(np.random.default_rng(1), 2)
-        batch = train.Batch(drawn, "cpu")
+        batch = train.objective.Batch(drawn, "cpu")
         head.mode = "observe"
         plain = head(batch.features, batch.index)
         head.mode = "quantized"
@@ -113,7 +113,7 @@ class Training(unittest.TestCase):
         head = head_net.Head(head_net.HEADS["nano"])
         for seed in range(8):
             context, target = source.triplet(np.random.default_rng(seed))
-            loss, decibel = train.novel_loss(head, context, target, train.perceptual.StandIn(), "cpu")
+            loss, decibel = train.objective.novel_loss(head, context, target, train.perceptual.StandIn(), "cpu")
             if loss is not None:
                 loss.backward()
                 self.assertGreater(decibel, 12)  # drawn where it should be: noise would be 7

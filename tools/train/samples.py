@@ -77,7 +77,8 @@ def square(image):
 
 @dataclass
 class Posed:
-    """A frame of a posed folder: image uint8 [s, s, 3]; depth float32 [s, s] m, 0: none; fx fy cx cy; camera to world."""
+    """A frame of a posed folder: image uint8 [s, s, 3]; depth float32 [s, s], metres, 0: none; fx fy cx cy; camera to
+    world."""
 
     image: np.ndarray
     depth: np.ndarray

@@ -23,25 +23,19 @@ import subprocess
 import sys
 import time
 
-try:
-    import matplotlib
-    import numpy as np
-    import torch
-    import torch.distributed as distributed
-except ImportError as error:
-    print(
-        f"SKIPPED: training needs Debian's python3-torch, python3-opencv and python3-matplotlib: {error}",
-        file=sys.stderr,
-    )
-    sys.exit(77)
+import needs  # noqa: F401
 
+import numpy as np
+import torch
+import torch.distributed as distributed
+
+import curves
 import head_net
+import objective
 import perceptual
 import samples
 import splatting
 
-FLOOR = 1e-5  # of the MSE: 50 dB are enough
-REFINEMENTS = 2
 WARM_UP = 300  # steps until the highest learning rate
 COLUMNS = ("step", "seconds", "psnr_plain", "psnr_refined", "psnr_novel", "loss", "rate", "phase")
 SMOKE_STEPS, SMOKE_FACTOR = 200, 0.4  # the squared error must fall below this share of the untrained head's
@@ -69,10 +63,11 @@ def options_of(arguments):
     parser.add_argument("--seed", type=int, default=1, help="(1)")
     parser.add_argument("--processes", type=int, default=1, help="that share every step on this machine (1)")
     parser.add_argument("--threads", type=int, default=1, help="of each process (1)")
-    parser.add_argument("--device", default="cpu", help="where the network runs (cpu); splats are drawn on the processor")
+    parser.add_argument(
+        "--device", default="cpu", help="where the network runs (cpu); splats are drawn on the processor"
+    )
     parser.add_argument("--start", metavar="FILE.safetensors", help="begin with this head, widened if it is narrower")
     parser.add_argument("--lpips", nargs=2, metavar=("TRUNK.pth", "HEADS.pth"), help="LPIPS instead of the stand-in")
-    parser.add_argument("--validate", action="append", default=[], metavar="DIR", help="images to report on; repeat")
     parser.add_argument(
         "--smoke", action="store_true", help=f"{SMOKE_STEPS} steps; exit status 1 unless the loss falls"
     )
@@ -80,126 +75,6 @@ def options_of(arguments):
     if options.smoke:
         options.steps, options.crop, options.rate = SMOKE_STEPS, 96, 5e-3
     return options
-
-
-# --- one step ---------------------------------------------------------------------------------------------------------
-
-
-def as_tensor(image):
-    return torch.from_numpy(np.ascontiguousarray(image.transpose(2, 0, 1))).float() / 255
-
-
-def neighbours(picture, counts):
-    """A splat a pixel of its own colour wherever `counts` is 0: what another view's splats show there. [n, 9]"""
-    y, x = (torch.from_numpy(i) for i in np.nonzero(counts == 0))
-    variance, none = torch.full((len(x),), 0.36), torch.zeros(len(x))
-    centres = torch.stack((x, y), 1).float()
-    return splatting.pack(centres, variance, none, variance, torch.full((len(x),), 0.96), picture[:, y, x].T)
-
-
-class Batch:
-    """Prepared pictures as the network and the splatter take them. `covered`, a flag a picture: another view covers
-    what has no depth here, so that splats must end where it begins."""
-
-    def __init__(self, prepared, device, covered=None):
-        self.prepared = prepared
-        self.height, self.width = prepared[0].confidence.shape
-        features = np.stack([p.features for p in prepared])
-        self.features = torch.from_numpy(features).permute(0, 3, 1, 2).float().mul(head_net.FEATURE_STEP).to(device)
-        points = np.concatenate([p.points for p in prepared])
-        picture = np.concatenate([np.full(len(p.points), b) for b, p in enumerate(prepared)])
-        self.start = np.cumsum([0] + [len(p.points) for p in prepared]).astype(np.int32)
-        self.index = tuple(torch.from_numpy(a.astype(np.int64)) for a in (picture, points["y"], points["x"]))
-        self.spacing = torch.from_numpy(points["spacing"].copy())
-        self.pixel = torch.from_numpy(np.stack((points["x"], points["y"]), 1))
-        self.pictures = torch.stack([as_tensor(p.image) for p in prepared])
-        self.counts = np.ascontiguousarray(np.stack([p.confidence > 0 for p in prepared]).astype(np.uint8))
-        self.around = []
-        for b, flag in enumerate(covered if covered is not None else [False] * len(prepared)):
-            self.around.append(neighbours(self.pictures[b], self.counts[b] if flag else np.ones((1, 1), np.uint8)))
-            if flag:
-                self.counts[b] = 1
-        # a splat reaches a pixel beyond its depth
-        self.weight = torch.nn.functional.max_pool2d(torch.from_numpy(self.counts).float()[:, None], 3, 1, 1)
-        b, y, x = self.index
-        self.own_colour = self.pictures[b, :, y, x]
-
-    def with_neighbours(self, splats):
-        """The splats of each picture followed by those around them, and where each picture's begin."""
-        parts, start = [], [0]
-        for b, around in enumerate(self.around):
-            parts += [splats[self.start[b] : self.start[b + 1]], around]
-            start.append(start[-1] + len(parts[-2]) + len(around))
-        return torch.cat(parts), np.array(start, np.int32)
-
-    def footprints(self, head, device):
-        outputs = head(self.features, tuple(i.to(device) for i in self.index)).cpu()
-        return splatting.footprints(outputs, self.spacing, self.own_colour)
-
-
-def drawing_order(rng, start):
-    """Another order at every step: a head shall not lean on one."""
-    return splatting.order_by(rng.random(start[-1]), start)
-
-
-def errors(drawn, wanted, weight, term):
-    """MSE over the weighted pixels and MSE + lambda x perceptual term, [b] each."""
-    drawn, wanted = drawn * weight, wanted * weight
-    share = weight.mean((1, 2, 3)).clamp(min=1e-3)
-    mse = ((drawn - wanted) ** 2).mean((1, 2, 3)) / share
-    return mse, mse + perceptual.LAMBDA * term(drawn, wanted)
-
-
-def decibels(mse):
-    return float(-10 * torch.log10(mse.detach() + 1e-9).mean())
-
-
-def planar_loss(head, batch, rng, term, device):
-    """Loss of plain and refined pictures in their own view; PSNR of both."""
-    footprints = batch.footprints(head, device)
-    splats, begins = batch.with_neighbours(splatting.planar_splats(*footprints, batch.pixel))
-    order = drawing_order(rng, begins)
-    half = (len(batch.prepared) + 1) // 2  # the others are drawn as they are: refining costs as much as the rest
-    start, some = begins[: half + 1], slice(0, begins[half])
-    first, pictures = splats[some], batch.pictures[:half]
-    corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS)
-    # Corrections count as constants, colours as the refinement's own: its momentum overshoots an even error, so that a
-    # constant correction would tell the head the wrong sign.
-    refined = torch.cat((first[:, :6] + (corrected - first)[:, :6].detach(), corrected[:, 6:].detach()), 1)
-    loss, seen = 0, []
-    for drawn, begin, places, wanted, weight, share in (
-        (splats, begins, order, batch.pictures, batch.weight, 0.3),
-        (refined, start, order[some], pictures, batch.weight[:half], 0.7),
-    ):
-        picture = splatting.draw(drawn, begin, places, batch.width, batch.height)
-        mse, both = errors(picture, wanted, weight, term)
-        loss = loss + share * torch.log(both + FLOOR).mean()
-        seen.append(decibels(mse))
-    return loss, seen
-
-
-def novel_loss(head, context, target, term, device):
-    """Loss of a third view of the two context views' splats, over what either shows of it."""
-    splats, depths = [], []
-    for prepared, view in context:
-        batch = Batch([prepared], device)
-        points = {k: torch.from_numpy(prepared.points[k].copy()) for k in ("position", "tangent_u", "tangent_v")}
-        move = torch.from_numpy(np.linalg.inv(target.pose) @ view.pose).float()
-        made, depth, front = splatting.lifted_splats(
-            *batch.footprints(head, device), points, move[:3, :3], move[:3, 3], [float(v) for v in target.intrinsics]
-        )
-        splats.append(made[front])
-        depths.append(depth[front].detach().numpy())
-    splats, key = torch.cat(splats), np.concatenate(depths)
-    start = np.array([0, len(key)], np.int32)
-    height, width = target.depth.shape
-    picture = splatting.draw(splats, start, splatting.order_by(key, start), width, height)
-    seen = samples.seen_by(target, context[0][1]) | samples.seen_by(target, context[1][1])
-    if seen.mean() < 0.1:
-        return None, None
-    weight = torch.from_numpy(seen.astype(np.float32))[None, None]
-    mse, both = errors(picture, as_tensor(target.image)[None], weight, term)
-    return torch.log(both + 1e-4).mean(), decibels(mse)
 
 
 # --- the run ----------------------------------------------------------------------------------------------------------
@@ -272,7 +147,7 @@ class Run:
             os.replace(self.checkpoint + ".new", self.checkpoint)  # a run cut off here keeps the checkpoint before
             with open(os.path.join(self.options.out, "log.csv"), "w", newline="", encoding="utf-8") as file:
                 csv.writer(file).writerows([COLUMNS, *self.rows])
-            draw_curves(self.rows, os.path.join(self.options.out, "curves.png"))
+            curves.draw_curves(self.rows, os.path.join(self.options.out, "curves.png"))
 
     def phase(self):
         quantized_from = self.options.steps * (1 - self.options.quantized)
@@ -293,12 +168,12 @@ class Run:
         for group in self.optimizer.param_groups:
             group["lr"] = self.rate()
         drawn = self.samples.crops(rng, max(1, o.batch // self.world))
-        batch = Batch(drawn, self.device, rng.random(len(drawn)) < 0.6)
-        loss, seen = planar_loss(self.head, batch, rng, self.term, self.device)
+        batch = objective.Batch(drawn, self.device, rng.random(len(drawn)) < 0.6)
+        loss, seen = objective.planar_loss(self.head, batch, rng, self.term, self.device)
         novel = math.nan
         if shared.random() < o.novel:
             context, target = self.samples.triplet(rng)
-            extra, decibel = novel_loss(self.head, context, target, self.term, self.device)
+            extra, decibel = objective.novel_loss(self.head, context, target, self.term, self.device)
             if extra is not None:
                 loss, novel = loss + 0.5 * extra, decibel
         self.optimizer.zero_grad()
@@ -343,8 +218,8 @@ class Run:
                 if self.rank == 0:
                     left = self.seconds / self.step * (o.steps - self.step) / 60
                     print(
-                        f"step {self.step}/{o.steps} {phase}: {plain:.2f} dB, refined {refined:.2f}, novel {novel:.2f};",
-                        f"{left:.0f} min left",
+                        f"step {self.step}/{o.steps} {phase}: {plain:.2f} dB, refined {refined:.2f},",
+                        f"novel {novel:.2f}; {left:.0f} min left",
                         flush=True,
                     )
             if self.step % keep_every == 0 or self.step == o.steps:
@@ -355,67 +230,19 @@ class Run:
             head_net.save_safetensors(self.head, os.path.join(o.out, f"{name}.safetensors"), name)
 
 
-def draw_curves(rows, path):
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(figsize=(8, 4.5))
-    steps = [r[0] for r in rows]
-    for column, label in ((2, "own view"), (3, f"own view, {REFINEMENTS} refinements"), (4, "third view")):
-        values = np.array([r[column] for r in rows], float)
-        smooth = [
-            np.nanmean(values[max(0, i - 7) : i + 1]) if np.isfinite(values[max(0, i - 7) : i + 1]).any() else np.nan
-            for i in range(len(values))
-        ]
-        (line,) = axes.plot(steps, smooth, label=label)
-        axes.plot(steps, values, color=line.get_color(), alpha=0.25, linewidth=0.8)
-    changes = [r[0] for before, r in zip(rows, rows[1:]) if before[7] != r[7]]
-    for step in changes:
-        axes.axvline(step, color="grey", linewidth=0.6, linestyle=":")
-    axes.set(xlabel="step", ylabel="PSNR of training pictures, dB", title="A head learns")
-    axes.grid(alpha=0.3)
-    axes.legend(loc="lower right")
-    figure.tight_layout()
-    figure.savefig(path, dpi=100)
-    pyplot.close(figure)
-
-
-def validate(head, folders, keeps=(1.0, 0.1, 0.05), side=256):
-    """The planar protocol in float: {keep: (PSNR plain, PSNR refined)}, means over the folders' images."""
-    images = [i for f in folders for i in samples.Folder(f).images]
-    out = {}
-    with torch.no_grad():
-        for kept in keeps:
-            rows = []
-            for image in images:
-                image = samples.cv2.resize(image, (side, side), interpolation=samples.cv2.INTER_AREA)
-                depth = np.full((side, side), samples.PLANE, np.uint16)
-                batch = Batch(
-                    [samples.prepare(image, depth, (side, side, (side - 1) / 2, (side - 1) / 2), kept)], "cpu"
-                )
-                splats = splatting.planar_splats(*batch.footprints(head, "cpu"), batch.pixel)
-                order = np.arange(len(splats), dtype=np.int32)
-                better = splatting.refine(splats, batch.start, order, batch.pictures, batch.counts, REFINEMENTS)
-                drawn = [splatting.draw(s, batch.start, order, side, side) for s in (splats, better)]
-                rows.append(
-                    [
-                        decibels(((d.clamp(0, 1) * 255).round() / 255 - batch.pictures).square().mean((1, 2, 3)))
-                        for d in drawn
-                    ]
-                )
-            out[kept] = tuple(np.mean(rows, 0))
-    return out
-
-
 def held_out_error(run, count=16):
     """Geometric mean over made-up pictures that no step draws of the squared error in their own view, unrefined."""
     rng, total = np.random.default_rng([run.options.seed, 1 << 40]), 0.0
     with torch.no_grad():
         for _ in range(count // 4):
-            batch = Batch(run.samples.crops(rng, 4), run.device)
+            batch = objective.Batch(run.samples.crops(rng, 4), run.device)
             splats = splatting.planar_splats(*batch.footprints(run.head, run.device), batch.pixel)
-            drawn = splatting.draw(splats, batch.start, drawing_order(rng, batch.start), batch.width, batch.height)
-            total += float(torch.log(errors(drawn, batch.pictures, batch.weight, run.term)[0] + FLOOR).sum())
+            drawn = splatting.draw(
+                splats, batch.start, objective.drawing_order(rng, batch.start), batch.width, batch.height
+            )
+            total += float(
+                torch.log(objective.errors(drawn, batch.pictures, batch.weight, run.term)[0] + objective.FLOOR).sum()
+            )
     return math.exp(total / count)
 
 
@@ -447,9 +274,6 @@ def main(arguments=None):
     run = Run(options)
     before = held_out_error(run) if options.smoke else 0
     run.train(every=20 if options.smoke else 50)
-    if run.rank == 0 and options.validate:
-        for kept, (plain, refined) in validate(run.head.cpu(), options.validate).items():
-            print(f"planar, {100 * kept:g} % kept: {plain:.2f} dB, refined {refined:.2f}")
     if options.smoke and run.rank == 0:
         factor = held_out_error(run) / before
         print(f"smoke: squared error of pictures not trained on fell to {factor:.3f} (must be below {SMOKE_FACTOR})")
