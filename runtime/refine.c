@@ -78,6 +78,8 @@ static void measure(const t3r_runtime *rt, const workshop *w, const t3r_view *vi
         .sums = w->sums,
         .first = first,
         .count = count,
+        .kept = t3r_raster_spare(&w->room),
+        .kept_rows = (uint32_t)((size_t)rt->config.max_gaussians * T3R_RASTER_SPARE_BYTES / sizeof(t3r_weights)),
         .gain_q14 = rt->gain_q14[v],
     };
     for (uint32_t begin = 0; begin < bin.tiles;) {

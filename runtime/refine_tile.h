@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "kernels/scatter.h"
 #include "raster_tile.h"
 #include "refine.h"
 
@@ -15,6 +16,8 @@ typedef struct t3r_refine_view {
     const t3r_splat *splats;
     t3r_refine_sums *sums; /* of Gaussian `first` on */
     uint32_t first, count;
+    t3r_weights *kept; /* room for `kept_rows` rows of weights between a tile's two drawings; 0 will do, but slower */
+    uint32_t kept_rows;
     const uint16_t *gain_q14; /* of the view's three channels: what it shows is levelled first */
 } t3r_refine_view;
 
