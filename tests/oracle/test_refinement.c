@@ -1,5 +1,5 @@
-/* The integer refinement, from one pass to the default number, against the float64 oracle on the same scene: two views of a
- * slanted surface with holes in its depth and a nearer one before it. */
+/* The integer refinement, one pass to the default number of them, against the float64 oracle on the same scene: two
+ * views of a slanted surface with holes in its depth and a nearer one before it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

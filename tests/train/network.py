@@ -29,10 +29,10 @@ HEADS = {
     "every_kind": head_file.every_kind()["layers"],
 }
 FLOAT_MOST = 1e-4  # of the largest output
-# What torch's rounding leaves unexplained of what the integers do, as a share of what rounding does at all. An activation
-# or a weight near a rounding's edge falls on either side of it, for integers have rounded biases and steps of 15 bits:
-# 0.28 to 0.35 of 5 layers, 0.27 to 0.43 of 12, 0.38 to 0.66 of 13 of every kind. With steps, limits or phases other
-# than quant's it is 0.55 to 5.
+# What torch's rounding leaves unexplained of what the integers do, as a share of what rounding does at all. Near a
+# rounding's edge an activation or a weight falls on either side, for the integers' biases are rounded and their steps
+# have 15 bits: 0.26 to 0.35 after 5 layers, 0.27 to 0.44 after 12, 0.38 to 0.66 after 13 of every kind. Steps, limits or
+# phases other than quant's make it 0.55 to 6.
 UNEXPLAINED_MOST = {"nano": 0.55, "small": 0.55, "plain": 0.45, "every_kind": 0.75}
 
 
