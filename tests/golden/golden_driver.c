@@ -30,7 +30,7 @@ typedef struct configuration {
     t3r_head head;
     uint32_t gaussians;
     bool holes;
-    uint32_t bits; /* of a learned head's weights, made up here, and activations; 0 = another head, or the shipped one */
+    uint32_t bits; /* of a learned head's weights, made up here, and activations; 0 = the shipped one, or no learned */
 } configuration;
 
 static const configuration configurations[] = {

@@ -133,8 +133,7 @@ static void check_pass(t3r_head head, uint32_t passes, const oracle_gaussian *sc
     print_message("%-8s %zu Gaussians, %u passes: moved %.2f %.4f %.4f %.4f, off by %.4f %.5f %.5f %.5f, at most %.3f "
                   "%.4f %.4f %.4f\n",
                   t3r_head_name(head), count, passes, moved.colour, moved.opacity, moved.place, moved.shape,
-                  mean.colour, mean.opacity, mean.place, mean.shape, most.colour, most.opacity, most.place,
-                  most.shape);
+                  mean.colour, mean.opacity, mean.place, mean.shape, most.colour, most.opacity, most.place, most.shape);
     const double share = mean_share[passes - 1];
     const difference bound = most_off[passes - 1];
     assert_true(moved.colour > 1 && moved.opacity > 0.003 && moved.place > 0.01 && moved.shape > 0.01);
