@@ -93,7 +93,7 @@ class Training(unittest.TestCase):
 
     def test_processes_share_a_step(self):
         """Two processes end with the bits of one that takes the mean of both shares' gradients."""
-        options = "--head nano --steps 3 --crop 64 --batch 2 --novel 0 --quantized 0".split()
+        options = "--head nano --steps 4 --crop 64 --batch 2 --novel 0 --quantized 0".split()
         with tempfile.TemporaryDirectory() as folder:
             shared, *alone = (os.path.join(folder, name) for name in ("shared", "first", "second"))
             command = [sys.executable, os.path.join(TRAIN, "train.py"), *options, "--processes", "2", "--out", shared]
