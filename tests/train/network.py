@@ -29,10 +29,10 @@ HEADS = {
     "every_kind": head_file.every_kind()["layers"],
 }
 FLOAT_MOST = 1e-4  # of the largest output
-# What torch's rounding leaves unexplained of what the integers do, as a share of what rounding does at all. Near an edge
-# of rounding an activation or a weight falls on either side, for the integers' biases are rounded and their steps have
-# 15 bits: 0.26 to 0.35 after 5 layers, 0.27 to 0.44 after 12, 0.38 to 0.66 after 13 of every kind. Steps, limits or
-# phases other than quant's make it 0.55 to 6.
+# What torch's rounding leaves unexplained of what the integers do, as a share of what rounding does at all. Near an
+# edge of rounding an activation or a weight falls on either side, for the integers' biases are rounded and their steps
+# have 15 bits: 0.26 to 0.35 after 5 layers, 0.27 to 0.44 after 12, 0.38 to 0.66 after 13 of every kind. Steps, limits
+# or phases other than quant's make it 0.55 to 6.
 UNEXPLAINED_MOST = {"nano": 0.55, "small": 0.55, "plain": 0.45, "every_kind": 0.75}
 
 
