@@ -5,6 +5,7 @@
 
 #include "budget.h"
 #include "head_features.h"
+#include "pipeline.h"
 #include "state.h"
 
 /* Histograms by size: OCTAVES x STEPS bins from 2^LOWEST on; bin 0 holds all that is smaller, the last all larger. */
@@ -108,28 +109,15 @@ int calibration_add_views(calibration *c, const t3r_runtime *rt)
     if (!rt->has_scene || !rt->analysed || !rt->config.keep_analysis) {
         return -1;
     }
-    /* as t3r_build_scene() has them */
-    t3r_budget_settings settings = {
-        .allocation = rt->config.allocation,
-        .gaussians = rt->config.gaussians < rt->valid_points ? rt->config.gaussians : rt->valid_points,
-        .keep_percent = rt->config.keep_percent,
-        .gamma_q8 = rt->config.gamma_q8,
-        .clusters = rt->config.clusters,
-        .seed = rt->config.seed,
-    };
     const uint32_t width = rt->config.width, height = rt->config.height;
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
+    const t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
     int8_t *features = malloc((size_t)width * height * T3R_FEATURES);
     uint8_t *retained = malloc((size_t)width * height);
     int status = features == NULL || retained == NULL ? -1 : 0;
     for (uint32_t v = 0; v < rt->views && status == 0; v++) {
-        t3r_head_input input = {
-            .map = t3r_pointmap_of(&views[v], rt->frame.exponent),
-            .view_index = v,
-            .settings = &settings,
-            .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
-        };
+        const t3r_head_input input = t3r_head_input_of(rt, views, v, &settings);
         for (uint32_t y = 0; y < height; y++) {
             t3r_head_features(&input, y, features + (size_t)y * width * T3R_FEATURES);
         }

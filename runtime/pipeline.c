@@ -168,6 +168,21 @@ t3r_status t3r_analyse(t3r_runtime *rt)
 
 /* --- scene ------------------------------------------------------------------------------------------------------ */
 
+t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views)
+{
+    const t3r_config *config = &rt->config;
+    uint32_t gaussians = T3R_MIN(config->gaussians, rt->valid_points); /* filled holes compete, but add no budget */
+    return (t3r_budget_settings){
+        .allocation = config->allocation,
+        .gaussians = gaussians,
+        .keep_percent = config->keep_percent,
+        .gamma_q8 = config->gamma_q8,
+        .clusters = config->clusters,
+        .seed = config->seed,
+        .pass_over_covered = config->redundancy && t3r_is_sparse(views, rt->views, gaussians),
+    };
+}
+
 static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
 {
     t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
@@ -193,6 +208,20 @@ static const head_function heads[T3R_HEAD_COUNT] = {
     [T3R_HEAD_LEARNED] = t3r_head_learned,
 };
 
+t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
+                                 const t3r_budget_settings *settings)
+{
+    return (t3r_head_input){
+        .map = t3r_pointmap_of(&views[view_index], rt->frame.exponent),
+        .view_index = view_index,
+        .settings = settings,
+        .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
+        .weights = rt->weights,
+        .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
+        .unadapted = !rt->config.adapt,
+    };
+}
+
 static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
 {
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
@@ -201,15 +230,7 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
         if (!t3r_progress(rt, T3R_STAGE_HEAD, v, rt->views)) {
             return T3R_ERR_CANCELLED;
         }
-        t3r_head_input input = {
-            .map = t3r_pointmap_of(&views[v], rt->frame.exponent),
-            .view_index = v,
-            .settings = settings,
-            .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
-            .weights = rt->weights,
-            .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
-            .unadapted = !rt->config.adapt,
-        };
+        t3r_head_input input = t3r_head_input_of(rt, views, v, settings);
         uint32_t added = heads[rt->config.head](&input, scene + rt->gaussians);
         level(scene + rt->gaussians, added, rt->gain_q14[v]);
         rt->gaussians += added;
@@ -233,14 +254,6 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
 
 t3r_status t3r_build_scene(t3r_runtime *rt)
 {
-    t3r_budget_settings settings = {
-        .allocation = rt->config.allocation,
-        .gaussians = T3R_MIN(rt->config.gaussians, rt->valid_points), /* filled holes compete, but add no budget */
-        .keep_percent = rt->config.keep_percent,
-        .gamma_q8 = rt->config.gamma_q8,
-        .clusters = rt->config.clusters,
-        .seed = rt->config.seed,
-    };
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
 
@@ -248,7 +261,7 @@ t3r_status t3r_build_scene(t3r_runtime *rt)
     if (!t3r_progress(rt, T3R_STAGE_BUDGET, 0, 1)) {
         return T3R_ERR_CANCELLED;
     }
-    settings.pass_over_covered = rt->config.redundancy && t3r_is_sparse(views, rt->views, settings.gaussians);
+    t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
     budget(rt, views, &settings);
     t3r_status status = head(rt, views, &settings);
     if (status == T3R_OK) {

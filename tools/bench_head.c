@@ -1,33 +1,19 @@
 #include "bench_head.h"
 
 #include "head.h"
+#include "pipeline.h"
 #include "state.h"
 #include "weights.h"
 
 bool bench_head_run(t3r_runtime *runtime)
 {
-    const t3r_config *config = &runtime->config;
-    const t3r_budget_settings settings = {
-        .allocation = config->allocation,
-        .gaussians = runtime->gaussians,
-        .keep_percent = config->keep_percent,
-        .gamma_q8 = config->gamma_q8,
-        .clusters = config->clusters,
-        .seed = config->seed,
-    };
     t3r_view views[T3R_MAX_VIEWS];
     t3r_gaussian *scene = t3r_buffer_at(runtime, T3R_BUFFER_SCENE);
     uint32_t count = 0;
     t3r_views_of(runtime, views);
+    const t3r_budget_settings settings = t3r_budget_settings_of(runtime, views);
     for (uint32_t v = 0; v < runtime->views; v++) {
-        t3r_head_input input = {
-            .map = t3r_pointmap_of(&views[v], runtime->frame.exponent),
-            .view_index = v,
-            .settings = &settings,
-            .clusters = t3r_buffer_at(runtime, T3R_BUFFER_CLUSTERS),
-            .weights = runtime->weights,
-            .work = t3r_buffer_at(runtime, T3R_BUFFER_HEAD_WORK),
-        };
+        const t3r_head_input input = t3r_head_input_of(runtime, views, v, &settings);
         count += t3r_head_learned(&input, scene + count);
     }
     return count == runtime->gaussians;

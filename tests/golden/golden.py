@@ -21,7 +21,10 @@ ROOM = HERE / "room.json"
 WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--moved"],
         ["--arena", "min", "--tasks", "reverse", "--moved"]]
 REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"]]
-DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", *sorted((ROOT / "tools").glob("room*.c"))]
+DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", ROOT / "quant" / "heads" / "small.c",
+                  *sorted((ROOT / "tools").glob("room*.c"))]
+DRIVER_INCLUDES = [ROOT / "runtime" / "include", ROOT / "runtime", ROOT / "platform", ROOT / "tools", ROOT / "tests",
+                   ROOT / "quant" / "heads"]
 
 
 def output_of(command):
@@ -73,8 +76,8 @@ def check_build(arguments):
             sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="trim3r-golden-") as folder:
         driver = pathlib.Path(folder) / "golden_driver"
-        output_of([*arguments, "-std=gnu11", "-I", ROOT / "runtime" / "include", "-I", ROOT / "runtime",
-                   "-I", ROOT / "platform", "-I", ROOT / "tools", "-I", ROOT / "tests", *runtime_sources(), *DRIVER_SOURCES, "-o", driver])
+        includes = [word for folder in DRIVER_INCLUDES for word in ("-I", folder)]
+        output_of([*arguments, "-std=gnu11", *includes, *runtime_sources(), *DRIVER_SOURCES, "-o", driver])
         expected = STAGES.read_text()
         for way in ([], WAYS[-1]):
             same(" ".join([*emulator, *arguments, *way]), output_of([*emulator, driver, *way]), expected)

@@ -1,5 +1,6 @@
 /* Runs the whole runtime over the built-in room in several configurations and prints every stage's hash:
- * "configuration stage hash". It uses the runtime and the room alone, so that it builds wherever they do.
+ * "configuration stage hash". It uses the runtime, the room and a shipped head alone, so that it builds wherever
+ * they do.
  *
  * What must not matter can be varied: --arena min|full|ten, --tasks plain|reverse, --moved (the arena is copied
  * to another place and attached again between any two calls). */
@@ -12,6 +13,7 @@
 #include "hash.h"
 #include "room.h"
 #include "trim3r.h"
+#include "trim3r_heads.h"
 #include "weights_maker.h"
 
 enum { MOST_WIDTH = 128, MOST_HEIGHT = 96, MOST_PIXELS = MOST_WIDTH * MOST_HEIGHT, CONTEXT_VIEWS = 2, TARGET_VIEW = 1 };
@@ -28,7 +30,7 @@ typedef struct configuration {
     t3r_head head;
     uint32_t gaussians;
     bool holes;
-    uint32_t bits; /* of the learned head's weights, made up here, and activations; 0 = another head */
+    uint32_t bits; /* of a learned head's weights, made up here, and activations; 0 = the shipped one, or no learned */
 } configuration;
 
 static const configuration configurations[] = {
@@ -50,6 +52,8 @@ static const configuration configurations[] = {
      T3R_HEAD_LEARNED, 700, true, 8},
     {"learned_wide", 128, 96, 64, 48, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64,
      T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16},
+    {"shipped", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
+     T3R_HEAD_LEARNED, 1400, true, 0},
 };
 
 typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
@@ -165,8 +169,9 @@ typedef struct run {
     const char *step; /* "add_view", "reconstruct", ... */
     t3r_runtime *rt;
     size_t arena_bytes;
-    uint32_t here;    /* which of the two arenas holds the state */
-    uint8_t *weights; /* NULL but for the learned head */
+    uint32_t here;          /* which of the two arenas holds the state */
+    const uint8_t *weights; /* NULL but for the learned head */
+    uint8_t *made;          /* they were made up */
     size_t weights_bytes;
 } run;
 
@@ -227,7 +232,12 @@ static t3r_status begin_run(run *r)
     config.head = c->head;
     config.keep_analysis = 1;
     if (c->bits != 0) {
-        r->weights = make_weights(small_shape, small_layers, c->bits, c->bits, 1, &r->weights_bytes);
+        r->weights = r->made = make_weights(small_shape, small_layers, c->bits, c->bits, 1, &r->weights_bytes);
+    } else if (c->head == T3R_HEAD_LEARNED) {
+        r->weights = t3r_head_small;
+        r->weights_bytes = t3r_head_small_bytes;
+    }
+    if (r->weights != NULL) {
         config.head_column_bytes = t3r_head_column_bytes(r->weights, r->weights_bytes, config.width);
     }
     t3r_plan_info plan;
@@ -311,7 +321,7 @@ static int run_configuration(const configuration *c, variation ways)
         printf("%s %s gaussians %" PRIu32 " of %" PRIu32 "\n", c->name, r.step, scene.count, scene.valid_points);
         status = draw(&r, "render_rebudgeted");
     }
-    free(r.weights);
+    free(r.made);
     return status == T3R_OK ? 0 : failed(&r, status);
 }
 

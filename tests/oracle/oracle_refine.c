@@ -173,39 +173,44 @@ static void solve(const sums *s, double x[PARAMETERS])
         x[i] *= 0.25;
     }
     x[0] -= (x[3] + x[5]) / 2;
-    static const double most[PARAMETERS] = {0.5, 0.5, 0.5, 0.1, 0.1, 0.1};
-    for (int i = 0; i < PARAMETERS; i++) {
-        x[i] = held(x[i], most[i]);
-    }
 }
 
-static void correct(const sums *s, const oracle_gaussian *from, oracle_gaussian *to)
+static void correct(const sums *s, unsigned pass, oracle_change *change, oracle_gaussian *g)
 {
-    *to = *from;
+    const oracle_change before = *change;
+    *change = (oracle_change){0};
     if (s->weight == 0) {
         return;
     }
+    const double momentum = 3.0 / 16, shape = pass == 0 ? 0.1 : 0.05;
+    const double most[PARAMETERS] = {0.5, 0.5, 0.5, shape, shape, shape};
     double x[PARAMETERS];
     solve(s, x);
-    for (int c = 0; c < 3; c++) {
-        to->colour[c] = fmin(1, fmax(0, from->colour[c] + 26.0 / 32 * s->colour[c] / s->weight / 255));
-        const double *row = from->factor + 3 * c;
-        to->position[c] += row[0] * x[1] + row[1] * x[2];
-        to->factor[3 * c] = row[0] * (1 + x[3]) + row[1] * x[4];
-        to->factor[3 * c + 1] = row[0] * x[4] + row[1] * (1 + x[5]);
+    for (int i = 0; i < PARAMETERS; i++) {
+        x[i] = held(held(x[i], most[i]) + momentum * before.step[i], 0.5);
+        change->step[i] = x[i];
     }
-    to->opacity = fmin(fmax(0.99, from->opacity), fmax(fmin(256.0 / 32768, from->opacity), from->opacity * exp(x[0])));
+    for (int c = 0; c < 3; c++) {
+        change->colour[c] = held(26.0 / 32 * s->colour[c] / s->weight + momentum * before.colour[c], 255);
+        g->colour[c] = fmin(1, fmax(0, g->colour[c] + change->colour[c] / 255));
+        double *row = g->factor + 3 * c;
+        const double along = row[0], across = row[1];
+        g->position[c] += along * x[1] + across * x[2];
+        row[0] = along * (1 + x[3]) + across * x[4];
+        row[1] = along * x[4] + across * (1 + x[5]);
+    }
+    g->opacity = fmin(fmax(0.99, g->opacity), fmax(fmin(256.0 / 32768, g->opacity), g->opacity * exp(x[0])));
 }
 
-void oracle_refine(const oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count,
-                   oracle_gaussian *refined)
+void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count, unsigned pass,
+                   oracle_change *changes)
 {
     sums *all = take(count, sizeof *all);
     for (size_t v = 0; v < view_count; v++) {
         measure(scene, count, &views[v], all);
     }
     for (size_t i = 0; i < count; i++) {
-        correct(&all[i], &scene[i], &refined[i]);
+        correct(&all[i], pass, &changes[i], &scene[i]);
     }
     free(all);
 }

@@ -1,4 +1,4 @@
-/* One pass of refinement in float64, from the text of SPEC.md ("Refinement"). */
+/* Refinement in float64, pass by pass, from the text of SPEC.md ("Refinement"). */
 #ifndef TRIM3R_TESTS_ORACLE_REFINE_H
 #define TRIM3R_TESTS_ORACLE_REFINE_H
 
@@ -11,8 +11,15 @@ typedef struct oracle_context {
     const uint8_t *counts; /* width x height, 0 = no depth */
 } oracle_context;
 
-/* The corrected Gaussians. */
-void oracle_refine(const oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count,
-                   oracle_gaussian *refined);
+/* What a pass changes in a Gaussian. */
+typedef struct oracle_change {
+    double colour[3]; /* levels */
+    double step[6];   /* log opacity; shift along two axes; log scale, shear, log scale */
+} oracle_change;
+
+/* Pass `pass`, from 0: the scene corrected in place. changes[count]: what the pass before changed, 0 before the first;
+ * afterwards what this one did. */
+void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count, unsigned pass,
+                   oracle_change *changes);
 
 #endif

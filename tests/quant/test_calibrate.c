@@ -2,8 +2,10 @@
 #include "calibrate.h"
 
 #include "budget.h"
+#include "head_features.h"
 #include "sample_head.h"
 #include "state.h"
+#include "trim3r_heads.h"
 #include "unit/unit.h"
 
 enum { WIDTH = 40, HEIGHT = 30, PIXELS = WIDTH * HEIGHT, VIEWS = 3 };
@@ -228,9 +230,120 @@ static void test_runtime_views(void **state)
     float_head_free(&head);
 }
 
+/* Two cameras a quarter of the picture apart before one slanted surface. */
+enum { PAIR = 2, PAIR_SIDE = 64, PAIR_PIXELS = PAIR_SIDE * PAIR_SIDE, ROW = PAIR_SIDE * T3R_FEATURES };
+
+/* The rows of features that were made, in the order of views, in the course of one call. */
+typedef struct taken {
+    uint32_t rows;
+    int8_t features[PAIR * PAIR_SIDE][ROW];
+} taken;
+
+static taken *taking;
+
+/* The linker puts this before every caller of t3r_head_features() in another file: the head's and the calibration's. */
+void __real_t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row);
+void __wrap_t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row);
+void __wrap_t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row)
+{
+    __real_t3r_head_features(input, y, row);
+    if (taking != NULL) {
+        assert_int_equal(taking->rows, input->view_index * PAIR_SIDE + y);
+        memcpy(taking->features[taking->rows++], row, ROW);
+    }
+}
+
+static void add_pair(t3r_runtime *runtime)
+{
+    static uint8_t colour[PAIR_PIXELS * 3], depth[PAIR_PIXELS * 2];
+    for (int v = 0; v < PAIR; v++) {
+        for (int i = 0; i < PAIR_PIXELS; i++) {
+            int x = i % PAIR_SIDE + 16 * v, y = i / PAIR_SIDE;
+            uint32_t steps = 2000 + 4 * (uint32_t)y;
+            colour[3 * i] = (uint8_t)(128 + (x * 13 + y * 7) % 90);
+            colour[3 * i + 1] = (uint8_t)(60 + 2 * x);
+            colour[3 * i + 2] = (uint8_t)(y * 3);
+            depth[2 * i] = (uint8_t)steps;
+            depth[2 * i + 1] = (uint8_t)(steps >> 8);
+        }
+        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
+                           .width = PAIR_SIDE,
+                           .height = PAIR_SIDE,
+                           .planes = {colour},
+                           .stride_bytes = {PAIR_SIDE * 3},
+                           .depth = depth,
+                           .depth_width = PAIR_SIDE,
+                           .depth_height = PAIR_SIDE,
+                           .depth_stride_bytes = PAIR_SIDE * 2,
+                           .depth_unit_q40 = 1099511628};
+        t3r_camera camera = {.fx_q16 = PAIR_SIDE << 16,
+                             .fy_q16 = PAIR_SIDE << 16,
+                             .cx_q16 = (PAIR_SIDE - 1) << 15,
+                             .cy_q16 = (PAIR_SIDE - 1) << 15,
+                             .position_q32 = {(int64_t)v << 31},
+                             .rotation_q30 = {1 << 30}};
+        assert_int_equal(t3r_add_view(runtime, &frame, &camera), T3R_OK);
+    }
+}
+
+/* Calibration sees what the network gets, feature by feature: 5 % kept, where points that another view covers are
+ * passed over, and 60 %, where they are not; as shown to a head and hidden from it. */
+static void test_features_of_a_pair(void **state)
+{
+    (void)state;
+    static taken network, calibrated;
+    for (uint32_t adapt = 0; adapt < 2; adapt++) {
+        t3r_config config = t3r_default_config(PAIR_SIDE, PAIR_SIDE, PAIR, PAIR * PAIR_PIXELS);
+        config.head = T3R_HEAD_LEARNED;
+        config.keep_analysis = 1;
+        config.refinements = 0;
+        config.adapt = adapt;
+        t3r_plan_info plan;
+        assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
+        void *arena = NULL;
+        assert_int_equal(posix_memalign(&arena, T3R_ARENA_ALIGN, plan.bytes), 0);
+        t3r_runtime *runtime;
+        t3r_scene scene;
+        float_head head;
+        sample_head(&head, 2);
+        forget_ranges(&head, 0);
+        calibration *c = calibration_start(&head);
+        assert_non_null(c);
+        assert_int_equal(t3r_init(&runtime, arena, plan.bytes, &config), T3R_OK);
+        assert_int_equal(t3r_bind_head(runtime, t3r_head_nano, t3r_head_nano_bytes), T3R_OK);
+        add_pair(runtime);
+        assert_int_equal(t3r_reconstruct(runtime, &scene), T3R_OK);
+        t3r_view views[T3R_MAX_VIEWS];
+        t3r_views_of(runtime, views);
+        uint32_t covered = 0;
+        for (int v = 0; v < PAIR; v++) {
+            for (int i = 0; i < PAIR_PIXELS; i++) {
+                covered += t3r_is_covered(views[v].confidence[i]);
+            }
+        }
+        assert_true(covered > PAIR_PIXELS / 2);
+        static const uint32_t percent[] = {5, 60};
+        for (size_t k = 0; k < sizeof percent / sizeof *percent; k++) {
+            network.rows = calibrated.rows = 0;
+            taking = &network;
+            assert_int_equal(t3r_rebudget(runtime, PAIR * PAIR_PIXELS * percent[k] / 100, &scene), T3R_OK);
+            taking = &calibrated;
+            assert_int_equal(calibration_add_views(c, runtime), 0);
+            taking = NULL;
+            assert_int_equal(network.rows, PAIR * PAIR_SIDE);
+            assert_int_equal(calibrated.rows, PAIR * PAIR_SIDE);
+            assert_memory_equal(network.features, calibrated.features, sizeof network.features);
+        }
+        calibration_free(c);
+        float_head_free(&head);
+        free(arena);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_ranges), cmocka_unit_test(test_own_ranges),
-                                       cmocka_unit_test(test_dead_channel), cmocka_unit_test(test_runtime_views)};
+                                       cmocka_unit_test(test_dead_channel), cmocka_unit_test(test_runtime_views),
+                                       cmocka_unit_test(test_features_of_a_pair)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

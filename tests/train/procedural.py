@@ -162,8 +162,9 @@ class Leaves(unittest.TestCase):
             with self.assertRaises(ValueError):
                 procedural.Procedural(1, build_folder=BUILD).leaves(side, SIDE)
 
-    def test_speed(self):
-        self.assertLess(np.quantile(self.seconds, 0.25), 0.030)
+    @classmethod
+    def tearDownClass(cls):
+        print(f"leaves of {SIDE}x{SIDE}: {1000 * np.median(cls.seconds):.1f} ms")
 
 
 class Rooms(unittest.TestCase):
@@ -224,8 +225,9 @@ class Rooms(unittest.TestCase):
         self.assertTrue(60 < np.mean(greys) < 150, np.mean(greys))
         self.assertGreater(np.median([planar_share(views[1]["depth"]) for views in self.rooms]), 0.8)
 
-    def test_speed(self):
-        self.assertLess(np.quantile(self.seconds, 0.25), 0.060)
+    @classmethod
+    def tearDownClass(cls):
+        print(f"a room's view of {SIDE}x{SIDE}: {1000 * np.median(cls.seconds):.1f} ms")
 
 
 class Degradations(unittest.TestCase):

@@ -111,6 +111,37 @@ class Splatter(unittest.TestCase):
         kept = splatting.refine(wanted_splats, start, order, wanted, counts, 1)
         self.assertLess(float((kept - wanted_splats).abs().max()), 1e-4)
 
+    def test_refinement_makes_up_for_what_is_missing(self):
+        """A splat left out: those about it come nearer to the picture, those that share no pixel with them stay."""
+        rng, count, missing = np.random.default_rng(9), 120, 60
+        everything = splats_of(9, count)
+        place = torch.from_numpy(rng.uniform(0, SIDE, (count, 2))).float()
+        everything[:, :2], everything[:, 2:5] = place, torch.tensor([1 / 2.25, 0, 1 / 2.25])  # sigma 1.5
+        everything[missing, :2], everything[missing, 5] = SIDE / 3, 0.95
+        everything[missing, 6:] = torch.tensor([1.0, 0.0, 1.0])
+        keys = rng.random(count)
+        keys[missing] = -1  # before all others
+        start = np.array([0, count], np.int32)
+        wanted = splatting.draw(everything, start, splatting.order_by(keys, start), SIDE, SIDE)
+        rest = torch.cat((everything[:missing], everything[missing + 1 :]))
+        start = np.array([0, count - 1], np.int32)
+        order = splatting.order_by(np.delete(keys, missing), start)
+        counts = np.ones((1, SIDE, SIDE), np.uint8)
+        away = (rest[:, :2] - SIDE / 3).norm(dim=1)
+        far, near = away > 2 * 1.5 * 3.4, away < 3  # alpha 1/255 lies at 3.4 deviations at most
+
+        def error(splats):
+            return float(((splatting.draw(splats, start, order, SIDE, SIDE) - wanted) ** 2).mean())
+
+        once = splatting.refine(rest, start, order, wanted, counts, 1)
+        self.assertGreater(error(rest), 1e-3)
+        self.assertLess(error(once), 0.8 * error(rest))
+        self.assertLess(error(splatting.refine(rest, start, order, wanted, counts, 4)), 0.6 * error(rest))
+        self.assertTrue(int(far.sum()) > 10 and int(near.sum()) > 0)
+        self.assertLess(float((once - rest)[far].abs().max()), 1e-4)
+        redder = (once - rest)[near][:, 6] - (once - rest)[near][:, 7]
+        self.assertGreater(float(redder.mean()), 0.1)
+
     def test_pixels_without_say_change_nothing(self):
         splats = splats_of(8)
         start, order = self.order(splats)

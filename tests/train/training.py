@@ -44,6 +44,31 @@ def same(a, b):
     return all(torch.equal(x, y) for x, y in zip(a.state_dict().values(), b.state_dict().values()))
 
 
+class Gradients(Exception):
+    """Raised in place of sharing: a step's own gradients are there."""
+
+
+def step_as_two(one, two):
+    """A step of `one` with the mean of its gradients and those of `two`, which then is where `one` is."""
+
+    def stop():
+        raise Gradients
+
+    def share():
+        for mine, other in zip(one.head.parameters(), two.head.parameters()):
+            mine.grad.copy_((mine.grad + other.grad) / 2)
+        for mine, other in zip(one.head.buffers(), two.head.buffers()):  # ranges
+            mine.copy_(torch.maximum(mine, other))
+
+    two._share_gradients, one._share_gradients = stop, share
+    try:
+        two.one_step()
+    except Gradients:
+        one.one_step()
+    two.head.load_state_dict(one.head.state_dict())
+    two.step = one.step
+
+
 class Training(unittest.TestCase):
     def test_the_same_seed_gives_the_same_head_also_after_a_stop(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -67,11 +92,20 @@ class Training(unittest.TestCase):
                 run_in(one, "--seed", "2")  # another run's checkpoint lies there
 
     def test_processes_share_a_step(self):
+        """Two processes end with the bits of one that takes the mean of both shares' gradients."""
+        options = "--head nano --steps 4 --crop 64 --batch 2 --novel 0 --quantized 0".split()
         with tempfile.TemporaryDirectory() as folder:
-            options = "--processes 2 --head nano --steps 2 --crop 64 --batch 2 --novel 0 --quantized 0 --out".split()
-            command = [sys.executable, os.path.join(TRAIN, "train.py"), *options, folder]
+            shared, *alone = (os.path.join(folder, name) for name in ("shared", "first", "second"))
+            command = [sys.executable, os.path.join(TRAIN, "train.py"), *options, "--processes", "2", "--out", shared]
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=300)
-            self.assertTrue(os.path.exists(os.path.join(folder, "nano.safetensors")))
+            got = torch.load(os.path.join(shared, "checkpoint.pt"))["head"]
+            one, two = (train.Run(train.options_of([*options, "--batch", "1", "--out", out])) for out in alone)
+            two.rank = 1
+            while one.step < one.options.steps:
+                step_as_two(one, two)
+        expected, begun = one.head.state_dict(), head_net.Head(head_net.HEADS["nano"], one.options.seed).state_dict()
+        self.assertTrue(all(torch.equal(got[key], expected[key]) for key in expected))
+        self.assertFalse(any(torch.equal(got[key], begun[key]) for key in expected if key.startswith("weight")))
 
     def test_a_saved_head_is_what_was_trained(self):
         head = head_net.Head(head_net.HEADS["small"], 3)

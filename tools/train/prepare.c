@@ -4,6 +4,7 @@
 
 #include "head.h"
 #include "head_features.h"
+#include "pipeline.h"
 #include "state.h"
 
 typedef struct prepare_settings {
@@ -101,15 +102,8 @@ int32_t prepare(uint32_t width, uint32_t height, const uint8_t *rgb, const uint1
     }
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
-    t3r_budget_settings budget = {.allocation = rt->config.allocation,
-                                  .gaussians = scene.count,
-                                  .keep_percent = rt->config.keep_percent,
-                                  .gamma_q8 = rt->config.gamma_q8,
-                                  .clusters = rt->config.clusters,
-                                  .seed = rt->config.seed};
-    t3r_head_input input = {.map = t3r_pointmap_of(&views[0], rt->frame.exponent),
-                            .settings = &budget,
-                            .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS)};
+    const t3r_budget_settings budget = t3r_budget_settings_of(rt, views);
+    const t3r_head_input input = t3r_head_input_of(rt, views, 0, &budget);
     for (uint32_t y = 0; y < height; y++) {
         t3r_head_features(&input, y, features + (size_t)y * width * T3R_FEATURES);
     }
