@@ -88,10 +88,10 @@ def planar_loss(head, batch, rng, term, device):
     half = (len(batch.prepared) + 1) // 2  # the others are drawn as they are: refining costs as much as the rest
     start, some = begins[: half + 1], slice(0, begins[half])
     first, pictures = splats[some], batch.pictures[:half]
-    corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS)
-    # Corrections count as constants, colours as the refinement's own: its momentum overshoots an even error, so that a
-    # constant correction would tell the head the wrong sign.
-    refined = torch.cat((first[:, :6] + (corrected - first)[:, :6].detach(), corrected[:, 6:].detach()), 1)
+    # Without momentum, which overshoots an even error: corrections count as constants, so a head would be told the
+    # overshoot alone, and that is the wrong sign.
+    corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS, momentum=False)
+    refined = first + (corrected - first).detach()
     loss, seen = 0, []
     for drawn, begin, places, wanted, weight, share in (
         (splats, begins, order, batch.pictures, batch.weight, 0.3),

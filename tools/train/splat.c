@@ -501,7 +501,7 @@ static void correct(const sums *z, int32_t pass, float *change, float *s)
 
 /* Pass `pass`, from 0, of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place
  * towards `wanted`; `counts`, [pictures][height][width], is 0 where a pixel has no say; `changes`, [splats][CHANGES],
- * goes from pass to pass, 0 before the first. */
+ * goes from pass to pass, 0 before the first; NULL: no momentum. */
 int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t *start, float *splats,
                  const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, float *changes,
                  int32_t pass)
@@ -535,7 +535,8 @@ int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t 
         }
         for (int32_t n = 0; n < count; n++) {
             size_t at = (size_t)(start[b] + n);
-            correct(&totals[n], pass, changes + CHANGES * at, splats + PARAMETERS * at);
+            float none[CHANGES] = {0};
+            correct(&totals[n], pass, changes != NULL ? changes + CHANGES * at : none, splats + PARAMETERS * at);
         }
         free(totals);
         free(p.first);

@@ -48,16 +48,17 @@ def draw(splats, start, order, width, height):
     return _Draw.apply(splats, start, order, width, height)
 
 
-def refine(splats, start, order, pictures, counts, passes):
-    """Splats corrected towards `pictures` by `passes` of the runtime's refinement; no derivatives."""
+def refine(splats, start, order, pictures, counts, passes, momentum=True):
+    """Splats corrected towards `pictures` by `passes` of the runtime's refinement, or by that less its momentum; no
+    derivatives."""
     made, pictures = splats.detach().clone().contiguous(), pictures.contiguous()
     height, width = pictures.shape[2:]
-    changes = torch.zeros(len(made), CHANGES)
+    changes = torch.zeros(len(made), CHANGES) if momentum else None
     for n in range(passes):
         drawn = draw(made, start, order, width, height)
         if not _native().splat_refine(
             len(start) - 1, width, height, start.ctypes.data, made.data_ptr(), order.ctypes.data,
-            drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data, changes.data_ptr(), n,
+            drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data, changes.data_ptr() if momentum else None, n,
         ):  # fmt: skip
             raise MemoryError("splatter: out of memory")
     return made
