@@ -6,7 +6,7 @@
 
 #include "match.h"
 
-/* sums: width x disparities of row y, left as they were; work: twice T3R_MATCH_RIGHT(width, disparities) int16. */
-void t3r_match_winners(const t3r_match *match, uint32_t y, int16_t *sums, int16_t *work);
+/* sums: width x disparities of row y; work: twice T3R_MATCH_RIGHT(width, disparities) int16. */
+void t3r_match_winners(const t3r_match *match, uint32_t y, const int16_t *sums, int16_t *work);
 
 #endif

@@ -47,22 +47,16 @@ static inline uint8_t nibble_counts(uint8_t x)
     return (uint8_t)((x & 0x33) + ((x >> 2) & 0x33));
 }
 
-/* The sum of two nibbles, 0..8 each */
-static inline uint8_t nibble_sum(uint8_t x)
-{
-    return (uint8_t)((x & 15) + (x >> 4));
-}
-
 void t3r_census_cost(const uint8_t own[T3R_CENSUS_BYTES], const uint8_t *others, uint32_t pitch, const uint8_t *least,
                      uint32_t count, uint8_t *restrict cost)
 {
-    const uint8_t a = own[0], b = own[1], c = own[2], d = own[3];
-    const uint8_t *p = others, *q = p + pitch, *r = q + pitch, *s = r + pitch;
+    const uint8_t a = own[0], b = own[1], c = own[2];
+    const uint8_t *p = others, *q = p + pitch, *r = q + pitch;
     count &= ~15u;
-    for (uint32_t k = 0; k < count; k++) {
-        uint8_t first = (uint8_t)(nibble_counts(a ^ p[k]) + nibble_counts(b ^ q[k]));
-        uint8_t second = (uint8_t)(nibble_counts(c ^ r[k]) + nibble_counts(d ^ s[k]));
-        uint8_t sum = (uint8_t)(nibble_sum(first) + nibble_sum(second));
+    for (size_t k = 0; k < count; k++) {
+        /* each nibble at most 3 x 4 */
+        uint8_t nibbles = (uint8_t)(nibble_counts(a ^ p[k]) + nibble_counts(b ^ q[k]) + nibble_counts(c ^ r[k]));
+        uint8_t sum = (uint8_t)((nibbles & 15) + (nibbles >> 4));
         cost[k] = sum > least[k] ? sum : least[k];
     }
 }

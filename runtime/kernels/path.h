@@ -1,8 +1,8 @@
-/* Semi-global aggregation: one row of pixels along several paths (SPEC.md, "Stereo: aggregation").
+/* Semi-global aggregation: one row of pixels along several paths (SPEC.md, "Stereo").
  *
  *     L(p, k) = C(p, k) + min(L'(k), L'(k - 1) + P1, L'(k + 1) + P1, P2),    L' = L(before p on the path) - its least
  *
- * Cost C is at most 31, so L at most 31 + P2 and its least at most 31; with P1 + P2 + 31 < 256 nothing leaves 8 bits.
+ * C is at most 24, so L at most 24 + P2 and the least of L at most 24: with P1 + P2 + 24 < 256 nothing leaves 8 bits.
  *
  * A path's state is a row of slots, one a pixel, with one more at either end where paths begin: a slot is a guard byte
  * and `disparities` values; behind the last one stands another guard. The leasts are kept in a row of their own. */
@@ -25,11 +25,11 @@
 
 typedef struct t3r_path_costs {
     uint8_t same;                       /* P1: for a step of one disparity */
-    uint8_t guard;                      /* P2 at its largest + 31: never chosen, and with P1 below 256 */
+    uint8_t guard;                      /* P2 at its largest + 24: never chosen, and with P1 below 256 */
     uint8_t step[T3R_PATH_PENALTIES];   /* P2 by how much luma changes on the way */
 } t3r_path_costs;
 
-/* Penalties `same` (P1) and `step` (P2 where luma does not change); P1 + P2 below 225. */
+/* Penalties `same` (P1) and `step` (P2 where luma does not change); P1 + P2 below 232. */
 t3r_path_costs t3r_path_costs_of(uint32_t same, uint32_t step, uint32_t least_step);
 
 /* An empty state: every path begins here. */
