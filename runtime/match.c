@@ -2,6 +2,7 @@
 #include "match.h"
 
 #include "fixed.h"
+#include "match_clean.h"
 #include "match_winner.h"
 
 /* Where things lie in the work. */
@@ -155,5 +156,15 @@ void t3r_match_pair(const t3r_match *match)
             exchange(w.up);
             t3r_match_winners(match, y, w.sums + at, w.winners);
         }
+    }
+}
+
+void t3r_match_all(const t3r_match *match)
+{
+    t3r_match_pair(match);
+    t3r_match_agree(match);
+    for (uint32_t side = 0; side < 2; side++) {
+        t3r_match_speckles(match, side);
+        t3r_match_fill(match, side);
     }
 }

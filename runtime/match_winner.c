@@ -23,7 +23,7 @@ static int16_t first_of(const int16_t *sums, const int16_t *restrict k, size_t c
 {
     int16_t first = INT16_MAX;
     for (size_t i = 0; i < count; i++) {
-        int16_t other = (int16_t)-(sums[i] != least); /* all bits, or none */
+        int16_t other = (int16_t) - (sums[i] != least); /* all bits, or none */
         int16_t at = (int16_t)((k[i] | other) & INT16_MAX);
         first = at < first ? at : first;
     }
@@ -70,7 +70,7 @@ void t3r_match_winners(const t3r_match *match, uint32_t y, const int16_t *sums, 
     const uint8_t *luma = match->luma[0] + (size_t)y * width, *luma_right = match->luma[1] + (size_t)y * right;
     uint16_t *disparity = match->disparity[0] + (size_t)y * width;
     uint16_t *disparity_right = match->disparity[1] + (size_t)y * right;
-    uint8_t *confidence = match->confidence + (size_t)y * width;
+    uint8_t *confidence = match->confidence[0] + (size_t)y * width;
     int16_t *best = work, *at = work + right;
     counting order;
 
@@ -97,7 +97,7 @@ void t3r_match_winners(const t3r_match *match, uint32_t y, const int16_t *sums, 
         }
         int16_t second = second_of(s, order.k, count, (int16_t)k);
         int32_t margin = second - least;
-        confidence[x] = (uint8_t)T3R_MIN(255, margin * 256 / T3R_MAX(second, (int16_t)1));
+        confidence[x] = (uint8_t)t3r_clamp32(margin * 256 / T3R_MAX(second, (int16_t)1), 1, 255);
         disparity[x] = k == 0 || k + 1 == count ? (uint16_t)(k * ONE) : refined(k, s[k - 1], least, s[k + 1]);
     }
     for (uint32_t n = 0; n < right; n++) {

@@ -14,7 +14,8 @@ t3r_path_costs t3r_path_costs_of(uint32_t same, uint32_t step, uint32_t least_st
 
 void t3r_path_begin(uint8_t *state, uint32_t width, uint32_t disparities, uint8_t guard)
 {
-    const size_t slots = (size_t)width + 2, pitch = (size_t)disparities + 1, bytes = T3R_PATH_STATE_BYTES(width, disparities);
+    const size_t slots = (size_t)width + 2, pitch = (size_t)disparities + 1,
+                 bytes = T3R_PATH_STATE_BYTES(width, disparities);
     for (size_t i = 0; i < bytes; i++) {
         state[i] = 0;
     }

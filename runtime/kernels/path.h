@@ -20,13 +20,12 @@
 #define T3R_PATH_PENALTIES 256
 
 /* The state of one path over a row: (width + 2) (disparities + 1) + 1 bytes of slots, then width + 2 leasts. */
-#define T3R_PATH_STATE_BYTES(width, disparities)                                                                       \
-    (((size_t)(width) + 2) * ((size_t)(disparities) + 2) + 1)
+#define T3R_PATH_STATE_BYTES(width, disparities) (((size_t)(width) + 2) * ((size_t)(disparities) + 2) + 1)
 
 typedef struct t3r_path_costs {
-    uint8_t same;                       /* P1: for a step of one disparity */
-    uint8_t guard;                      /* P2 at its largest + 24: never chosen, and with P1 below 256 */
-    uint8_t step[T3R_PATH_PENALTIES];   /* P2 by how much luma changes on the way */
+    uint8_t same;                     /* P1: for a step of one disparity */
+    uint8_t guard;                    /* P2 at its largest + 24: never chosen, and with P1 below 256 */
+    uint8_t step[T3R_PATH_PENALTIES]; /* P2 by how much luma changes on the way */
 } t3r_path_costs;
 
 /* Penalties `same` (P1) and `step` (P2 where luma does not change); P1 + P2 below 232. */
