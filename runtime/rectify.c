@@ -15,6 +15,8 @@
 #define PLANAR_MOST 2
 /* Polar columns stay this far from the baseline's own direction, t = 1: 1/32, 3.6 degrees. */
 #define POLAR_MOST_Q24 (ONE_Q24 * 31 / 32)
+/* Pixels a unit of column or row: places up to 4 units away fit 32 bits in Q16. */
+#define SCALE_MOST_Q16 ((INT64_C(1) << 29) - 1)
 /* Places along each side of a picture at which its extent is measured */
 #define BORDER_STEPS 32
 /* Rays of a view up to 16 to the side of 1 ahead, as the pointmap has it */
@@ -224,7 +226,7 @@ static extent measure(const t3r_rectification *rect, uint32_t view)
     extent e = {{INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN}};
     for (uint32_t step = 0; step < 4 * BORDER_STEPS; step++) {
         int32_t u, v;
-        int64_t ray[3], at[2], unused;
+        int64_t ray[3], at[2] = {0, 0}, unused;
         border(rect->view_width, rect->view_height, step, &u, &v);
         ray_of(&rect->view[view], u, v, ray);
         if (!project(rect->polar, ray, at, &unused)) {
@@ -280,8 +282,9 @@ static void choose_scale(t3r_rectification *rect)
             sum[1] += t3r_round_shift64(beside * cos, 30);
         }
     }
-    rect->scale_q16[0] = (int32_t)(sum[0] / 2);
-    rect->scale_q16[1] = (int32_t)(sum[1] / 2);
+    for (int i = 0; i < 2; i++) {
+        rect->scale_q16[i] = (int32_t)t3r_clamp64(sum[i] / 2, 1 << 16, SCALE_MOST_Q16);
+    }
 }
 
 /* Pixels from `least` to `most`, both included */

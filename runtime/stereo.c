@@ -5,10 +5,6 @@
 #include "match_clean.h"
 #include "stereo_depth.h"
 
-/* Penalties of the aggregation; chosen on the scenes of DESIGN.md. */
-#define SAME 12
-#define STEP 60
-#define LEAST_STEP 12
 /* The first look is at a quarter of the size. */
 #define QUARTER 4
 /* Coarse disparities beyond the outermost 1/128 of all on either side are taken for errors. */
@@ -64,9 +60,9 @@ static t3r_match match_of(const planes *p, const t3r_stereo_settings *settings, 
         .height = height,
         .disparities = disparities,
         .paths = settings->paths,
-        .same = SAME,
-        .step = STEP,
-        .least_step = LEAST_STEP,
+        .same = T3R_STEREO_SAME,
+        .step = T3R_STEREO_STEP,
+        .least_step = T3R_STEREO_LEAST_STEP,
         .luma = {p->luma[0], p->luma[1]},
         .disparity = {p->disparity[0], p->disparity[1]},
         .confidence = {p->confidence[0], p->confidence[1]},

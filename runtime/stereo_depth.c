@@ -11,6 +11,10 @@
 /* The unit is chosen from every second pixel of every second row, by eighths of octaves of baselines in Q16. */
 #define SAMPLING 2
 #define BINS 384
+/* Nor is anything resolved beyond 64 times the median. */
+#define FARTHEST 48
+/* Less than half a pixel from where infinity is, a place is not known. */
+#define NO_PARALLAX_Q16 32768
 
 /* What a view's pixel sees: distance along z in baselines = numerator / denominator. */
 typedef struct sight {
@@ -96,10 +100,13 @@ t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uin
                 if (!see(planes, side, u, v, &s) || s.confidence < T3R_STEREO_LEAST) {
                     continue;
                 }
+                matched++;
+                if (s.disparity_q16 < NO_PARALLAX_Q16) {
+                    still++;
+                    continue;
+                }
                 const int64_t baselines_q16 = t3r_round_div64(s.numerator_q24 * (1 << 22), s.denominator_q30);
                 histogram[t3r_log2_wide_q16((uint64_t)T3R_MAX(baselines_q16, 1)) >> 13]++;
-                still += s.disparity_q16 < 65536;
-                matched++;
             }
         }
     }
@@ -109,10 +116,15 @@ t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uin
     if (4 * (uint64_t)still > 3 * (uint64_t)matched) {
         return T3R_PAIR_PARALLAX;
     }
-    int32_t bin = BINS - 1; /* the first from above with which too many are beyond it */
-    for (uint32_t beyond = histogram[bin]; bin > 0 && beyond <= matched / TOO_FAR;) {
+    const uint32_t moving = matched - still;
+    int32_t bin = BINS - 1, middle = 0; /* the first from above with which too many are beyond it; the median */
+    for (uint32_t beyond = histogram[bin]; bin > 0 && beyond <= moving / TOO_FAR;) {
         beyond += histogram[--bin];
     }
+    for (uint32_t below = histogram[0]; middle < bin && 2 * below <= moving;) {
+        below += histogram[++middle];
+    }
+    bin = T3R_MIN(bin, middle + FARTHEST);
     /* 60,000 steps at the bin's end, 2^((bin + 1) / 8 - 16) baselines */
     const int32_t shift = (bin + 1) / 8, part = (bin + 1) % 8;
     const int64_t limit_q16 = t3r_scale64(t3r_exp2_q16(part << 13), shift - 16);
@@ -145,8 +157,8 @@ void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3
                 /* 2^22 x 2^25 x 2^6 */
                 int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
                 view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
-                /* What is too far for the unit is not where its depth says. */
-                view->confidence[at] = depth > UINT16_MAX ? T3R_STEREO_FILLED : s.confidence;
+                const bool known = depth <= UINT16_MAX && s.disparity_q16 >= NO_PARALLAX_Q16;
+                view->confidence[at] = known ? s.confidence : T3R_STEREO_FILLED;
             }
         }
     }
