@@ -25,7 +25,7 @@ static workspace divide(const t3r_match *match)
     const size_t width = match->width, count = match->disparities, right = T3R_MATCH_RIGHT(width, count);
     const size_t rows = T3R_MATCH_ROWS(match->height), states = T3R_MATCH_BLOCKS(match->height);
     uint8_t *at = match->work;
-    workspace w = {.state_bytes = (match->paths == 8 ? 3 : 1) * T3R_PATH_STATE_BYTES(width, count)};
+    workspace w = {.state_bytes = T3R_MATCH_STATES(match->paths) * T3R_PATH_STATE_BYTES(width, count)};
     w.sums = (int16_t *)(void *)at;
     at += T3R_UP_(width * count * rows * 2);
     w.winners = (int16_t *)(void *)at;
@@ -37,7 +37,7 @@ static workspace divide(const t3r_match *match)
     w.down[1] = w.down[0] + w.state_bytes;
     w.up[0] = w.down[1] + w.state_bytes;
     w.up[1] = w.up[0] + w.state_bytes;
-    at += T3R_UP_((states + 4) * 3 * T3R_PATH_STATE_BYTES(width, count));
+    at += T3R_UP_((states + 4) * w.state_bytes);
     w.bits = at;
     at += T3R_UP_(width * T3R_CENSUS_BYTES);
     w.bits_right = at;
@@ -109,7 +109,7 @@ void t3r_match_pair(const t3r_match *match)
     workspace w = divide(match);
     t3r_path_row row = {.width = width, .disparities = count, .costs = &costs};
 
-    for (uint32_t path = 0; path < (diagonals ? 3 : 1); path++) {
+    for (uint32_t path = 0; path < T3R_MATCH_STATES(match->paths); path++) {
         for (int i = 0; i < 2; i++) {
             t3r_path_begin(w.down[i] + path * T3R_PATH_STATE_BYTES(width, count), width, count, costs.guard);
             t3r_path_begin(w.up[i] + path * T3R_PATH_STATE_BYTES(width, count), width, count, costs.guard);

@@ -25,17 +25,20 @@
 #define T3R_MATCH_BLOCKS(height) (((size_t)(height) + T3R_MATCH_ROWS(height) - 1) / T3R_MATCH_ROWS(height))
 #define T3R_MATCH_RIGHT(width, disparities) ((size_t)(width) + (disparities)-1)
 
+/* Path states that lead from row to row */
+#define T3R_MATCH_STATES(paths) ((paths) == 8 ? 3u : 1u)
+
 /* Regions of fewer pixels than this are speckles. */
 #define T3R_MATCH_LEAST_REGION(width, height) ((uint32_t)((size_t)(width) * (height) / 1024 + 1))
 
-/* Bytes of the work, aligned to 4, with either number of paths: the second part is what speckles take. */
-#define T3R_MATCH_WORK_BYTES(width, height, disparities)                                                               \
-    T3R_MAX_(T3R_MATCH_PATH_BYTES_(width, height, disparities),                                                        \
+/* Bytes of the work, aligned to 4; the second part is what speckles take. */
+#define T3R_MATCH_WORK_BYTES(width, height, disparities, paths)                                                        \
+    T3R_MAX_(T3R_MATCH_PATH_BYTES_(width, height, disparities, paths),                                                 \
              (size_t)4 * T3R_MATCH_LEAST_REGION(width, height) + T3R_MATCH_RIGHT(width, disparities) * (height))
-#define T3R_MATCH_PATH_BYTES_(width, height, disparities)                                                              \
+#define T3R_MATCH_PATH_BYTES_(width, height, disparities, paths)                                                       \
     (T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height) * 2) +                                             \
      T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height)) +                                                 \
-     T3R_UP_((T3R_MATCH_BLOCKS(height) + 4) * 3 * T3R_PATH_STATE_BYTES(width, disparities)) +                          \
+     T3R_UP_((T3R_MATCH_BLOCKS(height) + 4) * T3R_MATCH_STATES(paths) * T3R_PATH_STATE_BYTES(width, disparities)) +    \
      T3R_UP_((size_t)(width)*T3R_CENSUS_BYTES) +                                                                       \
      T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * (2 * T3R_CENSUS_BYTES + 1)) +                                       \
      T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * 4))

@@ -7,6 +7,8 @@
 #define ONE (1 << T3R_DISPARITY_BITS)
 /* A step of luma that a surface rarely has inside. */
 #define EDGE 16
+/* Directions of eight in which a hole must end: what is open is not filled. */
+#define SURROUNDED 5
 
 typedef struct plane {
     uint32_t width, height;
@@ -190,14 +192,17 @@ void t3r_match_fill(const t3r_match *match, uint32_t side)
             if (p.luma[at] == 0) {
                 continue;
             }
-            uint32_t count = surroundings(&p, (int32_t)x, (int32_t)y, false, found);
+            uint32_t count = surroundings(&p, (int32_t)x, (int32_t)y, true, found);
+            if (count < SURROUNDED) {
+                continue;
+            }
+            /* Without crossing an edge if that leads anywhere. */
+            count = surroundings(&p, (int32_t)x, (int32_t)y, false, found);
             if (count < 2) {
                 count = surroundings(&p, (int32_t)x, (int32_t)y, true, found);
             }
-            if (count > 0) {
-                bool seen = is_seen(match, side, &other, (int32_t)x, y);
-                p.disparity[at] = found[seen ? count / 2 : T3R_MIN(1, count - 1)];
-            }
+            const bool seen = is_seen(match, side, &other, (int32_t)x, y);
+            p.disparity[at] = found[seen ? count / 2 : 1];
         }
     }
 }

@@ -298,6 +298,13 @@ static int32_t reduced(int32_t scale_q16, uint64_t pixels, uint64_t most)
     return pixels <= most ? scale_q16 : (int32_t)((uint64_t)scale_q16 * (most - 1) / pixels);
 }
 
+/* Whether matching such a plane takes no more work memory than matching a square one. */
+static bool matches_in(uint64_t width, uint64_t height, uint64_t side, uint32_t disparities)
+{
+    return T3R_MATCH_WORK_BYTES(width, height, disparities, 4) <= T3R_MATCH_WORK_BYTES(side, side, disparities, 4) &&
+           T3R_MATCH_WORK_BYTES(width, height, disparities, 8) <= T3R_MATCH_WORK_BYTES(side, side, disparities, 8);
+}
+
 /* Size and place of the first view's plane: the rows that both views have, the columns of the first that the second
  * may have nearer to its left. */
 static t3r_pair frame_plane(t3r_rectification *rect, uint32_t disparities)
@@ -317,9 +324,8 @@ static t3r_pair frame_plane(t3r_rectification *rect, uint32_t disparities)
     /* The larger right plane has no more pixels than in a square of that side. */
     uint64_t tallest = rect->polar ? side * (side + disparities) / (width + disparities) : side;
     tallest = T3R_MIN(tallest, T3R_MAX_SIDE);
-    while (tallest > side &&
-           T3R_MATCH_WORK_BYTES(width, tallest, disparities) > T3R_MATCH_WORK_BYTES(side, side, disparities)) {
-        tallest -= 8; /* at most T3R_MAX_SIDE / 8 times; ends at `side` at the latest */
+    while (tallest > side && !matches_in(width, tallest, side, disparities)) {
+        tallest -= 8; /* at most T3R_MAX_SIDE / 8 times */
     }
     rect->scale_q16[1] = reduced(rect->scale_q16[1], pixels_between(from[1], to[1], rect->scale_q16[1]), tallest);
     uint64_t height = pixels_between(from[1], to[1], rect->scale_q16[1]);

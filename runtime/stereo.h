@@ -10,7 +10,7 @@
 #include "rectify.h"
 #include "views.h"
 
-#define T3R_STEREO_DISPARITIES 64u /* by default; at 256 pixels of width a quarter of it */
+#define T3R_STEREO_DISPARITIES 128u /* most, by default; as many as the first look finds are compared */
 #define T3R_STEREO_PATHS 4u
 /* Penalties of the aggregation: P1, P2, least P2 (DESIGN.md) */
 #define T3R_STEREO_SAME 12u
@@ -33,11 +33,11 @@ typedef struct t3r_stereo_settings {
     (T3R_RECTIFIED_SIDE(width, height) * (T3R_RECTIFIED_SIDE(width, height) + (disparities)))
 #define T3R_STEREO_PLANES_(width, height, disparities)                                                                 \
     (T3R_UP_(T3R_STEREO_LEFT_(width, height)) + T3R_UP_(T3R_STEREO_RIGHT_(width, height, disparities)))
-#define T3R_STEREO_WORK_BYTES(width, height, disparities)                                                              \
+#define T3R_STEREO_WORK_BYTES(width, height, disparities, paths)                                                       \
     (4 * T3R_STEREO_PLANES_(width, height, disparities) +                                                              \
-     T3R_UP_(T3R_MAX_(                                                                                                 \
-         T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height), disparities),      \
-         2 * T3R_PIXELS_(width, height))))
+     T3R_UP_(T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height),       \
+                                           disparities, paths),                                                        \
+                      2 * T3R_PIXELS_(width, height))))
 
 /* Depth and confidence planes of two views of one size from their colours and checked, undistorted cameras. Both get
  * depths in steps of *depth_unit_q40 world units, 1..65535, 0 = none; confidences T3R_STEREO_... On anything but

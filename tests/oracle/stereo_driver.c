@@ -53,7 +53,7 @@ static int match(uint32_t width, uint32_t height, uint32_t disparities, uint32_t
         .luma = {luma[0], luma[1]},
         .disparity = {allocate(2 * left), allocate(2 * right)},
         .confidence = {allocate(left), allocate(right)},
-        .work = allocate(T3R_MATCH_WORK_BYTES(width, height, disparities)),
+        .work = allocate(T3R_MATCH_WORK_BYTES(width, height, disparities, paths)),
     };
     get(luma[0], left);
     get(luma[1], right);
@@ -108,7 +108,7 @@ static int pair(uint32_t width, uint32_t height, const t3r_stereo_settings *sett
     }
     uint64_t unit = 0;
     t3r_rectification rect = {0};
-    void *work = allocate(T3R_STEREO_WORK_BYTES(width, height, settings->disparities));
+    void *work = allocate(T3R_STEREO_WORK_BYTES(width, height, settings->disparities, settings->paths));
     const double start = milliseconds();
     const t3r_pair found = t3r_stereo_depth(settings, cameras, views, work, &unit);
     const double took = milliseconds() - start;
