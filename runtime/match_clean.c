@@ -8,7 +8,7 @@
 /* A step of luma that a surface rarely has inside. */
 #define EDGE 16
 /* Directions of eight in which a hole must end: what is open is not filled. */
-#define SURROUNDED 5
+#define SURROUNDED 5u
 
 typedef struct plane {
     uint32_t width, height;
@@ -133,34 +133,47 @@ uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side)
 
 static const int8_t directions[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {1, -1}, {-1, 1}};
 
-/* The disparities first met from (x, y) in the eight directions, rising; those behind an edge only if `across`. */
-static uint32_t surroundings(const plane *p, int32_t x, int32_t y, bool across, uint16_t found[8])
+/* Disparities, rising. */
+typedef struct gathering {
+    uint32_t count;
+    uint16_t disparity[8];
+} gathering;
+
+static void gather(gathering *g, uint16_t disparity)
 {
-    uint32_t count = 0;
-    for (int d = 0; d < 8; d++) {
+    uint32_t place = g->count++;
+    for (; place > 0 && g->disparity[place - 1] > disparity; place--) {
+        g->disparity[place] = g->disparity[place - 1];
+    }
+    g->disparity[place] = disparity;
+}
+
+/* The disparities first met from (x, y) in the eight directions: all, and those that no edge hides. */
+static void look_around(const plane *p, int32_t x, int32_t y, gathering *all, gathering *open)
+{
+    all->count = open->count = 0;
+    /* Ends with the direction after which fewer than SURROUNDED can be met. */
+    for (uint32_t d = 0; d < 8 && d - all->count <= 8 - SURROUNDED; d++) {
         const int32_t dx = directions[d][0], dy = directions[d][1];
-        size_t before = (size_t)y * p->width + (size_t)x;
-        for (int32_t i = 1; i <= T3R_MATCH_REACH; i++) {
-            const int32_t u = x + i * dx, v = y + i * dy;
-            if (u < 0 || v < 0 || u >= (int32_t)p->width || v >= (int32_t)p->height) {
-                break;
-            }
-            const size_t at = (size_t)v * p->width + (size_t)u;
-            if (p->luma[at] == 0 || (!across && t3r_abs32(p->luma[at] - p->luma[before]) > EDGE)) {
-                break;
-            }
-            before = at;
+        const int32_t columns = dx == 0 ? T3R_MATCH_REACH : dx < 0 ? x : (int32_t)p->width - 1 - x;
+        const int32_t rows = dy == 0 ? T3R_MATCH_REACH : dy < 0 ? y : (int32_t)p->height - 1 - y;
+        const int32_t most = T3R_MIN(T3R_MATCH_REACH, T3R_MIN(columns, rows));
+        const ptrdiff_t step = (ptrdiff_t)dy * (ptrdiff_t)p->width + dx;
+        ptrdiff_t at = (ptrdiff_t)y * (ptrdiff_t)p->width + x;
+        bool crossed = false;
+        for (int32_t i = 0; i < most; i++) {
+            const uint8_t before = p->luma[at];
+            at += step;
+            crossed |= t3r_abs32(p->luma[at] - before) > EDGE;
             if (p->confidence[at] != 0) {
-                uint32_t place = count++;
-                for (; place > 0 && found[place - 1] > p->disparity[at]; place--) {
-                    found[place] = found[place - 1];
+                gather(all, p->disparity[at]);
+                if (!crossed) {
+                    gather(open, p->disparity[at]);
                 }
-                found[place] = p->disparity[at];
                 break;
             }
         }
     }
-    return count;
 }
 
 /* Whether some trusted pixel of the other plane leads here: then this place was seen twice, and matched wrongly. */
@@ -184,7 +197,7 @@ void t3r_match_fill(const t3r_match *match, uint32_t side)
     for (uint32_t y = 0; y < p.height; y++) {
         for (uint32_t x = 0; x < p.width; x++) {
             const size_t at = (size_t)y * p.width + x;
-            uint16_t found[8];
+            gathering all, open;
             if (p.confidence[at] != 0) {
                 continue;
             }
@@ -192,17 +205,12 @@ void t3r_match_fill(const t3r_match *match, uint32_t side)
             if (p.luma[at] == 0) {
                 continue;
             }
-            uint32_t count = surroundings(&p, (int32_t)x, (int32_t)y, true, found);
-            if (count < SURROUNDED) {
-                continue;
+            look_around(&p, (int32_t)x, (int32_t)y, &all, &open);
+            if (all.count >= SURROUNDED) {
+                const gathering *of = open.count >= 2 ? &open : &all;
+                const bool seen = is_seen(match, side, &other, (int32_t)x, y);
+                p.disparity[at] = of->disparity[seen ? of->count / 2 : 1];
             }
-            /* Without crossing an edge if that leads anywhere. */
-            count = surroundings(&p, (int32_t)x, (int32_t)y, false, found);
-            if (count < 2) {
-                count = surroundings(&p, (int32_t)x, (int32_t)y, true, found);
-            }
-            const bool seen = is_seen(match, side, &other, (int32_t)x, y);
-            p.disparity[at] = found[seen ? count / 2 : 1];
         }
     }
 }
