@@ -290,7 +290,7 @@ static void choose_scale(t3r_rectification *rect)
 /* Pixels from `least` to `most`, both included */
 static uint64_t pixels_between(int64_t least_q24, int64_t most_q24, int32_t scale_q16)
 {
-    return (uint64_t)(((most_q24 - least_q24) * scale_q16) >> 40) + 1;
+    return (uint64_t)t3r_round_shift64((most_q24 - least_q24) * scale_q16, 40) + 1;
 }
 
 static int32_t reduced(int32_t scale_q16, uint64_t pixels, uint64_t most)
