@@ -20,6 +20,7 @@
 #define T3R_STEREO_NONE 0u   /* no depth */
 #define T3R_STEREO_FILLED 1u /* the surroundings' depth */
 #define T3R_STEREO_LEAST 2u  /* 2..255: matched, the more, the surer */
+#define T3R_STEREO_SURE 64u  /* from here on as good as measured: below, errors are two to four times as frequent */
 
 typedef struct t3r_stereo_settings {
     uint32_t disparities; /* most that are compared: 16..T3R_PATH_MOST, a multiple of 16 */

@@ -6,6 +6,8 @@
 
 #define FAR_STEPS 60000
 #define STEPS_MOST (1u << 22)
+/* Of pictures of different places still a few in a hundred pixels match by chance: less than 1/16 is nothing. */
+#define LEAST_SHARE 16
 /* One in so many matched pixels may be too far for the depth unit. */
 #define TOO_FAR 64
 /* The unit is chosen from every second pixel of every second row, by eighths of octaves of baselines in Q16. */
@@ -92,11 +94,12 @@ static bool see(const t3r_stereo_planes *planes, uint32_t side, uint32_t u, uint
 t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uint64_t *depth_unit_q40)
 {
     const t3r_rectification *rect = planes->rect;
-    uint32_t histogram[BINS] = {0}, matched = 0, still = 0;
+    uint32_t histogram[BINS] = {0}, sampled = 0, matched = 0, still = 0;
     for (uint32_t side = 0; side < 2; side++) {
         for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
             for (uint32_t u = 0; u < views[side].width; u += SAMPLING) {
                 sight s;
+                sampled++;
                 if (!see(planes, side, u, v, &s) || s.confidence < T3R_STEREO_LEAST) {
                     continue;
                 }
@@ -110,13 +113,16 @@ t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uin
             }
         }
     }
-    if (matched == 0) {
+    if (matched < sampled / LEAST_SHARE) {
         return T3R_PAIR_OVERLAP;
     }
     if (4 * (uint64_t)still > 3 * (uint64_t)matched) {
         return T3R_PAIR_PARALLAX;
     }
     const uint32_t moving = matched - still;
+    if (moving < sampled / LEAST_SHARE) {
+        return T3R_PAIR_OVERLAP;
+    }
     int32_t bin = BINS - 1, middle = 0; /* the first from above with which too many are beyond it; the median */
     for (uint32_t beyond = histogram[bin]; bin > 0 && beyond <= moving / TOO_FAR;) {
         beyond += histogram[--bin];
