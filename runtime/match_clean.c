@@ -148,8 +148,9 @@ static void gather(gathering *g, uint16_t disparity)
     g->disparity[place] = disparity;
 }
 
-/* The disparities first met from (x, y) in the eight directions: all, and those that no edge hides. */
-static void look_around(const plane *p, int32_t x, int32_t y, gathering *all, gathering *open)
+/* The disparities first met from (x, y) in the eight directions: all, and those that no edge hides. known: how far it
+ * is to the first in the first three directions. */
+static void look_around(const plane *p, int32_t x, int32_t y, const uint8_t known[3], gathering *all, gathering *open)
 {
     all->count = open->count = 0;
     /* Ends with the direction after which fewer than SURROUNDED can be met. */
@@ -157,7 +158,8 @@ static void look_around(const plane *p, int32_t x, int32_t y, gathering *all, ga
         const int32_t dx = directions[d][0], dy = directions[d][1];
         const int32_t columns = dx == 0 ? T3R_MATCH_REACH : dx < 0 ? x : (int32_t)p->width - 1 - x;
         const int32_t rows = dy == 0 ? T3R_MATCH_REACH : dy < 0 ? y : (int32_t)p->height - 1 - y;
-        const int32_t most = T3R_MIN(T3R_MATCH_REACH, T3R_MIN(columns, rows));
+        const int32_t reach = d < 3 && known[d] > T3R_MATCH_REACH ? 0 : T3R_MATCH_REACH;
+        const int32_t most = T3R_MIN(reach, T3R_MIN(columns, rows));
         const ptrdiff_t step = (ptrdiff_t)dy * (ptrdiff_t)p->width + dx;
         ptrdiff_t at = (ptrdiff_t)y * (ptrdiff_t)p->width + x;
         bool crossed = false;
@@ -176,41 +178,61 @@ static void look_around(const plane *p, int32_t x, int32_t y, gathering *all, ga
     }
 }
 
-/* Whether some trusted pixel of the other plane leads here: then this place was seen twice, and matched wrongly. */
-static bool is_seen(const t3r_match *match, uint32_t side, const plane *other, int32_t x, uint32_t y)
+/* Marks the places of a row that some trusted pixel of the other plane leads to: they were seen twice, and where they
+ * have no confidence, matched wrongly. */
+static void mark_seen(const t3r_match *match, uint32_t side, const plane *p, const plane *other, uint32_t y,
+                      uint8_t *seen)
 {
-    for (int32_t k = 0; k < (int32_t)match->disparities; k++) {
-        const int32_t column = other_column(match, side, x, k);
+    const uint16_t *disparity = other->disparity + (size_t)y * other->width;
+    const uint8_t *confidence = other->confidence + (size_t)y * other->width;
+    for (uint32_t x = 0; x < p->width; x++) {
+        seen[x] = 0;
+    }
+    for (uint32_t x = 0; x < other->width; x++) {
+        const int32_t column = confidence[x] == 0 ? -1 : other_column(match, 1 - side, (int32_t)x, whole(disparity[x]));
         if (column >= 0) {
-            const size_t at = (size_t)y * other->width + (size_t)column;
-            if (other->confidence[at] != 0 && t3r_abs32(other->disparity[at] - k * ONE) <= ONE / 2) {
-                return true;
-            }
+            seen[column] = 1;
         }
     }
-    return false;
+}
+
+static uint8_t one_farther(uint8_t distance)
+{
+    return (uint8_t)(distance == UINT8_MAX ? distance : distance + 1);
 }
 
 void t3r_match_fill(const t3r_match *match, uint32_t side)
 {
     const plane p = plane_of(match, side), other = plane_of(match, 1 - side);
+    /* Of each column: whether it was seen, and how far it is to a trusted pixel to the right and above. */
+    uint8_t *seen = match->work, *ahead = seen + p.width, *above = ahead + p.width;
+    for (uint32_t x = 0; x < p.width; x++) {
+        above[x] = UINT8_MAX;
+    }
     for (uint32_t y = 0; y < p.height; y++) {
+        const size_t row = (size_t)y * p.width;
+        const uint8_t *confidence = p.confidence + row;
+        uint8_t behind = UINT8_MAX, distance = UINT8_MAX;
+        mark_seen(match, side, &p, &other, y, seen);
+        for (uint32_t x = p.width; x-- > 0;) {
+            ahead[x] = distance;
+            distance = confidence[x] != 0 ? 1 : one_farther(distance);
+        }
         for (uint32_t x = 0; x < p.width; x++) {
-            const size_t at = (size_t)y * p.width + x;
             gathering all, open;
-            if (p.confidence[at] != 0) {
-                continue;
+            if (confidence[x] == 0) {
+                p.disparity[row + x] = T3R_NO_DISPARITY;
+                if (p.luma[row + x] != 0) {
+                    const uint8_t known[3] = {behind, ahead[x], above[x]};
+                    look_around(&p, (int32_t)x, (int32_t)y, known, &all, &open);
+                    if (all.count >= SURROUNDED) {
+                        const gathering *of = open.count >= 2 ? &open : &all;
+                        p.disparity[row + x] = of->disparity[seen[x] ? of->count / 2 : 1];
+                    }
+                }
             }
-            p.disparity[at] = T3R_NO_DISPARITY;
-            if (p.luma[at] == 0) {
-                continue;
-            }
-            look_around(&p, (int32_t)x, (int32_t)y, &all, &open);
-            if (all.count >= SURROUNDED) {
-                const gathering *of = open.count >= 2 ? &open : &all;
-                const bool seen = is_seen(match, side, &other, (int32_t)x, y);
-                p.disparity[at] = of->disparity[seen ? of->count / 2 : 1];
-            }
+            behind = confidence[x] != 0 ? 1 : one_farther(behind);
+            above[x] = confidence[x] != 0 ? 1 : one_farther(above[x]);
         }
     }
 }

@@ -59,7 +59,7 @@ static void offer(const int16_t *sums, const int16_t *k, size_t count, int16_t *
 static uint16_t refined(uint32_t k, int32_t before, int32_t least, int32_t after)
 {
     int32_t steeper = T3R_MAX(before, after) - least;
-    int32_t shift = steeper <= 0 ? 0 : (int32_t)t3r_round_div64((int64_t)(before - after) * ONE, 2 * steeper);
+    int32_t shift = steeper <= 0 ? 0 : t3r_round_div32((before - after) * ONE, 2 * steeper);
     return (uint16_t)((int32_t)(k * ONE) + shift);
 }
 
