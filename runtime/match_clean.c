@@ -8,7 +8,7 @@
 /* A step of luma that a surface rarely has inside. */
 #define EDGE 16
 /* Directions of eight in which a hole must end: what is open is not filled. */
-#define SURROUNDED 5u
+#define SURROUNDED 4u
 
 typedef struct plane {
     uint32_t width, height;

@@ -17,7 +17,7 @@ uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side);
 /* Pixels without confidence get the disparity of what surrounds them within T3R_MATCH_REACH pixels, the farther surface
  * where the other picture does not see them, or T3R_NO_DISPARITY; their confidence stays 0. At most 8 T3R_MATCH_REACH
  * steps a pixel. Uses match->work. */
-#define T3R_MATCH_REACH 16
+#define T3R_MATCH_REACH 24
 void t3r_match_fill(const t3r_match *match, uint32_t side);
 
 #endif

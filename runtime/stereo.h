@@ -13,9 +13,9 @@
 #define T3R_STEREO_DISPARITIES 128u /* most, by default; as many as the first look finds are compared */
 #define T3R_STEREO_PATHS 4u
 /* Penalties of the aggregation: P1, P2, least P2 (DESIGN.md) */
-#define T3R_STEREO_SAME 12u
-#define T3R_STEREO_STEP 60u
-#define T3R_STEREO_LEAST_STEP 12u
+#define T3R_STEREO_SAME 20u
+#define T3R_STEREO_STEP 120u
+#define T3R_STEREO_LEAST_STEP 30u
 /* Confidences of t3r_stereo_depth() */
 #define T3R_STEREO_NONE 0u   /* no depth */
 #define T3R_STEREO_FILLED 1u /* the surroundings' depth */
