@@ -6,8 +6,9 @@
 
 #define FAR_STEPS 60000
 #define STEPS_MOST (1u << 22)
-/* Of pictures of different places still a few in a hundred pixels match by chance: less than 1/16 is nothing. */
-#define LEAST_SHARE 16
+/* Of pictures of different places two or three in a hundred pixels match surely, by chance: less than 1/25 is nothing.
+ */
+#define LEAST_SHARE 25
 /* One in so many matched pixels may be too far for the depth unit. */
 #define TOO_FAR 64
 /* The unit is chosen from every second pixel of every second row, by eighths of octaves of baselines in Q16. */
@@ -100,7 +101,7 @@ t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uin
             for (uint32_t u = 0; u < views[side].width; u += SAMPLING) {
                 sight s;
                 sampled++;
-                if (!see(planes, side, u, v, &s) || s.confidence < T3R_STEREO_LEAST) {
+                if (!see(planes, side, u, v, &s) || s.confidence < T3R_STEREO_SURE) {
                     continue;
                 }
                 matched++;

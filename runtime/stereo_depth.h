@@ -19,8 +19,9 @@ typedef struct t3r_stereo_planes {
     uint32_t steps; /* depth steps a baseline */
 } t3r_stereo_planes;
 
-/* The depth unit with which 63 of 64 matched pixels are nearer than 60,000 steps. T3R_PAIR_OVERLAP: less than 1/16 matched;
- * T3R_PAIR_PARALLAX: three of four matched pixels are less than a pixel from where infinity is; T3R_PAIR_SCALE. */
+/* The depth unit with which 63 of 64 surely matched pixels are nearer than 60,000 steps. T3R_PAIR_OVERLAP: less than
+ * 1/25 matched surely; T3R_PAIR_PARALLAX: three of four of these less than half a pixel from where infinity is;
+ * T3R_PAIR_SCALE. */
 t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uint64_t *depth_unit_q40);
 
 /* Fills depth and confidence of a view; after t3r_stereo_unit(). */
