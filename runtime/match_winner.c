@@ -38,8 +38,8 @@ static int16_t second_of(const int16_t *sums, const int16_t *restrict k, size_t 
     for (size_t i = 0; i < count; i++) {
         int16_t sum = sums[i], here = k[i];
         int16_t before = here < below ? sum : INT16_MAX, after = here > above ? sum : INT16_MAX;
-        second = before < second ? before : second;
-        second = after < second ? after : second;
+        int16_t least = before < after ? before : after;
+        second = least < second ? least : second;
     }
     return second;
 }

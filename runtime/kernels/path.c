@@ -36,25 +36,32 @@ typedef struct link {
     uint8_t from_least, step, least;
 } link;
 
-/* slot: the guard before the values */
-static inline uint8_t relaxed(const uint8_t *slot, size_t k, uint8_t least, uint8_t step, uint8_t same)
+/* What a path adds to the cost: the values of the pixel before at k - 1, k and k + 1. */
+static inline uint8_t relaxed(uint8_t below, uint8_t same_k, uint8_t above, uint8_t least, uint8_t step, uint8_t same)
 {
-    uint8_t beside = (uint8_t)(minimum(slot[k], slot[k + 2]) + same);
-    return minimum((uint8_t)(minimum(slot[k + 1], beside) - least), step);
+    uint8_t beside = (uint8_t)(minimum(below, above) + same);
+    return minimum((uint8_t)(minimum(same_k, beside) - least), step);
 }
 
-/* count here and below: a multiple of 16 */
-static void follow(const uint8_t *cost, link *path, uint8_t same, size_t count, uint8_t *restrict to)
+/* count here and below: a multiple of 16. The three pointers are into one slot; a compiler that saw it would carry
+ * values from step to step, and then not vectorize. */
+static __attribute__((noinline)) uint8_t follow(const uint8_t *cost, const uint8_t *below, const uint8_t *same_k,
+                                                const uint8_t *above, uint8_t from_least, uint8_t step, uint8_t same,
+                                                size_t count, uint8_t *restrict to)
 {
-    const uint8_t *from = path->from;
-    const uint8_t from_least = path->from_least, step = path->step;
     uint8_t least = UINT8_MAX;
     for (size_t k = 0; k < count; k++) {
-        uint8_t value = (uint8_t)(cost[k] + relaxed(from, k, from_least, step, same));
+        uint8_t value = (uint8_t)(cost[k] + relaxed(below[k], same_k[k], above[k], from_least, step, same));
         to[k] = value;
         least = minimum(least, value);
     }
-    path->least = least;
+    return least;
+}
+
+static void follow_link(const uint8_t *cost, link *path, uint8_t same, size_t count)
+{
+    const uint8_t *from = path->from;
+    path->least = follow(cost, from, from + 1, from + 2, path->from_least, path->step, same, count, path->to);
 }
 
 /* The costs of a pixel's paths summed: a and d, or all four; added to what is there or not. */
@@ -112,13 +119,13 @@ static void follow_row(const t3r_path_row *row, bool diagonals, bool reverse, in
         const uint8_t *cost = row->cost + (size_t)x * count;
         int16_t *s = sums != NULL ? sums + (size_t)x * count : NULL;
         for (uint32_t path = 0; path < paths; path++) {
-            follow(cost, &links[path], same, count, links[path].to);
+            follow_link(cost, &links[path], same, count);
             row->to[path * state + leasts + x + 1] = links[path].least;
         }
         if (s == NULL) {
             continue;
         }
-        follow(cost, &links[3], same, count, links[3].to);
+        follow_link(cost, &links[3], same, count);
         if (diagonals) {
             sum_four(links[0].to, links[1].to, links[2].to, links[3].to, count, reverse, s);
         } else {
