@@ -88,7 +88,7 @@ static bool see(const t3r_stereo_planes *planes, uint32_t side, uint32_t u, uint
         t3r_round_shift64((int64_t)first->a_q24 * second->b_q24 - (int64_t)second->a_q24 * first->b_q24, 18);
     apart_q30 = T3R_MAX(apart_q30, 1); /* at and beyond infinity: as far as can be */
     s->numerator_q24 = t3r_round_shift64((int64_t)own.b_q24 * other.b_q24, 24);
-    s->denominator_q30 = T3R_MAX(t3r_round_shift64(apart_q30 * across_q24, 24), 1); /* 2^34 x 2^29 */
+    s->denominator_q30 = T3R_MAX(t3r_round_shift64(apart_q30 * across_q24, 24), 1); /* 2^33 x 2^28.6 */
     return true;
 }
 
