@@ -164,7 +164,10 @@ void t3r_match_all(const t3r_match *match)
     t3r_match_pair(match);
     t3r_match_agree(match);
     for (uint32_t side = 0; side < 2; side++) {
-        t3r_match_speckles(match, side);
+        (void)t3r_match_speckles(match, side);
+        t3r_match_smooth(match, side);
+    }
+    for (uint32_t side = 0; side < 2; side++) {
         t3r_match_fill(match, side);
     }
 }

@@ -129,6 +129,75 @@ uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side)
     return removed;
 }
 
+/* --- smoothing -------------------------------------------------------------------------------------------------- */
+
+static inline void sort(uint16_t *a, uint16_t *b)
+{
+    const int16_t x = (int16_t)*a, y = (int16_t)*b; /* disparities are below 2^15: vectors compare signed numbers */
+    *a = (uint16_t)(x < y ? x : y);
+    *b = (uint16_t)(x < y ? y : x);
+}
+
+/* The medians of 3 x 3 places about columns 1..width - 2 of the middle row, by Paeth's network. */
+static void medians(const uint16_t *above, const uint16_t *middle, const uint16_t *below, uint32_t width,
+                    uint16_t *restrict out)
+{
+    for (size_t x = 1; x + 1 < width; x++) {
+        uint16_t a = above[x - 1], b = above[x], c = above[x + 1], d = middle[x - 1], e = middle[x];
+        uint16_t f = middle[x + 1], g = below[x - 1], h = below[x], i = below[x + 1];
+        sort(&b, &c), sort(&e, &f), sort(&h, &i);
+        sort(&a, &b), sort(&d, &e), sort(&g, &h);
+        sort(&b, &c), sort(&e, &f), sort(&h, &i);
+        sort(&a, &d), sort(&f, &i), sort(&e, &h);
+        sort(&d, &g), sort(&b, &e), sort(&c, &f);
+        sort(&e, &h), sort(&e, &c), sort(&g, &e);
+        sort(&e, &c);
+        out[x] = e;
+    }
+}
+
+static inline uint8_t lesser(uint8_t a, uint8_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Likewise the least of nine confidences. */
+static void least_of_nine(const uint8_t *above, const uint8_t *middle, const uint8_t *below, uint32_t width,
+                          uint8_t *restrict out)
+{
+    for (size_t x = 1; x + 1 < width; x++) {
+        uint8_t left = lesser(above[x - 1], lesser(middle[x - 1], below[x - 1]));
+        uint8_t here = lesser(above[x], lesser(middle[x], below[x]));
+        uint8_t right = lesser(above[x + 1], lesser(middle[x + 1], below[x + 1]));
+        out[x] = lesser(left, lesser(here, right));
+    }
+}
+
+void t3r_match_smooth(const t3r_match *match, uint32_t side)
+{
+    const plane p = plane_of(match, side);
+    uint16_t *before = match->work, *here = before + p.width, *median = here + p.width;
+    uint8_t *least = (uint8_t *)(median + p.width);
+    for (uint32_t y = 0; y < p.height; y++) {
+        uint16_t *row = p.disparity + (size_t)y * p.width;
+        for (uint32_t x = 0; x < p.width; x++) {
+            here[x] = row[x]; /* as it was */
+        }
+        if (y > 0 && y + 1 < p.height) {
+            const uint8_t *c = p.confidence + (size_t)y * p.width;
+            medians(before, here, row + p.width, p.width, median);
+            least_of_nine(c - p.width, c, c + p.width, p.width, least);
+            for (size_t x = 1; x + 1 < p.width; x++) {
+                const uint16_t own = row[x], other = median[x];
+                row[x] = least[x] != 0 ? other : own;
+            }
+        }
+        uint16_t *next = before;
+        before = here;
+        here = next;
+    }
+}
+
 /* --- filling ---------------------------------------------------------------------------------------------------- */
 
 static const int8_t directions[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {1, -1}, {-1, 1}};

@@ -14,6 +14,9 @@ void t3r_match_agree(const t3r_match *match);
  * side: 0 left, 1 right. Returns how many pixels. Uses match->work. */
 uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side);
 
+/* Trusted pixels among eight trusted neighbours get the median of the nine disparities. Uses match->work. */
+void t3r_match_smooth(const t3r_match *match, uint32_t side);
+
 /* Pixels without confidence get the disparity of what surrounds them within T3R_MATCH_REACH pixels, the farther surface
  * where the other picture does not see them, or T3R_NO_DISPARITY; their confidence stays 0. At most 8 T3R_MATCH_REACH
  * steps a pixel. Uses match->work. */

@@ -65,8 +65,10 @@ static int match(uint32_t width, uint32_t height, uint32_t disparities, uint32_t
             const double start = milliseconds();
             t3r_match_pair(&m);
             t3r_match_agree(&m);
-            (void)t3r_match_speckles(&m, 0);
-            (void)t3r_match_speckles(&m, 1);
+            for (uint32_t side = 0; side < 2; side++) {
+                (void)t3r_match_speckles(&m, side);
+                t3r_match_smooth(&m, side);
+            }
             const double matched = milliseconds();
             t3r_match_fill(&m, 0);
             t3r_match_fill(&m, 1);

@@ -344,6 +344,44 @@ static void speckles(void **state)
     pair_free(&p);
 }
 
+static int rising(const void *a, const void *b)
+{
+    return *(const uint16_t *)a - *(const uint16_t *)b;
+}
+
+static void smoothing(void **state)
+{
+    (void)state;
+    uint64_t seed = 8;
+    pair p = pair_new(37, 30, 16, 4);
+    for (uint32_t side = 0; side < 2; side++) {
+        const int width = side == 0 ? 37 : 52;
+        uint16_t before[52 * 30];
+        for (int i = 0; i < width * 30; i++) {
+            before[i] = p.m.disparity[side][i] = (uint16_t)unit_between(&seed, 0, 32767);
+            p.m.confidence[side][i] = unit_random(&seed) % 40 != 0;
+        }
+        int changed = 0;
+        t3r_match_smooth(&p.m, side);
+        for (int i = 0; i < width * 30; i++) {
+            const int x = i % width, y = i / width;
+            uint16_t nine[9];
+            int count = 0;
+            for (int n = 0; n < 9; n++) {
+                const int u = x + n % 3 - 1, v = y + n / 3 - 1;
+                if (u >= 0 && v >= 0 && u < width && v < 30 && p.m.confidence[side][v * width + u] != 0) {
+                    nine[count++] = before[v * width + u];
+                }
+            }
+            qsort(nine, (size_t)count, sizeof *nine, rising);
+            assert_int_equal(p.m.disparity[side][i], count == 9 ? nine[4] : before[i]);
+            changed += count == 9;
+        }
+        assert_true(changed > width * 30 / 2);
+    }
+    pair_free(&p);
+}
+
 static void filling(void **state)
 {
     (void)state;
@@ -392,8 +430,8 @@ static void filling(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(census),   cmocka_unit_test(blocks),
-                                       cmocka_unit_test(shifted),  cmocka_unit_test(agreement),
-                                       cmocka_unit_test(speckles), cmocka_unit_test(filling)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(census),   cmocka_unit_test(blocks),    cmocka_unit_test(shifted), cmocka_unit_test(agreement),
+        cmocka_unit_test(speckles), cmocka_unit_test(smoothing), cmocka_unit_test(filling)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
