@@ -44,7 +44,7 @@
      T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * 4))
 
 typedef struct t3r_match {
-    uint32_t width, height;          /* of the left plane; at least 16 x 8 */
+    uint32_t width, height;          /* of the left plane; at least 8 x 8 */
     uint32_t disparities;            /* 16..T3R_PATH_MOST, a multiple of 16 */
     uint32_t paths;                  /* 4 or 8 */
     uint32_t same, step, least_step; /* penalties: P1; P2 where luma does not change, and its least */
