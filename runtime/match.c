@@ -159,7 +159,7 @@ void t3r_match_pair(const t3r_match *match)
     }
 }
 
-void t3r_match_all(const t3r_match *match)
+void t3r_match_all(const t3r_match *match, bool fill)
 {
     t3r_match_pair(match);
     t3r_match_agree(match);
@@ -167,7 +167,7 @@ void t3r_match_all(const t3r_match *match)
         (void)t3r_match_speckles(match, side);
         t3r_match_smooth(match, side);
     }
-    for (uint32_t side = 0; side < 2; side++) {
+    for (uint32_t side = 0; side < 2 && fill; side++) {
         t3r_match_fill(match, side);
     }
 }

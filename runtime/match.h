@@ -54,8 +54,9 @@ typedef struct t3r_match {
     void *work;
 } t3r_match;
 
-/* Both planes' disparities and confidences, clean and filled: t3r_match_pair(), then those of match_clean.h. */
-void t3r_match_all(const t3r_match *match);
+/* Both planes' disparities and confidences, clean, and filled where wanted: t3r_match_pair(), then those of
+ * match_clean.h. Without filling disparities of confidence 0 mean nothing. */
+void t3r_match_all(const t3r_match *match, bool fill);
 
 /* Each pixel's best disparity, whether the other picture agrees or not; confidence of the left plane alone. */
 void t3r_match_pair(const t3r_match *match);

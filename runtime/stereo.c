@@ -178,7 +178,7 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
     const uint32_t width = views[0].width, height = views[0].height;
     const planes full = divide(settings, width, height, work);
     t3r_rectification rect;
-    t3r_stereo_planes found = {.rect = &rect};
+    t3r_stereo_planes found = {.rect = &rect, .filled = settings->fill != 0};
     t3r_pair pair = t3r_rectify(&cameras[0], &cameras[1], width, height, settings->disparities, &rect);
     if (pair == T3R_PAIR_OK) {
         pair = first_look(settings, &rect, views, &full, &found.first, &found.disparities);
@@ -199,7 +199,7 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
                               full.luma[side] + (size_t)y * columns);
         }
     }
-    t3r_match_all(&match);
+    t3r_match_all(&match, settings->fill != 0);
     pair = t3r_stereo_unit(&found, views, depth_unit_q40);
     for (uint32_t side = 0; side < 2 && pair == T3R_PAIR_OK; side++) {
         t3r_stereo_to_view(&found, side, &views[side]);

@@ -25,6 +25,7 @@
 typedef struct t3r_stereo_settings {
     uint32_t disparities; /* most that are compared: 16..T3R_PATH_MOST, a multiple of 16 */
     uint32_t paths;       /* 4 or 8 */
+    uint32_t fill;        /* 1 = holes get their surroundings' depth, T3R_STEREO_FILLED */
 } t3r_stereo_settings;
 
 /* Bytes of work for views of that size, aligned to 64: two planes' luma, disparities and confidences, and the matching.

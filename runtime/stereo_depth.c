@@ -40,10 +40,10 @@ static bool look_up(const t3r_stereo_planes *planes, uint32_t side, const int32_
     }
     const size_t nearest = (size_t)(row * width + column);
     const int32_t own = planes->disparity[side][nearest];
-    if (own == T3R_NO_DISPARITY) {
+    const bool matched = planes->confidence[side][nearest] != 0;
+    if (own == T3R_NO_DISPARITY || (!matched && !planes->filled)) {
         return false;
     }
-    const bool matched = planes->confidence[side][nearest] != 0;
     *k_q7 = own;
     *confidence = (uint8_t)(matched ? T3R_MAX(planes->confidence[side][nearest], T3R_STEREO_LEAST) : T3R_STEREO_FILLED);
 

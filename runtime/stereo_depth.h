@@ -16,6 +16,7 @@ typedef struct t3r_stereo_planes {
     uint32_t columns[2];    /* their widths */
     uint16_t *disparity[2]; /* as match.h has them */
     uint8_t *confidence[2];
+    bool filled;    /* disparities of confidence 0 are those of their surroundings; else they mean nothing */
     uint32_t steps; /* depth steps a baseline */
 } t3r_stereo_planes;
 

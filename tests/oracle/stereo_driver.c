@@ -79,7 +79,7 @@ static int match(uint32_t width, uint32_t height, uint32_t disparities, uint32_t
         printf("%.3f %.3f\n", best[0], best[1]);
         return 0;
     }
-    t3r_match_all(&m);
+    t3r_match_all(&m, true);
     fwrite(m.disparity[0], 2, left, stdout);
     fwrite(m.confidence[0], 1, left, stdout);
     return 0;
@@ -139,7 +139,7 @@ int main(int argc, char **argv)
         return 2;
     }
     const uint32_t width = (uint32_t)atoi(argv[2]), height = (uint32_t)atoi(argv[3]);
-    const t3r_stereo_settings settings = {(uint32_t)atoi(argv[4]), (uint32_t)atoi(argv[5])};
+    const t3r_stereo_settings settings = {(uint32_t)atoi(argv[4]), (uint32_t)atoi(argv[5]), 1};
     if (strcmp(argv[1], "match") == 0) {
         return match(width, height, settings.disparities, settings.paths, 0);
     }

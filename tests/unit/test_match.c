@@ -244,7 +244,7 @@ static void shifted(void **state)
         for (uint32_t paths = 4; paths <= 8; paths += 4) {
             pair p = pair_new(64, 40, 32, paths);
             seen_twice(&p, 11, gain);
-            t3r_match_all(&p.m);
+            t3r_match_all(&p.m, true);
             /* the last columns' partners lie inside too: all of the left plane is found, to the last pixel */
             for (size_t i = 0; i < p.pixels[0]; i++) {
                 if (p.luma[0][i] != 0) {
