@@ -52,6 +52,14 @@ static inline int64_t t3r_round_div64(int64_t n, int64_t d)
     return quotient - (doubled % (2 * d) < 0);
 }
 
+/* The same in 32 bits; d > 0, |n| and d below 2^29 */
+static inline int32_t t3r_round_div32(int32_t n, int32_t d)
+{
+    int32_t doubled = 2 * n + d;
+    int32_t quotient = doubled / (2 * d);
+    return quotient - (doubled % (2 * d) < 0);
+}
+
 /* (a b) / 2^16, round-half-up, of numbers that are not negative: (a b + 2^15) >> 16, likewise in 16-bit steps (SSE2
  * pmulhuw and pmullw, MVE vrmulh, NEON vmull and vrshrn). At most 65534. */
 static inline uint16_t t3r_mulr_q16(uint16_t a, uint16_t b)

@@ -1,0 +1,64 @@
+/* Stage stereo, second part: disparities of a rectified pair by semi-global matching (SPEC.md, "Stereo").
+ *
+ * Pixel (x, y) of the left plane is sought at (x + disparities - 1 - k, y) of the right one, k = 0..disparities - 1:
+ * the right plane is disparities - 1 columns wider, so that every pixel has all its candidates.
+ *
+ * Aggregated costs are kept for T3R_MATCH_ROWS(height) rows at a time. Paths downwards run twice: once over the whole
+ * picture, leaving their state at the beginning of every such block of rows, and once more block by block from the last
+ * to the first, each followed by the paths upwards. So work grows with width x disparities x sqrt(height). */
+#ifndef T3R_MATCH_H
+#define T3R_MATCH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "kernels/census.h"
+#include "kernels/path.h"
+#include "trim3r_arena.h"
+
+#define T3R_NO_DISPARITY UINT16_MAX
+#define T3R_DISPARITY_BITS 7 /* disparities k are in Q7 */
+
+/* Rows of a block: a power of two near the root of the height. */
+#define T3R_MATCH_ROWS(height) ((height) <= 128 ? 8u : (height) <= 512 ? 16u : (height) <= 2048 ? 32u : 64u)
+#define T3R_MATCH_BLOCKS(height) (((size_t)(height) + T3R_MATCH_ROWS(height) - 1) / T3R_MATCH_ROWS(height))
+#define T3R_MATCH_RIGHT(width, disparities) ((size_t)(width) + (disparities)-1)
+
+/* Path states that lead from row to row */
+#define T3R_MATCH_STATES(paths) ((paths) == 8 ? 3u : 1u)
+
+/* Regions of fewer pixels than this are speckles. */
+#define T3R_MATCH_LEAST_REGION(width, height) ((uint32_t)((size_t)(width) * (height) / 1024 + 1))
+
+/* Bytes of the work, aligned to 4; the second part is what speckles take. */
+#define T3R_MATCH_WORK_BYTES(width, height, disparities, paths)                                                        \
+    T3R_MAX_(T3R_MATCH_PATH_BYTES_(width, height, disparities, paths),                                                 \
+             (size_t)4 * T3R_MATCH_LEAST_REGION(width, height) + T3R_MATCH_RIGHT(width, disparities) * (height))
+#define T3R_MATCH_PATH_BYTES_(width, height, disparities, paths)                                                       \
+    (T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height) * 2) +                                             \
+     T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height)) +                                                 \
+     T3R_UP_((T3R_MATCH_BLOCKS(height) + 4) * T3R_MATCH_STATES(paths) * T3R_PATH_STATE_BYTES(width, disparities)) +    \
+     T3R_UP_((size_t)(width)*T3R_CENSUS_BYTES) +                                                                       \
+     T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * (2 * T3R_CENSUS_BYTES + 1)) +                                       \
+     T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * 4))
+
+typedef struct t3r_match {
+    uint32_t width, height;          /* of the left plane; at least 8 x 8 */
+    uint32_t disparities;            /* 16..T3R_PATH_MOST, a multiple of 16 */
+    uint32_t paths;                  /* 4 or 8 */
+    uint32_t same, step, least_step; /* penalties: P1; P2 where luma does not change, and its least */
+    const uint8_t *luma[2];          /* left, right: 1..255, 0 = shows nothing */
+    uint16_t *disparity[2];          /* k in Q7, or T3R_NO_DISPARITY; of the left plane's width, of the right one's */
+    uint8_t *confidence[2]; /* how much better the chosen disparity is than any other: 1..255, 0 = not to be trusted */
+    void *work;
+} t3r_match;
+
+/* Both planes' disparities and confidences, clean, and filled where wanted: t3r_match_pair(), then those of
+ * match_clean.h. Without filling disparities of confidence 0 mean nothing. */
+void t3r_match_all(const t3r_match *match, bool fill);
+
+/* Each pixel's best disparity, whether the other picture agrees or not; confidence of the left plane alone. */
+void t3r_match_pair(const t3r_match *match);
+
+#endif

@@ -1,0 +1,78 @@
+/* Stage stereo, first part: two posed pinhole cameras to planes in which every point lies in the same row of both
+ * (SPEC.md, "Stereo: rectification").
+ *
+ * The rectified frame has the baseline, from the first camera to the second, for its x axis. A ray of either camera is
+ * a x + b e(row): rows are planes through the baseline, and a / b is the cotangent of the ray's angle to it. With the
+ * baseline for a unit, a point whose two cotangents differ by d is 1 / d away from it.
+ *
+ *     planar   rows are lines of a plane, a = column, b = 1: as a stereo camera has it
+ *     polar    rows are half-planes, a = 2 t, b = 1 - t^2, t = column: the tangent of half the angle to e. For pairs
+ *              whose baseline points where they look: the epipole, and pictures all around it, stay finite. */
+#ifndef T3R_RECTIFY_H
+#define T3R_RECTIFY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "trim3r.h"
+
+/* Whether two views can be matched, and why not. */
+typedef enum t3r_pair {
+    T3R_PAIR_OK,
+    T3R_PAIR_NO_BASELINE, /* both cameras stand in one place and look the same way */
+    T3R_PAIR_ROTATION,    /* both cameras stand in one place, but look different ways */
+    T3R_PAIR_OVERLAP,     /* too little is in both pictures */
+    T3R_PAIR_PARALLAX,    /* whatever is in both pictures hardly moves between them */
+    T3R_PAIR_SCALE,       /* the baseline in world units leaves no depth unit */
+    T3R_PAIR_COUNT
+} t3r_pair;
+
+/* As text, for people */
+const char *t3r_pair_text(t3r_pair pair);
+
+/* The largest side of a rectified plane in planar rectification; other shapes take no more memory. */
+#define T3R_RECTIFIED_SIDE(width, height) (((size_t)((width) > (height) ? (width) : (height)) * 5 / 4 + 7) / 8 * 8)
+#define T3R_RECTIFIED_LEAST 32u /* least width and height */
+
+typedef struct t3r_rectified_view {
+    int32_t fx_q16, fy_q16, cx_q16, cy_q16;
+    int32_t turn_q30[9]; /* row-major: the rectified frame's axes, in columns, seen by the camera */
+} t3r_rectified_view;
+
+typedef struct t3r_rectification {
+    bool polar;
+    uint32_t view_width, view_height;        /* of both views */
+    uint32_t width, height;                  /* of the first view's plane */
+    int32_t scale_q16[2];                    /* pixels a unit of column and of row */
+    int32_t first_q16[2];                    /* where column 0 and row 0 of the first view's plane stand, pixels */
+    int32_t least_disparity, most_disparity; /* between which any pixel of both pictures must be, whole pixels */
+    t3r_rectified_view view[2];
+    uint32_t baseline_q31; /* length: baseline_q31 2^(baseline_exponent - 31) in Q32 world units */
+    int32_t baseline_exponent;
+} t3r_rectification;
+
+/* For two checked, undistorted cameras of views of width x height. The plane and a right one that is disparities - 1
+ * columns wider take no more memory, and their matching no more work memory, than squares of T3R_RECTIFIED_SIDE. */
+t3r_pair t3r_rectify(const t3r_camera *first, const t3r_camera *second, uint32_t width, uint32_t height,
+                     uint32_t disparities, t3r_rectification *rect);
+
+/* A ray in the rectified frame by its place in a plane. */
+typedef struct t3r_column {
+    int32_t a_q24, b_q24; /* b <= 0: no such ray */
+} t3r_column;
+
+/* The column x pixels from where the baseline's normal is, Q16: the plane's own first one is first_q16[0]. */
+t3r_column t3r_rectified_column(const t3r_rectification *rect, int32_t x_q16);
+
+/* Where a view's pixel lies: column as above, row counted from the plane's first, Q16; and how far its ray goes from
+ * the baseline while z grows by 1 in the view, Q24. False: nowhere. */
+bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u_q16, int32_t v_q16,
+                         int32_t place_q16[2], int32_t *across_q24);
+
+/* `count` pixels of row `row` of a plane of `view`, whose first column is at x_q16: luma 1..255, 0 where the view shows
+ * nothing. luma: the view's own plane. */
+void t3r_rectified_row(const t3r_rectification *rect, uint32_t view, const uint8_t *luma, int32_t x_q16, uint32_t row,
+                       uint32_t count, uint8_t *out);
+
+#endif

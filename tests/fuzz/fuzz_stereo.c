@@ -1,0 +1,95 @@
+/* Bytes to two cameras, settings and pictures: whatever passes the check of cameras gets an answer, within the memory
+ * that the macros promise, and depths within their range. */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera.h"
+#include "stereo.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
+
+#define REQUIRE(condition)                                                                                             \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            fprintf(stderr, "line %d: not true: %s\n", __LINE__, #condition);                                          \
+            abort();                                                                                                   \
+        }                                                                                                              \
+    } while (0)
+
+/* What the bytes begin with; the rest is repeated for pictures. */
+typedef struct header {
+    uint8_t width, height, disparities, paths;
+    uint8_t plain; /* bits: which cameras have plausible intrinsics, whether they stand near each other */
+    t3r_camera cameras[2];
+} header;
+
+static void tame(header *h)
+{
+    for (int i = 0; i < 2; i++) {
+        t3r_camera *c = &h->cameras[i];
+        c->distortion = T3R_DISTORTION_NONE;
+        if (h->plain >> i & 1) {
+            c->fx_q16 = (int32_t)(20u << 16 | ((uint32_t)c->fx_q16 & 0x3fffff));
+            c->fy_q16 = (int32_t)(20u << 16 | ((uint32_t)c->fy_q16 & 0x3fffff));
+            c->cx_q16 &= 0x3fffff;
+            c->cy_q16 &= 0x3fffff;
+            c->rotation_q30[0] = 1 << 30;
+            for (int k = 1; k < 4; k++) {
+                c->rotation_q30[k] %= 1 << 29;
+            }
+        }
+        for (int k = 0; k < 3 && h->plain & 4; k++) {
+            c->position_q32[k] %= INT64_C(1) << 33;
+        }
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    header h;
+    if (count < sizeof h) {
+        return 0;
+    }
+    memcpy(&h, bytes, sizeof h);
+    tame(&h);
+    if (t3r_camera_check(&h.cameras[0]) != T3R_OK || t3r_camera_check(&h.cameras[1]) != T3R_OK) {
+        return 0;
+    }
+    const uint32_t width = 8 + h.width % 48u, height = 8 + h.height % 48u;
+    const t3r_stereo_settings settings = {16 * (1 + h.disparities % 16u), h.paths % 2 == 0 ? 4 : 8, h.paths >> 1 & 1};
+    const size_t pixels = (size_t)width * height;
+    const size_t bytes_of_work = T3R_STEREO_WORK_BYTES(width, height, settings.disparities, settings.paths);
+    void *work = aligned_alloc(64, bytes_of_work);
+    uint8_t *planes = malloc(pixels * 8);
+    uint16_t *depth = malloc(pixels * 4);
+    REQUIRE(work != NULL && planes != NULL && depth != NULL);
+    memset(work, h.plain, bytes_of_work);
+    const size_t rest = count - sizeof h;
+    for (size_t i = 0; i < pixels * 8; i++) {
+        planes[i] = rest == 0 ? (uint8_t)(i * 2654435761u >> 13) : bytes[sizeof h + i * (1 + h.plain / 8) % rest];
+    }
+    t3r_view views[2];
+    for (int i = 0; i < 2; i++) {
+        uint8_t *at = planes + 4 * pixels * (size_t)i;
+        views[i] = (t3r_view){.width = width,
+                              .height = height,
+                              .colour = {at, at + pixels, at + 2 * pixels},
+                              .depth = depth + pixels * (size_t)i,
+                              .confidence = at + 3 * pixels};
+    }
+    uint64_t unit = 0;
+    const t3r_pair pair = t3r_stereo_depth(&settings, h.cameras, views, work, &unit);
+    REQUIRE((uint32_t)pair < T3R_PAIR_COUNT);
+    for (size_t i = 0; i < 2 && pair == T3R_PAIR_OK; i++) {
+        REQUIRE(unit >= 1 && unit < UINT64_C(1) << 47);
+        for (size_t n = 0; n < pixels; n++) {
+            REQUIRE((views[i].depth[n] == 0) == (views[i].confidence[n] == T3R_STEREO_NONE));
+        }
+    }
+    free(work);
+    free(planes);
+    free(depth);
+    return 0;
+}

@@ -1,0 +1,301 @@
+/* Stereo: depth of a scene that is drawn here, from pairs of every kind. */
+#include "unit.h"
+
+#include "camera.h"
+#include "stereo.h"
+
+enum { W = 120, H = 96, PIXELS = W * H };
+static const t3r_stereo_settings settings = {64, 4, 1};
+static const double straight[4] = {1, 0, 0, 0};
+
+typedef struct shot {
+    t3r_camera camera;
+    t3r_view view;
+    double depth[PIXELS];
+} shot;
+
+/* A smooth random texture: noise on a lattice of `cell`, four octaves. */
+static double lattice(int64_t x, int64_t y, int64_t seed)
+{
+    uint64_t s = (uint64_t)(x * 73856093) ^ (uint64_t)(y * 19349663) ^ (uint64_t)(seed * 83492791);
+    return (double)(unit_random(&s) >> 11) / 9007199254740992.0;
+}
+
+static double texture(double x, double y, int64_t seed)
+{
+    double sum = 0;
+    for (int octave = 0; octave < 4; octave++) {
+        const double scale = 12 << octave, u = x * scale, v = y * scale, a = floor(u), b = floor(v);
+        const int64_t i = (int64_t)a, j = (int64_t)b, s = seed + octave;
+        const double fx = u - a, fy = v - b;
+        sum += (1 - fy) * ((1 - fx) * lattice(i, j, s) + fx * lattice(i + 1, j, s)) +
+               fy * ((1 - fx) * lattice(i, j + 1, s) + fx * lattice(i + 1, j + 1, s));
+    }
+    return sum / 4;
+}
+
+/* A wall that leans, z = 3 + 0.3 x, and before it a board at z = 2, 1 by 0.8; all at `scale`. */
+static shot *shoot(double x, double y, double z, const double q[4], double gain, double scale, int64_t seed)
+{
+    shot *s = unit_array(1, sizeof *s);
+    int32_t r[9];
+    s->camera =
+        (t3r_camera){.fx_q16 = 110 << 16, .fy_q16 = 110 << 16, .cx_q16 = (W - 1) << 15, .cy_q16 = (H - 1) << 15};
+    const double centre[3] = {x, y, z};
+    for (int i = 0; i < 4; i++) {
+        s->camera.rotation_q30[i] = (int32_t)lround(q[i] * (1 << 30));
+    }
+    for (int i = 0; i < 3; i++) {
+        s->camera.position_q32[i] = llround(centre[i] * scale * 4294967296.0);
+    }
+    t3r_camera_rotation(s->camera.rotation_q30, r);
+    s->view.width = W;
+    s->view.height = H;
+    for (int c = 0; c < 3; c++) {
+        s->view.colour[c] = unit_array(PIXELS, 1);
+    }
+    s->view.depth = unit_array(PIXELS, 2);
+    s->view.confidence = unit_array(PIXELS, 1);
+    for (int i = 0; i < PIXELS; i++) {
+        const double ray[3] = {(i % W - (W - 1) / 2.0) / 110, (i / W - (H - 1) / 2.0) / 110, 1};
+        double d[3], value;
+        for (int k = 0; k < 3; k++) {
+            d[k] = (r[3 * k] * ray[0] + r[3 * k + 1] * ray[1] + r[3 * k + 2] * ray[2]) / (1 << 30);
+        }
+        double t = (2 - z) / d[2], u = x + t * d[0], v = y + t * d[1];
+        if (t > 0 && fabs(u) < 0.5 && fabs(v) < 0.4) {
+            value = texture(u, v, seed + 100);
+        } else {
+            t = (3 + 0.3 * x - z) / (d[2] - 0.3 * d[0]);
+            value = texture(x + t * d[0], y + t * d[1], seed);
+        }
+        s->depth[i] = t * scale;
+        for (int c = 0; c < 3; c++) {
+            s->view.colour[c][i] = (uint8_t)lround((20 + 200 * value) * gain);
+        }
+    }
+    return s;
+}
+
+static void shot_free(shot *s)
+{
+    for (int c = 0; c < 3; c++) {
+        free(s->view.colour[c]);
+    }
+    free(s->view.depth);
+    free(s->view.confidence);
+    free(s);
+}
+
+static t3r_pair match(const t3r_stereo_settings *how, shot *a, shot *b, int garbage, uint64_t *unit)
+{
+    const size_t bytes = T3R_STEREO_WORK_BYTES(W, H, how->disparities, how->paths);
+    void *work = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    assert_non_null(work);
+    memset(work, garbage, bytes);
+    const t3r_camera cameras[2] = {a->camera, b->camera};
+    const t3r_view views[2] = {a->view, b->view};
+    const t3r_pair pair = t3r_stereo_depth(how, cameras, views, work, unit);
+    free(work);
+    return pair;
+}
+
+/* Shares of a view's pixels, percent: matched; of these off by more than `tolerance`; filled. */
+static void judge(const shot *s, uint64_t unit, double tolerance, double out[3])
+{
+    double matched = 0, wrong = 0, filled = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        const double depth = s->view.depth[i] * (double)unit / 1099511627776.0;
+        const uint8_t confidence = s->view.confidence[i];
+        assert_int_equal(s->view.depth[i] == 0, confidence == T3R_STEREO_NONE);
+        matched += confidence >= T3R_STEREO_LEAST;
+        filled += confidence == T3R_STEREO_FILLED;
+        wrong += confidence >= T3R_STEREO_LEAST && fabs(depth / s->depth[i] - 1) > tolerance;
+    }
+    out[0] = 100 * matched / PIXELS;
+    out[1] = 100 * wrong / (matched > 0 ? matched : 1);
+    out[2] = 100 * filled / PIXELS;
+}
+
+static void pairs(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double at[3], q[4], gain, least_matched, tolerance;
+    } all[] = {
+        {"side by side", {0.25, 0, 0}, {1, 0, 0, 0}, 1, 65, 0.05},
+        {"from the right, half as bright", {-0.25, 0, 0}, {1, 0, 0, 0}, 0.5, 65, 0.05},
+        {"one above the other", {0, 0.25, 0}, {1, 0, 0, 0}, 1, 65, 0.05},
+        {"diagonal", {0.2, 0.15, 0}, {1, 0, 0, 0}, 1, 60, 0.05},
+        {"turned inwards", {0.5, 0, 0}, {0.9976, 0, -0.0693, 0}, 1, 50, 0.05},
+        {"rolled by a quarter", {0.25, 0, 0}, {0.7071, 0, 0, 0.7071}, 1, 45, 0.05},
+        {"forward and sideways", {0.2, 0, 0.35}, {1, 0, 0, 0}, 1, 40, 0.2},
+        {"forward", {0, 0, 0.5}, {1, 0, 0, 0}, 1, 40, 0.2},
+        {"backward", {0.02, 0.03, -0.5}, {1, 0, 0, 0}, 1, 30, 0.2},
+    };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        for (uint32_t paths = 4; paths <= 8; paths += 4) {
+            const t3r_stereo_settings how = {64, paths, 1};
+            shot *a = shoot(0, 0, 0, straight, 1, 1, 7);
+            shot *b = shoot(all[i].at[0], all[i].at[1], all[i].at[2], all[i].q, all[i].gain, 1, 7);
+            uint64_t unit = 0;
+            double first[3], second[3];
+            assert_int_equal(match(&how, a, b, 0, &unit), T3R_PAIR_OK);
+            judge(a, unit, all[i].tolerance, first);
+            judge(b, unit, all[i].tolerance, second);
+            print_message(
+                "%s, %u paths: %.0f and %.0f %% matched, %.1f and %.1f %% of these wrong, %.0f and %.0f %% filled\n",
+                all[i].name, paths, first[0], second[0], first[1], second[1], first[2], second[2]);
+            assert_true(first[0] > all[i].least_matched && second[0] > all[i].least_matched);
+            assert_true(first[1] < 8 && second[1] < 8);
+            shot_free(a);
+            shot_free(b);
+        }
+    }
+}
+
+/* World units of any size give the same disparities, and so the same depths in steps, up to the baseline's rounding. */
+static void scales(void **state)
+{
+    (void)state;
+    for (int exponent = -8; exponent <= 12; exponent += 4) {
+        const double scale = ldexp(1, exponent);
+        shot *a = shoot(0, 0, 0, straight, 1, scale, 7), *b = shoot(0.25, 0, 0, straight, 1, scale, 7);
+        uint64_t unit = 0;
+        double shares[3];
+        assert_int_equal(match(&settings, a, b, 0, &unit), T3R_PAIR_OK);
+        judge(a, unit, 0.05, shares);
+        assert_true(shares[0] > 65 && shares[1] < 5);
+        shot_free(a);
+        shot_free(b);
+    }
+}
+
+static void refused(void **state)
+{
+    (void)state;
+    uint64_t unit;
+    shot *a = shoot(0, 0, 0, straight, 1, 1, 7);
+    shot *near = shoot(0.002, 0, 0, straight, 1, 1, 7); /* 0.1 pixels */
+    assert_int_equal(match(&settings, a, near, 0, &unit), T3R_PAIR_PARALLAX);
+    shot_free(near);
+
+    shot *b = shoot(0.25, 0, 0, straight, 1, 1, 7), *other = shoot(0.25, 0, 0, straight, 1, 1, 5000);
+    /* Another place: pixels that match by chance are the fewer, the more they had to choose from. */
+    const t3r_stereo_settings many = {128, 4, 1};
+    assert_int_equal(match(&many, a, other, 0, &unit), T3R_PAIR_OVERLAP);
+    shot_free(other);
+
+    a->camera.position_q32[0] = -(INT64_C(1) << 61);
+    b->camera.position_q32[0] = INT64_C(1) << 61;
+    assert_int_equal(match(&settings, a, b, 0, &unit), T3R_PAIR_SCALE);
+    shot_free(a);
+    shot_free(b);
+}
+
+/* What lay in the work, and flat or black pictures, do not matter or harm. */
+static void repeated(void **state)
+{
+    (void)state;
+    uint64_t unit[2];
+    shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.1, 0, 0.4, straight, 1, 1, 7);
+    uint16_t *depth = unit_array(2 * PIXELS, 2);
+    for (int turn = 0; turn < 2; turn++) {
+        assert_int_equal(match(&settings, a, b, turn == 0 ? 0 : 0xa5, &unit[turn]), T3R_PAIR_OK);
+        if (turn == 0) {
+            memcpy(depth, a->view.depth, PIXELS * 2);
+            memcpy(depth + PIXELS, b->view.depth, PIXELS * 2);
+        }
+    }
+    assert_memory_equal(depth, a->view.depth, PIXELS * 2);
+    assert_memory_equal(depth + PIXELS, b->view.depth, PIXELS * 2);
+    assert_int_equal(unit[0], unit[1]);
+    for (int value = 0; value < 256; value += 255) {
+        for (int c = 0; c < 3; c++) {
+            memset(a->view.colour[c], value, PIXELS);
+            memset(b->view.colour[c], value, PIXELS);
+        }
+        (void)match(&settings, a, b, 0, &unit[0]);
+    }
+    free(depth);
+    shot_free(a);
+    shot_free(b);
+}
+
+/* Noise for pictures, any settings, any pose: an answer, and depths within their range. */
+static void anything(void **state)
+{
+    (void)state;
+    uint64_t seed = 6, unit;
+    shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.25, 0, 0, straight, 1, 1, 7);
+    for (int turn = 0; turn < 60; turn++) {
+        const t3r_stereo_settings how = {(uint32_t)unit_between(&seed, 1, 8) * 16, turn % 2 == 0 ? 4 : 8,
+                                         turn % 5 != 0};
+        for (int i = 0; i < 3; i++) {
+            b->camera.position_q32[i] = unit_between(&seed, -(INT64_C(3) << 30), INT64_C(3) << 30);
+            b->camera.rotation_q30[1 + i] = (int32_t)unit_between(&seed, -(1 << 27), 1 << 27);
+        }
+        for (int i = 0; i < PIXELS && turn % 3 == 0; i++) {
+            b->view.colour[1][i] = (uint8_t)unit_random(&seed);
+        }
+        if (match(&how, a, b, turn, &unit) == T3R_PAIR_OK) {
+            double shares[3];
+            assert_true(unit >= 1 && unit < UINT64_C(1) << 47);
+            judge(a, unit, 0.05, shares);
+            judge(b, unit, 0.05, shares);
+        }
+    }
+    shot_free(a);
+    shot_free(b);
+}
+
+/* Without filling: the same matches, nothing between them. */
+static void unfilled(void **state)
+{
+    (void)state;
+    uint64_t unit[2];
+    shot *a[2], *b[2];
+    for (uint32_t fill = 0; fill < 2; fill++) {
+        const t3r_stereo_settings how = {64, 4, fill};
+        a[fill] = shoot(0, 0, 0, straight, 1, 1, 7);
+        b[fill] = shoot(0.25, 0.1, 0, straight, 1, 1, 7);
+        assert_int_equal(match(&how, a[fill], b[fill], 0, &unit[fill]), T3R_PAIR_OK);
+    }
+    int filled = 0;
+    assert_int_equal(unit[0], unit[1]);
+    for (int i = 0; i < PIXELS; i++) {
+        if (a[1]->view.confidence[i] >= T3R_STEREO_LEAST) {
+            assert_int_equal(a[0]->view.confidence[i], a[1]->view.confidence[i]);
+            assert_int_equal(a[0]->view.depth[i], a[1]->view.depth[i]);
+        } else if (a[0]->view.confidence[i] == T3R_STEREO_NONE) {
+            assert_int_equal(a[0]->view.depth[i], 0);
+            filled += a[1]->view.confidence[i] == T3R_STEREO_FILLED;
+        }
+    }
+    assert_true(filled > 100);
+    for (int i = 0; i < 2; i++) {
+        shot_free(a[i]);
+        shot_free(b[i]);
+    }
+}
+
+static void marks(void **state)
+{
+    (void)state;
+    uint16_t depth[6] = {0, 5, 5, 5, 5, 5};
+    uint8_t confidence[6] = {T3R_STEREO_NONE, T3R_STEREO_FILLED, 2, 29, 30, 255};
+    const uint8_t expected[6] = {T3R_CONFIDENCE_NONE,   T3R_CONFIDENCE_FILLED,   T3R_CONFIDENCE_FILLED,
+                                 T3R_CONFIDENCE_FILLED, T3R_CONFIDENCE_MEASURED, T3R_CONFIDENCE_MEASURED};
+    const t3r_view view = {.width = 3, .height = 2, .depth = depth, .confidence = confidence};
+    t3r_stereo_marks(&view, 30);
+    assert_memory_equal(confidence, expected, 6);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pairs),    cmocka_unit_test(scales),   cmocka_unit_test(refused), cmocka_unit_test(repeated),
+        cmocka_unit_test(anything), cmocka_unit_test(unfilled), cmocka_unit_test(marks)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
