@@ -9,21 +9,27 @@
 #include "json_output.h"
 #include "option_values.h"
 #include "reconstruction.h"
+#include "rivals/rival.h"
 
 #define ERROR_BYTES 512
 
 typedef struct build_options {
     const char *recording;
     const char *output;
-    int flags; /* SCENE_FILE_... */
+    const char *prune; /* a scene to be pruned in the place of one that is built */
+    int flags;         /* SCENE_FILE_... */
     bool json;
     reconstruction_options settings;
 } build_options;
 
-enum { KEY_LOCAL = 0x1000, KEY_COMMENTS, KEY_JSON };
+enum { KEY_LOCAL = 0x1000, KEY_PRUNE, KEY_COMMENTS, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"output", 'o', "SCENE.ply", 0, "where the scene goes (needed)", 0},
+    {"prune", KEY_PRUNE, "SCENE.ply", 0,
+     "prune this scene, made elsewhere, instead of building one, with a --method that is a rival; the recording gives "
+     "the views, --context those it was made of",
+     0},
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
     {"comments", KEY_COMMENTS, NULL, 0,
@@ -42,6 +48,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case 'o':
         o->output = arg;
+        return 0;
+    case KEY_PRUNE:
+        o->prune = arg;
         return 0;
     case KEY_LOCAL:
         o->flags |= SCENE_FILE_LOCAL;
@@ -64,6 +73,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "-o %s: scenes are written as .ply", o->output);
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0) {
             argp_error(state, "the budget is missing: --gaussians Z or --keep P%%");
+        } else if (o->prune != NULL && method_kind_of(o->settings.method) == METHOD_TRIM3R) {
+            argp_error(state,
+                       "--prune takes one of the rivals, --method eagles, say: trim3r needs the recording's depth");
         }
         return 0;
     default:
@@ -81,29 +93,35 @@ static const struct argp argp = {
            "\vExamples:\n"
            "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
            "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
-           "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n\n"
+           "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
+           "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
+           "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n\n"
            "The scene stands in the recording's world frame unless --local is given.",
     .children = children,
 };
 
-static void print_json(const build_options *o, const reconstruction *r)
+static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r)
 {
+    bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "scene", o->output);
+    cJSON_AddStringToObject(root, "method", method_name(o->settings.method));
     json_add_integer(root, "gaussians", r->scene.count);
-    json_add_integer(root, "requested", r->requested);
-    json_add_integer(root, "valid_points", r->valid_points);
-    json_add_integers(root, "context", r->context, r->context_count);
-    cJSON_AddNumberToObject(root, "width", r->config.width);
-    cJSON_AddNumberToObject(root, "height", r->config.height);
-    cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(r->config.allocation));
-    cJSON_AddStringToObject(root, "head", r->head.name);
-    if (r->head.weights != NULL) {
-        cJSON_AddStringToObject(root, "head_bits", r->head.bits);
-        cJSON_AddStringToObject(root, "head_crc", r->head.crc);
+    json_add_integer(root, "requested", told->requested);
+    json_add_integer(root, "valid_points", told->valid_points);
+    json_add_integers(root, "context", told->context, told->context_count);
+    cJSON_AddNumberToObject(root, "width", told->width);
+    cJSON_AddNumberToObject(root, "height", told->height);
+    if (!rival) {
+        cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.allocation));
     }
-    json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
-    cJSON_AddNumberToObject(root, "build_ms", (r->add_views_seconds + r->build_seconds) * 1e3);
+    cJSON_AddStringToObject(root, o->prune != NULL ? "pruned" : "head", o->prune != NULL ? o->prune : told->head);
+    if (told->bits[0] != '\0') {
+        cJSON_AddStringToObject(root, "head_bits", told->bits);
+        cJSON_AddStringToObject(root, "head_crc", told->crc);
+    }
+    json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
+    cJSON_AddNumberToObject(root, "build_ms", told->seconds * 1e3);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
     /* where float32 positions lose the world's origin: --local and this */
     cJSON *origin = cJSON_AddArrayToObject(root, "origin");
@@ -111,17 +129,35 @@ static void print_json(const build_options *o, const reconstruction *r)
         cJSON_AddItemToArray(origin, cJSON_CreateNumber((double)r->scene.frame.origin_q32[i] / 4294967296.0));
     }
     cJSON_AddNumberToObject(root, "exponent", r->scene.frame.exponent);
-    json_add_hash(root, "hash", reconstruction_hash(r));
+    if (o->settings.method == METHOD_TRIM3R) { /* floats promise no bits */
+        json_add_hash(root, "hash", reconstruction_hash(r));
+    }
     json_print(root);
 }
 
-/* "head small crc 1a2b3c4d" */
-static void note_head(const chosen_head *head, char *text, size_t bytes)
+/* "head small crc 1a2b3c4d"; "pruned" of a scene made elsewhere */
+static void note_head(const reconstruction_account *told, char *text, size_t bytes)
 {
-    int length = snprintf(text, bytes, "head %s", head->name);
-    if (head->weights != NULL) {
-        snprintf(text + length, bytes - (size_t)length, " crc %s", head->crc);
+    int length = snprintf(text, bytes, told->head[0] != '\0' ? "head %s" : "pruned%s", told->head);
+    if (told->crc[0] != '\0') {
+        snprintf(text + length, bytes - (size_t)length, " crc %s", told->crc);
     }
+}
+
+static int build(const build_options *o, const t3r_recording *recording, reconstruction *r,
+                 reconstruction_account *told)
+{
+    if (o->settings.method != METHOD_TRIM3R) {
+        rival_source source = {.scene = o->prune};
+        int code = rival_build(&source, recording, o->recording, o->settings.method, &o->settings, r, told);
+        rival_source_close(&source);
+        return code;
+    }
+    int code = reconstruction_build(r, recording, o->recording, &o->settings);
+    if (code == CLI_OK) {
+        *told = reconstruction_told(r);
+    }
+    return code;
 }
 
 int command_build(int argc, char **argv)
@@ -136,19 +172,20 @@ int command_build(int argc, char **argv)
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     reconstruction r;
-    int code = reconstruction_build(&r, recording, o.recording, &o.settings);
+    reconstruction_account told;
+    int code = build(&o, recording, &r, &told);
     if (code == CLI_OK) {
         char note[64];
-        note_head(&r.head, note, sizeof note);
+        note_head(&told, note, sizeof note);
         if (scene_file_write_ply(o.output, &r.scene, o.flags, note, error, sizeof error) != 0) {
             code = cli_error(CLI_BAD_INPUT, "%s", error);
         } else if (o.json) {
-            print_json(&o, &r);
+            print_json(&o, &told, &r);
         } else {
             printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n", o.output,
-                   r.scene.count, r.valid_points, r.arena_bytes, (r.add_views_seconds + r.build_seconds) * 1e3);
-            if (r.requested > r.scene.count) {
-                printf("%" PRIu32 " were asked for; all valid points are used\n", r.requested);
+                   r.scene.count, told.valid_points, told.arena_bytes, told.seconds * 1e3);
+            if (told.requested > r.scene.count) {
+                printf("%" PRIu32 " were asked for; all valid points are used\n", told.requested);
             }
         }
         reconstruction_close(&r);

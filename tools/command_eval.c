@@ -15,7 +15,7 @@
 
 #define MOST_KEEPS 64u
 #define MOST_HEADS 32u
-#define MOST_CONTESTANTS (MOST_HEADS + ABLATIONS_MOST)
+#define MOST_CONTESTANTS (MOST_HEADS + ABLATIONS_MOST + METHOD_COUNT)
 #define LABEL_BYTES 40
 #define SCENE_NAME_BYTES 256
 #define ABLATE_KEEPS "60,40,20,10,5"
@@ -23,7 +23,7 @@
 
 /* What has rows of its own: a method, trim3r once a head or once an ablation. */
 typedef struct contestant {
-    evaluation_method method;
+    method_id method;
     const char *head;        /* NULL: the settings' own */
     uint32_t ablation;       /* with --ablate */
     char label[LABEL_BYTES]; /* over its pictures and in their names */
@@ -38,7 +38,7 @@ typedef struct options {
     uint32_t target;
     double keep[MOST_KEEPS];
     uint32_t keep_count;
-    evaluation_method methods[EVALUATION_METHOD_COUNT];
+    method_id methods[METHOD_COUNT];
     uint32_t method_count;
     char *heads[MOST_HEADS]; /* --heads; parts of one heap string */
     uint32_t head_count;
@@ -56,6 +56,7 @@ enum {
     KEY_TARGET,
     KEY_KEEP,
     KEY_METHODS,
+    KEY_ITERATIONS,
     KEY_HEADS,
     KEY_ABLATE,
     KEY_PLANAR,
@@ -69,40 +70,18 @@ enum {
 
 /* ---- arguments ---------------------------------------------------------------------------------------------- */
 
-/* Published rivals that are planned; naming one says so instead of calling it unknown. */
-static bool planned_method(const char *name, size_t length)
-{
-    static const char *const planned[] = {"eagles", "lightgaussian", "pup", "efficientgs"};
-    static const char suffix[] = "+finetune";
-    size_t tail = sizeof suffix - 1;
-    if (length > tail && strncmp(name + length - tail, suffix, tail) == 0) {
-        length -= tail;
-    }
-    for (size_t i = 0; i < sizeof planned / sizeof planned[0]; i++) {
-        if (strlen(planned[i]) == length && strncmp(name, planned[i], length) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static void add_method(struct argp_state *state, options *o, const char *name, size_t length)
 {
-    for (int m = 0; m < EVALUATION_METHOD_COUNT; m++) {
-        const char *known = evaluation_method_name((evaluation_method)m);
-        if (strlen(known) != length || strncmp(name, known, length) != 0) {
-            continue;
-        }
-        for (uint32_t i = 0; i < o->method_count; i++) {
-            if (o->methods[i] == (evaluation_method)m) {
-                argp_error(state, "--methods names %s twice", known);
-            }
-        }
-        o->methods[o->method_count++] = (evaluation_method)m;
-        return;
+    method_id m = method_named(name, length);
+    if (m == METHOD_COUNT) {
+        argp_error(state, "--methods: '%.*s' is not a method; there are %s", (int)length, name, METHOD_NAMES);
     }
-    argp_error(state, "--methods: %.*s is %s; available: trim3r, random", (int)length, name,
-               planned_method(name, length) ? "not available yet" : "not a method");
+    for (uint32_t i = 0; i < o->method_count; i++) {
+        if (o->methods[i] == m) {
+            argp_error(state, "--methods names %s twice", method_name(m));
+        }
+    }
+    o->methods[o->method_count++] = m;
 }
 
 static void parse_methods(struct argp_state *state, options *o, const char *text)
@@ -250,7 +229,7 @@ static void check_options(struct argp_state *state, options *o)
         argp_error(state, "--keep is missing");
     }
     if (o->method_count == 0) {
-        o->methods[o->method_count++] = EVALUATION_TRIM3R;
+        o->methods[o->method_count++] = METHOD_TRIM3R;
     }
     if (o->head_count > 0 && o->settings.head != NULL) {
         argp_error(state, "--head and --heads exclude each other");
@@ -284,6 +263,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_METHODS:
         parse_methods(state, o, arg);
+        return 0;
+    case KEY_ITERATIONS:
+        o->settings.finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
         return 0;
     case KEY_HEADS:
         parse_heads(state, o, arg);
@@ -330,7 +312,9 @@ static const struct argp_option argp_options[] = {
      "frames that the scene is made of, one named twice counting once (all triplets that the recording carries)", 0},
     {"target", KEY_TARGET, "T", 0, "the frame to be met; it is never shown to the method", 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
-    {"methods", KEY_METHODS, "M,M,...", 0, "trim3r (default); random: random points, nothing adapted", 0},
+    {"methods", KEY_METHODS, "M,M,...", 0,
+     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them", 0},
+    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
     {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
      "what each part is worth: rows with one part taken away each (all), at 60, 40, 20, 10 and 5 % unless --keep says "
@@ -368,6 +352,11 @@ static const struct argp parser = {
         "--planar, where ssim, sharp, holes and perceptual count all pixels too. Cells that do not apply are empty. "
         "Several cases end in lines of means (decibels are averaged as decibels), which the CSV leaves out; several "
         "recordings get a folder each in --images.\n\n"
+        "The rivals keep, of the scene that --head and --refine make of all points, the Gaussians that their papers' "
+        "scores rank highest over the context views, and draw them unchanged: random; eagles (influence, the sum of "
+        "blending weights); lightgaussian (hits x opacity x volume); pup (second-order sensitivity to place and "
+        "scale); efficientgs (dominant in most pixels). +finetune: N iterations of Adam on the context views follow, "
+        "on all parameters of what was kept. build_ms counts scoring and fine-tuning.\n\n"
         "--ablate: each row changes one thing of the settings given, --refine among them, and names it in the column "
         "ablation. full: nothing. no-adaptation: the head is told that nothing was pruned; its splats at 100 % are "
         "pruned and, but for --refine, left as they are. no-mask: the network is told so, but its splats still grow "
@@ -382,6 +371,7 @@ static const struct argp parser = {
         "  trim3r eval room.mcap --keep 100,20,10\n"
         "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
         "  trim3r eval a.mcap b.mcap --keep 20,5 --methods trim3r,random --csv ab.csv\n"
+        "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune\n"
         "  trim3r eval room.mcap --keep 10,5 --heads analytic,moment,small,my.t3w\n"
         "  trim3r eval a.mcap b.mcap --ablate --csv ablations.csv\n"
         "  trim3r eval room.mcap --ablate=full,no-mask,no-adaptation --keep 10,5 --refine 0\n"
@@ -400,9 +390,9 @@ static int add_head(options *o, const char *text, bool named)
         return code;
     }
     contestant *it = &o->contestants[o->contestant_count++];
-    *it = (contestant){.method = EVALUATION_TRIM3R, .head = text};
+    *it = (contestant){.method = METHOD_TRIM3R, .head = text};
     if (!named) {
-        snprintf(it->label, LABEL_BYTES, "%s", evaluation_method_name(EVALUATION_TRIM3R));
+        snprintf(it->label, LABEL_BYTES, "%s", method_name(METHOD_TRIM3R));
     } else if (head.weights == NULL || strcmp(head.bits, "8") == 0) {
         snprintf(it->label, LABEL_BYTES, "%s", head.name);
     } else {
@@ -410,7 +400,7 @@ static int add_head(options *o, const char *text, bool named)
     }
     chosen_head_close(&head);
     for (const contestant *earlier = o->contestants; earlier < it; earlier++) {
-        if (earlier->method == EVALUATION_TRIM3R && strcmp(earlier->label, it->label) == 0) {
+        if (earlier->method == METHOD_TRIM3R && strcmp(earlier->label, it->label) == 0) {
             return cli_error(CLI_BAD_USAGE, "--heads: %s and %s have the same name and bits (quantize --name)",
                              earlier->head, text);
         }
@@ -442,7 +432,7 @@ static int choose_ablations(options *o)
     }
     for (uint32_t c = 0; c < o->contestant_count; c++) {
         contestant *it = &o->contestants[c];
-        it->method = EVALUATION_TRIM3R;
+        it->method = METHOD_TRIM3R;
         snprintf(it->label, LABEL_BYTES, "%s", ablation_name(it->ablation));
     }
     return CLI_OK;
@@ -455,16 +445,16 @@ static int choose_contestants(options *o)
         return choose_ablations(o);
     }
     for (uint32_t m = 0; m < o->method_count && code == CLI_OK; m++) {
-        if (o->methods[m] == EVALUATION_TRIM3R && o->head_count > 0) {
+        if (o->methods[m] == METHOD_TRIM3R && o->head_count > 0) {
             for (uint32_t h = 0; h < o->head_count && code == CLI_OK; h++) {
                 code = add_head(o, o->heads[h], true);
             }
-        } else if (o->methods[m] == EVALUATION_TRIM3R) {
+        } else if (o->methods[m] == METHOD_TRIM3R) {
             code = add_head(o, o->settings.head, false);
         } else {
             contestant *it = &o->contestants[o->contestant_count++];
             it->method = o->methods[m];
-            snprintf(it->label, LABEL_BYTES, "%s", evaluation_method_name(it->method));
+            snprintf(it->label, LABEL_BYTES, "%s", method_name(it->method));
         }
     }
     return code;

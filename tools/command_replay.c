@@ -76,6 +76,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0) {
             o->settings.keep_percent = 10;
         }
+        if (o->settings.method != METHOD_TRIM3R) {
+            argp_error(state, "--method %s is made in floats, which promise no bits; trim3r alone is replayed",
+                       method_name(o->settings.method));
+        }
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -8,19 +8,15 @@
 #include <unistd.h>
 
 #include "cli.h"
+#include "developed_frame.h"
 #include "metrics.h"
+#include "rivals/rival.h"
 #include "scene_file.h"
 
 /* alpha_q15 is one minus transmittance; 32767 is the runtime's one */
 #define ALPHA_ONE 32767u
 #define MASK_TRANSMITTANCE 0.3
 #define HOLE_TRANSMITTANCE 0.5
-
-const char *evaluation_method_name(evaluation_method method)
-{
-    static const char *const names[EVALUATION_METHOD_COUNT] = {"trim3r", "random"};
-    return names[method];
-}
 
 static double transmittance(uint16_t alpha_q15)
 {
@@ -52,30 +48,11 @@ void evaluation_views_free(evaluation_views *views)
         free(views->context[v].rgb);
         free(views->context[v].mask);
     }
+    if (views->rivals != NULL) {
+        rival_source_close(views->rivals);
+        free(views->rivals);
+    }
     *views = (evaluation_views){0};
-}
-
-/* The image stage alone, in an arena of its own: the one that holds a scene cannot take frames. */
-static int develop(evaluation_picture *picture, const evaluation_views *views, const evaluation_case *what,
-                   uint32_t index, const t3r_capture_frame *frame)
-{
-    t3r_config config = t3r_default_config(views->width, views->height, 1, 1);
-    t3r_runtime *runtime;
-    t3r_plan_info plan;
-    void *arena = NULL;
-    t3r_status status = t3r_plan(&config, &plan);
-    if (status != T3R_OK || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
-        return status != T3R_OK ? reconstruction_error(status, "image stage", &config, 0)
-                                : cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    status = t3r_init(&runtime, arena, plan.min_bytes, &config);
-    if (status == T3R_OK) {
-        status = t3r_develop(runtime, &frame->frame, &frame->camera, picture->rgb, NULL, &picture->camera);
-    }
-    free(arena);
-    return status == T3R_OK
-               ? CLI_OK
-               : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", what->path, index, t3r_error_text(status));
 }
 
 /* Frame `index` as the image stage gives it, and where the unpruned scene in `r` covers it. */
@@ -83,17 +60,13 @@ static int make_picture(evaluation_picture *picture, const evaluation_views *vie
                         uint32_t index, reconstruction *r, uint16_t *alpha)
 {
     size_t pixels = (size_t)views->width * views->height;
-    t3r_capture_frame frame;
-    int code = reconstruction_frame(what->recording, what->path, index, &frame);
-    if (code != CLI_OK) {
-        return code;
-    }
     picture->rgb = malloc(pixels * 3);
     picture->mask = malloc(pixels);
     if (picture->rgb == NULL || picture->mask == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    code = develop(picture, views, what, index, &frame);
+    int code = developed_frame(what->recording, what->path, index, views->width, views->height, picture->rgb,
+                               &picture->camera);
     if (code != CLI_OK || what->planar) {
         memset(picture->mask, 255, pixels);
         return code;
@@ -137,10 +110,14 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.context_count = what->context_count;
     memcpy(options.context, what->context, sizeof options.context);
 
-    *views = (evaluation_views){0};
+    *views = (evaluation_views){.rivals = calloc(1, sizeof(rival_source))};
+    if (views->rivals == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
     reconstruction r;
     int code = reconstruction_build(&r, what->recording, what->path, &options);
     if (code != CLI_OK) {
+        evaluation_views_free(views);
         return code;
     }
     views->width = r.config.width;
@@ -228,7 +205,7 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     return code;
 }
 
-static void name_row(evaluation_row *row, const evaluation_case *what, evaluation_method method,
+static void name_row(evaluation_row *row, const evaluation_case *what, method_id m,
                      const reconstruction_options *options)
 {
     size_t length = 0;
@@ -240,9 +217,9 @@ static void name_row(evaluation_row *row, const evaluation_case *what, evaluatio
     if (!what->planar) {
         snprintf(row->target, sizeof row->target, "%" PRIu32, what->target);
     }
-    row->method = evaluation_method_name(method);
+    row->method = method_name(m);
     snprintf(row->refine, sizeof row->refine, "%" PRIu32, options->refine);
-    row->allocate = t3r_allocation_name(options->allocation);
+    row->allocate = method_kind_of(m) == METHOD_TRIM3R ? t3r_allocation_name(options->allocation) : "";
     row->depth = what->planar ? "plane" : "sensor";
     row->ablation = "";
 }
@@ -260,8 +237,22 @@ static int score_all(evaluation_row *row, uint8_t *render, const evaluation_view
     return code;
 }
 
+/* The scene of a method at the budget of `options`, and what is told of it. */
+static int build(reconstruction *built, reconstruction_account *told, const evaluation_views *views,
+                 const evaluation_case *what, method_id m, const reconstruction_options *options)
+{
+    if (m != METHOD_TRIM3R) {
+        return rival_build(views->rivals, what->recording, what->path, m, options, built, told);
+    }
+    int code = reconstruction_build(built, what->recording, what->path, options);
+    if (code == CLI_OK) {
+        *told = reconstruction_told(built);
+    }
+    return code;
+}
+
 int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
-                       evaluation_method method, double keep, bool from_file, const reconstruction_options *settings)
+                       method_id m, double keep, bool from_file, const reconstruction_options *settings)
 {
     reconstruction_options options = *settings;
     options.gaussians = 0;
@@ -269,29 +260,25 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     options.hash = false; /* timed without */
     options.context_count = what->context_count;
     memcpy(options.context, what->context, sizeof options.context);
-    if (method == EVALUATION_RANDOM) {
-        options.allocation = T3R_ALLOCATE_RANDOM;
-        options.head = "none";
-        options.flying = options.redundancy = options.exposure = options.refine = 0;
-    }
 
     *row = (evaluation_row){0};
     for (int i = 0; i < EVALUATION_VALUE_COUNT; i++) {
         row->value[i] = NAN;
     }
-    name_row(row, what, method, &options);
+    name_row(row, what, m, &options);
 
     reconstruction built, loaded = {0};
-    int code = reconstruction_build(&built, what->recording, what->path, &options);
+    reconstruction_account told;
+    int code = build(&built, &told, views, what, m, &options);
     if (code != CLI_OK) {
         return code;
     }
-    snprintf(row->head, sizeof row->head, "%s", built.head.name);
-    snprintf(row->bits, sizeof row->bits, "%s", built.head.bits);
+    snprintf(row->head, sizeof row->head, "%s", told.head);
+    snprintf(row->bits, sizeof row->bits, "%s", told.bits);
     row->value[EVALUATION_KEEP] = keep;
     row->value[EVALUATION_GAUSSIANS] = built.scene.count;
-    row->value[EVALUATION_BUILD_MS] = (built.add_views_seconds + built.build_seconds) * 1000;
-    row->value[EVALUATION_ARENA_BYTES] = (double)built.arena_bytes;
+    row->value[EVALUATION_BUILD_MS] = told.seconds * 1000;
+    row->value[EVALUATION_ARENA_BYTES] = (double)told.arena_bytes;
     if (from_file) {
         code = through_file(&loaded, &built, views, &options);
     }

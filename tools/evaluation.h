@@ -9,18 +9,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "method.h"
 #include "reconstruction.h"
 #include "recording.h"
 #include "trim3r.h"
-
-typedef enum evaluation_method {
-    EVALUATION_TRIM3R, /* allocation and head as the settings say */
-    EVALUATION_RANDOM, /* random points, nothing adapted */
-    EVALUATION_METHOD_COUNT
-} evaluation_method;
-
-/* "trim3r", "random". */
-const char *evaluation_method_name(evaluation_method method);
 
 typedef struct evaluation_case {
     const t3r_recording *recording;
@@ -44,6 +36,7 @@ typedef struct evaluation_views {
     evaluation_picture target;
     evaluation_picture context[T3R_MAX_VIEWS];
     uint32_t context_count;
+    struct rival_source *rivals; /* what the rows of the rivals share */
 } evaluation_views;
 
 /* CLI_OK, and evaluation_views_free() is due; otherwise nothing is. */
@@ -61,7 +54,7 @@ typedef enum evaluation_value {
     EVALUATION_PSNR_ALL,     /* all pixels over black, dB */
     EVALUATION_CONTEXT_PSNR, /* mean over the context views on their masks, dB */
     EVALUATION_PERCEPTUAL,   /* FLIP on the mask */
-    EVALUATION_BUILD_MS,     /* frames to scene: image stage and everything behind it */
+    EVALUATION_BUILD_MS,     /* frames to scene: image stage and everything behind it, scoring and fine-tuning too */
     EVALUATION_RENDER_MS,    /* the target view */
     EVALUATION_ARENA_BYTES,
     EVALUATION_PLANAR_PSNR, /* all pixels of a planar case, dB */
@@ -75,10 +68,11 @@ typedef struct evaluation_row {
     double value[EVALUATION_VALUE_COUNT];
 } evaluation_row;
 
-/* Builds `what` with `keep` percent of the valid points, draws and scores it. With from_file the scene is written as
+/* Builds `what` with `keep` percent of the valid points, draws and scores it. The rivals of a case share its unpruned
+ * scene, so `settings` must be the same for all of their rows. With from_file the scene is written as
  * .ply, read back and drawn from that. `render` (width x height x 3) gets the target view. */
 int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
-                       evaluation_method method, double keep, bool from_file, const reconstruction_options *settings);
+                       method_id m, double keep, bool from_file, const reconstruction_options *settings);
 
 /* A recording in memory of one image, cropped and averaged to width x height as import does: a single view on a plane
  * two units away, the focal length `width` pixels. *bytes (free()) must outlive it. NULL after a message. */

@@ -17,7 +17,7 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"scene", -1, 0, 20, ALWAYS},
     {"context", -1, 0, 8, RECORDING},
     {"target", -1, 0, 7, RECORDING},
-    {"method", -1, 0, 8, ALWAYS},
+    {"method", -1, 0, 23, ALWAYS},
     {"head", -1, 0, 10, ALWAYS},
     {"bits", -1, 0, 6, ALWAYS},
     {"refine", -1, 0, 0, NEVER},

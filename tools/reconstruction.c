@@ -33,7 +33,26 @@ void reconstruction_defaults(reconstruction_options *options)
         .hash = true,
         .arena = ARENA_FULL,
         .threads = 1,
+        .finetune_iterations = METHOD_ITERATIONS,
     };
+}
+
+reconstruction_account reconstruction_told(const reconstruction *r)
+{
+    reconstruction_account told = {
+        .width = r->config.width,
+        .height = r->config.height,
+        .context_count = r->context_count,
+        .valid_points = r->valid_points,
+        .requested = r->requested,
+        .arena_bytes = r->arena_bytes,
+        .seconds = r->add_views_seconds + r->build_seconds,
+    };
+    memcpy(told.head, r->head.name, sizeof told.head);
+    memcpy(told.bits, r->head.bits, sizeof told.bits);
+    memcpy(told.crc, r->head.crc, sizeof told.crc);
+    memcpy(told.context, r->context, sizeof told.context);
+    return told;
 }
 
 uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent)
@@ -235,6 +254,22 @@ static int choose_context(reconstruction *r, const t3r_recording *recording, con
         if (code != CLI_OK) {
             return code;
         }
+    }
+    r->config.width = options->width != 0 ? options->width : frames[0].frame.width;
+    r->config.height = options->height != 0 ? options->height : frames[0].frame.height;
+    return CLI_OK;
+}
+
+int reconstruction_views(reconstruction *r, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options)
+{
+    t3r_capture_frame frames[T3R_MAX_VIEWS];
+    return choose_context(r, recording, path, options, frames);
+}
+
+static int need_depth(const reconstruction *r, const char *path, const t3r_capture_frame *frames)
+{
+    for (uint32_t v = 0; v < r->context_count; v++) {
         if (frames[v].frame.depth == NULL) {
             return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no depth (--depth sensor needs it)", path,
                              r->context[v]);
@@ -260,12 +295,13 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
     if (code == CLI_OK) {
         code = choose_context(r, recording, path, options, frames);
     }
+    if (code == CLI_OK) {
+        code = need_depth(r, path, frames);
+    }
     if (code != CLI_OK) {
         return code;
     }
-    uint32_t width = options->width != 0 ? options->width : frames[0].frame.width;
-    uint32_t height = options->height != 0 ? options->height : frames[0].frame.height;
-    r->config = t3r_default_config(width, height, r->context_count, 1);
+    r->config = t3r_default_config(r->config.width, r->config.height, r->context_count, 1);
     r->config.allocation = options->allocation;
     chosen_head_configure(&r->head, &r->config);
     r->config.wavelet = options->wavelet;

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "chosen_head.h"
+#include "method.h"
 #include "recording.h"
 #include "scene_file.h"
 #include "threads.h"
@@ -24,6 +25,8 @@ typedef struct reconstruction_options {
     uint32_t context_count;               /* 0 = the first two frames */
     uint32_t gaussians;                   /* budget as a count; 0 = keep_percent decides */
     double keep_percent;                  /* budget as percent of the valid points, (0, 100]; 0 = not given */
+    method_id method;                        /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
+    uint32_t finetune_iterations;         /* of the methods that are fine-tuned */
     uint32_t width, height;               /* working size; 0 = the first context frame's */
     uint32_t render_width, render_height; /* largest target; 0 = the working size */
     t3r_allocation allocation;
@@ -50,7 +53,7 @@ void reconstruction_defaults(reconstruction_options *options);
 
 /* argp children; each parent's parser hands reconstruction_options * on in state->child_inputs[].
  * `settings`: --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep --auto
- * --method. */
+ * --method --finetune-iterations. */
 extern const struct argp reconstruction_settings_argp;
 extern const struct argp reconstruction_budget_argp;
 
@@ -75,6 +78,19 @@ typedef struct reconstruction {
     bool stage_hashed[T3R_STAGE_COUNT];
 } reconstruction;
 
+/* What is told of a build, whatever made it. */
+typedef struct reconstruction_account {
+    char head[16], bits[8], crc[9]; /* as in chosen_head */
+    uint32_t width, height;         /* working size */
+    uint32_t context[T3R_MAX_VIEWS];
+    uint32_t context_count;
+    uint32_t valid_points, requested;
+    size_t arena_bytes;
+    double seconds; /* from recorded frames to the scene */
+} reconstruction_account;
+
+reconstruction_account reconstruction_told(const reconstruction *r);
+
 /* The budget for a share of the points: rounded half up, at least 1. */
 uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent);
 
@@ -86,6 +102,11 @@ int reconstruction_build(reconstruction *r, const t3r_recording *recording, cons
  * arena, threads and hash are read. */
 int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options);
+
+/* Chooses and checks the context frames of a scene that came from a file: `context` and the working size in `config`.
+ */
+int reconstruction_views(reconstruction *r, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options);
 
 void reconstruction_close(reconstruction *r);
 

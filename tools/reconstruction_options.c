@@ -13,6 +13,7 @@ enum {
     KEY_AUTO,
     KEY_MAX_LOSS,
     KEY_METHOD,
+    KEY_ITERATIONS,
     KEY_CONTEXT,
     KEY_ALLOCATE,
     KEY_HEAD,
@@ -191,7 +192,9 @@ static const struct argp_option budget[] = {
     {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, 1..16 (the first two)", 0},
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "exactly Z Gaussians, or all valid points where there are fewer", 0},
     {"keep", KEY_KEEP, "P%", 0, "as many as P percent of the valid points, rounded half up", 0},
-    {"method", KEY_METHOD, "METHOD", 0, "trim3r (default), or random: random points, nothing adapted", 0},
+    {"method", KEY_METHOD, "METHOD", 0,
+     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them", 0},
+    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"auto", KEY_AUTO, NULL, 0, "the smallest budget within a loss; not yet available", 0},
     {"max-loss", KEY_MAX_LOSS, "DB", OPTION_HIDDEN, NULL, 0},
     {0},
@@ -214,13 +217,13 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         }
         return 0;
     case KEY_METHOD:
-        if (strcmp(arg, "random") == 0) {
-            o->allocation = T3R_ALLOCATE_RANDOM;
-            o->head = "none";
-            o->flying = o->redundancy = o->exposure = o->refine = 0;
-        } else if (strcmp(arg, "trim3r") != 0) {
-            argp_error(state, "--method does not know '%s'", arg);
+        o->method = method_named(arg, strlen(arg));
+        if (o->method == METHOD_COUNT) {
+            argp_error(state, "--method does not know '%s'; there are %s", arg, METHOD_NAMES);
         }
+        return 0;
+    case KEY_ITERATIONS:
+        o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
         return 0;
     case KEY_AUTO:
     case KEY_MAX_LOSS:

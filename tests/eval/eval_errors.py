@@ -45,10 +45,15 @@ with tempfile.TemporaryDirectory() as folder:
     for context in ("0,", "a", ",".join(str(i) for i in range(17))):
         refuse(USAGE, "--context takes", [room, "--context", context, "--target", "1", "--keep", "10"])
     refuse(USAGE, "--target takes", [room, "--context", "0,2", "--target", "1,3", "--keep", "10"])
-    for method in ("eagles", "lightgaussian", "pup", "efficientgs", "eagles+finetune"):
-        refuse(USAGE, f"{method} is not available yet", "trim3r, random", [*one, "--keep", "10", "--methods", method])
-    refuse(USAGE, "best is not a method", [*one, "--keep", "10", "--methods", "trim3r,best"])
+    for method in ("best", "", "eagle", "eaglesX", "eagles+", "eagles+finetuned", "+finetune", "EAGLES"):
+        refuse(USAGE, f"'{method}' is not a method", "efficientgs", "+finetune",
+               [*one, "--keep", "10", "--methods", f"trim3r,{method}"])
     refuse(USAGE, "trim3r twice", [*one, "--keep", "10", "--methods", "trim3r,random,trim3r"])
+    refuse(USAGE, "pup+finetune twice", [*one, "--keep", "10", "--methods", "pup,pup+finetune,pup+finetune"])
+    for iterations in ("0", "-1", "100001", "many", ""):
+        refuse(USAGE, "--finetune-iterations", [*one, "--keep", "10", f"--finetune-iterations={iterations}"])
+    refuse(BUDGET, "too small", [*one, "--keep", "10", "--methods", "eagles", "--arena", "1000"])
+    refuse(INPUT, room, "no frame 999", [room, "--context", "0,999", "--target", "1", "--keep", "10", "--methods", "pup"])
     refuse(USAGE, "stereo", [*one, "--keep", "10", "--depth", "stereo"])
     refuse(USAGE, "--head", [*one, "--keep", "10", "--head", "huge"])
     refuse(USAGE, "--heads", [*one, "--keep", "10", "--heads", "small,huge"])

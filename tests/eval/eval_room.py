@@ -65,9 +65,8 @@ def evaluate_triplet(folder, room):
     for row in rows:
         check((row["scene"], row["context"], row["target"], row["depth"]) == ("room", "0,2", "1", "sensor"), "names")
         check((row["head"], row["allocate"]) ==
-              (("small", "density") if row["method"] == "trim3r" else ("none", "random")), "settings")
-        check(row["planar_psnr"] == "" and row["bits"] == ("8" if row["method"] == "trim3r" else ""),
-              "cells that do not apply are empty")
+              ("small", "density" if row["method"] == "trim3r" else ""), "settings")
+        check(row["planar_psnr"] == "" and row["bits"] == "8", "cells that do not apply are empty")
         render = read(f"{pictures}/1/{row['method']}_{row['keep']}.png")
         check_scores(row, target, render, mask, "psnr")
         error = ((target.astype(float) - render) ** 2)[everything].mean()
@@ -145,7 +144,7 @@ def evaluate_heads(folder, room):
                             "--images", f"{folder}/heads", "--html", f"{folder}/heads.html", "--json").stdout)
     rows = answer["rows"]
     check([(r["method"], r["head"], r["bits"], r["keep"]) for r in rows] ==
-          [("random", "none", None, k) for k in (20, 5)] +
+          [("random", "small", "8", k) for k in (20, 5)] +
           [("trim3r", n, b, k) for n, b in zip(["analytic", "moment", "nano", "small", "base", "mine", "mine"],
                                               [None, None, "8", "8", "8", "8", "8/16"]) for k in (20, 5)],
           f"rows a head: {rows}")
@@ -160,6 +159,41 @@ def evaluate_heads(folder, room):
     nano, mine = ([r["psnr"] for r in rows if (r["head"], r["bits"]) == (name, "8")] for name in ("nano", "mine"))
     check(nano == mine, "the shipped head is what its float file gives")
     check(len({r["psnr"] for r in rows}) == len(rows) - len(nano), "all others differ")
+
+
+def evaluate_rivals(folder, room):
+    """Every method: exact counts, the unpruned scene at 100 %, a row of its own with pictures and times."""
+    rivals = ["random", "eagles", "lightgaussian", "pup", "efficientgs"]
+    methods = ["trim3r", *rivals, "trim3r+finetune", *(f"{rival}+finetune" for rival in rivals)]
+    keeps = [100, 30, 5]
+    common = ["--context", "0,2", "--target", "1", "--working", "32x32", "--finetune-iterations", "25", "--json"]
+    answer = json.loads(run(trim3r, "eval", room, *common, "--keep", ",".join(map(str, keeps)), "--methods",
+                            ",".join(methods), "--images", f"{folder}/rivals").stdout)
+    by = {(row["method"], row["keep"]): row for row in answer["rows"]}
+    check(list(by) == [(m, k) for m in methods for k in keeps], "one row a method and budget, in the order asked for")
+    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "context_psnr", "perceptual")
+    for (name, keep), row in by.items():
+        check(row["gaussians"] == by["trim3r", keep]["gaussians"], f"{name} at {keep} %: the count of trim3r")
+        check((row["head"], row["bits"], row["refine"]) == ("small", "8", by["trim3r", keep]["refine"]), "settings")
+        check((row["allocate"] is None) == (not name.startswith("trim3r")), "rivals have no allocation")
+        check(os.path.exists(f"{folder}/rivals/1/{name}_{keep}.png"), "a picture a row")
+    for rival in rivals:
+        check([by[rival, 100][s] for s in scores] == [by["trim3r", 100][s] for s in scores],
+              f"{rival} at 100 % is the unpruned scene, unchanged")
+        check(by[rival, 100]["build_ms"] > by["trim3r", 100]["build_ms"] * 0.2, "scoring is part of the time")
+        for keep in (30, 5):
+            tuned, plain = by[f"{rival}+finetune", keep], by[rival, keep]
+            check(plain["psnr"] < by["trim3r", keep]["psnr"] - 3, f"{rival} at {keep} %: nothing fills the holes")
+            check(tuned["context_psnr"] > plain["context_psnr"] + 2, f"{rival} at {keep} %: fine-tuning fits the context")
+            check(tuned["build_ms"] > plain["build_ms"], "fine-tuning is part of the time")
+    check(by["trim3r+finetune", 30]["context_psnr"] > by["trim3r", 30]["context_psnr"] + 1, "trim3r can be tuned too")
+    check(len({by[rival, 30]["psnr"] for rival in rivals}) == len(rivals), "the scores differ")
+    again = json.loads(run(trim3r, "eval", room, *common, "--keep", "5", "--methods", "pup+finetune").stdout)["rows"][0]
+    check([again[s] for s in scores] == [by["pup+finetune", 5][s] for s in scores], "alone as beside others")
+    other = json.loads(run(trim3r, "eval", room, *common, "--keep", "30", "--methods", "random,eagles", "--head",
+                           "analytic", "--refine", "0", "--seed", "2").stdout)["rows"]
+    check(all(row["head"] == "analytic" and row["psnr"] != by[row["method"], 30]["psnr"] for row in other),
+          "rivals prune the scene of the head that is named")
 
 
 def evaluate_planar(folder):
@@ -206,6 +240,7 @@ with tempfile.TemporaryDirectory() as folder:
     evaluate_several(folder, room)
     evaluate_variants(folder, room)
     evaluate_heads(folder, room)
+    evaluate_rivals(folder, room)
     evaluate_planar(folder)
     evaluate_namesakes(folder)
 if scorer is None:

@@ -1,0 +1,42 @@
+/* The methods of build and eval: ours, and those that it is measured against, each as published or fine-tuned. */
+#ifndef TRIM3R_TOOLS_METHOD_H
+#define TRIM3R_TOOLS_METHOD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum method_kind {
+    METHOD_TRIM3R, /* allocation and head as the settings say */
+    /* rivals: the head's unpruned scene, of which those Gaussians stay that a score ranks highest (rivals/score.h) */
+    METHOD_RANDOM,
+    METHOD_EAGLES,
+    METHOD_LIGHTGAUSSIAN,
+    METHOD_PUP,
+    METHOD_EFFICIENTGS,
+    METHOD_KIND_COUNT
+} method_kind;
+
+/* A kind, or METHOD_KIND_COUNT more: that kind fine-tuned. */
+typedef uint32_t method_id;
+#define METHOD_COUNT (2u * METHOD_KIND_COUNT)
+#define METHOD_ITERATIONS 200u /* of fine-tuning, unless told otherwise */
+#define METHOD_ITERATIONS_MOST 100000u
+#define METHOD_NAMES "trim3r, random, eagles, lightgaussian, pup, efficientgs, each also with +finetune"
+
+static inline method_kind method_kind_of(method_id m)
+{
+    return (method_kind)(m % METHOD_KIND_COUNT);
+}
+
+static inline bool method_is_tuned(method_id m)
+{
+    return m >= METHOD_KIND_COUNT;
+}
+
+/* "trim3r", "eagles+finetune". */
+const char *method_name(method_id m);
+/* The method of these `length` characters; METHOD_COUNT where there is none. */
+method_id method_named(const char *text, size_t length);
+
+#endif

@@ -1,0 +1,292 @@
+#include "rivals/rival.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "developed_frame.h"
+#include "fixed.h"
+#include "rivals/score.h"
+
+/* ---- what is shared ------------------------------------------------------------------------------------------- */
+
+void rival_source_close(rival_source *source)
+{
+    for (uint32_t v = 0; v < T3R_MAX_VIEWS; v++) {
+        free(source->rgb[v]);
+        splat_view_close(&source->views[v]);
+    }
+    for (uint32_t k = 0; k < METHOD_KIND_COUNT; k++) {
+        free(source->score[k]);
+    }
+    splat_model_free(&source->model);
+    reconstruction_close(&source->whole);
+    *source = (rival_source){0};
+}
+
+/* The context views as pictures, of the frames and the size that a build resolved. */
+static int open_pictures(rival_source *source, const reconstruction *r)
+{
+    reconstruction_options *o = &source->options;
+    int code = CLI_OK;
+    o->width = r->config.width;
+    o->height = r->config.height;
+    o->context_count = r->context_count;
+    memcpy(o->context, r->context, sizeof o->context);
+    for (uint32_t v = 0; v < o->context_count && code == CLI_OK; v++) {
+        source->rgb[v] = malloc((size_t)o->width * o->height * 3);
+        code = source->rgb[v] == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
+                                      : developed_frame(source->recording, source->path, o->context[v], o->width,
+                                                        o->height, source->rgb[v], &source->camera[v]);
+    }
+    source->opened = code == CLI_OK;
+    return code;
+}
+
+static bool open_views(rival_source *source)
+{
+    const t3r_scene *scene = &source->whole.scene;
+    bool done = splat_model_of(&source->model, scene->gaussians, scene->count);
+    for (; done && source->view_count < source->options.context_count; source->view_count++) {
+        splat_view *view = &source->views[source->view_count];
+        splat_camera camera = splat_camera_of(&source->camera[source->view_count], &scene->frame, source->options.width,
+                                              source->options.height);
+        done = splat_view_open(view, &camera, scene->count) && splat_view_project(view, &source->model);
+    }
+    return done;
+}
+
+/* A scene that was made elsewhere in the place of an unpruned one. */
+static int load_whole(rival_source *source)
+{
+    scene_file scene;
+    char error[512] = "";
+    if (scene_file_read_ply(source->scene, &scene, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    if (scene.count == 0) {
+        scene_file_free(&scene);
+        return cli_error(CLI_BAD_INPUT, "%s: there are no Gaussians to be pruned", source->scene);
+    }
+    reconstruction *whole = &source->whole;
+    reconstruction_options plain = source->options;
+    plain.arena = ARENA_FULL;
+    plain.hash = false;
+    double start = cli_now();
+    int code = reconstruction_load(whole, &scene, T3R_MIN_SIDE, T3R_MIN_SIDE, &plain);
+    if (code == CLI_OK) {
+        code = reconstruction_views(whole, source->recording, source->path, &source->options);
+    }
+    whole->valid_points = scene.count;
+    whole->build_seconds = cli_now() - start;
+    scene_file_free(&scene);
+    return code;
+}
+
+/* The unpruned scene, in floats too, and its context views. */
+static int build_whole(rival_source *source)
+{
+    reconstruction_options options = source->options;
+    options.gaussians = 0;
+    options.keep_percent = 100;
+    int code = source->scene != NULL ? load_whole(source)
+                                     : reconstruction_build(&source->whole, source->recording, source->path, &options);
+    if (code == CLI_OK && !source->opened) {
+        code = open_pictures(source, &source->whole);
+    }
+    if (code != CLI_OK) {
+        return code;
+    }
+    double start = cli_now();
+    if (!open_views(source)) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    source->project_seconds = cli_now() - start;
+    source->built = true;
+    return CLI_OK;
+}
+
+static bool fill_score(rival_source *source, method_kind kind, double *score)
+{
+    switch (kind) {
+    case METHOD_EAGLES:
+        return score_eagles(&source->model, source->views, source->view_count, score);
+    case METHOD_LIGHTGAUSSIAN:
+        return score_lightgaussian(&source->model, source->views, source->view_count, score);
+    case METHOD_PUP:
+        return score_pup(&source->model, source->views, source->view_count, score);
+    case METHOD_EFFICIENTGS:
+        return score_efficientgs(&source->model, source->views, source->view_count, score);
+    default:
+        return score_random(&source->model, source->options.seed, score);
+    }
+}
+
+static int make_score(rival_source *source, method_kind kind)
+{
+    if (source->score[kind] != NULL) {
+        return CLI_OK;
+    }
+    double start = cli_now();
+    source->score[kind] = malloc(((size_t)source->model.count + 1) * sizeof(double));
+    if (source->score[kind] == NULL || !fill_score(source, kind, source->score[kind])) {
+        free(source->score[kind]);
+        source->score[kind] = NULL;
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    source->score_seconds[kind] = cli_now() - start;
+    return CLI_OK;
+}
+
+/* ---- pruning -------------------------------------------------------------------------------------------------- */
+
+typedef struct ranked {
+    double score;
+    uint32_t index;
+} ranked;
+
+static int by_score(const void *a, const void *b)
+{
+    const ranked *x = a, *y = b;
+    if (x->score != y->score) {
+        return x->score > y->score ? -1 : 1;
+    }
+    return (x->index > y->index) - (x->index < y->index);
+}
+
+bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept)
+{
+    ranked *all = malloc(((size_t)of + 1) * sizeof *all);
+    bool *stays = calloc((size_t)of + 1, sizeof *stays);
+    bool done = all != NULL && stays != NULL;
+    for (uint32_t i = 0; i < of && done; i++) {
+        all[i] = (ranked){score[i], i};
+    }
+    if (done) {
+        qsort(all, of, sizeof *all, by_score);
+    }
+    for (uint32_t n = 0; n < count && done; n++) {
+        stays[all[n].index] = true;
+    }
+    for (uint32_t i = 0, n = 0; i < of && done; i++) {
+        if (stays[i]) {
+            kept[n++] = i;
+        }
+    }
+    free(all);
+    free(stays);
+    return done;
+}
+
+/* The `count` best Gaussians of the unpruned scene, unchanged. */
+static int prune(rival_source *source, method_kind kind, uint32_t count, scene_file *scene)
+{
+    const t3r_scene *whole = &source->whole.scene;
+    uint32_t *kept = malloc(((size_t)count + 1) * sizeof *kept);
+    *scene = (scene_file){.frame = whole->frame, .count = count};
+    scene->gaussians = malloc(((size_t)count + 1) * sizeof *scene->gaussians);
+    int code = kept != NULL && scene->gaussians != NULL && rival_choose(source->score[kind], whole->count, count, kept)
+                   ? CLI_OK
+                   : cli_error(CLI_BAD_INPUT, "out of memory");
+    for (uint32_t n = 0; n < count && code == CLI_OK; n++) {
+        scene->gaussians[n] = whole->gaussians[kept[n]];
+    }
+    free(kept);
+    return code;
+}
+
+static int prune_whole(rival_source *source, method_kind kind, const reconstruction_options *options, scene_file *scene,
+                       reconstruction_account *told)
+{
+    int code = source->built ? CLI_OK : build_whole(source);
+    if (code == CLI_OK) {
+        code = make_score(source, kind);
+    }
+    if (code != CLI_OK) {
+        return code;
+    }
+    double start = cli_now();
+    *told = reconstruction_told(&source->whole);
+    told->requested =
+        options->gaussians != 0 ? options->gaussians : reconstruction_budget(told->valid_points, options->keep_percent);
+    code = prune(source, kind, T3R_MIN(told->requested, source->whole.scene.count), scene);
+    told->seconds += source->project_seconds + source->score_seconds[kind] + cli_now() - start;
+    return code;
+}
+
+/* ---- ours, to be fine-tuned ------------------------------------------------------------------------------------- */
+
+static int build_ours(rival_source *source, const reconstruction_options *options, scene_file *scene,
+                      reconstruction_account *told)
+{
+    reconstruction r;
+    int code = reconstruction_build(&r, source->recording, source->path, options);
+    if (code != CLI_OK) {
+        return code;
+    }
+    *told = reconstruction_told(&r);
+    *scene = (scene_file){.frame = r.scene.frame, .count = r.scene.count};
+    scene->gaussians = malloc(((size_t)r.scene.count + 1) * sizeof *scene->gaussians);
+    if (scene->gaussians == NULL) {
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    } else {
+        memcpy(scene->gaussians, r.scene.gaussians, r.scene.count * sizeof *scene->gaussians);
+        code = source->opened ? CLI_OK : open_pictures(source, &r);
+    }
+    reconstruction_close(&r);
+    return code;
+}
+
+/* ---- fine-tuning --------------------------------------------------------------------------------------------------
+ */
+
+static int tune(const rival_source *source, uint32_t iterations, scene_file *scene)
+{
+    finetune_target targets[T3R_MAX_VIEWS];
+    uint32_t views = source->options.context_count;
+    for (uint32_t v = 0; v < views; v++) {
+        targets[v].camera =
+            splat_camera_of(&source->camera[v], &scene->frame, source->options.width, source->options.height);
+        targets[v].rgb = source->rgb[v];
+    }
+    splat_model model;
+    bool done = splat_model_of(&model, scene->gaussians, scene->count) &&
+                finetune(&model, targets, views, iterations, &finetune_rates_default);
+    cli_progress_end();
+    for (uint32_t i = 0; i < scene->count && done; i++) {
+        splat_model_store(&model.parameters[(size_t)i * SPLAT_PARAMETERS], &scene->gaussians[i]);
+    }
+    splat_model_free(&model);
+    return done ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
+}
+
+int rival_build(rival_source *source, const t3r_recording *recording, const char *path, method_id m,
+                const reconstruction_options *options, reconstruction *made, reconstruction_account *told)
+{
+    if (source->recording == NULL) {
+        source->recording = recording;
+        source->path = path;
+        source->options = *options;
+    }
+    method_kind kind = method_kind_of(m);
+    scene_file scene = {0};
+    int code = kind == METHOD_TRIM3R ? build_ours(source, options, &scene, told)
+                                     : prune_whole(source, kind, options, &scene, told);
+    if (code == CLI_OK && method_is_tuned(m)) {
+        double start = cli_now();
+        code = tune(source, options->finetune_iterations, &scene);
+        told->seconds += cli_now() - start;
+    }
+    if (code == CLI_OK) {
+        uint32_t width = options->render_width != 0 ? options->render_width : source->options.width;
+        uint32_t height = options->render_height != 0 ? options->render_height : source->options.height;
+        reconstruction_options plain = *options;
+        plain.arena = ARENA_FULL;
+        plain.hash = false;
+        code = reconstruction_load(made, &scene, width, height, &plain);
+    }
+    if (scene.gaussians != NULL) {
+        scene_file_free(&scene);
+    }
+    return code;
+}

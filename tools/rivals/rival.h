@@ -1,0 +1,44 @@
+/* Scenes that the rivals make: the unpruned scene of a head, pruned by a published score to an exact count, as it is or
+ * fine-tuned on the context views. Floats, on the host: nothing here is covered by "same bits". */
+#ifndef TRIM3R_TOOLS_RIVALS_RIVAL_H
+#define TRIM3R_TOOLS_RIVALS_RIVAL_H
+
+#include "method.h"
+#include "reconstruction.h"
+#include "rivals/finetune.h"
+#include "rivals/splat_view.h"
+
+/* What the scenes of one context have in common; made when it is first asked for, so that many budgets and methods
+ * share it. All zero, but for `scene`: nothing is open. */
+typedef struct rival_source {
+    bool opened, built;
+    const t3r_recording *recording;
+    const char *path;
+    const char *scene;              /* a .ply to be pruned; NULL: the scene that `options` make of all points */
+    reconstruction_options options; /* context and working size resolved once `opened` */
+    uint8_t *rgb[T3R_MAX_VIEWS];    /* the context views as the image stage gives them */
+    t3r_camera camera[T3R_MAX_VIEWS];
+    reconstruction whole; /* the unpruned scene, from here on once `built` */
+    splat_model model;    /* the same */
+    splat_view views[T3R_MAX_VIEWS];
+    uint32_t view_count;
+    double project_seconds;
+    double *score[METHOD_KIND_COUNT]; /* NULL until asked for */
+    double score_seconds[METHOD_KIND_COUNT];
+} rival_source;
+
+/* The `count` indices of the highest scores, of equal ones the first, in rising order. kept[] has room for
+ * `count`. False without memory. */
+bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept);
+
+/* The scene of a method other than plain trim3r at the budget of `options`, in an arena that only renders: *made, to be
+ * closed. *told says of it what reconstruction_told() says of a build: the arena is that of the runtime's part, the
+ * time all of it, scoring and fine-tuning included; of a scene from a file the points are its Gaussians, the head "".
+ * Of `options` context, settings and recording must not change as long as the source is open. An exit status of cli.h.
+ */
+int rival_build(rival_source *source, const t3r_recording *recording, const char *path, method_id m,
+                const reconstruction_options *options, reconstruction *made, reconstruction_account *told);
+
+void rival_source_close(rival_source *source);
+
+#endif
