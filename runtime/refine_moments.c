@@ -10,7 +10,7 @@
 #define ORIGIN_FAR_Q12 (32 << 12) /* anywhere in a tile that the ellipse touches */
 
 /* Where x^k y^l stands. */
-enum { ONE, X, Y, XX, XY, YY, XXX, XXY, XYY, YYY, XXXX, XXXY, XXYY, XYYY, YYYY };
+enum { ONE, X, Y, X2, XY, Y2, X3, X2Y, XY2, Y3, X4, X3Y, X2Y2, XY3, Y4 };
 
 /* One row of sums, x^0.. at the places `at`, continued over eight columns: sum k adds up what sum k - 1 has become. */
 static inline void continue_sums(int64_t *sums, const uint8_t *at, int order, const int64_t columns[T3R_LANES])
@@ -33,7 +33,7 @@ static inline void continue_sums(int64_t *sums, const uint8_t *at, int order, co
 
 void t3r_tile_sums_add(t3r_tile_sums *sums, const t3r_scatter_sums *columns)
 {
-    static const uint8_t at[5][5] = {{ONE, X, XX, XXX, XXXX}, {Y, XY, XXY, XXXY}, {YY, XYY, XXYY}, {YYY, XYYY}, {YYYY}};
+    static const uint8_t at[5][5] = {{ONE, X, X2, X3, X4}, {Y, XY, X2Y, X3Y}, {Y2, XY2, X2Y2}, {Y3, XY3}, {Y4}};
     int64_t curvature[5][T3R_LANES], gradient[3][T3R_LANES];
     for (int i = 0; i < T3R_LANES; i++) {
         for (int l = 0; l < 4; l++) {
@@ -90,22 +90,22 @@ static inline void centre_4(int64_t *m, int a, int b, int c, int d, int e, int64
 
 static inline void centre_gradient(int64_t *m, int64_t column, int64_t row)
 {
-    centre_2(m, ONE, X, XX, column);
+    centre_2(m, ONE, X, X2, column);
     centre_1(m, Y, XY, column);
-    centre_2(m, ONE, Y, YY, row);
+    centre_2(m, ONE, Y, Y2, row);
     centre_1(m, X, XY, row);
 }
 
 static inline void centre_curvature(int64_t *m, int64_t column, int64_t row)
 {
-    centre_4(m, ONE, X, XX, XXX, XXXX, column);
-    centre_3(m, Y, XY, XXY, XXXY, column);
-    centre_2(m, YY, XYY, XXYY, column);
-    centre_1(m, YYY, XYYY, column);
-    centre_4(m, ONE, Y, YY, YYY, YYYY, row);
-    centre_3(m, X, XY, XYY, XYYY, row);
-    centre_2(m, XX, XXY, XXYY, row);
-    centre_1(m, XXX, XXXY, row);
+    centre_4(m, ONE, X, X2, X3, X4, column);
+    centre_3(m, Y, XY, X2Y, X3Y, column);
+    centre_2(m, Y2, XY2, X2Y2, column);
+    centre_1(m, Y3, XY3, column);
+    centre_4(m, ONE, Y, Y2, Y3, Y4, row);
+    centre_3(m, X, XY, XY2, XY3, row);
+    centre_2(m, X2, X2Y, X2Y2, row);
+    centre_1(m, X3, X3Y, row);
 }
 
 /* From moments x^k, k = 0..n at the places a, b, .., to (x + origin)^k: n rounds again, each of them a factor. */
@@ -140,22 +140,22 @@ static inline void shift_4(int64_t *m, int a, int b, int c, int d, int e, int64_
 
 static inline void shift_gradient(int64_t *m, const int64_t origin_q12[2])
 {
-    shift_2(m, ONE, X, XX, origin_q12[0]);
+    shift_2(m, ONE, X, X2, origin_q12[0]);
     shift_1(m, Y, XY, origin_q12[0]);
-    shift_2(m, ONE, Y, YY, origin_q12[1]);
+    shift_2(m, ONE, Y, Y2, origin_q12[1]);
     shift_1(m, X, XY, origin_q12[1]);
 }
 
 static inline void shift_curvature(int64_t *m, const int64_t origin_q12[2])
 {
-    shift_4(m, ONE, X, XX, XXX, XXXX, origin_q12[0]);
-    shift_3(m, Y, XY, XXY, XXXY, origin_q12[0]);
-    shift_2(m, YY, XYY, XXYY, origin_q12[0]);
-    shift_1(m, YYY, XYYY, origin_q12[0]);
-    shift_4(m, ONE, Y, YY, YYY, YYYY, origin_q12[1]);
-    shift_3(m, X, XY, XYY, XYYY, origin_q12[1]);
-    shift_2(m, XX, XXY, XXYY, origin_q12[1]);
-    shift_1(m, XXX, XXXY, origin_q12[1]);
+    shift_4(m, ONE, X, X2, X3, X4, origin_q12[0]);
+    shift_3(m, Y, XY, X2Y, X3Y, origin_q12[0]);
+    shift_2(m, Y2, XY2, X2Y2, origin_q12[0]);
+    shift_1(m, Y3, XY3, origin_q12[0]);
+    shift_4(m, ONE, Y, Y2, Y3, Y4, origin_q12[1]);
+    shift_3(m, X, XY, XY2, XY3, origin_q12[1]);
+    shift_2(m, X2, X2Y, X2Y2, origin_q12[1]);
+    shift_1(m, X3, X3Y, origin_q12[1]);
 }
 
 /* The linear part of e = e0 + K (u, v), Q16, and the products of its rows. |a| + |b| <= 1.84 in a row; what multiplies
@@ -195,9 +195,9 @@ static inline void map_gradient(const linear_map *by, const int64_t *m, int64_t 
     own[ONE] = m[ONE] * 16;
     own[X] = map_1(by->x, m + X, 12);
     own[Y] = map_1(by->y, m + X, 12);
-    own[XX] = map_2(by->xx, m + XX, 12);
-    own[XY] = map_2(by->xy, m + XX, 12);
-    own[YY] = map_2(by->yy, m + XX, 12);
+    own[X2] = map_2(by->xx, m + X2, 12);
+    own[XY] = map_2(by->xy, m + X2, 12);
+    own[Y2] = map_2(by->yy, m + X2, 12);
 }
 
 /* To Q7, below 2^(32.6 + n 4.79): 2^51.8. Order 3 by way of Q4, below 2^39.3 x 2^17.76 / 2^14 = 2^43.1; order 4 by way
@@ -207,22 +207,22 @@ static inline void map_curvature(const linear_map *by, const int64_t *m, int64_t
     own[ONE] = m[ONE] * 32;
     own[X] = map_1(by->x, m + X, 11);
     own[Y] = map_1(by->y, m + X, 11);
-    own[XX] = map_2(by->xx, m + XX, 11);
-    own[XY] = map_2(by->xy, m + XX, 11);
-    own[YY] = map_2(by->yy, m + XX, 11);
-    const int64_t xx_q4[2] = {map_2(by->xx, m + XXX, 14), map_2(by->xx, m + XXY, 14)};
-    const int64_t yy_q4[2] = {map_2(by->yy, m + XXX, 14), map_2(by->yy, m + XXY, 14)};
-    own[XXX] = map_1(by->x, xx_q4, 13);
-    own[XXY] = map_1(by->y, xx_q4, 13);
-    own[XYY] = map_1(by->x, yy_q4, 13);
-    own[YYY] = map_1(by->y, yy_q4, 13);
-    const int64_t xx_q2[3] = {map_2(by->xx, m + XXXX, 16), map_2(by->xx, m + XXXY, 16), map_2(by->xx, m + XXYY, 16)};
-    const int64_t yy_q2[3] = {map_2(by->yy, m + XXXX, 16), map_2(by->yy, m + XXXY, 16), map_2(by->yy, m + XXYY, 16)};
-    own[XXXX] = map_2(by->xx, xx_q2, 11);
-    own[XXXY] = map_2(by->xy, xx_q2, 11);
-    own[XXYY] = map_2(by->yy, xx_q2, 11);
-    own[XYYY] = map_2(by->xy, yy_q2, 11);
-    own[YYYY] = map_2(by->yy, yy_q2, 11);
+    own[X2] = map_2(by->xx, m + X2, 11);
+    own[XY] = map_2(by->xy, m + X2, 11);
+    own[Y2] = map_2(by->yy, m + X2, 11);
+    const int64_t xx_q4[2] = {map_2(by->xx, m + X3, 14), map_2(by->xx, m + X2Y, 14)};
+    const int64_t yy_q4[2] = {map_2(by->yy, m + X3, 14), map_2(by->yy, m + X2Y, 14)};
+    own[X3] = map_1(by->x, xx_q4, 13);
+    own[X2Y] = map_1(by->y, xx_q4, 13);
+    own[XY2] = map_1(by->x, yy_q4, 13);
+    own[Y3] = map_1(by->y, yy_q4, 13);
+    const int64_t xx_q2[3] = {map_2(by->xx, m + X4, 16), map_2(by->xx, m + X3Y, 16), map_2(by->xx, m + X2Y2, 16)};
+    const int64_t yy_q2[3] = {map_2(by->yy, m + X4, 16), map_2(by->yy, m + X3Y, 16), map_2(by->yy, m + X2Y2, 16)};
+    own[X4] = map_2(by->xx, xx_q2, 11);
+    own[X3Y] = map_2(by->xy, xx_q2, 11);
+    own[X2Y2] = map_2(by->yy, xx_q2, 11);
+    own[XY3] = map_2(by->xy, yy_q2, 11);
+    own[Y4] = map_2(by->yy, yy_q2, 11);
 }
 
 void t3r_own_moments_of(const t3r_tile_sums *sums, const t3r_own_axes *axes, int64_t dx_q12, int64_t dy_q12,
