@@ -24,8 +24,9 @@ import numpy as np
 
 import native
 
-SOURCES = ("procedural_material.c", "procedural_camera.c", "procedural_leaves.c", "procedural_room.c")
-HEADERS = ("procedural.h",)
+PARTS = ("material", "camera", "leaves", "furniture", "light", "poster", "view", "path", "room")
+SOURCES = tuple(f"procedural_{part}.c" for part in PARTS)
+HEADERS = ("procedural.h", "procedural_scene.h")
 # No contraction and no fast-math: -march=native must not change what is drawn
 FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
 
