@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include <argp.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -327,8 +328,9 @@ static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is written:", 2},
     {"csv", KEY_CSV, "FILE", 0, "the rows", 0},
     {"images", KEY_IMAGES, "DIR", 0,
-     "DIR/<target>/<method>_<keep>.png (with --heads <head>, with --ablate <ablation>), target.png, mask.png, "
-     "context_a.png, ...",
+     "DIR/<target>/<method>_<keep>.png (with --heads <head>, with --ablate <ablation>; settings that are not the "
+     "default come before <keep>, as in trim3r_refine-0_10.png), target.png, mask.png, context_a.png, ...; the column "
+     "picture names each",
      0},
     {"html", KEY_HTML, "PAGE.html", 0, "one page with the pictures side by side; it needs no other file", 0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, and means over the cases", 0},
@@ -479,7 +481,7 @@ static int measure_all(evaluation_report *report, const options *o, const evalua
             code = evaluation_measure(&row, render, views, what, it->method, o->keep[k], o->from_file, &settings);
             row.ablation = o->ablate ? ablation_name(it->ablation) : "";
             if (code == CLI_OK) {
-                code = evaluation_report_row(report, views, what, it->label, &row, render);
+                code = evaluation_report_row(report, views, it->label, &row, render);
             }
         }
     }
@@ -500,12 +502,59 @@ static int evaluate_case(evaluation_report *report, const options *o, const eval
     return code;
 }
 
+/* "_moment_refine-0_k-50": what of the settings that tables tell, and labels of rows do not, is not the default. */
+static int name_settings(const options *o, char *text, size_t bytes)
+{
+    const reconstruction_options *s = &o->settings;
+    reconstruction_options usual;
+    reconstruction_defaults(&usual);
+    chosen_head head;
+    int code = chosen_head_open(&head, s->head);
+    if (code != CLI_OK) {
+        return code;
+    }
+    FILE *out = fmemopen(text, bytes, "w");
+    if (out == NULL) {
+        chosen_head_close(&head);
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    if (o->head_count == 0 && strcmp(s->head, CHOSEN_HEAD_DEFAULT) != 0) {
+        fprintf(out, "_%s", head.name);
+        if (head.weights != NULL && strcmp(head.bits, "8") != 0) {
+            fprintf(out, "_w%ua%u", head.weight_bits, head.activation_bits);
+        }
+    }
+    if (s->refine != usual.refine) {
+        fprintf(out, "_refine-%" PRIu32, s->refine);
+    }
+    if (s->allocation != usual.allocation) {
+        fprintf(out, "_%s", t3r_allocation_name(s->allocation));
+    }
+    if (s->wavelet != usual.wavelet) {
+        fprintf(out, "_%s", t3r_wavelet_name(s->wavelet));
+    }
+    if (s->wavelet_levels != usual.wavelet_levels) {
+        fprintf(out, "_levels-%" PRIu32, s->wavelet_levels);
+    }
+    if (s->clusters != usual.clusters) {
+        fprintf(out, "_k-%" PRIu32, s->clusters);
+    }
+    fclose(out);
+    chosen_head_close(&head);
+    return CLI_OK;
+}
+
 static int open_report(evaluation_report *report, const options *o, uint32_t cases)
 {
     evaluation_outputs to = o->to;
     to.planar = o->planar;
     to.ablate = o->ablate;
     to.folder_each = !o->planar && o->input_count > 1;
+    int code = name_settings(o, to.suffix, sizeof to.suffix);
+    if (code != CLI_OK) {
+        *report = (evaluation_report){0};
+        return code;
+    }
     return evaluation_report_open(report, &to, cases * o->contestant_count * o->keep_count);
 }
 

@@ -205,8 +205,7 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     return code;
 }
 
-static void name_row(evaluation_row *row, const evaluation_case *what, method_id m,
-                     const reconstruction_options *options)
+void evaluation_name_case(evaluation_row *row, const evaluation_case *what)
 {
     size_t length = 0;
     snprintf(row->scene, sizeof row->scene, "%s", what->scene);
@@ -217,9 +216,20 @@ static void name_row(evaluation_row *row, const evaluation_case *what, method_id
     if (!what->planar) {
         snprintf(row->target, sizeof row->target, "%" PRIu32, what->target);
     }
+}
+
+static void name_row(evaluation_row *row, const evaluation_case *what, method_id m,
+                     const reconstruction_options *options)
+{
+    evaluation_name_case(row, what);
     row->method = method_name(m);
     snprintf(row->refine, sizeof row->refine, "%" PRIu32, options->refine);
     row->allocate = method_kind_of(m) == METHOD_TRIM3R ? t3r_allocation_name(options->allocation) : "";
+    row->wavelet = t3r_wavelet_name(options->wavelet);
+    snprintf(row->levels, sizeof row->levels, "%" PRIu32, options->wavelet_levels);
+    if (method_kind_of(m) == METHOD_TRIM3R) {
+        snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, options->clusters);
+    }
     row->depth = what->planar ? "plane" : "sensor";
     row->ablation = "";
 }
@@ -279,6 +289,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     row->value[EVALUATION_GAUSSIANS] = built.scene.count;
     row->value[EVALUATION_BUILD_MS] = told.seconds * 1000;
     row->value[EVALUATION_ARENA_BYTES] = (double)told.arena_bytes;
+    row->value[EVALUATION_SCENE_BYTES] = (double)built.scene.count * T3R_GAUSSIAN_BYTES;
     if (from_file) {
         code = through_file(&loaded, &built, views, &options);
     }

@@ -57,16 +57,22 @@ typedef enum evaluation_value {
     EVALUATION_BUILD_MS,     /* frames to scene: image stage and everything behind it, scoring and fine-tuning too */
     EVALUATION_RENDER_MS,    /* the target view */
     EVALUATION_ARENA_BYTES,
+    EVALUATION_SCENE_BYTES, /* the Gaussians as the arena holds them */
     EVALUATION_PLANAR_PSNR, /* all pixels of a planar case, dB */
     EVALUATION_VALUE_COUNT
 } evaluation_value;
 
 typedef struct evaluation_row {
     char scene[256], context[192], target[16], head[16], bits[8], refine[16];
-    const char *method, *allocate, *depth; /* "" = does not apply */
-    const char *ablation;                  /* ablation_name() of what was taken away; "" where nothing is told of it */
+    char levels[8], clusters[8]; /* "" = does not apply, as below */
+    const char *method, *allocate, *depth, *wavelet;
+    const char *ablation; /* ablation_name() of what was taken away; "" where nothing is told of it */
+    char picture[512];    /* its render within the folder of --images; "" = none */
     double value[EVALUATION_VALUE_COUNT];
 } evaluation_row;
+
+/* The row's scene, context and target. */
+void evaluation_name_case(evaluation_row *row, const evaluation_case *what);
 
 /* Builds `what` with `keep` percent of the valid points, draws and scores it. The rivals of a case share its unpruned
  * scene, so `settings` must be the same for all of their rows. With from_file the scene is written as

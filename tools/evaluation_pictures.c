@@ -26,12 +26,11 @@ static int make_folders(char *path)
     return CLI_OK;
 }
 
-static int write_png(const char *folder, const evaluation_case *what, const char *name, const evaluation_views *views,
-                     uint32_t channels, uint8_t *samples)
+static int write_png(const char *folder, const char *name, const evaluation_views *views, uint32_t channels,
+                     uint8_t *samples)
 {
     char path[PATH_BYTES], error[PATH_BYTES + 256] = "";
-    int length = what->planar ? snprintf(path, sizeof path, "%s/%s/%s.png", folder, what->scene, name)
-                              : snprintf(path, sizeof path, "%s/%" PRIu32 "/%s.png", folder, what->target, name);
+    int length = snprintf(path, sizeof path, "%s/%s", folder, name);
     if (length < 0 || (size_t)length >= sizeof path) {
         return cli_error(CLI_BAD_INPUT, "%s: the path is too long", folder);
     }
@@ -45,27 +44,25 @@ static int write_png(const char *folder, const evaluation_case *what, const char
 
 int evaluation_write_views(const char *folder, const evaluation_views *views, const evaluation_case *what)
 {
-    int code = write_png(folder, what, "target", views, 3, views->target.rgb);
+    int code = write_png(folder, "target.png", views, 3, views->target.rgb);
     if (what->planar) {
         return code;
     }
     if (code == CLI_OK) {
-        code = write_png(folder, what, "mask", views, 1, views->target.mask);
+        code = write_png(folder, "mask.png", views, 1, views->target.mask);
     }
     for (uint32_t v = 0; v < views->context_count && code == CLI_OK; v++) {
-        char name[] = "context_a";
-        name[sizeof name - 2] = (char)('a' + v); /* at most 16 */
-        code = write_png(folder, what, name, views, 3, views->context[v].rgb);
+        char name[] = "context_a.png";
+        name[strlen("context_")] = (char)('a' + v); /* at most 16 */
+        code = write_png(folder, name, views, 3, views->context[v].rgb);
     }
     return code;
 }
 
-int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_case *what,
-                            const char *label, const evaluation_row *row, uint8_t *render)
+int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_row *row,
+                            uint8_t *render)
 {
-    char name[64];
-    snprintf(name, sizeof name, "%s_%.10g", label, row->value[EVALUATION_KEEP]);
-    return write_png(folder, what, name, views, 3, render);
+    return write_png(folder, row->picture, views, 3, render);
 }
 
 void evaluation_page_views(html_page *page, const evaluation_views *views, const evaluation_case *what)

@@ -5,11 +5,11 @@
 #include "evaluation.h"
 #include "html_page.h"
 
-/* FOLDER/<target>/target.png, mask.png, context_a.png, ... (planar: FOLDER/<scene>/target.png). */
+/* FOLDER/target.png, mask.png, context_a.png, ... of a case (planar: target.png alone). */
 int evaluation_write_views(const char *folder, const evaluation_views *views, const evaluation_case *what);
-/* FOLDER/<target>/<label>_<keep>.png */
-int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_case *what,
-                            const char *label, const evaluation_row *row, uint8_t *render);
+/* FOLDER and the row's `picture`. */
+int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_row *row,
+                            uint8_t *render);
 
 /* A section for a case: context views, target, mask. */
 void evaluation_page_views(html_page *page, const evaluation_views *views, const evaluation_case *what);

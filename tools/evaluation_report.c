@@ -53,14 +53,32 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
 
 /* ---- what is written as rows arrive --------------------------------------------------------------------------- */
 
-static int picture_folder(const evaluation_report *report, const evaluation_case *what, char folder[PATH_BYTES])
+/* Whether rows of the same target, seen from other frames, have its folder. */
+static bool folder_taken(const evaluation_report *report, const evaluation_row *names)
 {
-    bool each = report->to.folder_each;
-    int length = snprintf(folder, PATH_BYTES, "%s%s%s", report->to.images, each ? "/" : "", each ? what->scene : "");
-    return length > 0 && length < PATH_BYTES
-               ? CLI_OK
-               : cli_error(CLI_BAD_USAGE, "--images: the name of a folder of at most %d bytes is needed",
-                           PATH_BYTES - 1);
+    for (uint32_t i = 0; i < report->row_count; i++) {
+        const evaluation_row *earlier = &report->rows[i];
+        if (strcmp(earlier->scene, names->scene) == 0 && strcmp(earlier->target, names->target) == 0 &&
+            strcmp(earlier->context, names->context) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The folder of a case within --images, a slash at its end: <target>/, or of a target's further contexts
+ * <target>_from_0_4/; of several recordings each within its own. */
+static int case_folder(const evaluation_report *report, const evaluation_row *names, char *folder, size_t bytes)
+{
+    bool planar = report->to.planar, scene = planar || report->to.folder_each;
+    const char *from = !planar && folder_taken(report, names) ? "_from_" : "";
+    int length = snprintf(folder, bytes, "%s%s%s%s%s%s", scene ? names->scene : "", scene ? "/" : "",
+                          planar ? "" : names->target, from, *from != '\0' ? names->context : "", planar ? "" : "/");
+    for (char *c = folder; *c != '\0'; c++) {
+        *c = *c == ',' ? '_' : *c;
+    }
+    return length > 0 && (size_t)length < bytes ? CLI_OK
+                                                : cli_error(CLI_BAD_INPUT, "%s: too long for a folder", names->scene);
 }
 
 int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what)
@@ -71,9 +89,28 @@ int evaluation_report_case(evaluation_report *report, const evaluation_views *vi
     if (report->to.images == NULL) {
         return CLI_OK;
     }
-    char folder[PATH_BYTES];
-    int code = picture_folder(report, what, folder);
-    return code == CLI_OK ? evaluation_write_views(folder, views, what) : code;
+    char folder[EVALUATION_CELL_BYTES], path[PATH_BYTES];
+    evaluation_row names = {0};
+    evaluation_name_case(&names, what);
+    int code = case_folder(report, &names, folder, sizeof folder);
+    if (code == CLI_OK && snprintf(path, sizeof path, "%s/%s", report->to.images, folder) >= (int)sizeof path) {
+        code = cli_error(CLI_BAD_USAGE, "--images: the path is too long");
+    }
+    return code == CLI_OK ? evaluation_write_views(path, views, what) : code;
+}
+
+/* What a row's render is called. Settings of the whole run that are not the default are part of it, so that runs which
+ * differ in a column of the table may share a folder. */
+static int name_picture(const evaluation_report *report, const char *label, evaluation_row *row)
+{
+    char folder[EVALUATION_CELL_BYTES];
+    int code = case_folder(report, row, folder, sizeof folder);
+    int length = snprintf(row->picture, sizeof row->picture, "%s%s%s_%.10g.png", folder, label, report->to.suffix,
+                          row->value[EVALUATION_KEEP]);
+    if (code == CLI_OK && (length < 0 || (size_t)length >= sizeof row->picture)) {
+        code = cli_error(CLI_BAD_INPUT, "%s: too long for a picture's name", folder);
+    }
+    return code;
 }
 
 void evaluation_report_strip(evaluation_report *report, const char *label)
@@ -83,9 +120,13 @@ void evaluation_report_strip(evaluation_report *report, const char *label)
     }
 }
 
-int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const evaluation_case *what,
-                          const char *label, const evaluation_row *row, uint8_t *render)
+int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const char *label,
+                          evaluation_row *row, uint8_t *render)
 {
+    int code = report->to.images != NULL ? name_picture(report, label, row) : CLI_OK;
+    if (code != CLI_OK) {
+        return code;
+    }
     report->rows[report->row_count++] = *row;
     if (!report->to.json && !report->to.ablate) {
         evaluation_print_row(stdout, row, report->to.planar);
@@ -100,12 +141,7 @@ int evaluation_report_row(evaluation_report *report, const evaluation_views *vie
     if (report->page != NULL) {
         evaluation_page_render(report->page, views, row, render);
     }
-    if (report->to.images == NULL) {
-        return CLI_OK;
-    }
-    char folder[PATH_BYTES];
-    int code = picture_folder(report, what, folder);
-    return code == CLI_OK ? evaluation_write_render(folder, views, what, label, row, render) : code;
+    return report->to.images != NULL ? evaluation_write_render(report->to.images, views, row, render) : CLI_OK;
 }
 
 /* ---- what is written at the end --------------------------------------------------------------------------------- */
@@ -127,7 +163,7 @@ static void print_json(const evaluation_report *report, const evaluation_row *me
 static void page_table(html_page *page, const char *heading, const evaluation_row *rows, uint32_t count, bool planar,
                        bool folded)
 {
-    char text[256];
+    char text[EVALUATION_CELL_BYTES];
     html_page_table(page, heading, folded);
     for (uint32_t c = 0; c < EVALUATION_COLUMNS; c++) {
         if (evaluation_glance(&rows[0], c, planar, text, sizeof text)) {

@@ -12,6 +12,7 @@ typedef struct evaluation_outputs {
     bool json, planar;
     bool ablate;      /* one table at the end in the place of rows as they arrive */
     bool folder_each; /* a folder within `images` for each scene */
+    char suffix[128]; /* of the names of pictures: settings of all rows that are not the default */
 } evaluation_outputs;
 
 typedef struct evaluation_report {
@@ -31,8 +32,9 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
 int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what);
 /* What the rows that follow have in common: a heading. */
 void evaluation_report_strip(evaluation_report *report, const char *label);
-int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const evaluation_case *what,
-                          const char *label, const evaluation_row *row, uint8_t *render);
+/* Names the row's `picture` when there are pictures. */
+int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const char *label,
+                          evaluation_row *row, uint8_t *render);
 /* Means, JSON and page when `code` is CLI_OK; no half page otherwise. `code`, or what went wrong here. */
 int evaluation_report_close(evaluation_report *report, int code);
 

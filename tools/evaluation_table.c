@@ -5,25 +5,46 @@
 
 typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */
 
+/* Texts of a row count down from -1. */
+enum {
+    SCENE = -1,
+    CONTEXT = -2,
+    TARGET = -3,
+    METHOD = -4,
+    HEAD = -5,
+    BITS = -6,
+    REFINE = -7,
+    ALLOCATE = -8,
+    DEPTH = -9,
+    ABLATION = -10,
+    WAVELET = -11,
+    LEVELS = -12,
+    CLUSTERS = -13,
+    PICTURE = -14
+};
+
 typedef struct column {
     const char *name;
-    int value;    /* evaluation_value, or -1: a text */
+    int value;    /* evaluation_value, or one of the texts */
     int decimals; /* of a number; -1: as many as it has */
     int width;    /* on the terminal */
     shown shown;  /* at a glance */
 } column;
 
 static const column columns[EVALUATION_COLUMNS] = {
-    {"scene", -1, 0, 20, ALWAYS},
-    {"context", -1, 0, 8, RECORDING},
-    {"target", -1, 0, 7, RECORDING},
-    {"method", -1, 0, 23, ALWAYS},
-    {"head", -1, 0, 10, ALWAYS},
-    {"bits", -1, 0, 6, ALWAYS},
-    {"refine", -1, 0, 0, NEVER},
-    {"allocate", -1, 0, 9, ALWAYS},
-    {"depth", -1, 0, 0, NEVER},
-    {"ablation", -1, 0, 22, TOLD},
+    {"scene", SCENE, 0, 20, ALWAYS},
+    {"context", CONTEXT, 0, 8, RECORDING},
+    {"target", TARGET, 0, 7, RECORDING},
+    {"method", METHOD, 0, 23, ALWAYS},
+    {"head", HEAD, 0, 10, ALWAYS},
+    {"bits", BITS, 0, 6, ALWAYS},
+    {"refine", REFINE, 0, 0, NEVER},
+    {"allocate", ALLOCATE, 0, 9, ALWAYS},
+    {"depth", DEPTH, 0, 0, NEVER},
+    {"ablation", ABLATION, 0, 22, TOLD},
+    {"wavelet", WAVELET, 0, 0, NEVER},
+    {"levels", LEVELS, 0, 0, NEVER},
+    {"clusters", CLUSTERS, 0, 0, NEVER},
     {"keep", EVALUATION_KEEP, -1, 5, ALWAYS},
     {"gaussians", EVALUATION_GAUSSIANS, 0, 10, ALWAYS},
     {"psnr", EVALUATION_PSNR, 4, 7, RECORDING},
@@ -36,7 +57,9 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"build_ms", EVALUATION_BUILD_MS, 2, 9, ALWAYS},
     {"render_ms", EVALUATION_RENDER_MS, 2, 10, ALWAYS},
     {"arena_bytes", EVALUATION_ARENA_BYTES, 0, 12, ALWAYS},
+    {"scene_bytes", EVALUATION_SCENE_BYTES, 0, 0, NEVER},
     {"planar_psnr", EVALUATION_PLANAR_PSNR, 4, 12, PLANAR},
+    {"picture", PICTURE, 0, 0, NEVER},
 };
 
 const char *evaluation_column_name(uint32_t index)
@@ -44,18 +67,19 @@ const char *evaluation_column_name(uint32_t index)
     return index < EVALUATION_COLUMNS ? columns[index].name : NULL;
 }
 
-static const char *text_of(const evaluation_row *row, uint32_t index)
+static const char *text_of(const evaluation_row *row, int text)
 {
-    const char *const texts[] = {row->scene, row->context, row->target,   row->method, row->head,
-                                 row->bits,  row->refine,  row->allocate, row->depth,  row->ablation};
-    return texts[index];
+    const char *const texts[] = {row->scene,   row->context, row->target,   row->method, row->head,
+                                 row->bits,    row->refine,  row->allocate, row->depth,  row->ablation,
+                                 row->wavelet, row->levels,  row->clusters, row->picture};
+    return texts[-1 - text];
 }
 
 void evaluation_cell(const evaluation_row *row, uint32_t index, char *text, size_t bytes)
 {
     const column *c = &columns[index];
     if (c->value < 0) {
-        snprintf(text, bytes, "%s", text_of(row, index));
+        snprintf(text, bytes, "%s", text_of(row, c->value));
     } else if (isnan(row->value[c->value])) {
         snprintf(text, bytes, "%s", "");
     } else if (c->decimals < 0) {
@@ -75,7 +99,7 @@ void evaluation_csv_header(csv_table *table)
 
 void evaluation_csv_row(csv_table *table, const evaluation_row *row)
 {
-    char text[256];
+    char text[EVALUATION_CELL_BYTES];
     for (uint32_t i = 0; i < EVALUATION_COLUMNS; i++) {
         evaluation_cell(row, i, text, sizeof text);
         csv_cell(table, text);
@@ -87,7 +111,7 @@ cJSON *evaluation_json(const evaluation_row *row)
 {
     cJSON *object = cJSON_CreateObject();
     for (uint32_t i = 0; i < EVALUATION_COLUMNS && object != NULL; i++) {
-        char text[256];
+        char text[EVALUATION_CELL_BYTES];
         evaluation_cell(row, i, text, sizeof text);
         cJSON *added = text[0] == '\0'         ? cJSON_AddNullToObject(object, columns[i].name)
                        : columns[i].value >= 0 ? cJSON_AddRawToObject(object, columns[i].name, text)
@@ -105,7 +129,9 @@ static bool belong_together(const evaluation_row *a, const evaluation_row *b, bo
     return (!by_scene || strcmp(a->scene, b->scene) == 0) && strcmp(a->method, b->method) == 0 &&
            strcmp(a->head, b->head) == 0 && strcmp(a->bits, b->bits) == 0 && strcmp(a->refine, b->refine) == 0 &&
            strcmp(a->allocate, b->allocate) == 0 && strcmp(a->depth, b->depth) == 0 &&
-           strcmp(a->ablation, b->ablation) == 0 && a->value[EVALUATION_KEEP] == b->value[EVALUATION_KEEP];
+           strcmp(a->ablation, b->ablation) == 0 && strcmp(a->wavelet, b->wavelet) == 0 &&
+           strcmp(a->levels, b->levels) == 0 && strcmp(a->clusters, b->clusters) == 0 &&
+           a->value[EVALUATION_KEEP] == b->value[EVALUATION_KEEP];
 }
 
 static evaluation_row mean_of(const evaluation_row *first, const evaluation_row *rows, uint32_t count, bool by_scene)
@@ -125,6 +151,7 @@ static evaluation_row mean_of(const evaluation_row *first, const evaluation_row 
     mean.value[EVALUATION_KEEP] = first->value[EVALUATION_KEEP]; /* exactly */
     snprintf(mean.context, sizeof mean.context, "mean");
     mean.target[0] = '\0';
+    mean.picture[0] = '\0';
     if (!by_scene) {
         snprintf(mean.scene, sizeof mean.scene, "mean");
         mean.context[0] = '\0';
@@ -181,7 +208,7 @@ void evaluation_print_header(FILE *out, bool planar)
 void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar)
 {
     for (uint32_t i = 0; i < EVALUATION_COLUMNS; i++) {
-        char text[256];
+        char text[EVALUATION_CELL_BYTES];
         if (evaluation_glance(row, i, planar, text, sizeof text)) {
             print_cell(out, &columns[i], text);
         }

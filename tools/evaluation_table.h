@@ -11,7 +11,8 @@
 #include "csv.h"
 #include "evaluation.h"
 
-#define EVALUATION_COLUMNS 23u
+#define EVALUATION_COLUMNS 28u
+#define EVALUATION_CELL_BYTES 512u /* of any cell, the end included */
 
 /* Stable order; NULL past the last. */
 const char *evaluation_column_name(uint32_t column);
