@@ -1,6 +1,7 @@
 /* What every subcommand shares. The state here is the process's own: its name in messages and its progress line. */
 #include "cli.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +14,12 @@ static const char *command_name;
 static struct {
     double started; /* 0: no progress line is open */
     double drawn;
-    bool visible;
+    bool visible, silent;
+    struct {
+        const char *what;
+        uint32_t done, total; /* 0: no outer work */
+        double started;
+    } outer;
 } progress;
 
 void cli_set_command(const char *name)
@@ -37,20 +43,60 @@ int cli_error(int code, const char *format, ...)
     return code;
 }
 
+/* "12 of 400 rows, 3 min left   " */
+static void draw_outer(double now)
+{
+    uint32_t done = progress.outer.done, total = progress.outer.total;
+    fprintf(stderr, "%" PRIu32 " of %" PRIu32 " %s", done, total, progress.outer.what);
+    double left = done == 0 ? 0 : (now - progress.outer.started) / done * (total - done);
+    if (left >= 90) {
+        fprintf(stderr, ", %.0f min left", left / 60);
+    } else if (done > 0) {
+        fprintf(stderr, ", %.0f s left", left);
+    }
+    fputs("   ", stderr);
+}
+
+static bool draws(void)
+{
+    return !progress.silent && isatty(STDERR_FILENO);
+}
+
 void cli_progress(const char *what, uint32_t done, uint32_t total)
 {
     double now = cli_now();
     if (progress.started <= 0) {
         progress.started = now;
     }
-    if (now - progress.started < 0.5 || now - progress.drawn < 0.1 || !isatty(STDERR_FILENO)) {
+    if (now - progress.started < 0.5 || now - progress.drawn < 0.1 || !draws()) {
         return;
     }
     progress.drawn = now;
     progress.visible = true;
     uint32_t percent = total == 0 ? 100 : (uint32_t)((uint64_t)done * 100 / total);
-    fprintf(stderr, "\r%-40.40s %3u %%", what, (unsigned)percent);
+    fputs("\r", stderr);
+    if (progress.outer.total > 0) {
+        draw_outer(now);
+    }
+    fprintf(stderr, "%-40.40s %3u %%", what, (unsigned)percent);
     fflush(stderr);
+}
+
+void cli_progress_within(const char *what, uint32_t done, uint32_t total)
+{
+    if (progress.outer.total == 0) {
+        progress.outer.started = cli_now();
+    }
+    progress.outer.what = what;
+    progress.outer.done = done;
+    progress.outer.total = done < total ? total : 0;
+    if (progress.outer.total > 0 && draws()) {
+        progress.visible = true;
+        fputs("\r", stderr);
+        draw_outer(cli_now());
+        fputs("\033[K", stderr);
+        fflush(stderr);
+    }
 }
 
 void cli_progress_end(void)
@@ -62,6 +108,11 @@ void cli_progress_end(void)
     progress.started = 0;
     progress.drawn = 0;
     progress.visible = false;
+}
+
+void cli_progress_silence(void)
+{
+    progress.silent = true;
 }
 
 /* A decimal number at *text that fits 32 bits; *text moves behind it. */

@@ -15,6 +15,11 @@ void cli_set_command(const char *name);
 /* A progress line on stderr, drawn only when stderr is a terminal and the work is long (over half a second). */
 void cli_progress(const char *what, uint32_t done, uint32_t total);
 void cli_progress_end(void);
+/* What the lines to come are part of: "12 of 400 rows, 3 min left", by the time since the first of these calls; nothing
+ * any more once all are done. */
+void cli_progress_within(const char *what, uint32_t done, uint32_t total);
+/* None of it from here on: of a process that works for another. */
+void cli_progress_silence(void);
 
 /* "0,2" -> indices; "256x256" -> sizes; "10%" or "13107"; "100,60,40". 0, or -1 when malformed. */
 int cli_parse_list_u32(const char *text, uint32_t *values, uint32_t most, uint32_t *count);

@@ -9,26 +9,14 @@
 
 #include "ablation.h"
 #include "cli.h"
-#include "evaluation.h"
-#include "evaluation_report.h"
+#include "chosen_head.h"
+#include "evaluation_work.h"
 #include "option_values.h"
+#include "process_pool.h"
 #include "reconstruction.h"
 
 #define MOST_KEEPS 64u
-#define MOST_HEADS 32u
-#define MOST_CONTESTANTS (MOST_HEADS + ABLATIONS_MOST + METHOD_COUNT)
-#define LABEL_BYTES 40
-#define SCENE_NAME_BYTES 256
 #define ABLATE_KEEPS "60,40,20,10,5"
-#define NAME_PARTS_MOST 8u /* parts of a path that a scene's name takes at most */
-
-/* What has rows of its own: a method, trim3r once a head or once an ablation. */
-typedef struct contestant {
-    method_id method;
-    const char *head;        /* NULL: the settings' own */
-    uint32_t ablation;       /* with --ablate */
-    char label[LABEL_BYTES]; /* over its pictures and in their names */
-} contestant;
 
 typedef struct options {
     reconstruction_options settings;
@@ -41,14 +29,12 @@ typedef struct options {
     uint32_t keep_count;
     method_id methods[METHOD_COUNT];
     uint32_t method_count;
-    char *heads[MOST_HEADS]; /* --heads; parts of one heap string */
+    char *heads[EVALUATION_HEADS_MOST]; /* --heads; parts of one heap string */
     uint32_t head_count;
     bool ablate;
     uint32_t ablations[ABLATIONS_MOST]; /* those named; none = all that apply */
     uint32_t ablation_count;
-    contestant contestants[MOST_CONTESTANTS];
-    uint32_t contestant_count;
-    uint32_t name_parts;
+    uint32_t processes;
     evaluation_outputs to;
 } options;
 
@@ -66,7 +52,8 @@ enum {
     KEY_IMAGES,
     KEY_HTML,
     KEY_FROM_FILE,
-    KEY_JSON
+    KEY_JSON,
+    KEY_JOBS
 };
 
 /* ---- arguments ---------------------------------------------------------------------------------------------- */
@@ -111,8 +98,8 @@ static void parse_heads(struct argp_state *state, options *o, const char *text)
         if (rest != NULL) {
             *rest++ = '\0';
         }
-        if (o->head_count == MOST_HEADS) {
-            argp_error(state, "--heads takes at most %u heads", MOST_HEADS);
+        if (o->head_count == EVALUATION_HEADS_MOST) {
+            argp_error(state, "--heads takes at most %u heads", EVALUATION_HEADS_MOST);
         }
         (void)option_head(state, "heads", part);
         o->heads[o->head_count++] = part;
@@ -149,64 +136,15 @@ static void parse_ablations(struct argp_state *state, options *o, const char *te
     }
 }
 
-/* "room" of "recordings/room.mcap", or "recordings-room" with two parts of the path; at most `bytes` - 1 characters. */
-static void scene_name(const char *path, uint32_t parts, char *name, size_t bytes)
-{
-    const char *start = path + strlen(path);
-    for (uint32_t seen = 0; start > path; start--) {
-        if (start[-1] == '/' && start[0] != '/' && start[0] != '\0' && ++seen == parts) {
-            break;
-        }
-    }
-    snprintf(name, bytes, "%s", start);
-    char *dot = strrchr(name, '.');
-    if (dot != NULL && dot != name && strchr(dot, '/') == NULL) {
-        *dot = '\0';
-    }
-    for (char *c = name; *c != '\0'; c++) {
-        if (*c == '/') {
-            *c = '-';
-        }
-    }
-}
-
-/* The first pair of inputs that would share a name; false = all differ. */
-static bool share_name(const options *o, uint32_t parts, uint32_t *first, uint32_t *second)
-{
-    char name[SCENE_NAME_BYTES], other[SCENE_NAME_BYTES];
-    for (uint32_t i = 1; i < o->input_count; i++) {
-        scene_name(o->inputs[i], parts, name, sizeof name);
-        for (uint32_t earlier = 0; earlier < i; earlier++) {
-            scene_name(o->inputs[earlier], parts, other, sizeof other);
-            if (strcmp(name, other) == 0) {
-                *first = earlier;
-                *second = i;
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-/* A scene's name stands for it in the tables and names its folder of pictures: as many parts of the paths as tell the
- * inputs apart. */
-static void choose_names(struct argp_state *state, options *o)
-{
-    uint32_t first = 0, second = 0;
-    for (o->name_parts = 1; o->name_parts <= NAME_PARTS_MOST; o->name_parts++) {
-        if (!share_name(o, o->name_parts, &first, &second)) {
-            return;
-        }
-    }
-    argp_error(state, "%s and %s would have the same name", o->inputs[first], o->inputs[second]);
-}
-
 static void check_options(struct argp_state *state, options *o)
 {
     if (o->input_count == 0) {
         argp_error(state, o->planar ? "IMAGE... is missing" : "REC.mcap is missing");
     }
-    choose_names(state, o);
+    uint32_t pair[2];
+    if (evaluation_name_parts(o->inputs, o->input_count, pair) == 0) {
+        argp_error(state, "%s and %s would have the same name", o->inputs[pair[0]], o->inputs[pair[1]]);
+    }
     if (o->planar && (o->has_target || o->settings.context_count > 0)) {
         argp_error(state, "--planar takes images, not --context and --target");
     }
@@ -295,6 +233,10 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case KEY_JSON:
         o->to.json = true;
         return 0;
+    case KEY_JOBS:
+        o->processes = strcmp(arg, "all") == 0 ? process_pool_processors()
+                                               : option_number(state, "jobs", arg, 1, PROCESS_POOL_MOST);
+        return 0;
     case ARGP_KEY_ARGS:
         o->inputs = state->argv + state->next;
         o->input_count = (uint32_t)(state->argc - state->next);
@@ -334,6 +276,8 @@ static const struct argp_option argp_options[] = {
      0},
     {"html", KEY_HTML, "PAGE.html", 0, "one page with the pictures side by side; it needs no other file", 0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, and means over the cases", 0},
+    {NULL, 0, NULL, 0, "How the work is done:", 3},
+    {"jobs", KEY_JOBS, "N", 0, "processes that share the cases, 1..256, or all: one a processor (1)", 0},
     {0},
 };
 
@@ -381,126 +325,7 @@ static const struct argp parser = {
     .children = children,
 };
 
-/* ---- contestants ---------------------------------------------------------------------------------------------- */
-
-/* Opens every head once: a bad one is told before the work. */
-static int add_head(options *o, const char *text, bool named)
-{
-    chosen_head head;
-    int code = chosen_head_open(&head, text);
-    if (code != CLI_OK) {
-        return code;
-    }
-    contestant *it = &o->contestants[o->contestant_count++];
-    *it = (contestant){.method = METHOD_TRIM3R, .head = text};
-    if (!named) {
-        snprintf(it->label, LABEL_BYTES, "%s", method_name(METHOD_TRIM3R));
-    } else if (head.weights == NULL || strcmp(head.bits, "8") == 0) {
-        snprintf(it->label, LABEL_BYTES, "%s", head.name);
-    } else {
-        snprintf(it->label, LABEL_BYTES, "%s_w%ua%u", head.name, head.weight_bits, head.activation_bits);
-    }
-    chosen_head_close(&head);
-    for (const contestant *earlier = o->contestants; earlier < it; earlier++) {
-        if (earlier->method == METHOD_TRIM3R && strcmp(earlier->label, it->label) == 0) {
-            return cli_error(CLI_BAD_USAGE, "--heads: %s and %s have the same name and bits (quantize --name)",
-                             earlier->head, text);
-        }
-    }
-    return CLI_OK;
-}
-
-/* All ablations that apply to the head, or those named, which must. */
-static int choose_ablations(options *o)
-{
-    chosen_head head;
-    int code = chosen_head_open(&head, o->settings.head);
-    if (code != CLI_OK) {
-        return code;
-    }
-    t3r_head kind = head.head;
-    chosen_head_close(&head);
-    for (uint32_t a = 0; o->ablation_count == 0 && ablation_name(a) != NULL; a++) {
-        if (ablation_applies(a, kind, o->planar)) {
-            o->contestants[o->contestant_count++] = (contestant){.ablation = a};
-        }
-    }
-    for (uint32_t i = 0; i < o->ablation_count; i++) {
-        if (!ablation_applies(o->ablations[i], kind, o->planar)) {
-            return cli_error(CLI_BAD_USAGE, "--ablate: %s does not apply to %s", ablation_name(o->ablations[i]),
-                             o->planar ? "a single image with this head" : "this head");
-        }
-        o->contestants[o->contestant_count++] = (contestant){.ablation = o->ablations[i]};
-    }
-    for (uint32_t c = 0; c < o->contestant_count; c++) {
-        contestant *it = &o->contestants[c];
-        it->method = METHOD_TRIM3R;
-        snprintf(it->label, LABEL_BYTES, "%s", ablation_name(it->ablation));
-    }
-    return CLI_OK;
-}
-
-static int choose_contestants(options *o)
-{
-    int code = CLI_OK;
-    if (o->ablate) {
-        return choose_ablations(o);
-    }
-    for (uint32_t m = 0; m < o->method_count && code == CLI_OK; m++) {
-        if (o->methods[m] == METHOD_TRIM3R && o->head_count > 0) {
-            for (uint32_t h = 0; h < o->head_count && code == CLI_OK; h++) {
-                code = add_head(o, o->heads[h], true);
-            }
-        } else if (o->methods[m] == METHOD_TRIM3R) {
-            code = add_head(o, o->settings.head, false);
-        } else {
-            contestant *it = &o->contestants[o->contestant_count++];
-            it->method = o->methods[m];
-            snprintf(it->label, LABEL_BYTES, "%s", method_name(it->method));
-        }
-    }
-    return code;
-}
-
-/* ---- cases ---------------------------------------------------------------------------------------------------- */
-
-static int measure_all(evaluation_report *report, const options *o, const evaluation_case *what,
-                       const evaluation_views *views, uint8_t *render)
-{
-    int code = evaluation_report_case(report, views, what);
-    for (uint32_t c = 0; c < o->contestant_count && code == CLI_OK; c++) {
-        const contestant *it = &o->contestants[c];
-        reconstruction_options settings = o->settings;
-        settings.head = it->head != NULL ? it->head : settings.head;
-        if (o->ablate) {
-            ablation_apply(it->ablation, &settings);
-        }
-        evaluation_report_strip(report, it->label);
-        for (uint32_t k = 0; k < o->keep_count && code == CLI_OK; k++) {
-            evaluation_row row;
-            code = evaluation_measure(&row, render, views, what, it->method, o->keep[k], o->from_file, &settings);
-            row.ablation = o->ablate ? ablation_name(it->ablation) : "";
-            if (code == CLI_OK) {
-                code = evaluation_report_row(report, views, it->label, &row, render);
-            }
-        }
-    }
-    return code;
-}
-
-static int evaluate_case(evaluation_report *report, const options *o, const evaluation_case *what)
-{
-    evaluation_views views;
-    int code = evaluation_views_make(&views, what, &o->settings);
-    if (code != CLI_OK) {
-        return code;
-    }
-    uint8_t *render = malloc((size_t)views.width * views.height * 3);
-    code = render == NULL ? cli_error(CLI_BAD_INPUT, "out of memory") : measure_all(report, o, what, &views, render);
-    free(render);
-    evaluation_views_free(&views);
-    return code;
-}
+/* ---- work ------------------------------------------------------------------------------------------------------- */
 
 /* "_moment_refine-0_k-50": what of the settings that tables tell, and labels of rows do not, is not the default. */
 static int name_settings(const options *o, char *text, size_t bytes)
@@ -544,7 +369,24 @@ static int name_settings(const options *o, char *text, size_t bytes)
     return CLI_OK;
 }
 
-static int open_report(evaluation_report *report, const options *o, uint32_t cases)
+static int open_cases(const options *o, evaluation_cases *cases)
+{
+    if (o->planar) {
+        return evaluation_cases_of_images(cases, o->inputs, o->input_count, o->width, o->height);
+    }
+    return evaluation_cases_of_recordings(cases, o->inputs, o->input_count, o->settings.context,
+                                          o->settings.context_count, o->target);
+}
+
+static int choose_contestants(const options *o, evaluation_contestants *chosen)
+{
+    if (o->ablate) {
+        return evaluation_contestants_ablations(chosen, o->ablations, o->ablation_count, o->planar, &o->settings);
+    }
+    return evaluation_contestants_methods(chosen, o->methods, o->method_count, o->heads, o->head_count, &o->settings);
+}
+
+static int report_all(const options *o, const evaluation_work *work)
 {
     evaluation_outputs to = o->to;
     to.planar = o->planar;
@@ -552,129 +394,43 @@ static int open_report(evaluation_report *report, const options *o, uint32_t cas
     to.folder_each = !o->planar && o->input_count > 1;
     int code = name_settings(o, to.suffix, sizeof to.suffix);
     if (code != CLI_OK) {
-        *report = (evaluation_report){0};
         return code;
     }
-    return evaluation_report_open(report, &to, cases * o->contestant_count * o->keep_count);
-}
-
-static uint32_t case_count(const options *o, const t3r_recording *recording)
-{
-    return o->has_target ? 1 : t3r_recording_triplet_count(recording);
-}
-
-/* A triplet of a stereo pair names its one context view twice. */
-static void set_context(evaluation_case *what, const uint32_t *frames, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        bool known = false;
-        for (uint32_t v = 0; v < what->context_count; v++) {
-            known = known || what->context[v] == frames[i];
-        }
-        if (!known) {
-            what->context[what->context_count++] = frames[i];
-        }
-    }
-}
-
-static int evaluate_recording(evaluation_report *report, const options *o, const char *path,
-                              const t3r_recording *recording)
-{
-    char name[SCENE_NAME_BYTES];
-    int code = CLI_OK;
-    scene_name(path, o->name_parts, name, sizeof name);
-    for (uint32_t i = 0; i < case_count(o, recording) && code == CLI_OK; i++) {
-        evaluation_case what = {.recording = recording, .path = path, .scene = name};
-        if (o->has_target) {
-            set_context(&what, o->settings.context, o->settings.context_count);
-            what.target = o->target;
-        } else {
-            t3r_triplet triplet = t3r_recording_triplet(recording, i);
-            set_context(&what, triplet.context, 2);
-            what.target = triplet.target;
-        }
-        code = evaluate_case(report, o, &what);
-    }
-    return code;
-}
-
-/* Opens all before the first is evaluated: a bad one is told at once. */
-static int open_recordings(const options *o, t3r_recording **recordings, uint32_t *cases)
-{
-    *cases = 0;
-    for (uint32_t i = 0; i < o->input_count; i++) {
-        char error[512] = "";
-        recordings[i] = t3r_recording_open(o->inputs[i], error, sizeof error);
-        if (recordings[i] == NULL) {
-            return cli_error(CLI_BAD_INPUT, "%s", error);
-        }
-        uint32_t count = case_count(o, recordings[i]);
-        if (count == 0) {
-            return cli_error(CLI_BAD_INPUT, "%s: the recording carries no triplets; give --context and --target",
-                             o->inputs[i]);
-        }
-        *cases += count;
-    }
-    return CLI_OK;
-}
-
-static int evaluate_recordings(const options *o)
-{
-    t3r_recording **recordings = calloc(o->input_count, sizeof(t3r_recording *));
-    if (recordings == NULL) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    uint32_t cases;
-    int code = open_recordings(o, recordings, &cases);
-    if (code == CLI_OK) {
-        evaluation_report report;
-        code = open_report(&report, o, cases);
-        for (uint32_t i = 0; i < o->input_count && code == CLI_OK; i++) {
-            code = evaluate_recording(&report, o, o->inputs[i], recordings[i]);
-        }
-        code = evaluation_report_close(&report, code);
-    }
-    for (uint32_t i = 0; i < o->input_count; i++) {
-        if (recordings[i] != NULL) {
-            t3r_recording_close(recordings[i]);
-        }
-    }
-    free(recordings);
-    return code;
-}
-
-static int evaluate_planar(const options *o)
-{
     evaluation_report report;
-    int code = open_report(&report, o, o->input_count);
-    for (uint32_t i = 0; i < o->input_count && code == CLI_OK; i++) {
-        char name[SCENE_NAME_BYTES];
-        uint8_t *bytes;
-        scene_name(o->inputs[i], o->name_parts, name, sizeof name);
-        t3r_recording *recording = evaluation_planar_recording(o->inputs[i], o->width, o->height, &bytes);
-        if (recording == NULL) {
-            code = CLI_BAD_INPUT;
-            break;
-        }
-        evaluation_case what = {
-            .recording = recording, .path = o->inputs[i], .scene = name, .context_count = 1, .planar = true};
-        code = evaluate_case(&report, o, &what);
-        t3r_recording_close(recording);
-        free(bytes);
-    }
+    code = evaluation_report_open(&report, &to, evaluation_work_rows(work));
+    code = code == CLI_OK ? evaluation_work_do(work, &report) : code;
     return evaluation_report_close(&report, code);
+}
+
+static int evaluate(const options *o)
+{
+    evaluation_contestants contestants;
+    evaluation_cases cases = {0};
+    int code = choose_contestants(o, &contestants);
+    code = code == CLI_OK ? open_cases(o, &cases) : code;
+    if (code == CLI_OK) {
+        evaluation_work work = {
+            .cases = &cases,
+            .contestants = &contestants,
+            .settings = &o->settings,
+            .keep = o->keep,
+            .keep_count = o->keep_count,
+            .from_file = o->from_file,
+            .processes = o->processes,
+        };
+        code = report_all(o, &work);
+    }
+    evaluation_cases_close(&cases);
+    return code;
 }
 
 int command_eval(int argc, char **argv)
 {
-    options o = {0};
+    options o = {.processes = 1};
     reconstruction_defaults(&o.settings);
     o.settings.head = NULL; /* until one is named */
     argp_parse(&parser, argc, argv, 0, NULL, &o);
-    int code = choose_contestants(&o);
-    if (code == CLI_OK) {
-        code = o.planar ? evaluate_planar(&o) : evaluate_recordings(&o);
-    }
+    int code = evaluate(&o);
     free(o.heads[0]);
     return code;
 }

@@ -14,6 +14,8 @@
 #include "recording.h"
 #include "trim3r.h"
 
+#define EVALUATION_NAME_BYTES 256 /* of a scene */
+
 typedef struct evaluation_case {
     const t3r_recording *recording;
     const char *path;                /* of the recording or image, for messages */
@@ -63,7 +65,7 @@ typedef enum evaluation_value {
 } evaluation_value;
 
 typedef struct evaluation_row {
-    char scene[256], context[192], target[16], head[16], bits[8], refine[16];
+    char scene[EVALUATION_NAME_BYTES], context[192], target[16], head[16], bits[8], refine[16];
     char levels[8], clusters[8]; /* "" = does not apply, as below */
     const char *method, *allocate, *depth, *wavelet;
     const char *ablation; /* ablation_name() of what was taken away; "" where nothing is told of it */

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "ablation.h"
 #include "cli.h"
@@ -48,6 +47,7 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
     if (code == CLI_OK && !to->json && !to->ablate) {
         evaluation_print_header(stdout, to->planar);
     }
+    cli_progress_within("rows", 0, row_total);
     return code;
 }
 
@@ -79,6 +79,11 @@ static int case_folder(const evaluation_report *report, const evaluation_row *na
     }
     return length > 0 && (size_t)length < bytes ? CLI_OK
                                                 : cli_error(CLI_BAD_INPUT, "%s: too long for a folder", names->scene);
+}
+
+bool evaluation_report_shows(const evaluation_report *report)
+{
+    return report->page != NULL || report->to.images != NULL;
 }
 
 int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what)
@@ -129,12 +134,11 @@ int evaluation_report_row(evaluation_report *report, const evaluation_views *vie
     }
     report->rows[report->row_count++] = *row;
     if (!report->to.json && !report->to.ablate) {
+        cli_progress_end();
         evaluation_print_row(stdout, row, report->to.planar);
         fflush(stdout);
-    } else if (isatty(STDERR_FILENO)) {
-        fprintf(stderr, "\r%u of %u rows%s", (unsigned)report->row_count, (unsigned)report->row_total,
-                report->row_count == report->row_total ? "\r\033[K" : "");
     }
+    cli_progress_within("rows", report->row_count, report->row_total);
     if (report->csv.file != NULL) {
         evaluation_csv_row(&report->csv, row);
     }
@@ -225,6 +229,7 @@ static int finish(evaluation_report *report)
 
 int evaluation_report_close(evaluation_report *report, int code)
 {
+    cli_progress_end();
     if (code == CLI_OK) {
         code = finish(report);
     }

@@ -28,6 +28,8 @@ typedef struct evaluation_report {
 
 /* Opens all that can be opened, so that a bad path is told before the work. evaluation_report_close() in any case. */
 int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t row_total);
+/* Whether there are pictures or a page: else views and renders are not looked at. */
+bool evaluation_report_shows(const evaluation_report *report);
 /* The recorded views of the rows that follow. */
 int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what);
 /* What the rows that follow have in common: a heading. */

@@ -1,0 +1,190 @@
+#include "evaluation_cases.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+
+/* ---- names ------------------------------------------------------------------------------------------------------ */
+
+/* "room" of "recordings/room.mcap", or "recordings-room" with two parts of the path; at most `bytes` - 1 characters. */
+static void scene_name(const char *path, uint32_t parts, char *name, size_t bytes)
+{
+    const char *start = path + strlen(path);
+    for (uint32_t seen = 0; start > path; start--) {
+        if (start[-1] == '/' && start[0] != '/' && start[0] != '\0' && ++seen == parts) {
+            break;
+        }
+    }
+    snprintf(name, bytes, "%s", start);
+    char *dot = strrchr(name, '.');
+    if (dot != NULL && dot != name && strchr(dot, '/') == NULL) {
+        *dot = '\0';
+    }
+    for (char *c = name; *c != '\0'; c++) {
+        if (*c == '/') {
+            *c = '-';
+        }
+    }
+}
+
+/* The first pair of inputs that would share a name; false = all differ. */
+static bool share_name(char *const *inputs, uint32_t count, uint32_t parts, uint32_t pair[2])
+{
+    char name[EVALUATION_NAME_BYTES], other[EVALUATION_NAME_BYTES];
+    for (uint32_t i = 1; i < count; i++) {
+        scene_name(inputs[i], parts, name, sizeof name);
+        for (uint32_t earlier = 0; earlier < i; earlier++) {
+            scene_name(inputs[earlier], parts, other, sizeof other);
+            if (strcmp(name, other) == 0) {
+                pair[0] = earlier;
+                pair[1] = i;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+uint32_t evaluation_name_parts(char *const *inputs, uint32_t count, uint32_t pair[2])
+{
+    for (uint32_t parts = 1; parts <= EVALUATION_NAME_PARTS_MOST; parts++) {
+        if (!share_name(inputs, count, parts, pair)) {
+            return parts;
+        }
+    }
+    return 0;
+}
+
+/* ---- the list --------------------------------------------------------------------------------------------------- */
+
+static int begin(evaluation_cases *cases, char **inputs, uint32_t count)
+{
+    *cases = (evaluation_cases){.inputs = inputs, .input_count = count};
+    cases->names = calloc(count, sizeof *cases->names);
+    cases->recordings = calloc(count, sizeof(t3r_recording *));
+    if (cases->names == NULL || cases->recordings == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    uint32_t pair[2], parts = evaluation_name_parts(inputs, count, pair);
+    for (uint32_t i = 0; i < count; i++) {
+        scene_name(inputs[i], parts, cases->names[i], EVALUATION_NAME_BYTES);
+    }
+    return CLI_OK;
+}
+
+static int open_recordings(evaluation_cases *cases)
+{
+    for (uint32_t i = 0; i < cases->input_count; i++) {
+        char error[512] = "";
+        cases->recordings[i] = t3r_recording_open(cases->inputs[i], error, sizeof error);
+        if (cases->recordings[i] == NULL) {
+            return cli_error(CLI_BAD_INPUT, "%s", error);
+        }
+    }
+    return CLI_OK;
+}
+
+/* A triplet of a stereo pair names its one context view twice. */
+static void set_context(evaluation_case *what, const uint32_t *frames, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        bool known = false;
+        for (uint32_t v = 0; v < what->context_count; v++) {
+            known = known || what->context[v] == frames[i];
+        }
+        if (!known) {
+            what->context[what->context_count++] = frames[i];
+        }
+    }
+}
+
+int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count, const uint32_t *context,
+                                   uint32_t context_count, uint32_t target)
+{
+    int code = begin(cases, inputs, count);
+    code = code == CLI_OK ? open_recordings(cases) : code;
+    uint32_t total = 0;
+    for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
+        uint32_t triplets = context_count > 0 ? 1 : t3r_recording_triplet_count(cases->recordings[i]);
+        total += triplets;
+        if (triplets == 0) {
+            code = cli_error(CLI_BAD_INPUT, "%s: the recording carries no triplets; give --context and --target",
+                             inputs[i]);
+        }
+    }
+    if (code != CLI_OK) {
+        return code;
+    }
+    cases->list = calloc(total, sizeof *cases->list);
+    if (cases->list == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t triplets = context_count > 0 ? 1 : t3r_recording_triplet_count(cases->recordings[i]);
+        for (uint32_t t = 0; t < triplets; t++) {
+            evaluation_case *what = &cases->list[cases->count++];
+            *what = (evaluation_case){
+                .recording = cases->recordings[i], .path = inputs[i], .scene = cases->names[i], .target = target};
+            if (context_count > 0) {
+                set_context(what, context, context_count);
+            } else {
+                t3r_triplet triplet = t3r_recording_triplet(cases->recordings[i], t);
+                set_context(what, triplet.context, 2);
+                what->target = triplet.target;
+            }
+        }
+    }
+    return CLI_OK;
+}
+
+int evaluation_cases_of_images(evaluation_cases *cases, char **inputs, uint32_t count, uint32_t width, uint32_t height)
+{
+    int code = begin(cases, inputs, count);
+    cases->planar = true;
+    cases->width = width;
+    cases->height = height;
+    cases->list = calloc(count, sizeof *cases->list);
+    if (code == CLI_OK && cases->list == NULL) {
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
+        cases->list[cases->count++] =
+            (evaluation_case){.path = inputs[i], .scene = cases->names[i], .context_count = 1, .planar = true};
+    }
+    return code;
+}
+
+void evaluation_cases_close(evaluation_cases *cases)
+{
+    for (uint32_t i = 0; i < cases->input_count && cases->recordings != NULL; i++) {
+        if (cases->recordings[i] != NULL) {
+            t3r_recording_close(cases->recordings[i]);
+        }
+    }
+    free(cases->recordings);
+    free(cases->names);
+    free(cases->list);
+    *cases = (evaluation_cases){0};
+}
+
+int evaluation_case_enter(evaluation_entered *entered, const evaluation_cases *cases, uint32_t index)
+{
+    *entered = (evaluation_entered){.what = cases->list[index]};
+    if (!cases->planar) {
+        return CLI_OK;
+    }
+    entered->own = evaluation_planar_recording(cases->inputs[index], cases->width, cases->height, &entered->bytes);
+    entered->what.recording = entered->own;
+    return entered->own != NULL ? CLI_OK : CLI_BAD_INPUT;
+}
+
+void evaluation_case_leave(evaluation_entered *entered)
+{
+    if (entered->own != NULL) {
+        t3r_recording_close(entered->own);
+    }
+    free(entered->bytes);
+    *entered = (evaluation_entered){0};
+}

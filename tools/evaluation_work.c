@@ -1,0 +1,153 @@
+#include "evaluation_work.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "process_pool.h"
+
+/* With fewer cases a process than this, the contestants of a case are spread too, though what they share is then made
+ * once a process. */
+#define CASES_ENOUGH 2u
+
+/* A case at hand, once a process. */
+typedef struct desk {
+    bool taken;
+    uint32_t index;
+    evaluation_entered entered;
+    evaluation_views views;
+    uint8_t *render;
+} desk;
+
+typedef struct worker {
+    const evaluation_work *work;
+    evaluation_report *report;
+    desk desk;
+    uint32_t shares; /* of a case: items of work that it is cut into, 1 or its contestants */
+} worker;
+
+/* What is sent of a row; its render follows when the report shows pictures. */
+typedef struct made_row {
+    uint32_t contestant, keep;
+    evaluation_row row;
+} made_row;
+
+static void clear_desk(desk *d)
+{
+    if (d->taken) {
+        free(d->render);
+        evaluation_views_free(&d->views);
+        evaluation_case_leave(&d->entered);
+    }
+    *d = (desk){0};
+}
+
+/* Has the case on the desk. */
+static int turn_to(worker *w, uint32_t index)
+{
+    desk *d = &w->desk;
+    if (d->taken && d->index == index) {
+        return CLI_OK;
+    }
+    clear_desk(d);
+    int code = evaluation_case_enter(&d->entered, w->work->cases, index);
+    if (code != CLI_OK) {
+        return code;
+    }
+    code = evaluation_views_make(&d->views, &d->entered.what, w->work->settings);
+    if (code != CLI_OK) {
+        evaluation_case_leave(&d->entered);
+        return code;
+    }
+    d->taken = true;
+    d->index = index;
+    d->render = malloc((size_t)d->views.width * d->views.height * 3);
+    return d->render != NULL ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
+}
+
+static int make_row(worker *w, uint32_t contestant, uint32_t keep, process_pool_line *line)
+{
+    const evaluation_work *work = w->work;
+    const evaluation_contestant *it = &work->contestants->list[contestant];
+    desk *d = &w->desk;
+    reconstruction_options settings = evaluation_contestant_settings(it, work->settings);
+    made_row made = {.contestant = contestant, .keep = keep};
+    int code = evaluation_measure(&made.row, d->render, &d->views, &d->entered.what, it->method, work->keep[keep],
+                                  work->from_file, &settings);
+    if (code != CLI_OK) {
+        return code;
+    }
+    made.row.ablation = it->ablated ? ablation_name(it->ablation) : "";
+    bool shown = evaluation_report_shows(w->report);
+    return process_pool_send(line, &made, sizeof made, shown ? d->render : NULL,
+                             (size_t)d->views.width * d->views.height * 3);
+}
+
+static int make_item(void *context, uint32_t item, process_pool_line *line)
+{
+    worker *w = context;
+    const uint32_t count = w->work->contestants->count, each = count / w->shares;
+    const uint32_t first = item % w->shares * each;
+    int code = turn_to(w, item / w->shares);
+    for (uint32_t c = first; c < first + each && code == CLI_OK; c++) {
+        for (uint32_t k = 0; k < w->work->keep_count && code == CLI_OK; k++) {
+            code = make_row(w, c, k, line);
+        }
+    }
+    return code;
+}
+
+/* Before the first row of a case, and of a contestant. */
+static int announce(worker *w, const made_row *made)
+{
+    int code = CLI_OK;
+    if (made->contestant == 0 && made->keep == 0) {
+        code = evaluation_report_case(w->report, &w->desk.views, &w->desk.entered.what);
+    }
+    if (made->keep == 0) {
+        evaluation_report_strip(w->report, w->work->contestants->list[made->contestant].label);
+    }
+    return code;
+}
+
+static int take_row(void *context, uint32_t item, const void *part, size_t bytes)
+{
+    worker *w = context;
+    made_row made;
+    memcpy(&made, part, sizeof made);
+    const bool shown = bytes > sizeof made;
+    int code = shown ? turn_to(w, item / w->shares) : CLI_OK;
+    if (shown && code == CLI_OK) {
+        memcpy(w->desk.render, (const uint8_t *)part + sizeof made, bytes - sizeof made);
+        code = announce(w, &made);
+    }
+    if (code != CLI_OK) {
+        return code;
+    }
+    return evaluation_report_row(w->report, &w->desk.views, w->work->contestants->list[made.contestant].label,
+                                 &made.row, w->desk.render);
+}
+
+static void leave(void *context)
+{
+    clear_desk(&((worker *)context)->desk);
+}
+
+int evaluation_work_do(const evaluation_work *work, evaluation_report *report)
+{
+    worker w = {.work = work, .report = report, .shares = 1};
+    if (work->processes > 1 && work->cases->count < CASES_ENOUGH * work->processes) {
+        w.shares = work->contestants->count;
+    }
+    process_pool_job job = {
+        .items = work->cases->count * w.shares,
+        .processes = work->processes,
+        .make = make_item,
+        .take = take_row,
+        .leave = leave,
+        .context = &w,
+    };
+    int code = process_pool_run(&job);
+    clear_desk(&w.desk);
+    return code;
+}

@@ -1,0 +1,28 @@
+/* The rows of an evaluation made: every case with every contestant at every budget, on one process or several. */
+#ifndef TRIM3R_TOOLS_EVALUATION_WORK_H
+#define TRIM3R_TOOLS_EVALUATION_WORK_H
+
+#include "evaluation_cases.h"
+#include "evaluation_contestant.h"
+#include "evaluation_report.h"
+
+typedef struct evaluation_work {
+    const evaluation_cases *cases;
+    const evaluation_contestants *contestants;
+    const reconstruction_options *settings;
+    const double *keep; /* percent */
+    uint32_t keep_count;
+    bool from_file;
+    uint32_t processes;
+} evaluation_work;
+
+static inline uint32_t evaluation_work_rows(const evaluation_work *work)
+{
+    return work->cases->count * work->contestants->count * work->keep_count;
+}
+
+/* Rows go to the report as they are made, in the order case, contestant, budget however many processes there are. An
+ * exit status of cli.h. */
+int evaluation_work_do(const evaluation_work *work, evaluation_report *report);
+
+#endif
