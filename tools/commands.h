@@ -3,6 +3,7 @@
 #ifndef TRIM3R_TOOLS_COMMANDS_H
 #define TRIM3R_TOOLS_COMMANDS_H
 
+int command_chart(int argc, char **argv);
 int command_import(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_build(int argc, char **argv);

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <png.h>
+#include "markup.h"
+#include "png_bytes.h"
 
 struct html_page {
     char *title, *introduction;
@@ -51,64 +52,17 @@ static const char style[] =
     "input { accent-color: var(--accent); }\n"
     "</style>\n</head>\n<body>\n";
 
-static void write_escaped(FILE *out, const char *text)
-{
-    for (const char *p = text; *p != '\0'; p++) {
-        switch (*p) {
-        case '&':
-            fputs("&amp;", out);
-            break;
-        case '<':
-            fputs("&lt;", out);
-            break;
-        case '>':
-            fputs("&gt;", out);
-            break;
-        case '"':
-            fputs("&quot;", out);
-            break;
-        case '\'':
-            fputs("&#39;", out);
-            break;
-        default:
-            fputc(*p, out);
-        }
-    }
-}
-
-static void write_base64(FILE *out, const uint8_t *bytes, size_t count)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < count; i += 3) {
-        uint32_t b1 = i + 1 < count ? bytes[i + 1] : 0, b2 = i + 2 < count ? bytes[i + 2] : 0;
-        uint32_t word = (uint32_t)bytes[i] << 16 | b1 << 8 | b2;
-        char text[4] = {digits[word >> 18], digits[word >> 12 & 63], '=', '='};
-        if (i + 1 < count) {
-            text[2] = digits[word >> 6 & 63];
-        }
-        if (i + 2 < count) {
-            text[3] = digits[word & 63];
-        }
-        fwrite(text, 1, sizeof text, out);
-    }
-}
-
 /* "data:image/png;base64,..." */
 static void write_picture(html_page *page, uint32_t width, uint32_t height, uint32_t channels, const uint8_t *samples)
 {
-    png_image image = {.version = PNG_IMAGE_VERSION,
-                       .width = width,
-                       .height = height,
-                       .format = channels == 3 ? PNG_FORMAT_RGB : PNG_FORMAT_GRAY};
-    png_alloc_size_t count = PNG_IMAGE_PNG_SIZE_MAX(image);
-    uint8_t *bytes = malloc(count);
-    if (bytes == NULL || !png_image_write_to_memory(&image, bytes, &count, 0, samples, 0, NULL)) {
+    size_t count;
+    uint8_t *bytes = png_bytes(width, height, channels, samples, &count);
+    if (bytes == NULL) {
         page->failed = true;
-    } else {
-        fputs("data:image/png;base64,", page->body);
-        write_base64(page->body, bytes, count);
+        return;
     }
-    png_image_free(&image);
+    fputs("data:image/png;base64,", page->body);
+    markup_base64(page->body, bytes, count);
     free(bytes);
 }
 
@@ -141,7 +95,7 @@ void html_page_table(html_page *page, const char *heading, int folded)
 {
     end_table(page);
     fprintf(page->table, "<details%s><summary>", folded ? "" : " open");
-    write_escaped(page->table, heading);
+    markup_text(page->table, heading);
     fputs("</summary>\n<div class=\"scroll\"><table>\n", page->table);
     page->within_table = true;
     page->heading_done = false;
@@ -155,7 +109,7 @@ void html_page_table_cell(html_page *page, const char *text)
         page->within_row = true;
     }
     fprintf(page->table, "<%s>", kind);
-    write_escaped(page->table, text);
+    markup_text(page->table, text);
     fprintf(page->table, "</%s>", kind);
 }
 
@@ -189,7 +143,7 @@ void html_page_section(html_page *page, const char *heading, uint32_t width, uin
     fputs("<section style=\"--reference: url(", page->body);
     write_picture(page, width, height, 3, reference);
     fputs(")\">\n<h2>", page->body);
-    write_escaped(page->body, heading);
+    markup_text(page->body, heading);
     fputs("</h2>\n", page->body);
     page->within_section = true;
 }
@@ -198,7 +152,7 @@ void html_page_strip(html_page *page, const char *heading)
 {
     end_strip(page);
     fputs("<h3>", page->body);
-    write_escaped(page->body, heading);
+    markup_text(page->body, heading);
     fputs("</h3>\n<div class=\"strip\">\n", page->body);
     page->within_strip = true;
 }
@@ -208,23 +162,23 @@ void html_page_picture(html_page *page, const char *caption, uint32_t width, uin
 {
     fprintf(page->body, "<figure><div class=\"view%s\"><img loading=\"lazy\" width=\"%u\" height=\"%u\" alt=\"",
             compared ? " compared" : "", (unsigned)width, (unsigned)height);
-    write_escaped(page->body, caption);
+    markup_text(page->body, caption);
     fputs("\" src=\"", page->body);
     write_picture(page, width, height, channels, samples);
     fputs("\"></div><figcaption>", page->body);
-    write_escaped(page->body, caption);
+    markup_text(page->body, caption);
     fputs("</figcaption></figure>\n", page->body);
 }
 
 static void write_page(html_page *page, FILE *out)
 {
     fputs(head, out);
-    write_escaped(out, page->title);
+    markup_text(out, page->title);
     fputs(style, out);
     fputs("<h1>", out);
-    write_escaped(out, page->title);
+    markup_text(out, page->title);
     fputs("</h1>\n<p>", out);
-    write_escaped(out, page->introduction);
+    markup_text(out, page->introduction);
     fputs("</p>\n<input type=\"checkbox\" id=\"errors\"> "
           "<label for=\"errors\">Show errors: difference from the target, three times as bright</label>\n"
           "<main>\n",

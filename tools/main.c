@@ -19,6 +19,7 @@ static const struct {
     {"build", command_build, "frames of a recording to exactly Z Gaussians, as a .ply"},
     {"render", command_render, "a scene seen from a frame of a recording, a pose file or a trajectory"},
     {"eval", command_eval, "scores of rendered views against recorded ones"},
+    {"chart", command_chart, "scores against time and bytes: a picture, a report"},
     {"replay", command_replay, "the hash of every stage, and whether it is the expected one"},
     {"diff", command_diff, "what differs between two scenes or two views"},
     {"plan", command_plan, "the arena's buffers, its bytes and the operation counts, before anything runs"},
@@ -38,7 +39,7 @@ static void print_help(FILE *out)
     }
     fputs("\nThe way of the data:\n"
           "  import|room > REC.mcap > build > SCENE.ply > render > view.png\n"
-          "                REC.mcap > eval > scores;  REC.mcap > replay > hashes\n\n"
+          "                REC.mcap > eval > scores > chart > report.html;  REC.mcap > replay > hashes\n\n"
           "  trim3r room -o room.mcap\n"
           "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
           "  trim3r render scene.ply room.mcap --view 1 -o view.png\n\n"

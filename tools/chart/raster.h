@@ -1,0 +1,10 @@
+/* SVG to PNG, by librsvg. */
+#ifndef TRIM3R_TOOLS_CHART_RASTER_H
+#define TRIM3R_TOOLS_CHART_RASTER_H
+
+#include <stddef.h>
+
+/* Draws the SVG text `scale` times as large as it says and writes it to `path`: 0, or -1 with a reason in error[]. */
+int chart_raster_png(const char *path, const char *svg, size_t bytes, double scale, char *error, size_t error_bytes);
+
+#endif

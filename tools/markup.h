@@ -1,0 +1,13 @@
+/* What SVG and HTML written by hand have in common. */
+#ifndef TRIM3R_TOOLS_MARKUP_H
+#define TRIM3R_TOOLS_MARKUP_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* A text as content or as an attribute's value in either kind of quotes. */
+void markup_text(FILE *out, const char *text);
+void markup_base64(FILE *out, const uint8_t *bytes, size_t count);
+
+#endif
