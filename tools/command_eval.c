@@ -2,7 +2,6 @@
 #include "commands.h"
 
 #include <argp.h>
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +9,7 @@
 #include "ablation.h"
 #include "cli.h"
 #include "chosen_head.h"
+#include "evaluation_settings.h"
 #include "evaluation_work.h"
 #include "option_values.h"
 #include "process_pool.h"
@@ -53,7 +53,8 @@ enum {
     KEY_HTML,
     KEY_FROM_FILE,
     KEY_JSON,
-    KEY_JOBS
+    KEY_JOBS,
+    KEY_RESUME
 };
 
 /* ---- arguments ---------------------------------------------------------------------------------------------- */
@@ -158,6 +159,9 @@ static void check_options(struct argp_state *state, options *o)
         argp_error(state,
                    "--context and --target belong together; without both, all triplets of the recording are taken");
     }
+    if (o->to.resume && (o->to.csv == NULL || o->to.page != NULL || o->from_file)) {
+        argp_error(state, "--resume needs --csv, and excludes --html, whose pictures are not kept, and --from-file");
+    }
     if (o->ablate && (o->method_count > 0 || o->head_count > 0)) {
         argp_error(state, "--ablate is of the method trim3r with one --head: it excludes --methods and --heads");
     }
@@ -233,6 +237,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case KEY_JSON:
         o->to.json = true;
         return 0;
+    case KEY_RESUME:
+        o->to.resume = true;
+        return 0;
     case KEY_JOBS:
         o->processes = strcmp(arg, "all") == 0 ? process_pool_processors()
                                                : option_number(state, "jobs", arg, 1, PROCESS_POOL_MOST);
@@ -278,6 +285,8 @@ static const struct argp_option argp_options[] = {
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, and means over the cases", 0},
     {NULL, 0, NULL, 0, "How the work is done:", 3},
     {"jobs", KEY_JOBS, "N", 0, "processes that share the cases, 1..256, or all: one a processor (1)", 0},
+    {"resume", KEY_RESUME, NULL, 0,
+     "rows that stand in --csv already are not made again; those that do not are added to it", 0},
     {0},
 };
 
@@ -313,6 +322,8 @@ static const struct argp parser = {
         "are no-mask of heads without weights, no-adaptation of the head none, and the last three of --planar. The "
         "table is Markdown, PSNR (dB) / SSIM, means over the cases of a recording; of several recordings the mean, "
         "each counting once. It is long work: rows come to --csv as they are made.\n\n"
+        "--resume takes rows of the same program and recordings: it refuses a table that is older than one of them. "
+        "Times of rows made by several --jobs at once are those of a busy machine.\n\n"
         "Examples:\n"
         "  trim3r eval room.mcap --keep 100,20,10\n"
         "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
@@ -321,53 +332,12 @@ static const struct argp parser = {
         "  trim3r eval room.mcap --keep 10,5 --heads analytic,moment,small,my.t3w\n"
         "  trim3r eval a.mcap b.mcap --ablate --csv ablations.csv\n"
         "  trim3r eval room.mcap --ablate=full,no-mask,no-adaptation --keep 10,5 --refine 0\n"
+        "  trim3r eval *.mcap --keep 100,40,10 --methods trim3r,eagles --jobs all --csv all.csv --resume\n"
         "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
     .children = children,
 };
 
 /* ---- work ------------------------------------------------------------------------------------------------------- */
-
-/* "_moment_refine-0_k-50": what of the settings that tables tell, and labels of rows do not, is not the default. */
-static int name_settings(const options *o, char *text, size_t bytes)
-{
-    const reconstruction_options *s = &o->settings;
-    reconstruction_options usual;
-    reconstruction_defaults(&usual);
-    chosen_head head;
-    int code = chosen_head_open(&head, s->head);
-    if (code != CLI_OK) {
-        return code;
-    }
-    FILE *out = fmemopen(text, bytes, "w");
-    if (out == NULL) {
-        chosen_head_close(&head);
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    if (o->head_count == 0 && strcmp(s->head, CHOSEN_HEAD_DEFAULT) != 0) {
-        fprintf(out, "_%s", head.name);
-        if (head.weights != NULL && strcmp(head.bits, "8") != 0) {
-            fprintf(out, "_w%ua%u", head.weight_bits, head.activation_bits);
-        }
-    }
-    if (s->refine != usual.refine) {
-        fprintf(out, "_refine-%" PRIu32, s->refine);
-    }
-    if (s->allocation != usual.allocation) {
-        fprintf(out, "_%s", t3r_allocation_name(s->allocation));
-    }
-    if (s->wavelet != usual.wavelet) {
-        fprintf(out, "_%s", t3r_wavelet_name(s->wavelet));
-    }
-    if (s->wavelet_levels != usual.wavelet_levels) {
-        fprintf(out, "_levels-%" PRIu32, s->wavelet_levels);
-    }
-    if (s->clusters != usual.clusters) {
-        fprintf(out, "_k-%" PRIu32, s->clusters);
-    }
-    fclose(out);
-    chosen_head_close(&head);
-    return CLI_OK;
-}
 
 static int open_cases(const options *o, evaluation_cases *cases)
 {
@@ -392,7 +362,7 @@ static int report_all(const options *o, const evaluation_work *work)
     to.planar = o->planar;
     to.ablate = o->ablate;
     to.folder_each = !o->planar && o->input_count > 1;
-    int code = name_settings(o, to.suffix, sizeof to.suffix);
+    int code = evaluation_settings_suffix(&o->settings, o->head_count == 0, to.suffix);
     if (code != CLI_OK) {
         return code;
     }
@@ -406,8 +376,12 @@ static int evaluate(const options *o)
 {
     evaluation_contestants contestants;
     evaluation_cases cases = {0};
+    evaluation_resume resume = {0};
     int code = choose_contestants(o, &contestants);
     code = code == CLI_OK ? open_cases(o, &cases) : code;
+    if (code == CLI_OK && o->to.resume) {
+        code = evaluation_resume_open(&resume, o->to.csv, o->inputs, o->input_count, o->to.images != NULL);
+    }
     if (code == CLI_OK) {
         evaluation_work work = {
             .cases = &cases,
@@ -417,9 +391,11 @@ static int evaluate(const options *o)
             .keep_count = o->keep_count,
             .from_file = o->from_file,
             .processes = o->processes,
+            .resume = &resume,
         };
         code = report_all(o, &work);
     }
+    evaluation_resume_close(&resume);
     evaluation_cases_close(&cases);
     return code;
 }

@@ -218,20 +218,34 @@ void evaluation_name_case(evaluation_row *row, const evaluation_case *what)
     }
 }
 
-static void name_row(evaluation_row *row, const evaluation_case *what, method_id m,
-                     const reconstruction_options *options)
+int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method_id m, double keep,
+                        const reconstruction_options *settings)
 {
+    *row = (evaluation_row){0};
+    for (int i = 0; i < EVALUATION_VALUE_COUNT; i++) {
+        row->value[i] = NAN;
+    }
     evaluation_name_case(row, what);
     row->method = method_name(m);
-    snprintf(row->refine, sizeof row->refine, "%" PRIu32, options->refine);
-    row->allocate = method_kind_of(m) == METHOD_TRIM3R ? t3r_allocation_name(options->allocation) : "";
-    row->wavelet = t3r_wavelet_name(options->wavelet);
-    snprintf(row->levels, sizeof row->levels, "%" PRIu32, options->wavelet_levels);
+    snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->refine);
+    row->allocate = method_kind_of(m) == METHOD_TRIM3R ? t3r_allocation_name(settings->allocation) : "";
+    row->wavelet = t3r_wavelet_name(settings->wavelet);
+    snprintf(row->levels, sizeof row->levels, "%" PRIu32, settings->wavelet_levels);
     if (method_kind_of(m) == METHOD_TRIM3R) {
-        snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, options->clusters);
+        snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, settings->clusters);
     }
     row->depth = what->planar ? "plane" : "sensor";
     row->ablation = "";
+    evaluation_settings_rest(settings, row->settings);
+    row->value[EVALUATION_KEEP] = keep;
+    chosen_head head;
+    int code = chosen_head_open(&head, settings->head);
+    if (code == CLI_OK) {
+        snprintf(row->head, sizeof row->head, "%s", head.name);
+        snprintf(row->bits, sizeof row->bits, "%s", head.bits);
+        chosen_head_close(&head);
+    }
+    return code;
 }
 
 static int score_all(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
@@ -271,21 +285,15 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     options.context_count = what->context_count;
     memcpy(options.context, what->context, sizeof options.context);
 
-    *row = (evaluation_row){0};
-    for (int i = 0; i < EVALUATION_VALUE_COUNT; i++) {
-        row->value[i] = NAN;
-    }
-    name_row(row, what, m, &options);
-
     reconstruction built, loaded = {0};
     reconstruction_account told;
-    int code = build(&built, &told, views, what, m, &options);
+    int code = evaluation_name_row(row, what, m, keep, settings);
+    if (code == CLI_OK) {
+        code = build(&built, &told, views, what, m, &options);
+    }
     if (code != CLI_OK) {
         return code;
     }
-    snprintf(row->head, sizeof row->head, "%s", told.head);
-    snprintf(row->bits, sizeof row->bits, "%s", told.bits);
-    row->value[EVALUATION_KEEP] = keep;
     row->value[EVALUATION_GAUSSIANS] = built.scene.count;
     row->value[EVALUATION_BUILD_MS] = told.seconds * 1000;
     row->value[EVALUATION_ARENA_BYTES] = (double)told.arena_bytes;

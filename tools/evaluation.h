@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "evaluation_settings.h"
 #include "method.h"
 #include "reconstruction.h"
 #include "recording.h"
@@ -69,12 +70,18 @@ typedef struct evaluation_row {
     char levels[8], clusters[8]; /* "" = does not apply, as below */
     const char *method, *allocate, *depth, *wavelet;
     const char *ablation; /* ablation_name() of what was taken away; "" where nothing is told of it */
-    char picture[512];    /* its render within the folder of --images; "" = none */
+    char settings[EVALUATION_SETTINGS_BYTES]; /* all others: evaluation_settings_rest() */
+    char picture[512];                        /* its render within the folder of --images; "" = none */
     double value[EVALUATION_VALUE_COUNT];
 } evaluation_row;
 
 /* The row's scene, context and target. */
 void evaluation_name_case(evaluation_row *row, const evaluation_case *what);
+
+/* All of the row that is known before it is made: every text but the ablation and the picture, and keep; other values
+ * are NaN. An exit status of cli.h: the head is looked at. */
+int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method_id m, double keep,
+                        const reconstruction_options *settings);
 
 /* Builds `what` with `keep` percent of the valid points, draws and scores it. The rivals of a case share its unpruned
  * scene, so `settings` must be the same for all of their rows. With from_file the scene is written as

@@ -38,11 +38,13 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
     }
     int code = to->page != NULL ? open_page(report) : CLI_OK;
     if (code == CLI_OK && to->csv != NULL) {
-        report->csv.file = fopen(to->csv, "w");
-        if (report->csv.file == NULL) {
+        report->csv.file = fopen(to->csv, to->resume ? "a" : "w");
+        if (report->csv.file == NULL || (to->resume && fseek(report->csv.file, 0, SEEK_END) != 0)) {
             return cli_error(CLI_BAD_INPUT, "%s: %s", to->csv, strerror(errno));
         }
-        evaluation_csv_header(&report->csv);
+        if (!to->resume || ftell(report->csv.file) == 0) {
+            evaluation_csv_header(&report->csv);
+        }
     }
     if (code == CLI_OK && !to->json && !to->ablate) {
         evaluation_print_header(stdout, to->planar);
@@ -125,10 +127,10 @@ void evaluation_report_strip(evaluation_report *report, const char *label)
     }
 }
 
-int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const char *label,
+int evaluation_report_row(evaluation_report *report, bool known, const evaluation_views *views, const char *label,
                           evaluation_row *row, uint8_t *render)
 {
-    int code = report->to.images != NULL ? name_picture(report, label, row) : CLI_OK;
+    int code = report->to.images != NULL && !known ? name_picture(report, label, row) : CLI_OK;
     if (code != CLI_OK) {
         return code;
     }
@@ -139,6 +141,9 @@ int evaluation_report_row(evaluation_report *report, const evaluation_views *vie
         fflush(stdout);
     }
     cli_progress_within("rows", report->row_count, report->row_total);
+    if (known) {
+        return CLI_OK;
+    }
     if (report->csv.file != NULL) {
         evaluation_csv_row(&report->csv, row);
     }

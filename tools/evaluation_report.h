@@ -4,15 +4,19 @@
 
 #include "csv.h"
 #include "evaluation.h"
+#include "evaluation_resume.h"
+#include "evaluation_settings.h"
 #include "html_page.h"
 #include "whole_file.h"
 
 typedef struct evaluation_outputs {
     const char *csv, *images, *page; /* paths; NULL = none */
     bool json, planar;
+    bool resume;      /* add to the rows of `csv` */
     bool ablate;      /* one table at the end in the place of rows as they arrive */
     bool folder_each; /* a folder within `images` for each scene */
-    char suffix[128]; /* of the names of pictures: settings of all rows that are not the default */
+    char
+        suffix[EVALUATION_SETTINGS_BYTES]; /* of the names of pictures: settings of all rows that are not the default */
 } evaluation_outputs;
 
 typedef struct evaluation_report {
@@ -35,7 +39,8 @@ int evaluation_report_case(evaluation_report *report, const evaluation_views *vi
 /* What the rows that follow have in common: a heading. */
 void evaluation_report_strip(evaluation_report *report, const char *label);
 /* Names the row's `picture` when there are pictures. */
-int evaluation_report_row(evaluation_report *report, const evaluation_views *views, const char *label,
+/* `known`: it stood in the table already. */
+int evaluation_report_row(evaluation_report *report, bool known, const evaluation_views *views, const char *label,
                           evaluation_row *row, uint8_t *render);
 /* Means, JSON and page when `code` is CLI_OK; no half page otherwise. `code`, or what went wrong here. */
 int evaluation_report_close(evaluation_report *report, int code);

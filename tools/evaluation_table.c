@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "csv_read.h"
+
 typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */
 
 /* Texts of a row count down from -1. */
@@ -20,7 +22,8 @@ enum {
     WAVELET = -11,
     LEVELS = -12,
     CLUSTERS = -13,
-    PICTURE = -14
+    SETTINGS = -14,
+    PICTURE = -15
 };
 
 typedef struct column {
@@ -45,6 +48,7 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"wavelet", WAVELET, 0, 0, NEVER},
     {"levels", LEVELS, 0, 0, NEVER},
     {"clusters", CLUSTERS, 0, 0, NEVER},
+    {"settings", SETTINGS, 0, 0, NEVER},
     {"keep", EVALUATION_KEEP, -1, 5, ALWAYS},
     {"gaussians", EVALUATION_GAUSSIANS, 0, 10, ALWAYS},
     {"psnr", EVALUATION_PSNR, 4, 7, RECORDING},
@@ -69,9 +73,9 @@ const char *evaluation_column_name(uint32_t index)
 
 static const char *text_of(const evaluation_row *row, int text)
 {
-    const char *const texts[] = {row->scene,   row->context, row->target,   row->method, row->head,
-                                 row->bits,    row->refine,  row->allocate, row->depth,  row->ablation,
-                                 row->wavelet, row->levels,  row->clusters, row->picture};
+    const char *const texts[] = {row->scene,   row->context, row->target,   row->method,   row->head,
+                                 row->bits,    row->refine,  row->allocate, row->depth,    row->ablation,
+                                 row->wavelet, row->levels,  row->clusters, row->settings, row->picture};
     return texts[-1 - text];
 }
 
@@ -107,6 +111,64 @@ void evaluation_csv_row(csv_table *table, const evaluation_row *row)
     csv_end_row(table);
 }
 
+/* Where a text is kept within the row: its room in *bytes, or NULL where the row only points to it, by *pointer. */
+static char *room_of(evaluation_row *row, int text, size_t *bytes, const char ***pointer)
+{
+    struct {
+        char *own;
+        size_t bytes;
+        const char **pointer;
+    } const rooms[] = {
+        {row->scene, sizeof row->scene, NULL},
+        {row->context, sizeof row->context, NULL},
+        {row->target, sizeof row->target, NULL},
+        {NULL, 0, &row->method},
+        {row->head, sizeof row->head, NULL},
+        {row->bits, sizeof row->bits, NULL},
+        {row->refine, sizeof row->refine, NULL},
+        {NULL, 0, &row->allocate},
+        {NULL, 0, &row->depth},
+        {NULL, 0, &row->ablation},
+        {NULL, 0, &row->wavelet},
+        {row->levels, sizeof row->levels, NULL},
+        {row->clusters, sizeof row->clusters, NULL},
+        {row->settings, sizeof row->settings, NULL},
+        {row->picture, sizeof row->picture, NULL},
+    };
+    *bytes = rooms[-1 - text].bytes;
+    *pointer = rooms[-1 - text].pointer;
+    return rooms[-1 - text].own;
+}
+
+static bool read_text(evaluation_row *row, int text, const char *cell)
+{
+    const char **pointer;
+    size_t bytes;
+    char *own = room_of(row, text, &bytes, &pointer);
+    if (own == NULL) {
+        *pointer = cell;
+        return true;
+    }
+    return snprintf(own, bytes, "%s", cell) < (int)bytes;
+}
+
+bool evaluation_row_read(evaluation_row *row, const char *const cells[EVALUATION_COLUMNS])
+{
+    bool good = true;
+    *row = (evaluation_row){0};
+    for (uint32_t i = 0; i < EVALUATION_COLUMNS && good; i++) {
+        bool given = false;
+        if (columns[i].value < 0) {
+            good = read_text(row, columns[i].value, cells[i]);
+        } else {
+            double *value = &row->value[columns[i].value];
+            good = csv_number(cells[i], value, &given) == 0;
+            *value = given ? *value : NAN;
+        }
+    }
+    return good;
+}
+
 cJSON *evaluation_json(const evaluation_row *row)
 {
     cJSON *object = cJSON_CreateObject();
@@ -131,7 +193,12 @@ static bool belong_together(const evaluation_row *a, const evaluation_row *b, bo
            strcmp(a->allocate, b->allocate) == 0 && strcmp(a->depth, b->depth) == 0 &&
            strcmp(a->ablation, b->ablation) == 0 && strcmp(a->wavelet, b->wavelet) == 0 &&
            strcmp(a->levels, b->levels) == 0 && strcmp(a->clusters, b->clusters) == 0 &&
-           a->value[EVALUATION_KEEP] == b->value[EVALUATION_KEEP];
+           strcmp(a->settings, b->settings) == 0 && a->value[EVALUATION_KEEP] == b->value[EVALUATION_KEEP];
+}
+
+bool evaluation_same(const evaluation_row *a, const evaluation_row *b)
+{
+    return strcmp(a->context, b->context) == 0 && strcmp(a->target, b->target) == 0 && belong_together(a, b, true);
 }
 
 static evaluation_row mean_of(const evaluation_row *first, const evaluation_row *rows, uint32_t count, bool by_scene)

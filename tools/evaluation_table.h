@@ -11,7 +11,7 @@
 #include "csv.h"
 #include "evaluation.h"
 
-#define EVALUATION_COLUMNS 28u
+#define EVALUATION_COLUMNS 29u
 #define EVALUATION_CELL_BYTES 512u /* of any cell, the end included */
 
 /* Stable order; NULL past the last. */
@@ -21,6 +21,11 @@ void evaluation_cell(const evaluation_row *row, uint32_t column, char *text, siz
 
 void evaluation_csv_header(csv_table *table);
 void evaluation_csv_row(csv_table *table, const evaluation_row *row);
+/* A row of evaluation_cell()'s texts; those of method, allocate, depth, wavelet and ablation must outlive it. False
+ * where a number is none or a text too long. */
+bool evaluation_row_read(evaluation_row *row, const char *const cells[EVALUATION_COLUMNS]);
+/* Whether two rows are of the same case, contestant, budget and settings. */
+bool evaluation_same(const evaluation_row *a, const evaluation_row *b);
 /* An object of all columns, null where one does not apply; NULL without memory. */
 cJSON *evaluation_json(const evaluation_row *row);
 

@@ -23,12 +23,15 @@ typedef struct worker {
     const evaluation_work *work;
     evaluation_report *report;
     desk desk;
+    bool announced; /* a case, to the report */
+    uint32_t announced_case;
     uint32_t shares; /* of a case: items of work that it is cut into, 1 or its contestants */
 } worker;
 
 /* What is sent of a row; its render follows when the report shows pictures. */
 typedef struct made_row {
     uint32_t contestant, keep;
+    bool known;
     evaluation_row row;
 } made_row;
 
@@ -65,15 +68,30 @@ static int turn_to(worker *w, uint32_t index)
     return d->render != NULL ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
 }
 
-static int make_row(worker *w, uint32_t contestant, uint32_t keep, process_pool_line *line)
+static int make_row(worker *w, uint32_t item, uint32_t contestant, uint32_t keep, process_pool_line *line)
 {
     const evaluation_work *work = w->work;
     const evaluation_contestant *it = &work->contestants->list[contestant];
     desk *d = &w->desk;
     reconstruction_options settings = evaluation_contestant_settings(it, work->settings);
     made_row made = {.contestant = contestant, .keep = keep};
-    int code = evaluation_measure(&made.row, d->render, &d->views, &d->entered.what, it->method, work->keep[keep],
+    int code =
+        evaluation_name_row(&made.row, &work->cases->list[item / w->shares], it->method, work->keep[keep], &settings);
+    made.row.ablation = it->ablated ? ablation_name(it->ablation) : "";
+    if (code != CLI_OK) {
+        return code;
+    }
+    const evaluation_row *known = evaluation_resume_find(work->resume, &made.row);
+    if (known != NULL) {
+        made.row = *known;
+        made.known = true;
+        return process_pool_send(line, &made, sizeof made, NULL, 0);
+    }
+    code = turn_to(w, item / w->shares);
+    if (code == CLI_OK) {
+        code = evaluation_measure(&made.row, d->render, &d->views, &d->entered.what, it->method, work->keep[keep],
                                   work->from_file, &settings);
+    }
     if (code != CLI_OK) {
         return code;
     }
@@ -88,21 +106,24 @@ static int make_item(void *context, uint32_t item, process_pool_line *line)
     worker *w = context;
     const uint32_t count = w->work->contestants->count, each = count / w->shares;
     const uint32_t first = item % w->shares * each;
-    int code = turn_to(w, item / w->shares);
+    int code = CLI_OK;
     for (uint32_t c = first; c < first + each && code == CLI_OK; c++) {
         for (uint32_t k = 0; k < w->work->keep_count && code == CLI_OK; k++) {
-            code = make_row(w, c, k, line);
+            code = make_row(w, item, c, k, line);
         }
     }
     return code;
 }
 
-/* Before the first row of a case, and of a contestant. */
-static int announce(worker *w, const made_row *made)
+/* Before the first row of a case, and of a contestant, that is shown. */
+static int announce(worker *w, uint32_t item, const made_row *made)
 {
-    int code = CLI_OK;
-    if (made->contestant == 0 && made->keep == 0) {
+    const uint32_t index = item / w->shares;
+    int code = turn_to(w, index);
+    if (code == CLI_OK && (!w->announced || w->announced_case != index)) {
         code = evaluation_report_case(w->report, &w->desk.views, &w->desk.entered.what);
+        w->announced = true;
+        w->announced_case = index;
     }
     if (made->keep == 0) {
         evaluation_report_strip(w->report, w->work->contestants->list[made->contestant].label);
@@ -116,16 +137,15 @@ static int take_row(void *context, uint32_t item, const void *part, size_t bytes
     made_row made;
     memcpy(&made, part, sizeof made);
     const bool shown = bytes > sizeof made;
-    int code = shown ? turn_to(w, item / w->shares) : CLI_OK;
-    if (shown && code == CLI_OK) {
-        memcpy(w->desk.render, (const uint8_t *)part + sizeof made, bytes - sizeof made);
-        code = announce(w, &made);
-    }
+    int code = shown ? announce(w, item, &made) : CLI_OK;
     if (code != CLI_OK) {
         return code;
     }
-    return evaluation_report_row(w->report, &w->desk.views, w->work->contestants->list[made.contestant].label,
-                                 &made.row, w->desk.render);
+    if (shown) {
+        memcpy(w->desk.render, (const uint8_t *)part + sizeof made, bytes - sizeof made);
+    }
+    return evaluation_report_row(w->report, made.known, &w->desk.views,
+                                 w->work->contestants->list[made.contestant].label, &made.row, w->desk.render);
 }
 
 static void leave(void *context)

@@ -5,6 +5,7 @@
 #include "evaluation_cases.h"
 #include "evaluation_contestant.h"
 #include "evaluation_report.h"
+#include "evaluation_resume.h"
 
 typedef struct evaluation_work {
     const evaluation_cases *cases;
@@ -14,6 +15,7 @@ typedef struct evaluation_work {
     uint32_t keep_count;
     bool from_file;
     uint32_t processes;
+    evaluation_resume *resume; /* rows that need not be made again; empty: none */
 } evaluation_work;
 
 static inline uint32_t evaluation_work_rows(const evaluation_work *work)
