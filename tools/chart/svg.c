@@ -313,7 +313,8 @@ void chart_svg_write(FILE *out, const chart_points *points, const chart_names *n
             "<title>%s against cost</title>\n",
             WIDTH, height, WIDTH, height, chart_measures[views[0].choice.quality].title);
     write_style(out, ground);
-    fprintf(out, "<rect class='paper' width='%.0f' height='%.0f' rx='8'/>\n", WIDTH, height);
+    fprintf(out, "<rect class='paper' width='%.0f' height='%.0f' rx='%d'/>\n", WIDTH, height,
+            ground == CHART_GROUND_READER ? 8 : 0);
     write_title(out, points, names, views, count);
     for (uint32_t v = 0; v < count; v++) {
         double x = EDGE + (v % columns) * (wide + EDGE), y = HEADER + (v / columns) * high;
