@@ -149,7 +149,7 @@ static void write_points(const page *p)
         fprintf(p->out, "%s\n{\"series\":%u,\"keep\":", comma(i == 0), (unsigned)point->series);
         json_text(p->out, text);
         fputs(",\"settings\":[", p->out);
-        for (int s = 0; s < CHART_SETTINGS; s++) {
+        for (int s = 0; s < CHART_KEEP; s++) {
             chart_setting_text(p->points, i, (chart_setting)s, text, sizeof text);
             if (text[0] != '\0') {
                 fputs(comma(first), p->out);

@@ -137,14 +137,11 @@
   function tip(p) {
     const mark = marks.get(p), box = $("tip");
     if (!mark) return;
-    const rows = [state.quality, state.cost, data.gaussians].filter((m) => spread(p, m)).map((m) =>
-      make("tr", {}, make("td", {}, measures[m].title), make("td", {}, text(m, spread(p, m)[0]))));
-    const s = spread(p, state.cost);
-    if (many(s)) {
-      rows.push(make("tr", {}, make("td", {}, "its median"), make("td", {}, text(state.cost, s[2]))),
-                make("tr", {}, make("td", {}, "its quartiles"), make("td", {}, `${text(state.cost, s[1])} \u2026 ${text(state.cost, s[3])}`)));
-    }
-    rows.push(make("tr", {}, make("td", {}, "Cases"), make("td", {}, String(spread(p, state.quality)[4]))));
+    const row = (name, value) => make("tr", {}, make("td", {}, name), make("td", {}, value));
+    const mean = (m) => (spread(p, m) ? [row(measures[m].title, text(m, spread(p, m)[0]))] : []);
+    const s = spread(p, state.cost), rows = [...mean(state.quality), ...mean(state.cost)];
+    if (many(s)) rows.push(row("its median", text(state.cost, s[2])), row("its quartiles", `${text(state.cost, s[1])} \u2026 ${text(state.cost, s[3])}`));
+    rows.push(...mean(data.gaussians), row("Cases", String(spread(p, state.quality)[4])));
     box.replaceChildren(make("b", {}, title(p)), make("span", { class: "quiet" }, points[p].settings.join(", ")), make("table", {}, ...rows));
     box.hidden = false;
     const ratio = $("canvas").clientWidth / $("canvas").firstChild.viewBox.baseVal.width;
