@@ -131,13 +131,13 @@ static void binary_ticks(chart_axis *axis)
 }
 
 /* 1, 2, 5 times powers of ten, over little more than one of them 1, 2, 3, 5, 7 times; powers alone, or every so many of
- * them, where more than TICKS_WANTED would stand. */
+ * them, where an axis takes no more. */
 static void decimal_ticks(chart_axis *axis, chart_unit unit)
 {
     static const double few[] = {1, 2, 3, 5, 7}, some[] = {1, 2, 5};
     double decades = log10(axis->high / axis->low), every = 1;
     const double *times = decades < 1.3 ? few : some;
-    uint32_t of_power = decades < 1.3 ? 5 : decades * 3 <= TICKS_WANTED ? 3 : 1;
+    uint32_t of_power = decades < 1.3 ? 5 : decades * 3 < CHART_TICKS_MOST - 1 ? 3 : 1;
     while (decades / every > TICKS_WANTED) {
         every += 1;
     }
