@@ -45,6 +45,7 @@ class Page:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
         self.size(width, height)
+        self.scheme("light")
 
     def _message(self, until):
         while b"\0" not in self.buffer:
@@ -90,8 +91,9 @@ class Page:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
 
     def scheme(self, name):
-        """light or dark, as the reader's system asks for."""
-        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name}])
+        """light or dark, as the reader's system asks for; and, so that a click meets what it aims at, no scrolling in steps."""
+        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name},
+                                                          {"name": "prefers-reduced-motion", "value": "reduce"}])
 
     def open(self, path):
         self.events.clear()

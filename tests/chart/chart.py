@@ -78,6 +78,8 @@ def reports(folder):
     small = f"{folder}/small.html"
     run(trim3r, "chart", *tables, "--pictures", folders[0], "--pictures", folders[1], "-o", small, "--picture-mib", "1")
     check(os.path.getsize(small) <= os.path.getsize(page), "no more pictures than there is room for")
+    told = run(trim3r, "chart", tables[0], "-o", f"{folder}/bare.html", "--pictures", folders[1])
+    check("not in the folders" in told.stderr, "pictures that are missing")
     run(trim3r, "chart", tables[0], "-o", f"{folder}/bare.html")
     check("<script type=\"text/plain\"" not in open(f"{folder}/bare.html", encoding="utf-8").read(), "without pictures")
     with open(f"{folder}/hostile.csv", "w", encoding="utf-8") as file:
