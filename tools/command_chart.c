@@ -296,6 +296,10 @@ static int report(const chart *c, const options *o)
     if (o->folder_count > 0 && !c->table.has_pictures) {
         fprintf(stderr, "trim3r chart: no table names pictures; eval --images with --csv does\n");
     }
+    if (pictures.missing > 0) {
+        fprintf(stderr, "trim3r chart: %u of the pictures that the tables name are not in the folders\n",
+                (unsigned)pictures.missing);
+    }
     int code = write_page(c, &pictures, o->page);
     chart_pictures_free(&pictures);
     return code;

@@ -14,8 +14,9 @@ from common import check, done, load_scorer, near, need_numpy, run
 numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]
 scorer = load_scorer(sys.argv[2])
-COLUMNS = ("scene context target method head bits refine allocate depth ablation keep gaussians psnr ssim sharp holes psnr_all "
-           "context_psnr perceptual build_ms render_ms arena_bytes planar_psnr").split()
+COLUMNS = ("scene context target method head bits refine allocate depth ablation wavelet levels clusters keep gaussians psnr "
+           "ssim sharp holes psnr_all context_psnr perceptual build_ms render_ms arena_bytes scene_bytes planar_psnr "
+           "picture").split()
 
 
 def read(path, grey=False):
@@ -67,6 +68,10 @@ def evaluate_triplet(folder, room):
         check((row["head"], row["allocate"]) ==
               ("small", "density" if row["method"] == "trim3r" else ""), "settings")
         check(row["planar_psnr"] == "" and row["bits"] == "8", "cells that do not apply are empty")
+        check((row["wavelet"], row["levels"], row["clusters"]) == ("db2", "2", "300" if row["method"] == "trim3r" else ""),
+              "wavelet and SuperClusters")
+        check(row["picture"] == f"1/{row['method']}_{row['keep']}.png", "where the picture is")
+        check(int(row["scene_bytes"]) == 44 * int(row["gaussians"]), "bytes of the scene")
         render = read(f"{pictures}/1/{row['method']}_{row['keep']}.png")
         check_scores(row, target, render, mask, "psnr")
         error = ((target.astype(float) - render) ** 2)[everything].mean()
@@ -110,6 +115,50 @@ def evaluate_several(folder, room):
     check([m["scene"] for m in answer["means"]] == ["room", "room", "other", "other"], "means stay within a recording")
     for scene in ("room", "other"):
         check(os.path.exists(f"{folder}/both/{scene}/1/trim3r_5.png"), "a folder a recording")
+    check([r["picture"] for r in answer["rows"]] ==
+          [f"{s}/1/trim3r_{k}.png" for s in ("room", "other") for k in (5, 10)], "and the table tells")
+
+
+def evaluate_names(folder, room):
+    """Runs that differ in a column of the table may share a folder of pictures."""
+    rows = []
+    for more in ((), ("--refine", "0"), ("--wavelet", "haar", "--levels", "3"), ("--clusters", "50", "--allocate", "paper"),
+                 ("--head", "moment"), ("--context", "0,3"), ("--refine", "0", "--ablate=full,k-5")):
+        context = () if "--context" in more else ("--context", "0,2")
+        rows += json.loads(run(trim3r, "eval", room, *context, *more, "--target", "1", "--keep", "5", "--images",
+                               f"{folder}/names", "--json").stdout)["rows"]
+    names = [r["picture"] for r in rows]
+    check(names == ["1/trim3r_5.png", "1/trim3r_refine-0_5.png", "1/trim3r_haar_levels-3_5.png",
+                    "1/trim3r_paper_k-50_5.png", "1/trim3r_moment_5.png", "1/trim3r_5.png", "1/full_refine-0_5.png",
+                    "1/k-5_refine-0_5.png"], f"names: {names}")
+    check(all(os.path.exists(f"{folder}/names/{name}") for name in names), "and the files")
+    check((rows[2]["wavelet"], rows[2]["levels"], rows[3]["clusters"], rows[7]["clusters"]) == ("haar", "3", "50", "5"),
+          "columns")
+
+
+def evaluate_one_target_twice(folder):
+    """Two triplets of a recording may meet the same frame from other ones."""
+    made = f"{folder}/made"
+    os.mkdir(made)
+    random = numpy.random.default_rng(1)
+    frames = []
+    for i in range(4):
+        cv2.imwrite(f"{made}/{i}.png", random.integers(0, 255, (32, 32, 3), dtype=numpy.uint8))
+        cv2.imwrite(f"{made}/{i}.depth.png", numpy.full((32, 32), 2000, dtype=numpy.uint16))
+        pose = numpy.eye(4)
+        pose[0, 3] = i / 50
+        frames.append({"file_path": f"{i}.png", "depth_path": f"{i}.depth.png", "transform_matrix": pose.tolist()})
+    with open(f"{made}/transforms.json", "w", encoding="utf-8") as file:
+        json.dump({"fl_x": 32, "fl_y": 32, "cx": 16, "cy": 16, "w": 32, "h": 32, "integer_depth_scale": 0.001,
+                   "frames": frames, "trim3r_triplets": [{"context": [0, 2], "target": 1},
+                                                         {"context": [0, 3], "target": 1}]}, file)
+    run(trim3r, "import", made, "--size", "32x32", "-o", f"{made}.mcap")
+    rows = json.loads(run(trim3r, "eval", f"{made}.mcap", "--keep", "50", "--head", "analytic", "--refine", "0", "--images",
+                          f"{folder}/twice", "--json").stdout)["rows"]
+    check([(r["context"], r["picture"]) for r in rows] == [("0,2", "1/trim3r_analytic_refine-0_50.png"),
+                                                           ("0,3", "1_from_0_3/trim3r_analytic_refine-0_50.png")],
+          f"a folder each: {[r['picture'] for r in rows]}")
+    check(os.path.exists(f"{folder}/twice/1_from_0_3/target.png"), "with its recorded views")
 
 
 def evaluate_variants(folder, room):
@@ -238,6 +287,8 @@ with tempfile.TemporaryDirectory() as folder:
     evaluate_triplet(folder, room)
     evaluate_all(folder, room)
     evaluate_several(folder, room)
+    evaluate_names(folder, room)
+    evaluate_one_target_twice(folder)
     evaluate_variants(folder, room)
     evaluate_heads(folder, room)
     evaluate_rivals(folder, room)

@@ -23,6 +23,10 @@ static evaluation_row make_row(const char *scene, const char *method, double kee
                           .refine = "0",
                           .allocate = "density",
                           .depth = "sensor",
+                          .wavelet = "db2",
+                          .levels = "2",
+                          .clusters = "300",
+                          .picture = "1/trim3r_2.5.png",
                           .ablation = ""};
     snprintf(row.scene, sizeof row.scene, "%s", scene);
     snprintf(row.context, sizeof row.context, "0,2");
@@ -83,9 +87,11 @@ static void test_columns_and_empty_cells(void **state)
     char *text = csv_text(write_table, &row);
     assert_string_equal(
         text,
-        "scene,context,target,method,head,bits,refine,allocate,depth,ablation,keep,gaussians,psnr,ssim,sharp,holes,"
-        "psnr_all,context_psnr,perceptual,build_ms,render_ms,arena_bytes,planar_psnr\n"
-        "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,,2.5,13107,21.2500,,,0.00000,,,,,,,\n");
+        "scene,context,target,method,head,bits,refine,allocate,depth,ablation,wavelet,levels,clusters,keep,gaussians,"
+        "psnr,ssim,sharp,holes,psnr_all,context_psnr,perceptual,build_ms,render_ms,arena_bytes,scene_bytes,planar_psnr,"
+        "picture\n"
+        "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,,db2,2,300,2.5,13107,21.2500,,,0.00000,,,,,,,,,"
+        "1/trim3r_2.5.png\n");
     free(text);
     assert_null(evaluation_column_name(EVALUATION_COLUMNS));
 }
@@ -133,6 +139,10 @@ static void test_means_group_by_settings(void **state)
     assert_string_equal(means[2].scene, "b");
     assert_string_equal(means[2].context, "mean");
     assert_true(means[2].value[EVALUATION_PSNR] == 30);
+    assert_string_equal(means[2].picture, "");
+    rows[2].wavelet = "haar"; /* beside "a", db2 */
+    assert_int_equal(evaluation_means(rows, 5, false, means), 4);
+    rows[2].wavelet = "db2";
     rows[2].ablation = "k-5"; /* beside "a", nothing ablated */
     assert_int_equal(evaluation_means(rows, 5, false, means), 4);
     assert_true(means[0].value[EVALUATION_PSNR] == 20);

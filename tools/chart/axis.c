@@ -82,9 +82,9 @@ void chart_value_text(chart_measure measure, double value, char *text, size_t by
 
 static void add(chart_axis *axis, chart_unit unit, double value, double step)
 {
+    double place = axis->logarithmic && value <= 0 ? -1 : chart_axis_place(axis, value);
     /* a hair of tolerance: the ends of a range that are round themselves */
-    double hair = 1e-9 * (axis->high - axis->low);
-    if (axis->tick_count < CHART_TICKS_MOST && value >= axis->low - hair && value <= axis->high + hair) {
+    if (axis->tick_count < CHART_TICKS_MOST && place >= -1e-9 && place <= 1 + 1e-9) {
         chart_tick *tick = &axis->tick[axis->tick_count++];
         tick->value = value == 0 ? 0 : value; /* no -0 */
         tick_label(unit, value, step, tick->label, sizeof tick->label);
@@ -131,13 +131,13 @@ static void binary_ticks(chart_axis *axis)
 }
 
 /* 1, 2, 5 times powers of ten, over little more than one of them 1, 2, 3, 5, 7 times; powers alone, or every so many of
- * them, where more than TICKS_WANTED would stand. */
+ * them, where an axis takes no more. */
 static void decimal_ticks(chart_axis *axis, chart_unit unit)
 {
     static const double few[] = {1, 2, 3, 5, 7}, some[] = {1, 2, 5};
     double decades = log10(axis->high / axis->low), every = 1;
     const double *times = decades < 1.3 ? few : some;
-    uint32_t of_power = decades < 1.3 ? 5 : decades * 3 <= TICKS_WANTED ? 3 : 1;
+    uint32_t of_power = decades < 1.3 ? 5 : decades * 3 < CHART_TICKS_MOST - 1 ? 3 : 1;
     while (decades / every > TICKS_WANTED) {
         every += 1;
     }
@@ -161,9 +161,10 @@ chart_axis chart_axis_make(chart_measure measure, double least, double most)
         axis.low = least / room;
         axis.high = most * room;
     } else {
-        /* one value alone: a range about it that has digits to tell */
-        double range = most - least, width = fmax(fabs(most), 1) * 1e-3;
-        double room = range > width ? range * ROOM : about->unit == CHART_BYTES ? fmax(most * 0.05, 16) : 50 * width;
+        /* little more than one value: a range about it that has digits to tell, of bytes whole ones */
+        double range = most - least, digits = fmax(fabs(most), 1) * 1e-3;
+        bool bytes = about->unit == CHART_BYTES, one = range <= (bytes ? fmax(digits, 16) : digits);
+        double room = !one ? range * ROOM : bytes ? fmax(most * 0.05, 16) : 50 * digits;
         axis.low = cost && least >= 0 && least - room < 0 ? 0 : least - room;
         axis.high = most + room;
     }

@@ -21,6 +21,7 @@ const char *const chart_colours_light[CHART_COLOURS] = {"#0a7568", "#e0833a", "#
 const char *const chart_colours_dark[CHART_COLOURS] = {"#53d6c1", "#f3a261", "#8aa6ff", "#ff7d9d",
                                                        "#c3a3f7", "#bfd060", "#6fcdf5", "#b4b9c1"};
 
+#define MIDDLE_DOT " \xC2\xB7 "
 static const char tuned[] = "+finetune";
 
 static const char *setting(const chart_points *points, uint32_t point, chart_setting s)
@@ -40,20 +41,23 @@ static uint32_t first_of(const chart_points *points, uint32_t series)
     return points->series[series].first_point;
 }
 
-/* Whether series differ in the setting, one that does not tell aside; within one method that differs, too. */
-static bool varies(const chart_points *points, chart_setting s)
+/* The value that most series have, the first of those that do: what names need not tell. "" when none tells. */
+static const char *usual(const chart_points *points, chart_setting s)
 {
+    const char *found = "";
+    uint32_t most = 0;
     for (uint32_t a = 0; a < points->series_count; a++) {
-        for (uint32_t b = 0; b < a; b++) {
-            uint32_t one = first_of(points, a), other = first_of(points, b);
-            bool both = setting(points, one, s)[0] != '\0' && setting(points, other, s)[0] != '\0';
-            bool same_method = strcmp(setting(points, one, CHART_METHOD), setting(points, other, CHART_METHOD)) == 0;
-            if ((both || same_method) && strcmp(setting(points, one, s), setting(points, other, s)) != 0) {
-                return true;
-            }
+        const char *value = setting(points, first_of(points, a), s);
+        uint32_t count = 0;
+        for (uint32_t b = 0; b < points->series_count; b++) {
+            count += strcmp(value, setting(points, first_of(points, b), s)) == 0;
+        }
+        if (value[0] != '\0' && count > most) {
+            found = value;
+            most = count;
         }
     }
-    return false;
+    return found;
 }
 
 /* Cut where it does not fit, which settings of CHART_SETTING_BYTES_MOST never do. */
@@ -77,9 +81,26 @@ static void contestant(const chart_points *points, uint32_t point, char *text, s
     snprintf(text, bytes, "%.*s\001%s", (int)length, method, setting(points, point, CHART_HEAD));
 }
 
-static int name_series(chart_name *name, const chart_points *points, uint32_t series, const bool *varied,
+/* Two series may differ in that one does not tell a setting. */
+static void name_untold(chart_names *names, const chart_points *points, uint32_t series, const char *const usuals[])
+{
+    char *text = names->series[series].text;
+    bool taken = false;
+    for (uint32_t earlier = 0; earlier < series && !taken; earlier++) {
+        taken = strcmp(names->series[earlier].text, text) == 0;
+    }
+    for (int s = 0; s < CHART_KEEP && taken; s++) {
+        if (usuals[s][0] != '\0' && setting(points, first_of(points, series), (chart_setting)s)[0] == '\0') {
+            append(text, CHART_NAME_BYTES, MIDDLE_DOT, chart_settings[s].column);
+            append(text, CHART_NAME_BYTES, " ", "not told");
+        }
+    }
+}
+
+static int name_series(chart_names *names, const chart_points *points, uint32_t series, const char *const usuals[],
                        chart_texts *contestants, chart_texts *variants)
 {
+    chart_name *name = &names->series[series];
     uint32_t point = first_of(points, series), who, how;
     char key[CHART_NAME_BYTES];
     contestant(points, point, key, sizeof key);
@@ -90,18 +111,15 @@ static int name_series(chart_name *name, const chart_points *points, uint32_t se
     for (int s = 0; s < CHART_KEEP; s++) {
         char text[CHART_NAME_BYTES];
         chart_setting_text(points, point, (chart_setting)s, text, sizeof text);
-        bool told = s == CHART_METHOD || varied[s];
-        if (told) {
-            append(name->text, sizeof name->text, " \xC2\xB7 ", text);
-        }
-        if (told && s != CHART_METHOD && s != CHART_HEAD) {
-            append(key, sizeof key, ",", text[0] == '\0' ? "-" : text);
-        }
+        bool told = s == CHART_METHOD || strcmp(setting(points, point, (chart_setting)s), usuals[s]) != 0;
+        append(name->text, sizeof name->text, MIDDLE_DOT, told ? text : "");
+        append(key, sizeof key, ",", told && s != CHART_METHOD && s != CHART_HEAD ? text : "");
     }
     append(key, sizeof key, ",", strstr(setting(points, point, CHART_METHOD), tuned) != NULL ? tuned : "");
     if (name->text[0] == '\0') {
         snprintf(name->text, sizeof name->text, "all rows");
     }
+    name_untold(names, points, series, usuals);
     if (chart_texts_number(variants, key, &how) != 0) {
         return -1;
     }
@@ -118,32 +136,32 @@ static void colour_variants(chart_names *names, const chart_points *points, uint
     }
 }
 
-static void name_common(chart_names *names, const chart_points *points, const bool *varied)
+static void name_common(chart_names *names, const char *const usuals[])
 {
     for (int s = 0; s < CHART_KEEP; s++) {
-        char text[CHART_NAME_BYTES] = "";
-        for (uint32_t i = 0; i < points->series_count && text[0] == '\0' && s != CHART_METHOD && !varied[s]; i++) {
-            chart_setting_text(points, first_of(points, i), (chart_setting)s, text, sizeof text);
+        char text[CHART_NAME_BYTES];
+        if (s != CHART_METHOD && usuals[s][0] != '\0') {
+            snprintf(text, sizeof text, "%s%s%s", chart_settings[s].before, usuals[s], chart_settings[s].behind);
+            append(names->common, sizeof names->common, ", ", text);
         }
-        append(names->common, sizeof names->common, ", ", text);
     }
 }
 
 int chart_names_make(chart_names *names, const chart_points *points)
 {
     chart_texts contestants = {0}, variants = {0};
-    bool varied[CHART_SETTINGS] = {false};
+    const char *usuals[CHART_SETTINGS];
     *names = (chart_names){.series = calloc(points->series_count, sizeof *names->series)};
     int failed = names->series == NULL ? -1 : 0;
     for (int s = 0; s < CHART_KEEP; s++) {
-        varied[s] = varies(points, (chart_setting)s);
+        usuals[s] = usual(points, (chart_setting)s);
     }
     for (uint32_t s = 0; s < points->series_count && failed == 0; s++) {
-        failed = name_series(&names->series[s], points, s, varied, &contestants, &variants);
+        failed = name_series(names, points, s, usuals, &contestants, &variants);
     }
     if (failed == 0) {
         colour_variants(names, points, contestants.count);
-        name_common(names, points, varied);
+        name_common(names, usuals);
     }
     chart_texts_free(&contestants);
     chart_texts_free(&variants);

@@ -12,14 +12,14 @@
 #define CHART_SHAPES 6u
 
 typedef struct chart_name {
-    char text[CHART_NAME_BYTES]; /* the method, and whatever of its settings not all series share */
+    char text[CHART_NAME_BYTES]; /* the method, and those of its settings that most series have otherwise */
     uint32_t colour;             /* the method and its head; 0..CHART_COLOURS - 1, over again when there are more */
     uint32_t shape;              /* the rest, fine-tuning too; 0..CHART_SHAPES - 1 */
 } chart_name;
 
 typedef struct chart_names {
     chart_name *series;            /* one a series; NULL without memory */
-    char common[CHART_NAME_BYTES]; /* what all series share: "small, 8 bits, refine 4, ..."; may be "" */
+    char common[CHART_NAME_BYTES]; /* what names leave out: "small, 8 bits, refine 4, ..."; may be "" */
 } chart_names;
 
 /* 0, or -1 without memory. */

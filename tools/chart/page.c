@@ -149,7 +149,7 @@ static void write_points(const page *p)
         fprintf(p->out, "%s\n{\"series\":%u,\"keep\":", comma(i == 0), (unsigned)point->series);
         json_text(p->out, text);
         fputs(",\"settings\":[", p->out);
-        for (int s = 0; s < CHART_SETTINGS; s++) {
+        for (int s = 0; s < CHART_KEEP; s++) {
             chart_setting_text(p->points, i, (chart_setting)s, text, sizeof text);
             if (text[0] != '\0') {
                 fputs(comma(first), p->out);
@@ -260,7 +260,7 @@ static void write_texts(const page *p, const chart_view *first)
     snprintf(about, sizeof about, "%u point%s, %u case%s of %u scene%s%s%s.", (unsigned)p->points->count,
              p->points->count == 1 ? "" : "s", (unsigned)table->case_keys.count, table->case_keys.count == 1 ? "" : "s",
              (unsigned)table->scenes.count, table->scenes.count == 1 ? "" : "s",
-             p->names->common[0] != '\0' ? "; all with " : "", p->names->common);
+             p->names->common[0] != '\0' ? "; unless named, " : "", p->names->common);
     if (p->pictures->left_out + p->pictures->missing > 0) {
         snprintf(left_out, sizeof left_out,
                  "Of the pictures, %u are left out because the report would be too large, and %u were not found.",

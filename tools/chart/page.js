@@ -32,9 +32,7 @@
     }
     return value.toFixed(decimals) + (unit ? ` ${unit}` : "");
   }
-  function range(m, s) {
-    return s[4] < 4 ? "" : `${text(m, s[1])} \u2026 ${text(m, s[3])}, median ${text(m, s[2])}`;
-  }
+  const many = (s) => s[4] >= 4; // fewer cases have no quartiles worth telling
 
   /* ---- what is shown ---- */
   function shown() {
@@ -84,7 +82,7 @@
       svg.append(make("svg:path", { class: "grid", d: `M${left},${y(v)}H${right}` }),
                  make("svg:text", { x: left - 8, y: y(v) + 4, "text-anchor": "end" }, label));
     }
-    for (const [v, label] of ticks(at.x, x, 56)) {
+    for (const [v, label] of ticks(at.x, x, 50)) {
       svg.append(make("svg:path", { class: "grid", d: `M${x(v)},${top}V${bottom}` }),
                  make("svg:text", { x: x(v), y: bottom + 18, "text-anchor": "middle" }, label));
     }
@@ -109,7 +107,7 @@
       const g = make("svg:g", { class: `spot of${complete.has(p) ? "" : " part"}${onFront.has(p) ? " on-front" : ""}${p === state.point ? " chosen" : ""}`,
                                 "data-point": p, "data-series": s, style: own(s), role: "button", tabindex: p === tab ? 0 : -1,
                                 "aria-label": `${title(p)}: ${text(state.quality, spread(p, state.quality)[0])}, ${text(state.cost, cost[0])}${onFront.has(p) ? ", on the front" : ""}` });
-      if (time && cost[4] >= 4) {
+      if (time && many(cost)) {
         g.append(make("svg:path", { class: "whisker", d: `M${x(cost[1])},${py(p)}H${x(cost[3])}M${x(cost[2])},${py(p) - 4}v8` }));
       }
       g.append(make("svg:circle", { class: "near", cx: px(p), cy: py(p), r: 13 }),
@@ -120,9 +118,9 @@
     }
     let last = null;
     for (const p of best) {
-      const place = [px(p) - 9, py(p) - 10];
-      if (points[p].keep && place[0] > left + 24 && (!last || Math.abs(place[0] - last[0]) > 40 || Math.abs(place[1] - last[1]) > 15)) {
-        svg.append(make("svg:text", { x: place[0], y: place[1], "text-anchor": "end", "pointer-events": "none" }, points[p].keep.replace(" kept", "")));
+      const edge = px(p) - 44 < left, place = edge ? [px(p) + 10, py(p) + 19] : [px(p) - 9, py(p) - 10];
+      if (points[p].keep && (!last || Math.abs(place[0] - last[0]) > 40 || Math.abs(place[1] - last[1]) > 15)) {
+        svg.append(make("svg:text", { x: place[0], y: place[1], "text-anchor": edge ? "start" : "end", "pointer-events": "none" }, points[p].keep.replace(" kept", "")));
         last = place;
       }
     }
@@ -139,18 +137,18 @@
   function tip(p) {
     const mark = marks.get(p), box = $("tip");
     if (!mark) return;
-    const rows = [state.quality, state.cost, data.gaussians].filter((m) => spread(p, m)).map((m) =>
-      make("tr", {}, make("td", {}, measures[m].title), make("td", {}, text(m, spread(p, m)[0]))));
-    const s = spread(p, state.cost);
-    if (range(state.cost, s)) rows.push(make("tr", {}, make("td", { colspan: 2 }, `quartiles ${range(state.cost, s)}`)));
-    rows.push(make("tr", {}, make("td", {}, "cases"), make("td", {}, String(spread(p, state.quality)[4]))));
+    const row = (name, value) => make("tr", {}, make("td", {}, name), make("td", {}, value));
+    const mean = (m) => (spread(p, m) ? [row(measures[m].title, text(m, spread(p, m)[0]))] : []);
+    const s = spread(p, state.cost), rows = [...mean(state.quality), ...mean(state.cost)];
+    if (many(s)) rows.push(row("its median", text(state.cost, s[2])), row("its quartiles", `${text(state.cost, s[1])} \u2026 ${text(state.cost, s[3])}`));
+    rows.push(...mean(data.gaussians), row("Cases", String(spread(p, state.quality)[4])));
     box.replaceChildren(make("b", {}, title(p)), make("span", { class: "quiet" }, points[p].settings.join(", ")), make("table", {}, ...rows));
     box.hidden = false;
     const ratio = $("canvas").clientWidth / $("canvas").firstChild.viewBox.baseVal.width;
     const x = mark.x * ratio, y = mark.y * ratio, toLeft = x > $("plot").clientWidth / 2;
     const leftEdge = toLeft ? x - box.offsetWidth - 18 : x + 18;
     box.style.left = `${Math.max(0, Math.min(leftEdge, $("plot").clientWidth - box.offsetWidth))}px`;
-    box.style.top = `${Math.max(0, y - box.offsetHeight / 2)}px`;
+    box.style.top = `${y < $("plot").clientHeight / 2 ? y + 20 : y - box.offsetHeight - 20}px`;
   }
   function light(s) {
     const svg = $("canvas").querySelector(".live");
@@ -225,12 +223,11 @@
       state.beside === p ? "Kept for comparison" : "Keep for comparison");
     close.onclick = () => choose(null);
     pin.onclick = () => { state.beside = p; detail(); };
-    const told = measures.map((_, m) => m).filter((m) => spread(p, m));
-    const rows = told.map((m) => make("tr", {}, make("td", {}, measures[m].title), make("td", { class: "number" }, text(m, spread(p, m)[0])),
-                                      make("td", {}, range(m, spread(p, m)))));
+    const told = measures.map((_, m) => m).filter((m) => spread(p, m)), number = { class: "number" };
+    const rows = told.map((m) => make("tr", {}, make("td", {}, measures[m].title), make("td", number, text(m, spread(p, m)[0])),
+                                      ...[1, 2, 3].map((i) => make("td", number, many(spread(p, m)) ? text(m, spread(p, m)[i]) : ""))));
     box.replaceChildren(make("div", { class: "top" }, make("h2", {}, title(p)), make("div", {}, pin, " ", close)),
-                        make("p", { class: "settings" }, points[p].settings.join(", ")),
-                        make("div", { class: "scroll" }, make("table", {}, make("tr", {}, make("th", {}, ""), make("th", { class: "number" }, "mean"), make("th", {}, "quartiles")), ...rows)));
+                        make("p", { class: "settings" }, points[p].settings.join(", ")));
     const scene = choices[state.choice].scene, list = points[p].cells.map((c) => c[0]).filter((c) => scene === null || cases[c].scene === scene);
     if (list.some((c) => points[p].cells.find((cell) => cell[0] === c)[1] !== null)) {
       if (!list.includes(state.at)) state.at = list[0];
@@ -247,10 +244,12 @@
     } else {
       box.append(make("p", { class: "quiet" }, "The report was made without pictures of this point."));
     }
+    box.append(make("div", { class: "scroll" }, make("table", {}, make("tr", {}, make("th", {}, ""), ...["mean", "lower quartile", "median", "upper quartile"].map((name) => make("th", number, name))), ...rows)));
     if (move) box.scrollIntoView({ behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth", block: "nearest" });
   }
   function choose(p, move) {
     state.point = p;
+    $("tip").hidden = true;
     for (const [q, mark] of marks) mark.g.classList.toggle("chosen", q === p);
     detail(move);
   }

@@ -49,8 +49,6 @@ static int draw(const char *path, RsvgHandle *handle, double scale, char *error,
     cairo_t *cairo = cairo_create(surface);
     RsvgRectangle all = {0, 0, wide * scale, high * scale};
     GError *why = NULL;
-    cairo_set_source_rgb(cairo, 1, 1, 1); /* behind round corners */
-    cairo_paint(cairo);
     int failed = 0;
     if (!rsvg_handle_render_document(handle, cairo, &all, &why)) {
         failed = t3r_reason(error, error_bytes, "%s: %s", path, why->message);

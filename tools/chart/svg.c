@@ -17,7 +17,8 @@
 #define HEIGHT_ALONE 560.0
 #define HEIGHT_OF_SEVERAL 390.0
 #define LEGEND_ROW 24.0
-#define CHARACTER 6.9 /* about as wide as a character of 13 pixels is in the mean */
+#define CHARACTER 6.9   /* about as wide as a character of 13 pixels is in the mean */
+#define LABEL_ROOM 34.0 /* of a budget's name */
 #define RADIUS 4.6
 #define RING 8.5
 #define WHISKER_CASES 4u /* fewer have no quartiles worth drawing */
@@ -44,7 +45,7 @@ static void write_style(FILE *out, chart_ground ground)
     fputs("<style>text{font:13px system-ui,sans-serif}.title{font-size:21px;font-weight:700}.small{font-size:12px}"
           ".name{font-weight:600}.grid{stroke-width:1}.front{fill:none;stroke-width:1.5;stroke-opacity:.55}"
           ".ring{fill:none;stroke-width:1.6}.line{fill:none;stroke-width:1.4;stroke-opacity:.4}"
-          ".whisker{fill:none;stroke-width:1.3;stroke-opacity:.55}.part{fill-opacity:.25}",
+          ".whisker{fill:none;stroke-width:1.3;stroke-opacity:.4}.part{fill-opacity:.25}",
           out);
     if (ground != CHART_GROUND_DARK) {
         write_colours(out, chart_colours_light, "#fbfaf8", "#1d2126", "#5c6672", "#e4e1da");
@@ -163,20 +164,24 @@ static void write_about(FILE *out, const chart_points *points, const chart_view 
     fprintf(out, ": %s, %s%s</title>", quality, cost, spot->front ? ", on the front" : "");
 }
 
-/* Left of the front and above it nothing else can stand. */
+/* Left of the front and above it nothing else can stand; where the plot ends there, to the right and below. */
 static void write_budget(FILE *out, panel *p, const chart_points *points, const chart_view *view, uint32_t point)
 {
-    char budget[CHART_NAME_BYTES];
+    const char *budget = points->table->texts.text[points->points[point].setting[CHART_KEEP]];
     const chart_spot *spot = &view->spots[point];
     double x = at_x(p, view, spot->cost.mean) - 8, y = at_y(p, view, spot->quality.mean) - 9;
-    snprintf(budget, sizeof budget, "%s", points->table->texts.text[points->points[point].setting[CHART_KEEP]]);
-    bool crowded = fabs(x - p->label_x) < 34 && fabs(y - p->label_y) < 14;
+    bool at_edge = x - LABEL_ROOM < p->left;
+    if (at_edge) {
+        x += 18;
+        y += 26;
+    }
+    bool crowded = fabs(x - p->label_x) < LABEL_ROOM && fabs(y - p->label_y) < 14;
     if (budget[0] == '\0' || crowded) {
         return;
     }
     p->label_x = x;
     p->label_y = y;
-    fprintf(out, "<text class='quiet small' x='%.1f' y='%.1f' text-anchor='end'>", x, y);
+    fprintf(out, "<text class='quiet small' x='%.1f' y='%.1f' text-anchor='%s'>", x, y, at_edge ? "start" : "end");
     markup_text(out, budget);
     fprintf(out, "%s</text>\n", isdigit((unsigned char)budget[0]) ? " %" : "");
 }
@@ -228,26 +233,34 @@ static double text_width(const char *text)
     return characters * CHARACTER;
 }
 
-/* Writes, or with out NULL measures; returns the height. */
+static bool has_spots(const chart_points *points, const chart_view *views, uint32_t count, uint32_t series)
+{
+    for (uint32_t v = 0; v < count; v++) {
+        for (uint32_t i = 0; i < points->series[series].point_count; i++) {
+            if (views[v].spots[points->series[series].first_point + i].shown) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* In columns as wide as the longest name. Writes, or with out NULL measures; returns the height. */
 static double write_legend(FILE *out, const chart_points *points, const chart_names *names, const chart_view *views,
                            uint32_t count, double top)
 {
-    double x = EDGE, y = top + 14;
+    double wide = 0;
+    for (uint32_t s = 0; s < points->series_count; s++) {
+        if (has_spots(points, views, count, s)) {
+            wide = fmax(wide, 20 + text_width(names->series[s].text) + 24);
+        }
+    }
+    uint32_t columns = (uint32_t)fmax(1, floor((WIDTH - 2 * EDGE) / wide)), place = 0;
     for (uint32_t s = 0; s < points->series_count; s++) {
         const chart_name *name = &names->series[s];
-        bool shown = false;
-        for (uint32_t v = 0; v < count; v++) {
-            for (uint32_t i = 0; i < points->series[s].point_count; i++) {
-                shown = shown || views[v].spots[points->series[s].first_point + i].shown;
-            }
-        }
-        double width = 22 + text_width(name->text) + 18;
-        if (!shown) {
+        double x = EDGE + place % columns * wide, y = top + 14 + place / columns * LEGEND_ROW;
+        if (!has_spots(points, views, count, s)) {
             continue;
-        }
-        if (x > EDGE && x + width > WIDTH - EDGE) {
-            x = EDGE;
-            y += LEGEND_ROW;
         }
         if (out != NULL) {
             fprintf(out, "<path class='c%u' transform='translate(%.1f %.1f) scale(%.1f)' d='%s'/>",
@@ -256,9 +269,9 @@ static double write_legend(FILE *out, const chart_points *points, const chart_na
             markup_text(out, name->text);
             fputs("</text>\n", out);
         }
-        x += width;
+        place++;
     }
-    return y - top + 10;
+    return (place + columns - 1) / columns * LEGEND_ROW + 10;
 }
 
 static void write_title(FILE *out, const chart_points *points, const chart_names *names, const chart_view *views,
@@ -283,7 +296,7 @@ static void write_title(FILE *out, const chart_points *points, const chart_names
         fprintf(out, "%u case%s of %u scene%s", (unsigned)views[0].cases, views[0].cases == 1 ? "" : "s",
                 (unsigned)points->table->scenes.count, points->table->scenes.count == 1 ? "" : "s");
     }
-    fputs(names->common[0] != '\0' ? "; " : "", out);
+    fputs(names->common[0] != '\0' ? "; unless named, " : "", out);
     markup_text(out, names->common);
     fputs(". Ringed: nothing is both cheaper and better.</text>\n", out);
 }
@@ -300,7 +313,8 @@ void chart_svg_write(FILE *out, const chart_points *points, const chart_names *n
             "<title>%s against cost</title>\n",
             WIDTH, height, WIDTH, height, chart_measures[views[0].choice.quality].title);
     write_style(out, ground);
-    fprintf(out, "<rect class='paper' width='%.0f' height='%.0f' rx='8'/>\n", WIDTH, height);
+    fprintf(out, "<rect class='paper' width='%.0f' height='%.0f' rx='%d'/>\n", WIDTH, height,
+            ground == CHART_GROUND_READER ? 8 : 0);
     write_title(out, points, names, views, count);
     for (uint32_t v = 0; v < count; v++) {
         double x = EDGE + (v % columns) * (wide + EDGE), y = HEADER + (v / columns) * high;

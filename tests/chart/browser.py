@@ -1,0 +1,158 @@
+"""A headless Chromium, driven over the pipe of its DevTools protocol: no other package, no port."""
+import base64
+import json
+import os
+import select
+import shutil
+import subprocess
+import tempfile
+import time
+
+NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome")
+FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-dev-shm-usage", "--no-first-run",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-extensions",
+         "--hide-scrollbars", "--remote-debugging-pipe")
+
+
+def find():
+    """The program's path, or None."""
+    return next((path for path in map(shutil.which, NAMES) if path), None)
+
+
+class Page:
+    """One page: what it logs, throws and asks the network for is kept."""
+
+    def __init__(self, program, width=1200, height=1000, timeout=60):
+        self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        commands, self.write = os.pipe()
+        self.read, answers = os.pipe()
+
+        def place():  # the protocol's two ends are the descriptors 3 and 4, by way of numbers that are neither
+            for target, source in ((13, commands), (14, answers)):
+                os.dup2(source, target)
+            os.dup2(13, 3)
+            os.dup2(14, 4)
+
+        self.browser = subprocess.Popen([program, *FLAGS, f"--user-data-dir={self.profile.name}", "about:blank"],
+                                        preexec_fn=place, close_fds=False, stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(commands)
+        os.close(answers)
+        self.timeout, self.buffer, self.number, self.session = timeout, b"", 0, None
+        self.logged, self.requested, self.events = [], [], []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
+        self.size(width, height)
+        self.scheme("light")
+
+    def _message(self, until):
+        while b"\0" not in self.buffer:
+            ready, _, _ = select.select([self.read], [], [], max(0, until - time.monotonic()))
+            if not ready:
+                raise TimeoutError("the browser does not answer")
+            part = os.read(self.read, 1 << 20)
+            if not part:
+                raise EOFError("the browser ended")
+            self.buffer += part
+        message, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(message)
+
+    def _note(self, message):
+        method, what = message["method"], message.get("params", {})
+        self.events.append(method)
+        if method == "Runtime.exceptionThrown":
+            self.logged.append(what["exceptionDetails"].get("exception", {}).get("description", str(what)))
+        elif method == "Runtime.consoleAPICalled" and what["type"] in ("error", "warning", "assert"):
+            self.logged.append(str(what["args"]))
+        elif method == "Log.entryAdded" and what["entry"]["level"] in ("error", "warning"):
+            self.logged.append(what["entry"]["text"])
+        elif method == "Network.requestWillBeSent":
+            self.requested.append(what["request"]["url"][:100])
+
+    def call(self, command, **parameters):
+        self.number += 1
+        message = {"id": self.number, "method": command, "params": parameters}
+        if self.session:
+            message["sessionId"] = self.session
+        os.write(self.write, json.dumps(message).encode() + b"\0")
+        until = time.monotonic() + self.timeout
+        while True:
+            answer = self._message(until)
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise RuntimeError(f"{command}: {answer['error']}")
+                return answer["result"]
+            if "method" in answer:
+                self._note(answer)
+
+    def size(self, width, height, mobile=False):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
+
+    def scheme(self, name):
+        """light or dark, as the reader's system asks for; and, so that a click meets what it aims at, no scrolling in steps."""
+        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name},
+                                                          {"name": "prefers-reduced-motion", "value": "reduce"}])
+
+    def open(self, path):
+        self.events.clear()
+        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        until = time.monotonic() + self.timeout
+        while "Page.loadEventFired" not in self.events:
+            message = self._message(until)
+            if "method" in message:
+                self._note(message)
+
+    def value(self, script):
+        """What a script's expression, awaited, comes to."""
+        result = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in result:
+            raise RuntimeError(f"{script}: {result['exceptionDetails']}")
+        return result["result"].get("value")
+
+    def wait(self, script):
+        until = time.monotonic() + self.timeout
+        while not self.value(script):
+            if time.monotonic() > until:
+                raise TimeoutError(script)
+            time.sleep(0.05)
+
+    def place(self, selector):
+        """The middle of an element, brought into view."""
+        return self.value(f"""(() => {{ const it = document.querySelector({json.dumps(selector)});
+            it.scrollIntoView({{ block: "center", behavior: "instant" }});
+            const box = it.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; }})()""")
+
+    def mouse(self, kind, place, **more):
+        self.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], **more)
+
+    def hover(self, selector):
+        self.mouse("mouseMoved", self.place(selector))
+
+    def click(self, selector):
+        place = self.place(selector)
+        self.mouse("mouseMoved", place)
+        self.mouse("mousePressed", place, button="left", clickCount=1)
+        self.mouse("mouseReleased", place, button="left", clickCount=1)
+
+    def key(self, name, code, text=""):
+        for kind in ("keyDown", "keyUp"):
+            more = {"text": text} if text and kind == "keyDown" else {}
+            self.call("Input.dispatchKeyEvent", type=kind, key=name, code=name, windowsVirtualKeyCode=code, **more)
+
+    def shot(self, path, whole=False):
+        data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(data))
+
+    def close(self):
+        self.browser.terminate()
+        try:
+            self.browser.wait(10)
+        except subprocess.TimeoutExpired:
+            self.browser.kill()
+            self.browser.wait()
+        os.close(self.read)
+        os.close(self.write)
+        self.profile.cleanup()
