@@ -73,8 +73,10 @@ void evaluation_settings_rest(const reconstruction_options *settings, char text[
     reconstruction_options usual;
     reconstruction_defaults(&usual);
     words w = {.text = text, .separator = ' '};
-    text[0] = '\0';
     add_rest(&w, settings, &usual);
+    if (w.length == 0) {
+        add(&w, "default");
+    }
 }
 
 static int add_head(words *w, const char *text)

@@ -14,7 +14,7 @@ from common import check, done, load_scorer, near, need_numpy, run
 numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]
 scorer = load_scorer(sys.argv[2])
-COLUMNS = ("scene context target method head bits refine allocate depth ablation wavelet levels clusters keep gaussians psnr "
+COLUMNS = ("scene context target method head bits refine allocate depth ablation wavelet levels clusters settings keep gaussians psnr "
            "ssim sharp holes psnr_all context_psnr perceptual build_ms render_ms arena_bytes scene_bytes planar_psnr "
            "picture").split()
 
@@ -225,7 +225,8 @@ def evaluate_rivals(folder, room):
         check(row["gaussians"] == by["trim3r", keep]["gaussians"], f"{name} at {keep} %: the count of trim3r")
         check((row["head"], row["bits"], row["refine"]) == ("small", "8", by["trim3r", keep]["refine"]), "settings")
         check((row["allocate"] is None) == (not name.startswith("trim3r")), "rivals have no allocation")
-        check(os.path.exists(f"{folder}/rivals/1/{name}_{keep}.png"), "a picture a row")
+        check(row["picture"] == f"1/{name}_iterations-25_{keep}.png", "pictures tell settings, or are confused")
+        check(os.path.exists(f"{folder}/rivals/{row['picture']}"), "a picture a row")
     for rival in rivals:
         check([by[rival, 100][s] for s in scores] == [by["trim3r", 100][s] for s in scores],
               f"{rival} at 100 % is the unpruned scene, unchanged")

@@ -7,7 +7,7 @@
 
 #include "chart/points.h"
 
-#define CHART_NAME_BYTES 1024u /* more than all settings together */
+#define CHART_NAME_BYTES 2048u /* more than all settings together */
 #define CHART_COLOURS 8u
 #define CHART_SHAPES 6u
 

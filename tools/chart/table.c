@@ -17,8 +17,8 @@ const chart_setting_about chart_settings[CHART_SETTINGS] = {
     [CHART_BITS] = {"bits", "", " bits"},      [CHART_REFINE] = {"refine", "refine ", ""},
     [CHART_ALLOCATE] = {"allocate", "", ""},   [CHART_DEPTH] = {"depth", "", ""},
     [CHART_WAVELET] = {"wavelet", "", ""},     [CHART_LEVELS] = {"levels", "levels ", ""},
-    [CHART_CLUSTERS] = {"clusters", "K ", ""}, [CHART_ABLATION] = {"ablation", "", ""},
-    [CHART_KEEP] = {"keep", "", " % kept"},
+    [CHART_CLUSTERS] = {"clusters", "K ", ""}, [CHART_ELSE] = {"settings", "else ", ""},
+    [CHART_ABLATION] = {"ablation", "", ""},   [CHART_KEEP] = {"keep", "", " % kept"},
 };
 
 const chart_measure_about chart_measures[CHART_MEASURES] = {
@@ -198,7 +198,7 @@ static int read_row(chart_table *table, const csv_reader *reader, const layout *
         char own[32];
         const char *text = cell(reader, l->setting[s]);
         if (strlen(text) > CHART_SETTING_BYTES_MOST) {
-            return fail(reader, error, error_bytes, chart_settings[s].column, ": more than 60 bytes");
+            return fail(reader, error, error_bytes, chart_settings[s].column, ": more than 160 bytes");
         }
         failed = chart_texts_number(&table->texts, s == CHART_KEEP ? budget_text(text, own) : text, &row->setting[s]);
     }

@@ -8,7 +8,7 @@
 #include "chart/texts.h"
 
 #define CHART_FILE_BYTES_MOST (256u << 20)
-#define CHART_SETTING_BYTES_MOST 60u
+#define CHART_SETTING_BYTES_MOST 160u
 #define CHART_ROWS_MOST 500000u /* of all tables together */
 
 /* What tells one way of building a scene from another. */
@@ -22,6 +22,7 @@ typedef enum chart_setting {
     CHART_WAVELET,
     CHART_LEVELS,
     CHART_CLUSTERS,
+    CHART_ELSE, /* settings without a column of their own */
     CHART_ABLATION,
     CHART_KEEP,
     CHART_SETTINGS
