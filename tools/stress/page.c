@@ -15,6 +15,7 @@ static void drop(stress_picture *picture)
     free(picture->target);
     for (uint32_t v = 0; v < T3R_MAX_VIEWS; v++) {
         free(picture->context[v]);
+        free(picture->depth[v]);
     }
     *picture = (stress_picture){0};
 }
@@ -37,6 +38,22 @@ static void *copy_of(const void *bytes, size_t count)
 {
     void *copy = malloc(count);
     return copy == NULL ? NULL : memcpy(copy, bytes, count);
+}
+
+/* 255 at the nearest measurement, less in inverse proportion; 0 where there is none. */
+static uint8_t *depth_picture(const stress_capture *capture, uint32_t view)
+{
+    size_t pixels = (size_t)capture->width * capture->height;
+    const uint16_t *depth = capture->view[view].depth;
+    uint8_t *grey = malloc(pixels);
+    uint32_t nearest = UINT16_MAX;
+    for (size_t i = 0; i < pixels; i++) {
+        nearest = depth[i] != 0 && depth[i] < nearest ? depth[i] : nearest;
+    }
+    for (size_t i = 0; i < pixels && grey != NULL; i++) {
+        grey[i] = (uint8_t)(depth[i] == 0 ? 0 : 255 * nearest / depth[i]);
+    }
+    return grey;
 }
 
 bool stress_album_offer(stress_album *album, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,
@@ -68,7 +85,8 @@ bool stress_album_offer(stress_album *album, const stress_row *rows, const uint8
            (picture->plain != NULL) == (plain != NULL);
     for (picture->views = 0; picture->views < c->base.views && done; picture->views++) {
         picture->context[picture->views] = copy_of(run.capture.view[picture->views].rgb, bytes);
-        done = picture->context[picture->views] != NULL;
+        picture->depth[picture->views] = depth_picture(&run.capture, picture->views);
+        done = picture->context[picture->views] != NULL && picture->depth[picture->views] != NULL;
     }
     stress_run_close(&run);
     if (!done) {
@@ -121,6 +139,8 @@ static void add_section(html_page *page, const stress_picture *picture, uint32_t
     for (uint32_t v = 0; v < picture->views; v++) {
         snprintf(heading, sizeof heading, "context %c", (char)('a' + v));
         html_page_picture(page, heading, picture->width, picture->height, 3, picture->context[v], 0);
+        snprintf(heading, sizeof heading, "its depth, near is bright");
+        html_page_picture(page, heading, picture->width, picture->height, 1, picture->depth[v], 0);
     }
     html_page_picture(page, "target", picture->width, picture->height, 3, picture->target, 0);
     html_page_strip(page, "Rendered");

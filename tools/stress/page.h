@@ -15,6 +15,7 @@ typedef struct stress_picture {
     uint8_t *plain;   /* renders of the unperturbed cell; NULL for synthetic scenes */
     uint8_t *target;
     uint8_t *context[T3R_MAX_VIEWS]; /* perturbed */
+    uint8_t *depth[T3R_MAX_VIEWS];   /* the same, in grey: 0 = none, near is bright */
     uint32_t views, width, height;
 } stress_picture;
 

@@ -12,7 +12,7 @@ static const stress_scene scenes[] = {
     {"scene-wall", "deg", {15, 35, 55}, "a blank wall: its slant", stress_wall},
     {"scene-bars", "px", {8, 4, 2}, "thin bars before a wall: their width", stress_bars},
     {"scene-foliage", "px", {16, 8, 4}, "leaves at all depths: their length", stress_foliage},
-    {"scene-mirror", "%", {25, 50, 90}, "a mirror on a wall, measured as a surface: its share", stress_mirror},
+    {"scene-mirror", "%", {25, 50, 90}, "a mirror, measured as a surface: its share", stress_mirror},
 };
 
 const stress_scene *stress_scene_at(uint32_t index)
