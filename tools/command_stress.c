@@ -213,7 +213,7 @@ static const struct argp parser = {
         "fixed seeds: the same command gives the same figures, but for times.\n\n"
         "An error with a reason is a refusal: a result. Broken promises end in exit status 1: another number of "
         "Gaussians than the budget, another arena than before, a Gaussian out of range or not finite, a score that is "
-        "no number, trim3r on a still scene beyond its bounds (a quarter of the mask, half of the spacing). Of several "
+        "no number, trim3r on a still scene beyond its bounds (half of the mask, half of the spacing). Of several "
         "cases "
         "the tables show means; * marks that some were refused.\n\n"
         "Examples:\n"

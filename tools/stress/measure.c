@@ -39,13 +39,13 @@ static void set_status(stress_row *row, stress_status status, const char *reason
     }
 }
 
-/* An arena that does not suffice breaks a promise; no memory on the host ends the test. */
-static int refuse(stress_row *row, int code, const char *reason)
+/* An arena that suffices for the unperturbed frames alone breaks a promise; no memory on the host ends the test. */
+static int refuse(const cell *it, stress_row *row, int code, const char *reason)
 {
     if (strcmp(reason, NO_MEMORY) == 0) {
         return code;
     }
-    set_status(row, code == CLI_BUDGET_TOO_SMALL ? STRESS_BROKEN : STRESS_REFUSED, reason);
+    set_status(row, code == CLI_BUDGET_TOO_SMALL && it->p != NULL ? STRESS_BROKEN : STRESS_REFUSED, reason);
     return CLI_OK;
 }
 
@@ -87,7 +87,7 @@ static int measure_row(const cell *it, const stress_run *run, uint32_t keep, uin
     int code = evaluation_build(&built, &told, &run->views, &run->what, row->method, &options);
     cli_keep_errors(NULL, 0);
     if (code != CLI_OK) {
-        return refuse(row, code, reason);
+        return refuse(it, row, code, reason);
     }
     uint32_t expected = T3R_MIN(options.gaussians, stress_capture_valid(&run->capture));
     const char *broken = stress_broken_promise(&built.scene, expected);
@@ -111,7 +111,7 @@ static int measure_row(const cell *it, const stress_run *run, uint32_t keep, uin
     }
     cli_keep_errors(NULL, 0);
     reconstruction_close(&built);
-    return code == CLI_OK ? CLI_OK : refuse(row, code, reason);
+    return code == CLI_OK ? CLI_OK : refuse(it, row, code, reason);
 }
 
 /* All points, as the rivals prune them; what is refused has no figures. */
@@ -169,7 +169,7 @@ static int measure_capture(cell *it, uint32_t capture, bool against_all)
     if (code != CLI_OK) {
         int kept = CLI_OK;
         for (uint32_t i = 0; i < rows; i++) {
-            kept = refuse(&it->rows[i], code, reason);
+            kept = refuse(it, &it->rows[i], code, reason);
         }
         stress_run_close(&run);
         return kept;

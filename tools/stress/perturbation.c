@@ -22,7 +22,7 @@ static const perturbation perturbations[] = {
      "kind",
      {1, 2, 3},
      false,
-     "views repeat the first: 1 all of it; 2 not its pose; 3 its picture",
+     "the first view again: 1 all; 2 but its pose; 3 its picture",
      perturb_identical},
     {"mirrored", "kind", {1, 2, 3}, false, "1 the last picture; 2 its depth too; 3 all views", perturb_mirrored},
     {"near", "%", {1, 10, 100}, true, "of the pixels measured at one step", perturb_near},

@@ -6,8 +6,8 @@
 #include "stress/measure.h"
 
 /* Bounds for the method trim3r under the noise of a still scene (perturbation.h), beyond which a promise is broken. */
-#define STRESS_MASK_CHANGED_MOST 0.25 /* share of the retained pixels */
-#define STRESS_MOTION_MOST 0.5        /* of the spacing of retained pixels */
+#define STRESS_MASK_CHANGED_MOST 0.5 /* share of the retained pixels */
+#define STRESS_MOTION_MOST 0.5       /* of the spacing of retained pixels */
 
 /* Fills mask_changed and motion of the unperturbed rows of a case (stress_row_count()) that were measured, and breaks
  * those beyond the bounds. The retained pixels of +finetune are those of its method without. At least two captures. An
