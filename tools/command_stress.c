@@ -205,7 +205,8 @@ static const struct argp parser = {
         "The context frames change in memory, the target stays what was recorded. The budget is a number, that of the "
         "unperturbed frames, so a method must use exactly as many Gaussians or all valid points. Losses (dB, SSIM) are "
         "against the same method on unperturbed frames, on their mask; those of the scene-* rows against all points. "
-        "flicker: mean change in 8-bit levels, on the mask, between renders of consecutive captures of a still scene, "
+        "psnr_unpruned: of all points of the same frames. flicker: mean change in 8-bit levels, on the mask, between "
+        "renders of consecutive captures of a still scene, "
         "which have noise of 2 levels and of 0.2 % of the depth beside the perturbation; flicker_unpruned: that of all "
         "points. mask_changed, motion (unperturbed rows): the share of retained pixels that the next such capture does "
         "not retain, and the mean way of the Gaussians of the others as a share of their spacing. Chance is drawn "
@@ -283,7 +284,7 @@ static int perturb_all(stress_report *report, const options *o, const stress_cas
 {
     const stress_contest *contest = &o->contest;
     uint32_t count = stress_row_count(contest);
-    int code = stress_measure(m->unperturbed, m->plain, c, contest, NULL, 0, false);
+    int code = stress_measure(m->unperturbed, m->plain, c, contest, NULL, 0);
     for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
         if (m->unperturbed[i].status == STRESS_REFUSED) {
             code = cli_error(CLI_BAD_INPUT, "%s, unperturbed: %s", c->name, m->unperturbed[i].reason);
@@ -297,7 +298,7 @@ static int perturb_all(stress_report *report, const options *o, const stress_cas
     for (uint32_t i = 0; (p = stress_perturbation(i)) != NULL && code == CLI_OK; i++) {
         for (uint32_t g = 1; g <= STRESS_GRADES && code == CLI_OK; g++) {
             if (o->perturb[i] && o->grade[g]) {
-                code = stress_measure(m->rows, m->renders, c, contest, p, g, false);
+                code = stress_measure(m->rows, m->renders, c, contest, p, g);
                 if (code == CLI_OK) {
                     stress_relate(m->rows, m->unperturbed, count);
                     code = stress_report_cell(report, m->rows, m->renders, m->plain, c, p);
@@ -312,7 +313,7 @@ static int perturb_all(stress_report *report, const options *o, const stress_cas
 static int measure_scene(stress_report *report, const options *o, const stress_case *c, cells *m,
                          const stress_scene *scene, uint32_t grade)
 {
-    int code = stress_measure(m->rows, m->renders, c, &o->contest, NULL, 0, true);
+    int code = stress_measure(m->rows, m->renders, c, &o->contest, NULL, 0);
     for (uint32_t i = 0; i < stress_row_count(&o->contest) && code == CLI_OK; i++) {
         m->rows[i].what = scene->name;
         m->rows[i].unit = scene->unit;

@@ -13,7 +13,7 @@ from common import check, done, near, run
 
 trim3r = sys.argv[1]
 COLUMNS = ("scene context target perturbation strength unit method keep status reason budget gaussians psnr ssim holes "
-           "perceptual psnr_lost ssim_lost flicker flicker_unpruned mask_changed motion build_ms build_ratio "
+           "perceptual psnr_unpruned psnr_lost ssim_lost flicker flicker_unpruned mask_changed motion build_ms build_ratio "
            "arena_bytes").split()
 TIMES = ("build_ms", "build_ratio")
 SMALL = ["--working", "48x48"]

@@ -60,7 +60,7 @@ static void cell(fixture *f, const char *name, uint32_t grade)
     const perturbation *p = NULL;
     for (uint32_t i = 0; name != NULL && (p = stress_perturbation(i)) != NULL && strcmp(p->name, name) != 0; i++) {
     }
-    assert_int_equal(stress_measure(f->rows, f->renders, &f->c, &f->contest, p, grade, false), 0);
+    assert_int_equal(stress_measure(f->rows, f->renders, &f->c, &f->contest, p, grade), 0);
 }
 
 /* The noise of a still scene moves a Gaussian without refinement or network along its ray: depth noise of 0.2 % in both

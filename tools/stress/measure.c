@@ -23,7 +23,7 @@ typedef struct cell {
     uint8_t *now, *last; /* of noisy captures: a row each, and all points */
     double change;       /* of all points, summed over pairs of captures */
     uint32_t changes;
-    double all[2]; /* PSNR and SSIM of all points; NaN unless asked for */
+    double all[2]; /* PSNR and SSIM of all points; NaN until measured */
 } cell;
 
 static size_t picture_bytes(const cell *it)
@@ -157,7 +157,7 @@ static void add_changes(cell *it, uint32_t capture)
     memcpy(it->last, it->now, (rows + 1) * bytes);
 }
 
-static int measure_capture(cell *it, uint32_t capture, bool against_all)
+static int measure_capture(cell *it, uint32_t capture)
 {
     const stress_contest *contest = it->contest;
     uint32_t rows = stress_row_count(contest);
@@ -174,7 +174,7 @@ static int measure_capture(cell *it, uint32_t capture, bool against_all)
         stress_run_close(&run);
         return kept;
     }
-    code = capture > 0 || against_all ? measure_all_points(it, &run, capture) : CLI_OK;
+    code = measure_all_points(it, &run, capture);
     for (uint32_t i = 0; i < rows && code == CLI_OK; i++) {
         if (it->rows[i].status == STRESS_MEASURED) {
             code = measure_row(it, &run, i / contest->method_count, i, capture);
@@ -214,6 +214,7 @@ static void finish_rows(const cell *it)
         double *value = it->rows[i].value;
         value[STRESS_FLICKER] /= it->changes == 0 ? 1 : it->changes;
         value[STRESS_FLICKER_UNPRUNED] = it->changes == 0 ? NAN : it->change / it->changes;
+        value[STRESS_PSNR_UNPRUNED] = it->all[0];
         value[STRESS_PSNR_LOST] = it->all[0] - value[STRESS_PSNR];
         value[STRESS_SSIM_LOST] = it->all[1] - value[STRESS_SSIM];
         for (int v = 0; v < STRESS_VALUE_COUNT && it->rows[i].status == STRESS_REFUSED; v++) {
@@ -222,11 +223,11 @@ static void finish_rows(const cell *it)
     }
 }
 
-static int measure(cell *it, bool against_all)
+static int measure(cell *it)
 {
     int code = CLI_OK;
     for (uint32_t capture = 0; capture <= it->contest->captures && code == CLI_OK; capture++) {
-        code = measure_capture(it, capture, against_all);
+        code = measure_capture(it, capture);
         if (code == CLI_OK && capture > 0) {
             add_changes(it, capture);
         }
@@ -239,7 +240,7 @@ static int measure(cell *it, bool against_all)
 }
 
 int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, const stress_contest *contest,
-                   const perturbation *p, uint32_t grade, bool against_all)
+                   const perturbation *p, uint32_t grade)
 {
     cell it = {.c = c,
                .contest = contest,
@@ -253,7 +254,7 @@ int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, con
     memset(renders, 0, bytes - picture_bytes(&it));
     it.now = calloc(bytes, 1);
     it.last = calloc(bytes, 1);
-    int code = it.now == NULL || it.last == NULL ? cli_error(CLI_BAD_INPUT, NO_MEMORY) : measure(&it, against_all);
+    int code = it.now == NULL || it.last == NULL ? cli_error(CLI_BAD_INPUT, NO_MEMORY) : measure(&it);
     free(it.now);
     free(it.last);
     return code;

@@ -56,10 +56,10 @@ reconstruction_options stress_run_options(const stress_run *run, const stress_ca
                                           uint32_t keep);
 
 /* Fills `rows` (stress_row_count()), but for what takes another cell to tell, and `renders`, as many pictures. `p` may
- * be NULL. against_all: the loss is that against all points, not against another cell. An exit status of cli.h: a
- * refusal is a result. */
+ * be NULL. Losses are against all points of the same frames until stress_relate(). An exit status of cli.h: a refusal
+ * is a result. */
 int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, const stress_contest *contest,
-                   const perturbation *p, uint32_t grade, bool against_all);
+                   const perturbation *p, uint32_t grade);
 
 /* Fills losses and ratios of `rows` against the unperturbed ones, and breaks rows whose arena has grown. */
 void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t count);

@@ -12,7 +12,7 @@ static const perturbation perturbations[] = {
     {"depth-blobs", "%", {10, 30, 60}, false, "of the pixels without depth, in discs", perturb_blobs},
     {"depth-all", "%", {99, 99.9, 100}, false, "of the pixels without depth, at random", perturb_dropouts},
     {"depth-scale", "%", {2, 5, 15}, false, "depth too large", perturb_depth_scale},
-    {"pose", "deg,%", {0.25, 1, 3}, false, "each view turned, and moved by % of the median depth", perturb_pose},
+    {"pose", "deg+%", {0.25, 1, 3}, false, "each view turned, and moved by % of the median depth", perturb_pose},
     {"rolling-shutter", "deg", {0.5, 2, 5}, false, "yaw from the first row to the last", perturb_rolling},
     {"intrinsics", "%", {2, 5, 15}, false, "focal length said too large", perturb_intrinsics},
     {"black", "%", {25, 50, 100}, false, "of the rows, from the top", perturb_black},

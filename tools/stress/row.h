@@ -20,11 +20,12 @@ typedef enum stress_value {
     STRESS_GAUSSIANS, /* count used */
     STRESS_PSNR,      /* of the target on the mask of the unperturbed frames, dB */
     STRESS_SSIM,
-    STRESS_HOLES,      /* share of the mask with transmittance above 1/2 */
-    STRESS_PERCEPTUAL, /* FLIP on the mask */
-    STRESS_PSNR_LOST,  /* against the unperturbed row of the method, dB; of a synthetic scene against all points */
-    STRESS_SSIM_LOST,  /* likewise */
-    STRESS_FLICKER,    /* mean change on the mask between noisy captures of the still scene, 8-bit levels */
+    STRESS_HOLES,         /* share of the mask with transmittance above 1/2 */
+    STRESS_PERCEPTUAL,    /* FLIP on the mask */
+    STRESS_PSNR_UNPRUNED, /* of all points of the same frames, dB */
+    STRESS_PSNR_LOST,     /* against the unperturbed row of the method, dB; of a synthetic scene against all points */
+    STRESS_SSIM_LOST,     /* likewise */
+    STRESS_FLICKER,       /* mean change on the mask between noisy captures of the still scene, 8-bit levels */
     STRESS_FLICKER_UNPRUNED, /* the same of all points */
     STRESS_MASK_CHANGED,     /* unperturbed rows: share of the retained pixels that the next capture does not retain */
     STRESS_MOTION,           /* unperturbed rows: mean way of those retained in both, as a share of their spacing */

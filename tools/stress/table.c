@@ -14,6 +14,7 @@ static const struct {
     [STRESS_SSIM] = {"ssim", 5},
     [STRESS_HOLES] = {"holes", 5},
     [STRESS_PERCEPTUAL] = {"perceptual", 5},
+    [STRESS_PSNR_UNPRUNED] = {"psnr_unpruned", 4},
     [STRESS_PSNR_LOST] = {"psnr_lost", 4},
     [STRESS_SSIM_LOST] = {"ssim_lost", 5},
     [STRESS_FLICKER] = {"flicker", 4},

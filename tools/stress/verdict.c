@@ -102,31 +102,46 @@ static void print_stability(FILE *out, const stress_row *rows, uint32_t count, c
 
 static const char *const judged[] = {"noise", "exposure", "depth-lattice", "depth-blobs", "depth-all", "pose"};
 
-static void print_against(FILE *out, const stress_row *rows, uint32_t count, const stress_contest *contest,
-                          const char *what, double keep)
+/* The rival that loses least, and how much; METHOD_COUNT where there is none. */
+static method_id least_loss(const stress_row *rows, uint32_t count, const stress_contest *contest, stress_row like,
+                            double *least)
 {
-    stress_row like = {.what = what, .grade = MIDDLE_GRADE, .method = METHOD_TRIM3R, .keep = keep};
-    double ours = stress_mean(rows, count, &like, STRESS_PSNR_LOST, NULL);
-    double psnr = stress_mean(rows, count, &like, STRESS_PSNR, NULL);
-    double least = NAN, best_psnr = NAN;
     method_id best = METHOD_COUNT;
     for (uint32_t m = 0; m < contest->method_count; m++) {
         like.method = contest->methods[m];
         double lost = stress_mean(rows, count, &like, STRESS_PSNR_LOST, NULL);
-        if (method_kind_of(like.method) != METHOD_TRIM3R && !isnan(lost) && !(lost >= least)) {
-            least = lost;
+        if (method_kind_of(like.method) != METHOD_TRIM3R && !isnan(lost) && (best == METHOD_COUNT || lost < *least)) {
+            *least = lost;
             best = like.method;
-            best_psnr = stress_mean(rows, count, &like, STRESS_PSNR, NULL);
         }
     }
-    if (isnan(ours) || best == METHOD_COUNT) {
+    return best;
+}
+
+static void print_against(FILE *out, const stress_row *rows, uint32_t count, const stress_contest *contest,
+                          const char *what, double keep)
+{
+    stress_row like = {.what = what, .grade = MIDDLE_GRADE, .method = METHOD_TRIM3R, .keep = keep};
+    stress_row plain = {.what = STRESS_UNPERTURBED, .method = METHOD_TRIM3R, .keep = keep};
+    double ours = stress_mean(rows, count, &like, STRESS_PSNR_LOST, NULL), least = 0;
+    double psnr = stress_mean(rows, count, &like, STRESS_PSNR, NULL);
+    double all = stress_mean(rows, count, &plain, STRESS_PSNR_UNPRUNED, NULL) -
+                 stress_mean(rows, count, &like, STRESS_PSNR_UNPRUNED, NULL);
+    if (isnan(ours)) {
         return;
     }
-    fprintf(out, "%s at its middle strength, %.10g %%: trim3r loses %.2f dB to %.2f, %s %.2f dB to %.2f: %s\n", what,
-            keep, ours, psnr, method_name(best), least, best_psnr,
-            ours <= least / 2  ? "at most half"
-            : psnr > best_psnr ? "more than half, but still ahead: what has less to lose loses less"
-                               : "more than half, and behind");
+    fprintf(out, "%s at its middle strength, %.10g %%: trim3r loses %.2f dB to %.2f (all points lose %.2f)", what, keep,
+            ours, psnr, all);
+    method_id best = least_loss(rows, count, contest, like, &least);
+    if (best != METHOD_COUNT) {
+        like.method = best;
+        double rival = stress_mean(rows, count, &like, STRESS_PSNR, NULL);
+        fprintf(out, ", %s %.2f dB to %.2f: %s", method_name(best), least, rival,
+                ours <= least / 2 ? "at most half"
+                : psnr > rival    ? "more than half, but ahead: what has less to lose loses less"
+                                  : "more than half, and behind");
+    }
+    fputc('\n', out);
 }
 
 void stress_print_verdict(FILE *out, const stress_row *rows, uint32_t count, const stress_contest *contest)
