@@ -61,7 +61,7 @@ reconstruction_options stress_run_options(const stress_run *run, const stress_ca
 int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, const stress_contest *contest,
                    const perturbation *p, uint32_t grade);
 
-/* Fills losses and ratios of `rows` against the unperturbed ones, and breaks rows whose arena has grown. */
+/* Fills losses and ratios of `rows` against the unperturbed ones, and breaks rows of trim3r whose arena is another. */
 void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t count);
 
 #endif

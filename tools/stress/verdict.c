@@ -8,7 +8,8 @@
 #include "stress/table.h"
 
 #define MIDDLE_GRADE 2u
-#define SLOWER_THAN 1.5 /* times the unperturbed build: worth a line */
+#define FLICKER_MOST 1.2 /* times that of all points: what is wanted, not promised */
+#define SLOWER_THAN 1.5  /* times the unperturbed build: worth a line */
 
 uint32_t stress_broken(const stress_row *rows, uint32_t count)
 {
@@ -97,6 +98,33 @@ static void print_stability(FILE *out, const stress_row *rows, uint32_t count, c
     }
 }
 
+/* Ours against all points of the same frames. */
+static void print_flicker(FILE *out, const stress_row *rows, uint32_t count, double keep)
+{
+    const stress_row *worst = NULL;
+    double most = 0;
+    uint32_t measured = 0, within = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double ratio = rows[i].value[STRESS_FLICKER] / rows[i].value[STRESS_FLICKER_UNPRUNED];
+        if (rows[i].method != METHOD_TRIM3R || rows[i].keep != keep || !isfinite(ratio)) {
+            continue;
+        }
+        measured++;
+        within += ratio <= FLICKER_MOST;
+        if (worst == NULL || ratio > most) {
+            worst = &rows[i];
+            most = ratio;
+        }
+    }
+    if (worst != NULL) {
+        fprintf(out,
+                "flicker at most x %.1f that of all points in %u of %u cells of trim3r at %.10g %%; worst x %.2f (",
+                FLICKER_MOST, (unsigned)within, (unsigned)measured, keep, most);
+        name_cell(out, worst);
+        fputs(")\n", out);
+    }
+}
+
 /* ---- ours against the best rival ----------------------------------------------------------------------------------
  */
 
@@ -150,6 +178,7 @@ void stress_print_verdict(FILE *out, const stress_row *rows, uint32_t count, con
     print_slowest(out, rows, count);
     print_stability(out, rows, count, contest);
     for (uint32_t k = 0; k < contest->keep_count; k++) {
+        print_flicker(out, rows, count, contest->keep[k]);
         for (uint32_t i = 0; i < sizeof judged / sizeof *judged; i++) {
             print_against(out, rows, count, contest, judged[i], contest->keep[k]);
         }

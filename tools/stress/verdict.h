@@ -7,9 +7,8 @@
 /* Rows whose promise is broken. */
 uint32_t stress_broken(const stress_row *rows, uint32_t count);
 
-/* Broken promises each, refusals with their reasons, time, stability; with trim3r and rivals: the losses at the middle
- * strength of noise, exposure, depth dropouts and pose, and whether
- * ours is at most half. */
+/* Broken promises each, refusals with their reasons, time, stability, flicker; with trim3r and rivals: the losses at
+ * the middle strength of noise, exposure, depth dropouts and pose, and whether ours is at most half. */
 void stress_print_verdict(FILE *out, const stress_row *rows, uint32_t count, const stress_contest *contest);
 
 #endif
