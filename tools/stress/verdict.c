@@ -9,6 +9,7 @@
 
 #define MIDDLE_GRADE 2u
 #define FLICKER_MOST 1.2 /* times that of all points: what is wanted, not promised */
+#define LEVEL 0.01       /* dB: no difference */
 #define SLOWER_THAN 1.5  /* times the unperturbed build: worth a line */
 
 uint32_t stress_broken(const stress_row *rows, uint32_t count)
@@ -165,9 +166,10 @@ static void print_against(FILE *out, const stress_row *rows, uint32_t count, con
         like.method = best;
         double rival = stress_mean(rows, count, &like, STRESS_PSNR, NULL);
         fprintf(out, ", %s %.2f dB to %.2f: %s", method_name(best), least, rival,
-                ours <= least / 2 ? "at most half"
-                : psnr > rival    ? "more than half, but ahead: what has less to lose loses less"
-                                  : "more than half, and behind");
+                ours <= least / 2            ? "at most half"
+                : fabs(psnr - rival) < LEVEL ? "more than half, and level with it"
+                : psnr > rival               ? "more than half, but ahead: what has less to lose loses less"
+                                             : "more than half, and behind");
     }
     fputc('\n', out);
 }
