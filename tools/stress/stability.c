@@ -139,10 +139,11 @@ static void compare(stress_row *row, const snapshot *a, const snapshot *b, size_
     row->value[STRESS_MOTION] += stay == 0 ? 0 : way / stay;
 }
 
-static void judge(stress_row *row)
+static void judge(stress_row *row, uint32_t clusters)
 {
-    if (row->method == METHOD_TRIM3R && !(row->value[STRESS_MASK_CHANGED] <= STRESS_MASK_CHANGED_MOST &&
-                                          row->value[STRESS_MOTION] <= STRESS_MOTION_MOST)) {
+    if (row->value[STRESS_GAUSSIANS] >= clusters && row->method == METHOD_TRIM3R &&
+        !(row->value[STRESS_MASK_CHANGED] <= STRESS_MASK_CHANGED_MOST &&
+          row->value[STRESS_MOTION] <= STRESS_MOTION_MOST)) {
         row->status = STRESS_BROKEN;
         snprintf(row->reason, sizeof row->reason,
                  "a still scene does not stay the same: %.0f %% of the mask changes, Gaussians move by %.0f %% of "
@@ -192,7 +193,7 @@ int stress_stability(stress_row *rows, const stress_case *c, const stress_contes
         rows[i].value[STRESS_MASK_CHANGED] /= contest->captures - 1;
         rows[i].value[STRESS_MOTION] /= contest->captures - 1;
         if (code == CLI_OK && rows[i].status == STRESS_MEASURED) {
-            judge(&rows[i]);
+            judge(&rows[i], contest->settings.clusters);
         }
     }
     free(last);

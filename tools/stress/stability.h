@@ -5,7 +5,8 @@
 
 #include "stress/measure.h"
 
-/* Bounds for the method trim3r under the noise of a still scene (perturbation.h), beyond which a promise is broken. */
+/* Bounds for the method trim3r under the noise of a still scene (perturbation.h), beyond which a promise is broken,
+ * where there are as many Gaussians as SuperClusters: with fewer, chance says which of them get one. */
 #define STRESS_MASK_CHANGED_MOST 0.5 /* share of the retained pixels */
 #define STRESS_MOTION_MOST 0.5       /* of the spacing of retained pixels */
 
