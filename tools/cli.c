@@ -12,6 +12,11 @@
 static const char *command_name;
 
 static struct {
+    char *text; /* NULL: errors go to stderr */
+    size_t bytes;
+} kept;
+
+static struct {
     double started; /* 0: no progress line is open */
     double drawn;
     bool visible, silent;
@@ -27,15 +32,27 @@ void cli_set_command(const char *name)
     command_name = name;
 }
 
+void cli_keep_errors(char *text, size_t bytes)
+{
+    kept.text = text;
+    kept.bytes = bytes;
+}
+
 int cli_error(int code, const char *format, ...)
 {
+    va_list arguments;
     cli_progress_end();
+    if (kept.text != NULL) {
+        va_start(arguments, format);
+        vsnprintf(kept.text, kept.bytes, format, arguments);
+        va_end(arguments);
+        return code;
+    }
     fputs("trim3r", stderr);
     if (command_name != NULL) {
         fprintf(stderr, " %s", command_name);
     }
     fputs(": ", stderr);
-    va_list arguments;
     va_start(arguments, format);
     vfprintf(stderr, format, arguments);
     va_end(arguments);

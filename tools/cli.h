@@ -3,12 +3,16 @@
 #define TRIM3R_TOOLS_CLI_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 enum { CLI_OK = 0, CLI_BAD_INPUT = 1, CLI_BAD_USAGE = 2, CLI_BUDGET_TOO_SMALL = 3 };
 
 /* "trim3r COMMAND: message" on stderr; returns `code`, so that `return cli_error(CLI_BAD_INPUT, ...)` reads well. */
 int cli_error(int code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* From here on cli_error() puts its messages, without the names before them, into text[] in the place of stderr, each
+ * over the one before; NULL: stderr again. For callers to whom an error is a result. */
+void cli_keep_errors(char *text, size_t bytes);
 /* The command named in messages; set by main. */
 void cli_set_command(const char *name);
 

@@ -59,33 +59,6 @@ enum {
 
 /* ---- arguments ---------------------------------------------------------------------------------------------- */
 
-static void add_method(struct argp_state *state, options *o, const char *name, size_t length)
-{
-    method_id m = method_named(name, length);
-    if (m == METHOD_COUNT) {
-        argp_error(state, "--methods: '%.*s' is not a method; there are %s", (int)length, name, METHOD_NAMES);
-    }
-    for (uint32_t i = 0; i < o->method_count; i++) {
-        if (o->methods[i] == m) {
-            argp_error(state, "--methods names %s twice", method_name(m));
-        }
-    }
-    o->methods[o->method_count++] = m;
-}
-
-static void parse_methods(struct argp_state *state, options *o, const char *text)
-{
-    o->method_count = 0;
-    for (;;) {
-        size_t length = strcspn(text, ",");
-        add_method(state, o, text, length);
-        if (text[length] == '\0') {
-            return;
-        }
-        text += length + 1;
-    }
-}
-
 static void parse_heads(struct argp_state *state, options *o, const char *text)
 {
     char *rest = NULL, *own = strdup(text);
@@ -205,7 +178,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         }
         return 0;
     case KEY_METHODS:
-        parse_methods(state, o, arg);
+        option_methods(state, "methods", arg, o->methods, &o->method_count);
         return 0;
     case KEY_ITERATIONS:
         o->settings.finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);

@@ -23,8 +23,8 @@ static double transmittance(uint16_t alpha_q15)
     return (double)(ALPHA_ONE - (alpha_q15 > ALPHA_ONE ? ALPHA_ONE : alpha_q15)) / ALPHA_ONE;
 }
 
-static int draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,
-                uint16_t *alpha)
+int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,
+                    uint16_t *alpha)
 {
     t3r_target target = {
         .width = views->width,
@@ -71,7 +71,7 @@ static int make_picture(evaluation_picture *picture, const evaluation_views *vie
         memset(picture->mask, 255, pixels);
         return code;
     }
-    code = draw(r, &picture->camera, views, NULL, alpha);
+    code = evaluation_draw(r, &picture->camera, views, NULL, alpha);
     for (size_t i = 0; i < pixels && code == CLI_OK; i++) {
         picture->mask[i] = transmittance(alpha[i]) < MASK_TRANSMITTANCE ? 255 : 0;
     }
@@ -151,7 +151,7 @@ static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *a
     uint32_t w = views->width, h = views->height;
     const evaluation_picture *target = &views->target;
     double start = cli_now();
-    int code = draw(r, &target->camera, views, render, alpha);
+    int code = evaluation_draw(r, &target->camera, views, render, alpha);
     row->value[EVALUATION_RENDER_MS] = (cli_now() - start) * 1000;
     if (code != CLI_OK) {
         return code;
@@ -168,13 +168,13 @@ static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *a
     row->value[EVALUATION_PSNR] = metric_psnr(target->rgb, render, target->mask, w, h);
     double sum = 0;
     for (uint32_t v = 0; v < views->context_count; v++) {
-        code = draw(r, &views->context[v].camera, views, rgb, alpha);
+        code = evaluation_draw(r, &views->context[v].camera, views, rgb, alpha);
         if (code != CLI_OK) {
             return code;
         }
         sum += metric_psnr(views->context[v].rgb, rgb, views->context[v].mask, w, h);
     }
-    row->value[EVALUATION_CONTEXT_PSNR] = sum / views->context_count;
+    row->value[EVALUATION_CONTEXT_PSNR] = views->context_count == 0 ? NAN : sum / views->context_count;
     return CLI_OK;
 }
 
@@ -248,7 +248,7 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
     return code;
 }
 
-static int score_all(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
+int evaluation_score(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
                      reconstruction *r)
 {
     size_t pixels = (size_t)views->width * views->height;
@@ -261,9 +261,8 @@ static int score_all(evaluation_row *row, uint8_t *render, const evaluation_view
     return code;
 }
 
-/* The scene of a method at the budget of `options`, and what is told of it. */
-static int build(reconstruction *built, reconstruction_account *told, const evaluation_views *views,
-                 const evaluation_case *what, method_id m, const reconstruction_options *options)
+int evaluation_build(reconstruction *built, reconstruction_account *told, const evaluation_views *views,
+                     const evaluation_case *what, method_id m, const reconstruction_options *options)
 {
     if (m != METHOD_TRIM3R) {
         return rival_build(views->rivals, what->recording, what->path, m, options, built, told);
@@ -289,7 +288,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     reconstruction_account told;
     int code = evaluation_name_row(row, what, m, keep, settings);
     if (code == CLI_OK) {
-        code = build(&built, &told, views, what, m, &options);
+        code = evaluation_build(&built, &told, views, what, m, &options);
     }
     if (code != CLI_OK) {
         return code;
@@ -302,7 +301,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
         code = through_file(&loaded, &built, views, &options);
     }
     if (code == CLI_OK) {
-        code = score_all(row, render, views, what, from_file ? &loaded : &built);
+        code = evaluation_score(row, render, views, what, from_file ? &loaded : &built);
     }
     reconstruction_close(&loaded);
     reconstruction_close(&built);

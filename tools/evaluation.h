@@ -89,6 +89,18 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
 int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
                        method_id m, double keep, bool from_file, const reconstruction_options *settings);
 
+/* The steps of evaluation_measure(), for callers that build from other frames than those that the views were made of
+ * (stress/measure.h). evaluation_build(): the scene of a method at the budget of `options`, to be closed, and what is
+ * told of it. evaluation_draw(): the scene as `camera` sees it; rgb (width x height x 3) or alpha (width x height,
+ * 32767 = opaque) may be NULL. evaluation_score(): draws the target into `render` and fills the scores and render_ms of
+ * *row; context_psnr is NaN where the views hold no context. */
+int evaluation_build(reconstruction *built, reconstruction_account *told, const evaluation_views *views,
+                     const evaluation_case *what, method_id m, const reconstruction_options *options);
+int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,
+                    uint16_t *alpha);
+int evaluation_score(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
+                     reconstruction *r);
+
 /* A recording in memory of one image, cropped and averaged to width x height as import does: a single view on a plane
  * two units away, the focal length `width` pixels. *bytes (free()) must outlive it. NULL after a message. */
 t3r_recording *evaluation_planar_recording(char *path, uint32_t width, uint32_t height, uint8_t **bytes);

@@ -20,6 +20,7 @@ static const struct {
     {"render", command_render, "a scene seen from a frame of a recording, a pose file or a trajectory"},
     {"eval", command_eval, "scores of rendered views against recorded ones"},
     {"chart", command_chart, "scores against time and bytes: a picture, a report"},
+    {"stress", command_stress, "what noise, dropouts, wrong poses and hard scenes do to each method"},
     {"replay", command_replay, "the hash of every stage, and whether it is the expected one"},
     {"diff", command_diff, "what differs between two scenes or two views"},
     {"plan", command_plan, "the arena's buffers, its bytes and the operation counts, before anything runs"},

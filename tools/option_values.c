@@ -57,3 +57,32 @@ bool path_is_ply(const char *path)
     size_t length = strlen(path);
     return length > 4 && strcmp(path + length - 4, ".ply") == 0;
 }
+
+static void add_method(struct argp_state *state, const char *option, const char *name, size_t length,
+                       method_id methods[METHOD_COUNT], uint32_t *count)
+{
+    method_id m = method_named(name, length);
+    if (m == METHOD_COUNT) {
+        argp_error(state, "--%s: '%.*s' is not a method; there are %s", option, (int)length, name, METHOD_NAMES);
+    }
+    for (uint32_t i = 0; i < *count; i++) {
+        if (methods[i] == m) {
+            argp_error(state, "--%s names %s twice", option, method_name(m));
+        }
+    }
+    methods[(*count)++] = m;
+}
+
+void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
+                    uint32_t *count)
+{
+    *count = 0;
+    for (;;) {
+        size_t length = strcspn(text, ",");
+        add_method(state, option, text, length, methods, count);
+        if (text[length] == '\0') {
+            return;
+        }
+        text += length + 1;
+    }
+}

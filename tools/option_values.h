@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "method.h"
+
 /* A whole number in [low, high]. */
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
 /* "WxH", each side in [low, T3R_MAX_SIDE]. */
@@ -16,6 +18,9 @@ void option_size(struct argp_state *state, const char *option, const char *text,
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
 /* A head's name, or a path that ends as weight files do. */
 const char *option_head(struct argp_state *state, const char *option, const char *text);
+/* One to METHOD_COUNT different methods with commas between. */
+void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
+                    uint32_t *count);
 /* The next free one of `count` places for arguments that are no options. */
 void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count);
 

@@ -86,7 +86,7 @@ def png(width, height):
 
 
 COMMANDS = ["import", "room", "info", "build", "render", "eval", "replay", "diff", "plan", "bench", "quantize",
-            "head-info"]
+            "head-info", "stress"]
 POSE = {"fl_x": 220, "w": 64, "h": 48, "transform_matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}
 
 

@@ -1,0 +1,183 @@
+/* Cells of a small scene: what is measured must agree with what is known of it. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "stress/measure.h"
+#include "stress/promise.h"
+#include "stress/scene.h"
+#include "stress/table.h"
+
+enum { SIDE = 48, METHODS = 3 };
+
+typedef struct fixture {
+    stress_contest contest;
+    stress_case c;
+    stress_row rows[METHODS];
+    uint8_t *renders;
+} fixture;
+
+static int open_fixture(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    f->contest = (stress_contest){.methods = {METHOD_TRIM3R, METHOD_RANDOM, METHOD_EAGLES},
+                                  .method_count = METHODS,
+                                  .keep = {20},
+                                  .keep_count = 1,
+                                  .captures = 3,
+                                  .seed = 1};
+    reconstruction_defaults(&f->contest.settings);
+    f->contest.settings.width = f->contest.settings.height = SIDE;
+    f->contest.settings.head = "analytic";
+    f->contest.settings.refine = 0;
+    f->c = (stress_case){.name = "plane", .context = "0,1", .target = "2"};
+    f->renders = malloc(METHODS * SIDE * SIDE * 3);
+    *state = f;
+    return f->renders != NULL && stress_scene_draw(&f->c.base, stress_scene_at(0), 8, SIDE, SIDE) &&
+                   stress_case_open(&f->c, &f->contest) == 0
+               ? 0
+               : -1;
+}
+
+static int close_fixture(void **state)
+{
+    fixture *f = *state;
+    stress_case_close(&f->c);
+    stress_capture_free(&f->c.base);
+    free(f->renders);
+    free(f);
+    return 0;
+}
+
+static void cell(fixture *f, const char *name, uint32_t grade)
+{
+    const perturbation *p = NULL;
+    for (uint32_t i = 0; name != NULL && (p = stress_perturbation(i)) != NULL && strcmp(p->name, name) != 0; i++) {
+    }
+    assert_int_equal(stress_measure(f->rows, f->renders, &f->c, &f->contest, p, grade), 0);
+}
+
+/* The noise of a still scene moves a Gaussian without refinement or network along its ray: depth noise of 0.2 % in both
+ * captures, 1.13 deviations apart in the mean; a rival's mask of random scores stays, as the same pixels have depth. */
+static void still_scene(void **state)
+{
+    fixture *f = *state;
+    cell(f, NULL, 0);
+    for (int m = 0; m < METHODS; m++) {
+        const stress_row *row = &f->rows[m];
+        assert_int_equal(row->status, STRESS_MEASURED);
+        assert_int_equal((int)row->value[STRESS_GAUSSIANS], (2 * SIDE * SIDE + 2) / 5);
+        double spacing = sqrt(2.0 * SIDE * SIDE / row->value[STRESS_GAUSSIANS]); /* pixels */
+        double expected = 0.002 * 1.128 * SIDE * 0.866 / spacing;                /* their distance cancels */
+        /* eagles: those that stay in both captures are no fair sample */
+        assert_true(m == 2 || fabs(row->value[STRESS_MOTION] / expected - 1) < 0.05);
+        assert_true(row->value[STRESS_FLICKER] > 0.1 && row->value[STRESS_FLICKER] < 60);
+        assert_true(row->value[STRESS_FLICKER_UNPRUNED] > 0.1 && row->value[STRESS_FLICKER_UNPRUNED] < 6);
+    }
+    assert_true(f->rows[1].value[STRESS_MASK_CHANGED] <= 0);
+    assert_true(f->rows[0].value[STRESS_MASK_CHANGED] < 0.25);
+    assert_true(f->rows[2].value[STRESS_MASK_CHANGED] > f->rows[0].value[STRESS_MASK_CHANGED]);
+}
+
+/* A world elsewhere is the same scene; a budget larger than what is left takes what is left; nothing left is refused.
+ */
+static void budgets_and_refusals(void **state)
+{
+    fixture *f = *state;
+    stress_row plain[METHODS];
+    f->contest.captures = 0;
+    cell(f, NULL, 0);
+    memcpy(plain, f->rows, sizeof plain);
+    cell(f, "huge", 2);
+    stress_relate(f->rows, plain, METHODS);
+    for (int m = 0; m < METHODS; m++) {
+        assert_int_equal(f->rows[m].status, STRESS_MEASURED);
+        assert_true(fabs(f->rows[m].value[STRESS_PSNR_LOST]) < 0.01);
+        assert_true(f->rows[m].value[STRESS_ARENA_BYTES] <= plain[m].value[STRESS_ARENA_BYTES]);
+        assert_true(isnan(f->rows[m].value[STRESS_FLICKER]) && isnan(f->rows[m].value[STRESS_MOTION]));
+    }
+    cell(f, "depth-all", 1);
+    for (int m = 0; m < METHODS; m++) {
+        assert_int_equal(f->rows[m].status, STRESS_MEASURED);
+        assert_true(f->rows[m].value[STRESS_GAUSSIANS] < 100 && f->rows[m].value[STRESS_GAUSSIANS] > 10);
+        assert_true(f->rows[m].value[STRESS_BUDGET] > 900);
+    }
+    cell(f, "depth-all", 3);
+    for (int m = 0; m < METHODS; m++) {
+        assert_int_equal(f->rows[m].status, STRESS_REFUSED);
+        assert_non_null(strstr(f->rows[m].reason, "no valid depth"));
+        assert_true(isnan(f->rows[m].value[STRESS_PSNR]));
+    }
+}
+
+/* An arena that grew, or that changed for the same budget, is told; a rival's is that of all points. */
+static void arenas_that_change(void **state)
+{
+    (void)state;
+    stress_row base = {.method = METHOD_TRIM3R}, row;
+    base.value[STRESS_ARENA_BYTES] = base.value[STRESS_GAUSSIANS] = 1000;
+    const struct {
+        method_id method;
+        double arena, gaussians;
+        stress_status expected;
+    } cases[] = {{METHOD_TRIM3R, 1000, 1000, STRESS_MEASURED}, {METHOD_TRIM3R, 1001, 1000, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 999, 1000, STRESS_BROKEN},    {METHOD_TRIM3R, 999, 500, STRESS_MEASURED},
+                 {METHOD_EAGLES, 999, 1000, STRESS_MEASURED},  {METHOD_EAGLES, 1001, 1000, STRESS_MEASURED}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        row = base;
+        row.method = cases[i].method;
+        row.value[STRESS_ARENA_BYTES] = cases[i].arena;
+        row.value[STRESS_GAUSSIANS] = cases[i].gaussians;
+        stress_relate(&row, &base, 1);
+        assert_int_equal(row.status, cases[i].expected);
+    }
+}
+
+static void promises(void **state)
+{
+    (void)state;
+    t3r_gaussian g[2] = {{.factor = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .opacity_q15 = 32767}, {.factor = {0}}};
+    t3r_scene scene = {.gaussians = g, .count = 2};
+    assert_null(stress_broken_promise(&scene, 2));
+    assert_string_equal(stress_broken_promise(&scene, 3), "the budget is not met");
+    g[1].position_q20[2] = (1 << 30) + 1;
+    assert_string_equal(stress_broken_promise(&scene, 2), "a Gaussian is out of range");
+    g[1].position_q20[2] = 0;
+    g[0].opacity_q15 = 32768;
+    assert_string_equal(stress_broken_promise(&scene, 2), "a Gaussian is out of range");
+    g[0].opacity_q15 = 0;
+    g[0].factor_exponent = 16;
+    assert_string_equal(stress_broken_promise(&scene, 2), "a Gaussian is out of range");
+}
+
+static void means_of_rows(void **state)
+{
+    (void)state;
+    stress_row rows[3] = {{.what = "noise", .grade = 1, .keep = 10},
+                          {.what = "noise", .grade = 1, .keep = 10},
+                          {.what = "noise", .grade = 2, .keep = 10}};
+    rows[0].value[STRESS_PSNR_LOST] = 3;
+    rows[1].value[STRESS_PSNR_LOST] = NAN;
+    rows[1].status = STRESS_REFUSED;
+    rows[2].value[STRESS_PSNR_LOST] = 9;
+    uint32_t refused;
+    assert_true(fabs(stress_mean(rows, 3, &rows[0], STRESS_PSNR_LOST, &refused) - 3) < 1e-9);
+    assert_int_equal(refused, 1);
+    rows[0].keep = 20;
+    assert_true(isnan(stress_mean(rows, 3, &rows[1], STRESS_PSNR_LOST, NULL)));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(still_scene, open_fixture, close_fixture),
+        cmocka_unit_test_setup_teardown(budgets_and_refusals, open_fixture, close_fixture),
+        cmocka_unit_test(arenas_that_change), cmocka_unit_test(promises), cmocka_unit_test(means_of_rows)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,11 @@
+/* What every scene must keep, whatever the frames were. */
+#ifndef TRIM3R_TOOLS_STRESS_PROMISE_H
+#define TRIM3R_TOOLS_STRESS_PROMISE_H
+
+#include "reconstruction.h"
+
+/* NULL, or the promise that the scene breaks: `count` Gaussians, each within the ranges of t3r_gaussian and finite as
+ * files hold it. */
+const char *stress_broken_promise(const t3r_scene *scene, uint32_t count);
+
+#endif
