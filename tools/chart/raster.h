@@ -1,4 +1,4 @@
-/* SVG to PNG, by librsvg. */
+/* SVG to PNG, by the program rsvg-convert. */
 #ifndef TRIM3R_TOOLS_CHART_RASTER_H
 #define TRIM3R_TOOLS_CHART_RASTER_H
 
