@@ -31,10 +31,10 @@ static double largest_share(const scale_panel *panels, uint32_t count, const sca
     for (uint32_t i = 0; i < count; i++) {
         scale_bins_fill(bins, panels[i].scales, counts);
         for (uint32_t b = 0; b < bins->count; b++) {
-            most = fmax(most, counts[b] / fmax(panels[i].scales->count, 1));
+            most = fmax(most, (double)counts[b] / panels[i].scales->count);
         }
     }
-    return most > 0 ? most : 1;
+    return most;
 }
 
 /* 1, 2, 5 times powers of ten along one edge; over more than three decades powers alone. unit: of the axis, of a world
@@ -60,30 +60,25 @@ static void write_panel(FILE *file, const layout *l, const scale_panel *panel, c
                         double pixels)
 {
     uint32_t counts[SCALE_BINS_MOST];
-    double foot = top + PANEL_HEIGHT, total = fmax(panel->scales->count, 1);
+    double foot = top + PANEL_HEIGHT, total = panel->scales->count;
     double median = splat_scales_quantile(panel->scales, 0.5);
     scale_bins_fill(bins, panel->scales, counts);
     fprintf(file, "<line class='grid' x1='%d' x2='%d' y1='%.1f' y2='%.1f'/>\n", LEFT, LEFT + WIDTH, foot, foot);
     for (uint32_t b = 0; b < bins->count; b++) {
-        double height = counts[b] / total / l->most * PANEL_HEIGHT, x = across(l, scale_bins_edge(bins, b));
+        double left = across(l, scale_bins_edge(bins, b)), height = counts[b] / total / l->most * PANEL_HEIGHT;
         if (counts[b] > 0) {
             fprintf(file,
                     "<rect x='%.2f' y='%.2f' width='%.2f' height='%.2f'><title>%.3g to %.3g: %.2f %%</title></rect>\n",
-                    x, foot - height, across(l, scale_bins_edge(bins, b + 1)) - x, height, scale_bins_edge(bins, b),
-                    scale_bins_edge(bins, b + 1), counts[b] / total * 100);
+                    left, foot - height, across(l, scale_bins_edge(bins, b + 1)) - left, height,
+                    scale_bins_edge(bins, b), scale_bins_edge(bins, b + 1), counts[b] / total * 100);
         }
     }
-    if (isfinite(median)) {
-        double x = fmin(fmax(across(l, median), LEFT), LEFT + WIDTH);
-        fprintf(file, "<line class='middle' x1='%.1f' x2='%.1f' y1='%.1f' y2='%.1f'/>\n", x, x, top, foot);
-    }
+    double x = fmin(fmax(across(l, median), LEFT), LEFT + WIDTH);
+    fprintf(file, "<line class='middle' x1='%.1f' x2='%.1f' y1='%.1f' y2='%.1f'/>\n", x, x, top, foot);
     fprintf(file, "<text class='name' x='%d' y='%.1f'>", LEFT, top - 6);
     markup_text(file, panel->name);
-    fprintf(file, ": %" PRIu32 " Gaussians", panel->scales->count);
-    if (isfinite(median)) {
-        fprintf(file, ", median %.3g", median);
-    }
-    if (isfinite(median) && pixels > 0) {
+    fprintf(file, ": %" PRIu32 " Gaussians, median %.3g", panel->scales->count, median);
+    if (pixels > 0) {
         fprintf(file, " = %.2f px", median * pixels);
     }
     fputs("</text>\n", file);

@@ -148,7 +148,7 @@ static void add_quantiles(cJSON *object, const char *key, const splat_scales *sc
     cJSON *item = cJSON_AddObjectToObject(object, key);
     for (int q = 0; q < QUANTILES; q++) {
         double value = splat_scales_quantile(scales, quantile_share[q]) * unit;
-        cJSON_AddItemToObject(item, quantile_name[q], isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
+        cJSON_AddNumberToObject(item, quantile_name[q], value);
     }
 }
 
@@ -200,13 +200,11 @@ static void print_text(const scene_info_request *request, const all_told *told)
     for (uint32_t i = 0; i < request->scene_count; i++) {
         const scene_told *s = &told->scene[i];
         printf("%s: %" PRIu32 " Gaussians\n", request->scenes[i], s->count);
-        if (s->count > 0) {
-            printf("  %-9s%.4g..%.4g, %.4g..%.4g, %.4g..%.4g\n", "x, y, z:", s->low[0], s->high[0], s->low[1],
-                   s->high[1], s->low[2], s->high[2]);
-            printf("  %-9s%.3f in the mean\n", "opacity:", s->opacity);
-            print_quantiles("scale:", &told->scales[i], 1);
-        }
-        if (s->count > 0 && told->pixels > 0) {
+        printf("  %-9s%.4g..%.4g, %.4g..%.4g, %.4g..%.4g\n", "x, y, z:", s->low[0], s->high[0], s->low[1], s->high[1],
+               s->low[2], s->high[2]);
+        printf("  %-9s%.3f in the mean\n", "opacity:", s->opacity);
+        print_quantiles("scale:", &told->scales[i], 1);
+        if (told->pixels > 0) {
             print_quantiles("pixels:", &told->scales[i], told->pixels);
         }
     }

@@ -1,5 +1,6 @@
 #include "splat_scales.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,9 +43,6 @@ void splat_scales_free(splat_scales *scales)
 
 double splat_scales_quantile(const splat_scales *scales, double share)
 {
-    if (scales->count == 0) {
-        return NAN;
-    }
     double place = share * (scales->count - 1), below = floor(place);
     uint32_t at = (uint32_t)below, next = at + 1 < scales->count ? at + 1 : at;
     return scales->scale[at] + (place - below) * (scales->scale[next] - scales->scale[at]);
@@ -57,16 +55,12 @@ static int bin_of(double scale)
 
 scale_bins scale_bins_of(const splat_scales *list, uint32_t count)
 {
-    int first = 0, last = 0;
-    bool any = false;
+    int first = INT_MAX, last = INT_MIN;
     for (uint32_t i = 0; i < count; i++) {
-        if (list[i].count > 0) {
-            int low = bin_of(splat_scales_quantile(&list[i], OUTLIERS));
-            int high = bin_of(splat_scales_quantile(&list[i], 1 - OUTLIERS));
-            first = !any || low < first ? low : first;
-            last = !any || high > last ? high : last;
-            any = true;
-        }
+        int low = bin_of(splat_scales_quantile(&list[i], OUTLIERS));
+        int high = bin_of(splat_scales_quantile(&list[i], 1 - OUTLIERS));
+        first = low < first ? low : first;
+        last = high > last ? high : last;
     }
     first = last - first >= (int)SCALE_BINS_MOST ? last - (int)SCALE_BINS_MOST + 1 : first;
     return (scale_bins){.first = first, .count = (uint32_t)(last - first + 1)};

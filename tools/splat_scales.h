@@ -14,14 +14,14 @@
 
 typedef struct splat_scales {
     double *scale; /* world units, ascending; heap */
-    uint32_t count;
+    uint32_t count; /* at least 1 */
 } splat_scales;
 
-/* False without memory. splat_scales_free() in any case. */
+/* Of a scene that is not empty. False without memory; splat_scales_free() in any case. */
 bool splat_scales_of(splat_scales *scales, const scene_file *scene);
 void splat_scales_free(splat_scales *scales);
 
-/* At share 0..1 of the order, linear between neighbours; NaN of no Gaussians. */
+/* At share 0..1 of the order, linear between neighbours. */
 double splat_scales_quantile(const splat_scales *scales, double share);
 
 /* Bin i holds scales from 2^((first + i) / 4) up to, without, 2^((first + i + 1) / 4) world units; the first also what
@@ -31,7 +31,7 @@ typedef struct scale_bins {
     uint32_t count; /* 1..SCALE_BINS_MOST */
 } scale_bins;
 
-/* Bins for all of `list`: from the least of their quantiles at 0.001 to the largest at 0.999, the upper 24 octaves. */
+/* Bins for all of `list` (count at least 1): from the least of their quantiles at 0.001 to the largest at 0.999, the upper 24 octaves. */
 scale_bins scale_bins_of(const splat_scales *list, uint32_t count);
 double scale_bins_edge(const scale_bins *bins, uint32_t index);
 void scale_bins_fill(const scale_bins *bins, const splat_scales *scales, uint32_t counts[SCALE_BINS_MOST]);
