@@ -1,8 +1,8 @@
 /* A scene's points and context views as a COLMAP model in text, the start of an outside optimiser: DIR/images/, and
  * cameras.txt, images.txt and points3D.txt in DIR/sparse/0/, where 3D Gaussian Splatting and gsplat look for them.
  *
- * COLMAP's conventions (colmap.github.io/format.html): poses are world-to-camera, quaternion w x y z first; cameras look
- * along +z, x right, y down; the top-left pixel's centre is at (0.5, 0.5). */
+ * COLMAP's conventions (colmap.github.io/format.html): poses are world-to-camera, quaternion w x y z first; cameras
+ * look along +z, x right, y down; the top-left pixel's centre is at (0.5, 0.5). */
 #ifndef TRIM3R_TOOLS_COLMAP_FOLDER_H
 #define TRIM3R_TOOLS_COLMAP_FOLDER_H
 
@@ -14,10 +14,10 @@
 
 /* A context view as the scene was built from it. */
 typedef struct colmap_view {
-    uint32_t frame;           /* index within the recording: names the picture */
-    t3r_camera camera;        /* undistorted */
+    uint32_t frame;    /* index within the recording: names the picture */
+    t3r_camera camera; /* undistorted */
     uint32_t width, height;
-    uint8_t *rgb;             /* width x height x 3 */
+    uint8_t *rgb; /* width x height x 3 */
 } colmap_view;
 
 typedef struct colmap_model {

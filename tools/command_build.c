@@ -20,8 +20,8 @@ typedef struct build_options {
     const char *recording;
     const char *output; /* NULL = no scene file */
     const char *colmap; /* NULL = no COLMAP model */
-    const char *prune; /* a scene to be pruned in the place of one that is built */
-    int flags;         /* SCENE_FILE_... */
+    const char *prune;  /* a scene to be pruned in the place of one that is built */
+    int flags;          /* SCENE_FILE_... */
     bool json;
     reconstruction_options settings;
 } build_options;
@@ -100,20 +100,21 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap",
-    .doc = "Makes exactly Z Gaussians of a recording's context frames."
-           "\vExamples:\n"
-           "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
-           "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
-           "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
-           "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
-           "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n"
-           "  trim3r build room.mcap --keep 10% --colmap start\n\n"
-           "The scene stands in the recording's world frame unless --local is given.\n\n"
-           "--colmap: DIR/images/ are the context views at the working size, undistorted; DIR/sparse/0/ holds "
-           "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
-           "look for them; InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that it "
-           "came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise where the "
-           "head and refinement put them.",
+    .doc =
+        "Makes exactly Z Gaussians of a recording's context frames."
+        "\vExamples:\n"
+        "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+        "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
+        "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
+        "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
+        "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n"
+        "  trim3r build room.mcap --keep 10% --colmap start\n\n"
+        "The scene stands in the recording's world frame unless --local is given.\n\n"
+        "--colmap: DIR/images/ are the context views at the working size, undistorted; DIR/sparse/0/ holds "
+        "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
+        "look for them; InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that it "
+        "came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise where the "
+        "head and refinement put them.",
     .children = children,
 };
 

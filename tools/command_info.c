@@ -94,17 +94,17 @@ static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
     .args_doc = "REC.mcap\nSCENE.ply... [REC.mcap --view N]",
-    .doc =
-        "Show what a recording holds: frames, streams, clock, pairing, triplets. Or what scenes hold: Gaussians, bounds, "
-        "and how wide the Gaussians are.\v"
-        "The scale of a Gaussian is the root of the product of its two largest standard deviations, in world units. "
-        "With --view also in pixels of that frame, at the median depth of the first scene's Gaussians within its "
-        "picture. JSON: scale_edges are a quarter of an octave apart, scale_counts the Gaussians between them; what "
-        "lies beyond is in the first and the last.\n\n"
-        "Examples:\n"
-        "  trim3r info room.mcap\n"
-        "  trim3r info --json room.mcap\n"
-        "  trim3r info all.ply pruned.ply room.mcap --view 1 --svg scales.svg",
+    .doc = "Show what a recording holds: frames, streams, clock, pairing, triplets. Or what scenes hold: Gaussians, "
+           "bounds, "
+           "and how wide the Gaussians are.\v"
+           "The scale of a Gaussian is the root of the product of its two largest standard deviations, in world units. "
+           "With --view also in pixels of that frame, at the median depth of the first scene's Gaussians within its "
+           "picture. JSON: scale_edges are a quarter of an octave apart, scale_counts the Gaussians between them; what "
+           "lies beyond is in the first and the last.\n\n"
+           "Examples:\n"
+           "  trim3r info room.mcap\n"
+           "  trim3r info --json room.mcap\n"
+           "  trim3r info all.ply pruned.ply room.mcap --view 1 --svg scales.svg",
 };
 
 static const char *distortion_name(t3r_distortion distortion)

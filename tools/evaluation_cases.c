@@ -184,8 +184,8 @@ static int fill_context(evaluation_case *what, const view_place *places, uint32_
     what->context_count = nearest_views(places, count, what->target, depth, views, what->context, own);
     if (what->context_count < views) {
         return cli_error(CLI_BAD_INPUT,
-                         "%s: --views %" PRIu32 " is too much: beside target %" PRIu32
-                         " there are %" PRIu32 " frames with depth, pose and intrinsics",
+                         "%s: --views %" PRIu32 " is too much: beside target %" PRIu32 " there are %" PRIu32
+                         " frames with depth, pose and intrinsics",
                          what->path, views, what->target, what->context_count);
     }
     return CLI_OK;

@@ -22,8 +22,8 @@ view_place view_place_of(const t3r_camera *camera);
 double view_median_depth(const t3r_frame *frame);
 
 /* How far apart two views are: the root of (distance of the centres / depth)^2 + (distance of the directions as unit
- * vectors)^2. A camera that moves sideways by `depth` (> 0) shifts a picture of things that far away as much as one that
- * turns by about a radian. Rolling about the direction of view counts nothing. */
+ * vectors)^2. A camera that moves sideways by `depth` (> 0) shifts a picture of things that far away as much as one
+ * that turns by about a radian. Rolling about the direction of view counts nothing. */
 double view_distance(const view_place *a, const view_place *b, double depth);
 
 /* Adds to the context_count frames in context[] those of the `count` places that are nearest to the target, nearest

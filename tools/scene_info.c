@@ -74,7 +74,8 @@ static uint32_t depths_seen(const scene_file *scene, const t3r_capture_frame *fr
                          ldexp(scene->gaussians[i].position_q20[axis], scene->frame.exponent - 20);
         }
         for (int axis = 0; axis < 3; axis++) { /* the rotation is camera to world: its columns are the camera's axes */
-            in[axis] = ldexp(from[0] * rotation[axis] + from[1] * rotation[3 + axis] + from[2] * rotation[6 + axis], -30);
+            in[axis] =
+                ldexp(from[0] * rotation[axis] + from[1] * rotation[3 + axis] + from[2] * rotation[6 + axis], -30);
         }
         double x = ldexp(camera->fx_q16 * (in[0] / in[2]) + camera->cx_q16, -16);
         double y = ldexp(camera->fy_q16 * (in[1] / in[2]) + camera->cy_q16, -16);

@@ -13,7 +13,7 @@
 #define SCALE_BINS_MOST 96u
 
 typedef struct splat_scales {
-    double *scale; /* world units, ascending; heap */
+    double *scale;  /* world units, ascending; heap */
     uint32_t count; /* at least 1 */
 } splat_scales;
 
@@ -31,7 +31,8 @@ typedef struct scale_bins {
     uint32_t count; /* 1..SCALE_BINS_MOST */
 } scale_bins;
 
-/* Bins for all of `list` (count at least 1): from the least of their quantiles at 0.001 to the largest at 0.999, the upper 24 octaves. */
+/* Bins for all of `list` (count at least 1): from the least of their quantiles at 0.001 to the largest at 0.999, the
+ * upper 24 octaves. */
 scale_bins scale_bins_of(const splat_scales *list, uint32_t count);
 double scale_bins_edge(const scale_bins *bins, uint32_t index);
 void scale_bins_fill(const scale_bins *bins, const splat_scales *scales, uint32_t counts[SCALE_BINS_MOST]);

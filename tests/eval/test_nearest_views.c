@@ -80,8 +80,8 @@ static void test_nearest_frames(void **state)
 {
     (void)state;
     /*                       0               1               2               3                4 */
-    view_place places[] = {place_at(4, 0), place_at(1, 0), place_at(0, 0), place_at(-1, 0), place_at(0, 20),
-                           place_at(0.2, 90), place_at(0.1, 0)};
+    view_place places[] = {place_at(4, 0),  place_at(1, 0),    place_at(0, 0),  place_at(-1, 0),
+                           place_at(0, 20), place_at(0.2, 90), place_at(0.1, 0)};
     const uint32_t count = sizeof places / sizeof places[0];
     uint32_t context[8] = {0, 3};
     /* by a depth of 2: 4 (0.35), 1 and 3 (0.5), 5 (1.4), 0 (2); 6 has no depth */
