@@ -123,8 +123,11 @@ static void check_options(struct argp_state *state, options *o)
     if (o->planar && (o->has_target || o->settings.context_count > 0)) {
         argp_error(state, "--planar takes images, not --context and --target");
     }
-    if (o->settings.context_views > 2 && (o->planar || o->has_target)) {
-        argp_error(state, "--views chooses frames beside a recording's triplets: it excludes --context and --planar");
+    if (o->planar && o->settings.context_views > 2) {
+        argp_error(state, "--views belongs to a recording, not to --planar");
+    }
+    if (o->settings.context_views > 2 && o->settings.context_count > o->settings.context_views) {
+        argp_error(state, "--context names more frames than --views");
     }
     if (!o->planar && o->width != 0) {
         argp_error(state, "--size belongs to --planar; --working sets the size of a recording's views");
@@ -242,7 +245,7 @@ static const struct argp_option argp_options[] = {
      "frames that the scene is made of, one named twice counting once (all triplets that the recording carries)", 0},
     {"target", KEY_TARGET, "T", 0, "the frame to be met; it is never shown to the method", 0},
     {"views", KEY_VIEWS, "N", 0,
-     "fill the context of every triplet up to N frames, 2..16 (2, the triplet's own), with those nearest to its target",
+     "fill every context up to N frames, 2..16 (2: the triplet's own, or --context), with those nearest to the target",
      0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
     {"methods", KEY_METHODS, "M,M,...", 0,
@@ -292,7 +295,8 @@ static const struct argp parser = {
         "--planar, where ssim, sharp, holes and perceptual count all pixels too. Cells that do not apply are empty. "
         "Several cases end in lines of means (decibels are averaged as decibels), which the CSV leaves out; several "
         "recordings get a folder each in --images.\n\n"
-        "--views N: the triplet's own frames come first, then the recording's frames with depth, pose and intrinsics "
+        "--views N: the triplet's own frames, or those of --context, come first, then the recording's frames with "
+        "depth, pose and intrinsics "
         "in "
         "the order of their distance from the target's camera: the root of the squares of the centres' distance over "
         "the median depth of the triplet's first frame, and of the distance between the directions of view as unit "

@@ -84,8 +84,10 @@ def the_room(folder):
     refuse(1, "--views 12 is too much", room, "--keep", "10", "--views", "12")
     for views in ("1", "17", "0", "many", "3,4", ""):
         refuse(2, "--views takes", room, "--keep", "10", f"--views={views}")
-    refuse(2, "excludes --context", room, "--context", "0,2", "--target", "1", "--keep", "10", "--views", "3")
-    refuse(2, "excludes --context", "--planar", f"{folder}/ten/1/target.png", "--keep", "10", "--views", "3")
+    one = rows_of(room, "--context", "0,2", "--target", "1", "--keep", "10", "--views", "10")
+    check([untimed(r) for r in one] == [{**untimed(ten[0]), "picture": None}], "a context that is given is filled, too")
+    refuse(2, "more frames than --views", room, "--context", "0,2,3,4", "--target", "1", "--keep", "10", "--views", "3")
+    refuse(2, "not to --planar", "--planar", f"{folder}/ten/1/target.png", "--keep", "10", "--views", "3")
 
 
 with tempfile.TemporaryDirectory() as folder:
