@@ -17,6 +17,7 @@
 
 #define ERROR_BYTES 512
 #define QUANTILES 5
+#define PANEL_NAME_BYTES 80 /* as much as a panel is wide */
 
 static const double quantile_share[QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 static const char *const quantile_name[QUANTILES] = {"p5", "p25", "median", "p75", "p95"};
@@ -220,9 +221,11 @@ static int write_svg(const scene_info_request *request, const all_told *told)
     whole_file file;
     char error[ERROR_BYTES] = "";
     scale_panel panels[SCENE_INFO_MOST];
+    char names[SCENE_INFO_MOST][PANEL_NAME_BYTES];
     for (uint32_t i = 0; i < request->scene_count; i++) {
-        const char *slash = strrchr(request->scenes[i], '/');
-        panels[i] = (scale_panel){slash != NULL ? slash + 1 : request->scenes[i], &told->scales[i]};
+        const char *slash = strrchr(request->scenes[i], '/'), *name = slash != NULL ? slash + 1 : request->scenes[i];
+        snprintf(names[i], sizeof names[i], "%.*s", (int)(strlen(name) - strlen(".ply")), name);
+        panels[i] = (scale_panel){names[i], &told->scales[i]};
     }
     if (whole_file_begin(&file, request->svg, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);

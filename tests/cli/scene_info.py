@@ -103,7 +103,7 @@ def several(folder, room):
 
     picture = xml.dom.minidom.parse(f"{folder}/s.svg")
     names = [t.firstChild.data for t in picture.getElementsByTagName("text") if t.getAttribute("class") == "name"]
-    check([n.split(":")[0] for n in names] == ["all.ply", "pruned.ply", "disc.ply"], f"a panel each: {names}")
+    check([n.split(":")[0] for n in names] == ["all", "pruned", "disc"], f"a panel each: {names}")
     check(all(" px" in n for n in names), "with pixels")
     bars = sum(sum(c > 0 for c in s["scale_counts"]) for s in answer["scenes"])
     check(len(picture.getElementsByTagName("rect")) == bars, "a bar a bin")
