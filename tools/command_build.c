@@ -1,11 +1,14 @@
-/* trim3r build: frames of a recording to a scene file. */
+/* trim3r build: frames of a recording to a scene file, or to the start of an outside optimiser. */
 #include "commands.h"
 
 #include <argp.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "cli.h"
+#include "colmap_folder.h"
+#include "developed_frame.h"
 #include "json_output.h"
 #include "option_values.h"
 #include "reconstruction.h"
@@ -15,17 +18,22 @@
 
 typedef struct build_options {
     const char *recording;
-    const char *output;
-    const char *prune; /* a scene to be pruned in the place of one that is built */
-    int flags;         /* SCENE_FILE_... */
+    const char *output; /* NULL = no scene file */
+    const char *colmap; /* NULL = no COLMAP model */
+    const char *prune;  /* a scene to be pruned in the place of one that is built */
+    int flags;          /* SCENE_FILE_... */
     bool json;
     reconstruction_options settings;
 } build_options;
 
-enum { KEY_LOCAL = 0x1000, KEY_PRUNE, KEY_COMMENTS, KEY_JSON };
+enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_JSON };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "SCENE.ply", 0, "where the scene goes (needed)", 0},
+    {"output", 'o', "SCENE.ply", 0, "where the scene goes (needed, or --colmap)", 0},
+    {"colmap", KEY_COLMAP, "DIR", 0,
+     "write the start of an outside optimiser into this folder, new or empty: the context views and the means and "
+     "colours of the Gaussians as a COLMAP model in text",
+     0},
     {"prune", KEY_PRUNE, "SCENE.ply", 0,
      "prune this scene, made elsewhere, instead of building one, with a --method that is a rival; the recording gives "
      "the views, --context those it was made of",
@@ -49,6 +57,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'o':
         o->output = arg;
         return 0;
+    case KEY_COLMAP:
+        o->colmap = arg;
+        return 0;
     case KEY_PRUNE:
         o->prune = arg;
         return 0;
@@ -67,9 +78,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END:
         if (o->recording == NULL) {
             argp_error(state, "REC.mcap is missing");
-        } else if (o->output == NULL) {
+        } else if (o->output == NULL && o->colmap == NULL) {
             argp_error(state, "-o SCENE.ply is missing");
-        } else if (!path_is_ply(o->output)) {
+        } else if (o->output != NULL && !path_is_ply(o->output)) {
             argp_error(state, "-o %s: scenes are written as .ply", o->output);
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0) {
             argp_error(state, "the budget is missing: --gaussians Z or --keep P%%");
@@ -89,14 +100,21 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap",
-    .doc = "Makes exactly Z Gaussians of a recording's context frames."
-           "\vExamples:\n"
-           "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
-           "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
-           "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
-           "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
-           "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n\n"
-           "The scene stands in the recording's world frame unless --local is given.",
+    .doc =
+        "Makes exactly Z Gaussians of a recording's context frames."
+        "\vExamples:\n"
+        "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+        "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
+        "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
+        "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
+        "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n"
+        "  trim3r build room.mcap --keep 10% --colmap start\n\n"
+        "The scene stands in the recording's world frame unless --local is given.\n\n"
+        "--colmap: DIR/images/ are the context views at the working size, undistorted; DIR/sparse/0/ holds "
+        "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
+        "look for them; InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that it "
+        "came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise where the "
+        "head and refinement put them.",
     .children = children,
 };
 
@@ -104,7 +122,12 @@ static void print_json(const build_options *o, const reconstruction_account *tol
 {
     bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
     cJSON *root = cJSON_CreateObject();
-    cJSON_AddStringToObject(root, "scene", o->output);
+    if (o->output != NULL) {
+        cJSON_AddStringToObject(root, "scene", o->output);
+    }
+    if (o->colmap != NULL) {
+        cJSON_AddStringToObject(root, "colmap", o->colmap);
+    }
     cJSON_AddStringToObject(root, "method", method_name(o->settings.method));
     json_add_integer(root, "gaussians", r->scene.count);
     json_add_integer(root, "requested", told->requested);
@@ -160,6 +183,54 @@ static int build(const build_options *o, const t3r_recording *recording, reconst
     return code;
 }
 
+static int write_colmap(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
+                        const reconstruction_account *told)
+{
+    colmap_view views[T3R_MAX_VIEWS] = {0};
+    char error[ERROR_BYTES] = "";
+    int code = CLI_OK;
+    for (uint32_t v = 0; v < told->context_count && code == CLI_OK; v++) {
+        views[v] = (colmap_view){.frame = told->context[v], .width = told->width, .height = told->height};
+        views[v].rgb = malloc((size_t)told->width * told->height * 3);
+        code = views[v].rgb == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
+                                    : developed_frame(recording, o->recording, told->context[v], told->width,
+                                                      told->height, views[v].rgb, &views[v].camera);
+    }
+    colmap_model model = {.views = views,
+                          .view_count = told->context_count,
+                          .scene = scene,
+                          .local = (o->flags & SCENE_FILE_LOCAL) != 0,
+                          .sourced = o->prune == NULL};
+    if (code == CLI_OK && colmap_folder_write(o->colmap, &model, error, sizeof error) != 0) {
+        code = cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    for (uint32_t v = 0; v < told->context_count; v++) {
+        free(views[v].rgb);
+    }
+    return code;
+}
+
+static int write_all(const build_options *o, const t3r_recording *recording, const reconstruction *r,
+                     const reconstruction_account *told)
+{
+    char note[64], error[ERROR_BYTES] = "";
+    note_head(told, note, sizeof note);
+    if (o->output != NULL && scene_file_write_ply(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told) : CLI_OK;
+}
+
+static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r)
+{
+    printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n",
+           o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
+           told->seconds * 1e3);
+    if (told->requested > r->scene.count) {
+        printf("%" PRIu32 " were asked for; all valid points are used\n", told->requested);
+    }
+}
+
 int command_build(int argc, char **argv)
 {
     build_options o = {0};
@@ -171,22 +242,19 @@ int command_build(int argc, char **argv)
     if (recording == NULL) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
+    int code = CLI_OK;
+    if (o.colmap != NULL && colmap_folder_begin(o.colmap, error, sizeof error) != 0) {
+        code = cli_error(CLI_BAD_INPUT, "%s", error);
+    }
     reconstruction r;
     reconstruction_account told;
-    int code = build(&o, recording, &r, &told);
+    code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
     if (code == CLI_OK) {
-        char note[64];
-        note_head(&told, note, sizeof note);
-        if (scene_file_write_ply(o.output, &r.scene, o.flags, note, error, sizeof error) != 0) {
-            code = cli_error(CLI_BAD_INPUT, "%s", error);
-        } else if (o.json) {
+        code = write_all(&o, recording, &r, &told);
+        if (code == CLI_OK && o.json) {
             print_json(&o, &told, &r);
-        } else {
-            printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n", o.output,
-                   r.scene.count, told.valid_points, told.arena_bytes, told.seconds * 1e3);
-            if (told.requested > r.scene.count) {
-                printf("%" PRIu32 " were asked for; all valid points are used\n", told.requested);
-            }
+        } else if (code == CLI_OK) {
+            print_text(&o, &told, &r);
         }
         reconstruction_close(&r);
     }

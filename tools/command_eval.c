@@ -41,6 +41,7 @@ typedef struct options {
 enum {
     KEY_CONTEXT = 0x200,
     KEY_TARGET,
+    KEY_VIEWS,
     KEY_KEEP,
     KEY_METHODS,
     KEY_ITERATIONS,
@@ -122,6 +123,12 @@ static void check_options(struct argp_state *state, options *o)
     if (o->planar && (o->has_target || o->settings.context_count > 0)) {
         argp_error(state, "--planar takes images, not --context and --target");
     }
+    if (o->planar && o->settings.context_views > 2) {
+        argp_error(state, "--views belongs to a recording, not to --planar");
+    }
+    if (o->settings.context_views > 2 && o->settings.context_count > o->settings.context_views) {
+        argp_error(state, "--context names more frames than --views");
+    }
     if (!o->planar && o->width != 0) {
         argp_error(state, "--size belongs to --planar; --working sets the size of a recording's views");
     }
@@ -171,6 +178,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case KEY_TARGET:
         o->target = option_number(state, "target", arg, 0, UINT32_MAX);
         o->has_target = true;
+        return 0;
+    case KEY_VIEWS:
+        o->settings.context_views = option_number(state, "views", arg, 2, T3R_MAX_VIEWS);
         return 0;
     case KEY_KEEP:
         if (cli_parse_list_percent(arg, o->keep, MOST_KEEPS, &o->keep_count) != 0) {
@@ -234,6 +244,9 @@ static const struct argp_option argp_options[] = {
     {"context", KEY_CONTEXT, "A,B,...", 0,
      "frames that the scene is made of, one named twice counting once (all triplets that the recording carries)", 0},
     {"target", KEY_TARGET, "T", 0, "the frame to be met; it is never shown to the method", 0},
+    {"views", KEY_VIEWS, "N", 0,
+     "fill every context up to N frames, 2..16 (2: the triplet's own, or --context), with those nearest to the target",
+     0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
     {"methods", KEY_METHODS, "M,M,...", 0,
      "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them", 0},
@@ -282,6 +295,11 @@ static const struct argp parser = {
         "--planar, where ssim, sharp, holes and perceptual count all pixels too. Cells that do not apply are empty. "
         "Several cases end in lines of means (decibels are averaged as decibels), which the CSV leaves out; several "
         "recordings get a folder each in --images.\n\n"
+        "--views N: the triplet's own frames, or those of --context, come first, then the recording's other frames "
+        "with depth, pose and intrinsics by their distance from the target's camera: the root of the squares of the "
+        "centres' distance over the median depth of the first frame, and of the distance between the directions of "
+        "view as unit vectors; of equal ones the lower index, the target never. The column context names them, the "
+        "column settings tells views-N; the mask is that of all N. A recording with too few frames is refused.\n\n"
         "The rivals keep, of the scene that --head and --refine make of all points, the Gaussians that their papers' "
         "scores rank highest over the context views, and draw them unchanged: random; eagles (influence, the sum of "
         "blending weights); lightgaussian (hits x opacity x volume); pup (second-order sensitivity to place and "
@@ -303,6 +321,7 @@ static const struct argp parser = {
         "  trim3r eval room.mcap --keep 100,20,10\n"
         "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
         "  trim3r eval a.mcap b.mcap --keep 20,5 --methods trim3r,random --csv ab.csv\n"
+        "  trim3r eval room.mcap --keep 20,5 --views 4\n"
         "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune\n"
         "  trim3r eval room.mcap --keep 10,5 --heads analytic,moment,small,my.t3w\n"
         "  trim3r eval a.mcap b.mcap --ablate --csv ablations.csv\n"
@@ -320,7 +339,7 @@ static int open_cases(const options *o, evaluation_cases *cases)
         return evaluation_cases_of_images(cases, o->inputs, o->input_count, o->width, o->height);
     }
     return evaluation_cases_of_recordings(cases, o->inputs, o->input_count, o->settings.context,
-                                          o->settings.context_count, o->target);
+                                          o->settings.context_count, o->target, o->settings.context_views);
 }
 
 static int choose_contestants(const options *o, evaluation_contestants *chosen)

@@ -1,4 +1,4 @@
-/* trim3r info: what a recording holds. */
+/* trim3r info: what a recording or scenes hold. */
 #include "commands.h"
 
 #include <argp.h>
@@ -10,12 +10,17 @@
 #include "json_output.h"
 #include "option_values.h"
 #include "recording.h"
+#include "scene_info.h"
 
 #define ERROR_BYTES 512
 
 typedef struct options {
     const char *recording;
-    bool json;
+    const char *scenes[SCENE_INFO_MOST];
+    uint32_t scene_count;
+    const char *svg;
+    uint32_t view;
+    bool has_view, json;
 } options;
 
 /* A summary over all frames; `mixed` once two differ in size or format. */
@@ -27,7 +32,31 @@ typedef struct frame_summary {
     bool mixed;
 } frame_summary;
 
-enum { KEY_JSON = 0x100 };
+enum { KEY_JSON = 0x100, KEY_VIEW, KEY_SVG };
+
+static void take_argument(struct argp_state *state, options *o, const char *argument)
+{
+    if (!path_is_ply(argument)) {
+        option_argument(state, argument, (const char **[]){&o->recording}, 1);
+    } else if (o->scene_count == SCENE_INFO_MOST) {
+        argp_error(state, "%s: at most %u scenes are shown at once", argument, SCENE_INFO_MOST);
+    } else {
+        o->scenes[o->scene_count++] = argument;
+    }
+}
+
+static void check_options(struct argp_state *state, const options *o)
+{
+    if (o->scene_count == 0 && o->recording == NULL) {
+        argp_error(state, "REC.mcap or SCENE.ply is missing");
+    }
+    if (o->scene_count == 0 && (o->svg != NULL || o->has_view)) {
+        argp_error(state, "--svg and --view belong to scenes");
+    }
+    if (o->scene_count > 0 && o->has_view != (o->recording != NULL)) {
+        argp_error(state, "beside scenes REC.mcap and --view belong together");
+    }
+}
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
@@ -36,13 +65,18 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_JSON:
         o->json = true;
         return 0;
+    case KEY_SVG:
+        o->svg = argument;
+        return 0;
+    case KEY_VIEW:
+        o->view = option_number(state, "view", argument, 0, UINT32_MAX);
+        o->has_view = true;
+        return 0;
     case ARGP_KEY_ARG:
-        option_argument(state, argument, (const char **[]){&o->recording}, 1);
+        take_argument(state, o, argument);
         return 0;
     case ARGP_KEY_END:
-        if (o->recording == NULL) {
-            argp_error(state, "REC.mcap is missing");
-        }
+        check_options(state, o);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -50,6 +84,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
+    {"view", KEY_VIEW, "N", 0, "Tell scales in pixels of this frame of REC.mcap, too", 0},
+    {"svg", KEY_SVG, "FILE", 0, "Histograms of the scenes' scales as a picture", 0},
     {"json", KEY_JSON, NULL, 0, "One JSON object on stdout", 0},
     {0},
 };
@@ -57,11 +93,18 @@ static const struct argp_option argp_options[] = {
 static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
-    .args_doc = "REC.mcap",
-    .doc = "Show what a recording holds: frames, streams, clock, pairing, triplets.\v"
+    .args_doc = "REC.mcap\nSCENE.ply... [REC.mcap --view N]",
+    .doc = "Show what a recording holds: frames, streams, clock, pairing, triplets. Or what scenes hold: Gaussians, "
+           "bounds, "
+           "and how wide the Gaussians are.\v"
+           "The scale of a Gaussian is the root of the product of its two largest standard deviations, in world units. "
+           "With --view also in pixels of that frame, at the median depth of the first scene's Gaussians within its "
+           "picture. JSON: scale_edges are a quarter of an octave apart, scale_counts the Gaussians between them; what "
+           "lies beyond is in the first and the last.\n\n"
            "Examples:\n"
            "  trim3r info room.mcap\n"
-           "  trim3r info --json room.mcap",
+           "  trim3r info --json room.mcap\n"
+           "  trim3r info all.ply pruned.ply room.mcap --view 1 --svg scales.svg",
 };
 
 static const char *distortion_name(t3r_distortion distortion)
@@ -210,6 +253,14 @@ int command_info(int argc, char **argv)
 {
     options o = {0};
     argp_parse(&parser, argc, argv, 0, NULL, &o);
+    if (o.scene_count > 0) {
+        return scene_info(&(scene_info_request){.scenes = o.scenes,
+                                                .scene_count = o.scene_count,
+                                                .recording = o.recording,
+                                                .view = o.view,
+                                                .svg = o.svg,
+                                                .json = o.json});
+    }
     char error[ERROR_BYTES];
     t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
     if (recording == NULL) {

@@ -1,10 +1,12 @@
 #include "evaluation_cases.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli.h"
+#include "nearest_views.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
@@ -100,43 +102,125 @@ static void set_context(evaluation_case *what, const uint32_t *frames, uint32_t 
     }
 }
 
-int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count, const uint32_t *context,
-                                   uint32_t context_count, uint32_t target)
+static int list_triplets(evaluation_cases *cases)
 {
-    int code = begin(cases, inputs, count);
-    code = code == CLI_OK ? open_recordings(cases) : code;
     uint32_t total = 0;
-    for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
-        uint32_t triplets = context_count > 0 ? 1 : t3r_recording_triplet_count(cases->recordings[i]);
+    for (uint32_t i = 0; i < cases->input_count; i++) {
+        uint32_t triplets = t3r_recording_triplet_count(cases->recordings[i]);
         total += triplets;
         if (triplets == 0) {
-            code = cli_error(CLI_BAD_INPUT, "%s: the recording carries no triplets; give --context and --target",
-                             inputs[i]);
+            return cli_error(CLI_BAD_INPUT, "%s: the recording carries no triplets; give --context and --target",
+                             cases->inputs[i]);
         }
-    }
-    if (code != CLI_OK) {
-        return code;
     }
     cases->list = calloc(total, sizeof *cases->list);
     if (cases->list == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t triplets = context_count > 0 ? 1 : t3r_recording_triplet_count(cases->recordings[i]);
-        for (uint32_t t = 0; t < triplets; t++) {
+    for (uint32_t i = 0; i < cases->input_count; i++) {
+        for (uint32_t t = 0; t < t3r_recording_triplet_count(cases->recordings[i]); t++) {
+            t3r_triplet triplet = t3r_recording_triplet(cases->recordings[i], t);
             evaluation_case *what = &cases->list[cases->count++];
-            *what = (evaluation_case){
-                .recording = cases->recordings[i], .path = inputs[i], .scene = cases->names[i], .target = target};
-            if (context_count > 0) {
-                set_context(what, context, context_count);
-            } else {
-                t3r_triplet triplet = t3r_recording_triplet(cases->recordings[i], t);
-                set_context(what, triplet.context, 2);
-                what->target = triplet.target;
-            }
+            *what = (evaluation_case){.recording = cases->recordings[i],
+                                      .path = cases->inputs[i],
+                                      .scene = cases->names[i],
+                                      .target = triplet.target};
+            set_context(what, triplet.context, 2);
         }
     }
     return CLI_OK;
+}
+
+static int list_given(evaluation_cases *cases, const uint32_t *context, uint32_t context_count, uint32_t target)
+{
+    cases->list = calloc(cases->input_count, sizeof *cases->list);
+    if (cases->list == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    for (; cases->count < cases->input_count; cases->count++) {
+        evaluation_case *what = &cases->list[cases->count];
+        *what = (evaluation_case){.recording = cases->recordings[cases->count],
+                                  .path = cases->inputs[cases->count],
+                                  .scene = cases->names[cases->count],
+                                  .target = target};
+        set_context(what, context, context_count);
+    }
+    return CLI_OK;
+}
+
+/* ---- more views ------------------------------------------------------------------------------------------------- */
+
+static int find_places(const t3r_recording *recording, const char *path, view_place *places, uint32_t count)
+{
+    char error[512] = "";
+    for (uint32_t i = 0; i < count; i++) {
+        t3r_capture_frame frame;
+        if (t3r_recording_frame(recording, i, &frame, error, sizeof error) != T3R_CAPTURE_FRAME) {
+            return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, i, error);
+        }
+        places[i] = (view_place){.usable = false};
+        if (frame.has_pose && frame.has_intrinsics) {
+            places[i] = view_place_of(&frame.camera);
+            places[i].usable = frame.frame.depth != NULL;
+        }
+    }
+    return CLI_OK;
+}
+
+static int fill_context(evaluation_case *what, const view_place *places, uint32_t count, uint32_t views)
+{
+    t3r_capture_frame first, target;
+    int code = reconstruction_frame(what->recording, what->path, what->context[0], &first);
+    code = code == CLI_OK ? reconstruction_frame(what->recording, what->path, what->target, &target) : code;
+    if (code != CLI_OK) {
+        return code;
+    }
+    double depth = first.frame.depth == NULL ? 0 : view_median_depth(&first.frame);
+    if (!(depth > 0)) {
+        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no depth to measure the distance of views by",
+                         what->path, what->context[0]);
+    }
+    uint32_t own = what->context_count;
+    what->context_count = nearest_views(places, count, what->target, depth, views, what->context, own);
+    if (what->context_count < views) {
+        return cli_error(CLI_BAD_INPUT,
+                         "%s: --views %" PRIu32 " is too much: beside target %" PRIu32 " there are %" PRIu32
+                         " frames with depth, pose and intrinsics",
+                         what->path, views, what->target, what->context_count);
+    }
+    return CLI_OK;
+}
+
+static int fill_contexts(evaluation_cases *cases, uint32_t views)
+{
+    view_place *places = NULL;
+    const t3r_recording *known = NULL;
+    int code = CLI_OK;
+    for (uint32_t i = 0; i < cases->count && code == CLI_OK; i++) {
+        evaluation_case *what = &cases->list[i];
+        uint32_t count = t3r_recording_frame_count(what->recording);
+        if (what->recording != known) { /* the cases of a recording stand together */
+            free(places);
+            places = calloc(count + 1, sizeof *places);
+            known = what->recording;
+            code = places == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
+                                  : find_places(known, what->path, places, count);
+        }
+        code = code == CLI_OK ? fill_context(what, places, count, views) : code;
+    }
+    free(places);
+    return code;
+}
+
+int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count, const uint32_t *context,
+                                   uint32_t context_count, uint32_t target, uint32_t views)
+{
+    int code = begin(cases, inputs, count);
+    code = code == CLI_OK ? open_recordings(cases) : code;
+    if (code == CLI_OK) {
+        code = context_count > 0 ? list_given(cases, context, context_count, target) : list_triplets(cases);
+    }
+    return code == CLI_OK && views > 2 ? fill_contexts(cases, views) : code;
 }
 
 int evaluation_cases_of_images(evaluation_cases *cases, char **inputs, uint32_t count, uint32_t width, uint32_t height)

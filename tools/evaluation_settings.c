@@ -56,6 +56,7 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     add_switch(w, "flying", s->flying, usual->flying);
     add_switch(w, "redundancy", s->redundancy, usual->redundancy);
     add_switch(w, "exposure", s->exposure, usual->exposure);
+    add_number(w, "views", s->context_views, usual->context_views);
     add_number(w, "seed", s->seed, usual->seed);
     if (s->width != usual->width || s->height != usual->height) {
         add(w, "working-%" PRIu32 "x%" PRIu32, s->width, s->height);

@@ -15,7 +15,7 @@ static const struct {
 } commands[] = {
     {"import", command_import, "a folder of posed pictures to a recording"},
     {"room", command_room, "the built-in room as a recording"},
-    {"info", command_info, "what a recording holds: frames, streams, clocks, pairing"},
+    {"info", command_info, "what recordings and scenes hold: frames, clocks; Gaussians, scales"},
     {"build", command_build, "frames of a recording to exactly Z Gaussians, as a .ply"},
     {"render", command_render, "a scene seen from a frame of a recording, a pose file or a trajectory"},
     {"eval", command_eval, "scores of rendered views against recorded ones"},

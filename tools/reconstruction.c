@@ -15,6 +15,7 @@ void reconstruction_defaults(reconstruction_options *options)
 {
     t3r_config c = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
     *options = (reconstruction_options){
+        .context_views = 2,
         .allocation = c.allocation,
         .head = CHOSEN_HEAD_DEFAULT,
         .wavelet = c.wavelet,

@@ -23,9 +23,10 @@ typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
 typedef struct reconstruction_options {
     uint32_t context[T3R_MAX_VIEWS];      /* frame indices of the context views */
     uint32_t context_count;               /* 0 = the first two frames */
+    uint32_t context_views;               /* of `eval --views`: the frames of a case; 2 = the triplet's own */
     uint32_t gaussians;                   /* budget as a count; 0 = keep_percent decides */
     double keep_percent;                  /* budget as percent of the valid points, (0, 100]; 0 = not given */
-    method_id method;                        /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
+    method_id method;                     /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
     uint32_t finetune_iterations;         /* of the methods that are fine-tuned */
     uint32_t width, height;               /* working size; 0 = the first context frame's */
     uint32_t render_width, render_height; /* largest target; 0 = the working size */

@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""paper.py TRIM3R TOOLS/PAPER DATA: `tools/paper --quick` on the recorded scenes: every part has its table, cells are the
+means of eval's rows, what was measured is not measured again, and a run cut off goes on."""
+import csv
+import glob
+import os
+import re
+import statistics
+import sys
+import tempfile
+import xml.dom.minidom
+
+from common import check, done, near, run, skip
+
+trim3r, paper, data = map(os.path.abspath, sys.argv[1:])
+if not os.path.exists(data):
+    skip(f"{data} is not there")
+try:
+    import matplotlib  # noqa: F401: the pictures
+except ImportError as error:
+    skip(str(error))
+SCENES = ("hololens_b", "icl_livingroom_synth", "icl_livingroom_noisy_synth", "apc_shelf")
+METHODS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")
+
+
+def tables(text):
+    """{heading: its tables, each a list of rows of cells}"""
+    found = {}
+    for section in text.split("## ")[1:]:
+        blocks = re.findall(r"(?:^\|.*\n)+", section + "\n", re.M)
+        found[section.split("\n")[0]] = [[[c.strip() for c in line[1:-1].split("|")] for line in block.splitlines()]
+                                         for block in blocks]
+    return found
+
+
+def filled(rows):
+    """The rows with the first column repeated where it is left empty."""
+    title = ""
+    for row in rows[2:]:
+        title = row[0] or title
+        yield title, row[1], row[2:]
+
+
+def rows_of(cache, pattern):
+    (path,) = glob.glob(f"{cache}/*/{pattern}")
+    with open(path, newline="", encoding="utf-8") as file:
+        return path, list(csv.DictReader(file))
+
+
+def tells(cell, row):
+    numbers = list(map(float, cell.split(" / ")))
+    for number, column, step in zip(numbers, ("psnr", "ssim", "perceptual"), (0.005, 0.0005, 0.0005), strict=True):
+        near(number, float(row[column]), step * 1.001, f"{column} of {row['scene']}, {row['method']}")
+
+
+def check_quality(cache, found):
+    rows = {(s, m): cells for s, m, cells in filled(found["Quality against budget"][0])}
+    check(list(rows) == [(s, m) for s in (*SCENES, "mean of the scenes") for m in METHODS], "a row a scene and method")
+    check(found["Quality against budget"][0][0] == ["scene", "method", "0 %", "90 %"], "shares pruned across")
+    for scene in SCENES:
+        measured = {(r["method"], r["keep"]): r for r in rows_of(cache, f"{scene}.first.*.csv")[1]}
+        for method in METHODS:
+            tells(rows[scene, method][0], measured[method, "100"])
+            tells(rows[scene, method][1], measured[method, "10"])
+    for method in METHODS:
+        each = [float(rows[s, method][1].split(" / ")[0]) for s in SCENES]
+        near(float(rows["mean of the scenes", method][1].split(" / ")[0]), statistics.fmean(each), 0.011, "each scene once")
+    psnr = {m: float(rows["mean of the scenes", m][1].split(" / ")[0]) for m in METHODS}
+    check(all(psnr["trim3r"] > psnr[m] + 8 for m in METHODS[1:]), f"pruning alone leaves holes: {psnr}")
+
+
+def check_others(cache, found):
+    rows = {(s, m): cells for s, m, cells in filled(found["With fine-tuning"][0])}
+    tuned = {r["method"]: r for r in rows_of(cache, "apc_shelf.tuned.*.csv")[1]}
+    for method in METHODS:
+        tells(rows["apc_shelf", f"{method}+finetune"][0], tuned[f"{method}+finetune"])
+        check(("apc_shelf", method) in rows, "with what was not fine-tuned beside it")
+    views = {(s, n): cells for s, n, cells in filled(found["More input views"][0])}
+    check(list(views) == [(s, n) for s in SCENES for n in ("2", "3")], "input views")
+    _, three = rows_of(cache, "hololens_b.3.0.*.csv")
+    tells(views["hololens_b", "3"][0], three[0])
+    check(len(three[0]["context"].split(",")) == 3, "of three frames")
+    build, slow, frames = found["Latency and frames a second"]
+    timed = [rows_of(cache, f"{s}.timed.*.csv")[1] for s in SCENES]
+    ours = statistics.median(float(r["render_ms"]) for rows in timed for r in rows
+                             if (r["method"], r["keep"]) == ("trim3r", "10"))
+    near(float(frames[2][2]), 1000 / ours, 0.51, "frames a second")
+    check([row[0] for row in build[2:]] == list(METHODS) and len(slow[0]) == len(METHODS), "every method is timed")
+    scales = found["Splat scales"][0]
+    check([row[0] for row in scales[2:]] == list(SCENES), "scales of every scene")
+    for row in scales[2:]:
+        medians = [float(c.split(" ")[0]) for c in row[1:]]
+        check(medians[1] > 2 * medians[0] and medians[1] > 2 * medians[3], f"{row[0]}: pruned ones are wider: {medians}")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    cache, out = f"{folder}/cache", f"{folder}/out"
+    os.mkdir(out)
+    call = (sys.executable, "-B", paper, "--quick", "--program", trim3r, "--cache", cache)
+    first = run(*call, "--write", out)
+    check(re.search(r"\d+ tables to be made, about \d+ min on \d+ processors", first.stderr), "what it will take")
+    found = tables(first.stdout)
+    check("Other kinds of scenes" not in found, "no heads, no rows")
+    check_quality(cache, found)
+    check_others(cache, found)
+    with open(f"{out}/PAPER.md", encoding="utf-8") as file:
+        check(tables(file.read()) == found, "PAPER.md is what was printed")
+    for picture in ("paper.svg", "paper-scales.svg"):
+        xml.dom.minidom.parse(f"{out}/{picture}")
+
+    # a table that was cut off goes on, the others stand
+    path, rows = rows_of(cache, "apc_shelf.first.*.csv")
+    with open(path, encoding="utf-8") as file:
+        lines = file.readlines()
+    os.remove(path)
+    with open(os.path.join(os.path.dirname(path), "new." + os.path.basename(path)), "w", encoding="utf-8") as file:
+        file.writelines(lines[:6])
+    again = run(*call, "quality")
+    check("1 tables to be made" in again.stderr, f"the others are kept: {again.stderr}")
+    with open(path, encoding="utf-8") as file:
+        check(file.readlines()[:6] == lines[:6], "rows that stood are not made again")
+    check(tables(again.stdout)["Quality against budget"] == found["Quality against budget"], "the same table")
+
+    # heads of other scenes
+    head = f"{folder}/mine.t3w"
+    heads = os.path.join(os.path.dirname(paper), "..", "quant", "heads")
+    run(trim3r, "quantize", f"{heads}/nano.safetensors", "--name", "mine", "-o", head)
+    rows = tables(run(*call, "transfer", "--head-of", f"indoor={head}").stdout)["Other kinds of scenes"][0]
+    check([(s, k) for s, k, _ in filled(rows)] == [(s, k) for s in SCENES for k in ("small, shipped", "indoor")], "heads")
+    tells(list(filled(rows))[1][2][1], rows_of(cache, "hololens_b.head.mine.t3w.*.csv")[1][1])
+
+    for words, *wrong in (("no part is called", "speed"), ("--write takes all parts", "views", "--write"),
+                          ("needs --head-of", "transfer"), ("is not KIND=FILE.t3w", "--head-of", "indoor"),
+                          ("is not KIND=FILE.t3w", "--head-of", "indoor=absent.t3w"),
+                          ("with commas between", "--tuned-pruned", "50")):
+        check(words in run(*call, *wrong, expect=2).stderr, f"{wrong}: {words}")
+    check("absent is not there" in run(*call, "--program", "absent", expect=1).stderr, "a missing program is told")
+done()

@@ -1,0 +1,39 @@
+/* A scene's points and context views as a COLMAP model in text, the start of an outside optimiser: DIR/images/, and
+ * cameras.txt, images.txt and points3D.txt in DIR/sparse/0/, where 3D Gaussian Splatting and gsplat look for them.
+ *
+ * COLMAP's conventions (colmap.github.io/format.html): poses are world-to-camera, quaternion w x y z first; cameras
+ * look along +z, x right, y down; the top-left pixel's centre is at (0.5, 0.5). */
+#ifndef TRIM3R_TOOLS_COLMAP_FOLDER_H
+#define TRIM3R_TOOLS_COLMAP_FOLDER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "trim3r.h"
+
+/* A context view as the scene was built from it. */
+typedef struct colmap_view {
+    uint32_t frame;    /* index within the recording: names the picture */
+    t3r_camera camera; /* undistorted */
+    uint32_t width, height;
+    uint8_t *rgb; /* width x height x 3 */
+} colmap_view;
+
+typedef struct colmap_model {
+    const colmap_view *views;
+    uint32_t view_count;
+    const t3r_scene *scene;
+    bool local;   /* positions from the scene frame's origin instead of the world's */
+    bool sourced; /* a Gaussian's source view is one of `views`: it is observed there, else nowhere */
+} colmap_model;
+
+/* Makes the folder where there is none; one that holds anything is refused: readers prefer what other tools left there
+ * (points3D.ply, *.bin). 0, or -1 with "path: why" in error[] (as for the next). */
+int colmap_folder_begin(const char *directory, char *error, size_t error_bytes);
+
+/* Pictures, cameras, poses, and a point for the mean of each Gaussian, with its colour. A point has one observation:
+ * where its mean stands in its source view; error 0 then, -1 without one. */
+int colmap_folder_write(const char *directory, const colmap_model *model, char *error, size_t error_bytes);
+
+#endif

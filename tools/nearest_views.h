@@ -1,0 +1,35 @@
+/* Which recorded frames show most of what a target shows: the frames that `eval --views` adds to a triplet's own. */
+#ifndef TRIM3R_TOOLS_NEAREST_VIEWS_H
+#define TRIM3R_TOOLS_NEAREST_VIEWS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "recording.h"
+#include "trim3r.h"
+
+/* Where a frame was taken. */
+typedef struct view_place {
+    bool usable; /* it has pose, intrinsics and depth */
+    int64_t position_q32[3];
+    int32_t axis_q30[3]; /* the direction of view, of length 1 */
+} view_place;
+
+/* The place of a camera in its documented range. */
+view_place view_place_of(const t3r_camera *camera);
+
+/* The median of a frame's valid depths in world units; 0 where none is valid. */
+double view_median_depth(const t3r_frame *frame);
+
+/* How far apart two views are: the root of (distance of the centres / depth)^2 + (distance of the directions as unit
+ * vectors)^2. A camera that moves sideways by `depth` (> 0) shifts a picture of things that far away as much as one
+ * that turns by about a radian. Rolling about the direction of view counts nothing. */
+double view_distance(const view_place *a, const view_place *b, double depth);
+
+/* Adds to the context_count frames in context[] those of the `count` places that are nearest to the target, nearest
+ * first, of equal ones the lower index, until there are `wanted`: usable ones that are not in context[] yet, and never
+ * the target. Returns how many there are then: fewer than `wanted` when the recording has no more. */
+uint32_t nearest_views(const view_place *places, uint32_t count, uint32_t target, double depth, uint32_t wanted,
+                       uint32_t *context, uint32_t context_count);
+
+#endif
