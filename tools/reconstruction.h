@@ -25,12 +25,15 @@ typedef struct reconstruction_options {
     uint32_t context_count;               /* 0 = the first two frames */
     uint32_t gaussians;                   /* budget as a count; 0 = keep_percent decides */
     double keep_percent;                  /* budget as percent of the valid points, (0, 100]; 0 = not given */
-    method_id method;                        /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
+    method_id method;                     /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
     uint32_t finetune_iterations;         /* of the methods that are fine-tuned */
     uint32_t width, height;               /* working size; 0 = the first context frame's */
     uint32_t render_width, render_height; /* largest target; 0 = the working size */
     t3r_allocation allocation;
-    const char *head; /* a text that chosen_head_is_one() */
+    const char
+        *importance; /* of the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
+    const uint16_t *const *importance_planes; /* one a context view at the working size, rows without gaps */
+    const char *head;                         /* a text that chosen_head_is_one() */
     t3r_wavelet wavelet;
     uint32_t wavelet_levels;
     uint32_t clusters;
