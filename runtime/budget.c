@@ -411,14 +411,18 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     }
     t3r_cluster *aside = &clusters[settings->clusters];
     aside->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, aside->points);
-    if (settings->allocation != T3R_ALLOCATE_GIVEN) {
+    const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
+    if (!given) {
         fill_keys(views, count, settings);
     }
     find_thresholds(views, count, settings, clusters);
-    if (settings->allocation != T3R_ALLOCATE_GIVEN) {
+    if (!given) {
         estimate_densities(views, count, settings, clusters);
     }
     set_masks(views, count, settings, clusters);
+    if (given) {
+        t3r_count_shares(views, count, clusters, settings->clusters);
+    }
 }
 
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
@@ -429,7 +433,7 @@ int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget
         return 0; /* retained where all others are, so that nothing about it is left for it to cover */
     }
     if (settings->allocation == T3R_ALLOCATE_GIVEN) {
-        return t3r_log_share_q10(view, pixel);
+        return t3r_log_share_q10(view, pixel, clusters);
     }
     const t3r_cluster *group = &clusters[g];
     return local_density_q10(group->density_q10, log_wanted_q10(view->texture[pixel], settings));
