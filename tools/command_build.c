@@ -98,7 +98,7 @@ static const struct argp argp = {
            "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
            "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
            "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
-           "  trim3r build room.mcap --keep 5% --allocate given --importance a.png,b.png -o s.ply\n"
+           "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
            "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n\n"
            "The scene stands in the recording's world frame unless --local is given.",
     .children = children,

@@ -55,9 +55,9 @@ static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
     {"allocate", KEY_ALLOCATE, "MODE", 0,
      "how the budget is spread: density (default), paper, pixel, uniform, random, given", 0},
-    {"importance", KEY_IMPORTANCE, "DIR|A.png,B.png,...", 0,
-     "of --allocate given, the brightest points are kept: a grey picture a context view at the working size, in their "
-     "order, or DIR/<frame>.png; 16 bits as they are, 8 bits spread evenly within a level",
+    {"importance", KEY_IMPORTANCE, "PNG,PNG,...", 0,
+     "of --allocate given, which keeps the brightest points: a grey picture a context view at the working size, in "
+     "their order, or a folder with <frame>.png; 16 bits as they are, 8 bits spread evenly within a level",
      0},
     {"head", KEY_HEAD, "HEAD", 0,
      "the networks nano, small (default), base, or one in a FILE.t3w; without weights: analytic, moment, none", 0},

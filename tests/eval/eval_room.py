@@ -225,7 +225,7 @@ def evaluate_rivals(folder, room):
         check(row["gaussians"] == by["trim3r", keep]["gaussians"], f"{name} at {keep} %: the count of trim3r")
         check((row["head"], row["bits"], row["refine"]) == ("small", "8", by["trim3r", keep]["refine"]), "settings")
         check((row["allocate"] is None) == (not name.startswith("trim3r")), "rivals have no allocation")
-        check(row["picture"] == f"1/{name}_iterations-25_{keep}.png", "pictures tell settings, or are confused")
+        check(row["picture"] == f"1/{name}_working-32x32_iterations-25_{keep}.png", "pictures tell settings, or are confused")
         check(os.path.exists(f"{folder}/rivals/{row['picture']}"), "a picture a row")
     for rival in rivals:
         check([by[rival, 100][s] for s in scores] == [by["trim3r", 100][s] for s in scores],
