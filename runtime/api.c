@@ -291,17 +291,76 @@ t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene)
     return T3R_OK;
 }
 
-t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene)
+/* Whether there is a readable plane for each view added. */
+static bool is_importance(const t3r_runtime *rt, const t3r_importance *importance)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(rt->views > 0 && has_head(rt, rt->config.head), T3R_ERR_STATE);
+    if (importance->planes == NULL || importance->stride_bytes % 2 != 0 ||
+        importance->stride_bytes / 2 < rt->config.width) {
+        return false;
+    }
+    for (uint32_t v = 0; v < rt->views; v++) {
+        const uint16_t *plane = importance->planes[v];
+        if (plane == NULL || (uintptr_t)plane % _Alignof(uint16_t) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether what settings need besides the views is there. */
+static bool is_served(const t3r_runtime *rt, const t3r_config *config, const t3r_importance *importance)
+{
+    return has_head(rt, config->head) && (config->allocation == T3R_ALLOCATE_GIVEN) == (importance != NULL);
+}
+
+/* Budget and head by other settings; these stay only when there is a scene. */
+static t3r_status build_by(t3r_runtime *rt, const t3r_config *config, const t3r_importance *importance,
+                           t3r_scene *scene)
+{
+    t3r_config before = rt->config;
+    rt->config = *config;
+    t3r_status status = t3r_build_scene(rt, importance);
+    if (status != T3R_OK) {
+        rt->config = before;
+        return status;
+    }
+    return t3r_get_scene(rt, scene);
+}
+
+static t3r_status reconstruct(t3r_runtime *rt, const t3r_config *config, const t3r_importance *importance,
+                              t3r_scene *scene)
+{
+    T3R_REFUSE_UNLESS(rt->views > 0 && is_served(rt, config, importance), T3R_ERR_STATE);
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
-    if (status == T3R_OK) {
-        status = t3r_build_scene(rt);
+    return status == T3R_OK ? build_by(rt, config, importance, scene) : status;
+}
+
+t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
+    t3r_config config = rt->config;
+    return reconstruct(rt, &config, NULL, scene);
+}
+
+t3r_status t3r_reconstruct_given(t3r_runtime *rt, const uint16_t *const importance[], uint32_t stride_bytes,
+                                 t3r_scene *scene)
+{
+    const t3r_importance given = {importance, stride_bytes};
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL && is_importance(rt, &given), T3R_ERR_ARGUMENT);
+    t3r_config config = rt->config;
+    config.allocation = T3R_ALLOCATE_GIVEN;
+    return reconstruct(rt, &config, &given, scene);
+}
+
+static t3r_status rebuild(t3r_runtime *rt, const t3r_config *config, const t3r_importance *importance, t3r_scene *scene)
+{
+    if (t3r_config_error(config) != NULL) {
+        return T3R_ERR_ARGUMENT;
     }
-    return status == T3R_OK ? t3r_get_scene(rt, scene) : status;
+    T3R_REFUSE_UNLESS(rt->config.keep_analysis && rt->analysed && is_served(rt, config, importance), T3R_ERR_STATE);
+    return build_by(rt, config, importance, scene);
 }
 
 t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head,
@@ -312,24 +371,24 @@ t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation al
     config.gaussians = gaussians;
     config.allocation = allocation;
     config.head = head;
-    if (t3r_config_error(&config) != NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
-    T3R_REFUSE_UNLESS(rt->config.keep_analysis && rt->analysed && has_head(rt, head), T3R_ERR_STATE);
-    t3r_config before = rt->config;
-    rt->config = config;
-    t3r_status status = t3r_build_scene(rt);
-    if (status != T3R_OK) {
-        rt->config = before;
-        return status;
-    }
-    return t3r_get_scene(rt, scene);
+    return rebuild(rt, &config, NULL, scene);
 }
 
 t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     return t3r_reallocate(rt, gaussians, rt->config.allocation, rt->config.head, scene);
+}
+
+t3r_status t3r_rebudget_given(t3r_runtime *rt, uint32_t gaussians, const uint16_t *const importance[],
+                              uint32_t stride_bytes, t3r_scene *scene)
+{
+    const t3r_importance given = {importance, stride_bytes};
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL && is_importance(rt, &given), T3R_ERR_ARGUMENT);
+    t3r_config config = rt->config;
+    config.gaussians = gaussians;
+    config.allocation = T3R_ALLOCATE_GIVEN;
+    return rebuild(rt, &config, &given, scene);
 }
 
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame)

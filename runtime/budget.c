@@ -4,12 +4,12 @@
 
 #include "blue_noise.h"
 #include "fixed.h"
+#include "importance.h"
 
 /* Added to the texture before its power, 0.002 of full scale, so that blank walls keep some points. */
 #define TEXTURE_FLOOR_Q4 8
 /* A pixel whose threshold (of 65536) is below this, 0.003, is retained first of all, whatever its texture. */
 #define SURE_THRESHOLD 197
-#define SURE_DENSITY_Q10 (-8579) /* log2(197 / 65536) */
 /* Keys are logarithms in Q10 above this zero. */
 #define KEY_ZERO (50 << 10)
 
@@ -305,7 +305,7 @@ static void find_thresholds(const t3r_view *views, uint32_t count, const t3r_bud
  * at least the sure ones. */
 static int32_t local_density_q10(int32_t density_q10, int32_t wanted_q10)
 {
-    return t3r_clamp32(density_q10 + wanted_q10, SURE_DENSITY_Q10, 0);
+    return t3r_clamp32(density_q10 + wanted_q10, T3R_LEAST_DENSITY_Q10, 0);
 }
 
 /* The density of each group for which its pixels' shares sum to its quota. The threshold alone, the key of one point,
@@ -330,8 +330,8 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
         }
         for (uint32_t g = 0; g < settings->clusters; g++) {
             if (clusters[g].quota > 0 && expected_q16[g] > 0) {
-                int32_t log_ratio_q16 = t3r_log2_wide_q16((uint64_t)clusters[g].quota << 16) -
-                                        t3r_log2_wide_q16(expected_q16[g]);
+                int32_t log_ratio_q16 =
+                    t3r_log2_wide_q16((uint64_t)clusters[g].quota << 16) - t3r_log2_wide_q16(expected_q16[g]);
                 clusters[g].density_q10 += t3r_round_shift32(log_ratio_q16, 6);
             }
         }
@@ -411,10 +411,18 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     }
     t3r_cluster *aside = &clusters[settings->clusters];
     aside->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, aside->points);
-    fill_keys(views, count, settings);
+    const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
+    if (!given) {
+        fill_keys(views, count, settings);
+    }
     find_thresholds(views, count, settings, clusters);
-    estimate_densities(views, count, settings, clusters);
+    if (!given) {
+        estimate_densities(views, count, settings, clusters);
+    }
     set_masks(views, count, settings, clusters);
+    if (given) {
+        t3r_count_shares(views, count, clusters, settings->clusters);
+    }
 }
 
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
@@ -423,6 +431,9 @@ int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget
     uint32_t g = group_of(view, pixel, settings);
     if (g >= settings->clusters) {
         return 0; /* retained where all others are, so that nothing about it is left for it to cover */
+    }
+    if (settings->allocation == T3R_ALLOCATE_GIVEN) {
+        return t3r_log_share_q10(view, pixel, clusters);
     }
     const t3r_cluster *group = &clusters[g];
     return local_density_q10(group->density_q10, log_wanted_q10(view->texture[pixel], settings));

@@ -14,6 +14,9 @@
 #include "trim3r.h"
 #include "views.h"
 
+/* No density is told to be below 0.003: log2(197 / 65536). */
+#define T3R_LEAST_DENSITY_Q10 (-8579)
+
 typedef struct t3r_budget_settings {
     t3r_allocation allocation;
     uint32_t gaussians;    /* Z */
@@ -25,11 +28,12 @@ typedef struct t3r_budget_settings {
 } t3r_budget_settings;
 
 /* Whether a point is retained only once all others are: the doubtful ones, and with pass_over_covered those that
- * another view covers. Heads let the splats of other points not grow over them. */
+ * another view covers. Heads let the splats of other points not grow over them. None when importance is given. */
 static inline bool t3r_set_aside(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
     uint8_t confidence = view->confidence[pixel];
-    return t3r_is_doubtful(confidence) || (settings->pass_over_covered && t3r_is_covered(confidence));
+    return settings->allocation != T3R_ALLOCATE_GIVEN &&
+           (t3r_is_doubtful(confidence) || (settings->pass_over_covered && t3r_is_covered(confidence)));
 }
 
 /* Whether Z is at most a quarter of the points that are neither doubtful nor covered by another view. */
@@ -47,7 +51,8 @@ void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t
 /* Their order from the lowest texture up. */
 void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
 
-/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. */
+/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. For `given` the key planes hold the keys already
+ * (importance.h). */
 void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters);
 
 /* Log2 of the density of retained points about a pixel under the allocation made last, Q10, at most 0: they are

@@ -46,7 +46,7 @@ const char *t3r_stage_name(t3r_stage stage)
 
 const char *t3r_allocation_name(t3r_allocation allocation)
 {
-    static const char *const names[] = {"density", "paper", "pixel", "uniform", "random"};
+    static const char *const names[] = {"density", "paper", "pixel", "uniform", "random", "given"};
     return pick(names, T3R_ALLOCATE_COUNT, (uint32_t)allocation);
 }
 

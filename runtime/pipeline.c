@@ -179,12 +179,17 @@ t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view
         .gamma_q8 = config->gamma_q8,
         .clusters = config->clusters,
         .seed = config->seed,
-        .pass_over_covered = config->redundancy && t3r_is_sparse(views, rt->views, gaussians),
+        .pass_over_covered = config->redundancy && config->allocation != T3R_ALLOCATE_GIVEN &&
+                             t3r_is_sparse(views, rt->views, gaussians),
     };
 }
 
-static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
+static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings,
+                   const t3r_importance *importance)
 {
+    if (importance != NULL) {
+        t3r_importance_keys(views, rt->views, importance);
+    }
     t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
     t3r_hash_budget(rt, views);
 }
@@ -252,7 +257,7 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
     return status;
 }
 
-t3r_status t3r_build_scene(t3r_runtime *rt)
+t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_importance *importance)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
@@ -262,7 +267,7 @@ t3r_status t3r_build_scene(t3r_runtime *rt)
         return T3R_ERR_CANCELLED;
     }
     t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
-    budget(rt, views, &settings);
+    budget(rt, views, &settings, importance);
     t3r_status status = head(rt, views, &settings);
     if (status == T3R_OK) {
         status = refine(rt, views);

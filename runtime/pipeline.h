@@ -3,13 +3,14 @@
 #define T3R_PIPELINE_H
 
 #include "head.h"
+#include "importance.h"
 #include "trim3r.h"
 #include "views.h"
 
 /* Depth, pointmap, wavelet, superclusters: all that does not depend on the budget. */
 t3r_status t3r_analyse(t3r_runtime *rt);
-/* Budget and head: the scene. */
-t3r_status t3r_build_scene(t3r_runtime *rt);
+/* Budget and head: the scene. `importance` is that of the allocation `given`, NULL for the others. */
+t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_importance *importance);
 
 /* What t3r_build_scene() allocates by and shows a head, for whoever looks on from outside: of an analysed runtime, its
  * planes by t3r_views_of(). An input holds the pointers it is given, and the bound weights and the arena's work. */

@@ -1,5 +1,6 @@
 /* What a configuration needs: bytes by buffer, steps by stage. */
 #include "arena.h"
+#include "importance.h"
 #include "network.h"
 #include "state.h"
 #include "superclusters.h"
@@ -12,6 +13,13 @@ static uint64_t learned_operations(const t3r_config *c)
     uint64_t across = (c->width + block - 1) / block, down = (c->height + block - 1) / block;
     return 3 * T3R_MAX_HEAD_MACS * across * down * block * block * c->views +
            ((uint64_t)c->width * c->height * c->views + c->max_gaussians) * 2 * T3R_FEATURES;
+}
+
+/* Windows of retained points, at every pixel for a learned head, at most twice at every retained one. */
+static uint64_t share_operations(const t3r_config *c)
+{
+    uint64_t windows = (uint64_t)c->width * c->height * c->views + 2 * (uint64_t)c->max_gaussians;
+    return c->allocation == T3R_ALLOCATE_GIVEN ? windows * T3R_SHARE_STEPS : 0;
 }
 
 static uint64_t head_operations(const t3r_config *c)
@@ -59,7 +67,7 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
     /* textures, two blurs of nine taps, points counted twice, keys, 17 bisections, two density rounds, masks; ranking
      * and quotas */
     operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 2 + 1 + 17 + 2 + 1) + 3 * clusters * clusters + 64 * clusters;
-    operations[T3R_STAGE_HEAD] = head_operations(c);
+    operations[T3R_STAGE_HEAD] = head_operations(c) + share_operations(c);
     /* at most eight slices, each view drawn for each: as the raster below, once more with a look at every pixel; eight
      * sweeps over six equations a Gaussian */
     uint64_t drawn = gaussians * (32 + 8 + tiles_of_view * (1 + 2 + 3 * tile + tile / 16)) + tiles_of_view * 4 * tile;

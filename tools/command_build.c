@@ -87,6 +87,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         } else if (o->prune != NULL && method_kind_of(o->settings.method) == METHOD_TRIM3R) {
             argp_error(state,
                        "--prune takes one of the rivals, --method eagles, say: trim3r needs the recording's depth");
+        } else if (o->prune != NULL && method_way_of(o->settings.method) == METHOD_HEAD) {
+            argp_error(state, "--prune takes no +head: which pixels the Gaussians of a file came from is not told");
         }
         return 0;
     default:
@@ -107,6 +109,8 @@ static const struct argp argp = {
         "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
         "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
         "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
+        "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
+        "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
         "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n"
         "  trim3r build room.mcap --keep 10% --colmap start\n\n"
         "The scene stands in the recording's world frame unless --local is given.\n\n"

@@ -249,7 +249,9 @@ static const struct argp_option argp_options[] = {
      0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
     {"methods", KEY_METHODS, "M,M,...", 0,
-     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them", 0},
+     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
+     "+head: their points for our head",
+     0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
     {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
@@ -304,7 +306,10 @@ static const struct argp parser = {
         "scores rank highest over the context views, and draw them unchanged: random; eagles (influence, the sum of "
         "blending weights); lightgaussian (hits x opacity x volume); pup (second-order sensitivity to place and "
         "scale); efficientgs (dominant in most pixels). +finetune: N iterations of Adam on the context views follow, "
-        "on all parameters of what was kept. build_ms counts scoring and fine-tuning.\n\n"
+        "on all parameters of what was kept. +head: --head makes new Gaussians of the points that those kept came "
+        "from, "
+        "refined as trim3r's are; trim3r+head makes them of our own points, so that both have their spacing counted. "
+        "build_ms counts the unpruned scene, scoring and fine-tuning.\n\n"
         "--ablate: each row changes one thing of the settings given, --refine among them, and names it in the column "
         "ablation. full: nothing. no-adaptation: the head is told that nothing was pruned; its splats at 100 % are "
         "pruned and, but for --refine, left as they are. no-mask: the network is told so, but its splats still grow "
@@ -322,7 +327,7 @@ static const struct argp parser = {
         "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
         "  trim3r eval a.mcap b.mcap --keep 20,5 --methods trim3r,random --csv ab.csv\n"
         "  trim3r eval room.mcap --keep 20,5 --views 4\n"
-        "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune\n"
+        "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune,pup+head\n"
         "  trim3r eval room.mcap --keep 10,5 --heads analytic,moment,small,my.t3w\n"
         "  trim3r eval a.mcap b.mcap --ablate --csv ablations.csv\n"
         "  trim3r eval room.mcap --ablate=full,no-mask,no-adaptation --keep 10,5 --refine 0\n"

@@ -141,6 +141,11 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         o->inputs = state->argv + state->next;
         o->input_count = (uint32_t)(state->argc - state->next);
         return 0;
+    case ARGP_KEY_END:
+        if (c->settings.allocation == T3R_ALLOCATE_GIVEN) {
+            argp_error(state, "--allocate given is of pictures of one recording; stress has scenes of its own");
+        }
+        return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -149,7 +154,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is compared:", 1},
     {"methods", KEY_METHODS, "M,M,...", 0,
-     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them", 0},
+     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
+     "+head: their points for our head",
+     0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points of the unperturbed frames (10)", 0},
     {"rows", KEY_ROWS, "NAME,...", 0, "perturbations and scenes, see below (all)", 0},

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "hash.h"
 
 /* A list with something between its items. */
 typedef struct words {
@@ -58,6 +59,10 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     add_switch(w, "exposure", s->exposure, usual->exposure);
     add_number(w, "views", s->context_views, usual->context_views);
     add_number(w, "seed", s->seed, usual->seed);
+    if (s->importance != NULL) { /* which pictures: a name that fits among others */
+        uint64_t hash = t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)s->importance, strlen(s->importance));
+        add(w, "importance-%08" PRIx32, (uint32_t)hash);
+    }
     if (s->width != usual->width || s->height != usual->height) {
         add(w, "working-%" PRIu32 "x%" PRIu32, s->width, s->height);
     }

@@ -15,7 +15,13 @@ const char *method_name(method_id m)
                                                     "eagles+finetune",
                                                     "lightgaussian+finetune",
                                                     "pup+finetune",
-                                                    "efficientgs+finetune"};
+                                                    "efficientgs+finetune",
+                                                    "trim3r+head",
+                                                    "random+head",
+                                                    "eagles+head",
+                                                    "lightgaussian+head",
+                                                    "pup+head",
+                                                    "efficientgs+head"};
     return names[m];
 }
 

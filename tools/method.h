@@ -1,8 +1,8 @@
-/* The methods of build and eval: ours, and those that it is measured against, each as published or fine-tuned. */
+/* The methods of build and eval: ours, and those that it is measured against, each as published, fine-tuned, or as the
+ * choice of points for our head. */
 #ifndef TRIM3R_TOOLS_METHOD_H
 #define TRIM3R_TOOLS_METHOD_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -17,24 +17,32 @@ typedef enum method_kind {
     METHOD_KIND_COUNT
 } method_kind;
 
-/* A kind, or METHOD_KIND_COUNT more: that kind fine-tuned. */
+/* What becomes of the points that a kind chooses. */
+typedef enum method_way {
+    METHOD_PLAIN,
+    METHOD_FINETUNE, /* their Gaussians are fine-tuned on the context views */
+    METHOD_HEAD,     /* the head makes new ones of them (allocation `given`), refined as ours are */
+    METHOD_WAY_COUNT
+} method_way;
+
+/* A kind in a way: way x METHOD_KIND_COUNT + kind. */
 typedef uint32_t method_id;
-#define METHOD_COUNT (2u * METHOD_KIND_COUNT)
+#define METHOD_COUNT ((uint32_t)METHOD_WAY_COUNT * METHOD_KIND_COUNT)
 #define METHOD_ITERATIONS 200u /* of fine-tuning, unless told otherwise */
 #define METHOD_ITERATIONS_MOST 100000u
-#define METHOD_NAMES "trim3r, random, eagles, lightgaussian, pup, efficientgs, each also with +finetune"
+#define METHOD_NAMES "trim3r, random, eagles, lightgaussian, pup, efficientgs, each also with +finetune or +head"
 
 static inline method_kind method_kind_of(method_id m)
 {
     return (method_kind)(m % METHOD_KIND_COUNT);
 }
 
-static inline bool method_is_tuned(method_id m)
+static inline method_way method_way_of(method_id m)
 {
-    return m >= METHOD_KIND_COUNT;
+    return (method_way)(m / METHOD_KIND_COUNT);
 }
 
-/* "trim3r", "eagles+finetune". */
+/* "trim3r", "eagles+finetune", "eagles+head". */
 const char *method_name(method_id m);
 /* The method of these `length` characters; METHOD_COUNT where there is none. */
 method_id method_named(const char *text, size_t length);

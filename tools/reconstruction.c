@@ -10,6 +10,7 @@
 #include "cli.h"
 #include "fixed.h"
 #include "hash.h"
+#include "importance_pictures.h"
 
 void reconstruction_defaults(reconstruction_options *options)
 {
@@ -285,16 +286,13 @@ static int bind_head(reconstruction *r)
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
 }
 
-static int build(reconstruction *r, const t3r_recording *recording, const char *path,
-                 const reconstruction_options *options)
+/* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
+static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
+                      const t3r_capture_frame *frames, const uint16_t *const *planes)
 {
-    t3r_capture_frame frames[T3R_MAX_VIEWS];
     int code = chosen_head_open(&r->head, options->head);
     if (code == CLI_OK && options->hide_mask) {
         code = chosen_head_hide_mask(&r->head);
-    }
-    if (code == CLI_OK) {
-        code = choose_context(r, recording, path, options, frames);
     }
     if (code == CLI_OK) {
         code = need_depth(r, path, frames);
@@ -355,10 +353,34 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
     }
     double added = cli_now();
     r->add_views_seconds = added - start;
-    t3r_status status = t3r_reconstruct(r->runtime, &r->scene);
+    t3r_status status = planes == NULL ? t3r_reconstruct(r->runtime, &r->scene)
+                                       : t3r_reconstruct_given(r->runtime, planes, r->config.width * 2, &r->scene);
     r->build_seconds = cli_now() - added;
     cli_progress_end();
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, path, &r->config, r->arena_bytes);
+}
+
+/* The same, with what the allocation `given` goes by. */
+static int build(reconstruction *r, const t3r_recording *recording, const char *path,
+                 const reconstruction_options *options)
+{
+    t3r_capture_frame frames[T3R_MAX_VIEWS];
+    importance_pictures pictures = {0};
+    const uint16_t *const *planes = NULL;
+    int code = choose_context(r, recording, path, options, frames);
+    if (options->allocation == T3R_ALLOCATE_GIVEN) {
+        planes = options->importance_planes;
+    }
+    if (code == CLI_OK && options->allocation == T3R_ALLOCATE_GIVEN && options->importance != NULL) {
+        code = importance_pictures_read(&pictures, options->importance, r->context, r->context_count, r->config.width,
+                                        r->config.height);
+        planes = (const uint16_t *const *)pictures.planes;
+    }
+    if (code == CLI_OK) {
+        code = build_from(r, path, options, frames, planes);
+    }
+    importance_pictures_free(&pictures);
+    return code;
 }
 
 int reconstruction_build(reconstruction *r, const t3r_recording *recording, const char *path,

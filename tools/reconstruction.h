@@ -31,7 +31,10 @@ typedef struct reconstruction_options {
     uint32_t width, height;               /* working size; 0 = the first context frame's */
     uint32_t render_width, render_height; /* largest target; 0 = the working size */
     t3r_allocation allocation;
-    const char *head; /* a text that chosen_head_is_one() */
+    const char
+        *importance; /* of the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
+    const uint16_t *const *importance_planes; /* one a context view at the working size, rows without gaps */
+    const char *head;                         /* a text that chosen_head_is_one() */
     t3r_wavelet wavelet;
     uint32_t wavelet_levels;
     uint32_t clusters;

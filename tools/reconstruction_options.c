@@ -16,6 +16,7 @@ enum {
     KEY_ITERATIONS,
     KEY_CONTEXT,
     KEY_ALLOCATE,
+    KEY_IMPORTANCE,
     KEY_HEAD,
     KEY_WAVELET,
     KEY_LEVELS,
@@ -52,7 +53,11 @@ CHOOSE(t3r_wavelet, t3r_wavelet_name)
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
-    {"allocate", KEY_ALLOCATE, "MODE", 0, "how the budget is spread: density (default), paper, pixel, uniform, random",
+    {"allocate", KEY_ALLOCATE, "MODE", 0,
+     "how the budget is spread: density (default), paper, pixel, uniform, random, given", 0},
+    {"importance", KEY_IMPORTANCE, "PNG,PNG,...", 0,
+     "of --allocate given, which keeps the brightest points: a grey picture a context view at the working size, in "
+     "their order, or a folder with <frame>.png; 16 bits as they are, 8 bits spread evenly within a level",
      0},
     {"head", KEY_HEAD, "HEAD", 0,
      "the networks nano, small (default), base, or one in a FILE.t3w; without weights: analytic, moment, none", 0},
@@ -125,6 +130,9 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     case KEY_ALLOCATE:
         o->allocation = choose_t3r_allocation(state, "allocate", arg);
         return 0;
+    case KEY_IMPORTANCE:
+        o->importance = arg;
+        return 0;
     case KEY_HEAD:
         o->head = option_head(state, "head", arg);
         return 0;
@@ -180,6 +188,11 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     case KEY_CPU_MASK:
         (void)option_number(state, "cpu-mask", arg, 0, UINT32_MAX);
         return 0;
+    case ARGP_KEY_END:
+        if ((o->allocation == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
+            argp_error(state, "--allocate given and --importance belong together");
+        }
+        return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -193,7 +206,9 @@ static const struct argp_option budget[] = {
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "exactly Z Gaussians, or all valid points where there are fewer", 0},
     {"keep", KEY_KEEP, "P%", 0, "as many as P percent of the valid points, rounded half up", 0},
     {"method", KEY_METHOD, "METHOD", 0,
-     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them", 0},
+     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
+     "+head: their points for our head",
+     0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"auto", KEY_AUTO, NULL, 0, "the smallest budget within a loss; not yet available", 0},
     {"max-loss", KEY_MAX_LOSS, "DB", OPTION_HIDDEN, NULL, 0},

@@ -112,6 +112,7 @@ typedef enum t3r_allocation {
     T3R_ALLOCATE_PIXEL,   /* texture density without clusters */
     T3R_ALLOCATE_UNIFORM, /* blue noise alone */
     T3R_ALLOCATE_RANDOM,  /* white noise of the seed */
+    T3R_ALLOCATE_GIVEN,   /* by an importance of each pixel: t3r_reconstruct_given(), t3r_rebudget_given() */
     T3R_ALLOCATE_COUNT
 } t3r_allocation;
 
@@ -267,7 +268,8 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
 t3r_status t3r_reset(t3r_runtime *rt);
 
 /* From the views added so far to exactly min(gaussians, valid points) Gaussians. T3R_ERR_CAMERA when a view stands more
- * than 1,024 scene units from the first; T3R_ERR_STATE: no views, or the learned head without weights;
+ * than 1,024 scene units from the first; T3R_ERR_STATE: no views, the learned head without weights, or
+ * the allocation `given`, whose importance comes with t3r_reconstruct_given();
  * T3R_ERR_CANCELLED: no scene then, the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
 
@@ -276,9 +278,22 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
 t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene);
 
 /* Another allocation and head as well as budget, likewise. T3R_ERR_STATE: no analysis was kept, or the learned head
- * without weights. */
+ * without weights, or the allocation `given`. */
 t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head,
                           t3r_scene *scene);
+
+/* The same two by an importance that the caller gives: of all points with depth exactly min(gaussians, valid points) of
+ * the highest importance are retained, of equal ones the first in the order of views and rows; doubtful points and
+ * surfaces seen twice count as any others. importance[v] is the plane of context view v at the working size, 0..65535 a
+ * pixel, aligned for its type, rows `stride_bytes` apart (even, at least 2 x width); the planes are read during the
+ * call only. Heads are told the share of points retained about each pixel. The configuration's allocation becomes
+ * T3R_ALLOCATE_GIVEN: without importance t3r_reconstruct(), t3r_rebudget() and t3r_reallocate() refuse it with
+ * T3R_ERR_STATE, another allocation comes with t3r_reallocate(). Otherwise as t3r_reconstruct() and t3r_rebudget(),
+ * also when cancelled; on any error the settings are as before. */
+t3r_status t3r_reconstruct_given(t3r_runtime *rt, const uint16_t *const importance[], uint32_t stride_bytes,
+                                 t3r_scene *scene);
+t3r_status t3r_rebudget_given(t3r_runtime *rt, uint32_t gaussians, const uint16_t *const importance[],
+                              uint32_t stride_bytes, t3r_scene *scene);
 
 /* The scene in the arena, after t3r_attach() say. T3R_ERR_STATE when there is none. */
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);

@@ -391,13 +391,41 @@ static void call_move(session *s)
     REQUIRE(t3r_attach(&rt, s->arena, s->arena_bytes / 2) != T3R_OK && rt == NULL);
 }
 
-static void call_reallocate(session *s, input *in, int budget_alone)
+/* Planes of exactly the bytes that may be read, for the views that there may be; some missing, some strides wrong. */
+static t3r_status call_given(session *s, input *in, uint32_t budget, int rebudget, t3r_scene *scene)
+{
+    const uint32_t width = s->config.width, height = s->config.height, kind = below(in, 16);
+    const uint32_t stride = kind == 1 ? 2 * width - 1 : kind == 2 ? 2 * width + 1 : 2 * (width + below(in, 3));
+    uint16_t *planes[T3R_MAX_VIEWS] = {NULL};
+    for (uint32_t v = 0; v < s->config.views; v++) {
+        uint32_t seed = take8(in);
+        const size_t bytes = (size_t)stride * (height - 1) + 2 * (size_t)width;
+        planes[v] = kind == 3 && v == 1 ? NULL : allocate(bytes);
+        for (size_t i = 0; i < bytes / 2 && planes[v] != NULL; i++) {
+            planes[v][i] = (uint16_t)(i * (seed | 1) * 641 >> (seed & 7));
+        }
+    }
+    const uint16_t *const *given = kind == 4 ? NULL : (const uint16_t *const *)planes;
+    t3r_status status = rebudget ? t3r_rebudget_given(s->rt, budget, given, stride, scene)
+                                 : t3r_reconstruct_given(s->rt, given, stride, scene);
+    REQUIRE(status != T3R_OK || (kind != 1 && kind != 2 && kind != 4));
+    for (uint32_t v = 0; v < s->config.views; v++) {
+        free(planes[v]);
+    }
+    return status;
+}
+
+enum { REBUDGET, REALLOCATE, REBUDGET_GIVEN };
+
+static void call_reallocate(session *s, input *in, int take)
 {
     t3r_scene scene;
     uint32_t budget = below(in, MOST_GAUSSIANS + 20);
     t3r_status status;
-    if (budget_alone) {
+    if (take == REBUDGET) {
         status = t3r_rebudget(s->rt, budget, &scene);
+    } else if (take == REBUDGET_GIVEN) {
+        status = call_given(s, in, budget, 1, &scene);
     } else {
         uint32_t allocation = below(in, T3R_ALLOCATE_COUNT + 1), head = below(in, T3R_HEAD_COUNT + 1);
         status = t3r_reallocate(s->rt, budget, (t3r_allocation)allocation, (t3r_head)head, &scene);
@@ -437,7 +465,13 @@ static void call_bind(session *s, input *in)
 static void call(session *s, input *in)
 {
     t3r_scene scene;
-    switch (take8(in) % 15) {
+    switch (take8(in) % 17) {
+    case 16:
+        check_scene(s, call_given(s, in, 0, 0, &scene), &scene, s->budget);
+        break;
+    case 15:
+        call_reallocate(s, in, REBUDGET_GIVEN);
+        break;
     case 14:
         call_bind(s, in);
         break;
@@ -449,10 +483,10 @@ static void call(session *s, input *in)
         check_scene(s, t3r_reconstruct(s->rt, &scene), &scene, s->budget);
         break;
     case 3:
-        call_reallocate(s, in, 1);
+        call_reallocate(s, in, REBUDGET);
         break;
     case 4:
-        call_reallocate(s, in, 0);
+        call_reallocate(s, in, REALLOCATE);
         break;
     case 5:
         call_scene(s, in);

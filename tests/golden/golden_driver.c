@@ -54,6 +54,8 @@ static const configuration configurations[] = {
      T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16},
     {"shipped", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
      T3R_HEAD_LEARNED, 1400, true, 0},
+    {"given", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_GIVEN,
+     T3R_HEAD_LEARNED, 700, true, 8},
 };
 
 typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
@@ -271,6 +273,24 @@ static t3r_status add_view(run *r, uint32_t index)
     return status == T3R_OK ? t3r_add_view(r->rt, &frame, &camera) : status;
 }
 
+/* Importances in blobs, with ties, one plane for both views; rows have a gap. */
+static t3r_status build(run *r, uint32_t rebudgeted, t3r_scene *scene)
+{
+    enum { GAP = 3 };
+    static uint16_t plane[(MOST_WIDTH + GAP) * MOST_HEIGHT];
+    const uint16_t *const lent[CONTEXT_VIEWS] = {plane, plane};
+    const uint32_t stride = r->configuration->width + GAP;
+    if (r->configuration->allocation != T3R_ALLOCATE_GIVEN) {
+        return rebudgeted != 0 ? t3r_rebudget(r->rt, rebudgeted, scene) : t3r_reconstruct(r->rt, scene);
+    }
+    for (uint32_t i = 0; i < stride * r->configuration->height; i++) {
+        uint32_t x = i % stride, y = i / stride;
+        plane[i] = (uint16_t)((x / 7 * 31 + y / 5 * 17) % 50 * 1000 + x * y % 40);
+    }
+    return rebudgeted != 0 ? t3r_rebudget_given(r->rt, rebudgeted, lent, stride * 2, scene)
+                           : t3r_reconstruct_given(r->rt, lent, stride * 2, scene);
+}
+
 /* Draws the view between the context views and prints what the caller sees of it. */
 static t3r_status draw(run *r, const char *step)
 {
@@ -308,14 +328,14 @@ static int run_configuration(const configuration *c, variation ways)
         status = add_view(&r, 2 * i);
     }
     if (status == T3R_OK && (status = begin_step(&r, "reconstruct")) == T3R_OK) {
-        status = t3r_reconstruct(r.rt, &scene);
+        status = build(&r, 0, &scene);
     }
     if (status == T3R_OK) {
         printf("%s %s gaussians %" PRIu32 " of %" PRIu32 "\n", c->name, r.step, scene.count, scene.valid_points);
         status = draw(&r, "render");
     }
     if (status == T3R_OK && (status = begin_step(&r, "rebudget")) == T3R_OK) {
-        status = t3r_rebudget(r.rt, c->gaussians / 3, &scene);
+        status = build(&r, c->gaussians / 3, &scene);
     }
     if (status == T3R_OK) {
         printf("%s %s gaussians %" PRIu32 " of %" PRIu32 "\n", c->name, r.step, scene.count, scene.valid_points);

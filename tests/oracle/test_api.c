@@ -2,6 +2,7 @@
  * gives the documented status and leaves the arena as it was, to the byte. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -134,6 +135,20 @@ static void null_pointers(void **state)
     REFUSED(&b, t3r_rebudget(b.rt, 1, NULL), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_reallocate(NULL, 1, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_reallocate(b.rt, 1, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, NULL), T3R_ERR_ARGUMENT);
+    static const uint16_t plane[POINTS];
+    const uint16_t *const planes[] = {plane, plane}, *const second_missing[] = {plane, NULL};
+    REFUSED(&b, t3r_reconstruct_given(NULL, planes, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reconstruct_given(b.rt, NULL, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reconstruct_given(b.rt, planes, W * 2, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget_given(NULL, 1, planes, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget_given(b.rt, 1, NULL, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget_given(b.rt, 1, planes, W * 2, NULL), T3R_ERR_ARGUMENT);
+    bench two = bench_of(good_config());
+    assert_int_equal(t3r_add_view(two.rt, &frame, &camera), T3R_OK);
+    assert_int_equal(t3r_add_view(two.rt, &frame, &camera), T3R_OK);
+    REFUSED(&two, t3r_reconstruct_given(two.rt, second_missing, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&two, t3r_rebudget_given(two.rt, 1, second_missing, W * 2, &scene), T3R_ERR_ARGUMENT);
+    bench_free(&two);
     REFUSED(&b, t3r_get_scene(NULL, &scene), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_get_scene(b.rt, NULL), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_scene_begin(NULL, &plain_frame), T3R_ERR_ARGUMENT);
@@ -460,6 +475,10 @@ static void calls_out_of_order(void **state)
     REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
     REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
     REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_STATE);
+    static const uint16_t plane[POINTS];
+    const uint16_t *const planes[] = {plane, plane};
+    REFUSED(&b, t3r_reconstruct_given(b.rt, planes, W * 2, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, W * 2, &scene), T3R_ERR_STATE);
     REFUSED(&b, t3r_get_scene(b.rt, &scene), T3R_ERR_STATE);
     REFUSED(&b, t3r_scene_append(b.rt, &g), T3R_ERR_STATE);
     REFUSED(&b, t3r_render(b.rt, &camera, &target), T3R_ERR_STATE);
@@ -483,6 +502,7 @@ static void calls_out_of_order(void **state)
     /* the analysis was not kept */
     REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
     REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, W * 2, &scene), T3R_ERR_STATE);
     assert_int_equal(t3r_render(b.rt, &camera, &target), T3R_OK);
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
     REFUSED(&b, t3r_get_scene(b.rt, &scene), T3R_ERR_STATE);
@@ -499,6 +519,19 @@ static void calls_out_of_order(void **state)
     REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_COUNT, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_COUNT, &scene), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_reallocate(b.rt, 0, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
+    /* importance: its budget, rows too short, odd, planes out of step; without it `given` is refused */
+    const uint16_t *const odd[] = {(const uint16_t *)(const void *)((const uint8_t *)plane + 1)};
+    REFUSED(&b, t3r_rebudget_given(b.rt, 0, planes, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget_given(b.rt, keep.max_gaussians + 1, planes, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, W * 2 - 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, W * 2 + 1, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, 0, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebudget_given(b.rt, 10, odd, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_GIVEN, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_rebudget_given(b.rt, 10, planes, W * 2, &scene), T3R_OK);
+    REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_OK);
     for (uint32_t z = 1; z <= keep.max_gaussians; z += 33) {
         assert_int_equal(t3r_rebudget(b.rt, z, &scene), T3R_OK);
         assert_int_equal(scene.count, z);
@@ -526,7 +559,13 @@ static void budgets(void **state)
     t3r_camera camera = plain_camera(30, W, H);
     size_t weights_bytes;
     uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 1, &weights_bytes);
+    static uint16_t importance[POINTS];
+    for (size_t i = 0; i < POINTS; i++) {
+        importance[i] = (uint16_t)(i * 7919 % 1000);
+    }
+    const uint16_t *const planes[] = {importance};
     for (int allocation = 0; allocation < T3R_ALLOCATE_COUNT; allocation++) {
+        const bool given = allocation == T3R_ALLOCATE_GIVEN;
         for (int head = 0; head < T3R_HEAD_COUNT; head++) {
             const uint32_t wanted[] = {1, 2, measured / 20, measured / 2, measured - 1, measured, measured + 1, POINTS};
             t3r_config config = good_config();
@@ -538,10 +577,13 @@ static void budgets(void **state)
             t3r_scene scene;
             assert_int_equal(t3r_bind_head(b.rt, weights, weights_bytes), T3R_OK);
             assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
-            assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+            assert_int_equal(given ? t3r_reconstruct_given(b.rt, planes, W * 2, &scene) : t3r_reconstruct(b.rt, &scene),
+                             T3R_OK);
             assert_int_equal(scene.valid_points, measured);
             for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
-                assert_int_equal(t3r_rebudget(b.rt, wanted[i], &scene), T3R_OK);
+                assert_int_equal(given ? t3r_rebudget_given(b.rt, wanted[i], planes, W * 2, &scene)
+                                       : t3r_rebudget(b.rt, wanted[i], &scene),
+                                 T3R_OK);
                 uint32_t expected = wanted[i] < measured ? wanted[i] : measured;
                 if (scene.count != expected) {
                     fail_msg("%s, %s: %u Gaussians for a budget of %u with %u valid points",

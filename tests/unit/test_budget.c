@@ -173,7 +173,7 @@ static void set_aside_comes_last(void **state)
             plain += kind >= 4;
         }
     }
-    for (int mode = 0; mode < T3R_ALLOCATE_COUNT; mode++) {
+    for (int mode = 0; mode < T3R_ALLOCATE_GIVEN; mode++) {
         for (int pass_over = 0; pass_over < 2; pass_over++) {
             const uint32_t open = pass_over ? plain : plain + covered;
             const uint32_t budgets[] = {1,

@@ -472,7 +472,7 @@ static void in_the_pipeline(void **state)
 {
     (void)state;
     const uint32_t all = 2 * PIXELS;
-    for (int mode = 0; mode < T3R_ALLOCATE_COUNT; mode++) {
+    for (int mode = 0; mode < T3R_ALLOCATE_GIVEN; mode++) {
         t3r_config config = t3r_default_config(W, H, 2, all);
         config.clusters = 20;
         config.keep_analysis = 1;

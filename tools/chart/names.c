@@ -22,7 +22,6 @@ const char *const chart_colours_dark[CHART_COLOURS] = {"#53d6c1", "#f3a261", "#8
                                                        "#c3a3f7", "#bfd060", "#6fcdf5", "#b4b9c1"};
 
 #define MIDDLE_DOT " \xC2\xB7 "
-static const char tuned[] = "+finetune";
 
 static const char *setting(const chart_points *points, uint32_t point, chart_setting s)
 {
@@ -70,15 +69,17 @@ static void append(char *text, size_t bytes, const char *between, const char *mo
     }
 }
 
-/* What has a colour of its own: the method without its fine-tuning, and the head. */
+/* What became of the points that a method chose: "+finetune", "+head", "" */
+static const char *way_of(const char *method)
+{
+    return method + strcspn(method, "+");
+}
+
+/* What has a colour of its own: who chose the points, and the head. */
 static void contestant(const chart_points *points, uint32_t point, char *text, size_t bytes)
 {
     const char *method = setting(points, point, CHART_METHOD);
-    size_t length = strlen(method), ending = strlen(tuned);
-    if (length > ending && strcmp(method + length - ending, tuned) == 0) {
-        length -= ending;
-    }
-    snprintf(text, bytes, "%.*s\001%s", (int)length, method, setting(points, point, CHART_HEAD));
+    snprintf(text, bytes, "%.*s\001%s", (int)(way_of(method) - method), method, setting(points, point, CHART_HEAD));
 }
 
 /* Two series may differ in that one does not tell a setting. */
@@ -115,7 +116,7 @@ static int name_series(chart_names *names, const chart_points *points, uint32_t 
         append(name->text, sizeof name->text, MIDDLE_DOT, told ? text : "");
         append(key, sizeof key, ",", told && s != CHART_METHOD && s != CHART_HEAD ? text : "");
     }
-    append(key, sizeof key, ",", strstr(setting(points, point, CHART_METHOD), tuned) != NULL ? tuned : "");
+    append(key, sizeof key, ",", way_of(setting(points, point, CHART_METHOD)));
     if (name->text[0] == '\0') {
         snprintf(name->text, sizeof name->text, "all rows");
     }

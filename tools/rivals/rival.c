@@ -7,6 +7,7 @@
 #include "developed_frame.h"
 #include "fixed.h"
 #include "rivals/score.h"
+#include "rivals/traced.h"
 
 /* ---- what is shared ------------------------------------------------------------------------------------------- */
 
@@ -195,8 +196,9 @@ static int prune(rival_source *source, method_kind kind, uint32_t count, scene_f
     return code;
 }
 
-static int prune_whole(rival_source *source, method_kind kind, const reconstruction_options *options, scene_file *scene,
-                       reconstruction_account *told)
+/* The unpruned scene and its score; *told is of all until then, of the budget of `options`. */
+static int rank_whole(rival_source *source, method_kind kind, const reconstruction_options *options,
+                      reconstruction_account *told)
 {
     int code = source->built ? CLI_OK : build_whole(source);
     if (code == CLI_OK) {
@@ -205,12 +207,23 @@ static int prune_whole(rival_source *source, method_kind kind, const reconstruct
     if (code != CLI_OK) {
         return code;
     }
-    double start = cli_now();
     *told = reconstruction_told(&source->whole);
     told->requested =
         options->gaussians != 0 ? options->gaussians : reconstruction_budget(told->valid_points, options->keep_percent);
+    told->seconds += source->project_seconds + source->score_seconds[kind];
+    return CLI_OK;
+}
+
+static int prune_whole(rival_source *source, method_kind kind, const reconstruction_options *options, scene_file *scene,
+                       reconstruction_account *told)
+{
+    int code = rank_whole(source, kind, options, told);
+    if (code != CLI_OK) {
+        return code;
+    }
+    double start = cli_now();
     code = prune(source, kind, T3R_MIN(told->requested, source->whole.scene.count), scene);
-    told->seconds += source->project_seconds + source->score_seconds[kind] + cli_now() - start;
+    told->seconds += cli_now() - start;
     return code;
 }
 
@@ -237,8 +250,54 @@ static int build_ours(rival_source *source, const reconstruction_options *option
     return code;
 }
 
-/* ---- fine-tuning --------------------------------------------------------------------------------------------------
- */
+/* ---- our head on their points ----------------------------------------------------------------------------------- */
+
+/* The points that the `count` best Gaussians of the unpruned scene came from. */
+static int trace_chosen(const rival_source *source, method_kind kind, uint32_t count, traced_points *points)
+{
+    reconstruction_options all = source->options;
+    all.gaussians = 0;
+    all.keep_percent = 100;
+    *points = (traced_points){0};
+    uint32_t *kept = malloc(((size_t)count + 1) * sizeof *kept);
+    int code = kept != NULL && rival_choose(source->score[kind], source->whole.scene.count, count, kept)
+                   ? traced_points_make(points, source->recording, source->path, &all, kept, count)
+                   : cli_error(CLI_BAD_INPUT, "out of memory");
+    free(kept);
+    return code;
+}
+
+static int build_by_head(rival_source *source, method_kind kind, const reconstruction_options *options,
+                         reconstruction *made, reconstruction_account *told)
+{
+    traced_points points = {0};
+    reconstruction_account before = {0};
+    int code;
+    if (kind == METHOD_TRIM3R) {
+        code = traced_points_make(&points, source->recording, source->path, options, NULL, 0);
+    } else {
+        code = rank_whole(source, kind, options, &before);
+        if (code == CLI_OK) {
+            code = trace_chosen(source, kind, T3R_MIN(before.requested, source->whole.scene.count), &points);
+        }
+    }
+    if (code == CLI_OK) {
+        reconstruction_options given = *options;
+        given.allocation = T3R_ALLOCATE_GIVEN;
+        given.importance = NULL;
+        given.importance_planes = (const uint16_t *const *)points.planes;
+        code = reconstruction_build(made, source->recording, source->path, &given);
+    }
+    if (code == CLI_OK) {
+        *told = reconstruction_told(made);
+        told->arena_bytes = T3R_MAX(told->arena_bytes, before.arena_bytes);
+        told->seconds += before.seconds;
+    }
+    traced_points_free(&points);
+    return code;
+}
+
+/* ---- fine-tuning ------------------------------------------------------------------------------------------------ */
 
 static int tune(const rival_source *source, uint32_t iterations, scene_file *scene)
 {
@@ -269,10 +328,13 @@ int rival_build(rival_source *source, const t3r_recording *recording, const char
         source->options = *options;
     }
     method_kind kind = method_kind_of(m);
+    if (method_way_of(m) == METHOD_HEAD) {
+        return build_by_head(source, kind, options, made, told);
+    }
     scene_file scene = {0};
     int code = kind == METHOD_TRIM3R ? build_ours(source, options, &scene, told)
                                      : prune_whole(source, kind, options, &scene, told);
-    if (code == CLI_OK && method_is_tuned(m)) {
+    if (code == CLI_OK && method_way_of(m) == METHOD_FINETUNE) {
         double start = cli_now();
         code = tune(source, options->finetune_iterations, &scene);
         told->seconds += cli_now() - start;

@@ -1,5 +1,6 @@
-/* Scenes that the rivals make: the unpruned scene of a head, pruned by a published score to an exact count, as it is or
- * fine-tuned on the context views. Floats, on the host: nothing here is covered by "same bits". */
+/* Scenes that the rivals make: the unpruned scene of a head, pruned by a published score to an exact count, as it is,
+ * fine-tuned on the context views, or as the choice of points of which our head makes new Gaussians. Floats, on the
+ * host: nothing here is covered by "same bits". */
 #ifndef TRIM3R_TOOLS_RIVALS_RIVAL_H
 #define TRIM3R_TOOLS_RIVALS_RIVAL_H
 
@@ -31,10 +32,12 @@ typedef struct rival_source {
  * `count`. False without memory. */
 bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept);
 
-/* The scene of a method other than plain trim3r at the budget of `options`, in an arena that only renders: *made, to be
- * closed. *told says of it what reconstruction_told() says of a build: the arena is that of the runtime's part, the
- * time all of it, scoring and fine-tuning included; of a scene from a file the points are its Gaussians, the head "".
- * Of `options` context, settings and recording must not change as long as the source is open. An exit status of cli.h.
+/* The scene of a method other than plain trim3r at the budget of `options`, in an arena that only renders, or with
+ * +head in that of its build: *made, to be closed. *told says of it what reconstruction_told() says of a build: the
+ * arena is that of the runtime's part, the largest, the time all of it, the unpruned scene, scoring and fine-tuning
+ * included; of a scene from a file, which cannot be traced to points for +head, the points are its Gaussians, the head
+ * "". Of `options` context, settings and recording must not change as long as the source is open. An exit status of
+ * cli.h.
  */
 int rival_build(rival_source *source, const t3r_recording *recording, const char *path, method_id m,
                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told);
