@@ -325,11 +325,9 @@ static const struct argp parser = {
         "Examples:\n"
         "  trim3r eval room.mcap --keep 100,20,10\n"
         "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
-        "  trim3r eval a.mcap b.mcap --keep 20,5 --methods trim3r,random --csv ab.csv\n"
         "  trim3r eval room.mcap --keep 20,5 --views 4\n"
         "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune,pup+head\n"
         "  trim3r eval room.mcap --keep 10,5 --heads analytic,moment,small,my.t3w\n"
-        "  trim3r eval a.mcap b.mcap --ablate --csv ablations.csv\n"
         "  trim3r eval room.mcap --ablate=full,no-mask,no-adaptation --keep 10,5 --refine 0\n"
         "  trim3r eval *.mcap --keep 100,40,10 --methods trim3r,eagles --jobs all --csv all.csv --resume\n"
         "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
