@@ -4,7 +4,6 @@ pictures show them, to half a pixel and in colour."""
 import json
 import math
 import os
-import subprocess
 import sys
 import tempfile
 
@@ -15,22 +14,8 @@ except ImportError as error:
     print(f"SKIPPED: {error}")
     sys.exit(77)
 
-TRIM3R = os.path.abspath(sys.argv[1])
-checks = 0
+from common import check, done, run  # noqa: E402
 
-
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        print(f"FAILED: {text}")
-        sys.exit(1)
-
-
-def run(*command, expect=0, words=""):
-    done = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
-    check(done.returncode == expect and words in done.stderr, f"{command}: {done.returncode} {done.stderr}")
-    return done.stdout
 
 
 # --- a reader of the format's documentation, colmap.github.io/format.html ----------------------------------------------
@@ -213,4 +198,4 @@ with tempfile.TemporaryDirectory() as folder:
     run(*budget, "--colmap", room, expect=1, words=room)
     run(*budget, "--colmap", f"{folder}/no/such", expect=1, words="no/such")
     run(*budget, expect=2, words="-o SCENE.ply is missing")
-print(f"{checks} checks")
+done()

@@ -2,9 +2,7 @@
 """scene_info.py TRIM3R: `info SCENE.ply` against NumPy on the same file: counts, bounds, quantiles and bins of scales, in
 world units and in pixels; the picture."""
 import json
-import os
 import re
-import subprocess
 import sys
 import tempfile
 import xml.dom.minidom
@@ -15,23 +13,9 @@ except ImportError as error:
     print(f"SKIPPED: {error}")
     sys.exit(77)
 
-TRIM3R = os.path.abspath(sys.argv[1])
+from common import check, done, run  # noqa: E402
+
 SHARES = {"p5": 0.05, "p25": 0.25, "median": 0.5, "p75": 0.75, "p95": 0.95}
-checks = 0
-
-
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        print(f"FAILED: {text}")
-        sys.exit(1)
-
-
-def run(*command, expect=0, words=""):
-    done = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
-    check(done.returncode == expect and words in done.stderr, f"{command}: {done.returncode} {done.stderr}")
-    return done.stdout
 
 
 def near(a, b, text, bound=2e-3):
@@ -128,4 +112,4 @@ with tempfile.TemporaryDirectory() as folder:
         head = whole.read().split(b"end_header\n")[0]
         file.write(re.sub(rb"element vertex \d+", b"element vertex 0", head) + b"end_header\n")
     run("info", paths[1], f"{folder}/empty.ply", expect=1, words="empty.ply")
-print(f"{checks} checks")
+done()
