@@ -90,7 +90,7 @@ static int measure_row(const cell *it, const stress_run *run, uint32_t keep, uin
         return refuse(it, row, code, reason);
     }
     uint32_t expected = T3R_MIN(options.gaussians, stress_capture_valid(&run->capture));
-    const char *broken = stress_broken_promise(&built.scene, expected);
+    const char *broken = stress_broken_promise(&built.scene, expected, options.automatic);
     if (broken != NULL) {
         set_status(row, STRESS_BROKEN, broken);
     }
