@@ -186,9 +186,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         o->settings.context_views = option_number(state, "views", arg, 2, T3R_MAX_VIEWS);
         return 0;
     case KEY_KEEP:
-        if (cli_parse_list_percent(arg, o->keep, MOST_KEEPS, &o->keep_count) != 0) {
-            argp_error(state, "--keep takes percentages above 0 and up to 100 with commas between, not '%s'", arg);
-        }
+        option_percents(state, "keep", arg, o->keep, MOST_KEEPS, &o->keep_count);
         return 0;
     case KEY_METHODS:
         option_methods(state, "methods", arg, o->methods, &o->method_count);

@@ -268,9 +268,7 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
         return 0;
     case KEY_KEEP:
-        if (cli_parse_list_percent(arg, &o->keep_percent, 1, &count) != 0) {
-            argp_error(state, "--keep takes a percentage above 0 and up to 100, not '%s'", arg);
-        }
+        option_percents(state, "keep", arg, &o->keep_percent, 1, &count);
         return 0;
     case KEY_METHOD:
         o->method = method_named(arg, strlen(arg));
