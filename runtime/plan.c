@@ -51,9 +51,9 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
     operations[T3R_STAGE_IMAGE] = c->views * (4 * frame + 3 * (side + c->height) * c->width + 6 * view +
                                               64 * T3R_GRID_NODES_(c->width, c->height) + 8192);
     operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2);
-    /* two looks at the depths for their median, marks forgotten twice; wide holes: every pixel sought in all other views,
-     * 17 looks at steps for its own there, eight directions, sought again; every pixel sought in all other views: nine
-     * looks for flying ones, one for redundant ones, a quarter of them for exposure, its medians */
+    /* two looks at the depths for their median, marks forgotten twice; wide holes: every pixel sought in all other
+     * views, 17 looks at steps for its own there, eight directions, sought again; every pixel sought in all other
+     * views: nine looks for flying ones, one for redundant ones, a quarter of them for exposure, its medians */
     uint64_t others = c->views > 0 ? c->views - 1 : 0;
     operations[T3R_STAGE_POINTMAP] =
         pixels * (4 + (c->bridge_radius > 0) * (22 * others + 8 * (uint64_t)c->bridge_radius) +
