@@ -7,10 +7,11 @@
 #include "views.h"
 
 /* Gives depth to pixels of confidence NONE that have known ones within `radius` (0..255; 0 leaves
- * what other views lend) at both ends of their row, column or diagonals, known being what is measured, filled, or measured by another
- * view and seen from here. A pixel of an ordinary kind gets T3R_CONFIDENCE_BRIDGED; one whose surface another view has
- * T3R_CONFIDENCE_BRIDGED_COVERED; none where another view sees through it. Reads pose, depth and confidence as
- * t3r_depth_fill() leaves them, the frame's exponent; touches no pixel that has a depth. Returns how many are BRIDGED.
+ * what other views lend) at both ends of their row, column or diagonals, known being what is measured, filled, or
+ * measured by another view and seen from here. A pixel of an ordinary kind gets T3R_CONFIDENCE_BRIDGED; one whose
+ * surface another view has T3R_CONFIDENCE_BRIDGED_COVERED; none where another view sees through it. Reads pose, depth
+ * and confidence as t3r_depth_fill() leaves them, the frame's exponent; touches no pixel that has a depth. Returns how
+ * many are BRIDGED.
  *
  * t3r_bridge_lend() for every view first, then t3r_bridge_view() for every view, then t3r_bridge_settle() for every
  * view in order: three steps, so that a caller may pause between any two views. Per pixel at most 22 steps for each
