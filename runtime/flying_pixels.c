@@ -67,8 +67,9 @@ uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int3
     }
     for (uint32_t y = 0; y < view->height; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
-            if (between_surfaces(view, x, y) || seen_through_by_any(maps, count, v, x, y)) {
-                uint8_t *confidence = &view->confidence[(size_t)y * view->width + x];
+            uint8_t *confidence = &view->confidence[(size_t)y * view->width + x];
+            if (!t3r_is_bridged(*confidence) &&
+                (between_surfaces(view, x, y) || seen_through_by_any(maps, count, v, x, y))) {
                 *confidence = t3r_is_measured(*confidence) ? T3R_CONFIDENCE_DOUBTFUL : T3R_CONFIDENCE_FILLED_DOUBTFUL;
                 marked++;
             }

@@ -7,6 +7,7 @@
  * Each stage tells what it made through the stage_hash hook. */
 #include "pipeline.h"
 
+#include "bridge.h"
 #include "budget.h"
 #include "depth.h"
 #include "exposure.h"
@@ -62,11 +63,32 @@ static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
     return status;
 }
 
+#define POINTMAP_STEPS(rt) (4 * (rt)->views) /* of t3r_progress(): bridging, flying pixels, exposure, redundancy */
+
+/* Wide holes, once it is known where the views stand. */
+static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
+{
+    const uint32_t radius = rt->config.bridge_radius;
+    for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
+        t3r_bridge_lend(views, rt->views, v, rt->frame.exponent);
+    }
+    for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
+        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, v, POINTMAP_STEPS(rt))) {
+            return T3R_ERR_CANCELLED;
+        }
+        t3r_bridge_view(&views[v], radius);
+    }
+    for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
+        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent);
+    }
+    return T3R_OK;
+}
+
 /* What the views say of each other: pixels that cannot be, colours of one exposure, surfaces seen twice. */
 static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
 {
     for (uint32_t v = 0; v < rt->views && rt->config.flying; v++) {
-        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, v, 3 * rt->views)) {
+        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, rt->views + v, POINTMAP_STEPS(rt))) {
             return T3R_ERR_CANCELLED;
         }
         (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent);
@@ -82,7 +104,7 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
         }
     }
     if (rt->config.exposure) {
-        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, rt->views, 3 * rt->views)) {
+        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 2 * rt->views, POINTMAP_STEPS(rt))) {
             return T3R_ERR_CANCELLED;
         }
         t3r_exposure_gains(views, rt->views, rt->frame.exponent, rt->gain_q14);
@@ -93,7 +115,7 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
 static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
 {
     for (uint32_t v = rt->views; v-- > 0 && rt->config.redundancy;) {
-        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 3 * rt->views - v - 1, 3 * rt->views)) {
+        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, POINTMAP_STEPS(rt) - v - 1, POINTMAP_STEPS(rt))) {
             return T3R_ERR_CANCELLED;
         }
         (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent);
@@ -146,6 +168,9 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     t3r_status status = depth(rt, views);
     if (status == T3R_OK) {
         status = pointmap(rt, views);
+    }
+    if (status == T3R_OK) {
+        status = bridge(rt, views);
     }
     if (status == T3R_OK) {
         status = flying_pixels(rt, views);

@@ -51,11 +51,13 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
     operations[T3R_STAGE_IMAGE] = c->views * (4 * frame + 3 * (side + c->height) * c->width + 6 * view +
                                               64 * T3R_GRID_NODES_(c->width, c->height) + 8192);
     operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2);
-    /* two looks at the depths for their median, marks forgotten twice; every pixel sought in all other views: nine
-     * looks for flying ones, one for redundant ones, a quarter of them for exposure, its medians */
+    /* two looks at the depths for their median, marks forgotten twice; wide holes: every pixel sought in all other
+     * views, 17 looks at steps for its own there, eight directions, sought again; every pixel sought in all other
+     * views: nine looks for flying ones, one for redundant ones, a quarter of them for exposure, its medians */
     uint64_t others = c->views > 0 ? c->views - 1 : 0;
     operations[T3R_STAGE_POINTMAP] =
-        pixels * (4 + c->flying * (4 + 10 * others) + c->redundancy * 2 * others + c->exposure * 2 * others) +
+        pixels * (4 + (c->bridge_radius > 0) * (22 * others + 8 * (uint64_t)c->bridge_radius) +
+                  c->flying * (4 + 10 * others) + c->redundancy * 2 * others + c->exposure * 2 * others) +
         c->views * 3 * 512 + 1120;
     /* two lifting passes of three steps and a sum a level, the levels adding up to less than 4 / 3 */
     operations[T3R_STAGE_WAVELET] = pixels * (7 * 4 / 3 + c->wavelet_levels + 1);

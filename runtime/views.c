@@ -39,7 +39,10 @@ void t3r_forget_marks(const t3r_view *views, uint32_t count)
         size_t pixels = T3R_PIXELS_(views[v].width, views[v].height);
         for (size_t i = 0; i < pixels; i++) {
             uint8_t confidence = views[v].confidence[i];
-            if (confidence != T3R_CONFIDENCE_NONE) {
+            if (t3r_is_bridged(confidence)) {
+                views[v].confidence[i] = T3R_CONFIDENCE_NONE;
+                views[v].depth[i] = 0;
+            } else if (confidence != T3R_CONFIDENCE_NONE) {
                 views[v].confidence[i] = t3r_is_measured(confidence) ? T3R_CONFIDENCE_MEASURED : T3R_CONFIDENCE_FILLED;
             }
         }

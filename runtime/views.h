@@ -14,16 +14,26 @@
 #define T3R_CONFIDENCE_FILLED_COVERED 96u
 #define T3R_CONFIDENCE_DOUBTFUL 64u /* measured, but contradicted: a flying pixel */
 #define T3R_CONFIDENCE_FILLED_DOUBTFUL 32u
+#define T3R_CONFIDENCE_BRIDGED 24u /* of a wide hole (bridge.h): no view measured it */
+#define T3R_CONFIDENCE_BRIDGED_COVERED 16u
+#define T3R_CONFIDENCE_LENT 8u /* measured by another view; only within stage pointmap */
 #define T3R_CONFIDENCE_NONE 0u
 
 static inline bool t3r_is_covered(uint8_t confidence)
 {
-    return confidence == T3R_CONFIDENCE_COVERED || confidence == T3R_CONFIDENCE_FILLED_COVERED;
+    return confidence == T3R_CONFIDENCE_COVERED || confidence == T3R_CONFIDENCE_FILLED_COVERED ||
+           confidence == T3R_CONFIDENCE_BRIDGED_COVERED;
 }
 
 static inline bool t3r_is_doubtful(uint8_t confidence)
 {
     return confidence == T3R_CONFIDENCE_DOUBTFUL || confidence == T3R_CONFIDENCE_FILLED_DOUBTFUL;
+}
+
+/* Whether it is a wide hole's, so that its depth is made anew by every analysis. */
+static inline bool t3r_is_bridged(uint8_t confidence)
+{
+    return confidence != T3R_CONFIDENCE_NONE && confidence <= T3R_CONFIDENCE_BRIDGED;
 }
 
 /* Whether the sensor gave the depth, whatever was thought of it since. */
@@ -58,7 +68,7 @@ typedef struct t3r_view {
 /* The planes of every view there is room for, as the stages take them; poses only of those added. */
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS]);
 
-/* Confidences as they were before views were compared: measured, filled or none. */
+/* Confidences as they were before views were compared, measured, filled or none, and no depth in wide holes. */
 void t3r_forget_marks(const t3r_view *views, uint32_t count);
 
 #endif

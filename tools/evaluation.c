@@ -100,7 +100,7 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.gaussians = 0;
     options.keep_percent = 100;
     options.automatic = false;
-    options.fill_radius = 0;
+    options.fill_radius = options.bridge_radius = 0;
     options.head = "analytic";
     options.allocation = T3R_ALLOCATE_UNIFORM;
     options.flying = options.redundancy = options.exposure = 0;

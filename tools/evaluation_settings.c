@@ -57,6 +57,7 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     }
     add_number(w, "keep-percent", s->paper_keep_percent, usual->paper_keep_percent);
     add_number(w, "fill-radius", s->fill_radius, usual->fill_radius);
+    add_number(w, "bridge-radius", s->bridge_radius, usual->bridge_radius);
     add_switch(w, "flying", s->flying, usual->flying);
     add_switch(w, "redundancy", s->redundancy, usual->redundancy);
     add_switch(w, "exposure", s->exposure, usual->exposure);

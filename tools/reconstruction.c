@@ -28,6 +28,7 @@ void reconstruction_defaults(reconstruction_options *options)
         .adapt = c.adapt,
         .refine = c.refinements,
         .fill_radius = c.fill_radius,
+        .bridge_radius = c.bridge_radius,
         .flying = c.flying,
         .redundancy = c.redundancy,
         .exposure = c.exposure,
@@ -323,6 +324,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     r->config.adapt = options->adapt;
     r->config.refinements = options->refine;
     r->config.fill_radius = options->fill_radius;
+    r->config.bridge_radius = options->bridge_radius;
     r->config.flying = options->flying;
     r->config.redundancy = options->redundancy;
     r->config.exposure = options->exposure;

@@ -47,6 +47,7 @@ typedef struct reconstruction_options {
     uint32_t shuffle, adapt;     /* of t3r_config, for ablations */
     bool hide_mask;              /* the network is told that every pixel was retained: hidden_mask.h */
     uint32_t fill_radius;
+    uint32_t bridge_radius;
     uint32_t flying, redundancy, exposure; /* 0 or 1 each: what views tell of each other */
     uint32_t seed;
     uint32_t refine;    /* passes of refinement */

@@ -24,6 +24,7 @@ enum {
     KEY_GAMMA,
     KEY_KEEP_PERCENT,
     KEY_FILL_RADIUS,
+    KEY_BRIDGE_RADIUS,
     KEY_FLYING,
     KEY_REDUNDANCY,
     KEY_EXPOSURE,
@@ -73,6 +74,8 @@ static const struct argp_option settings[] = {
     {"keep-percent", KEY_KEEP_PERCENT, "N", 0, "percent that a trimmed SuperCluster keeps with --allocate paper (10)",
      0},
     {"fill-radius", KEY_FILL_RADIUS, "N", 0, "depth holes bracketed within N pixels are filled, 0..8 (4)", 0},
+    {"bridge-radius", KEY_BRIDGE_RADIUS, "N", 0,
+     "wider ones too, where no other view measured the surface, 0..255 (64)", 0},
     {"flying", KEY_FLYING, "on|off", 0,
      "points between surfaces, or in front of what another view measured, come last (on)", 0},
     {"redundancy", KEY_REDUNDANCY, "on|off", 0,
@@ -192,6 +195,9 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_FILL_RADIUS:
         o->fill_radius = option_number(state, "fill-radius", arg, 0, 8);
+        return 0;
+    case KEY_BRIDGE_RADIUS:
+        o->bridge_radius = option_number(state, "bridge-radius", arg, 0, 255);
         return 0;
     case KEY_FLYING:
         o->flying = parse_switch(state, "flying", arg);

@@ -24,7 +24,7 @@ extern "C" {
 
 #define T3R_VERSION "0.1.0"
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
-#define T3R_BITS_EPOCH 3
+#define T3R_BITS_EPOCH 4
 
 #define T3R_MAX_SIDE 4096u    /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8u       /* smallest working width or height, in pixels */
@@ -147,6 +147,7 @@ typedef struct t3r_config {
     uint32_t head_column_bytes; /* work of a learned head, 0..65,536 a column: t3r_head_column_bytes() */
     uint32_t refinements;       /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
     uint32_t fill_radius;       /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
+    uint32_t bridge_radius;     /* wider holes bracketed within this many pixels likewise, 0..255; 0 = none */
     uint32_t flying;            /* 1 = points between surfaces, or in front of what another view measured, come last */
     uint32_t redundancy;        /* 1 = small budgets pass over points that another view covers */
     uint32_t exposure;          /* 1 = colours of all views are brought to their mean exposure */

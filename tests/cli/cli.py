@@ -129,6 +129,7 @@ def test_build(room):
         "--gamma": ["-1", "2.1", "x", "nan"],
         "--keep-percent": ["101"],
         "--fill-radius": ["9"],
+        "--bridge-radius": ["256"],
         "--flying": ["1", ""],
         "--redundancy": ["yes"],
         "--exposure": ["On"],

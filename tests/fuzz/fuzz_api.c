@@ -92,6 +92,7 @@ static t3r_config take_config(input *in)
     c.wavelet_levels = 1 + below(in, T3R_MAX_LEVELS);
     c.refinements = below(in, 3);
     c.fill_radius = below(in, 9);
+    c.bridge_radius = below(in, 33);
     c.colour_weight_q8 = below(in, 1025);
     c.gamma_q8 = below(in, 513);
     c.keep_percent = below(in, 101);

@@ -199,6 +199,7 @@ static void config_ranges(void **state)
         RANGE(head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES),
         RANGE(refinements, 0, 16),
         RANGE(fill_radius, 0, 8),
+        RANGE(bridge_radius, 0, 255),
         RANGE(keep_analysis, 0, 1),
     };
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {

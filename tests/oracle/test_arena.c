@@ -44,6 +44,7 @@ static t3r_config random_config(dice *d, uint32_t most_side, uint32_t most_gauss
     c.keep_analysis = dice_below(d, 2);
     c.refinements = dice_below(d, 3);
     c.fill_radius = dice_below(d, 9);
+    c.bridge_radius = dice_below(d, 256);
     c.head_column_bytes = dice_below(d, 3) == 0 ? log_uniform(d, 1, T3R_MAX_HEAD_COLUMN_BYTES) : dice_below(d, 2) * 704;
     return c;
 }
@@ -115,6 +116,7 @@ static void plan_depends_on_sizes_alone(void **state)
     c.allocation = T3R_ALLOCATE_PAPER;
     c.head = T3R_HEAD_MOMENT;
     c.fill_radius = 8;
+    c.bridge_radius = 255;
     c.seed = 12345;
     assert_int_equal(t3r_plan(&c, &other), T3R_OK);
     assert_true(plan.min_bytes == other.min_bytes && plan.bytes == other.bytes);

@@ -170,8 +170,8 @@ static void unadapted_is_pruned(void **state)
     for (uint32_t h = 0; h < 3; h++) {
         t3r_config config = learned_config(2 * POINTS);
         config.head = heads[h];
-        config.allocation = T3R_ALLOCATE_UNIFORM; /* at 100 % the density is 1 everywhere */
-        config.fill_radius = 0;                   /* nor do filled points take measured ones' places */
+        config.allocation = T3R_ALLOCATE_UNIFORM;      /* at 100 % the density is 1 everywhere */
+        config.fill_radius = config.bridge_radius = 0; /* nor do filled points take measured ones' places */
         arena memory = arena_of(&config, ARENA_AT_FULL);
         uint32_t count = 0;
         for (config.adapt = 1; config.adapt < 2; config.adapt--) {

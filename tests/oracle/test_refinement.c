@@ -46,7 +46,7 @@ static t3r_gaussian *reconstruct(uint32_t refinements, t3r_head head, t3r_scene 
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
     config.refinements = refinements;
     config.head = head;
-    config.fill_radius = 0;
+    config.fill_radius = config.bridge_radius = 0;
     config.flying = config.redundancy = config.exposure = 0; /* nothing but refinement */
     config.clusters = 20;
     arena a = arena_of(&config, ARENA_AT_FULL);

@@ -492,7 +492,7 @@ static void in_the_pipeline(void **state)
         assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
         add_frames(rt);
         assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
-        assert_int_equal(first.calls, 5);
+        assert_int_equal(first.calls, 7);
 
         /* few: nothing that is covered or floats */
         assert_int_equal(scene.count, 300);
@@ -509,7 +509,7 @@ static void in_the_pipeline(void **state)
 
         /* the same again, and after a cancel anywhere among the views' comparisons */
         assert_int_equal(t3r_rebudget(rt, 300, &scene), T3R_OK);
-        for (int cancel = 0; cancel <= 5; cancel++) {
+        for (int cancel = 0; cancel <= 7; cancel++) {
             second = (trace){.cancel_at = cancel};
             hooks.user = &second;
             assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
