@@ -129,6 +129,9 @@ static void check_options(struct argp_state *state, options *o)
     if (o->settings.context_views > 2 && o->settings.context_count > o->settings.context_views) {
         argp_error(state, "--context names more frames than --views");
     }
+    if (o->planar && o->settings.depth != T3R_DEPTH_SENSOR) {
+        argp_error(state, "--depth belongs to a recording, not to --planar");
+    }
     if (!o->planar && o->width != 0) {
         argp_error(state, "--size belongs to --planar; --working sets the size of a recording's views");
     }
@@ -341,8 +344,7 @@ static int open_cases(const options *o, evaluation_cases *cases)
     if (o->planar) {
         return evaluation_cases_of_images(cases, o->inputs, o->input_count, o->width, o->height);
     }
-    return evaluation_cases_of_recordings(cases, o->inputs, o->input_count, o->settings.context,
-                                          o->settings.context_count, o->target, o->settings.context_views);
+    return evaluation_cases_of_recordings(cases, o->inputs, o->input_count, &o->settings, o->target);
 }
 
 static int choose_contestants(const options *o, evaluation_contestants *chosen)
