@@ -39,8 +39,8 @@ t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camer
                             void *work, uint32_t *promise);
 
 /* The plane's confidences as later stages know them: T3R_CONFIDENCE_MEASURED from `least` (2..255) on, below it
- * T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_FILLED_DOUBTFUL where depth is the surroundings', T3R_CONFIDENCE_NONE where
- * there is none. */
+ * T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_FILLED where depth is the surroundings', T3R_CONFIDENCE_NONE where there is
+ * none. */
 void t3r_stereo_marks(const t3r_view *view, uint32_t least);
 
 #endif

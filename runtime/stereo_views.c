@@ -5,6 +5,7 @@
 #include "fixed.h"
 #include "state.h"
 #include "stereo.h"
+#include "stereo_fill.h"
 #include "stereo_fuse.h"
 
 /* Each view is matched with so many others, those with the most to hope for. */
@@ -26,17 +27,18 @@ void t3r_stereo_forget(const t3r_view *views, uint32_t count)
     }
 }
 
-static t3r_stereo_settings settings_of(const t3r_runtime *rt)
+/* Filled is what all pairs left. */
+static t3r_stereo_settings settings_of(void)
 {
     return (t3r_stereo_settings){.disparities = T3R_STEREO_DISPARITIES,
                                  .paths = T3R_STEREO_PATHS,
-                                 .fill = rt->config.fill_radius > 0};
+                                 .fill = 0};
 }
 
 /* First looks at all pairs; of two views there is nothing to choose. */
 static t3r_status look_at_all(const t3r_runtime *rt, const t3r_view *views, survey *found)
 {
-    const t3r_stereo_settings settings = settings_of(rt);
+    const t3r_stereo_settings settings = settings_of();
     const uint32_t pairs = rt->views * (rt->views - 1) / 2;
     uint32_t done = 0;
     memset(found, 0, sizeof *found);
@@ -102,7 +104,7 @@ static void divide_pair(const t3r_runtime *rt, t3r_view both[2])
 
 static void match(t3r_runtime *rt, t3r_view *views, survey *s, uint32_t a, uint32_t b)
 {
-    const t3r_stereo_settings settings = settings_of(rt);
+    const t3r_stereo_settings settings = settings_of();
     const t3r_camera cameras[2] = {rt->camera[a], rt->camera[b]};
     const uint32_t index[2] = {a, b};
     t3r_view both[2] = {views[a], views[b]};
@@ -176,6 +178,9 @@ t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views)
         status = T3R_ERR_STEREO;
     }
     for (uint32_t v = 0; v < rt->views && status == T3R_OK; v++) {
+        if (rt->config.fill_radius > 0) {
+            t3r_stereo_fill(&views[v], t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK));
+        }
         t3r_stereo_marks(&views[v], T3R_STEREO_SURE);
     }
     return status;
