@@ -6,6 +6,7 @@
 #define TRIM3R_ARENA_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #define T3R_ARENA_ALIGN 64
 

@@ -101,6 +101,8 @@ static t3r_config take_config(input *in)
     c.exposure = c.seed >> 1 & 1;
     c.adapt = c.seed >> 3 & 1;
     c.shuffle = c.seed >> 4 & 1;
+    c.depth = c.seed & 32 && c.width >= T3R_STEREO_LEAST_SIDE && c.height >= T3R_STEREO_LEAST_SIDE ? T3R_DEPTH_STEREO
+                                                                                                   : T3R_DEPTH_SENSOR;
     c.head_column_bytes = c.seed & 4 ? below(in, 2048) : c.head_column_bytes;
     return c;
 }
