@@ -31,31 +31,34 @@ typedef struct configuration {
     uint32_t gaussians;
     bool holes;
     uint32_t bits; /* of a learned head's weights, made up here, and activations; 0 = the shipped one, or no learned */
+    t3r_depth depth;
 } configuration;
 
 static const configuration configurations[] = {
     {"default", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, 1843, false, 0},
+     T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR},
     {"small", 128, 96, 61, 45, T3R_PIXEL_GREY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 3, 17, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_MOMENT, 700, true, 0},
+     T3R_HEAD_MOMENT, 700, true, 0, T3R_DEPTH_SENSOR},
     {"haar_paper", 128, 96, 64, 48, T3R_PIXEL_YUYV, T3R_DISTORTION_NONE, T3R_WAVELET_HAAR, 1, 32, T3R_ALLOCATE_PAPER,
-     T3R_HEAD_ANALYTIC, 3000, true, 0},
+     T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR},
     {"cdf53_pixel", 128, 96, 64, 48, T3R_PIXEL_NV12, T3R_DISTORTION_RADTAN, T3R_WAVELET_CDF53, 4, 300,
-     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0},
+     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0, T3R_DEPTH_SENSOR},
     {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_UNIFORM, T3R_HEAD_ANALYTIC, 600, true, 0},
+     T3R_ALLOCATE_UNIFORM, T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR},
     {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_RANDOM,
-     T3R_HEAD_NONE, 600, false, 0},
+     T3R_HEAD_NONE, 600, false, 0, T3R_DEPTH_SENSOR},
     {"everything", 96, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0},
+     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR},
     {"learned", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 700, true, 8},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR},
     {"learned_wide", 128, 96, 64, 48, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16},
+     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16, T3R_DEPTH_SENSOR},
     {"shipped", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 1400, true, 0},
+     T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR},
     {"given", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_GIVEN,
-     T3R_HEAD_LEARNED, 700, true, 8},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR},
+    {"stereo", 128, 96, 96, 83, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
+     T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO},
 };
 
 typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
@@ -232,6 +235,7 @@ static t3r_status begin_run(run *r)
     config.clusters = c->clusters;
     config.allocation = c->allocation;
     config.head = c->head;
+    config.depth = c->depth;
     config.keep_analysis = 1;
     if (c->bits != 0) {
         r->weights = r->made = make_weights(small_shape, small_layers, c->bits, c->bits, 1, &r->weights_bytes);
