@@ -36,10 +36,10 @@ static uint64_t head_operations(const t3r_config *c)
     }
 }
 
-/* First looks at all pairs, where there is a choice, and matches of two partners a view. A look draws both planes at the
- * full size and matches a quarter of it with up to twice as many disparities. A match: costs and paths of every pixel and
- * disparity, those downwards twice; the best of them, both ways; agreement, speckles, medians; eight directions of 24
- * pixels filled; and two views of pixels brought back, some of them twice. */
+/* First looks at all pairs, where there is a choice, and matches of two partners a view. A look draws both planes at
+ * the full size and matches a quarter of it with up to twice as many disparities. A match: costs and paths of every
+ * pixel and disparity, those downwards twice; the best of them, both ways; agreement, speckles, medians; eight
+ * directions of 24 pixels filled; and two views of pixels brought back, some of them twice. */
 static uint64_t stereo_operations(const t3r_config *c)
 {
     if (c->depth != T3R_DEPTH_STEREO || c->views < 2) {

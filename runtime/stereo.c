@@ -116,7 +116,8 @@ typedef struct look {
     uint32_t promise; /* t3r_stereo_promise() */
 } look;
 
-/* Each trusted pixel as far as its distance would be known, d / (d + HALF_KNOWN) of a disparity of d pixels, in 256ths. */
+/* Each trusted pixel as far as its distance would be known, d / (d + HALF_KNOWN) of a disparity of d pixels, in 256ths.
+ */
 static uint32_t promise_of(const uint32_t *histogram, uint32_t count, int32_t base)
 {
     uint64_t sum = 0;

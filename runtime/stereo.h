@@ -33,8 +33,8 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
                           void *work, uint64_t *depth_unit_q40);
 
 /* What to hope for of a pair, to compare it with others of the same size: how many pixels a first look trusts, each as
- * far as its distance would be known. Reasons for refusal that show only later are not seen. *promise is set whatever is
- * returned; same work. */
+ * far as its distance would be known. Reasons for refusal that show only later are not seen. *promise is set whatever
+ * is returned; same work. */
 t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
                             void *work, uint32_t *promise);
 

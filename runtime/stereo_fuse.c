@@ -17,9 +17,9 @@ void t3r_stereo_fuse(const t3r_view *view, const t3r_view *found)
     for (size_t i = 0; i < pixels; i++) {
         const int32_t old = view->confidence[i], new = found->confidence[i];
         /* 16 bits times 47 */
-        const int64_t steps = t3r_round_div64((int64_t)found->depth[i] * (int64_t)found->depth_unit_q40,
-                                              (int64_t)view->depth_unit_q40);
-        if (new == T3R_STEREO_NONE || steps < 1 || steps > UINT16_MAX || (new == T3R_STEREO_FILLED && old >= new)) {
+        const int64_t steps =
+            t3r_round_div64((int64_t)found->depth[i] * (int64_t)found->depth_unit_q40, (int64_t)view->depth_unit_q40);
+        if (new == T3R_STEREO_NONE || steps < 1 || steps > UINT16_MAX || (new == T3R_STEREO_FILLED &&old >= new)) {
             continue;
         }
         int64_t depth = steps;

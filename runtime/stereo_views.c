@@ -30,9 +30,7 @@ void t3r_stereo_forget(const t3r_view *views, uint32_t count)
 /* Filled is what all pairs left. */
 static t3r_stereo_settings settings_of(void)
 {
-    return (t3r_stereo_settings){.disparities = T3R_STEREO_DISPARITIES,
-                                 .paths = T3R_STEREO_PATHS,
-                                 .fill = 0};
+    return (t3r_stereo_settings){.disparities = T3R_STEREO_DISPARITIES, .paths = T3R_STEREO_PATHS, .fill = 0};
 }
 
 /* First looks at all pairs; of two views there is nothing to choose. */

@@ -110,7 +110,8 @@ static int have_depth(const evaluation_case *what, bool *all)
 
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings)
 {
-    /* all points of the raw depth, the plain analytic head, whatever is to be compared; the sensor's where all have it */
+    /* all points of the raw depth, the plain analytic head, whatever is to be compared; the sensor's where all have it
+     */
     reconstruction_options options = *settings;
     bool sensed;
     int looked = have_depth(what, &sensed);

@@ -26,11 +26,11 @@ extern "C" {
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
 #define T3R_BITS_EPOCH 3
 
-#define T3R_MAX_SIDE 4096u    /* largest width or height of working size, frame or target, in pixels */
-#define T3R_MIN_SIDE 8u       /* smallest working width or height, in pixels */
+#define T3R_MAX_SIDE 4096u        /* largest width or height of working size, frame or target, in pixels */
+#define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */
 #define T3R_STEREO_LEAST_SIDE 32u /* smallest working width or height with depth by stereo, in pixels */
-#define T3R_MAX_VIEWS 16u     /* most context views */
-#define T3R_MAX_CLUSTERS 512u /* most SuperClusters */
+#define T3R_MAX_VIEWS 16u         /* most context views */
+#define T3R_MAX_CLUSTERS 512u     /* most SuperClusters */
 #define T3R_MAX_GAUSSIANS (1u << 24)
 #define T3R_MAX_REFINEMENTS 16u
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
@@ -294,9 +294,9 @@ t3r_status t3r_reset(t3r_runtime *rt);
  * can be matched, t3r_stereo_pair() says why, the views stay; T3R_ERR_CANCELLED: no scene then, the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
 
-/* What the analysis found for context view `view` with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO: T3R_PAIR_OK, and the
- * view that most of its depth came from; or why the pair with the most to hope for was refused. Such a view has no depth
- * and adds no points. *partner is `view` where there is none: by sensor, out of range, before an analysis. */
+/* What the analysis found for context view `view` with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO: T3R_PAIR_OK, and
+ * the view that most of its depth came from; or why the pair with the most to hope for was refused. Such a view has no
+ * depth and adds no points. *partner is `view` where there is none: by sensor, out of range, before an analysis. */
 t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner);
 
 /* Another budget for the pair analysed last, without analysing again; needs keep_analysis. A later t3r_reconstruct()

@@ -43,8 +43,8 @@ static const configuration configurations[] = {
      T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR},
     {"cdf53_pixel", 128, 96, 64, 48, T3R_PIXEL_NV12, T3R_DISTORTION_RADTAN, T3R_WAVELET_CDF53, 4, 300,
      T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0, T3R_DEPTH_SENSOR},
-    {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_UNIFORM, T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR},
+    {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_UNIFORM,
+     T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR},
     {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_RANDOM,
      T3R_HEAD_NONE, 600, false, 0, T3R_DEPTH_SENSOR},
     {"everything", 96, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
@@ -304,10 +304,14 @@ static t3r_status draw(run *r, const char *step)
     uint32_t width = r->configuration->width, height = r->configuration->height;
     t3r_camera camera;
     room_camera(TARGET_VIEW, width, height, &camera);
-    t3r_target target = {.width = width, .height = height,
-                         .rgb = view, .rgb_stride_bytes = width * 3,
-                         .depth_q20 = depth_q20, .depth_stride_bytes = width * 4,
-                         .alpha_q15 = alpha_q15, .alpha_stride_bytes = width * 2};
+    t3r_target target = {.width = width,
+                         .height = height,
+                         .rgb = view,
+                         .rgb_stride_bytes = width * 3,
+                         .depth_q20 = depth_q20,
+                         .depth_stride_bytes = width * 4,
+                         .alpha_q15 = alpha_q15,
+                         .alpha_stride_bytes = width * 2};
     t3r_status status = begin_step(r, step);
     if (status == T3R_OK) {
         status = t3r_render(r->rt, &camera, &target);

@@ -47,8 +47,9 @@ static t3r_config random_config(dice *d, uint32_t most_side, uint32_t most_gauss
     c.keep_analysis = dice_below(d, 2);
     c.refinements = dice_below(d, 3);
     c.fill_radius = dice_below(d, 9);
-    c.depth = c.width < T3R_STEREO_LEAST_SIDE || c.height < T3R_STEREO_LEAST_SIDE ? T3R_DEPTH_SENSOR
-                                                                                  : (t3r_depth)dice_below(d, T3R_DEPTH_COUNT);
+    c.depth = c.width < T3R_STEREO_LEAST_SIDE || c.height < T3R_STEREO_LEAST_SIDE
+                  ? T3R_DEPTH_SENSOR
+                  : (t3r_depth)dice_below(d, T3R_DEPTH_COUNT);
     c.head_column_bytes = dice_below(d, 3) == 0 ? log_uniform(d, 1, T3R_MAX_HEAD_COLUMN_BYTES) : dice_below(d, 2) * 704;
     return c;
 }
@@ -96,8 +97,8 @@ static void plan_equals_macros(void **state)
                                                      c.render_width, c.render_height, c.head_column_bytes,
                                                      c.keep_analysis, c.refinements, c.depth == T3R_DEPTH_STEREO));
         assert_true(plan.bytes == T3R_FULL_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                  c.render_width, c.render_height, c.head_column_bytes,
-                                                  c.keep_analysis, c.refinements, c.depth == T3R_DEPTH_STEREO));
+                                                  c.render_width, c.render_height, c.head_column_bytes, c.keep_analysis,
+                                                  c.refinements, c.depth == T3R_DEPTH_STEREO));
         /* the public macros speak of the defaults */
         c = t3r_default_config(c.width, c.height, c.views, c.max_gaussians);
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);

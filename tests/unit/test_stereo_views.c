@@ -382,20 +382,20 @@ static void fused(void **state)
         uint16_t depth;
         uint8_t confidence;
     } cases[] = {
-        {0, 0, 0, 0, 0, 0},                /* nothing */
-        {1000, 0, 90, 0, 1000, 90},        /* nothing new */
-        {0, 500, 0, 70, 1000, 70},         /* nothing old; units of 2 */
-        {1000, 500, 60, 20, 1000, 80},     /* the same */
-        {1000, 510, 60, 20, 1005, 80},     /* nearly: the mean by confidence */
-        {1000, 510, 200, 200, 1010, 255},  /* held to 255 */
-        {1000, 700, 90, 30, 1000, 60},     /* another: the surer, less sure */
-        {1000, 700, 30, 90, 1400, 60},     /* */
-        {1000, 700, 50, 50, 1000, 2},      /* of two alike the first, hardly trusted */
-        {1000, 700, 1, 2, 1400, 2},        /* matched before filled */
-        {1000, 700, 2, 1, 1000, 2},        /* */
-        {1000, 700, 1, 1, 1000, 1},        /* */
-        {0, 700, 0, 1, 1400, 1},           /* */
-        {1000, 40000, 90, 200, 1000, 90},  /* farther than 65,535 steps */
+        {0, 0, 0, 0, 0, 0},               /* nothing */
+        {1000, 0, 90, 0, 1000, 90},       /* nothing new */
+        {0, 500, 0, 70, 1000, 70},        /* nothing old; units of 2 */
+        {1000, 500, 60, 20, 1000, 80},    /* the same */
+        {1000, 510, 60, 20, 1005, 80},    /* nearly: the mean by confidence */
+        {1000, 510, 200, 200, 1010, 255}, /* held to 255 */
+        {1000, 700, 90, 30, 1000, 60},    /* another: the surer, less sure */
+        {1000, 700, 30, 90, 1400, 60},    /* */
+        {1000, 700, 50, 50, 1000, 2},     /* of two alike the first, hardly trusted */
+        {1000, 700, 1, 2, 1400, 2},       /* matched before filled */
+        {1000, 700, 2, 1, 1000, 2},       /* */
+        {1000, 700, 1, 1, 1000, 1},       /* */
+        {0, 700, 0, 1, 1400, 1},          /* */
+        {1000, 40000, 90, 200, 1000, 90}, /* farther than 65,535 steps */
     };
     enum { COUNT = sizeof cases / sizeof *cases };
     uint16_t depth[COUNT], new_depth[COUNT];
@@ -406,7 +406,8 @@ static void fused(void **state)
         confidence[i] = cases[i].old;
         new_confidence[i] = cases[i].new;
     }
-    const t3r_view view = {.width = COUNT, .height = 1, .depth = depth, .confidence = confidence, .depth_unit_q40 = 500};
+    const t3r_view view = {
+        .width = COUNT, .height = 1, .depth = depth, .confidence = confidence, .depth_unit_q40 = 500};
     const t3r_view found = {
         .width = COUNT, .height = 1, .depth = new_depth, .confidence = new_confidence, .depth_unit_q40 = 1000};
     t3r_stereo_fuse(&view, &found);
@@ -425,11 +426,8 @@ static void filled(void **state)
     uint8_t colour[COUNT], confidence[COUNT] = {0}, before[COUNT];
     uint16_t depth[COUNT] = {0};
     void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 2 + 1, 2);
-    const t3r_view view = {.width = WIDTH,
-                           .height = HEIGHT,
-                           .colour = {colour, colour, colour},
-                           .depth = depth,
-                           .confidence = confidence};
+    const t3r_view view = {
+        .width = WIDTH, .height = HEIGHT, .colour = {colour, colour, colour}, .depth = depth, .confidence = confidence};
     for (int i = 0; i < COUNT; i++) {
         colour[i] = i % WIDTH < WIDTH / 2 ? 40 : 90;
     }
@@ -455,9 +453,9 @@ static void filled(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_alone), cmocka_unit_test(unfilled),   cmocka_unit_test(nothing_shown),
-        cmocka_unit_test(cancelled),     cmocka_unit_test(refused),    cmocka_unit_test(more_views),
-        cmocka_unit_test(a_stranger),    cmocka_unit_test(fused),      cmocka_unit_test(filled),
+        cmocka_unit_test(colours_alone), cmocka_unit_test(unfilled), cmocka_unit_test(nothing_shown),
+        cmocka_unit_test(cancelled),     cmocka_unit_test(refused),  cmocka_unit_test(more_views),
+        cmocka_unit_test(a_stranger),    cmocka_unit_test(fused),    cmocka_unit_test(filled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
