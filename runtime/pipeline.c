@@ -78,7 +78,7 @@ static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
         if (!t3r_progress(rt, T3R_STAGE_POINTMAP, v, 3 * rt->views)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent);
+        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO);
     }
     return T3R_OK;
 }

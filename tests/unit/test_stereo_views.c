@@ -425,7 +425,7 @@ static void filled(void **state)
     enum { WIDTH = 16, HEIGHT = 9, COUNT = WIDTH * HEIGHT };
     uint8_t colour[COUNT], confidence[COUNT] = {0}, before[COUNT];
     uint16_t depth[COUNT] = {0};
-    void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 2 + 1, 2);
+    void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 8 + 1, 8);
     const t3r_view view = {
         .width = WIDTH, .height = HEIGHT, .colour = {colour, colour, colour}, .depth = depth, .confidence = confidence};
     for (int i = 0; i < COUNT; i++) {
@@ -450,12 +450,67 @@ static void filled(void **state)
     free(work);
 }
 
+/* Depths on a plane in the left half go on in the right one. */
+static void extended(void **state)
+{
+    (void)state;
+    enum { WIDTH = 80, HEIGHT = 64, COUNT = WIDTH * HEIGHT };
+    uint8_t colour[COUNT], confidence[COUNT];
+    uint16_t depth[COUNT];
+    uint64_t noise = 3;
+    void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 8 + 1, 8);
+    const t3r_view view = {
+        .width = WIDTH, .height = HEIGHT, .colour = {colour, colour, colour}, .depth = depth, .confidence = confidence};
+    memset(colour, 128, sizeof colour);
+    for (int slant = -2; slant <= 2; slant++) {
+        double most = 0;
+        for (int i = 0; i < COUNT; i++) {
+            const int known = i % WIDTH < WIDTH / 2 && unit_random(&noise) % 3 != 0;
+            const double truth = 1 / (1e-4 * (1 + slant * 0.004 * (i % WIDTH - 40) + 0.003 * (i / WIDTH - 32)));
+            depth[i] = (uint16_t)(known ? lround(truth) : 0);
+            confidence[i] = known ? 90 : T3R_STEREO_NONE;
+        }
+        t3r_stereo_fill(&view, work);
+        for (int i = 0; i < COUNT; i++) {
+            const double truth = 1 / (1e-4 * (1 + slant * 0.004 * (i % WIDTH - 40) + 0.003 * (i / WIDTH - 32)));
+            most = fmax(most, fabs(depth[i] / truth - 1));
+        }
+        print_message("slant %d: %.2f %%\n", slant, 100 * most);
+        assert_true(most < 0.04);
+    }
+    /* So steep that the plane would end behind the camera, or at it: twice or half of the last depth there was. */
+    for (int sign = -1; sign <= 1; sign += 2) {
+        for (int i = 0; i < COUNT; i++) {
+            const int known = i % WIDTH < 20;
+            depth[i] = (uint16_t)(known ? lround(1 / (1e-4 * (1 + sign * 0.04 * (i % WIDTH)))) : 0);
+            confidence[i] = known ? 90 : T3R_STEREO_NONE;
+        }
+        t3r_stereo_fill(&view, work);
+        const double last = 1 / (1e-4 * (1 + sign * 0.04 * 19));
+        const double expected = fmin(sign < 0 ? 2 * last : last / 2, UINT16_MAX);
+        assert_true(fabs(depth[WIDTH - 1] / expected - 1) < 0.01);
+    }
+    free(work);
+}
+
+/* The work that matching leaves is enough for filling, whatever the shape. */
+static void filling_fits(void **state)
+{
+    (void)state;
+    for (uint32_t w = T3R_STEREO_LEAST_SIDE; w <= T3R_MAX_SIDE; w += w < 300 ? 1 : 61) {
+        for (uint32_t h = T3R_STEREO_LEAST_SIDE; h <= T3R_MAX_SIDE; h += h < 300 ? 1 : 61) {
+            assert_true(T3R_STEREO_FILL_BYTES(w, h) <= T3R_STEREO_BYTES_(w, h, 2, 1));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_alone), cmocka_unit_test(unfilled), cmocka_unit_test(nothing_shown),
-        cmocka_unit_test(cancelled),     cmocka_unit_test(refused),  cmocka_unit_test(more_views),
-        cmocka_unit_test(a_stranger),    cmocka_unit_test(fused),    cmocka_unit_test(filled),
+        cmocka_unit_test(colours_alone), cmocka_unit_test(unfilled),     cmocka_unit_test(nothing_shown),
+        cmocka_unit_test(cancelled),     cmocka_unit_test(refused),      cmocka_unit_test(more_views),
+        cmocka_unit_test(a_stranger),    cmocka_unit_test(fused),        cmocka_unit_test(filled),
+        cmocka_unit_test(extended),      cmocka_unit_test(filling_fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
