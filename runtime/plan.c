@@ -38,8 +38,9 @@ static uint64_t head_operations(const t3r_config *c)
 
 /* First looks at all pairs, where there is a choice, and matches of two partners a view. A look draws both planes at
  * the full size and matches a quarter of it with up to twice as many disparities. A match: costs and paths of every
- * pixel and disparity, those downwards twice; the best of them, both ways; agreement, speckles, medians; eight
- * directions of 24 pixels filled; and two views of pixels brought back, some of them twice. */
+ * pixel and disparity, those downwards twice; the best of them, both ways; agreement, speckles, medians;
+ * and two views of pixels brought back, some of them twice, and brought together. A view filled: four sweeps of five
+ * offers, sums and planes. */
 static uint64_t stereo_operations(const t3r_config *c)
 {
     if (c->depth != T3R_DEPTH_STEREO || c->views < 2) {
@@ -50,7 +51,8 @@ static uint64_t stereo_operations(const t3r_config *c)
     const uint64_t pairs = (uint64_t)c->views * (c->views - 1) / 2, matches = T3R_MIN(pairs, 2 * (uint64_t)c->views);
     const uint64_t volume = side * side * d * (2 * (T3R_STEREO_PATHS + 1) + 3 + 4);
     const uint64_t look = 2 * planes + 2 * view + volume / 8;
-    return (c->views > 2 ? pairs * look : 0) + matches * (look + volume + planes * (4 + 9 + 8 * 24) + 2 * view * 8);
+    return (c->views > 2 ? pairs * look : 0) + matches * (look + volume + planes * (4 + 9) + 2 * view * 9) +
+           c->views * view * (4 * 5 + 12);
 }
 
 /* Upper bounds of inner-loop steps: what each stage's loops run to at most, whatever the frames hold. */

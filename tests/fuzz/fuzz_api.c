@@ -69,7 +69,7 @@ static void *allocate(size_t bytes)
 
 static void require_status(t3r_status status)
 {
-    REQUIRE((int)status <= T3R_OK && (int)status >= T3R_ERR_WEIGHTS);
+    REQUIRE((int)status <= T3R_OK && (int)status >= T3R_ERR_STEREO);
     REQUIRE(t3r_error_text(status)[0] != '\0');
 }
 
