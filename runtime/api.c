@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "arena.h"
+#include "budget_choice.h"
 #include "camera.h"
 #include "develop.h"
 #include "hash.h"
@@ -362,6 +363,39 @@ t3r_status t3r_reconstruct_given(t3r_runtime *rt, const uint16_t *const importan
     return reconstruct(rt, &config, &given, scene);
 }
 
+static bool is_loss(uint32_t max_loss_q8)
+{
+    return max_loss_q8 >= 1 && max_loss_q8 <= T3R_MAX_LOSS_Q8;
+}
+
+/* Whether trial scenes can be made and measured, one after the other, of one analysis. */
+static bool is_tried(const t3r_config *config)
+{
+    return config->keep_analysis && config->refinements > 0;
+}
+
+/* The budget chosen on the analysed views, at most that of the settings; these stay only when there is a scene. */
+static t3r_status build_within(t3r_runtime *rt, const t3r_config *config, uint32_t max_loss_q8, t3r_scene *scene)
+{
+    t3r_config before = rt->config, chosen = *config;
+    rt->config = *config;
+    t3r_status status = t3r_choose_budget(rt, max_loss_q8, &chosen.gaussians);
+    rt->config = before;
+    rt->has_scene = 0; /* the trial's */
+    return status == T3R_OK ? build_by(rt, &chosen, NULL, scene) : status;
+}
+
+t3r_status t3r_reconstruct_within(t3r_runtime *rt, uint32_t max_loss_q8, t3r_scene *scene)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL && is_loss(max_loss_q8), T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->views > 0 && is_tried(&rt->config) && is_served(rt, &rt->config, NULL), T3R_ERR_STATE);
+    rt->has_scene = 0;
+    rt->analysed = 0;
+    t3r_config config = rt->config;
+    t3r_status status = t3r_analyse(rt);
+    return status == T3R_OK ? build_within(rt, &config, max_loss_q8, scene) : status;
+}
+
 static t3r_status rebuild(t3r_runtime *rt, const t3r_config *config, const t3r_importance *importance, t3r_scene *scene)
 {
     if (t3r_config_error(config) != NULL) {
@@ -386,6 +420,18 @@ t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     return t3r_reallocate(rt, gaussians, rt->config.allocation, rt->config.head, scene);
+}
+
+t3r_status t3r_rebudget_within(t3r_runtime *rt, uint32_t most, uint32_t max_loss_q8, t3r_scene *scene)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL && is_loss(max_loss_q8), T3R_ERR_ARGUMENT);
+    t3r_config config = rt->config;
+    config.gaussians = most;
+    if (t3r_config_error(&config) != NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    T3R_REFUSE_UNLESS(rt->analysed && is_tried(&config) && is_served(rt, &config, NULL), T3R_ERR_STATE);
+    return build_within(rt, &config, max_loss_q8, scene);
 }
 
 t3r_status t3r_rebudget_given(t3r_runtime *rt, uint32_t gaussians, const uint16_t *const importance[],

@@ -60,6 +60,25 @@ static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
     }
 }
 
+/* One view drawn from the scene, no Gaussian being told. */
+static uint64_t error_of(const t3r_runtime *rt, const workshop *w, const t3r_view *views, uint32_t v,
+                         const t3r_projection *projection, uint32_t *pixels)
+{
+    t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
+    t3r_refine_view job = {.view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
+    uint64_t error = 0;
+    for (uint32_t begin = 0; begin < bin.tiles;) {
+        uint32_t end = t3r_bin_pass(&bin, begin);
+        for (uint32_t tile = begin; tile < end; tile++) {
+            uint32_t from = tile == begin ? 0 : bin.table[tile - 1];
+            error += t3r_refine_tile_error(&job, bin.lists + from, bin.table[tile] - from, tile % bin.across,
+                                           tile / bin.across, pixels);
+        }
+        begin = end;
+    }
+    return error;
+}
+
 /* Tiles after each other: neighbours add to the same sums. */
 static void measure(const t3r_runtime *rt, const workshop *w, const t3r_view *views, uint32_t v,
                     const t3r_projection *projection, uint32_t first, uint32_t count)
@@ -123,5 +142,23 @@ t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
             t3r_refine_apply(&w.corrections[i], &scene[i]);
         }
     }
+    return T3R_OK;
+}
+
+t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *error_q8)
+{
+    workshop w = workshop_of(rt);
+    uint64_t error = 0; /* below 3 x 2^24 x 2^28 */
+    uint32_t pixels = 0;
+    for (uint32_t v = 0; v < rt->views; v++) {
+        t3r_projection projection;
+        t3r_status status =
+            t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width, rt->config.height, &projection);
+        if (status != T3R_OK) {
+            return status;
+        }
+        error += error_of(rt, &w, views, v, &projection, &pixels);
+    }
+    *error_q8 = pixels == 0 ? 0 : (uint32_t)t3r_round_div64((int64_t)error, 3 * (int64_t)pixels);
     return T3R_OK;
 }

@@ -45,4 +45,8 @@ void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);
 /* All passes over the scene in the arena. T3R_ERR_CANCELLED leaves it somewhere between two passes. */
 t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views);
 
+/* How far the scene in the arena is from the context views: mean squared residual a channel, levels^2 Q8, at most 2^24,
+ * over the pixels that refinement counts. Works where t3r_refine() does: needs refinements. */
+t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *error_q8);
+
 #endif

@@ -25,4 +25,9 @@ typedef struct t3r_refine_view {
 void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                      uint32_t tile_y);
 
+/* Draws the tile and tells nobody: its squared residuals, three channels, Q8, below 2^34; adds the pixels that have
+ * depth, and so count, to *pixels. Of the job only view, splats and gain_q14 are read. */
+uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
+                               uint32_t tile_y, uint32_t *pixels);
+
 #endif

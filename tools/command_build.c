@@ -82,8 +82,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "-o SCENE.ply is missing");
         } else if (o->output != NULL && !path_is_ply(o->output)) {
             argp_error(state, "-o %s: scenes are written as .ply", o->output);
-        } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0) {
-            argp_error(state, "the budget is missing: --gaussians Z or --keep P%%");
+        } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
+            argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
         } else if (o->prune != NULL && method_kind_of(o->settings.method) == METHOD_TRIM3R) {
             argp_error(state,
                        "--prune takes one of the rivals, --method eagles, say: trim3r needs the recording's depth");
@@ -103,11 +103,12 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "REC.mcap",
     .doc =
-        "Makes exactly Z Gaussians of a recording's context frames."
+        "Makes exactly Z Gaussians of a recording's context frames, or with --auto as few as it needs."
         "\vExamples:\n"
         "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
         "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
         "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
+        "  trim3r build room.mcap --auto --max-loss 0.5 -o scene.ply\n"
         "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
         "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
         "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
@@ -147,6 +148,9 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     cJSON_AddStringToObject(root, "method", method_name(o->settings.method));
     json_add_integer(root, "gaussians", r->scene.count);
     json_add_integer(root, "requested", told->requested);
+    if (o->settings.automatic) {
+        cJSON_AddNumberToObject(root, "max_loss", o->settings.max_loss);
+    }
     json_add_integer(root, "valid_points", told->valid_points);
     json_add_integers(root, "context", told->context, told->context_count);
     if (o->prune == NULL) {
@@ -246,7 +250,7 @@ static void print_text(const build_options *o, const reconstruction_account *tol
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n",
            o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
            told->seconds * 1e3);
-    if (told->requested > r->scene.count) {
+    if (told->requested > r->scene.count && !o->settings.automatic) {
         printf("%" PRIu32 " were asked for; all valid points are used\n", told->requested);
     }
     for (uint32_t v = 0; v < told->context_count; v++) {

@@ -151,8 +151,11 @@ static void check_options(struct argp_state *state, options *o)
     if (o->ablate && o->keep_count == 0) {
         (void)cli_parse_list_percent(ABLATE_KEEPS, o->keep, MOST_KEEPS, &o->keep_count);
     }
+    if (o->keep_count == 0 && o->settings.automatic) {
+        o->keep[o->keep_count++] = 100;
+    }
     if (o->keep_count == 0) {
-        argp_error(state, "--keep is missing");
+        argp_error(state, "--keep is missing, or --auto");
     }
     if (o->method_count == 0) {
         o->methods[o->method_count++] = METHOD_TRIM3R;
@@ -186,9 +189,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         o->settings.context_views = option_number(state, "views", arg, 2, T3R_MAX_VIEWS);
         return 0;
     case KEY_KEEP:
-        if (cli_parse_list_percent(arg, o->keep, MOST_KEEPS, &o->keep_count) != 0) {
-            argp_error(state, "--keep takes percentages above 0 and up to 100 with commas between, not '%s'", arg);
-        }
+        option_percents(state, "keep", arg, o->keep, MOST_KEEPS, &o->keep_count);
         return 0;
     case KEY_METHODS:
         option_methods(state, "methods", arg, o->methods, &o->method_count);
@@ -250,7 +251,7 @@ static const struct argp_option argp_options[] = {
     {"views", KEY_VIEWS, "N", 0,
      "fill every context up to N frames, 2..16 (2: the triplet's own, or --context), with those nearest to the target",
      0},
-    {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each", 0},
+    {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each; with --auto the most (100)", 0},
     {"methods", KEY_METHODS, "M,M,...", 0,
      "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
      "+head: their points for our head",

@@ -80,9 +80,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         o->inputs[o->input_count++] = argument;
         return 0;
     case KEY_PERCENTILE:
-        if (cli_parse_list_percent(argument, &o->percentile, 1, &count) != 0) {
-            argp_error(state, "--percentile takes a number above 0 and up to 100, not '%s'", argument);
-        }
+        option_percents(state, "percentile", argument, &o->percentile, 1, &count);
         return 0;
     case KEY_NAME:
         o->name = argument;

@@ -73,7 +73,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (o->recording == NULL) {
             argp_error(state, "REC.mcap is missing");
         }
-        if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0) {
+        if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
             o->settings.keep_percent = 10;
         }
         if (o->settings.method != METHOD_TRIM3R) {

@@ -106,9 +106,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         c->settings.finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
         return 0;
     case KEY_KEEP:
-        if (cli_parse_list_percent(arg, c->keep, STRESS_KEEPS_MOST, &c->keep_count) != 0) {
-            argp_error(state, "--keep takes percentages above 0 and up to 100 with commas between, not '%s'", arg);
-        }
+        option_percents(state, "keep", arg, c->keep, STRESS_KEEPS_MOST, &c->keep_count);
         return 0;
     case KEY_ROWS:
         parse_rows(state, o, arg);

@@ -121,6 +121,7 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.depth = sensed ? T3R_DEPTH_SENSOR : settings->depth;
     options.gaussians = 0;
     options.keep_percent = 100;
+    options.automatic = false;
     options.fill_radius = 0;
     options.head = "analytic";
     options.allocation = T3R_ALLOCATE_UNIFORM;

@@ -49,6 +49,9 @@ static void add_number(words *w, const char *name, uint32_t value, uint32_t usua
 
 static void add_rest(words *w, const reconstruction_options *s, const reconstruction_options *usual)
 {
+    if (s->automatic) {
+        add(w, "max-loss-%.4g", s->max_loss);
+    }
     if (s->gamma_q8 != usual->gamma_q8) {
         add(w, "gamma-%.4g", s->gamma_q8 / 256.0);
     }

@@ -25,6 +25,15 @@ void option_size(struct argp_state *state, const char *option, const char *text,
     }
 }
 
+void option_percents(struct argp_state *state, const char *option, const char *text, double *percents, uint32_t most,
+                     uint32_t *count)
+{
+    if (cli_parse_list_percent(text, percents, most, count) != 0) {
+        argp_error(state, "--%s takes %s above 0 and up to 100%s, not '%s'", option,
+                   most == 1 ? "a percentage" : "percentages", most == 1 ? "" : " with commas between", text);
+    }
+}
+
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count)
 {
     if (cli_parse_list_u32(text, frames, T3R_MAX_VIEWS, count) != 0) {

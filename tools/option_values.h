@@ -15,6 +15,9 @@ uint32_t option_number(struct argp_state *state, const char *option, const char 
 /* "WxH", each side in [low, T3R_MAX_SIDE]. */
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
                  uint32_t *height);
+/* 1 to `most` percentages above 0 and up to 100, with or without their sign, commas between. */
+void option_percents(struct argp_state *state, const char *option, const char *text, double *percents, uint32_t most,
+                     uint32_t *count);
 /* 1 to T3R_MAX_VIEWS frame indices with commas between. */
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
 /* A head's name, or a path that ends as weight files do. */

@@ -364,6 +364,17 @@ static int bind_head(reconstruction *r)
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
 }
 
+static t3r_status reconstruct(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
+{
+    if (planes != NULL) {
+        return t3r_reconstruct_given(r->runtime, planes, r->config.width * 2, &r->scene);
+    }
+    if (options->automatic) {
+        return t3r_reconstruct_within(r->runtime, (uint32_t)(options->max_loss * 256 + 0.5), &r->scene);
+    }
+    return t3r_reconstruct(r->runtime, &r->scene);
+}
+
 /* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
 static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
                       const t3r_capture_frame *frames, const uint16_t *const *planes)
@@ -395,7 +406,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     r->config.redundancy = options->redundancy;
     r->config.exposure = options->exposure;
     r->config.seed = options->seed;
-    r->config.keep_analysis = options->keep_analysis;
+    r->config.keep_analysis = options->keep_analysis || options->automatic;
     if (options->render_width != 0) {
         r->config.render_width = options->render_width;
         r->config.render_height = options->render_height;
@@ -410,8 +421,9 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
         return code;
     }
     r->valid_points = points.valid;
-    r->requested =
-        options->gaussians != 0 ? options->gaussians : reconstruction_budget(r->valid_points, options->keep_percent);
+    r->requested = options->gaussians != 0     ? options->gaussians
+                   : options->keep_percent > 0 ? reconstruction_budget(r->valid_points, options->keep_percent)
+                                               : r->valid_points;
     r->config.gaussians = T3R_MIN(r->requested, r->valid_points);
     r->config.max_gaussians = r->config.gaussians;
 
@@ -431,8 +443,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     }
     double added = cli_now();
     r->add_views_seconds = added - start;
-    t3r_status status = planes == NULL ? t3r_reconstruct(r->runtime, &r->scene)
-                                       : t3r_reconstruct_given(r->runtime, planes, r->config.width * 2, &r->scene);
+    t3r_status status = reconstruct(r, options, planes);
     r->build_seconds = cli_now() - added;
     cli_progress_end();
     return status == T3R_OK ? CLI_OK : build_error(r, status, path);

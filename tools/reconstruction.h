@@ -19,6 +19,8 @@
 
 typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
 
+#define RECONSTRUCTION_MAX_LOSS 0.5 /* dB, of --auto */
+
 /* Settings as the command line gives them. reconstruction_defaults() fills every field. */
 typedef struct reconstruction_options {
     uint32_t context[T3R_MAX_VIEWS];      /* frame indices of the context views */
@@ -26,6 +28,8 @@ typedef struct reconstruction_options {
     uint32_t context_views;               /* of `eval --views`: the frames of a case; 2 = the triplet's own */
     uint32_t gaussians;                   /* budget as a count; 0 = keep_percent decides */
     double keep_percent;                  /* budget as percent of the valid points, (0, 100]; 0 = not given */
+    bool automatic;                       /* fewer than the budget where they lose less than max_loss */
+    double max_loss;                      /* dB, against all points; 0 unless automatic */
     method_id method;                     /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
     uint32_t finetune_iterations;         /* of the methods that are fine-tuned */
     uint32_t width, height;               /* working size; 0 = the first context frame's */
@@ -57,8 +61,8 @@ typedef struct reconstruction_options {
 void reconstruction_defaults(reconstruction_options *options);
 
 /* argp children; each parent's parser hands reconstruction_options * on in state->child_inputs[].
- * `settings`: --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep --auto
- * --method --finetune-iterations. */
+ * `settings`: --auto --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep --method
+ * --finetune-iterations. */
 extern const struct argp reconstruction_settings_argp;
 extern const struct argp reconstruction_budget_argp;
 
@@ -76,7 +80,8 @@ typedef struct reconstruction {
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
     uint32_t valid_points;                /* pixels of the context views with a depth before filling, working size */
-    uint32_t requested;                   /* the budget asked for; more than valid_points when all are used */
+    uint32_t requested;                   /* the budget asked for, as it is without max_loss; more than valid_points
+                                             when all are used */
     double add_views_seconds;             /* image stage */
     double build_seconds;                 /* t3r_reconstruct() */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* a stage that reports several times: its reports chained */

@@ -10,11 +10,11 @@
 enum {
     KEY_GAUSSIANS = 256,
     KEY_KEEP,
-    KEY_AUTO,
-    KEY_MAX_LOSS,
     KEY_METHOD,
     KEY_ITERATIONS,
     KEY_CONTEXT,
+    KEY_AUTO,
+    KEY_MAX_LOSS,
     KEY_ALLOCATE,
     KEY_IMPORTANCE,
     KEY_HEAD,
@@ -53,6 +53,11 @@ CHOOSE(t3r_wavelet, t3r_wavelet_name)
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
+    {"auto", KEY_AUTO, NULL, 0,
+     "no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, the budget at most "
+     "(all valid points)",
+     0},
+    {"max-loss", KEY_MAX_LOSS, "DB", 0, "of --auto: decibels of new views against all valid points, 0.01..10 (0.5)", 0},
     {"allocate", KEY_ALLOCATE, "MODE", 0,
      "how the budget is spread: density (default), paper, pixel, uniform, random, given", 0},
     {"importance", KEY_IMPORTANCE, "PNG,PNG,...", 0,
@@ -115,6 +120,40 @@ static void parse_gamma(struct argp_state *state, const char *text, reconstructi
         return;
     }
     o->gamma_q8 = (uint32_t)(gamma * 256 + 0.5);
+}
+
+static void parse_max_loss(struct argp_state *state, const char *text, reconstruction_options *o)
+{
+    char *end = NULL;
+    size_t length = strspn(text, "0123456789.");
+    double loss = strtod(text, &end);
+    if (length == 0 || end != text + length || *end != '\0' || loss < 0.01 || loss > 10) {
+        argp_error(state, "--max-loss takes decibels 0.01..10, not '%s'", text);
+        return;
+    }
+    o->max_loss = loss;
+}
+
+static void check_settings(struct argp_state *state, reconstruction_options *o)
+{
+    if ((o->allocation == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
+        argp_error(state, "--allocate given and --importance belong together");
+    }
+    if (o->max_loss > 0 && !o->automatic) {
+        argp_error(state, "--max-loss belongs to --auto");
+    }
+    if (!o->automatic) {
+        return;
+    }
+    if (o->allocation == T3R_ALLOCATE_GIVEN) {
+        argp_error(state, "--auto predicts nothing for --allocate given");
+    }
+    if (o->refine == 0) {
+        argp_error(state, "--auto measures where refinement does: it needs --refine 1 or more");
+    }
+    if (o->max_loss <= 0) {
+        o->max_loss = RECONSTRUCTION_MAX_LOSS;
+    }
 }
 
 static uint32_t parse_switch(struct argp_state *state, const char *option, const char *text)
@@ -186,10 +225,14 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     case KEY_CPU_MASK:
         (void)option_number(state, "cpu-mask", arg, 0, UINT32_MAX);
         return 0;
+    case KEY_AUTO:
+        o->automatic = true;
+        return 0;
+    case KEY_MAX_LOSS:
+        parse_max_loss(state, arg, o);
+        return 0;
     case ARGP_KEY_END:
-        if ((o->allocation == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
-            argp_error(state, "--allocate given and --importance belong together");
-        }
+        check_settings(state, o);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -208,8 +251,6 @@ static const struct argp_option budget[] = {
      "+head: their points for our head",
      0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
-    {"auto", KEY_AUTO, NULL, 0, "the smallest budget within a loss; not yet available", 0},
-    {"max-loss", KEY_MAX_LOSS, "DB", OPTION_HIDDEN, NULL, 0},
     {0},
 };
 
@@ -225,9 +266,7 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
         return 0;
     case KEY_KEEP:
-        if (cli_parse_list_percent(arg, &o->keep_percent, 1, &count) != 0) {
-            argp_error(state, "--keep takes a percentage above 0 and up to 100, not '%s'", arg);
-        }
+        option_percents(state, "keep", arg, &o->keep_percent, 1, &count);
         return 0;
     case KEY_METHOD:
         o->method = method_named(arg, strlen(arg));
@@ -237,10 +276,6 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_ITERATIONS:
         o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
-        return 0;
-    case KEY_AUTO:
-    case KEY_MAX_LOSS:
-        argp_error(state, "--auto is not yet available; give --gaussians or --keep");
         return 0;
     case ARGP_KEY_END:
         if (o->gaussians != 0 && o->keep_percent > 0) {

@@ -35,6 +35,7 @@ extern "C" {
 #define T3R_MAX_REFINEMENTS 16u
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536u
+#define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
 
 typedef enum t3r_status {
     T3R_OK = 0,
@@ -320,6 +321,17 @@ t3r_status t3r_reconstruct_given(t3r_runtime *rt, const uint16_t *const importan
                                  t3r_scene *scene);
 t3r_status t3r_rebudget_given(t3r_runtime *rt, uint32_t gaussians, const uint16_t *const importance[],
                               uint32_t stride_bytes, t3r_scene *scene);
+
+/* No more than a scene needs: of at most the configuration's Gaussians (`most`) so few that the loss, in PSNR of views
+ * between the context's, against a scene of all points is predicted to stay below max_loss_q8 (dB, Q8,
+ * 1..T3R_MAX_LOSS_Q8; 128 = 0.5 dB). Predicted from what two trial scenes, of 1/100 and 1/50 of the points, miss in the
+ * context views and from how far these disagree among themselves (SPEC.md, "Budget within a loss"); single views are
+ * measured by what they miss alone. It takes the time of two builds and more, hashes the trials' stages too, and needs
+ * keep_analysis and refinements: T3R_ERR_STATE without. At least 1/400 of the points are kept. The configuration's
+ * budget becomes the one chosen. Otherwise as t3r_reconstruct() and t3r_rebudget(); on any error the settings are as
+ * before. */
+t3r_status t3r_reconstruct_within(t3r_runtime *rt, uint32_t max_loss_q8, t3r_scene *scene);
+t3r_status t3r_rebudget_within(t3r_runtime *rt, uint32_t most, uint32_t max_loss_q8, t3r_scene *scene);
 
 /* The scene in the arena, after t3r_attach() say. T3R_ERR_STATE when there is none. */
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);

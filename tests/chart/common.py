@@ -1,36 +1,12 @@
 """What the scripts of this folder share."""
 import os
-import subprocess
 import sys
 
-checks = 0
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from checks import check, done, run, skip  # noqa: E402, F401
+
 HEADING = ("scene,context,target,method,head,bits,refine,wavelet,keep,gaussians,psnr,ssim,build_ms,render_ms,arena_bytes,"
            "scene_bytes,unknown\n")
-
-
-def check(condition, text):
-    """One expectation; the first that fails ends the script."""
-    global checks
-    checks += 1
-    if not condition:
-        print(f"FAILED: {text}")
-        sys.exit(1)
-
-
-def run(*command, expect=0):
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=300)
-    check(done.returncode == expect,
-          f"{' '.join(map(str, command))}: exit status {done.returncode}, not {expect}\n{done.stdout}{done.stderr}")
-    return done
-
-
-def skip(reason):
-    print(f"SKIPPED: {reason}")
-    sys.exit(77)
-
-
-def done():
-    print(f"{checks} checks")
 
 
 def made_up(path, scenes=3, cases=2):

@@ -2,6 +2,7 @@
 """The trim3r program from outside: exit codes, messages, JSON, and what must not change a bit.
 
     cli.py PATH/TO/trim3r"""
+import csv
 import json
 import os
 import resource
@@ -143,7 +144,11 @@ def test_build(room):
     }.items():
         for value in values:
             expect(2, "build", room, "-o", "s.ply", f"{option}={value}", err=option)
-    expect(2, "build", room, "--auto", "-o", "s.ply", err="not yet available")
+    for loss in ("0", "0.001", "11", "-1", "x", "1e3", ""):
+        expect(2, "build", room, "--auto", f"--max-loss={loss}", "-o", "s.ply", err="--max-loss")
+    expect(2, "build", room, "--keep", 10, "--max-loss", 1, "-o", "s.ply", err="belongs to --auto")
+    expect(2, "build", room, "--auto", "--refine", 0, "-o", "s.ply", err="--refine 1 or more")
+    expect(2, "build", room, "--auto", "--method", "eagles", "-o", "s.ply", err="not for eagles")
     expect(2, "build", room, "--keep", 10, "--context", "1,1", "-o", "s.ply", err="twice")
     expect(1, "build", room, "--keep", 10, "--context", "0,99", "-o", "s.ply", err="no frame 99")
     expect(1, "build", room, "--keep", 10, "-o", "missing/s.ply", err="missing/s.ply")
@@ -158,6 +163,17 @@ def test_build(room):
     check(found["gaussians"] == (found["valid_points"] * 10 + 50) // 100, "--keep 10% is not a tenth")
     exact = expect_json("build", room, "--gaussians", 777, "-o", "exact.ply")
     check(exact["gaussians"] == 777, "--gaussians is not met exactly")
+    few = expect_json("build", room, "--context", "0,2", "--working", "64x64", "--auto", "--max-loss", 3, "-o", "few.ply")
+    some = expect_json("build", room, "--context", "0,2", "--working", "64x64", "--auto", "-o", "some.ply")
+    check(some["max_loss"] == 0.5 and 0 < few["gaussians"] < some["gaussians"] < some["valid_points"],
+          "--auto takes no fewer for more loss")
+    expect(0, "eval", room, "--working", "64x64", "--context", "0,2", "--target", 1, "--auto", "--csv", "auto.csv")
+    with open("auto.csv", newline="") as table:
+        row = next(csv.DictReader(table))
+    check(row["settings"] == "max-loss-0.5 working-64x64" and int(row["gaussians"]) == some["gaussians"],
+          "eval --auto does not take what build --auto takes")
+    most = expect_json("build", room, "--context", "0,2", "--working", "64x64", "--auto", "--gaussians", 50, "-o", "most.ply")
+    check(most["gaussians"] == 50, "--gaussians is not the most of --auto")
     text = expect(0, "build", room, "--working", "32x32", "--gaussians", 100000, "-o", "all.ply",
                   out="all valid points are used")
     check("100000" in text, "the count asked for is not told")

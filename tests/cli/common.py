@@ -3,25 +3,14 @@ import os
 import subprocess
 import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from checks import check, done  # noqa: E402, F401
+
 TRIM3R = os.path.abspath(sys.argv[1])
-checks = 0
-
-
-def check(condition, text):
-    """One expectation; the first that fails ends the script."""
-    global checks
-    checks += 1
-    if not condition:
-        print(f"FAILED: {text}")
-        sys.exit(1)
 
 
 def run(*command, expect=0, words=""):
     """What the program prints; `words` must stand in its messages."""
-    done = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
-    check(done.returncode == expect and words in done.stderr, f"{command}: {done.returncode} {done.stderr}")
-    return done.stdout
-
-
-def done():
-    print(f"{checks} checks")
+    ended = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
+    check(ended.returncode == expect and words in ended.stderr, f"{command}: {ended.returncode} {ended.stderr}")
+    return ended.stdout

@@ -1,28 +1,10 @@
 """What the scripts of this folder share."""
 import importlib.util
 import os
-import subprocess
 import sys
 
-checks = 0
-
-
-def check(condition, text):
-    """One expectation; the first that fails ends the script."""
-    global checks
-    checks += 1
-    if not condition:
-        print(f"FAILED: {text}")
-        sys.exit(1)
-
-
-def near(a, b, bound, text):
-    check(abs(a - b) <= bound, f"{text}: {a} and {b} differ by more than {bound}")
-
-
-def skip(reason):
-    print(f"SKIPPED: {reason}")
-    sys.exit(77)
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from checks import check, done, near, run, skip  # noqa: E402, F401
 
 
 def need_numpy():
@@ -43,15 +25,3 @@ def load_scorer(path):
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
-
-
-def run(*command, expect=0):
-    # restore_signals: a child under a limit of file sizes must get the error, not the signal
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, restore_signals=False)
-    check(done.returncode == expect,
-          f"{' '.join(map(str, command))}: exit status {done.returncode}, not {expect}\n{done.stdout}{done.stderr}")
-    return done
-
-
-def done():
-    print(f"{checks} checks")

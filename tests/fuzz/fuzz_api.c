@@ -417,6 +417,19 @@ static t3r_status call_given(session *s, input *in, uint32_t budget, int rebudge
     return status;
 }
 
+/* At most the budget, and from then on that. */
+static void call_within(session *s, input *in)
+{
+    t3r_scene scene;
+    uint32_t most = below(in, MOST_GAUSSIANS + 20), loss_q8 = below(in, T3R_MAX_LOSS_Q8 + 10), again = below(in, 2);
+    t3r_status status =
+        again ? t3r_rebudget_within(s->rt, most, loss_q8, &scene) : t3r_reconstruct_within(s->rt, loss_q8, &scene);
+    check_scene(s, status, &scene, again ? most : s->budget);
+    if (status == T3R_OK) {
+        s->budget = scene.count;
+    }
+}
+
 enum { REBUDGET, REALLOCATE, REBUDGET_GIVEN };
 
 static void call_reallocate(session *s, input *in, int take)
@@ -467,7 +480,10 @@ static void call_bind(session *s, input *in)
 static void call(session *s, input *in)
 {
     t3r_scene scene;
-    switch (take8(in) % 17) {
+    switch (take8(in) % 18) {
+    case 17:
+        call_within(s, in);
+        break;
     case 16:
         check_scene(s, call_given(s, in, 0, 0, &scene), &scene, s->budget);
         break;

@@ -756,8 +756,7 @@ static void texts(void **state)
         int count;
     } tables[] = {
         {stage_name, T3R_STAGE_COUNT},     {allocation_name, T3R_ALLOCATE_COUNT},       {head_name, T3R_HEAD_COUNT},
-        {wavelet_name, T3R_WAVELET_COUNT}, {pixel_format_name, T3R_PIXEL_FORMAT_COUNT},
-        {depth_name, T3R_DEPTH_COUNT},
+        {wavelet_name, T3R_WAVELET_COUNT}, {pixel_format_name, T3R_PIXEL_FORMAT_COUNT}, {depth_name, T3R_DEPTH_COUNT},
     };
     for (int pair = -2; pair <= T3R_PAIR_COUNT; pair++) {
         assert_non_null(t3r_pair_text((t3r_pair)pair));

@@ -5,8 +5,8 @@ import json
 import os
 import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "eval"))
-from common import check, done, run
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from checks import check, done, run
 
 trim3r = sys.argv[1]
 MAY_REFUSE = {("depth-all", 99.9), ("depth-all", 100)}  # of so few pixels a view may be left without any

@@ -8,8 +8,8 @@ import re
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "eval"))
-from common import check, done, near, run
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from checks import check, done, near, run
 
 trim3r = sys.argv[1]
 COLUMNS = ("scene context target perturbation strength unit method keep status reason budget gaussians psnr ssim holes "

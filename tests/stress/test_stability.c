@@ -144,16 +144,18 @@ static void promises(void **state)
     (void)state;
     t3r_gaussian g[2] = {{.factor = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .opacity_q15 = 32767}, {.factor = {0}}};
     t3r_scene scene = {.gaussians = g, .count = 2};
-    assert_null(stress_broken_promise(&scene, 2));
-    assert_string_equal(stress_broken_promise(&scene, 3), "the budget is not met");
+    assert_null(stress_broken_promise(&scene, 2, false));
+    assert_string_equal(stress_broken_promise(&scene, 3, false), "the budget is not met");
+    assert_null(stress_broken_promise(&scene, 3, true));
+    assert_string_equal(stress_broken_promise(&scene, 1, true), "the budget is not met");
     g[1].position_q20[2] = (1 << 30) + 1;
-    assert_string_equal(stress_broken_promise(&scene, 2), "a Gaussian is out of range");
+    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
     g[1].position_q20[2] = 0;
     g[0].opacity_q15 = 32768;
-    assert_string_equal(stress_broken_promise(&scene, 2), "a Gaussian is out of range");
+    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
     g[0].opacity_q15 = 0;
     g[0].factor_exponent = 16;
-    assert_string_equal(stress_broken_promise(&scene, 2), "a Gaussian is out of range");
+    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
 }
 
 static void means_of_rows(void **state)

@@ -1,6 +1,7 @@
 /* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
 #include "unit.h"
 
+#include "disagreement.h"
 #include "exposure.h"
 #include "fixed.h"
 #include "flying_pixels.h"
@@ -555,6 +556,86 @@ static void splats_are_levelled(void **state)
     }
 }
 
+/* --- disagreement ------------------------------------------------------------------------------------------------- */
+
+static void paint_sure(rig *s, int v, int disparity, const double gain[3])
+{
+    for (int i = 0; i < PIXELS; i++) {
+        uint32_t place = (uint32_t)(i / W * 4096 + i % W + disparity);
+        for (int c = 0; c < 3; c++) {
+            s->colour[v][c][i] = (uint8_t)lround((60 + t3r_mix32(place * 3 + (uint32_t)c) % 120) * gain[c]);
+        }
+    }
+}
+
+/* A wall whose colours differ by 9 levels in red and by nothing else: 27 a channel, whatever the exposure; what has
+ * other depth, is doubtful or was not measured does not count. */
+static void colours_that_differ(void **state)
+{
+    (void)state;
+    rig *s = pair_new();
+    const double same[3] = {1, 1, 1};
+    uint16_t gain_q14[VIEWS][3] = {{T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14},
+                                   {T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14}};
+    uint32_t pairs;
+    paint_sure(s, 0, 0, same);
+    paint_sure(s, 1, 8, same);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs), 0);
+    assert_int_equal(pairs, 2 * (W - 8) * H);
+    assert_int_equal(t3r_disagreement_q8(s->view, 1, 0, gain_q14, &pairs), 0);
+    assert_int_equal(pairs, 0);
+    for (int i = 0; i < PIXELS; i++) {
+        s->colour[1][0][i] = (uint8_t)(s->colour[1][0][i] + 9);
+    }
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs), 27 * 256);
+
+    block(s, 1, 0, 0, W, H / 2, 1.9);
+    memset(s->confidence[1] + PIXELS / 2, T3R_CONFIDENCE_DOUBTFUL, 4 * W);
+    memset(s->confidence[1] + PIXELS / 2 + 4 * W, T3R_CONFIDENCE_FILLED, 3 * W);
+    memset(s->confidence[1] + PIXELS / 2 + 7 * W, T3R_CONFIDENCE_COVERED, 3 * W); /* measured all the same */
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs), 27 * 256);
+    assert_int_equal(pairs, 2 * (W - 8) * (H / 2 - 7));
+    free(s);
+}
+
+static void levelled_before_they_are_compared(void **state)
+{
+    (void)state;
+    rig *s = pair_new();
+    const double same[3] = {1, 1, 1}, darker[3] = {0.8, 0.9, 1};
+    paint_sure(s, 0, 0, same);
+    paint_sure(s, 1, 8, darker);
+    uint16_t gain_q14[VIEWS][3];
+    t3r_exposure_gains(s->view, 2, 0, gain_q14);
+    uint32_t pairs;
+    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs) < 2 * 256);
+    for (int c = 0; c < 3; c++) {
+        gain_q14[0][c] = gain_q14[1][c] = T3R_GAIN_ONE_Q14;
+    }
+    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs) > 50 * 256);
+    free(s);
+}
+
+/* Three views in a ring: each is compared with both others. */
+static void around_the_ring(void **state)
+{
+    (void)state;
+    rig *s = pair_new();
+    const double same[3] = {1, 1, 1};
+    place_view(s, 2, 0.5, 0, 2);
+    uint16_t gain_q14[VIEWS][3];
+    for (int v = 0; v < VIEWS; v++) {
+        paint_sure(s, v, 8 * v, same);
+        for (int c = 0; c < 3; c++) {
+            gain_q14[v][c] = T3R_GAIN_ONE_Q14;
+        }
+    }
+    uint32_t pairs;
+    assert_int_equal(t3r_disagreement_q8(s->view, 3, 0, gain_q14, &pairs), 0);
+    assert_int_equal(pairs, 2 * H * ((W - 8) + (W - 8) + (W - 16)));
+    free(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -573,6 +654,9 @@ int main(void)
         cmocka_unit_test(levelled_colours),
         cmocka_unit_test(in_the_pipeline),
         cmocka_unit_test(splats_are_levelled),
+        cmocka_unit_test(colours_that_differ),
+        cmocka_unit_test(levelled_before_they_are_compared),
+        cmocka_unit_test(around_the_ring),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -322,6 +322,9 @@ static int tune(const rival_source *source, uint32_t iterations, scene_file *sce
 int rival_build(rival_source *source, const t3r_recording *recording, const char *path, method_id m,
                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told)
 {
+    if (options->automatic) {
+        return cli_error(CLI_BAD_USAGE, "--auto chooses for the method trim3r alone, not for %s", method_name(m));
+    }
     if (source->recording == NULL) {
         source->recording = recording;
         source->path = path;

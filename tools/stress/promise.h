@@ -4,8 +4,8 @@
 
 #include "reconstruction.h"
 
-/* NULL, or the promise that the scene breaks: `count` Gaussians, each within the ranges of t3r_gaussian and finite as
- * files hold it. */
-const char *stress_broken_promise(const t3r_scene *scene, uint32_t count);
+/* NULL, or the promise that the scene breaks: `count` Gaussians (at_most: 1..count), each within the ranges of
+ * t3r_gaussian and finite as files hold it. */
+const char *stress_broken_promise(const t3r_scene *scene, uint32_t count, bool at_most);
 
 #endif

@@ -100,6 +100,7 @@ reconstruction_options stress_run_options(const stress_run *run, const stress_ca
     reconstruction_options options = contest->settings;
     options.gaussians = keep < contest->keep_count ? c->budget[keep] : 0;
     options.keep_percent = keep < contest->keep_count ? 0 : 100;
+    options.automatic &= keep < contest->keep_count;
     options.hash = false;
     options.width = c->base.width;
     options.height = c->base.height;

@@ -1,0 +1,26 @@
+/* No more than a scene needs: the budget that a loss allows, predicted from two small trial scenes and from how far the
+ * context views disagree (SPEC.md, "Budget within a loss"). */
+#ifndef T3R_BUDGET_CHOICE_H
+#define T3R_BUDGET_CHOICE_H
+
+#include <stdint.h>
+
+#include "trim3r.h"
+
+/* What the prediction goes by. */
+typedef struct t3r_budget_evidence {
+    uint32_t points;          /* valid ones, 1..2^28 */
+    uint32_t trial;           /* Gaussians of the first trial scene, 1..2^23; the second had twice as many */
+    uint32_t error_q8[2];     /* of the trial scenes against the context views, levels^2, at most 2^24 */
+    uint32_t disagreement_q8; /* of the context views, levels^2, at most 2^24; 0 = nothing to compare */
+} t3r_budget_evidence;
+
+/* The least number of Gaussians that is predicted to lose less than max_loss_q8 dB (1..T3R_MAX_LOSS_Q8) against all
+ * points, 1..most. */
+uint32_t t3r_predict_budget(const t3r_budget_evidence *evidence, uint32_t most, uint32_t max_loss_q8);
+
+/* The same for the analysed views, `most` being the budget of the configuration. Makes two trial scenes in the arena of
+ * at most 1/50 of the points; the configuration's budget afterwards is undefined. T3R_ERR_CANCELLED. */
+t3r_status t3r_choose_budget(t3r_runtime *rt, uint32_t max_loss_q8, uint32_t *gaussians);
+
+#endif

@@ -1,0 +1,241 @@
+/* No more than a scene needs: the budget chosen in the arena, on two views of a textured wall with a box before it. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "drawing.h"
+#include "refine.h"
+#include "state.h"
+
+enum { SIDE = 64, PIXELS = SIDE * SIDE, VIEWS = 2, HALF_DB = 128 };
+
+static uint8_t rgb[VIEWS][PIXELS * 3], depth[VIEWS][PIXELS * 2];
+static t3r_camera camera[VIEWS];
+
+typedef struct site {
+    arena memory;
+    t3r_runtime *rt;
+    int32_t calls_left; /* before the progress hook cancels; negative = never */
+} site;
+
+static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    site *s = user;
+    (void)stage;
+    (void)done;
+    (void)total;
+    return s->calls_left >= 0 && s->calls_left-- == 0;
+}
+
+/* contrast 0: everything has one colour */
+static void make_views(double contrast)
+{
+    for (uint32_t v = 0; v < VIEWS; v++) {
+        camera[v] = plain_camera(SIDE, SIDE, SIDE);
+        camera[v].position_q32[0] = (int64_t)v << 30; /* 0.25 to the right: 8 pixels at depth 2 */
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            double x = i % SIDE, y = (double)(i / SIDE), seen = x + 8 * v;
+            bool near = contrast > 0 && seen > 24 && seen < 44 && y > 24 && y < 48;
+            uint32_t steps = near ? 1900 : 2000;
+            rgb[v][3 * i] = (uint8_t)(128 + contrast * sin(seen * 0.35) * cos(y * 0.21));
+            rgb[v][3 * i + 1] = (uint8_t)(128 + contrast * sin(seen * 0.9 + y));
+            rgb[v][3 * i + 2] = (uint8_t)(128 + (near ? contrast : 0));
+            depth[v][2 * i] = (uint8_t)steps;
+            depth[v][2 * i + 1] = (uint8_t)(steps >> 8);
+        }
+    }
+}
+
+static void add_views(site *s, uint32_t views)
+{
+    for (uint32_t v = 0; v < views; v++) {
+        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
+                           .width = SIDE,
+                           .height = SIDE,
+                           .planes = {rgb[v]},
+                           .stride_bytes = {3 * SIDE},
+                           .depth = depth[v],
+                           .depth_width = SIDE,
+                           .depth_height = SIDE,
+                           .depth_stride_bytes = 2 * SIDE,
+                           .depth_unit_q40 = 1099511628};
+        assert_int_equal(t3r_add_view(s->rt, &frame, &camera[v]), T3R_OK);
+    }
+}
+
+static site site_of(uint32_t most, uint32_t views)
+{
+    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, most);
+    config.clusters = 20;
+    config.keep_analysis = 1;
+    config.exposure = 0;
+    site s = {.memory = arena_of(&config, ARENA_AT_FULL), .calls_left = -1};
+    assert_int_equal(t3r_init(&s.rt, s.memory.bytes, s.memory.count, &config), T3R_OK);
+    add_views(&s, views);
+    return s;
+}
+
+static t3r_scene within(site *s, uint32_t loss_q8)
+{
+    t3r_scene scene;
+    assert_int_equal(t3r_reconstruct_within(s->rt, loss_q8, &scene), T3R_OK);
+    return scene;
+}
+
+/* What the trials leave behind does not show: the scene is that of the same budget asked for at once. */
+static void the_scene_of_that_budget(void **state)
+{
+    (void)state;
+    make_views(90);
+    for (uint32_t views = 1; views <= VIEWS; views++) {
+        site chosen = site_of(VIEWS * PIXELS, views), asked = site_of(VIEWS * PIXELS, views);
+        t3r_scene a = within(&chosen, HALF_DB), b;
+        assert_true(a.count > 20 && a.count < views * PIXELS);
+        assert_int_equal(chosen.rt->config.gaussians, a.count);
+        assert_int_equal(t3r_reconstruct(asked.rt, &b), T3R_OK);
+        assert_int_equal(t3r_rebudget(asked.rt, a.count, &b), T3R_OK);
+        assert_int_equal(a.count, b.count);
+        assert_memory_equal(a.gaussians, b.gaussians, a.count * sizeof *a.gaussians);
+        assert_int_equal(t3r_rebudget_within(asked.rt, VIEWS * PIXELS, HALF_DB, &b), T3R_OK);
+        assert_int_equal(a.count, b.count);
+        assert_memory_equal(a.gaussians, b.gaussians, a.count * sizeof *a.gaussians);
+        arena_free(&chosen.memory);
+        arena_free(&asked.memory);
+    }
+}
+
+static void never_more_than_the_most(void **state)
+{
+    (void)state;
+    make_views(90);
+    static const uint32_t most[] = {1, 2, 3, 10, 100};
+    for (size_t i = 0; i < sizeof most / sizeof most[0]; i++) {
+        site s = site_of(most[i], VIEWS);
+        t3r_scene scene = within(&s, 1);
+        assert_int_equal(scene.count, most[i]);
+        arena_free(&s.memory);
+    }
+    site s = site_of(VIEWS * PIXELS, VIEWS);
+    uint32_t before = UINT32_MAX;
+    for (uint32_t loss_q8 = 16; loss_q8 <= T3R_MAX_LOSS_Q8; loss_q8 *= 2) {
+        t3r_scene scene;
+        if (s.rt->has_scene) {
+            assert_int_equal(t3r_rebudget_within(s.rt, VIEWS * PIXELS, loss_q8, &scene), T3R_OK);
+        } else {
+            scene = within(&s, loss_q8);
+        }
+        assert_true(scene.count <= before);
+        before = scene.count;
+    }
+    assert_true(before < VIEWS * PIXELS / 20);
+    arena_free(&s.memory);
+}
+
+static void a_blank_wall_needs_next_to_nothing(void **state)
+{
+    (void)state;
+    make_views(0);
+    site s = site_of(VIEWS * PIXELS, VIEWS);
+    t3r_scene scene = within(&s, HALF_DB);
+    assert_true(scene.count < VIEWS * PIXELS / 100);
+    arena_free(&s.memory);
+}
+
+/* The error of the scene in the arena is that of the context views as they are drawn. */
+static void the_error_is_that_of_the_picture(void **state)
+{
+    (void)state;
+    make_views(90);
+    site s = site_of(400, VIEWS);
+    t3r_scene scene;
+    assert_int_equal(t3r_reconstruct(s.rt, &scene), T3R_OK);
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(s.rt, views);
+    uint32_t error_q8;
+    assert_int_equal(t3r_refine_error(s.rt, views, &error_q8), T3R_OK);
+    double sum = 0;
+    for (uint32_t v = 0; v < VIEWS; v++) {
+        uint8_t drawn[PIXELS * 3];
+        t3r_target target = {.width = SIDE, .height = SIDE, .rgb = drawn, .rgb_stride_bytes = 3 * SIDE};
+        assert_int_equal(t3r_render(s.rt, &camera[v], &target), T3R_OK);
+        for (size_t i = 0; i < sizeof drawn; i++) {
+            sum += (drawn[i] - rgb[v][i]) * (drawn[i] - rgb[v][i]);
+        }
+    }
+    double drawn_error = sum / (VIEWS * PIXELS * 3);
+    assert_true(drawn_error > 20);
+    assert_true(fabs(error_q8 / 256.0 - drawn_error) < 0.01 * drawn_error + 0.1); /* pictures round to 8 bits */
+    arena_free(&s.memory);
+}
+
+static void cancelled_anywhere(void **state)
+{
+    (void)state;
+    make_views(90);
+    site s = site_of(VIEWS * PIXELS, VIEWS);
+    t3r_hooks hooks = {.user = &s, .progress = progress};
+    assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
+    uint32_t count = within(&s, HALF_DB).count;
+    assert_int_equal(t3r_reset(s.rt), T3R_OK);
+    s.rt->config.gaussians = VIEWS * PIXELS;
+    add_views(&s, VIEWS);
+    int32_t calls = 0;
+    for (bool done = false; !done; calls++) {
+        t3r_config before = s.rt->config;
+        t3r_scene scene;
+        s.calls_left = calls;
+        t3r_status status = t3r_reconstruct_within(s.rt, HALF_DB, &scene);
+        done = status == T3R_OK;
+        if (done) {
+            assert_int_equal(scene.count, count);
+        } else {
+            assert_int_equal(status, T3R_ERR_CANCELLED);
+            assert_int_equal(t3r_get_scene(s.rt, &scene), T3R_ERR_STATE);
+            assert_memory_equal(&before, &s.rt->config, sizeof before);
+        }
+    }
+    assert_true(calls > 30); /* analysis and three builds */
+    arena_free(&s.memory);
+}
+
+static void refusals(void **state)
+{
+    (void)state;
+    make_views(90);
+    t3r_scene scene;
+    site s = site_of(100, VIEWS);
+    assert_int_equal(t3r_reconstruct_within(NULL, HALF_DB, &scene), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, NULL), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_reconstruct_within(s.rt, 0, &scene), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_reconstruct_within(s.rt, T3R_MAX_LOSS_Q8 + 1, &scene), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_rebudget_within(s.rt, 100, HALF_DB, &scene), T3R_ERR_STATE); /* no analysis yet */
+    (void)within(&s, HALF_DB);
+    assert_int_equal(t3r_rebudget_within(s.rt, 101, HALF_DB, &scene), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_rebudget_within(s.rt, 100, 0, &scene), T3R_ERR_ARGUMENT);
+    s.rt->config.refinements = 0;
+    assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, &scene), T3R_ERR_STATE);
+    s.rt->config.refinements = 4;
+    s.rt->config.keep_analysis = 0;
+    assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, &scene), T3R_ERR_STATE);
+    arena_free(&s.memory);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_scene_of_that_budget),
+        cmocka_unit_test(never_more_than_the_most),
+        cmocka_unit_test(a_blank_wall_needs_next_to_nothing),
+        cmocka_unit_test(the_error_is_that_of_the_picture),
+        cmocka_unit_test(cancelled_anywhere),
+        cmocka_unit_test(refusals),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
