@@ -122,7 +122,8 @@ static bool is_consistent(const t3r_runtime *rt)
     }
     for (uint32_t v = 0; v < rt->views; v++) {
         t3r_pose pose;
-        if (t3r_camera_check(&rt->camera[v]) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
+        if (rt->stereo_pair[v] >= T3R_PAIR_COUNT || rt->stereo_partner[v] >= T3R_MAX_VIEWS ||
+            t3r_camera_check(&rt->camera[v]) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
             rt->depth_unit_q40[v] > T3R_MAX_DEPTH_UNIT_Q40 ||
             (rt->analysed && t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK)) {
             return false;
@@ -235,20 +236,26 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
 {
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(rt->views < rt->config.views && !rt->has_scene, T3R_ERR_STATE);
-    if (frame->depth == NULL) {
+    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO;
+    t3r_frame shown = *frame;
+    if (stereo) {
+        shown.depth = NULL;
+    } else if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
     rt->analysed = 0; /* the image stage works where later planes are */
     t3r_camera undistorted;
-    t3r_status status = t3r_develop_view(rt, rt->views, frame, camera, &undistorted);
+    t3r_status status = t3r_develop_view(rt, rt->views, &shown, camera, &undistorted);
     if (status != T3R_OK) {
         return status;
     }
-    if (!has_measured_depth(rt, rt->views)) {
+    if (!stereo && !has_measured_depth(rt, rt->views)) {
         return T3R_ERR_NO_DEPTH;
     }
     rt->camera[rt->views] = undistorted;
-    rt->depth_unit_q40[rt->views] = frame->depth_unit_q40;
+    rt->depth_unit_q40[rt->views] = stereo ? 1 : frame->depth_unit_q40; /* stereo chooses its own */
+    rt->stereo_pair[rt->views] = T3R_PAIR_OK;
+    rt->stereo_partner[rt->views] = (uint8_t)rt->views;
     rt->views++;
     return T3R_OK;
 }
@@ -331,7 +338,8 @@ static t3r_status build_by(t3r_runtime *rt, const t3r_config *config, const t3r_
 static t3r_status reconstruct(t3r_runtime *rt, const t3r_config *config, const t3r_importance *importance,
                               t3r_scene *scene)
 {
-    T3R_REFUSE_UNLESS(rt->views > 0 && is_served(rt, config, importance), T3R_ERR_STATE);
+    const uint32_t least = config->depth == T3R_DEPTH_STEREO ? 2 : 1;
+    T3R_REFUSE_UNLESS(rt->views >= least && is_served(rt, config, importance), T3R_ERR_STATE);
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
@@ -462,6 +470,15 @@ t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian)
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
     scene[rt->gaussians++] = *gaussian;
     return T3R_OK;
+}
+
+t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner)
+{
+    const bool known = rt != NULL && rt->config.depth == T3R_DEPTH_STEREO && view < rt->views;
+    if (partner != NULL) {
+        *partner = known ? rt->stereo_partner[view] : view;
+    }
+    return known ? (t3r_pair)rt->stereo_pair[view] : T3R_PAIR_OK;
 }
 
 uint32_t t3r_render_passes(const t3r_runtime *rt)

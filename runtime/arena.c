@@ -26,7 +26,7 @@ typedef struct buffer_row {
 static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
 {
     T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,
-                c->head_column_bytes, c->keep_analysis, c->refinements)
+                c->head_column_bytes, c->keep_analysis, c->refinements, c->depth == T3R_DEPTH_STEREO)
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)
@@ -91,7 +91,7 @@ t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout 
 
 const char *t3r_buffer_name(enum t3r_buffer buffer)
 {
-    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
+    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
     return names[buffer];
 }
 

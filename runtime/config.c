@@ -1,4 +1,6 @@
 /* Settings: their defaults and their ranges. */
+#include <stdbool.h>
+
 #include "trim3r.h"
 
 t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
@@ -24,6 +26,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .adapt = 1,
         .head_column_bytes = T3R_HEAD_COLUMN_BYTES,
         .refinements = 4,
+        .depth = T3R_DEPTH_SENSOR,
         .fill_radius = 4,
         .bridge_radius = 64,
         .flying = 1,
@@ -39,6 +42,8 @@ const char *t3r_config_error(const t3r_config *c)
     if (c == NULL) {
         return "no configuration";
     }
+    const bool stereo = c->depth == T3R_DEPTH_STEREO && c->views > 0;
+    const uint32_t side = T3R_MAX_(c->width, c->height), least = c->width < c->height ? c->width : c->height;
     const struct {
         const char *text;
         uint32_t value, low, high;
@@ -63,6 +68,9 @@ const char *t3r_config_error(const t3r_config *c)
         {"adapt must be 0 or 1", c->adapt, 0, 1},
         {"head_column_bytes must be 0..65536", c->head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES},
         {"refinements must be 0..16", c->refinements, 0, T3R_MAX_REFINEMENTS},
+        {"depth is none of t3r_depth", (uint32_t)c->depth, 0, T3R_DEPTH_COUNT - 1},
+        {"width and height must be 32 and more with depth by stereo", least, stereo ? T3R_STEREO_LEAST_SIDE : 0,
+         T3R_MAX_SIDE},
         {"fill_radius must be 0..8", c->fill_radius, 0, 8},
         {"bridge_radius must be 0..255", c->bridge_radius, 0, 255},
         {"flying must be 0 or 1", c->flying, 0, 1},
@@ -79,5 +87,8 @@ const char *t3r_config_error(const t3r_config *c)
     uint64_t bytes = (uint64_t)c->width * c->height * (c->views * (uint64_t)24 + 32) +
                      (uint64_t)c->render_width * c->render_height * 8 + (uint64_t)c->max_gaussians * 320 +
                      (uint64_t)(c->width + 15) * c->head_column_bytes + T3R_HEAD_KERNEL_BYTES;
+    /* planes of a quarter more on a side, the right one wider; 64 rows of sums and costs, and as many path states */
+    const uint64_t wide = (uint64_t)side * 5 / 4 + 8 + T3R_STEREO_DISPARITIES;
+    bytes += stereo ? wide * wide * 16 + wide * (T3R_STEREO_DISPARITIES + 2) * 300 : 0;
     return bytes > SIZE_MAX / 2 ? "the arena would be larger than this machine can address" : NULL;
 }

@@ -25,12 +25,18 @@ static bool between_surfaces(const t3r_view *view, uint32_t x, uint32_t y)
             (y > 0 && y + 1 < view->height && lies_between(view, pixel, pixel - view->width, pixel + view->width)));
 }
 
-/* Whether `to` measured the pixel that the sight falls on, and everything measured about it is deeper. */
-static bool seen_through(const t3r_pointmap *to, const t3r_sight *sight)
+/* Whose word counts: of measured pixels, or of all with depth. */
+static bool is_witness(uint8_t confidence, bool filled)
+{
+    return filled ? confidence != T3R_CONFIDENCE_NONE : t3r_is_measured(confidence);
+}
+
+/* Whether `to` has a witness in the pixel that the sight falls on, and all of them about it are deeper. */
+static bool seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool filled)
 {
     const t3r_view *view = to->view;
     uint32_t u = (uint32_t)(sight->pixel % view->width), v = (uint32_t)(sight->pixel / view->width);
-    if (!t3r_is_measured(view->confidence[sight->pixel]) || u == 0 || v == 0 || u + 1 == view->width ||
+    if (!is_witness(view->confidence[sight->pixel], filled) || u == 0 || v == 0 || u + 1 == view->width ||
         v + 1 == view->height) {
         return false;
     }
@@ -38,7 +44,7 @@ static bool seen_through(const t3r_pointmap *to, const t3r_sight *sight)
         for (uint32_t x = u - 1; x <= u + 1; x++) {
             size_t pixel = (size_t)y * view->width + x;
             int64_t behind = (int64_t)t3r_depth_q20(to->scale, view->depth[pixel]) - sight->z_q20;
-            if (t3r_is_measured(view->confidence[pixel]) && 16 * behind <= sight->z_q20) {
+            if (is_witness(view->confidence[pixel], filled) && 16 * behind <= sight->z_q20) {
                 return false;
             }
         }
@@ -46,18 +52,20 @@ static bool seen_through(const t3r_pointmap *to, const t3r_sight *sight)
     return true;
 }
 
-static bool seen_through_by_any(const t3r_pointmap *maps, uint32_t count, uint32_t v, uint32_t x, uint32_t y)
+static bool seen_through_by_any(const t3r_pointmap *maps, uint32_t count, uint32_t v, uint32_t x, uint32_t y,
+                                bool guessed)
 {
+    const bool filled = guessed && !t3r_is_measured(maps[v].view->confidence[(size_t)y * maps[v].view->width + x]);
     t3r_sight sight;
     for (uint32_t w = 0; w < count; w++) {
-        if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight) && seen_through(&maps[w], &sight)) {
+        if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight) && seen_through(&maps[w], &sight, filled)) {
             return true;
         }
     }
     return false;
 }
 
-uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent)
+uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed)
 {
     t3r_pointmap maps[T3R_MAX_VIEWS];
     const t3r_view *view = &views[v];
@@ -69,7 +77,7 @@ uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int3
         for (uint32_t x = 0; x < view->width; x++) {
             uint8_t *confidence = &view->confidence[(size_t)y * view->width + x];
             if (!t3r_is_bridged(*confidence) &&
-                (between_surfaces(view, x, y) || seen_through_by_any(maps, count, v, x, y))) {
+                (between_surfaces(view, x, y) || seen_through_by_any(maps, count, v, x, y, guessed))) {
                 *confidence = t3r_is_measured(*confidence) ? T3R_CONFIDENCE_DOUBTFUL : T3R_CONFIDENCE_FILLED_DOUBTFUL;
                 marked++;
             }

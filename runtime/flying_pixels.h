@@ -3,6 +3,7 @@
 #ifndef T3R_FLYING_PIXELS_H
 #define T3R_FLYING_PIXELS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "views.h"
@@ -11,8 +12,9 @@
  * - measured ones whose two measured neighbours in a row or a column lie one nearer and one deeper, neither on the same
  *   surface;
  * - any whose point another view sees through: all that it measured within a pixel of where the point falls there is
- *   deeper by more than 1/16. A pixel of misregistration at an edge is forgiven so.
+ *   deeper by more than 1/16. A pixel of misregistration at an edge is forgiven so. Where filled depths are guesses
+ *   (`guessed`), those of the other view bear witness too, against filled ones.
  * Depths stay. What is marked does not depend on the order of the views. */
-uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent);
+uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed);
 
 #endif

@@ -20,29 +20,6 @@
 #define T3R_NO_DISPARITY UINT16_MAX
 #define T3R_DISPARITY_BITS 7 /* disparities k are in Q7 */
 
-/* Rows of a block: a power of two near the root of the height. */
-#define T3R_MATCH_ROWS(height) ((height) <= 128 ? 8u : (height) <= 512 ? 16u : (height) <= 2048 ? 32u : 64u)
-#define T3R_MATCH_BLOCKS(height) (((size_t)(height) + T3R_MATCH_ROWS(height) - 1) / T3R_MATCH_ROWS(height))
-#define T3R_MATCH_RIGHT(width, disparities) ((size_t)(width) + (disparities)-1)
-
-/* Path states that lead from row to row */
-#define T3R_MATCH_STATES(paths) ((paths) == 8 ? 3u : 1u)
-
-/* Regions of fewer pixels than this are speckles. */
-#define T3R_MATCH_LEAST_REGION(width, height) ((uint32_t)((size_t)(width) * (height) / 1024 + 1))
-
-/* Bytes of the work, aligned to 4; the second part is what speckles take. */
-#define T3R_MATCH_WORK_BYTES(width, height, disparities, paths)                                                        \
-    T3R_MAX_(T3R_MATCH_PATH_BYTES_(width, height, disparities, paths),                                                 \
-             (size_t)4 * T3R_MATCH_LEAST_REGION(width, height) + T3R_MATCH_RIGHT(width, disparities) * (height))
-#define T3R_MATCH_PATH_BYTES_(width, height, disparities, paths)                                                       \
-    (T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height) * 2) +                                             \
-     T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height)) +                                                 \
-     T3R_UP_((T3R_MATCH_BLOCKS(height) + 4) * T3R_MATCH_STATES(paths) * T3R_PATH_STATE_BYTES(width, disparities)) +    \
-     T3R_UP_((size_t)(width)*T3R_CENSUS_BYTES) +                                                                       \
-     T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * (2 * T3R_CENSUS_BYTES + 1)) +                                       \
-     T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * 4))
-
 typedef struct t3r_match {
     uint32_t width, height;          /* of the left plane; at least 8 x 8 */
     uint32_t disparities;            /* 16..T3R_PATH_MOST, a multiple of 16 */

@@ -31,10 +31,26 @@ const char *t3r_error_text(t3r_status status)
         return "the arena was made by another version or settings";
     case T3R_ERR_FULL:
         return "the scene has no room for another Gaussian";
+    case T3R_ERR_STEREO:
+        return "no depth can be made of these views";
     case T3R_ERR_WEIGHTS:
         return "the weights are damaged, of another version, or too large a head for this arena";
     }
     return "unknown status";
+}
+
+const char *t3r_pair_text(t3r_pair pair)
+{
+    static const char *const texts[T3R_PAIR_COUNT] = {
+        [T3R_PAIR_OK] = "the views can be matched",
+        [T3R_PAIR_NO_BASELINE] = "no baseline: both views are from one place and one direction",
+        [T3R_PAIR_ROTATION] = "pure rotation: both views are from one place",
+        [T3R_PAIR_OVERLAP] = "too little overlap: hardly anything is in both views",
+        [T3R_PAIR_PARALLAX] = "too little parallax: what is in both views hardly moves between them",
+        [T3R_PAIR_SCALE] = "the distance between the views is too large or too small for a depth unit",
+    };
+    const char *text = pick(texts, T3R_PAIR_COUNT, (uint32_t)pair);
+    return text != NULL ? text : "unknown";
 }
 
 const char *t3r_stage_name(t3r_stage stage)
@@ -54,6 +70,12 @@ const char *t3r_head_name(t3r_head head)
 {
     static const char *const names[] = {"analytic", "moment", "none", "learned"};
     return pick(names, T3R_HEAD_COUNT, (uint32_t)head);
+}
+
+const char *t3r_depth_name(t3r_depth depth)
+{
+    static const char *const names[] = {"sensor", "stereo"};
+    return pick(names, T3R_DEPTH_COUNT, (uint32_t)depth);
 }
 
 const char *t3r_wavelet_name(t3r_wavelet wavelet)

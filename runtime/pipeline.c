@@ -3,6 +3,7 @@
  *     frames - image -+- wavelet -- texture energy --+
  *                     |                              +- superclusters - budget - mask - head - scene - refine - raster
  *                     +- depth ---- pointmap --------+
+ *                        sensor | stereo
  *
  * Each stage tells what it made through the stage_hash hook. */
 #include "pipeline.h"
@@ -21,17 +22,19 @@
 #include "scene_frame.h"
 #include "stage_hash.h"
 #include "state.h"
+#include "stereo_views.h"
 #include "superclusters.h"
 #include "wavelet.h"
 
 /* --- analysis --------------------------------------------------------------------------------------------------- */
 
+/* Stereo matched what it doubts, too. */
 static uint32_t count_measured(const t3r_runtime *rt, const t3r_view *views)
 {
     uint32_t pixels = rt->config.width * rt->config.height, measured = 0;
     for (uint32_t v = 0; v < rt->views; v++) {
         for (uint32_t i = 0; i < pixels; i++) {
-            measured += views[v].confidence[i] == T3R_CONFIDENCE_MEASURED;
+            measured += t3r_is_measured(views[v].confidence[i]);
         }
     }
     return measured;
@@ -39,6 +42,12 @@ static uint32_t count_measured(const t3r_runtime *rt, const t3r_view *views)
 
 static t3r_status depth(t3r_runtime *rt, t3r_view *views)
 {
+    if (rt->config.depth == T3R_DEPTH_STEREO) {
+        t3r_status status = t3r_stereo_views(rt, views);
+        if (status != T3R_OK) {
+            return status;
+        }
+    }
     for (uint32_t v = 0; v < rt->views; v++) {
         if (!t3r_progress(rt, T3R_STAGE_DEPTH, v, rt->views)) {
             return T3R_ERR_CANCELLED;
@@ -91,7 +100,7 @@ static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
         if (!t3r_progress(rt, T3R_STAGE_POINTMAP, rt->views + v, POINTMAP_STEPS(rt))) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent);
+        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO);
     }
     return T3R_OK;
 }
@@ -162,6 +171,9 @@ t3r_status t3r_analyse(t3r_runtime *rt)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
+    if (rt->config.depth == T3R_DEPTH_STEREO) {
+        t3r_stereo_forget(views, rt->views);
+    }
     t3r_forget_marks(views, rt->views); /* of an earlier analysis of the same planes */
     t3r_hash_image(rt, views);
 

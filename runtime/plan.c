@@ -1,5 +1,6 @@
 /* What a configuration needs: bytes by buffer, steps by stage. */
 #include "arena.h"
+#include "fixed.h"
 #include "importance.h"
 #include "network.h"
 #include "state.h"
@@ -35,6 +36,25 @@ static uint64_t head_operations(const t3r_config *c)
     }
 }
 
+/* First looks at all pairs, where there is a choice, and matches of two partners a view. A look draws both planes at
+ * the full size and matches a quarter of it with up to twice as many disparities. A match: costs and paths of every
+ * pixel and disparity, those downwards twice; the best of them, both ways; agreement, speckles, medians;
+ * and two views of pixels brought back, some of them twice, and brought together. A view filled: four sweeps of five
+ * offers, sums and planes. */
+static uint64_t stereo_operations(const t3r_config *c)
+{
+    if (c->depth != T3R_DEPTH_STEREO || c->views < 2) {
+        return 0;
+    }
+    const uint64_t side = T3R_RECTIFIED_SIDE(c->width, c->height), d = T3R_STEREO_DISPARITIES;
+    const uint64_t planes = side * (2 * side + d), view = (uint64_t)c->width * c->height;
+    const uint64_t pairs = (uint64_t)c->views * (c->views - 1) / 2, matches = T3R_MIN(pairs, 2 * (uint64_t)c->views);
+    const uint64_t volume = side * side * d * (2 * (T3R_STEREO_PATHS + 1) + 3 + 4);
+    const uint64_t look = 2 * planes + 2 * view + volume / 8;
+    return (c->views > 2 ? pairs * look : 0) + matches * (look + volume + planes * (4 + 9) + 2 * view * 9) +
+           c->views * view * (4 * 5 + 12);
+}
+
 /* Upper bounds of inner-loop steps: what each stage's loops run to at most, whatever the frames hold. */
 static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_COUNT])
 {
@@ -50,7 +70,7 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
      * search and the grid */
     operations[T3R_STAGE_IMAGE] = c->views * (4 * frame + 3 * (side + c->height) * c->width + 6 * view +
                                               64 * T3R_GRID_NODES_(c->width, c->height) + 8192);
-    operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2);
+    operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2) + stereo_operations(c);
     /* two looks at the depths for their median, marks forgotten twice; wide holes: every pixel sought in all other
      * views, 17 looks at steps for its own there, eight directions, sought again; every pixel sought in all other
      * views: nine looks for flying ones, one for redundant ones, a quarter of them for exposure, its medians */

@@ -22,19 +22,6 @@
 /* Rays of a view up to 16 to the side of 1 ahead, as the pointmap has it */
 #define RAY_MOST_Q24 (16 * ONE_Q24)
 
-const char *t3r_pair_text(t3r_pair pair)
-{
-    static const char *const texts[T3R_PAIR_COUNT] = {
-        [T3R_PAIR_OK] = "the views can be matched",
-        [T3R_PAIR_NO_BASELINE] = "no baseline: both views are from one place and one direction",
-        [T3R_PAIR_ROTATION] = "pure rotation: both views are from one place",
-        [T3R_PAIR_OVERLAP] = "too little overlap: hardly anything is in both views",
-        [T3R_PAIR_PARALLAX] = "too little parallax: what is in both views hardly moves between them",
-        [T3R_PAIR_SCALE] = "the distance between the views is too large or too small for a depth unit",
-    };
-    return (uint32_t)pair < T3R_PAIR_COUNT ? texts[pair] : "unknown";
-}
-
 static int64_t dot(const int64_t a[3], const int64_t b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -17,22 +17,6 @@
 
 #include "trim3r.h"
 
-/* Whether two views can be matched, and why not. */
-typedef enum t3r_pair {
-    T3R_PAIR_OK,
-    T3R_PAIR_NO_BASELINE, /* both cameras stand in one place and look the same way */
-    T3R_PAIR_ROTATION,    /* both cameras stand in one place, but look different ways */
-    T3R_PAIR_OVERLAP,     /* too little is in both pictures */
-    T3R_PAIR_PARALLAX,    /* whatever is in both pictures hardly moves between them */
-    T3R_PAIR_SCALE,       /* the baseline in world units leaves no depth unit */
-    T3R_PAIR_COUNT
-} t3r_pair;
-
-/* As text, for people */
-const char *t3r_pair_text(t3r_pair pair);
-
-/* The largest side of a rectified plane in planar rectification; other shapes take no more memory. */
-#define T3R_RECTIFIED_SIDE(width, height) (((size_t)((width) > (height) ? (width) : (height)) * 5 / 4 + 7) / 8 * 8)
 #define T3R_RECTIFIED_LEAST 32u /* least width and height */
 
 typedef struct t3r_rectified_view {
@@ -71,7 +55,7 @@ bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u
                          int32_t place_q16[2], int32_t *across_q24);
 
 /* `count` pixels of row `row` of a plane of `view`, whose first column is at x_q16: luma 1..255, 0 where the view shows
- * nothing. luma: the view's own plane. */
+ * nothing. luma: the view's own plane, 0 where it shows nothing. */
 void t3r_rectified_row(const t3r_rectification *rect, uint32_t view, const uint8_t *luma, int32_t x_q16, uint32_t row,
                        uint32_t count, uint8_t *out);
 

@@ -83,7 +83,7 @@ void t3r_rectified_row(const t3r_rectification *rect, uint32_t view, const uint8
             continue;
         }
         const int64_t x = t3r_round_shift64(u_q16, 16), y = t3r_round_shift64(v_q16, 16);
-        if (x >= 0 && y >= 0 && x < width && y < height) {
+        if (x >= 0 && y >= 0 && x < width && y < height && luma[y * width + x] != 0) {
             out[i] = sample(luma, width, height, u_q16, v_q16);
         }
     }

@@ -8,8 +8,8 @@
 #include "refine_moments.h"
 
 /* What one pixel adds at most, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 / 2),
- * and |e|^k exp(-|e|^2 / 2), k <= 2, beside |g| |r| and |e|^k exp(-|e|^2), k <= 4, beside |g|^2 are at most 1. A tile is
- * held to as many times that as the splat's box has pixels there, so that the bound does not hang on roundings. */
+ * and |e|^k exp(-|e|^2 / 2), k <= 2, beside |g| |r| and |e|^k exp(-|e|^2), k <= 4, beside |g|^2 are at most 1. A tile
+ * is held to as many times that as the splat's box has pixels there, so that the bound does not hang on roundings. */
 #define MOMENT_MOST_Q7 (195075 * 128)
 
 static t3r_own_axes axes_of(const t3r_refine_view *job, uint32_t index)

@@ -72,17 +72,15 @@ t3r_status t3r_scene_frame_choose(const t3r_view *views, uint32_t count, int32_t
     uint64_t total = 0;
     for (uint32_t v = 0; v < count; v++) {
         uint32_t pixels = views[v].width * views[v].height;
-        uint64_t measured = 0;
         for (uint32_t i = 0; i < pixels; i++) {
             if (views[v].confidence[i] == T3R_CONFIDENCE_MEASURED) {
                 octaves[octave(views[v].depth_unit_q40, views[v].depth[i])]++;
-                measured++;
+                total++;
             }
         }
-        if (measured == 0) {
-            return T3R_ERR_NO_DEPTH;
-        }
-        total += measured;
+    }
+    if (total == 0) {
+        return T3R_ERR_NO_DEPTH;
     }
     uint32_t middle = median_bin(octaves, OCTAVES, total, 0);
     *exponent = t3r_clamp32((int32_t)middle - 40, T3R_EXPONENT_LEAST, T3R_EXPONENT_MOST);

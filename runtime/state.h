@@ -42,8 +42,10 @@ struct t3r_runtime {
     t3r_scene_frame frame;
     int32_t median_depth_q20; /* scene units, [1, 2) */
     uint32_t valid_points;
-    uint16_t gain_q14[T3R_MAX_VIEWS][3]; /* brings r, g, b of a view to the mean exposure */
-    uint32_t gaussians;                  /* in the scene */
+    uint8_t stereo_pair[T3R_MAX_VIEWS];    /* t3r_pair of each view, by stereo */
+    uint8_t stereo_partner[T3R_MAX_VIEWS]; /* and with which view */
+    uint16_t gain_q14[T3R_MAX_VIEWS][3];   /* brings r, g, b of a view to the mean exposure */
+    uint32_t gaussians;                    /* in the scene */
     uint32_t render_passes;
     uint32_t head_crc; /* of the weights bound last */
     const void *weights;

@@ -13,6 +13,8 @@
 #define MARGIN 6
 /* Disparities may be below 0 by this where poses are not exact, pixels. */
 #define BEYOND_INFINITY 2
+/* The disparity with which a place is half known, as partners are compared, pixels. */
+#define HALF_KNOWN 8
 /* A pair is refused when less than 1/16 of the first look can be trusted. */
 #define LEAST_SHARE 16
 
@@ -70,11 +72,14 @@ static t3r_match match_of(const planes *p, const t3r_stereo_settings *settings, 
     };
 }
 
+/* 1..255, 0 where the view shows nothing: there undistortion leaves black. */
 static void luma_of(const t3r_view *view, uint8_t *luma)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
     for (size_t i = 0; i < pixels; i++) {
-        luma[i] = (uint8_t)((77 * view->colour[0][i] + 150 * view->colour[1][i] + 29 * view->colour[2][i] + 128) >> 8);
+        const int32_t r = view->colour[0][i], g = view->colour[1][i], b = view->colour[2][i];
+        const int32_t value = (77 * r + 150 * g + 29 * b + 128) >> 8;
+        luma[i] = (uint8_t)(r + g + b == 0 ? 0 : T3R_MAX(value, 1));
     }
 }
 
@@ -104,9 +109,27 @@ static uint32_t lanes(uint32_t disparities)
     return (disparities + T3R_PATH_LANES - 1) / T3R_PATH_LANES * T3R_PATH_LANES;
 }
 
-/* The range of disparities to look at: from *first, at most settings->disparities of them. */
+/* What a first look finds: disparities from `first`, at most as many as the settings have, and what to hope for. */
+typedef struct look {
+    int32_t first;
+    uint32_t disparities;
+    uint32_t promise; /* t3r_stereo_promise() */
+} look;
+
+/* Each trusted pixel as far as its distance would be known, d / (d + HALF_KNOWN) of a disparity of d pixels, in 256ths.
+ */
+static uint32_t promise_of(const uint32_t *histogram, uint32_t count, int32_t base)
+{
+    uint64_t sum = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        const uint32_t d = (uint32_t)T3R_MAX(base + (int32_t)(QUARTER * k), 0);
+        sum += (uint64_t)histogram[k] * (256 * d / (d + HALF_KNOWN));
+    }
+    return (uint32_t)T3R_MIN(sum, (uint64_t)UINT32_MAX);
+}
+
 static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectification *rect, const t3r_view views[2],
-                           const planes *full, int32_t *first, uint32_t *disparities)
+                           const planes *full, look *found)
 {
     const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
     const int32_t base = rect->least_disparity;
@@ -141,6 +164,7 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
             trusted++;
         }
     }
+    found->promise = promise_of(histogram, count, base);
     if (trusted < 64 || trusted < shown / LEAST_SHARE) {
         return T3R_PAIR_OVERLAP;
     }
@@ -166,10 +190,25 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
         low = best_low;
         high = low + most - 1;
     }
-    *first = T3R_MAX(base + (int32_t)(QUARTER * low) - MARGIN, -BEYOND_INFINITY);
+    found->first = T3R_MAX(base + (int32_t)(QUARTER * low) - MARGIN, -BEYOND_INFINITY);
     const int32_t last = base + (int32_t)(QUARTER * (high + 1)) + MARGIN - 1;
-    *disparities = T3R_MIN(lanes((uint32_t)(last - *first + 1)), settings->disparities);
+    found->disparities = T3R_MIN(lanes((uint32_t)(last - found->first + 1)), settings->disparities);
     return T3R_PAIR_OK;
+}
+
+t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
+                            void *work, uint32_t *promise)
+{
+    const uint32_t width = views[0].width, height = views[0].height;
+    const planes full = divide(settings, width, height, work);
+    t3r_rectification rect;
+    look found = {.promise = 0};
+    t3r_pair pair = t3r_rectify(&cameras[0], &cameras[1], width, height, settings->disparities, &rect);
+    if (pair == T3R_PAIR_OK) {
+        pair = first_look(settings, &rect, views, &full, &found);
+    }
+    *promise = found.promise;
+    return pair;
 }
 
 t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
@@ -178,14 +217,16 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
     const uint32_t width = views[0].width, height = views[0].height;
     const planes full = divide(settings, width, height, work);
     t3r_rectification rect;
-    t3r_stereo_planes found = {.rect = &rect, .filled = settings->fill != 0};
+    look seen = {.promise = 0};
     t3r_pair pair = t3r_rectify(&cameras[0], &cameras[1], width, height, settings->disparities, &rect);
     if (pair == T3R_PAIR_OK) {
-        pair = first_look(settings, &rect, views, &full, &found.first, &found.disparities);
+        pair = first_look(settings, &rect, views, &full, &seen);
     }
     if (pair != T3R_PAIR_OK) {
         return pair;
     }
+    t3r_stereo_planes found = {
+        .rect = &rect, .filled = settings->fill != 0, .first = seen.first, .disparities = seen.disparities};
     const t3r_match match = match_of(&full, settings, rect.width, rect.height, found.disparities);
     for (uint32_t side = 0; side < 2; side++) {
         const uint32_t columns = side == 0 ? rect.width : (uint32_t)T3R_MATCH_RIGHT(rect.width, found.disparities);
@@ -211,8 +252,10 @@ void t3r_stereo_marks(const t3r_view *view, uint32_t least)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
     for (size_t i = 0; i < pixels; i++) {
-        view->confidence[i] = (uint8_t)(view->depth[i] == 0            ? T3R_CONFIDENCE_NONE
-                                        : view->confidence[i] >= least ? T3R_CONFIDENCE_MEASURED
-                                                                       : T3R_CONFIDENCE_FILLED);
+        const uint8_t c = view->confidence[i];
+        view->confidence[i] = (uint8_t)(view->depth[i] == 0     ? T3R_CONFIDENCE_NONE
+                                        : c >= least            ? T3R_CONFIDENCE_MEASURED
+                                        : c >= T3R_STEREO_LEAST ? T3R_CONFIDENCE_DOUBTFUL
+                                                                : T3R_CONFIDENCE_FILLED);
     }
 }

@@ -10,8 +10,6 @@
 #include "rectify.h"
 #include "views.h"
 
-#define T3R_STEREO_DISPARITIES 128u /* most, by default; as many as the first look finds are compared */
-#define T3R_STEREO_PATHS 4u
 /* Penalties of the aggregation: P1, P2, least P2 (DESIGN.md) */
 #define T3R_STEREO_SAME 20u
 #define T3R_STEREO_STEP 120u
@@ -28,27 +26,21 @@ typedef struct t3r_stereo_settings {
     uint32_t fill;        /* 1 = holes get their surroundings' depth, T3R_STEREO_FILLED */
 } t3r_stereo_settings;
 
-/* Bytes of work for views of that size, aligned to 64: two planes' luma, disparities and confidences, and the matching.
- */
-#define T3R_STEREO_LEFT_(width, height) (T3R_RECTIFIED_SIDE(width, height) * T3R_RECTIFIED_SIDE(width, height))
-#define T3R_STEREO_RIGHT_(width, height, disparities)                                                                  \
-    (T3R_RECTIFIED_SIDE(width, height) * (T3R_RECTIFIED_SIDE(width, height) + (disparities)))
-#define T3R_STEREO_PLANES_(width, height, disparities)                                                                 \
-    (T3R_UP_(T3R_STEREO_LEFT_(width, height)) + T3R_UP_(T3R_STEREO_RIGHT_(width, height, disparities)))
-#define T3R_STEREO_WORK_BYTES(width, height, disparities, paths)                                                       \
-    (4 * T3R_STEREO_PLANES_(width, height, disparities) +                                                              \
-     T3R_UP_(T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height),       \
-                                           disparities, paths),                                                        \
-                      2 * T3R_PIXELS_(width, height))))
-
 /* Depth and confidence planes of two views of one size from their colours and checked, undistorted cameras. Both get
  * depths in steps of *depth_unit_q40 world units, 1..65535, 0 = none; confidences T3R_STEREO_... On anything but
  * T3R_PAIR_OK planes and unit are undefined. */
 t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
                           void *work, uint64_t *depth_unit_q40);
 
-/* The plane's confidences as later stages know them: T3R_CONFIDENCE_MEASURED from `least` (2..255) on, else
- * T3R_CONFIDENCE_FILLED, T3R_CONFIDENCE_NONE where there is no depth. */
+/* What to hope for of a pair, to compare it with others of the same size: how many pixels a first look trusts, each as
+ * far as its distance would be known. Reasons for refusal that show only later are not seen. *promise is set whatever
+ * is returned; same work. */
+t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
+                            void *work, uint32_t *promise);
+
+/* The plane's confidences as later stages know them: T3R_CONFIDENCE_MEASURED from `least` (2..255) on, below it
+ * T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_FILLED where depth is the surroundings', T3R_CONFIDENCE_NONE where there is
+ * none. */
 void t3r_stereo_marks(const t3r_view *view, uint32_t least);
 
 #endif

@@ -160,7 +160,8 @@ void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3
             sight s;
             view->depth[at] = 0;
             view->confidence[at] = T3R_STEREO_NONE;
-            if (see(planes, side, u, v, &s)) {
+            const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
+            if (shown && see(planes, side, u, v, &s)) {
                 /* 2^22 x 2^25 x 2^6 */
                 int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
                 view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);

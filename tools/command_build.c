@@ -123,6 +123,18 @@ static const struct argp argp = {
     .children = children,
 };
 
+/* Frames that stereo could match with no other. */
+static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *told,
+                          const reconstruction *r)
+{
+    cJSON *list = o->settings.depth == T3R_DEPTH_STEREO ? cJSON_AddArrayToObject(root, "unmatched") : NULL;
+    for (uint32_t v = 0; v < told->context_count && list != NULL; v++) {
+        if (t3r_stereo_pair(r->runtime, v, NULL) != T3R_PAIR_OK) {
+            cJSON_AddItemToArray(list, cJSON_CreateNumber(told->context[v]));
+        }
+    }
+}
+
 static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r)
 {
     bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
@@ -141,6 +153,10 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     }
     json_add_integer(root, "valid_points", told->valid_points);
     json_add_integers(root, "context", told->context, told->context_count);
+    if (o->prune == NULL) {
+        cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.depth));
+        add_unmatched(root, o, told, r);
+    }
     cJSON_AddNumberToObject(root, "width", told->width);
     cJSON_AddNumberToObject(root, "height", told->height);
     if (!rival) {
@@ -236,6 +252,14 @@ static void print_text(const build_options *o, const reconstruction_account *tol
            told->seconds * 1e3);
     if (told->requested > r->scene.count && !o->settings.automatic) {
         printf("%" PRIu32 " were asked for; all valid points are used\n", told->requested);
+    }
+    for (uint32_t v = 0; v < told->context_count; v++) {
+        uint32_t partner;
+        t3r_pair pair = t3r_stereo_pair(r->runtime, v, &partner);
+        if (pair != T3R_PAIR_OK) {
+            printf("frame %" PRIu32 " has no depth; with frame %" PRIu32 ": %s\n", told->context[v],
+                   told->context[partner], t3r_pair_text(pair));
+        }
     }
 }
 

@@ -129,6 +129,9 @@ static void check_options(struct argp_state *state, options *o)
     if (o->settings.context_views > 2 && o->settings.context_count > o->settings.context_views) {
         argp_error(state, "--context names more frames than --views");
     }
+    if (o->planar && o->settings.depth != T3R_DEPTH_SENSOR) {
+        argp_error(state, "--depth belongs to a recording, not to --planar");
+    }
     if (!o->planar && o->width != 0) {
         argp_error(state, "--size belongs to --planar; --working sets the size of a recording's views");
     }
@@ -299,7 +302,8 @@ static const struct argp parser = {
         "Several cases end in lines of means (decibels are averaged as decibels), which the CSV leaves out; several "
         "recordings get a folder each in --images.\n\n"
         "--views N: the triplet's own frames, or those of --context, come first, then the recording's other frames "
-        "with depth, pose and intrinsics by their distance from the target's camera: the root of the squares of the "
+        "with depth (but for --depth stereo), pose and intrinsics by their distance from the target's camera: the root "
+        "of the squares of the "
         "centres' distance over the median depth of the first frame, and of the distance between the directions of "
         "view as unit vectors; of equal ones the lower index, the target never. The column context names them, the "
         "column settings tells views-N; the mask is that of all N. A recording with too few frames is refused.\n\n"
@@ -342,8 +346,7 @@ static int open_cases(const options *o, evaluation_cases *cases)
     if (o->planar) {
         return evaluation_cases_of_images(cases, o->inputs, o->input_count, o->width, o->height);
     }
-    return evaluation_cases_of_recordings(cases, o->inputs, o->input_count, o->settings.context,
-                                          o->settings.context_count, o->target, o->settings.context_views);
+    return evaluation_cases_of_recordings(cases, o->inputs, o->input_count, &o->settings, o->target);
 }
 
 static int choose_contestants(const options *o, evaluation_contestants *chosen)

@@ -15,6 +15,7 @@
 
 typedef struct plan_options {
     uint32_t width, height, views, gaussians, clusters, render_width, render_height, refine;
+    t3r_depth depth;
     bool has_clusters, keep_analysis, json, markdown;
     const char *svg, *head;
 } plan_options;
@@ -27,6 +28,7 @@ enum {
     KEY_RENDER,
     KEY_REFINE,
     KEY_HEAD,
+    KEY_DEPTH,
     KEY_KEEP,
     KEY_SVG,
     KEY_MARKDOWN,
@@ -41,6 +43,7 @@ static const struct argp_option options[] = {
     {"head", KEY_HEAD, "HEAD", 0, "nano, small (default), base, FILE.t3w, analytic, moment or none", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
     {"refine", KEY_REFINE, "N", 0, "refinement passes, 0..16 (4)", 0},
+    {"depth", KEY_DEPTH, "SOURCE", 0, "sensor (default) or stereo", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
     {"svg", KEY_SVG, "FILE", 0, "the arena as a picture: stages across, bytes upwards", 0},
     {"markdown", KEY_MARKDOWN, NULL, 0, "the table in Markdown", 0},
@@ -73,6 +76,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_HEAD:
         o->head = option_head(state, "head", arg);
+        return 0;
+    case KEY_DEPTH:
+        o->depth = option_depth(state, "depth", arg);
         return 0;
     case KEY_KEEP:
         o->keep_analysis = true;
@@ -120,6 +126,7 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan)
     json_add_integer(root, "views", config->views);
     json_add_integer(root, "gaussians", config->gaussians);
     json_add_integer(root, "clusters", config->clusters);
+    cJSON_AddStringToObject(root, "depth", t3r_depth_name(config->depth));
     json_add_integer(root, "head_column_bytes", config->head_column_bytes);
     json_add_integer(root, "min_bytes", (int64_t)plan->min_bytes);
     json_add_integer(root, "arena_bytes", (int64_t)plan->bytes);
@@ -194,6 +201,7 @@ int command_plan(int argc, char **argv)
     chosen_head_configure(&head, &config);
     chosen_head_close(&head);
     config.keep_analysis = o.keep_analysis;
+    config.depth = o.depth;
     config.refinements = o.refine;
     if (o.has_clusters) {
         config.clusters = o.clusters;

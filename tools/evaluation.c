@@ -93,10 +93,32 @@ static int make_pictures(evaluation_views *views, const evaluation_case *what, r
     return code;
 }
 
+/* Whether every context frame has a depth of its own. */
+static int have_depth(const evaluation_case *what, bool *all)
+{
+    *all = true;
+    for (uint32_t v = 0; v < what->context_count; v++) {
+        t3r_capture_frame frame;
+        int code = reconstruction_frame(what->recording, what->path, what->context[v], &frame);
+        if (code != CLI_OK) {
+            return code;
+        }
+        *all = *all && frame.frame.depth != NULL;
+    }
+    return CLI_OK;
+}
+
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings)
 {
-    /* all points of the raw sensor depth, the plain analytic head, whatever is to be compared */
+    /* all points of the raw depth, the plain analytic head, whatever is to be compared; the sensor's where all have it
+     */
     reconstruction_options options = *settings;
+    bool sensed;
+    int looked = have_depth(what, &sensed);
+    if (looked != CLI_OK) {
+        return looked;
+    }
+    options.depth = sensed ? T3R_DEPTH_SENSOR : settings->depth;
     options.gaussians = 0;
     options.keep_percent = 100;
     options.automatic = false;
@@ -235,7 +257,7 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
     if (method_kind_of(m) == METHOD_TRIM3R) {
         snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, settings->clusters);
     }
-    row->depth = what->planar ? "plane" : "sensor";
+    row->depth = what->planar ? "plane" : t3r_depth_name(settings->depth);
     row->ablation = "";
     evaluation_settings_rest(settings, row->settings);
     row->value[EVALUATION_KEEP] = keep;

@@ -150,7 +150,8 @@ static int list_given(evaluation_cases *cases, const uint32_t *context, uint32_t
 
 /* ---- more views ------------------------------------------------------------------------------------------------- */
 
-static int find_places(const t3r_recording *recording, const char *path, view_place *places, uint32_t count)
+static int find_places(const t3r_recording *recording, const char *path, view_place *places, uint32_t count,
+                       t3r_depth depth)
 {
     char error[512] = "";
     for (uint32_t i = 0; i < count; i++) {
@@ -161,37 +162,61 @@ static int find_places(const t3r_recording *recording, const char *path, view_pl
         places[i] = (view_place){.usable = false};
         if (frame.has_pose && frame.has_intrinsics) {
             places[i] = view_place_of(&frame.camera);
-            places[i].usable = frame.frame.depth != NULL;
+            places[i].usable = depth == T3R_DEPTH_STEREO || frame.frame.depth != NULL;
         }
     }
     return CLI_OK;
 }
 
-static int fill_context(evaluation_case *what, const view_place *places, uint32_t count, uint32_t views)
+/* How far away things are: what the first frame measured, or stereo makes of the case's own frames. */
+static int find_depth(const evaluation_case *what, const t3r_capture_frame *first,
+                      const reconstruction_options *settings, double *depth)
 {
+    *depth = first->frame.depth == NULL ? 0 : view_median_depth(&first->frame);
+    if (*depth > 0) {
+        return CLI_OK;
+    }
+    if (settings->depth == T3R_DEPTH_STEREO) {
+        reconstruction_options options = *settings;
+        reconstruction_points points;
+        options.context_count = what->context_count;
+        memcpy(options.context, what->context, sizeof options.context);
+        int code = reconstruction_count(&points, what->recording, what->path, &options);
+        *depth = code == CLI_OK ? points.depth : 0;
+        return code;
+    }
+    return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no depth to measure the distance of views by",
+                     what->path, what->context[0]);
+}
+
+static int fill_context(evaluation_case *what, const view_place *places, uint32_t count,
+                        const reconstruction_options *settings)
+{
+    const uint32_t views = settings->context_views;
+    double depth;
     t3r_capture_frame first, target;
     int code = reconstruction_frame(what->recording, what->path, what->context[0], &first);
     code = code == CLI_OK ? reconstruction_frame(what->recording, what->path, what->target, &target) : code;
     if (code != CLI_OK) {
         return code;
     }
-    double depth = first.frame.depth == NULL ? 0 : view_median_depth(&first.frame);
-    if (!(depth > 0)) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no depth to measure the distance of views by",
-                         what->path, what->context[0]);
+    code = find_depth(what, &first, settings, &depth);
+    if (code != CLI_OK) {
+        return code;
     }
     uint32_t own = what->context_count;
     what->context_count = nearest_views(places, count, what->target, depth, views, what->context, own);
     if (what->context_count < views) {
         return cli_error(CLI_BAD_INPUT,
                          "%s: --views %" PRIu32 " is too much: beside target %" PRIu32 " there are %" PRIu32
-                         " frames with depth, pose and intrinsics",
-                         what->path, views, what->target, what->context_count);
+                         " frames with %spose and intrinsics",
+                         what->path, views, what->target, what->context_count,
+                         settings->depth == T3R_DEPTH_STEREO ? "" : "depth, ");
     }
     return CLI_OK;
 }
 
-static int fill_contexts(evaluation_cases *cases, uint32_t views)
+static int fill_contexts(evaluation_cases *cases, const reconstruction_options *settings)
 {
     view_place *places = NULL;
     const t3r_recording *known = NULL;
@@ -204,23 +229,24 @@ static int fill_contexts(evaluation_cases *cases, uint32_t views)
             places = calloc(count + 1, sizeof *places);
             known = what->recording;
             code = places == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                                  : find_places(known, what->path, places, count);
+                                  : find_places(known, what->path, places, count, settings->depth);
         }
-        code = code == CLI_OK ? fill_context(what, places, count, views) : code;
+        code = code == CLI_OK ? fill_context(what, places, count, settings) : code;
     }
     free(places);
     return code;
 }
 
-int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count, const uint32_t *context,
-                                   uint32_t context_count, uint32_t target, uint32_t views)
+int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count,
+                                   const reconstruction_options *settings, uint32_t target)
 {
+    const uint32_t context_count = settings->context_count;
     int code = begin(cases, inputs, count);
     code = code == CLI_OK ? open_recordings(cases) : code;
     if (code == CLI_OK) {
-        code = context_count > 0 ? list_given(cases, context, context_count, target) : list_triplets(cases);
+        code = context_count > 0 ? list_given(cases, settings->context, context_count, target) : list_triplets(cases);
     }
-    return code == CLI_OK && views > 2 ? fill_contexts(cases, views) : code;
+    return code == CLI_OK && settings->context_views > 2 ? fill_contexts(cases, settings) : code;
 }
 
 int evaluation_cases_of_images(evaluation_cases *cases, char **inputs, uint32_t count, uint32_t width, uint32_t height)

@@ -21,12 +21,13 @@ typedef struct evaluation_cases {
 /* How many parts of their paths tell the inputs apart; 0, with a pair that nothing does, where there is none. */
 uint32_t evaluation_name_parts(char *const *inputs, uint32_t count, uint32_t pair[2]);
 
-/* All triplets of every recording, or the one of `context` and `target` (context_count above 0). With `views` above 2
- * the frames nearest to a triplet's target, by the median depth of the triplet's first frame, fill its context up to
- * that many (nearest_views.h); a recording that has too few is refused. Opens all of them: a bad one is told before the
- * work. An exit status of cli.h; evaluation_cases_close() in any case. */
-int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count, const uint32_t *context,
-                                   uint32_t context_count, uint32_t target, uint32_t views);
+/* All triplets of every recording, or the one of the settings' `context` (context_count above 0) and `target`. With
+ * `context_views` above 2 the frames nearest to a triplet's target, by the median depth of the triplet's first frame
+ * or, where it has none, what stereo makes of the triplet's context, fill its context up to that many
+ * (nearest_views.h); a recording that has too few is refused. Opens all of them: a bad one is told before the work. An
+ * exit status of cli.h; evaluation_cases_close() in any case. */
+int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count,
+                                   const reconstruction_options *settings, uint32_t target);
 int evaluation_cases_of_images(evaluation_cases *cases, char **inputs, uint32_t count, uint32_t width, uint32_t height);
 void evaluation_cases_close(evaluation_cases *cases);
 

@@ -116,6 +116,9 @@ int evaluation_settings_suffix(const reconstruction_options *settings, bool name
     if (s->allocation != usual.allocation) {
         add(&w, "%s", t3r_allocation_name(s->allocation));
     }
+    if (s->depth != usual.depth) {
+        add(&w, "%s", t3r_depth_name(s->depth));
+    }
     if (s->wavelet != usual.wavelet) {
         add(&w, "%s", t3r_wavelet_name(s->wavelet));
     }

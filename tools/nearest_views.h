@@ -10,7 +10,7 @@
 
 /* Where a frame was taken. */
 typedef struct view_place {
-    bool usable; /* it has pose, intrinsics and depth */
+    bool usable; /* it has pose and intrinsics, and depth where that is a sensor's */
     int64_t position_q32[3];
     int32_t axis_q30[3]; /* the direction of view, of length 1 */
 } view_place;

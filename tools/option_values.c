@@ -50,6 +50,18 @@ const char *option_head(struct argp_state *state, const char *option, const char
     return text;
 }
 
+t3r_depth option_depth(struct argp_state *state, const char *option, const char *text)
+{
+    int depth = 0;
+    while (depth < T3R_DEPTH_COUNT && strcmp(text, t3r_depth_name((t3r_depth)depth)) != 0) {
+        depth++;
+    }
+    if (depth == T3R_DEPTH_COUNT) {
+        argp_error(state, "--%s does not know '%s'; there are sensor, stereo", option, text);
+    }
+    return (t3r_depth)depth;
+}
+
 void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "method.h"
+#include "trim3r.h"
 
 /* A whole number in [low, high]. */
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
@@ -21,6 +22,8 @@ void option_percents(struct argp_state *state, const char *option, const char *t
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
 /* A head's name, or a path that ends as weight files do. */
 const char *option_head(struct argp_state *state, const char *option, const char *text);
+/* A source of depth by its name. */
+t3r_depth option_depth(struct argp_state *state, const char *option, const char *text);
 /* One to METHOD_COUNT different methods with commas between. */
 void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
                     uint32_t *count);

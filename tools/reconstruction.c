@@ -27,6 +27,7 @@ void reconstruction_defaults(reconstruction_options *options)
         .shuffle = c.shuffle,
         .adapt = c.adapt,
         .refine = c.refinements,
+        .depth = c.depth,
         .fill_radius = c.fill_radius,
         .bridge_radius = c.bridge_radius,
         .flying = c.flying,
@@ -188,6 +189,11 @@ int reconstruction_frame(const t3r_recording *recording, const char *path, uint3
     return CLI_OK;
 }
 
+static int frame_error(const char *path, uint32_t frame, t3r_status status)
+{
+    return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, frame, t3r_error_text(status));
+}
+
 t3r_camera reconstruction_camera(const t3r_camera *camera, uint32_t from_width, uint32_t from_height, uint32_t width,
                                  uint32_t height)
 {
@@ -197,8 +203,54 @@ t3r_camera reconstruction_camera(const t3r_camera *camera, uint32_t from_width, 
     return out;
 }
 
+/* Which frames give no depth together, and why. */
+static int stereo_error(const t3r_runtime *runtime, const reconstruction *r, const char *path)
+{
+    uint32_t partner;
+    t3r_pair pair = t3r_stereo_pair(runtime, 0, &partner);
+    return cli_error(CLI_BAD_INPUT, "%s: frames %" PRIu32 " and %" PRIu32 " give no depth%s: %s", path, r->context[0],
+                     r->context[partner], r->context_count > 2 ? ", nor any other two" : "", t3r_pair_text(pair));
+}
+
+static int build_error(const reconstruction *r, t3r_status status, const char *path)
+{
+    return status == T3R_ERR_STEREO ? stereo_error(r->runtime, r, path)
+                                    : reconstruction_error(status, path, &r->config, r->arena_bytes);
+}
+
+/* By stereo only the analysis knows which points exist: one with as little as possible besides. */
+static int count_matched_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
+                                reconstruction_points *points)
+{
+    reconstruction counted = {.context_count = r->context_count};
+    memcpy(counted.context, r->context, sizeof counted.context);
+    t3r_config *c = &counted.config;
+    *c = t3r_default_config(r->config.width, r->config.height, r->context_count, 1);
+    c->depth = T3R_DEPTH_STEREO;
+    c->flying = c->redundancy = c->exposure = c->refinements = c->cluster_batches = 0;
+    c->wavelet = T3R_WAVELET_HAAR;
+    c->wavelet_levels = c->clusters = c->render_width = c->render_height = 1;
+    int code = open_arena(&counted, &(reconstruction_options){.arena = ARENA_MIN, .threads = 1});
+    t3r_status status = T3R_OK;
+    for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
+        status = t3r_add_view(counted.runtime, &frames[v].frame, &frames[v].camera);
+        code = status == T3R_OK ? CLI_OK : frame_error(path, r->context[v], status);
+    }
+    if (code == CLI_OK) {
+        status = t3r_reconstruct(counted.runtime, &counted.scene);
+        code = status == T3R_OK ? CLI_OK : build_error(&counted, status, path);
+    }
+    if (code == CLI_OK) {
+        *points = (reconstruction_points){.valid = counted.scene.valid_points,
+                                          .depth = ldexp(1.5, counted.scene.frame.exponent)};
+    }
+    reconstruction_close(&counted);
+    return code;
+}
+
 /* Counts the developed depth: the runtime's own resize and undistortion decide which points exist. */
-static int count_valid_points(reconstruction *r, const t3r_capture_frame *frames, const char *path)
+static int count_measured_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
+                                 reconstruction_points *points)
 {
     t3r_config config = t3r_default_config(r->config.width, r->config.height, 1, 1);
     size_t pixels = (size_t)config.width * config.height;
@@ -212,7 +264,7 @@ static int count_valid_points(reconstruction *r, const t3r_capture_frame *frames
     uint8_t *rgb = malloc(pixels * 3);
     uint16_t *depth = malloc(pixels * 2);
     int code = CLI_OK;
-    r->valid_points = 0;
+    *points = (reconstruction_points){.valid = 0};
     if (rgb == NULL || depth == NULL || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
         arena = NULL;
         code = cli_error(CLI_BAD_INPUT, "out of memory");
@@ -223,17 +275,27 @@ static int count_valid_points(reconstruction *r, const t3r_capture_frame *frames
         t3r_camera camera;
         status = t3r_develop(runtime, &frames[v].frame, &frames[v].camera, rgb, depth, &camera);
         if (status != T3R_OK) {
-            code = cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, r->context[v], t3r_error_text(status));
+            code = frame_error(path, r->context[v], status);
             break;
         }
         for (size_t i = 0; i < pixels; i++) {
-            r->valid_points += depth[i] != 0;
+            points->valid += depth[i] != 0;
         }
     }
     free(arena);
     free(depth);
     free(rgb);
     return code;
+}
+
+static int count_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path, t3r_depth depth,
+                        reconstruction_points *points)
+{
+    int code = depth == T3R_DEPTH_STEREO ? count_matched_points(r, frames, path, points)
+                                         : count_measured_points(r, frames, path, points);
+    return code == CLI_OK && points->valid == 0
+               ? cli_error(CLI_BAD_INPUT, "%s: the context frames hold no valid depth", path)
+               : code;
 }
 
 static int choose_context(reconstruction *r, const t3r_recording *recording, const char *path,
@@ -270,15 +332,31 @@ int reconstruction_views(reconstruction *r, const t3r_recording *recording, cons
     return choose_context(r, recording, path, options, frames);
 }
 
-static int need_depth(const reconstruction *r, const char *path, const t3r_capture_frame *frames)
+/* What the wanted source of depth needs. */
+static int need_depth(const reconstruction *r, const char *path, const t3r_capture_frame *frames, t3r_depth depth)
 {
+    if (depth == T3R_DEPTH_STEREO) {
+        return r->context_count > 1
+                   ? CLI_OK
+                   : cli_error(CLI_BAD_INPUT, "%s: --depth stereo needs two context frames and more", path);
+    }
     for (uint32_t v = 0; v < r->context_count; v++) {
         if (frames[v].frame.depth == NULL) {
-            return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no depth (--depth sensor needs it)", path,
+            return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no depth (--depth stereo needs none)", path,
                              r->context[v]);
         }
     }
     return CLI_OK;
+}
+
+int reconstruction_count(reconstruction_points *points, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options)
+{
+    reconstruction r = {.context_count = 0};
+    t3r_capture_frame frames[T3R_MAX_VIEWS];
+    int code = choose_context(&r, recording, path, options, frames);
+    code = code == CLI_OK ? need_depth(&r, path, frames, options->depth) : code;
+    return code == CLI_OK ? count_points(&r, frames, path, options->depth, points) : code;
 }
 
 static int bind_head(reconstruction *r)
@@ -307,7 +385,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
         code = chosen_head_hide_mask(&r->head);
     }
     if (code == CLI_OK) {
-        code = need_depth(r, path, frames);
+        code = need_depth(r, path, frames, options->depth);
     }
     if (code != CLI_OK) {
         return code;
@@ -323,6 +401,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     r->config.shuffle = options->shuffle;
     r->config.adapt = options->adapt;
     r->config.refinements = options->refine;
+    r->config.depth = options->depth;
     r->config.fill_radius = options->fill_radius;
     r->config.bridge_radius = options->bridge_radius;
     r->config.flying = options->flying;
@@ -338,13 +417,12 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
         return reconstruction_error(T3R_ERR_CONFIG, "settings", &r->config, 0);
     }
 
-    code = count_valid_points(r, frames, path);
+    reconstruction_points points;
+    code = count_points(r, frames, path, options->depth, &points);
     if (code != CLI_OK) {
         return code;
     }
-    if (r->valid_points == 0) {
-        return cli_error(CLI_BAD_INPUT, "%s: the context frames hold no valid depth", path);
-    }
+    r->valid_points = points.valid;
     r->requested = options->gaussians != 0     ? options->gaussians
                    : options->keep_percent > 0 ? reconstruction_budget(r->valid_points, options->keep_percent)
                                                : r->valid_points;
@@ -362,7 +440,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     for (uint32_t v = 0; v < r->context_count; v++) {
         t3r_status status = t3r_add_view(r->runtime, &frames[v].frame, &frames[v].camera);
         if (status != T3R_OK) {
-            return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, r->context[v], t3r_error_text(status));
+            return frame_error(path, r->context[v], status);
         }
     }
     double added = cli_now();
@@ -370,7 +448,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     t3r_status status = reconstruct(r, options, planes);
     r->build_seconds = cli_now() - added;
     cli_progress_end();
-    return status == T3R_OK ? CLI_OK : reconstruction_error(status, path, &r->config, r->arena_bytes);
+    return status == T3R_OK ? CLI_OK : build_error(r, status, path);
 }
 
 /* The same, with what the allocation `given` goes by. */

@@ -46,6 +46,7 @@ typedef struct reconstruction_options {
     uint32_t paper_keep_percent; /* N of the allocation `paper` */
     uint32_t shuffle, adapt;     /* of t3r_config, for ablations */
     bool hide_mask;              /* the network is told that every pixel was retained: hidden_mask.h */
+    t3r_depth depth;             /* where it comes from */
     uint32_t fill_radius;
     uint32_t bridge_radius;
     uint32_t flying, redundancy, exposure; /* 0 or 1 each: what views tell of each other */
@@ -79,7 +80,7 @@ typedef struct reconstruction {
     t3r_scene scene;
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
-    uint32_t valid_points;                /* pixels of the context views with a raw depth, at the working size */
+    uint32_t valid_points;                /* pixels of the context views with a depth before filling, working size */
     uint32_t requested;                   /* the budget asked for, as it is without max_loss; more than valid_points
                                              when all are used */
     double add_views_seconds;             /* image stage */
@@ -112,6 +113,16 @@ int reconstruction_build(reconstruction *r, const t3r_recording *recording, cons
  * arena, threads and hash are read. */
 int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options);
+
+/* What the frames of a scene hold before one is built: valid points, and by stereo the scene's depth in world units, a
+ * power of two times 1.5 (0 by sensor). */
+typedef struct reconstruction_points {
+    uint32_t valid;
+    double depth;
+} reconstruction_points;
+
+int reconstruction_count(reconstruction_points *points, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options);
 
 /* Chooses and checks the context frames of a scene that came from a file: `context` and the working size in `config`.
  */

@@ -83,7 +83,9 @@ static const struct argp_option settings[] = {
     {"exposure", KEY_EXPOSURE, "on|off", 0, "colours of all views are brought to their mean exposure (on)", 0},
     {"seed", KEY_SEED, "N", 0, "of the K-means seeding and of --allocate random (1)", 0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
-    {"depth", KEY_DEPTH, "SOURCE", 0, "sensor", 0},
+    {"depth", KEY_DEPTH, "SOURCE", 0,
+     "sensor (default), or stereo: made of the colours of two and more posed frames, whether they have depth or not",
+     0},
     {"refine", KEY_REFINE, "N", 0, "refinement passes on the context views, 0..16 (4)", 0},
     {NULL, 0, NULL, 0, "What must not change a bit:", 30},
     {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
@@ -215,11 +217,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         option_size(state, "working", arg, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_DEPTH:
-        if (strcmp(arg, "stereo") == 0) {
-            argp_error(state, "--depth stereo is not yet available; sensor is");
-        } else if (strcmp(arg, "sensor") != 0) {
-            argp_error(state, "--depth does not know '%s'", arg);
-        }
+        o->depth = option_depth(state, "depth", arg);
         return 0;
     case KEY_REFINE:
         o->refine = option_number(state, "refine", arg, 0, T3R_MAX_REFINEMENTS);

@@ -26,10 +26,11 @@ extern "C" {
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
 #define T3R_BITS_EPOCH 4
 
-#define T3R_MAX_SIDE 4096u    /* largest width or height of working size, frame or target, in pixels */
-#define T3R_MIN_SIDE 8u       /* smallest working width or height, in pixels */
-#define T3R_MAX_VIEWS 16u     /* most context views */
-#define T3R_MAX_CLUSTERS 512u /* most SuperClusters */
+#define T3R_MAX_SIDE 4096u        /* largest width or height of working size, frame or target, in pixels */
+#define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */
+#define T3R_STEREO_LEAST_SIDE 32u /* smallest working width or height with depth by stereo, in pixels */
+#define T3R_MAX_VIEWS 16u         /* most context views */
+#define T3R_MAX_CLUSTERS 512u     /* most SuperClusters */
 #define T3R_MAX_GAUSSIANS (1u << 24)
 #define T3R_MAX_REFINEMENTS 16u
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
@@ -48,7 +49,8 @@ typedef enum t3r_status {
     T3R_ERR_CANCELLED = -8, /* the progress callback asked to stop */
     T3R_ERR_EPOCH = -9,     /* a copied arena made by another version, layout or bits epoch */
     T3R_ERR_FULL = -10,     /* no room for another Gaussian in the scene */
-    T3R_ERR_WEIGHTS = -11   /* weights that are foreign, damaged, of another epoch, or too large a head for the arena */
+    T3R_ERR_WEIGHTS = -11,  /* weights that are foreign, damaged, of another epoch, or too large a head for the arena */
+    T3R_ERR_STEREO = -12    /* no depth can be made of the views: t3r_stereo_pair() says why */
 } t3r_status;
 
 /* The stages in the order in which the data passes them. */
@@ -125,6 +127,24 @@ typedef enum t3r_head {
     T3R_HEAD_COUNT
 } t3r_head;
 
+/* Where depth comes from. */
+typedef enum t3r_depth {
+    T3R_DEPTH_SENSOR, /* the frames' own */
+    T3R_DEPTH_STEREO, /* the colours of two and more posed views; what depth frames have is not looked at */
+    T3R_DEPTH_COUNT
+} t3r_depth;
+
+/* Whether two views can be matched, and why not. */
+typedef enum t3r_pair {
+    T3R_PAIR_OK,
+    T3R_PAIR_NO_BASELINE, /* both cameras stand in one place and look the same way */
+    T3R_PAIR_ROTATION,    /* both cameras stand in one place, but look different ways */
+    T3R_PAIR_OVERLAP,     /* too little is in both pictures */
+    T3R_PAIR_PARALLAX,    /* whatever is in both pictures hardly moves between them */
+    T3R_PAIR_SCALE,       /* the baseline in world units leaves no depth unit */
+    T3R_PAIR_COUNT
+} t3r_pair;
+
 /* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). */
 typedef struct t3r_config {
     uint32_t width, height; /* working size of the context views, T3R_MIN_SIDE..T3R_MAX_SIDE */
@@ -146,6 +166,7 @@ typedef struct t3r_config {
     uint32_t adapt;             /* 0 = the head is told that nothing was pruned: how much adapting is worth */
     uint32_t head_column_bytes; /* work of a learned head, 0..65,536 a column: t3r_head_column_bytes() */
     uint32_t refinements;       /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
+    t3r_depth depth;            /* by stereo, width and height must be 32 and more */
     uint32_t fill_radius;       /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
     uint32_t bridge_radius;     /* wider holes bracketed within this many pixels likewise, 0..255; 0 = none */
     uint32_t flying;            /* 1 = points between surfaces, or in front of what another view measured, come last */
@@ -179,7 +200,7 @@ typedef struct t3r_scene {
     t3r_scene_frame frame;
     const t3r_gaussian *gaussians;
     uint32_t count;
-    uint32_t valid_points; /* pixels of the context views with a depth before hole filling */
+    uint32_t valid_points; /* pixels of the context views with a depth before hole filling: measured or matched */
 } t3r_scene;
 
 /* Where a render goes. rgb may be NULL when only depth or alpha are wanted. Black background. */
@@ -262,18 +283,23 @@ uint32_t t3r_head_crc(const t3r_runtime *rt);
 /* Takes the next context view: to planes, resized to the working size, undistorted. The camera belongs to the frame's
  * own pixel grid and must also be in range after resizing. On an error no view is added; an analysis that was kept is
  * gone. T3R_ERR_FRAME, T3R_ERR_CAMERA (also when more than half of the picture lies beyond what the lens can show),
- * T3R_ERR_NO_DEPTH (no plane, or not one measurement in it), T3R_ERR_STATE (no room, or there is a scene: t3r_reset()).
- */
+ * T3R_ERR_NO_DEPTH (no plane, or not one measurement in it; with T3R_DEPTH_STEREO the frame's depth is ignored, and
+ * pixels with r = g = b = 0 show nothing), T3R_ERR_STATE (no room, or there is a scene: t3r_reset()). */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
 /* Forgets views, analysis and scene; keeps the configuration. Needed before t3r_add_view() once there is a scene. */
 t3r_status t3r_reset(t3r_runtime *rt);
 
 /* From the views added so far to exactly min(gaussians, valid points) Gaussians. T3R_ERR_CAMERA when a view stands more
- * than 1,024 scene units from the first; T3R_ERR_STATE: no views, the learned head without weights, or
- * the allocation `given`, whose importance comes with t3r_reconstruct_given();
- * T3R_ERR_CANCELLED: no scene then, the views stay. */
+ * than 1,024 scene units from the first; T3R_ERR_STATE: no views (of stereo, fewer than two), the learned head without
+ * weights, or the allocation `given`, whose importance comes with t3r_reconstruct_given(); T3R_ERR_STEREO: no two views
+ * can be matched, t3r_stereo_pair() says why, the views stay; T3R_ERR_CANCELLED: no scene then, the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
+
+/* What the analysis found for context view `view` with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO: T3R_PAIR_OK, and
+ * the view that most of its depth came from; or why the pair with the most to hope for was refused. Such a view has no
+ * depth and adds no points. *partner is `view` where there is none: by sensor, out of range, before an analysis. */
+t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner);
 
 /* Another budget for the pair analysed last, without analysing again; needs keep_analysis. A later t3r_reconstruct()
  * goes on with it. T3R_ERR_CANCELLED: no scene then, the settings are as before, the analysis stays. */
@@ -337,8 +363,11 @@ const char *t3r_error_text(t3r_status status);
 const char *t3r_stage_name(t3r_stage stage);
 const char *t3r_allocation_name(t3r_allocation allocation);
 const char *t3r_head_name(t3r_head head);
+const char *t3r_depth_name(t3r_depth depth);
 const char *t3r_wavelet_name(t3r_wavelet wavelet);
 const char *t3r_pixel_format_name(t3r_pixel_format format);
+/* Whether two views can be matched, and why not, as text for people; never NULL. */
+const char *t3r_pair_text(t3r_pair pair);
 
 #ifdef __cplusplus
 }

@@ -6,6 +6,7 @@
 #define TRIM3R_ARENA_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #define T3R_ARENA_ALIGN 64
 
@@ -28,110 +29,160 @@
 #define T3R_HEADER_BYTES 4096
 #define T3R_GAUSSIAN_BYTES 44
 #define T3R_SPLAT_BYTES 40
-#define T3R_ORDER_BYTES 16       /* two keys and two indices a Gaussian: the radix sort's two sides */
-#define T3R_SORT_BYTES 4096      /* four histograms of 256 counts */
-#define T3R_CLUSTER_BYTES 56     /* centre and statistics of a SuperCluster */
+#define T3R_ORDER_BYTES 16           /* two keys and two indices a Gaussian: the radix sort's two sides */
+#define T3R_SORT_BYTES 4096          /* four histograms of 256 counts */
+#define T3R_CLUSTER_BYTES 56         /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
  * heads nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
 #define T3R_HEAD_COLUMN_BYTES 704
 #define T3R_HEAD_KERNEL_BYTES 4096
-#define T3R_CORRECTION_BYTES 20  /* what refinement will change in a Gaussian */
+#define T3R_CORRECTION_BYTES 20   /* what refinement will change in a Gaussian */
 #define T3R_REFINE_SUMS_BYTES 104 /* what refinement sums over a Gaussian's pixels */
 #define T3R_TILE_SIDE 16
-#define T3R_GRID_STEP 8          /* undistortion grid, pixels */
+#define T3R_GRID_STEP 8 /* undistortion grid, pixels */
 
 #define T3R_PIXELS_(w, h) ((size_t)(w) * (h))
-#define T3R_TILES_(w, h) \
+#define T3R_TILES_(w, h)                                                                                               \
     ((((size_t)(w) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE) * (((size_t)(h) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE))
 #define T3R_GRID_NODES_(w, h) (((size_t)(w) / T3R_GRID_STEP + 2) * ((size_t)(h) / T3R_GRID_STEP + 2))
 /* Columns of a picture whose coarsest level, 16 pixels wide, is whole */
 #define T3R_HEAD_COLUMNS_(w) (((size_t)(w) + 15) / 16 * 16)
-#define T3R_HEAD_WORK_(w, h, hc) \
+#define T3R_HEAD_WORK_(w, h, hc)                                                                                       \
     T3R_MAX_(T3R_PIXELS_(w, h) * 2, (hc) > 0 ? T3R_HEAD_COLUMNS_(w) * (hc) + T3R_HEAD_KERNEL_BYTES : (size_t)0)
 #define T3R_ANY_(v) ((v) > 0 ? (size_t)1 : (size_t)0)
 
 /* Refinement works in one buffer: splats, depth order, tile table and corrections of all Gaussians, then the sums of
  * as many Gaussians as there is room for, at least every eighth, then tile lists. */
-#define T3R_REFINE_FIXED_BYTES_(w, h, z)                                                                              \
-    (T3R_UP_((size_t)(z) * T3R_SPLAT_BYTES) + T3R_UP_((size_t)(z) * T3R_ORDER_BYTES + T3R_SORT_BYTES) +               \
-     T3R_UP_(T3R_TILES_(w, h) * 4) + T3R_UP_((size_t)(z) * T3R_CORRECTION_BYTES))
+#define T3R_REFINE_FIXED_BYTES_(w, h, z)                                                                               \
+    (T3R_UP_((size_t)(z)*T3R_SPLAT_BYTES) + T3R_UP_((size_t)(z)*T3R_ORDER_BYTES + T3R_SORT_BYTES) +                    \
+     T3R_UP_(T3R_TILES_(w, h) * 4) + T3R_UP_((size_t)(z)*T3R_CORRECTION_BYTES))
 #define T3R_REFINE_LEAST_SUMS_(z) (((size_t)(z) + 7) / 8)
-#define T3R_REFINE_BYTES_(w, h, v, z, n)                                                                              \
-    (T3R_ANY_(v) * T3R_ANY_(n) *                                                                                      \
-     (T3R_REFINE_FIXED_BYTES_(w, h, z) + T3R_UP_(T3R_REFINE_LEAST_SUMS_(z) * T3R_REFINE_SUMS_BYTES) +                 \
-      T3R_UP_((size_t)(z) * 4)))
-#define T3R_REFINE_FULL_BYTES_(w, h, v, z, n)                                                                         \
-    (T3R_ANY_(v) * T3R_ANY_(n) *                                                                                      \
-     (T3R_REFINE_FIXED_BYTES_(w, h, z) + T3R_UP_((size_t)(z) * T3R_REFINE_SUMS_BYTES) +                               \
-      T3R_UP_((size_t)(z) * 16)))
+#define T3R_REFINE_BYTES_(w, h, v, z, n)                                                                               \
+    (T3R_ANY_(v) * T3R_ANY_(n) *                                                                                       \
+     (T3R_REFINE_FIXED_BYTES_(w, h, z) + T3R_UP_(T3R_REFINE_LEAST_SUMS_(z) * T3R_REFINE_SUMS_BYTES) +                  \
+      T3R_UP_((size_t)(z)*4)))
+#define T3R_REFINE_FULL_BYTES_(w, h, v, z, n)                                                                          \
+    (T3R_ANY_(v) * T3R_ANY_(n) *                                                                                       \
+     (T3R_REFINE_FIXED_BYTES_(w, h, z) + T3R_UP_((size_t)(z)*T3R_REFINE_SUMS_BYTES) + T3R_UP_((size_t)(z)*16)))
+
+/* Stereo: work of one pair of views, and as many disparities and paths as the pipeline asks for. */
+#define T3R_STEREO_DISPARITIES 128u /* most; as many as the first look finds are compared */
+#define T3R_STEREO_PATHS 4u
+/* The largest side of a rectified plane in planar rectification; other shapes take no more memory. */
+#define T3R_RECTIFIED_SIDE(width, height) (((size_t)((width) > (height) ? (width) : (height)) * 5 / 4 + 7) / 8 * 8)
+#define T3R_CENSUS_BYTES 3
+/* The state of one path over a row: (width + 2) (disparities + 1) + 1 bytes of slots, then width + 2 leasts. */
+#define T3R_PATH_STATE_BYTES(width, disparities) (((size_t)(width) + 2) * ((size_t)(disparities) + 2) + 1)
+/* Rows of a block: a power of two near the root of the height. */
+#define T3R_MATCH_ROWS(height) ((height) <= 128 ? 8u : (height) <= 512 ? 16u : (height) <= 2048 ? 32u : 64u)
+#define T3R_MATCH_BLOCKS(height) (((size_t)(height) + T3R_MATCH_ROWS(height) - 1) / T3R_MATCH_ROWS(height))
+#define T3R_MATCH_RIGHT(width, disparities) ((size_t)(width) + (disparities)-1)
+/* Path states that lead from row to row */
+#define T3R_MATCH_STATES(paths) ((paths) == 8 ? 3u : 1u)
+/* Regions of fewer pixels than this are speckles. */
+#define T3R_MATCH_LEAST_REGION(width, height) ((uint32_t)((size_t)(width) * (height) / 1024 + 1))
+/* Bytes of the matching's work, aligned to 4; the second part is what speckles take. */
+#define T3R_MATCH_WORK_BYTES(width, height, disparities, paths)                                                        \
+    T3R_MAX_(T3R_MATCH_PATH_BYTES_(width, height, disparities, paths),                                                 \
+             (size_t)4 * T3R_MATCH_LEAST_REGION(width, height) + T3R_MATCH_RIGHT(width, disparities) * (height))
+#define T3R_MATCH_PATH_BYTES_(width, height, disparities, paths)                                                       \
+    (T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height) * 2) +                                             \
+     T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height)) +                                                 \
+     T3R_UP_((T3R_MATCH_BLOCKS(height) + 4) * T3R_MATCH_STATES(paths) * T3R_PATH_STATE_BYTES(width, disparities)) +    \
+     T3R_UP_((size_t)(width)*T3R_CENSUS_BYTES) +                                                                       \
+     T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * (2 * T3R_CENSUS_BYTES + 1)) +                                       \
+     T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * 4))
+/* Bytes of a pair's work, aligned to 64: two planes' luma, disparities and confidences, and the matching. */
+#define T3R_STEREO_LEFT_(width, height) (T3R_RECTIFIED_SIDE(width, height) * T3R_RECTIFIED_SIDE(width, height))
+#define T3R_STEREO_RIGHT_(width, height, disparities)                                                                  \
+    (T3R_RECTIFIED_SIDE(width, height) * (T3R_RECTIFIED_SIDE(width, height) + (disparities)))
+#define T3R_STEREO_PLANES_(width, height, disparities)                                                                 \
+    (T3R_UP_(T3R_STEREO_LEFT_(width, height)) + T3R_UP_(T3R_STEREO_RIGHT_(width, height, disparities)))
+#define T3R_STEREO_WORK_BYTES(width, height, disparities, paths)                                                       \
+    (4 * T3R_STEREO_PLANES_(width, height, disparities) +                                                              \
+     T3R_UP_(T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height),       \
+                                           disparities, paths),                                                        \
+                      2 * T3R_PIXELS_(width, height))))
+/* Depth and confidence of two views as one pair has them, where several pairs tell of a view */
+#define T3R_STEREO_PAIR_BYTES_(w, h) (2 * (T3R_UP_(T3R_PIXELS_(w, h) * 2) + T3R_UP_(T3R_PIXELS_(w, h))))
+#define T3R_STEREO_BYTES_(w, h, v, s)                                                                                  \
+    ((s) != 0 && (v) > 1 ? T3R_STEREO_WORK_BYTES(w, h, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS) +                     \
+                               ((v) > 2 ? T3R_STEREO_PAIR_BYTES_(w, h) : (size_t)0)                                    \
+                         : (size_t)0)
 
 /* X(p, NAME, text, bytes, first, last); p is handed through.
  * w x h working size, v views, z Gaussians, k clusters, rw x rh largest target, hc the learned head's bytes a column;
- * keep: the analysis outlives the build; n refinements. Buffers come in the order of their first stage; `scene` and
- * nothing else is laid from the arena's end, so that lifetimes nest and the sum over the live buffers of a stage is
- * what that stage needs.
- * `tile lists` and `refinement work` grow: more bytes than their minimum save passes. */
+ * keep: the analysis outlives the build; n refinements; s: depth is made by stereo. Buffers come in the order of their
+ * first stage; `scene` and nothing else is laid from the arena's end, so that lifetimes nest and the sum over the live
+ * buffers of a stage is what that stage needs. `tile lists` and `refinement work` grow: more bytes than their minimum
+ * save passes. */
 #define T3R_LAST_(keep, stage) ((keep) ? T3R_AT_RASTER : (stage))
-#define T3R_BUFFERS(X, p, w, h, v, z, k, rw, rh, hc, keep, n) \
-    X(p, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER) \
-    X(p, COLOUR, "colour planes", T3R_PIXELS_(w, h) * (v) * 3, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE)) \
-    X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE)) \
-    X(p, CONFIDENCE, "confidence planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE)) \
-    X(p, IMAGE_WORK, "undistortion and resize work", \
-      T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w) * 24), T3R_AT_IMAGE, \
-      T3R_AT_IMAGE) \
-    X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_WAVELET, T3R_LAST_(keep, T3R_AT_HEAD)) \
-    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16), \
-      T3R_AT_WAVELET, T3R_AT_WAVELET) \
-    X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_SUPERCLUSTERS, \
-      T3R_LAST_(keep, T3R_AT_HEAD)) \
-    X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * ((k) + 1) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS, \
-      T3R_LAST_(keep, T3R_AT_HEAD)) \
-    X(p, CLUSTER_WORK, "K-means work", T3R_ANY_(v) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS, \
-      T3R_AT_SUPERCLUSTERS) \
-    X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * (v) * 4, T3R_AT_BUDGET, T3R_LAST_(keep, T3R_AT_HEAD)) \
-    X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * (v) * 2, T3R_AT_BUDGET, T3R_AT_BUDGET) \
-    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_HEAD_WORK_(w, h, hc), T3R_AT_HEAD, T3R_AT_HEAD) \
-    X(p, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(w, h, v, z, n), T3R_AT_REFINE, T3R_AT_REFINE) \
-    X(p, SPLATS, "projected splats", (size_t)(z) * T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER) \
-    X(p, ORDER, "depth order", (size_t)(z) * T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER) \
-    X(p, TILES, "tile table", T3R_TILES_(rw, rh) * 4, T3R_AT_RASTER, T3R_AT_RASTER) \
-    X(p, LISTS, "tile lists", (size_t)(z) * 4, T3R_AT_RASTER, T3R_AT_RASTER) \
-    X(p, SCENE, "scene", (size_t)(z) * T3R_GAUSSIAN_BYTES, T3R_AT_HEAD, T3R_AT_RASTER)
+#define T3R_BUFFERS(X, p, w, h, v, z, k, rw, rh, hc, keep, n, s)                                                       \
+    X(p, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                               \
+    X(p, COLOUR, "colour planes", T3R_PIXELS_(w, h) * (v)*3, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))             \
+    X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))               \
+    X(p, CONFIDENCE, "confidence planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))       \
+    X(p, IMAGE_WORK, "undistortion and resize work",                                                                   \
+      T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w)*24), T3R_AT_IMAGE, T3R_AT_IMAGE)  \
+    X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \
+    X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_WAVELET, T3R_LAST_(keep, T3R_AT_HEAD))           \
+    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16),               \
+      T3R_AT_WAVELET, T3R_AT_WAVELET)                                                                                  \
+    X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_SUPERCLUSTERS, T3R_LAST_(keep, T3R_AT_HEAD)) \
+    X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * ((k) + 1) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                 \
+      T3R_LAST_(keep, T3R_AT_HEAD))                                                                                    \
+    X(p, CLUSTER_WORK, "K-means work", T3R_ANY_(v) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS,                     \
+      T3R_AT_SUPERCLUSTERS)                                                                                            \
+    X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * (v)*4, T3R_AT_BUDGET, T3R_LAST_(keep, T3R_AT_HEAD))            \
+    X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_BUDGET, T3R_AT_BUDGET)                                 \
+    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_HEAD_WORK_(w, h, hc), T3R_AT_HEAD, T3R_AT_HEAD)                     \
+    X(p, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(w, h, v, z, n), T3R_AT_REFINE, T3R_AT_REFINE)               \
+    X(p, SPLATS, "projected splats", (size_t)(z)*T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)                        \
+    X(p, ORDER, "depth order", (size_t)(z)*T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)             \
+    X(p, TILES, "tile table", T3R_TILES_(rw, rh) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                    \
+    X(p, LISTS, "tile lists", (size_t)(z)*4, T3R_AT_RASTER, T3R_AT_RASTER)                                             \
+    X(p, SCENE, "scene", (size_t)(z)*T3R_GAUSSIAN_BYTES, T3R_AT_HEAD, T3R_AT_RASTER)
 
 #define T3R_NAME_(p, NAME, text, bytes, first, last) T3R_BUFFER_##NAME,
-enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0) T3R_BUFFER_COUNT };
+enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0) T3R_BUFFER_COUNT };
 
 /* Tile-list bytes with which a pass takes a whole view, unless most splats are many tiles wide: an entry for four tiles
  * a Gaussian and one a pixel. */
-#define T3R_LISTS_BYTES_(z, rw, rh) (((size_t)(z) * 4 + T3R_PIXELS_(rw, rh)) * 4)
+#define T3R_LISTS_BYTES_(z, rw, rh) (((size_t)(z)*4 + T3R_PIXELS_(rw, rh)) * 4)
 
-#define T3R_LIVE_(stage, NAME, text, bytes, first, last) \
+#define T3R_LIVE_(stage, NAME, text, bytes, first, last)                                                               \
     +((first) <= (stage) && (stage) <= (last) ? T3R_UP_(bytes) : (size_t)0)
-#define T3R_STAGE_BYTES_(stage, w, h, v, z, k, rw, rh, hc, keep, n) \
-    (0 T3R_BUFFERS(T3R_LIVE_, stage, w, h, v, z, k, rw, rh, hc, keep, n))
+#define T3R_STAGE_BYTES_(stage, w, h, v, z, k, rw, rh, hc, keep, n, s)                                                 \
+    (0 T3R_BUFFERS(T3R_LIVE_, stage, w, h, v, z, k, rw, rh, hc, keep, n, s))
 #define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
-#define T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n)                                     \
-    T3R_MAX_(T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, w, h, v, z, k, rw, rh, hc, keep, n),     \
-                       T3R_STAGE_BYTES_(T3R_AT_WAVELET, w, h, v, z, k, rw, rh, hc, keep, n),   \
-                       T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, w, h, v, z, k, rw, rh, hc, keep, n), \
-                       T3R_STAGE_BYTES_(T3R_AT_BUDGET, w, h, v, z, k, rw, rh, hc, keep, n)),   \
-             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_HEAD, w, h, v, z, k, rw, rh, hc, keep, n),      \
-                       T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n),    \
-                       T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n), 0))
-#define T3R_FULL_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n)                                    \
-    T3R_MOST_(T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n),                              \
-              T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n) -            \
-                  T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, n)) + T3R_UP_(T3R_REFINE_FULL_BYTES_(w, h, v, z, n)), \
-             T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n) - T3R_UP_((size_t)(z) * 4) + \
-                 T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)), 0)
+#define T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s)                                                          \
+    T3R_MAX_(T3R_MOST_(T3R_MAX_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, w, h, v, z, k, rw, rh, hc, keep, n, s),                 \
+                                T3R_STAGE_BYTES_(T3R_AT_DEPTH, w, h, v, z, k, rw, rh, hc, keep, n, s)),                \
+                       T3R_STAGE_BYTES_(T3R_AT_WAVELET, w, h, v, z, k, rw, rh, hc, keep, n, s),                        \
+                       T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, w, h, v, z, k, rw, rh, hc, keep, n, s),                  \
+                       T3R_STAGE_BYTES_(T3R_AT_BUDGET, w, h, v, z, k, rw, rh, hc, keep, n, s)),                        \
+             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_HEAD, w, h, v, z, k, rw, rh, hc, keep, n, s),                           \
+                       T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s),                         \
+                       T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s), 0))
+#define T3R_FULL_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s)                                                         \
+    T3R_MOST_(T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s),                                                   \
+              T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s) -                                 \
+                  T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, n)) + T3R_UP_(T3R_REFINE_FULL_BYTES_(w, h, v, z, n)),          \
+              T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s) - T3R_UP_((size_t)(z)*4) +        \
+                  T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)),                                                                \
+              0)
 
 /* For the default configuration (300 SuperClusters, four refinements, targets of the working size, analysis not kept):
  * the smallest arena that works, and the one with which a view takes one pass (views of wide splats may take more). */
-#define T3R_ARENA_MIN_BYTES(width, height, views, gaussians) \
-    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4)
-#define T3R_ARENA_BYTES(width, height, views, gaussians) \
-    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4)
+#define T3R_ARENA_MIN_BYTES(width, height, views, gaussians)                                                           \
+    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 0)
+#define T3R_ARENA_BYTES(width, height, views, gaussians)                                                               \
+    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 0)
+/* The same with depth by stereo (t3r_config.depth). */
+#define T3R_STEREO_ARENA_MIN_BYTES(width, height, views, gaussians)                                                    \
+    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1)
+#define T3R_STEREO_ARENA_BYTES(width, height, views, gaussians)                                                        \
+    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1)
 
 #endif

@@ -9,9 +9,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "trim3r_arena.h"
+
 #define T3R_CENSUS_ROWS 5
 #define T3R_CENSUS_REACH 3 /* columns to either side */
-#define T3R_CENSUS_BYTES 3
 #define T3R_CENSUS_PAIRS 24
 /* Cost against a pixel that shows nothing: half of the bits, what two unlike places have. */
 #define T3R_CENSUS_NOTHING 12

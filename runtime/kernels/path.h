@@ -19,9 +19,6 @@
 #define T3R_PATH_MOST 256u /* disparities */
 #define T3R_PATH_PENALTIES 256
 
-/* The state of one path over a row: (width + 2) (disparities + 1) + 1 bytes of slots, then width + 2 leasts. */
-#define T3R_PATH_STATE_BYTES(width, disparities) (((size_t)(width) + 2) * ((size_t)(disparities) + 2) + 1)
-
 typedef struct t3r_path_costs {
     uint8_t same;                     /* P1: for a step of one disparity */
     uint8_t guard;                    /* P2 at its largest + 24: never chosen, and with P1 below 256 */

@@ -54,7 +54,7 @@ with tempfile.TemporaryDirectory() as folder:
         refuse(USAGE, "--finetune-iterations", [*one, "--keep", "10", f"--finetune-iterations={iterations}"])
     refuse(BUDGET, "too small", [*one, "--keep", "10", "--methods", "eagles", "--arena", "1000"])
     refuse(INPUT, room, "no frame 999", [room, "--context", "0,999", "--target", "1", "--keep", "10", "--methods", "pup"])
-    refuse(USAGE, "stereo", [*one, "--keep", "10", "--depth", "stereo"])
+    refuse(USAGE, "--depth", [*one, "--keep", "10", "--depth", "radar"])
     refuse(USAGE, "--head", [*one, "--keep", "10", "--head", "huge"])
     refuse(USAGE, "--heads", [*one, "--keep", "10", "--heads", "small,huge"])
     refuse(USAGE, "--heads", [*one, "--keep", "10", "--heads", "small,"])

@@ -69,7 +69,7 @@ static void *allocate(size_t bytes)
 
 static void require_status(t3r_status status)
 {
-    REQUIRE((int)status <= T3R_OK && (int)status >= T3R_ERR_WEIGHTS);
+    REQUIRE((int)status <= T3R_OK && (int)status >= T3R_ERR_STEREO);
     REQUIRE(t3r_error_text(status)[0] != '\0');
 }
 
@@ -102,6 +102,8 @@ static t3r_config take_config(input *in)
     c.exposure = c.seed >> 1 & 1;
     c.adapt = c.seed >> 3 & 1;
     c.shuffle = c.seed >> 4 & 1;
+    c.depth = c.seed & 32 && c.width >= T3R_STEREO_LEAST_SIDE && c.height >= T3R_STEREO_LEAST_SIDE ? T3R_DEPTH_STEREO
+                                                                                                   : T3R_DEPTH_SENSOR;
     c.head_column_bytes = c.seed & 4 ? below(in, 2048) : c.head_column_bytes;
     return c;
 }

@@ -31,31 +31,34 @@ typedef struct configuration {
     uint32_t gaussians;
     bool holes;
     uint32_t bits; /* of a learned head's weights, made up here, and activations; 0 = the shipped one, or no learned */
+    t3r_depth depth;
 } configuration;
 
 static const configuration configurations[] = {
     {"default", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, 1843, false, 0},
+     T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR},
     {"small", 128, 96, 61, 45, T3R_PIXEL_GREY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 3, 17, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_MOMENT, 700, true, 0},
+     T3R_HEAD_MOMENT, 700, true, 0, T3R_DEPTH_SENSOR},
     {"haar_paper", 128, 96, 64, 48, T3R_PIXEL_YUYV, T3R_DISTORTION_NONE, T3R_WAVELET_HAAR, 1, 32, T3R_ALLOCATE_PAPER,
-     T3R_HEAD_ANALYTIC, 3000, true, 0},
+     T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR},
     {"cdf53_pixel", 128, 96, 64, 48, T3R_PIXEL_NV12, T3R_DISTORTION_RADTAN, T3R_WAVELET_CDF53, 4, 300,
-     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0},
-    {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_UNIFORM, T3R_HEAD_ANALYTIC, 600, true, 0},
+     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0, T3R_DEPTH_SENSOR},
+    {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_UNIFORM,
+     T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR},
     {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_RANDOM,
-     T3R_HEAD_NONE, 600, false, 0},
+     T3R_HEAD_NONE, 600, false, 0, T3R_DEPTH_SENSOR},
     {"everything", 96, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0},
+     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR},
     {"learned", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 700, true, 8},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR},
     {"learned_wide", 128, 96, 64, 48, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16},
+     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16, T3R_DEPTH_SENSOR},
     {"shipped", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 1400, true, 0},
+     T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR},
     {"given", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_GIVEN,
-     T3R_HEAD_LEARNED, 700, true, 8},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR},
+    {"stereo", 128, 96, 96, 83, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
+     T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO},
 };
 
 typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
@@ -67,7 +70,7 @@ typedef struct variation {
 } variation;
 
 /* Ten times what the largest configuration asks for; two, so that one can move to the other. */
-enum { ARENA_ROOM = 10 * T3R_FULL_BYTES_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, T3R_HEAD_COLUMN_BYTES, 1, 2) };
+enum { ARENA_ROOM = 10 * T3R_FULL_BYTES_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, T3R_HEAD_COLUMN_BYTES, 1, 4, 1) };
 static _Alignas(T3R_ARENA_ALIGN) uint8_t arenas[2][ARENA_ROOM];
 
 /* ---- the frames ---------------------------------------------------------------------------------------- */
@@ -232,6 +235,7 @@ static t3r_status begin_run(run *r)
     config.clusters = c->clusters;
     config.allocation = c->allocation;
     config.head = c->head;
+    config.depth = c->depth;
     config.keep_analysis = 1;
     if (c->bits != 0) {
         r->weights = r->made = make_weights(small_shape, small_layers, c->bits, c->bits, 1, &r->weights_bytes);
@@ -300,10 +304,14 @@ static t3r_status draw(run *r, const char *step)
     uint32_t width = r->configuration->width, height = r->configuration->height;
     t3r_camera camera;
     room_camera(TARGET_VIEW, width, height, &camera);
-    t3r_target target = {.width = width, .height = height,
-                         .rgb = view, .rgb_stride_bytes = width * 3,
-                         .depth_q20 = depth_q20, .depth_stride_bytes = width * 4,
-                         .alpha_q15 = alpha_q15, .alpha_stride_bytes = width * 2};
+    t3r_target target = {.width = width,
+                         .height = height,
+                         .rgb = view,
+                         .rgb_stride_bytes = width * 3,
+                         .depth_q20 = depth_q20,
+                         .depth_stride_bytes = width * 4,
+                         .alpha_q15 = alpha_q15,
+                         .alpha_stride_bytes = width * 2};
     t3r_status status = begin_step(r, step);
     if (status == T3R_OK) {
         status = t3r_render(r->rt, &camera, &target);

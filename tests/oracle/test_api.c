@@ -736,6 +736,11 @@ static const char *pixel_format_name(int i)
     return t3r_pixel_format_name((t3r_pixel_format)i);
 }
 
+static const char *depth_name(int i)
+{
+    return t3r_depth_name((t3r_depth)i);
+}
+
 static void texts(void **state)
 {
     (void)state;
@@ -743,7 +748,7 @@ static void texts(void **state)
         const char *text = t3r_error_text((t3r_status)status);
         assert_non_null(text);
         assert_true(text[0] != '\0');
-        for (int other = T3R_ERR_WEIGHTS; other < status && status <= 0; other++) {
+        for (int other = T3R_ERR_STEREO; other < status && status <= 0; other++) {
             assert_string_not_equal(text, t3r_error_text((t3r_status)other));
         }
     }
@@ -752,8 +757,14 @@ static void texts(void **state)
         int count;
     } tables[] = {
         {stage_name, T3R_STAGE_COUNT},     {allocation_name, T3R_ALLOCATE_COUNT},       {head_name, T3R_HEAD_COUNT},
-        {wavelet_name, T3R_WAVELET_COUNT}, {pixel_format_name, T3R_PIXEL_FORMAT_COUNT},
+        {wavelet_name, T3R_WAVELET_COUNT}, {pixel_format_name, T3R_PIXEL_FORMAT_COUNT}, {depth_name, T3R_DEPTH_COUNT},
     };
+    for (int pair = -2; pair <= T3R_PAIR_COUNT; pair++) {
+        assert_non_null(t3r_pair_text((t3r_pair)pair));
+        for (int other = 0; other < pair; other++) {
+            assert_string_not_equal(t3r_pair_text((t3r_pair)pair), t3r_pair_text((t3r_pair)other));
+        }
+    }
     for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
         assert_null(tables[i].name(-1));
         assert_null(tables[i].name(tables[i].count));

@@ -16,6 +16,9 @@
 _Static_assert(T3R_ARENA_BYTES(256, 256, 2, 13107) <= 4u << 20, "full arena over 4 MiB");
 _Static_assert(T3R_ARENA_MIN_BYTES(256, 256, 2, 13107) <= 5u << 19, "minimum arena over 2.5 MiB");
 _Static_assert(T3R_ARENA_MIN_BYTES(256, 256, 2, 13107) <= T3R_ARENA_BYTES(256, 256, 2, 13107), "minimum over full");
+_Static_assert(T3R_STEREO_ARENA_BYTES(256, 256, 2, 13107) <= 5u << 20, "arena with stereo over 5 MiB");
+_Static_assert(T3R_STEREO_ARENA_MIN_BYTES(256, 256, 2, 13107) <= T3R_STEREO_ARENA_BYTES(256, 256, 2, 13107),
+               "minimum with stereo over full");
 static _Alignas(T3R_ARENA_ALIGN) uint8_t firmware_arena[T3R_ARENA_BYTES(96, 96, 2, 900)];
 
 static uint32_t log_uniform(dice *d, uint32_t low, uint32_t high)
@@ -45,6 +48,9 @@ static t3r_config random_config(dice *d, uint32_t most_side, uint32_t most_gauss
     c.refinements = dice_below(d, 3);
     c.fill_radius = dice_below(d, 9);
     c.bridge_radius = dice_below(d, 256);
+    c.depth = c.width < T3R_STEREO_LEAST_SIDE || c.height < T3R_STEREO_LEAST_SIDE
+                  ? T3R_DEPTH_SENSOR
+                  : (t3r_depth)dice_below(d, T3R_DEPTH_COUNT);
     c.head_column_bytes = dice_below(d, 3) == 0 ? log_uniform(d, 1, T3R_MAX_HEAD_COLUMN_BYTES) : dice_below(d, 2) * 704;
     return c;
 }
@@ -90,15 +96,21 @@ static void plan_equals_macros(void **state)
         check_plan(&plan);
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
                                                      c.render_width, c.render_height, c.head_column_bytes,
-                                                     c.keep_analysis, c.refinements));
+                                                     c.keep_analysis, c.refinements, c.depth == T3R_DEPTH_STEREO));
         assert_true(plan.bytes == T3R_FULL_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                  c.render_width, c.render_height, c.head_column_bytes,
-                                                  c.keep_analysis, c.refinements));
-        /* the two public macros speak of the defaults */
+                                                  c.render_width, c.render_height, c.head_column_bytes, c.keep_analysis,
+                                                  c.refinements, c.depth == T3R_DEPTH_STEREO));
+        /* the public macros speak of the defaults */
         c = t3r_default_config(c.width, c.height, c.views, c.max_gaussians);
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         assert_true(plan.min_bytes == T3R_ARENA_MIN_BYTES(c.width, c.height, c.views, c.max_gaussians));
         assert_true(plan.bytes == T3R_ARENA_BYTES(c.width, c.height, c.views, c.max_gaussians));
+        c.depth = T3R_DEPTH_STEREO;
+        if (t3r_config_error(&c) == NULL) {
+            assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
+            assert_true(plan.min_bytes == T3R_STEREO_ARENA_MIN_BYTES(c.width, c.height, c.views, c.max_gaussians));
+            assert_true(plan.bytes == T3R_STEREO_ARENA_BYTES(c.width, c.height, c.views, c.max_gaussians));
+        }
     }
 }
 

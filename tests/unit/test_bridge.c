@@ -340,7 +340,7 @@ static void forgotten(void **state)
     uint32_t bridged = of_kind(s, 0, T3R_CONFIDENCE_BRIDGED), covered = of_kind(s, 0, T3R_CONFIDENCE_BRIDGED_COVERED);
     assert_true(bridged > 0 && covered > 0);
     for (uint32_t v = VIEWS; v-- > 0;) {
-        (void)t3r_mark_flying(s->view, VIEWS, v, 0);
+        (void)t3r_mark_flying(s->view, VIEWS, v, 0, false);
     }
     for (uint32_t v = VIEWS; v-- > 0;) {
         (void)t3r_mark_covered(s->view, VIEWS, v, 0);

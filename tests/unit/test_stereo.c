@@ -285,8 +285,8 @@ static void marks(void **state)
     (void)state;
     uint16_t depth[6] = {0, 5, 5, 5, 5, 5};
     uint8_t confidence[6] = {T3R_STEREO_NONE, T3R_STEREO_FILLED, 2, 29, 30, 255};
-    const uint8_t expected[6] = {T3R_CONFIDENCE_NONE,   T3R_CONFIDENCE_FILLED,   T3R_CONFIDENCE_FILLED,
-                                 T3R_CONFIDENCE_FILLED, T3R_CONFIDENCE_MEASURED, T3R_CONFIDENCE_MEASURED};
+    const uint8_t expected[6] = {T3R_CONFIDENCE_NONE,     T3R_CONFIDENCE_FILLED,   T3R_CONFIDENCE_DOUBTFUL,
+                                 T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_MEASURED, T3R_CONFIDENCE_MEASURED};
     const t3r_view view = {.width = 3, .height = 2, .depth = depth, .confidence = confidence};
     t3r_stereo_marks(&view, 30);
     assert_memory_equal(confidence, expected, 6);

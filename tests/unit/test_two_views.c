@@ -156,7 +156,7 @@ static void between_two_surfaces(void **state)
     uint16_t before[PIXELS];
     memcpy(before, s->depth[0], sizeof before);
     s->confidence[0][7 * W + 20] = T3R_CONFIDENCE_FILLED;
-    assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0), H - 1);
+    assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0, false), H - 1);
     for (int i = 0; i < PIXELS; i++) {
         uint8_t wanted = i == 7 * W + 20 ? T3R_CONFIDENCE_FILLED
                          : i % W == 20   ? T3R_CONFIDENCE_DOUBTFUL
@@ -179,7 +179,7 @@ static void slanted_surfaces_stay(void **state)
     for (int x = 0; x < W; x++, depth *= 1.06) {
         block(s, 0, x, 0, x + 1, H, depth);
     }
-    assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0), 0);
+    assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0, false), 0);
     free(s);
 }
 
@@ -190,8 +190,8 @@ static void seen_through(void **state)
     /* at 1 the disparity is 16: a block of 6 x 6 in view 1 that view 0, 16 pixels to the right, does not see */
     block(s, 1, 20, 10, 26, 16, 1);
     s->confidence[1][12 * W + 22] = T3R_CONFIDENCE_FILLED;
-    assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0), 0);
-    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0), 36);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0, false), 0);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 36);
     for (int i = 0; i < PIXELS; i++) {
         bool flies = i % W >= 20 && i % W < 26 && i / W >= 10 && i / W < 16;
         assert_int_equal(s->confidence[1][i], i == 12 * W + 22 ? T3R_CONFIDENCE_FILLED_DOUBTFUL
@@ -203,11 +203,18 @@ static void seen_through(void **state)
         t3r_forget_marks(s->view, 2);
         block(s, 0, 0, 0, W, H, 2);
         block(s, 0, 36 + off, 10, 42 + off, 16, 1);
-        assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0) + t3r_mark_flying(s->view, 2, 1, 0), 0);
+        assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0, false) + t3r_mark_flying(s->view, 2, 1, 0, false), 0);
     }
     block(s, 0, 0, 0, W, H, 2);
     memset(s->confidence[0], T3R_CONFIDENCE_NONE, PIXELS);
-    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0), 0);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 0);
+    /* guesses bear witness against guesses, not against what was measured */
+    memset(s->confidence[0], T3R_CONFIDENCE_FILLED, PIXELS);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 0);
+    t3r_forget_marks(s->view, 2);
+    s->confidence[1][12 * W + 22] = T3R_CONFIDENCE_FILLED;
+    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, true), 1);
+    assert_int_equal(s->confidence[1][12 * W + 22], T3R_CONFIDENCE_FILLED_DOUBTFUL);
     free(s);
 }
 

@@ -32,6 +32,7 @@ bool stress_capture_copy(stress_capture *copy, const stress_capture *capture)
 {
     size_t pixels = (size_t)capture->width * capture->height;
     bool done = stress_capture_open(copy, capture->width, capture->height, capture->views, capture->depth_unit);
+    copy->colour_only = capture->colour_only;
     for (uint32_t v = 0; v <= capture->views && done; v++) {
         memcpy(copy->view[v].rgb, capture->view[v].rgb, pixels * 3);
         memcpy(copy->view[v].depth, capture->view[v].depth, pixels * sizeof(uint16_t));
@@ -110,10 +111,12 @@ int stress_capture_read(stress_capture *capture, const evaluation_case *what, co
     }
     uint32_t width = settings->width != 0 ? settings->width : frames[0].frame.width;
     uint32_t height = settings->height != 0 ? settings->height : frames[0].frame.height;
+    const bool colour_only = frames[0].frame.depth == NULL;
     if (!stress_capture_open(capture, width, height, what->context_count,
-                             ldexp((double)frames[0].frame.depth_unit_q40, -40))) {
+                             colour_only ? 1 : ldexp((double)frames[0].frame.depth_unit_q40, -40))) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
+    capture->colour_only = colour_only;
     int code = CLI_OK;
     for (uint32_t v = 0; v <= what->context_count && code == CLI_OK; v++) {
         code = develop(capture, v, &frames[v], what->path);
@@ -136,7 +139,7 @@ static bool write_frames(const stress_capture *capture, FILE *file, t3r_recorder
                                     .height = capture->height,
                                     .planes = {view->rgb},
                                     .stride_bytes = {capture->width * 3},
-                                    .depth = view->depth,
+                                    .depth = capture->colour_only ? NULL : view->depth,
                                     .depth_width = capture->width,
                                     .depth_height = capture->height,
                                     .camera = view->camera};

@@ -18,7 +18,8 @@ typedef struct stress_view {
 
 typedef struct stress_capture {
     uint32_t width, height;
-    uint32_t views; /* context views; the target is view[views] */
+    uint32_t views;   /* context views; the target is view[views] */
+    bool colour_only; /* recorded without depth: planes of it are zero */
     double depth_unit;
     stress_view view[T3R_MAX_VIEWS + 1];
 } stress_capture;

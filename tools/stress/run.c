@@ -17,8 +17,14 @@ int stress_case_open(stress_case *c, const stress_contest *contest)
         settings.height = c->base.height;
         code = evaluation_views_make(&c->views, &run.what, &settings);
     }
-    stress_run_close(&run);
     uint32_t valid = stress_capture_valid(&c->base);
+    if (code == CLI_OK && contest->settings.depth == T3R_DEPTH_STEREO) {
+        const reconstruction_options options = stress_run_options(&run, c, contest, contest->keep_count);
+        reconstruction_points points = {.valid = 0};
+        code = reconstruction_count(&points, run.recording, c->name, &options);
+        valid = points.valid;
+    }
+    stress_run_close(&run);
     for (uint32_t k = 0; k < contest->keep_count; k++) {
         c->budget[k] = reconstruction_budget(valid, contest->keep[k]);
     }
