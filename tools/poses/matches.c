@@ -35,7 +35,8 @@ static bool apart(const corner *a, const corner *b)
 
 /* The corner of `others` most like `to`, NONE when it is not alike enough or another place nearly as much. row[]:
  * differences by others, UINT16_MAX where the pair is out of the question. */
-static uint32_t best(const uint16_t *row, size_t stride, const pose_view *others, const alikeness *rule)
+static uint32_t best(const uint16_t *row, size_t stride, const pose_view *others, const alikeness *rule,
+                     uint32_t *rivalry)
 {
     uint32_t chosen = NONE, least = UINT16_MAX, next = UINT16_MAX;
     for (uint32_t i = 0; i < others->count; i++) {
@@ -53,7 +54,14 @@ static uint32_t best(const uint16_t *row, size_t stride, const pose_view *others
             next = differ;
         }
     }
+    *rivalry = next == 0 ? 256 : least * 256 / next;
     return least * 100 <= next * rule->better_percent ? chosen : NONE;
+}
+
+static int by_rivalry(const void *a, const void *b)
+{
+    const pose_match *p = a, *q = b;
+    return p->rivalry != q->rivalry ? (p->rivalry < q->rivalry ? -1 : 1) : (p->a > q->a) - (p->a < q->a);
 }
 
 static uint32_t match(const pose_view *a, const pose_view *b, const epipolar *line, const alikeness *rule,
@@ -73,12 +81,14 @@ static uint32_t match(const pose_view *a, const pose_view *b, const epipolar *li
         }
     }
     for (uint32_t i = 0; i < a->count; i++) {
-        uint32_t j = best(differ + (size_t)i * b->count, 1, b, rule);
-        if (j != NONE && best(differ + j, b->count, a, rule) == i) {
-            matches[count++] = (pose_match){i, j};
+        uint32_t there = 0, back = 0;
+        uint32_t j = best(differ + (size_t)i * b->count, 1, b, rule, &there);
+        if (j != NONE && best(differ + j, b->count, a, rule, &back) == i) {
+            matches[count++] = (pose_match){i, j, there > back ? there : back};
         }
     }
     free(differ);
+    qsort(matches, count, sizeof *matches, by_rivalry);
     return count;
 }
 

@@ -5,10 +5,11 @@
 #include "poses/view.h"
 
 typedef struct pose_match {
-    uint32_t a, b; /* corners of the first and of the second view */
+    uint32_t a, b;   /* corners of the first and of the second view */
+    uint32_t rivalry; /* how nearly another place would have done, 0 .. 256 */
 } pose_match;
 
-/* Matches that are each other's best and clearly better than the next place. `matches` has room for a->count, at most
+/* Matches that are each other's best and clearly better than the next place, those with the least rivalry first. `matches` has room for a->count, at most
  * CORNERS_MOST; returns their number. */
 uint32_t matches_mutual(const pose_view *a, const pose_view *b, pose_match *matches);
 

@@ -9,10 +9,12 @@
 
 #define MATCHES_LEAST 20u /* that agree with a motion */
 #define TRIES_LEAST 100u
-#define TRIES_MOST 1500u
+#define TRIES_MOST 4000u
+#define TRIES_ALL 1000u /* after so many the samples come from all matches, before from the better ones */
+#define SHARE_PERCENT 40u   /* of the matches, for an epipolar line lets one in twenty by chance */
 #define RIVALS 6 /* distinct motions that are refined */
 #define RIVAL_DEGREES 10.0
-#define RIVAL_COST 1.02          /* a rival this much costlier explains the matches as well */
+#define RIVAL_COST 10.0 /* square pixels: a rival less costlier than this explains the matches as well */
 #define PARALLAX_LEAST 1.0       /* pixels, of the median match */
 #define DIRECTION_DEGREES 6.0    /* standard deviation of a direction that is refused */
 #define TURN_DEGREES 2.0         /* of a rotation */
@@ -40,6 +42,13 @@ static void choose(uint64_t *state, uint32_t limit, uint32_t wanted, uint32_t *c
             }
         } while (taken);
     }
+}
+
+/* How many of the matches, best first, the n-th sample is drawn from (PROSAC's idea). */
+static uint32_t drawn_from(uint32_t n, uint32_t count)
+{
+    uint32_t least = MATCHES_LEAST / 2, some = (uint32_t)((uint64_t)count * (n + 1) / TRIES_ALL);
+    return some > count ? count : some < least ? least : some;
 }
 
 /* Tries after which a sample without an outlier has been seen but for one chance in a thousand. */
@@ -191,7 +200,7 @@ static void try_fives(const fit_pair *pair, candidates *c)
     for (uint32_t n = 0; n < tries; n++) {
         uint32_t chosen[5];
         double rays_a[5][2], rays_b[5][2], essentials[FIVE_POINT_MOST][9];
-        choose(&state, pair->count, 5, chosen);
+        choose(&state, drawn_from(n, pair->count), 5, chosen);
         for (int i = 0; i < 5; i++) {
             memcpy(rays_a[i], pair->a->rays[pair->matches[chosen[i]].a], sizeof rays_a[i]);
             memcpy(rays_b[i], pair->b->rays[pair->matches[chosen[i]].b], sizeof rays_b[i]);
@@ -231,20 +240,30 @@ static void refine_all(const fit_pair *pair, candidates *c)
     *c = refined;
 }
 
-static int check_colour(const candidates *c, const relative_pose *out, char *error, size_t error_bytes)
+/* Whether the best motion stands out, judged on matches that were found without any. */
+static int check_candidates(const candidates *c, uint32_t count, char *error, size_t error_bytes)
+{
+    uint32_t inliers = c->count > 0 ? c->best[0].inliers : 0;
+    if (inliers < MATCHES_LEAST || inliers * 100 < count * SHARE_PERCENT) {
+        return t3r_reason(error, error_bytes, "only %u of %u matching corners agree on a motion", inliers, count);
+    }
+    if (c->count > 1 && c->best[1].cost - c->best[0].cost < RIVAL_COST) {
+        return t3r_reason(error, error_bytes,
+                          "two motions explain the corners equally, %.0f degrees apart: they may lie on one plane",
+                          fmax(direction_angle(c->best[0].motion.t, c->best[1].motion.t),
+                               rotation_angle(c->best[0].motion.r, c->best[1].motion.r)) /
+                              DEGREE);
+    }
+    return 0;
+}
+
+static int check_colour(const relative_pose *out, char *error, size_t error_bytes)
 {
     if (out->parallax_pixels < PARALLAX_LEAST) {
         return t3r_reason(error, error_bytes,
                           "no parallax: without the cameras' turning, corners move by %.1f pixels; a direction cannot "
                           "be told from colour, move the camera or give depth",
                           out->parallax_pixels);
-    }
-    if (c->count > 1 && c->best[1].cost < RIVAL_COST * c->best[0].cost) {
-        return t3r_reason(error, error_bytes,
-                          "two motions explain the corners equally, %.0f degrees apart: they may lie on one plane",
-                          fmax(direction_angle(c->best[0].motion.t, c->best[1].motion.t),
-                               rotation_angle(c->best[0].motion.r, c->best[1].motion.r)) /
-                              DEGREE);
     }
     if (!(out->account.direction_degree < DIRECTION_DEGREES)) {
         return t3r_reason(error, error_bytes,
@@ -283,23 +302,19 @@ int relative_by_colour(const pose_view *a, const pose_view *b, const pose_match 
     }
     try_fives(&pair, &c);
     refine_all(&pair, &c);
-    if (c.count > 0) {
-        pair.count = more_matches(&pair, &c.best[0].motion, more);
+    int status = check_candidates(&c, count, error, error_bytes);
+    if (status == 0) {
+        candidate *best = &c.best[0];
+        out->motion = best->motion;
+        out->account = best->account;
+        pair.count = more_matches(&pair, &best->motion, more);
         pair.matches = more;
         out->tried = pair.count;
-        refine_all(&pair, &c);
-    }
-    int status = 0;
-    if (c.count > 0) {
-        out->motion = c.best[0].motion;
-        out->account = c.best[0].account;
+        (void)fit_refine(&pair, &out->motion, &out->account); /* else as it was */
         status = take_inliers(&pair, out) == 0 ? 0 : t3r_reason(error, error_bytes, "out of memory");
     }
     free(more);
-    if (status == 0 && (out->count < MATCHES_LEAST || 4 * out->count < out->tried)) {
-        status = too_few(out, "agree on a motion", error, error_bytes);
-    }
-    return status == 0 ? check_colour(&c, out, error, error_bytes) : status;
+    return status == 0 ? check_colour(out, error, error_bytes) : status;
 }
 
 /* ---- depth ------------------------------------------------------------------------------------------------------ */
@@ -349,7 +364,7 @@ static void try_threes(const fit_pair *pair, const uint32_t *deep, uint32_t deep
     for (uint32_t n = 0; n < tries; n++) {
         uint32_t chosen[3];
         double from[3][3], to[3][3];
-        choose(&state, deep_count, 3, chosen);
+        choose(&state, drawn_from(n, deep_count), 3, chosen);
         for (int i = 0; i < 3; i++) {
             point_of(pair->a, pair->matches[deep[chosen[i]]].a, from[i]);
             point_of(pair->b, pair->matches[deep[chosen[i]]].b, to[i]);
@@ -408,7 +423,7 @@ int relative_by_depth(const pose_view *a, const pose_view *b, const pose_match *
     if (status != 0) {
         return too_few(out, "have depth in both views", error, error_bytes);
     }
-    if (out->count < MATCHES_LEAST || 4 * out->count < out->tried) {
+    if (out->count < MATCHES_LEAST) {
         return too_few(out, "agree on a motion", error, error_bytes);
     }
     if (!(out->account.turn_degrees < TURN_DEGREES)) {
