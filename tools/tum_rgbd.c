@@ -244,18 +244,7 @@ static int find_intrinsics(const char *directory, const posed_folder_options *op
         }
         memcpy(numbers, row->numbers, sizeof numbers);
     }
-    *out = (posed_intrinsics){.width = NAN,
-                              .height = NAN,
-                              .angle_x = NAN,
-                              .angle_y = NAN,
-                              .fx = numbers[0],
-                              .fy = numbers[1],
-                              .cx = numbers[2] + 0.5,
-                              .cy = numbers[3] + 0.5};
-    for (int i = 0; i < 5; i++) {
-        out->coefficients[i] = numbers[4 + i];
-        out->distortion = numbers[4 + i] != 0 ? T3R_DISTORTION_RADTAN : out->distortion;
-    }
+    *out = posed_intrinsics_of(numbers);
     return 0;
 }
 
@@ -278,6 +267,7 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
         out->frame_count++;
         const stamped *measured = nearest(depth, colour->items[i].stamp);
         frame->intrinsics = *intrinsics;
+        frame->posed = true;
         frame->image = strdup(colour->items[i].name);
         frame->depth = measured != NULL ? strdup(measured->name) : NULL;
         if (frame->image == NULL || (measured != NULL && frame->depth == NULL)) {
@@ -296,6 +286,7 @@ int tum_rgbd_read(const char *directory, const posed_folder_options *options, po
     memset(out, 0, sizeof *out);
     out->kind = "TUM RGB-D";
     out->depth_unit = 1 / DEPTH_STEPS_PER_METRE;
+    out->depth_unit_given = true;
     posed_intrinsics intrinsics;
     stamped_list colour = {0}, depth = {0}, trajectory = {0};
     int status = find_intrinsics(directory, options, &intrinsics, error, error_bytes);

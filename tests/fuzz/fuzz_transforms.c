@@ -11,7 +11,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     posed_folder folder;
     char error[256] = "";
-    int status = transforms_json_parse((const char *)data, size, &folder, error, sizeof error);
+    int status = transforms_json_parse((const char *)data, size, NULL, &folder, error, sizeof error);
     if ((status != 0) != (error[0] != '\0')) {
         abort();
     }

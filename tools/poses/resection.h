@@ -1,0 +1,14 @@
+/* A camera's pose from places in space and the rays on which it sees them. */
+#ifndef TRIM3R_TOOLS_POSES_RESECTION_H
+#define TRIM3R_TOOLS_POSES_RESECTION_H
+
+#include <stdint.h>
+
+#include "poses/motion.h"
+
+/* Orthogonal iteration (Lu, Hager, Mjolsness, PAMI 2000) on points[] and rays[] (x and y at depth 1), three times on the
+ * better two thirds. *camera: camera to the points' frame; *error: root of the mean square over these of the distance at
+ * depth 1. 0, or -1 for fewer than 6 points, points on a line and when memory is out. */
+int resect(const double (*points)[3], const double (*rays)[2], uint32_t count, motion *camera, double *error);
+
+#endif
