@@ -62,9 +62,9 @@ struct t3r_recording {
     size_t stream_count, stream_capacity;
     size_t colour, depth, pose, camera_info; /* the streams chosen, or T3R_NO_STREAM */
 
-    t3r_frame_links *links; /* one a message of the colour stream */
-    uint8_t **depth_z16;    /* one a message of the depth stream: its samples as Z16 once asked for, when the file
-                               holds them otherwise */
+    t3r_frame_links *links;  /* one a message of the colour stream */
+    uint8_t **depth_z16;     /* one a message of the depth stream: its samples as Z16 once asked for, when the file
+                                holds them otherwise */
     t3r_set_pose *set_poses; /* one a message of the colour stream; NULL until one is set */
     t3r_pairing_info pairing;
 

@@ -42,7 +42,8 @@ static const struct argp_option options[] = {
      "the views, --context those it was made of",
      0},
     {"poses", KEY_POSES, "SOURCE", 0,
-     "of the context views: given (default), those of the recording; estimate, from corners that they share, with depth "
+     "of the context views: given (default), those of the recording; estimate, from corners that they share, with "
+     "depth "
      "where two of them have it; estimate-colour, likewise from colour alone",
      0},
     {"local", KEY_LOCAL, NULL, 0,
@@ -127,9 +128,12 @@ static const struct argp argp = {
         "  trim3r build room.mcap --keep 10% --colmap start\n"
         "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n\n"
         "The scene stands in the recording's world frame unless --local is given.\n\n"
-        "--poses estimate: the first context view keeps the pose that the recording has, or is the origin; each other one "
-        "is joined to the best of those before. With depth in both views lengths are those of the depth, from colour the "
-        "distance of the first two cameras is 1, unless some depth tells. Frames too unlike, a camera that only turned, "
+        "--poses estimate: the first context view keeps the pose that the recording has, or is the origin; each other "
+        "one "
+        "is joined to the best of those before. With depth in both views lengths are those of the depth, from colour "
+        "the "
+        "distance of the first two cameras is 1, unless some depth tells. Frames too unlike, a camera that only "
+        "turned, "
         "and corners on one plane are refused. `trim3r import --poses estimate` keeps the poses in the recording.\n\n"
         "--colmap: DIR/images/ are the context views at the working size, undistorted; DIR/sparse/0/ holds "
         "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "

@@ -140,17 +140,20 @@ static const struct argp_option argp_options[] = {
      "pixel at the centre of each box",
      0},
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
-     "Of TUM RGB-D and of pictures alone: the colour camera as fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being the "
+     "Of TUM RGB-D and of pictures alone: the colour camera as fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being "
+     "the "
      "centre of the top-left pixel; known for folders with freiburg1, freiburg2 or freiburg3 in their name",
      0},
     {"poses", KEY_POSES, "SOURCE", 0,
-     "given (default), those of the folder; estimate, from corners that frames share, with depth where two of them have "
+     "given (default), those of the folder; estimate, from corners that frames share, with depth where two of them "
+     "have "
      "it, or from pointmaps; estimate-colour, from colour alone",
      0},
     {"pointmaps", KEY_POINTMAPS, "FILE.npz", 0, "Depth of all frames, one pointmap each, in the frames' order", 0},
     {"min-confidence", KEY_CONFIDENCE, "C", 0, "Points of pointmaps with less become no depth (all are kept)", 0},
     {"depth-unit", KEY_UNIT, "U", 0,
-     "Lengths a step of depths from pointmaps (integer_depth_scale of the folder, else a power of two so that the median "
+     "Lengths a step of depths from pointmaps (integer_depth_scale of the folder, else a power of two so that the "
+     "median "
      "has 4096 to 8192 steps)",
      0},
     {"json", KEY_JSON, NULL, 0, "One JSON object on stdout", 0},
@@ -164,13 +167,17 @@ static const struct argp parser = {
     .doc = "Turn a posed folder into a recording.\v"
            "DIR holds transforms.json (instant-ngp, NeRFCapture, nerfstudio: camera_model OPENCV or OPENCV_FISHEYE, "
            "depth_path with integer_depth_scale, trim3r_triplets) or rgb.txt, groundtruth.txt and optionally depth.txt "
-           "(TUM RGB-D; pictures without a pose are left out); with --poses estimate or --pointmaps also pictures alone, in "
+           "(TUM RGB-D; pictures without a pose are left out); with --poses estimate or --pointmaps also pictures "
+           "alone, in "
            "the order of their names. Frames get stamps 1/30 s apart.\n\n"
            "A pointmap, as DUSt3R, MASt3R and VGGT make them, is float32 pts3d (or world_points, points, pointmap), "
-           "H x W x 3, of a frame in the first frame's camera, x right, y down, z forward: pointmap_path of a frame, a .npz "
-           "or .npy, or N of them in the file of --pointmaps. A .npz may hold conf (or world_points_conf), H x W (a .npy has "
+           "H x W x 3, of a frame in the first frame's camera, x right, y down, z forward: pointmap_path of a frame, a "
+           ".npz "
+           "or .npy, or N of them in the file of --pointmaps. A .npz may hold conf (or world_points_conf), H x W (a "
+           ".npy has "
            "confidence_path beside it), and what the points were made with, which then wins over the folder: poses, "
-           "camera to the points' frame, 4x4, or extrinsic, the inverse, 3x4; intrinsics, 3x3, or focals, in pixels of the "
+           "camera to the points' frame, 4x4, or extrinsic, the inverse, 3x4; intrinsics, 3x3, or focals, in pixels of "
+           "the "
            "map. Missing poses are taken from the points. What is not a finite number is refused.\n\n"
            "Estimated poses are rounded into the recording: what is made of it later is the same everywhere.\n\n"
            "Examples:\n"
@@ -227,8 +234,8 @@ static int write_frame(t3r_recorder *recorder, const options *o, const material 
     return status;
 }
 
-static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, const material *m,
-                        const char *source, totals *t, char *error)
+static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, const material *m, const char *source,
+                        totals *t, char *error)
 {
     const posed_folder *folder = &m->folder;
     t3r_recording_header header = {.camera = "camera",
@@ -299,8 +306,8 @@ static void print_json(const material *m, const totals *t)
 static void print_text(const options *o, const material *m, const totals *t)
 {
     const posed_folder *folder = &m->folder;
-    printf("%s: %u frames of %ux%u (%u with depth), %u triplets, %llu bytes\n", o->output, folder->frame_count, t->width,
-           t->height, t->depth_frames, folder->triplet_count, (unsigned long long)t->bytes);
+    printf("%s: %u frames of %ux%u (%u with depth), %u triplets, %llu bytes\n", o->output, folder->frame_count,
+           t->width, t->height, t->depth_frames, folder->triplet_count, (unsigned long long)t->bytes);
     if (folder->skipped > 0) {
         printf("left out: %u pictures without a pose near in time\n", folder->skipped);
     }

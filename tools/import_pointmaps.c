@@ -94,17 +94,16 @@ static int resect_map(const pointmaps *maps, uint32_t which, const posed_intrins
 {
     size_t pixels = (size_t)maps->width * maps->height, stride = pixels / (2 * (size_t)RESECTED) + 1, count = 0;
     const float *confidence = maps->confidence != NULL ? maps->confidence + pixels * which : NULL;
-    double (*points)[3] = malloc((pixels / stride + 1) * sizeof *points);
-    double (*rays)[2] = malloc((pixels / stride + 1) * sizeof *rays), error = 0;
+    double(*points)[3] = malloc((pixels / stride + 1) * sizeof *points);
+    double(*rays)[2] = malloc((pixels / stride + 1) * sizeof *rays), error = 0;
     t3r_recorded_camera k;
     posed_frame frame = {.intrinsics = *in, .rotation = {1}};
     frame.intrinsics.grid_width = in->grid_width > 0 ? in->grid_width : in->width;
     frame.intrinsics.grid_height = in->grid_height > 0 ? in->grid_height : in->height;
     frame.intrinsics.width = frame.intrinsics.height = NAN;
-    int status = points != NULL && rays != NULL &&
-                         posed_frame_camera(&frame, maps->width, maps->height, &k, NULL, 0) == 0
-                     ? 0
-                     : -1;
+    int status =
+        points != NULL && rays != NULL && posed_frame_camera(&frame, maps->width, maps->height, &k, NULL, 0) == 0 ? 0
+                                                                                                                  : -1;
     double enough = confidence != NULL ? fmax(least, median_confidence(confidence, pixels)) : 0;
     for (size_t i = stride / 2; i < pixels && status == 0; i += stride) {
         if (confidence == NULL || confidence[i] >= enough) {
@@ -156,10 +155,11 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     }
     double off = 0;
     if (resect_map(maps, which, &frame->intrinsics, source->options.confidence_least, camera, &off) != 0) {
-        return t3r_reason(error, error_bytes,
-                          "%s: no pose, and the points do not lie on the pixels' rays from any: intrinsics are wrong or "
-                          "missing, or the points are",
-                          frame->image);
+        return t3r_reason(
+            error, error_bytes,
+            "%s: no pose, and the points do not lie on the pixels' rays from any: intrinsics are wrong or "
+            "missing, or the points are",
+            frame->image);
     }
     source->worst_px = fmax(source->worst_px, off);
     if (source->options.resect || !folder->frames[0].posed) {
@@ -210,8 +210,9 @@ static int settle_unit(const pointmap_source *source, depths *d, posed_folder *f
         unit = exp2(ceil(log2(d->some[d->count / 2] / MEDIAN_STEPS)));
     }
     if (!(unit >= 0x1p-40 && unit < 0x1p7)) {
-        return t3r_reason(error, error_bytes, "%s: the points' depths ask for a unit of %g, which is not within "
-                                              "1e-12 to 128; scale them",
+        return t3r_reason(error, error_bytes,
+                          "%s: the points' depths ask for a unit of %g, which is not within "
+                          "1e-12 to 128; scale them",
                           source->directory, unit);
     }
     folder->depth_unit = unit;

@@ -17,16 +17,17 @@ typedef struct pointmap_source {
     pointmap_options options;
     const char *directory;
     const posed_folder *folder;
-    pointmaps stack;  /* of options.file */
-    motion *cameras;  /* a frame: camera to the points' frame */
-    uint32_t count;   /* frames that have a pointmap */
-    double worst_px;  /* of poses from points: the largest root mean square error, pixels of the map; 0 = there are none */
+    pointmaps stack; /* of options.file */
+    motion *cameras; /* a frame: camera to the points' frame */
+    uint32_t count;  /* frames that have a pointmap */
+    double
+        worst_px; /* of poses from points: the largest root mean square error, pixels of the map; 0 = there are none */
 } pointmap_source;
 
 /* Reads all pointmaps once: checks them, gives frames the poses and intrinsics that the files hold (they are what the
- * points were made with, so they win over the folder's), takes the missing poses from the points, and settles the folder's
- * depth unit. Without poses in the file the points are in the first frame's camera. 0, or -1 with a reason in error[];
- * pointmap_source_close() in either case. */
+ * points were made with, so they win over the folder's), takes the missing poses from the points, and settles the
+ * folder's depth unit. Without poses in the file the points are in the first frame's camera. 0, or -1 with a reason in
+ * error[]; pointmap_source_close() in either case. */
 int pointmap_source_open(pointmap_source *source, const char *directory, const pointmap_options *options,
                          posed_folder *folder, char *error, size_t error_bytes);
 void pointmap_source_close(pointmap_source *source);

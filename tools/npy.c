@@ -12,18 +12,18 @@
 #define MOST_ITEMS ((uint64_t)1 << 30) /* so that products of sizes fit */
 
 /* What is left of the header's text. */
-typedef struct text {
+typedef struct remainder {
     const char *at, *end;
-} text;
+} remainder;
 
-static void skip_spaces(text *t)
+static void skip_spaces(remainder *t)
 {
     while (t->at < t->end && (*t->at == ' ' || *t->at == '\n')) {
         t->at++;
     }
 }
 
-static bool take(text *t, char expected)
+static bool take(remainder *t, char expected)
 {
     skip_spaces(t);
     if (t->at < t->end && *t->at == expected) {
@@ -33,7 +33,7 @@ static bool take(text *t, char expected)
     return false;
 }
 
-static bool take_word(text *t, const char *word)
+static bool take_word(remainder *t, const char *word)
 {
     size_t length = strlen(word);
     skip_spaces(t);
@@ -45,7 +45,7 @@ static bool take_word(text *t, const char *word)
 }
 
 /* 'word' as Python writes it: no escapes. */
-static bool take_string(text *t, char *out, size_t bytes)
+static bool take_string(remainder *t, char *out, size_t bytes)
 {
     size_t length = 0;
     if (!take(t, '\'')) {
@@ -58,7 +58,7 @@ static bool take_string(text *t, char *out, size_t bytes)
     return t->at < t->end && *t->at++ == '\'';
 }
 
-static bool take_number(text *t, uint32_t *out)
+static bool take_number(remainder *t, uint32_t *out)
 {
     uint64_t value = 0;
     skip_spaces(t);
@@ -71,7 +71,7 @@ static bool take_number(text *t, uint32_t *out)
 }
 
 /* (2, 3) or (7,) or () */
-static const char *take_shape(text *t, npy_array *out)
+static const char *take_shape(remainder *t, npy_array *out)
 {
     out->dimensions = 0;
     if (!take(t, '(')) {
@@ -91,7 +91,7 @@ static const char *take_shape(text *t, npy_array *out)
     return NULL;
 }
 
-static const char *take_type(text *t, npy_array *out, char *type, size_t bytes)
+static const char *take_type(remainder *t, npy_array *out, char *type, size_t bytes)
 {
     if (!take_string(t, type, bytes)) {
         return "descr is not one type";
@@ -101,7 +101,7 @@ static const char *take_type(text *t, npy_array *out, char *type, size_t bytes)
 }
 
 /* {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), } with its entries in any order, each once */
-static const char *read_header(text *t, npy_array *out)
+static const char *read_header(remainder *t, npy_array *out)
 {
     bool type = false, order = false, shape = false;
     char name[24], value[24];
@@ -133,9 +133,9 @@ static const char *read_header(text *t, npy_array *out)
         }
     }
     skip_spaces(t);
-    return t->at != t->end                ? "there is something behind the header's dictionary"
+    return t->at != t->end             ? "there is something behind the header's dictionary"
            : !(type && order && shape) ? "the header lacks descr, fortran_order or shape"
-                                          : NULL;
+                                       : NULL;
 }
 
 int npy_parse(const uint8_t *bytes, size_t count, npy_array *out, char *error, size_t error_bytes)
@@ -153,7 +153,7 @@ int npy_parse(const uint8_t *bytes, size_t count, npy_array *out, char *error, s
     if (count < start || header > count - start) {
         return t3r_reason(error, error_bytes, "cut off in its header");
     }
-    text t = {(const char *)bytes + start, (const char *)bytes + start + header};
+    remainder t = {(const char *)bytes + start, (const char *)bytes + start + header};
     const char *wrong = read_header(&t, out);
     if (wrong != NULL) {
         return t3r_reason(error, error_bytes, "%s", wrong);

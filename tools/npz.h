@@ -11,8 +11,8 @@ typedef struct npz npz;
 npz *npz_open(const uint8_t *bytes, size_t count, char *error, size_t error_bytes);
 void npz_close(npz *archive);
 
-/* The bytes of the array NAME, at most `most` of them, checked against the archive's CRC; free() them. 1; 0 when there is
- * none of that name; -1 with what is wrong in error[]. */
+/* The bytes of the array NAME, at most `most` of them, checked against the archive's CRC; free() them. 1; 0 when there
+ * is none of that name; -1 with what is wrong in error[]. */
 int npz_read(npz *archive, const char *name, size_t most, uint8_t **bytes, size_t *count, char *error,
              size_t error_bytes);
 

@@ -1,4 +1,5 @@
 /* A folder of pictures and nothing else. */
+#define _GNU_SOURCE /* versionsort() */
 #include "posed_folder.h"
 
 #include <dirent.h>

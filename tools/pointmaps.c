@@ -15,15 +15,15 @@
 #define NAMES 5
 
 /* What an array is, and its names in a .npz. */
-typedef struct role {
+typedef struct array_role {
     const char *names[NAMES]; /* NULL behind the last */
     uint32_t dimensions;      /* of one view */
-} role;
+} array_role;
 
-static const role points_role = {{"pts3d", "world_points", "points", "pointmap"}, 3},
-                  confidence_role = {{"conf", "confs", "world_points_conf", "confidence"}, 2},
-                  poses_role = {{"poses"}, 2}, extrinsics_role = {{"extrinsics", "extrinsic"}, 2},
-                  intrinsics_role = {{"intrinsics", "intrinsic"}, 2}, focals_role = {{"focals"}, 0};
+static const array_role points_role = {{"pts3d", "world_points", "points", "pointmap"}, 3},
+                        confidence_role = {{"conf", "confs", "world_points_conf", "confidence"}, 2},
+                        poses_role = {{"poses"}, 2}, extrinsics_role = {{"extrinsics", "extrinsic"}, 2},
+                        intrinsics_role = {{"intrinsics", "intrinsic"}, 2}, focals_role = {{"focals"}, 0};
 
 /* An array of a file: one a view, `count` of them. */
 typedef struct stack {
@@ -57,7 +57,7 @@ static void place_text(const npy_array *array, size_t index, char *text, size_t 
 }
 
 /* The array's dimensions as views and what one view has: leading ones beyond that are dropped. */
-static int understand(stack *s, const role *role, char *error, size_t error_bytes)
+static int understand(stack *s, const array_role *role, char *error, size_t error_bytes)
 {
     uint32_t first = 0, end = s->array.dimensions;
     while (role->dimensions == 0 && end > 1 && s->array.shape[end - 1] == 1) {
@@ -85,7 +85,7 @@ static int understand(stack *s, const role *role, char *error, size_t error_byte
 }
 
 /* 1, 0 when the archive has none of the names, -1 with a reason. */
-static int find(npz *archive, const role *role, stack *out, char *error, size_t error_bytes)
+static int find(npz *archive, const array_role *role, stack *out, char *error, size_t error_bytes)
 {
     *out = (stack){0};
     for (int i = 0; i < NAMES && role->names[i] != NULL; i++) {
@@ -233,7 +233,7 @@ static int take_intrinsics(const stack *s, bool matrices, pointmaps *out, char *
 static int parse_npz(npz *archive, pointmaps *out, char *error, size_t error_bytes)
 {
     static const struct {
-        const role *role;
+        const array_role *role;
         enum { POINTS, CONFIDENCE, POSES, EXTRINSICS, INTRINSICS, FOCALS } what;
     } steps[] = {{&points_role, POINTS},         {&confidence_role, CONFIDENCE}, {&poses_role, POSES},
                  {&extrinsics_role, EXTRINSICS}, {&intrinsics_role, INTRINSICS}, {&focals_role, FOCALS}};
@@ -271,7 +271,7 @@ static int parse_npz(npz *archive, pointmaps *out, char *error, size_t error_byt
     return 0;
 }
 
-static int parse_npy(const uint8_t *bytes, size_t count, const role *role, stack *out, char *error,
+static int parse_npy(const uint8_t *bytes, size_t count, const array_role *role, stack *out, char *error,
                      size_t error_bytes)
 {
     *out = (stack){.name = role->names[0]};

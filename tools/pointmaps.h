@@ -1,5 +1,5 @@
-/* Pointmaps made elsewhere (DUSt3R, MASt3R, VGGT ...): for every pixel of a view the place that it shows, all views of a
- * file in one frame, with a confidence a pixel, and what the maker knows of the cameras.
+/* Pointmaps made elsewhere (DUSt3R, MASt3R, VGGT ...): for every pixel of a view the place that it shows, all views of
+ * a file in one frame, with a confidence a pixel, and what the maker knows of the cameras.
  *
  * A .npz holds, under the first of these names that it has,
  *   pts3d, world_points, points, pointmap   float32, N x H x W x 3 (or H x W x 3; a leading 1 may stand before)
@@ -36,8 +36,8 @@ int pointmaps_parse(const uint8_t *bytes, size_t count, pointmaps *out, char *er
 int pointmaps_read(const char *path, const char *confidence, pointmaps *out, char *error, size_t error_bytes);
 void pointmaps_free(pointmaps *maps);
 
-/* Depth of every point of map `index` along z of a camera, 0 where its confidence is below `least`. camera: to the points'
- * frame. depth: height x width. */
+/* Depth of every point of map `index` along z of a camera, 0 where its confidence is below `least`. camera: to the
+ * points' frame. depth: height x width. */
 void pointmaps_depth(const pointmaps *maps, uint32_t index, const motion *camera, double least, float *depth);
 
 #endif

@@ -1,5 +1,6 @@
 /* Posed folders: pictures with known cameras, as transforms.json (instant-ngp, NeRFCapture, nerfstudio), as
- * TUM RGB-D lists, or without poses as pictures alone. Reading one yields the list of its frames; the pictures are left to the caller. */
+ * TUM RGB-D lists, or without poses as pictures alone. Reading one yields the list of its frames; the pictures are left
+ * to the caller. */
 #ifndef TRIM3R_TOOLS_POSED_FOLDER_H
 #define TRIM3R_TOOLS_POSED_FOLDER_H
 
@@ -14,7 +15,7 @@
 /* What a folder says of a camera; a number that it does not give is NAN. Pixels, with the principal point measured
  * from the corner of the top-left pixel, whose centre is thus at (0.5, 0.5). */
 typedef struct posed_intrinsics {
-    double width, height; /* of the picture */
+    double width, height;           /* of the picture */
     double grid_width, grid_height; /* of the pixels that fx ... cy are measured in; 0 = the picture's */
     double fx, fy, cx, cy;
     double angle_x, angle_y; /* full field of view in radians, the fallback for fx and fy */
@@ -23,8 +24,8 @@ typedef struct posed_intrinsics {
 } posed_intrinsics;
 
 typedef struct posed_frame {
-    char *image; /* path, relative to the folder as the folder spells it */
-    char *depth; /* likewise; NULL = none */
+    char *image;                 /* path, relative to the folder as the folder spells it */
+    char *depth;                 /* likewise; NULL = none */
     char *pointmap, *confidence; /* likewise: depth made elsewhere (pointmaps.h) */
     bool posed;                  /* false: position 0, rotation none */
     posed_intrinsics intrinsics;
@@ -40,7 +41,7 @@ typedef struct posed_folder {
     uint32_t triplet_count;
     double depth_unit; /* world units a step; 0.001 where no frame has depth and none is given */
     bool depth_unit_given;
-    uint32_t skipped;  /* pictures left out because no pose is near them in time */
+    uint32_t skipped; /* pictures left out because no pose is near them in time */
 } posed_folder;
 
 typedef struct posed_folder_options {
@@ -62,7 +63,8 @@ void posed_folder_close(posed_folder *folder);
 int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height, t3r_recorded_camera *camera,
                        char *error, size_t error_bytes);
 
-/* The text of a transforms.json, without touching any other file; options may be NULL. posed_folder_close() in either case. */
+/* The text of a transforms.json, without touching any other file; options may be NULL. posed_folder_close() in either
+ * case. */
 int transforms_json_parse(const char *text, size_t bytes, const posed_folder_options *options, posed_folder *out,
                           char *error, size_t error_bytes);
 

@@ -30,7 +30,8 @@ void poses_add_json(cJSON *object, const t3r_recording *recording, const uint32_
         t3r_capture_frame frame;
         char error[64];
         if (t3r_recording_frame(recording, frames[i], &frame, error, sizeof error) == T3R_CAPTURE_FRAME) {
-            cJSON *position = cJSON_AddArrayToObject(one, "position"), *rotation = cJSON_AddArrayToObject(one, "rotation");
+            cJSON *position = cJSON_AddArrayToObject(one, "position"),
+                  *rotation = cJSON_AddArrayToObject(one, "rotation");
             for (int k = 0; k < 3; k++) {
                 cJSON_AddItemToArray(position, cJSON_CreateNumber(ldexp((double)frame.camera.position_q32[k], -32)));
             }

@@ -68,9 +68,8 @@ int recording_estimate_poses(t3r_recording *recording, const char *path, const u
 {
     pose_view *views = calloc(count, sizeof *views);
     motion *poses = calloc(count, sizeof *poses);
-    int code = views != NULL && poses != NULL
-                   ? estimate(recording, path, frames, count, source, accounts, views, poses)
-                   : cli_error(CLI_BAD_INPUT, "out of memory");
+    int code = views != NULL && poses != NULL ? estimate(recording, path, frames, count, source, accounts, views, poses)
+                                              : cli_error(CLI_BAD_INPUT, "out of memory");
     for (uint32_t i = 0; views != NULL && i < count; i++) {
         pose_view_free(&views[i]);
     }

@@ -367,7 +367,8 @@ int transforms_json_parse(const char *text, size_t bytes, const posed_folder_opt
         size_t at = end == NULL ? 0 : (size_t)(end - text);
         return t3r_reason(error, error_bytes, "byte %zu: not JSON (NaN and Infinity are not either)", at);
     }
-    reader r = {.root = root, .options = options != NULL ? options : &strict, .error = error, .error_bytes = error_bytes};
+    reader r = {
+        .root = root, .options = options != NULL ? options : &strict, .error = error, .error_bytes = error_bytes};
     int status;
     if (!cJSON_IsObject(root)) {
         status = t3r_reason(error, error_bytes, "byte 0: not a JSON object");

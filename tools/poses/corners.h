@@ -17,8 +17,8 @@ typedef struct corner {
     uint64_t comparisons[4];
 } corner;
 
-/* Fills corners[], at most CORNERS_MOST, from a picture whose rows have no gaps; their number in *count. Pictures with a
- * side below 48 pixels have none. 0, or -1 when memory is out. */
+/* Fills corners[], at most CORNERS_MOST, from a picture whose rows have no gaps; their number in *count. Pictures with
+ * a side below 48 pixels have none. 0, or -1 when memory is out. */
 int corners_find(const uint8_t *grey, uint32_t width, uint32_t height, corner *corners, uint32_t *count);
 
 /* In how many of their comparisons two corners differ, 0..256. */

@@ -10,8 +10,8 @@
 #include "poses/relative.h"
 #include "reason.h"
 
-#define SHARED_LEAST 8u     /* depths that must agree on a scale */
-#define PARALLAX 0.01       /* radians between rays whose meeting place is kept as a depth */
+#define SHARED_LEAST 8u /* depths that must agree on a scale */
+#define PARALLAX 0.01   /* radians between rays whose meeting place is kept as a depth */
 #define REASON_BYTES 256
 #define NAME_COUNT 3
 
@@ -125,7 +125,8 @@ static void keep_depths(pose_view *a, pose_view *b, const relative_pose *r)
 {
     for (uint32_t i = 0; i < r->count; i++) {
         const pose_match *m = &r->matches[i];
-        const double ray[3] = {a->rays[m->a][0], a->rays[m->a][1], 1}, seen[3] = {b->rays[m->b][0], b->rays[m->b][1], 1};
+        const double ray[3] = {a->rays[m->a][0], a->rays[m->a][1], 1},
+                     seen[3] = {b->rays[m->b][0], b->rays[m->b][1], 1};
         double turned[3], depth_a, depth_b;
         apply3(r->motion.r, ray, turned);
         if (direction_angle(turned, seen) < PARALLAX ||
@@ -188,8 +189,8 @@ static int join(pose_view *views, const edge *e, poses_source source, bool *scal
     return status;
 }
 
-static int join_all(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, graph *g,
-                    bool *posed, motion *poses, pose_account *accounts, char *error, size_t error_bytes)
+static int join_all(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, graph *g, bool *posed,
+                    motion *poses, pose_account *accounts, char *error, size_t error_bytes)
 {
     char why[REASON_BYTES] = "no corners match";
     bool scaled = false;

@@ -22,10 +22,10 @@ bool poses_named(const char *name, poses_source *source);
 
 /* What an estimate rests on. */
 typedef struct pose_account {
-    uint32_t from;             /* the view that it was made from; its own number for the first */
-    uint32_t matches, tried;   /* corners that agree with the motion, of those that match */
-    bool metric;               /* by depth in both */
-    double pixels;             /* root of the mean square of their errors */
+    uint32_t from;                         /* the view that it was made from; its own number for the first */
+    uint32_t matches, tried;               /* corners that agree with the motion, of those that match */
+    bool metric;                           /* by depth in both */
+    double pixels;                         /* root of the mean square of their errors */
     double turn_degrees, direction_degree; /* standard deviations to expect of the motion between the two */
 } pose_account;
 

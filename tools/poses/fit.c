@@ -255,8 +255,9 @@ static double largest_deviation(const double *covariance, int stride, int first,
             block[i * count + k] = covariance[(first + i) * stride + first + k];
         }
     }
-    return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', count, block, count, values) == 0 ? sqrt(fmax(0, values[count - 1]))
-                                                                                       : INFINITY;
+    return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', count, block, count, values) == 0
+               ? sqrt(fmax(0, values[count - 1]))
+               : INFINITY;
 }
 
 static int account_for(const fit_pair *pair, const uint8_t *inlier, const motion *m, double length,
@@ -279,8 +280,8 @@ static int account_for(const fit_pair *pair, const uint8_t *inlier, const motion
             count++;
         }
     }
-    if (told <= UNKNOWNS || LAPACKE_dposv(LAPACK_ROW_MAJOR, 'L', f.unknowns, f.unknowns, jtj, f.unknowns, covariance,
-                                          f.unknowns) != 0) {
+    if (told <= UNKNOWNS ||
+        LAPACKE_dposv(LAPACK_ROW_MAJOR, 'L', f.unknowns, f.unknowns, jtj, f.unknowns, covariance, f.unknowns) != 0) {
         return -1;
     }
     account->pixels = sqrt(sum / count);

@@ -16,7 +16,8 @@ typedef struct fit_pair {
 #define FIT_PIXELS 2.0 /* a match that a motion misses by more is none of its inliers; of level 0, wider above */
 
 /* Root of the mean square over what a match tells of the motion (from a to b): the epipolar error, or, where a corner
- * has a depth and the pair is metric, the distances from its projections; pixels, divided by the coarser corner's level. */
+ * has a depth and the pair is metric, the distances from its projections; pixels, divided by the coarser corner's
+ * level. */
 double fit_error(const fit_pair *pair, uint32_t match, const motion *m);
 
 /* Sum over matches of min(error, FIT_PIXELS)^2: the smaller the better. `inliers` (may be NULL): how many are

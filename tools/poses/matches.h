@@ -5,12 +5,12 @@
 #include "poses/view.h"
 
 typedef struct pose_match {
-    uint32_t a, b;   /* corners of the first and of the second view */
+    uint32_t a, b;    /* corners of the first and of the second view */
     uint32_t rivalry; /* how nearly another place would have done, 0 .. 256 */
 } pose_match;
 
-/* Matches that are each other's best and clearly better than the next place, those with the least rivalry first. `matches` has room for a->count, at most
- * CORNERS_MOST; returns their number. */
+/* Matches that are each other's best and clearly better than the next place, those with the least rivalry first.
+ * `matches` has room for a->count, at most CORNERS_MOST; returns their number. */
 uint32_t matches_mutual(const pose_view *a, const pose_view *b, pose_match *matches);
 
 /* The same among the pairs that lie within `pixels` of each other's epipolar line, x_b^T e x_a = 0, with less asked of

@@ -10,14 +10,14 @@
 #define MATCHES_LEAST 20u /* that agree with a motion */
 #define TRIES_LEAST 100u
 #define TRIES_MOST 4000u
-#define TRIES_ALL 1000u /* after so many the samples come from all matches, before from the better ones */
-#define SHARE_PERCENT 40u   /* of the matches, for an epipolar line lets one in twenty by chance */
-#define RIVALS 6 /* distinct motions that are refined */
+#define TRIES_ALL 1000u   /* after so many the samples come from all matches, before from the better ones */
+#define SHARE_PERCENT 40u /* of the matches, for an epipolar line lets one in twenty by chance */
+#define RIVALS 6          /* distinct motions that are refined */
 #define RIVAL_DEGREES 10.0
-#define RIVAL_COST 10.0 /* square pixels: a rival less costlier than this explains the matches as well */
-#define PARALLAX_LEAST 1.0       /* pixels, of the median match */
-#define DIRECTION_DEGREES 6.0    /* standard deviation of a direction that is refused */
-#define TURN_DEGREES 2.0         /* of a rotation */
+#define RIVAL_COST 10.0       /* square pixels: a rival less costlier than this explains the matches as well */
+#define PARALLAX_LEAST 1.0    /* pixels, of the median match */
+#define DIRECTION_DEGREES 6.0 /* standard deviation of a direction that is refused */
+#define TURN_DEGREES 2.0      /* of a rotation */
 #define SEED UINT64_C(20110514)
 #define DEGREE (3.14159265358979323846 / 180)
 
@@ -164,6 +164,7 @@ static int ascending(const void *a, const void *b)
 static int take_inliers(const fit_pair *pair, relative_pose *out)
 {
     double *moved = malloc((pair->count + 1) * sizeof *moved);
+    free(out->matches);
     out->matches = malloc((pair->count + 1) * sizeof *out->matches);
     out->count = 0;
     for (uint32_t i = 0; i < pair->count && moved != NULL && out->matches != NULL; i++) {
@@ -241,11 +242,16 @@ static void refine_all(const fit_pair *pair, candidates *c)
 }
 
 /* Whether the best motion stands out, judged on matches that were found without any. */
-static int check_candidates(const candidates *c, uint32_t count, char *error, size_t error_bytes)
+static int check_candidates(const candidates *c, const relative_pose *out, char *error, size_t error_bytes)
 {
-    uint32_t inliers = c->count > 0 ? c->best[0].inliers : 0;
-    if (inliers < MATCHES_LEAST || inliers * 100 < count * SHARE_PERCENT) {
-        return t3r_reason(error, error_bytes, "only %u of %u matching corners agree on a motion", inliers, count);
+    if (out->count < MATCHES_LEAST || out->count * 100 < out->tried * SHARE_PERCENT) {
+        return too_few(out, "agree on a motion", error, error_bytes);
+    }
+    if (out->parallax_pixels < PARALLAX_LEAST) {
+        return t3r_reason(error, error_bytes,
+                          "no parallax: without the cameras' turning, corners move by %.1f pixels; a direction cannot "
+                          "be told from colour, move the camera or give depth",
+                          out->parallax_pixels);
     }
     if (c->count > 1 && c->best[1].cost - c->best[0].cost < RIVAL_COST) {
         return t3r_reason(error, error_bytes,
@@ -253,23 +259,6 @@ static int check_candidates(const candidates *c, uint32_t count, char *error, si
                           fmax(direction_angle(c->best[0].motion.t, c->best[1].motion.t),
                                rotation_angle(c->best[0].motion.r, c->best[1].motion.r)) /
                               DEGREE);
-    }
-    return 0;
-}
-
-static int check_colour(const relative_pose *out, char *error, size_t error_bytes)
-{
-    if (out->parallax_pixels < PARALLAX_LEAST) {
-        return t3r_reason(error, error_bytes,
-                          "no parallax: without the cameras' turning, corners move by %.1f pixels; a direction cannot "
-                          "be told from colour, move the camera or give depth",
-                          out->parallax_pixels);
-    }
-    if (!(out->account.direction_degree < DIRECTION_DEGREES)) {
-        return t3r_reason(error, error_bytes,
-                          "the direction of motion is known to %.0f degrees only: too little parallax, or corners "
-                          "too few or too close together",
-                          out->account.direction_degree);
     }
     return 0;
 }
@@ -302,19 +291,28 @@ int relative_by_colour(const pose_view *a, const pose_view *b, const pose_match 
     }
     try_fives(&pair, &c);
     refine_all(&pair, &c);
-    int status = check_candidates(&c, count, error, error_bytes);
+    int status = 0;
+    if (c.count > 0) {
+        out->motion = c.best[0].motion;
+        out->account = c.best[0].account;
+        status = take_inliers(&pair, out) == 0 ? 0 : t3r_reason(error, error_bytes, "out of memory");
+    }
+    status = status == 0 ? check_candidates(&c, out, error, error_bytes) : status;
     if (status == 0) {
-        candidate *best = &c.best[0];
-        out->motion = best->motion;
-        out->account = best->account;
-        pair.count = more_matches(&pair, &best->motion, more);
+        pair.count = more_matches(&pair, &out->motion, more);
         pair.matches = more;
         out->tried = pair.count;
         (void)fit_refine(&pair, &out->motion, &out->account); /* else as it was */
         status = take_inliers(&pair, out) == 0 ? 0 : t3r_reason(error, error_bytes, "out of memory");
     }
     free(more);
-    return status == 0 ? check_colour(out, error, error_bytes) : status;
+    if (status == 0 && !(out->account.direction_degree < DIRECTION_DEGREES)) {
+        status = t3r_reason(error, error_bytes,
+                            "the direction of motion is known to %.0f degrees only: too little parallax, or corners "
+                            "too few or too close together",
+                            out->account.direction_degree);
+    }
+    return status;
 }
 
 /* ---- depth ------------------------------------------------------------------------------------------------------ */

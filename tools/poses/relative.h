@@ -7,8 +7,8 @@
 #include "poses/fit.h"
 
 typedef struct relative_pose {
-    motion motion; /* from the first camera's axes to the second's; |t| = 1 where metric is false */
-    bool metric;   /* |t| is in the depths' unit */
+    motion motion;       /* from the first camera's axes to the second's; |t| = 1 where metric is false */
+    bool metric;         /* |t| is in the depths' unit */
     pose_match *matches; /* the inliers */
     uint32_t count;
     uint32_t tried; /* matches that there were */
