@@ -11,6 +11,8 @@
 #define UNKNOWNS 6
 #define ROUNDS 5 /* of choosing inliers */
 #define STEPS 10 /* of least squares a round */
+/* of errors a level of the pyramid: its pixels are 1.25 times as wide, its corners are placed better than that */
+#define LEVEL_WIDENS 1.12
 #define FAR 1e3  /* pixels, of a point behind the camera */
 #define PI 3.14159265358979323846
 
@@ -43,7 +45,7 @@ static void project(const motion *m, const double ray[2], double depth, const do
 static double scale_of(const fit_pair *pair, const pose_match *match)
 {
     uint32_t a = pair->a->corners[match->a].level, b = pair->b->corners[match->b].level;
-    return pow(1.25, a > b ? a : b);
+    return pow(LEVEL_WIDENS, a > b ? a : b);
 }
 
 /* The errors of a match, so that the sum of their squares is what fit_error() squares. */
