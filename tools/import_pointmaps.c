@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "poses/resection.h"
+#include "posing/resection.h"
 #include "reason.h"
 
 #define RESECTED 3000u       /* points that a pose is taken from */

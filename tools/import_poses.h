@@ -3,7 +3,7 @@
 #define TRIM3R_TOOLS_IMPORT_POSES_H
 
 #include "posed_folder.h"
-#include "poses/estimate.h"
+#include "posing/estimate.h"
 
 /* Estimates the poses of all frames, from pictures of their own size, and puts them into the folder as the numbers that
  * a recording's reader rounds to exactly these: positions in steps of 2^-32, quaternions of 2^-30. The first frame

@@ -17,7 +17,7 @@
 #include <stdint.h>
 
 #include "picture.h"
-#include "poses/motion.h"
+#include "posing/motion.h"
 
 #define POINTMAPS_MOST 1000u
 

@@ -4,7 +4,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "poses/estimate.h"
+#include "posing/estimate.h"
 #include "recording.h"
 
 /* "poses": one object a frame: what it rests on, and the pose as the recording now has it, exact. */

@@ -2,7 +2,7 @@
 #ifndef TRIM3R_TOOLS_RECORDING_POSES_H
 #define TRIM3R_TOOLS_RECORDING_POSES_H
 
-#include "poses/estimate.h"
+#include "posing/estimate.h"
 #include "recording.h"
 
 /* Estimates the poses of `count` frames and sets them in the recording, rounded to the fixed point of t3r_camera, so

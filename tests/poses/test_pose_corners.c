@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "hash.h"
-#include "poses/corners.h"
-#include "poses/pyramid.h"
+#include "posing/corners.h"
+#include "posing/pyramid.h"
 #include "room.h"
 
 #define SIDE 256u

@@ -13,7 +13,7 @@
 
 #include "bytes.h"
 #include "camera.h"
-#include "poses/estimate.h"
+#include "posing/estimate.h"
 #include "room.h"
 
 #define SIDE 256u

@@ -10,10 +10,10 @@
 #include <cmocka.h>
 
 #include "camera.h"
-#include "poses/estimate.h"
-#include "poses/five_point.h"
-#include "poses/relative.h"
-#include "poses/resection.h"
+#include "posing/estimate.h"
+#include "posing/five_point.h"
+#include "posing/relative.h"
+#include "posing/resection.h"
 
 static uint32_t state = 1;
 

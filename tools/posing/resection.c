@@ -1,4 +1,4 @@
-#include "poses/resection.h"
+#include "posing/resection.h"
 
 #include <math.h>
 #include <stdlib.h>

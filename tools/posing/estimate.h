@@ -1,11 +1,11 @@
 /* Poses of any number of views: each from the best one that has its pose already. */
-#ifndef TRIM3R_TOOLS_POSES_ESTIMATE_H
-#define TRIM3R_TOOLS_POSES_ESTIMATE_H
+#ifndef TRIM3R_TOOLS_POSING_ESTIMATE_H
+#define TRIM3R_TOOLS_POSING_ESTIMATE_H
 
 #include <stddef.h>
 
-#include "poses/motion.h"
-#include "poses/view.h"
+#include "posing/motion.h"
+#include "posing/view.h"
 
 #define POSES_WINDOW 16u /* views further apart in their order are not compared */
 

@@ -1,4 +1,4 @@
-#include "poses/descriptor.h"
+#include "posing/descriptor.h"
 
 #include <stddef.h>
 #include <string.h>

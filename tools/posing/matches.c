@@ -1,4 +1,4 @@
-#include "poses/matches.h"
+#include "posing/matches.h"
 
 #include <math.h>
 #include <stdlib.h>

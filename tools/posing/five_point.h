@@ -1,8 +1,8 @@
 /* Essential matrices of five pairs of rays. */
-#ifndef TRIM3R_TOOLS_POSES_FIVE_POINT_H
-#define TRIM3R_TOOLS_POSES_FIVE_POINT_H
+#ifndef TRIM3R_TOOLS_POSING_FIVE_POINT_H
+#define TRIM3R_TOOLS_POSING_FIVE_POINT_H
 
-#include "poses/motion.h"
+#include "posing/motion.h"
 
 #define FIVE_POINT_MOST 10
 

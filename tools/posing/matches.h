@@ -1,8 +1,8 @@
 /* Corners of two views that show the same. */
-#ifndef TRIM3R_TOOLS_POSES_MATCHES_H
-#define TRIM3R_TOOLS_POSES_MATCHES_H
+#ifndef TRIM3R_TOOLS_POSING_MATCHES_H
+#define TRIM3R_TOOLS_POSING_MATCHES_H
 
-#include "poses/view.h"
+#include "posing/view.h"
 
 typedef struct pose_match {
     uint32_t a, b;    /* corners of the first and of the second view */

@@ -3,8 +3,8 @@
  * A pyramid of pictures, each 4/5 of the one before; Harris corners in each, spread over the picture, their places by
  * a parabola to a fraction of a pixel; at each corner the direction of the patch's centroid and, turned by it, 256
  * comparisons of smoothed grey levels (ORB: Rublee and others, ICCV 2011; the pattern is our own). */
-#ifndef TRIM3R_TOOLS_POSES_CORNERS_H
-#define TRIM3R_TOOLS_POSES_CORNERS_H
+#ifndef TRIM3R_TOOLS_POSING_CORNERS_H
+#define TRIM3R_TOOLS_POSING_CORNERS_H
 
 #include <stdint.h>
 

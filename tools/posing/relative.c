@@ -1,10 +1,10 @@
-#include "poses/relative.h"
+#include "posing/relative.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "poses/five_point.h"
+#include "posing/five_point.h"
 #include "reason.h"
 
 #define MATCHES_LEAST 20u /* that agree with a motion */

@@ -1,11 +1,11 @@
 /* A frame as pose estimation sees it: corners, their rays, their depths. */
-#ifndef TRIM3R_TOOLS_POSES_VIEW_H
-#define TRIM3R_TOOLS_POSES_VIEW_H
+#ifndef TRIM3R_TOOLS_POSING_VIEW_H
+#define TRIM3R_TOOLS_POSING_VIEW_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "poses/corners.h"
+#include "posing/corners.h"
 #include "trim3r.h"
 
 #define POSE_SIDE_MOST 1024u /* a larger frame is worked on at this size */

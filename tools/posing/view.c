@@ -1,4 +1,4 @@
-#include "poses/view.h"
+#include "posing/view.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "poses/pyramid.h"
+#include "posing/pyramid.h"
 
 uint32_t pyramid_side(uint32_t side)
 {

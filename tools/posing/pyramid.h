@@ -1,6 +1,6 @@
 /* Pictures at 4/5, 16/25 ... of their size. */
-#ifndef TRIM3R_TOOLS_POSES_PYRAMID_H
-#define TRIM3R_TOOLS_POSES_PYRAMID_H
+#ifndef TRIM3R_TOOLS_POSING_PYRAMID_H
+#define TRIM3R_TOOLS_POSING_PYRAMID_H
 
 #include <stdint.h>
 

@@ -1,9 +1,9 @@
 /* How well a motion explains matches, and the motion that explains them best. */
-#ifndef TRIM3R_TOOLS_POSES_FIT_H
-#define TRIM3R_TOOLS_POSES_FIT_H
+#ifndef TRIM3R_TOOLS_POSING_FIT_H
+#define TRIM3R_TOOLS_POSING_FIT_H
 
-#include "poses/matches.h"
-#include "poses/motion.h"
+#include "posing/matches.h"
+#include "posing/motion.h"
 
 /* What a motion is measured on. */
 typedef struct fit_pair {

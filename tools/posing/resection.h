@@ -1,10 +1,10 @@
 /* A camera's pose from places in space and the rays on which it sees them. */
-#ifndef TRIM3R_TOOLS_POSES_RESECTION_H
-#define TRIM3R_TOOLS_POSES_RESECTION_H
+#ifndef TRIM3R_TOOLS_POSING_RESECTION_H
+#define TRIM3R_TOOLS_POSING_RESECTION_H
 
 #include <stdint.h>
 
-#include "poses/motion.h"
+#include "posing/motion.h"
 
 /* Orthogonal iteration (Lu, Hager, Mjolsness, PAMI 2000) on points[] and rays[] (x and y at depth 1): from random
  * eights of them, from a fixed seed, the one with the least median error, then again and again on the better half of

@@ -1,11 +1,11 @@
-#include "poses/corners.h"
+#include "posing/corners.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "poses/descriptor.h"
-#include "poses/pyramid.h"
+#include "posing/descriptor.h"
+#include "posing/pyramid.h"
 
 #define SIDE_LEAST 48u
 #define CELL 24u             /* pixels: corners are taken in turn from cells, so that all of the picture has some */

@@ -1,10 +1,10 @@
 /* The motion between two views: from colour alone, or with depth. */
-#ifndef TRIM3R_TOOLS_POSES_RELATIVE_H
-#define TRIM3R_TOOLS_POSES_RELATIVE_H
+#ifndef TRIM3R_TOOLS_POSING_RELATIVE_H
+#define TRIM3R_TOOLS_POSING_RELATIVE_H
 
 #include <stddef.h>
 
-#include "poses/fit.h"
+#include "posing/fit.h"
 
 typedef struct relative_pose {
     motion motion;       /* from the first camera's axes to the second's; |t| = 1 where metric is false */

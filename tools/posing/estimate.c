@@ -1,4 +1,4 @@
-#include "poses/estimate.h"
+#include "posing/estimate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include "camera.h"
 #include "cli.h"
 #include "posed_folder.h"
-#include "poses/relative.h"
+#include "posing/relative.h"
 #include "reason.h"
 
 #define SHARED_LEAST 8u /* depths that must agree on a scale */

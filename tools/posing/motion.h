@@ -1,6 +1,6 @@
 /* Rotations and motions of cameras, in doubles. Matrices are row-major. */
-#ifndef TRIM3R_TOOLS_POSES_MOTION_H
-#define TRIM3R_TOOLS_POSES_MOTION_H
+#ifndef TRIM3R_TOOLS_POSING_MOTION_H
+#define TRIM3R_TOOLS_POSING_MOTION_H
 
 /* y = r x + t */
 typedef struct motion {

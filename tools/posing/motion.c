@@ -1,4 +1,4 @@
-#include "poses/motion.h"
+#include "posing/motion.h"
 
 #include <lapacke.h>
 #include <math.h>

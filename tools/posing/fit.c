@@ -1,11 +1,11 @@
-#include "poses/fit.h"
+#include "posing/fit.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "poses/five_point.h"
+#include "posing/five_point.h"
 
 #define ERRORS 4 /* of one match at most */
 #define UNKNOWNS 6

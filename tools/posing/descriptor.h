@@ -1,6 +1,6 @@
 /* What a picture shows around a place: 256 comparisons of grey levels, turned by the patch's own direction. */
-#ifndef TRIM3R_TOOLS_POSES_DESCRIPTOR_H
-#define TRIM3R_TOOLS_POSES_DESCRIPTOR_H
+#ifndef TRIM3R_TOOLS_POSING_DESCRIPTOR_H
+#define TRIM3R_TOOLS_POSING_DESCRIPTOR_H
 
 #include <stdint.h>
 

@@ -1,4 +1,4 @@
-#include "poses/five_point.h"
+#include "posing/five_point.h"
 
 #include <lapacke.h>
 #include <math.h>
