@@ -218,8 +218,8 @@ static int take_intrinsics(const stack *s, bool matrices, pointmaps *out, char *
             }
         } else {
             k[0] = k[1] = npy_value(&s->array, v);
-            k[2] = (out->width - 1) / 2.0;
-            k[3] = (out->height - 1) / 2.0;
+            k[2] = out->width / 2.0; /* where DUSt3R has it */
+            k[3] = out->height / 2.0;
         }
         if (!(k[0] > 0 && k[1] > 0)) {
             return fail(s, "a focal length is not positive", error, error_bytes);

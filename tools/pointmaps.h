@@ -7,7 +7,7 @@
  *   poses   N x 4 x 4: camera to the points' frame; or
  *   extrinsics, extrinsic   N x 3 x 4 or N x 4 x 4: the points' frame to camera; may be missing
  *   intrinsics, intrinsic   N x 3 x 3, pixels of the map, (0, 0) being the centre of the top-left one; or
- *   focals   N, the principal point in the middle; may be missing
+ *   focals   N, the principal point at (W / 2, H / 2); may be missing
  * with camera axes x right, y down, z forward. A .npy holds the points alone. */
 #ifndef TRIM3R_TOOLS_POINTMAPS_H
 #define TRIM3R_TOOLS_POINTMAPS_H

@@ -102,10 +102,23 @@ def test_import(room):
     check(min(abs(g - 1) for g in gaps) < 1e-6, f"colour: no distance of 1 among {gaps}")
     scale = np.linalg.norm(known[-1][:3, 3]) / np.linalg.norm(found[-1][:3, 3])
     close("import, colour", got["pose"], room, 1.0, 0.1, scale)
-    # pictures alone
+    # TUM RGB-D without its groundtruth.txt
+    path = folder("tum", room)
+    os.remove(f"{path}/transforms.json")
+    for i, depth in enumerate(room["depth"]):
+        with open(f"{path}/d{i}.png", "wb") as file:
+            file.write(png(depth * 5))
+    for name, prefix in (("rgb", ""), ("depth", "d")):
+        with open(f"{path}/{name}.txt", "w", encoding="utf-8") as file:
+            file.writelines(f"{i}.0 {prefix}{i}.png\n" for i in range(FRAMES))
     k = room["camera_info"][0]
-    os.remove(f"{work}/rgb/transforms.json")
     numbers = ",".join(repr(float(x)) for x in (k[0, 0], k[1, 1], k[0, 2], k[1, 2]))
+    status, _, error = run("import", path, "--intrinsics", numbers, "-o", f"{work}/no.mcap")
+    check(status == 1 and "groundtruth.txt" in error, f"TUM without --poses: {error}")
+    good("import", path, "--intrinsics", numbers, "--poses", "estimate", "-o", f"{work}/tum.mcap")
+    close("TUM", read(f"{work}/tum.mcap")["pose"], room, 0.3, 0.04)
+    # pictures alone
+    os.remove(f"{work}/rgb/transforms.json")
     good("import", f"{work}/rgb", "--intrinsics", numbers, "--poses", "estimate", "-o", f"{work}/alone.mcap")
     check(np.array_equal(np.stack(read(f"{work}/alone.mcap")["pose"]), np.stack(got["pose"])), "pictures alone")
     status, _, error = run("import", f"{work}/rgb", "--poses", "estimate", "-o", f"{work}/no.mcap")

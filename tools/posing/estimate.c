@@ -10,6 +10,7 @@
 #include "posing/relative.h"
 #include "reason.h"
 
+#define DEEP_LEAST 20u  /* matching corners with depth in both views, or colour decides */
 #define SHARED_LEAST 8u /* depths that must agree on a scale */
 #define PARALLAX 0.01   /* radians between rays whose meeting place is kept as a depth */
 #define REASON_BYTES 256
@@ -35,6 +36,8 @@ typedef struct edge {
     uint32_t a, b, count;
     pose_match *matches;
     bool refused;
+    char why[REASON_BYTES];
+    bool unscaled; /* refused for want of a scale, which another view may bring */
 } edge;
 
 typedef struct graph {
@@ -144,26 +147,32 @@ static void keep_depths(pose_view *a, pose_view *b, const relative_pose *r)
 
 /* ---- joining ---------------------------------------------------------------------------------------------------- */
 
+/* By depth where enough corners have it in both views. */
 static int relate(const pose_view *views, const edge *e, poses_source source, relative_pose *out, char *error)
 {
     const pose_view *a = &views[e->a], *b = &views[e->b];
-    if (source != POSES_ESTIMATE_COLOUR && a->measured && b->measured) {
+    uint32_t deep = 0;
+    for (uint32_t i = 0; i < e->count && a->measured && b->measured; i++) {
+        deep += a->depth[e->matches[i].a] > 0 && b->depth[e->matches[i].b] > 0;
+    }
+    if (source != POSES_ESTIMATE_COLOUR && deep >= DEEP_LEAST) {
         return relative_by_depth(a, b, e->matches, e->count, out, error, REASON_BYTES);
     }
     return relative_by_colour(a, b, e->matches, e->count, out, error, REASON_BYTES);
 }
 
 /* Gives the pair's unposed view its pose. *scaled: whether lengths have a unit already. */
-static int join(pose_view *views, const edge *e, poses_source source, bool *scaled, bool *posed, motion *poses,
-                pose_account *accounts, char *error)
+static int join(pose_view *views, edge *e, poses_source source, bool *scaled, bool *posed, motion *poses,
+                pose_account *accounts)
 {
     relative_pose r;
-    int status = relate(views, e, source, &r, error);
+    int status = relate(views, e, source, &r, e->why);
     double scale = 1;
     if (status == 0 && !r.metric) {
         scale = scale_by_depth(&views[e->a], &views[e->b], &r);
         if (scale == 0 && *scaled) {
-            status = t3r_reason(error, REASON_BYTES, "too few corners in common with a third view to tell the scale");
+            e->unscaled = true;
+            status = t3r_reason(e->why, REASON_BYTES, "too few corners in common with a third view to tell the scale");
         }
         scale = scale == 0 ? 1 : scale;
     }
@@ -189,50 +198,61 @@ static int join(pose_view *views, const edge *e, poses_source source, bool *scal
     return status;
 }
 
+/* The first view that has no pose, and why its most promising pair gave none. */
+static int tell_refusal(const graph *g, const bool *posed, uint32_t count, const uint32_t *names, char *error,
+                        size_t error_bytes)
+{
+    const edge *best = NULL;
+    uint32_t left = 0;
+    while (left < count - 1 && posed[left]) {
+        left++;
+    }
+    for (uint32_t i = 0; i < g->count; i++) {
+        const edge *e = &g->edges[i];
+        if ((e->a == left || e->b == left) && posed[e->a] != posed[e->b] && (best == NULL || e->count > best->count)) {
+            best = e;
+        }
+    }
+    if (best == NULL) {
+        return t3r_reason(error, error_bytes, "frame %u cannot be posed: no frame near it in order has a pose",
+                          names != NULL ? names[left] : left);
+    }
+    uint32_t other = best->a == left ? best->b : best->a;
+    return t3r_reason(error, error_bytes, "frame %u cannot be posed from frame %u: %s",
+                      names != NULL ? names[left] : left, names != NULL ? names[other] : other, best->why);
+}
+
 static int join_all(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, graph *g, bool *posed,
                     motion *poses, pose_account *accounts, char *error, size_t error_bytes)
 {
-    char why[REASON_BYTES] = "no corners match";
     bool scaled = false;
-    uint32_t done = 1, first = 0, second = 0;
+    uint32_t done = 1;
     posed[0] = true;
     poses[0] = motion_none;
     accounts[0] = (pose_account){0};
     edge *e;
     while (done < count && (e = best_edge(g, posed)) != NULL) {
-        char reason[REASON_BYTES] = "";
         cli_progress("estimating poses", done, count);
-        if (join(views, e, source, &scaled, posed, poses, accounts, reason) == 0) {
+        if (join(views, e, source, &scaled, posed, poses, accounts) == 0) {
             done++;
             for (uint32_t i = 0; i < g->count; i++) {
-                g->edges[i].refused = false; /* what lacked a scale may have one now */
+                g->edges[i].refused = g->edges[i].refused && !g->edges[i].unscaled;
+                g->edges[i].unscaled = false;
             }
-            second = 0;
         } else {
             e->refused = true;
-            if (second == 0) { /* the most promising of those that failed */
-                first = e->a;
-                second = e->b;
-                memcpy(why, reason, sizeof why);
-            }
         }
     }
     cli_progress_end();
-    if (done == count) {
-        return 0;
-    }
-    uint32_t left = posed[second] ? first : second;
-    for (uint32_t i = 0; posed[left] && i < count; i++) {
-        left = i;
-    }
-    uint32_t other = left == second ? first : second;
-    return t3r_reason(error, error_bytes, "frame %u cannot be posed from frame %u: %s",
-                      names != NULL ? names[left] : left, names != NULL ? names[other] : other, why);
+    return done == count ? 0 : tell_refusal(g, posed, count, names, error, error_bytes);
 }
 
 int poses_estimate(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, motion *poses,
                    pose_account *accounts, char *error, size_t error_bytes)
 {
+    if (count > POSES_MOST) {
+        return t3r_reason(error, error_bytes, "poses of more than %u frames are not estimated at once", POSES_MOST);
+    }
     graph g = {0};
     bool *posed = calloc(count, sizeof *posed);
     int status = posed != NULL && graph_make(views, count, &g) == 0

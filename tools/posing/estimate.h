@@ -7,6 +7,7 @@
 #include "posing/motion.h"
 #include "posing/view.h"
 
+#define POSES_MOST 1000u
 #define POSES_WINDOW 16u /* views further apart in their order are not compared */
 
 /* How poses come about, as the option --poses names it. */

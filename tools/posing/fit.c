@@ -13,7 +13,7 @@
 #define STEPS 10 /* of least squares a round */
 /* of errors a level of the pyramid: its pixels are 1.25 times as wide, its corners are placed better than that */
 #define LEVEL_WIDENS 1.12
-#define FAR 1e3  /* pixels, of a point behind the camera */
+#define FAR 1e3 /* pixels, of a point behind the camera */
 #define PI 3.14159265358979323846
 
 /* ---- errors ----------------------------------------------------------------------------------------------------- */
