@@ -10,11 +10,11 @@
 #define MATCHES_LEAST 20u /* that agree with a motion */
 #define TRIES_LEAST 100u
 #define TRIES_MOST 4000u
-#define TRIES_ALL 1000u   /* after so many the samples come from all matches, before from the better ones */
-#define SHARE_PERCENT 40u /* of the matches, for an epipolar line lets one in twenty by chance */
-#define RIVALS 6          /* distinct motions that are refined */
+#define TRIES_ALL 1000u /* after so many the samples come from all matches, before from the better ones */
+#define RIVALS 6        /* distinct motions that are refined */
 #define RIVAL_DEGREES 10.0
-#define RIVAL_COST 10.0       /* square pixels: a rival less costlier than this explains the matches as well */
+#define LEAD_LEAST 5.0        /* matches that the best motion explains and no other, where most agree with it, */
+#define LEAD_CERTAIN 15.0     /* and where fewer do: an epipolar line lets one in twenty by chance */
 #define PARALLAX_LEAST 1.0    /* pixels, of the median match */
 #define DIRECTION_DEGREES 6.0 /* standard deviation of a direction that is refused */
 #define TURN_DEGREES 2.0      /* of a rotation */
@@ -63,7 +63,7 @@ static uint32_t tries_for(uint32_t inliers, uint32_t count, uint32_t sample)
 
 typedef struct candidate {
     motion motion;
-    double cost;
+    double cost; /* square pixels; of matches along its own lines: minus how many it explains */
     uint32_t inliers;
     fit_account account;
 } candidate;
@@ -241,28 +241,6 @@ static void refine_all(const fit_pair *pair, candidates *c)
     *c = refined;
 }
 
-/* Whether the best motion stands out, judged on matches that were found without any. */
-static int check_candidates(const candidates *c, const relative_pose *out, char *error, size_t error_bytes)
-{
-    if (out->count < MATCHES_LEAST || out->count * 100 < out->tried * SHARE_PERCENT) {
-        return too_few(out, "agree on a motion", error, error_bytes);
-    }
-    if (out->parallax_pixels < PARALLAX_LEAST) {
-        return t3r_reason(error, error_bytes,
-                          "no parallax: without the cameras' turning, corners move by %.1f pixels; a direction cannot "
-                          "be told from colour, move the camera or give depth",
-                          out->parallax_pixels);
-    }
-    if (c->count > 1 && c->best[1].cost - c->best[0].cost < RIVAL_COST) {
-        return t3r_reason(error, error_bytes,
-                          "two motions explain the corners equally, %.0f degrees apart: they may lie on one plane",
-                          fmax(direction_angle(c->best[0].motion.t, c->best[1].motion.t),
-                               rotation_angle(c->best[0].motion.r, c->best[1].motion.r)) /
-                              DEGREE);
-    }
-    return 0;
-}
-
 /* The matches along the epipolar lines of the best motion so far; the old ones where they are more. */
 static uint32_t more_matches(const fit_pair *pair, const motion *m, pose_match *found)
 {
@@ -274,6 +252,49 @@ static uint32_t more_matches(const fit_pair *pair, const motion *m, pose_match *
         count = pair->count;
     }
     return count;
+}
+
+/* What matches along a candidate's own epipolar lines say for it: nearly one for each that fits well. Lines of a wrong
+ * motion have matches too, but fewer. */
+static void weigh_by_lines(const fit_pair *pair, candidates *c, pose_match *found)
+{
+    candidates weighed = {.count = 0};
+    for (uint32_t i = 0; i < c->count; i++) {
+        candidate one = c->best[i];
+        fit_pair lines = *pair;
+        lines.count = more_matches(pair, &one.motion, found);
+        lines.matches = found;
+        if (fit_refine(&lines, &one.motion, &one.account) == 0) {
+            one.cost = fit_cost(&lines, &one.motion, &one.inliers) / (FIT_PIXELS * FIT_PIXELS) - lines.count;
+            keep(&weighed, &one, true);
+        }
+    }
+    *c = weighed;
+}
+
+/* Whether the best motion stands out, judged on matches that were found without any. */
+static int check_candidates(const candidates *c, const relative_pose *out, char *error, size_t error_bytes)
+{
+    if (out->count < MATCHES_LEAST) {
+        return too_few(out, "agree on a motion", error, error_bytes);
+    }
+    if (out->parallax_pixels < PARALLAX_LEAST) {
+        return t3r_reason(error, error_bytes,
+                          "no parallax: without the cameras' turning, corners move by %.1f pixels; a direction cannot "
+                          "be told from colour, move the camera or give depth",
+                          out->parallax_pixels);
+    }
+    double lead = c->count > 1 ? c->best[1].cost - c->best[0].cost : HUGE_VAL;
+    bool most = 2 * out->count >= out->tried;
+    if (lead < (most ? LEAD_LEAST : LEAD_CERTAIN)) {
+        double apart = fmax(direction_angle(c->best[0].motion.t, c->best[1].motion.t),
+                            rotation_angle(c->best[0].motion.r, c->best[1].motion.r));
+        return t3r_reason(error, error_bytes,
+                          "two motions %.0f degrees apart explain the corners about equally (%u of %u agree with the "
+                          "better one): they may lie on one plane, or too few are seen in both",
+                          apart / DEGREE, out->count, out->tried);
+    }
+    return 0;
 }
 
 int relative_by_colour(const pose_view *a, const pose_view *b, const pose_match *matches, uint32_t count,
@@ -291,6 +312,7 @@ int relative_by_colour(const pose_view *a, const pose_view *b, const pose_match 
     }
     try_fives(&pair, &c);
     refine_all(&pair, &c);
+    weigh_by_lines(&pair, &c, more);
     int status = 0;
     if (c.count > 0) {
         out->motion = c.best[0].motion;
