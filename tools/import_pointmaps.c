@@ -202,6 +202,12 @@ static int settle_unit(const pointmap_source *source, depths *d, posed_folder *f
                           source->directory);
     }
     double unit = source->options.depth_unit;
+    for (uint32_t i = 0; i < folder->frame_count && unit != 0 && source->options.file == NULL; i++) {
+        if (folder->frames[i].depth != NULL && unit != folder->depth_unit) {
+            return t3r_reason(error, error_bytes, "%s: a depth_path whose steps are %g, so --depth-unit cannot be %g",
+                              folder->frames[i].image, folder->depth_unit, unit);
+        }
+    }
     if (unit == 0 && folder->depth_unit_given) {
         unit = folder->depth_unit;
     }
