@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cli.h"
 #include "import_frame.h"
@@ -14,9 +15,11 @@
 #include "json_output.h"
 #include "option_values.h"
 #include "posed_folder.h"
+#include "posed_recording.h"
 #include "poses_output.h"
 #include "reason.h"
 #include "recording.h"
+#include "recording_poses.h"
 #include "trim3r.h"
 #include "whole_file.h"
 
@@ -152,7 +155,7 @@ static const struct argp_option argp_options[] = {
     {"pointmaps", KEY_POINTMAPS, "FILE.npz", 0, "Depth of all frames, one pointmap each, in the frames' order", 0},
     {"min-confidence", KEY_CONFIDENCE, "C", 0, "Points of pointmaps with less become no depth (all are kept)", 0},
     {"depth-unit", KEY_UNIT, "U", 0,
-     "Lengths a step of depths from pointmaps (integer_depth_scale of the folder, else a power of two so that the "
+     "Length of a step of depths from pointmaps (integer_depth_scale of the folder, else a power of two so that the "
      "median "
      "has 4096 to 8192 steps)",
      0},
@@ -179,12 +182,14 @@ static const struct argp parser = {
            "camera to the points' frame, 4x4, or extrinsic, the inverse, 3x4; intrinsics, 3x3, or focals, in pixels of "
            "the "
            "map. Missing poses are taken from the points. What is not a finite number is refused.\n\n"
-           "Estimated poses are rounded into the recording: what is made of it later is the same everywhere.\n\n"
+           "Estimated poses are rounded into the recording: what is made of it later is the same everywhere. With them "
+           "DIR may "
+           "also be a recording, which is then written once more.\n\n"
            "Examples:\n"
            "  trim3r import scene --size 256x256 -o scene.mcap\n"
            "  trim3r import rgbd_dataset_freiburg1_desk -o desk.mcap\n"
            "  trim3r import desk --intrinsics 525,525,319.5,239.5 -o desk.mcap\n"
-           "  trim3r import photos --intrinsics 900,900,639.5,479.5 --poses estimate -o p.mcap\n"
+           "  trim3r import photos --intrinsics 900,900,640,480 --poses estimate -o p.mcap\n"
            "  trim3r import photos --pointmaps dust3r.npz --min-confidence 3 -o p.mcap",
 };
 
@@ -357,11 +362,92 @@ static int prepare(const options *o, material *m, char *error)
     return 0;
 }
 
+/* ---- a recording once more -------------------------------------------------------------------------------------- */
+
+static int write_posed(const options *o, const t3r_recording *recording, totals *t)
+{
+    whole_file file;
+    char error[ERROR_BYTES] = "", reason[ERROR_BYTES / 2] = "", *source = source_name(o->directory, "recording");
+    int status = -1;
+    if (source == NULL) {
+        t3r_reason(error, sizeof error, "out of memory");
+    } else if (whole_file_begin(&file, o->output, error, sizeof error) == 0) {
+        status = posed_recording_write(recording, source, file.stream, reason, sizeof reason);
+        if (status == 0) {
+            status = whole_file_commit(&file, &t->bytes, error, sizeof error);
+        } else {
+            whole_file_abandon(&file);
+            t3r_reason(error, sizeof error, "%.400s: %s", o->output, reason);
+        }
+    }
+    cli_progress_end();
+    free(source);
+    return status == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
+static int estimate_all(t3r_recording *recording, const options *o, uint32_t count, pose_account *accounts)
+{
+    uint32_t *frames = malloc((count + 1) * sizeof *frames);
+    if (frames == NULL || accounts == NULL || count == 0) {
+        free(frames);
+        return cli_error(CLI_BAD_INPUT, "%s: %s", o->directory, count == 0 ? "no frames" : "out of memory");
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        frames[i] = i;
+    }
+    int code = recording_estimate_poses(recording, o->directory, frames, count, o->poses, accounts);
+    free(frames);
+    return code;
+}
+
+static int import_recording(const options *o)
+{
+    char error[ERROR_BYTES] = "";
+    if (o->poses == POSES_GIVEN || o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL) {
+        return cli_error(CLI_BAD_USAGE, "%s is a recording: --poses estimate is all that import does to one",
+                         o->directory);
+    }
+    t3r_recording *recording = t3r_recording_open(o->directory, error, sizeof error);
+    if (recording == NULL) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    uint32_t count = t3r_recording_frame_count(recording);
+    pose_account *accounts = calloc(count + 1, sizeof *accounts);
+    totals t = {0};
+    int code = estimate_all(recording, o, count, accounts);
+    code = code == CLI_OK ? write_posed(o, recording, &t) : code;
+    if (code == CLI_OK && o->json) {
+        cJSON *json = cJSON_CreateObject();
+        cJSON_AddNumberToObject(json, "frames", count);
+        json_add_integer(json, "bytes", (int64_t)t.bytes);
+        cJSON *poses = cJSON_AddArrayToObject(json, "poses");
+        for (uint32_t i = 0; i < count; i++) {
+            cJSON_AddItemToArray(poses, pose_account_json(NULL, i, accounts));
+        }
+        json_print(json);
+    } else if (code == CLI_OK) {
+        printf("%s: %u frames, %llu bytes\n", o->output, count, (unsigned long long)t.bytes);
+        poses_print(NULL, count, accounts);
+    }
+    free(accounts);
+    t3r_recording_close(recording);
+    return code;
+}
+
+static bool is_file(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
 int command_import(int argc, char **argv)
 {
     options o = {0};
     o.pointmaps.confidence_least = -HUGE_VAL;
     argp_parse(&parser, argc, argv, 0, NULL, &o);
+    if (is_file(o.directory)) {
+        return import_recording(&o);
+    }
     material m = {0};
     totals t = {0};
     char error[ERROR_BYTES] = "";

@@ -141,6 +141,24 @@ def test_build(room):
     check([p["frame"] for p in colour["poses"]] == [0, 1] and not colour["poses"][1]["by_depth"], f"colour: {colour}")
     close("build, colour", [matrix(p["rotation"], p["position"]) for p in colour["poses"]],
           {"pose": room["pose"][:2]}, 0.6, 0.06)
+    # a recording once more, with poses: what build makes of the first is what it makes of the second as it is
+    good("import", recording, "--poses", "estimate", "-o", f"{work}/posed.mcap")
+    first, second = read(recording), read(f"{work}/posed.mcap")
+    for name in ("image", "depth", "camera_info"):
+        check(np.array_equal(np.stack(first[name]), np.stack(second[name])), f"a recording once more: {name}")
+    close("a recording once more", second["pose"], room, 0.3, 0.04)
+    two = f"{work}/two.mcap"
+    good("room", "--frames", "2", "-o", two)
+    good("import", two, "--poses", "estimate", "-o", f"{work}/two_posed.mcap")
+    here = good("build", two, "--keep", "5%", "--poses", "estimate", "-o", scene)
+    there = good("build", f"{work}/two_posed.mcap", "--keep", "5%", "-o", scene)
+    check(here["hash"] == there["hash"], "poses in the recording make the bits that poses at the build make")
+    info, known = good("info", f"{work}/posed.mcap"), good("info", recording)
+    check(all(info[k] == known[k] for k in ("triplets", "clock", "depth_unit", "frames")), f"info: {info}")
+    status, _, error = run("import", recording, "-o", f"{work}/no.mcap")
+    check(status == 2 and "is a recording" in error, f"a recording without --poses: {error}")
+    status, _, error = run("import", f"{work}/rgb/0.png", "--poses", "estimate", "-o", f"{work}/no.mcap")
+    check(status == 1 and "0.png" in error, f"a picture as a recording: {error}")
     # what was estimated into a recording is what later builds use
     stored = good("build", f"{work}/rgbd.mcap", "--keep", "5%", "-o", scene)
     check(stored["hash"] == good("build", f"{work}/rgbd.mcap", "--keep", "5%", "-o", scene)["hash"], "stored poses")
