@@ -48,6 +48,11 @@ uint32_t t3r_recording_frame_count(const t3r_recording *recording);
 int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *error,
                         size_t error_bytes);
 
+/* Gives frame `index` this pose from here on, in the place of the file's, if that has one: for poses that were
+ * estimated. Camera to world, as t3r_camera holds them. 0, or -1 when memory is out or there is no such frame. */
+int t3r_recording_set_pose(t3r_recording *recording, uint32_t index, const int64_t position_q32[3],
+                           const int32_t rotation_q30[4]);
+
 /* Triplets that name a frame which the recording does not hold are left out, with a remark in the note. */
 uint32_t t3r_recording_triplet_count(const t3r_recording *recording);
 t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index);

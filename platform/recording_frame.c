@@ -273,18 +273,43 @@ int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capt
     }
     const reading r = {recording, index, error, error_bytes};
     const t3r_frame_links *links = &recording->links[index];
+    const t3r_set_pose *set =
+        recording->set_poses != NULL && recording->set_poses[index].set ? &recording->set_poses[index] : NULL;
     t3r_capture_frame result = {
         .index = index,
         .stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
-        .has_pose = links->pose != T3R_NO_MESSAGE,
+        .has_pose = links->pose != T3R_NO_MESSAGE || set != NULL,
         .has_intrinsics = links->camera_info != T3R_NO_MESSAGE,
     };
     if (read_colour(&r, &result.frame) != 0 ||
         (links->depth != T3R_NO_MESSAGE && read_depth(&r, links->depth, &result.frame) != 0) ||
         (result.has_intrinsics && read_intrinsics(&r, links->camera_info, &result.frame, &result.camera) != 0) ||
-        (result.has_pose && read_pose(&r, links->pose, &result.camera) != 0)) {
+        (result.has_pose && set == NULL && read_pose(&r, links->pose, &result.camera) != 0)) {
         return T3R_CAPTURE_FAILED;
+    }
+    if (set != NULL) {
+        memcpy(result.camera.position_q32, set->position_q32, sizeof set->position_q32);
+        memcpy(result.camera.rotation_q30, set->rotation_q30, sizeof set->rotation_q30);
     }
     *frame = result;
     return T3R_CAPTURE_FRAME;
+}
+
+int t3r_recording_set_pose(t3r_recording *recording, uint32_t index, const int64_t position_q32[3],
+                           const int32_t rotation_q30[4])
+{
+    if (index >= recording->pairing.frames) {
+        return -1;
+    }
+    if (recording->set_poses == NULL) {
+        recording->set_poses = calloc(recording->pairing.frames, sizeof *recording->set_poses);
+        if (recording->set_poses == NULL) {
+            return -1;
+        }
+    }
+    t3r_set_pose *pose = &recording->set_poses[index];
+    pose->set = true;
+    memcpy(pose->position_q32, position_q32, sizeof pose->position_q32);
+    memcpy(pose->rotation_q30, rotation_q30, sizeof pose->rotation_q30);
+    return 0;
 }

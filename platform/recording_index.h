@@ -47,6 +47,13 @@ typedef struct t3r_frame_links {
     size_t depth, pose, camera_info;
 } t3r_frame_links;
 
+/* What t3r_recording_set_pose() gave a frame. */
+typedef struct t3r_set_pose {
+    bool set;
+    int64_t position_q32[3];
+    int32_t rotation_q30[4];
+} t3r_set_pose;
+
 struct t3r_recording {
     uint8_t *file; /* owned, or NULL */
     t3r_mcap_chunks chunks;
@@ -55,9 +62,10 @@ struct t3r_recording {
     size_t stream_count, stream_capacity;
     size_t colour, depth, pose, camera_info; /* the streams chosen, or T3R_NO_STREAM */
 
-    t3r_frame_links *links; /* one a message of the colour stream */
-    uint8_t **depth_z16;    /* one a message of the depth stream: its samples as Z16 once asked for, when the file
-                               holds them otherwise */
+    t3r_frame_links *links;  /* one a message of the colour stream */
+    uint8_t **depth_z16;     /* one a message of the depth stream: its samples as Z16 once asked for, when the file
+                                holds them otherwise */
+    t3r_set_pose *set_poses; /* one a message of the colour stream; NULL until one is set */
     t3r_pairing_info pairing;
 
     uint32_t bits_epoch;

@@ -396,6 +396,7 @@ void t3r_recording_close(t3r_recording *recording)
     free(recording->streams);
     free(recording->links);
     free(recording->depth_z16);
+    free(recording->set_poses);
     free(recording->triplets);
     t3r_mcap_chunks_free(&recording->chunks);
     free(recording->file);

@@ -74,10 +74,10 @@ static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
 
 #define POINTMAP_STEPS(rt) (4 * (rt)->views) /* of t3r_progress(): bridging, flying pixels, exposure, redundancy */
 
-/* Wide holes, once it is known where the views stand. */
+/* Wide holes, once it is known where the views stand. What stereo left without depth shows nothing. */
 static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
 {
-    const uint32_t radius = rt->config.bridge_radius;
+    const uint32_t radius = rt->config.depth == T3R_DEPTH_STEREO ? 0 : rt->config.bridge_radius;
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
         t3r_bridge_lend(views, rt->views, v, rt->frame.exponent);
     }

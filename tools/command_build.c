@@ -11,7 +11,9 @@
 #include "developed_frame.h"
 #include "json_output.h"
 #include "option_values.h"
+#include "poses_output.h"
 #include "reconstruction.h"
+#include "recording_poses.h"
 #include "rivals/rival.h"
 
 #define ERROR_BYTES 512
@@ -22,11 +24,12 @@ typedef struct build_options {
     const char *colmap; /* NULL = no COLMAP model */
     const char *prune;  /* a scene to be pruned in the place of one that is built */
     int flags;          /* SCENE_FILE_... */
+    poses_source poses;
     bool json;
     reconstruction_options settings;
 } build_options;
 
-enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_JSON };
+enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_POSES, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"output", 'o', "SCENE.ply", 0, "where the scene goes (needed, or --colmap)", 0},
@@ -37,6 +40,11 @@ static const struct argp_option options[] = {
     {"prune", KEY_PRUNE, "SCENE.ply", 0,
      "prune this scene, made elsewhere, instead of building one, with a --method that is a rival; the recording gives "
      "the views, --context those it was made of",
+     0},
+    {"poses", KEY_POSES, "SOURCE", 0,
+     "of the context views: given (default), those of the recording; estimate, from corners that they share, with "
+     "depth "
+     "where two of them have it; estimate-colour, likewise from colour alone",
      0},
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
@@ -68,6 +76,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_COMMENTS:
         o->flags |= SCENE_FILE_COMMENTS;
+        return 0;
+    case KEY_POSES:
+        if (!poses_named(arg, &o->poses)) {
+            argp_error(state, "--poses does not know '%s'; there are %s", arg, POSES_NAMES);
+        }
         return 0;
     case KEY_JSON:
         o->json = true;
@@ -113,8 +126,16 @@ static const struct argp argp = {
         "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
         "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
         "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n"
-        "  trim3r build room.mcap --keep 10% --colmap start\n\n"
+        "  trim3r build room.mcap --keep 10% --colmap start\n"
+        "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n\n"
         "The scene stands in the recording's world frame unless --local is given.\n\n"
+        "--poses estimate: the first context view keeps the pose that the recording has, or is the origin; each other "
+        "one "
+        "is joined to the best of those before. With depth in both views lengths are those of the depth, from colour "
+        "the "
+        "distance of the first two cameras is 1, unless some depth tells. Frames too unlike, a camera that only "
+        "turned, "
+        "and corners on one plane are refused. `trim3r import --poses estimate` keeps the poses in the recording.\n\n"
         "--colmap: DIR/images/ are the context views at the working size, undistorted; DIR/sparse/0/ holds "
         "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
         "look for them; InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that it "
@@ -135,7 +156,8 @@ static void add_unmatched(cJSON *root, const build_options *o, const reconstruct
     }
 }
 
-static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r)
+static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r,
+                       const t3r_recording *recording, const pose_account *accounts)
 {
     bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
     cJSON *root = cJSON_CreateObject();
@@ -170,6 +192,9 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
     cJSON_AddNumberToObject(root, "build_ms", told->seconds * 1e3);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
+    if (o->poses != POSES_GIVEN) {
+        poses_add_json(root, recording, told->context, told->context_count, accounts);
+    }
     /* where float32 positions lose the world's origin: --local and this */
     cJSON *origin = cJSON_AddArrayToObject(root, "origin");
     for (int i = 0; i < 3; i++) {
@@ -245,8 +270,12 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
     return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told) : CLI_OK;
 }
 
-static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r)
+static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r,
+                       const pose_account *accounts)
 {
+    if (o->poses != POSES_GIVEN) {
+        poses_print(told->context, told->context_count, accounts);
+    }
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n",
            o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
            told->seconds * 1e3);
@@ -260,6 +289,16 @@ static void print_text(const build_options *o, const reconstruction_account *tol
             printf("frame %" PRIu32 " has no depth; with frame %" PRIu32 ": %s\n", told->context[v],
                    told->context[partner], t3r_pair_text(pair));
         }
+    }
+}
+
+/* Spells out the default, the first two frames. */
+static void name_context(reconstruction_options *settings, const t3r_recording *recording)
+{
+    if (settings->context_count == 0) {
+        settings->context_count = t3r_recording_frame_count(recording) < 2 ? 1 : 2;
+        settings->context[0] = 0;
+        settings->context[1] = 1;
     }
 }
 
@@ -278,15 +317,21 @@ int command_build(int argc, char **argv)
     if (o.colmap != NULL && colmap_folder_begin(o.colmap, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
+    pose_account accounts[T3R_MAX_VIEWS];
+    if (code == CLI_OK && o.poses != POSES_GIVEN) {
+        name_context(&o.settings, recording);
+        code = recording_estimate_poses(recording, o.recording, o.settings.context, o.settings.context_count, o.poses,
+                                        accounts);
+    }
     reconstruction r;
     reconstruction_account told;
     code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
     if (code == CLI_OK) {
         code = write_all(&o, recording, &r, &told);
         if (code == CLI_OK && o.json) {
-            print_json(&o, &told, &r);
+            print_json(&o, &told, &r, recording, accounts);
         } else if (code == CLI_OK) {
-            print_text(&o, &told, &r);
+            print_text(&o, &told, &r, accounts);
         }
         reconstruction_close(&r);
     }

@@ -76,7 +76,7 @@ t3r_recording *evaluation_planar_recording(char *path, uint32_t width, uint32_t 
     char error[512] = "out of memory";
     size_t count = 0;
     *bytes = NULL;
-    if (import_frame("", &posed, width, height, &buffers, &frame, error, sizeof error) == 0) {
+    if (import_frame("", &posed, NULL, width, height, &buffers, &frame, error, sizeof error) == 0) {
         *bytes = record_plane(&frame, &count);
     }
     import_buffers_free(&buffers);

@@ -217,35 +217,48 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
     }
     out->planes[0] = buffers->rgb;
     out->stride_bytes[0] = out->width * 3;
-    if (frame->depth == NULL) {
+    bool made = depth->samples != NULL;
+    if (!made && frame->depth == NULL) {
         return 0;
     }
-    path = find_picture(directory, frame->depth);
-    status =
-        path == NULL ? t3r_reason(error, error_bytes, "out of memory") : read_depth(path, depth, error, error_bytes);
-    free(path);
-    if (status != 0) {
-        return -1;
+    if (!made) {
+        path = find_picture(directory, frame->depth);
+        status = path == NULL ? t3r_reason(error, error_bytes, "out of memory")
+                              : read_depth(path, depth, error, error_bytes);
+        free(path);
+        if (status != 0) {
+            return -1;
+        }
     }
+    /* networks round sides to whole patches, so the two need not agree to the pixel */
+    double aspect = (double)depth->width * colour->height / ((double)depth->height * colour->width);
+    if (made && fabs(aspect - 1) > 0.04) {
+        return t3r_reason(error, error_bytes, "%s: a pointmap of %ux%u pixels, but the picture has %ux%u", frame->image,
+                          depth->width, depth->height, colour->width, colour->height);
+    }
+    const char *name = frame->depth != NULL ? frame->depth : "pointmap";
     import_crop part = import_crop_in_proportion(&crop, colour->width, colour->height, depth->width, depth->height);
     if (part.width < MIN_SIDE || part.height < MIN_SIDE) {
-        return t3r_reason(error, error_bytes, "%s: too small to crop", frame->depth);
+        return t3r_reason(error, error_bytes, "%s: too small to crop", name);
     }
     out->depth_width = resize ? width : depth->width;
     out->depth_height = resize ? height : depth->height;
     buffers->depth = malloc((size_t)out->depth_width * out->depth_height * sizeof *buffers->depth);
     if (buffers->depth == NULL ||
         develop_depth(depth, &part, out->depth_width, out->depth_height, buffers->depth) != 0) {
-        return t3r_reason(error, error_bytes, "%s: out of memory", frame->depth);
+        return t3r_reason(error, error_bytes, "%s: out of memory", name);
     }
     out->depth = buffers->depth;
     return 0;
 }
 
-int import_frame(const char *directory, const posed_frame *frame, uint32_t width, uint32_t height,
+int import_frame(const char *directory, const posed_frame *frame, picture *made, uint32_t width, uint32_t height,
                  import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
 {
-    picture colour = {0}, depth = {0};
+    picture colour = {0}, depth = made != NULL ? *made : (picture){0};
+    if (made != NULL) {
+        *made = (picture){0};
+    }
     *buffers = (import_buffers){0};
     *out = (t3r_recorded_frame){0};
     int status = adapt(directory, frame, width, height, &colour, &depth, buffers, out, error, error_bytes);

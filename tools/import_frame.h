@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "picture.h"
 #include "posed_folder.h"
 #include "recording.h"
 
@@ -29,9 +30,10 @@ typedef struct import_buffers {
     uint16_t *depth;
 } import_buffers;
 
-/* Reads and adapts a frame: to width x height, or as it is when width is 0. `out` (all but its stamp) points into
+/* Reads and adapts a frame: to width x height, or as it is when width is 0. depth: 16-bit steps made elsewhere, in the
+ * place of the frame's own (NULL: those), which the call uses up. `out` (all but its stamp) points into
  * `buffers`, which import_buffers_free() releases in either case. 0, or -1 with "picture: what" in error[]. */
-int import_frame(const char *directory, const posed_frame *frame, uint32_t width, uint32_t height,
+int import_frame(const char *directory, const posed_frame *frame, picture *depth, uint32_t width, uint32_t height,
                  import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes);
 void import_buffers_free(import_buffers *buffers);
 

@@ -109,6 +109,34 @@ const char *posed_quaternion(const double matrix[9], double quaternion[4])
     return NULL;
 }
 
+void posed_matrix(const double q[4], double m[9])
+{
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double *v = q + 1;
+        m[3 * i + i] = 1 - 2 * (v[j] * v[j] + v[k] * v[k]);
+        m[3 * i + j] = 2 * (v[i] * v[j] - q[0] * v[k]);
+        m[3 * i + k] = 2 * (v[i] * v[k] + q[0] * v[j]);
+    }
+}
+
+posed_intrinsics posed_intrinsics_of(const double numbers[9])
+{
+    posed_intrinsics out = {.width = NAN,
+                            .height = NAN,
+                            .angle_x = NAN,
+                            .angle_y = NAN,
+                            .fx = numbers[0],
+                            .fy = numbers[1],
+                            .cx = numbers[2] + 0.5,
+                            .cy = numbers[3] + 0.5};
+    for (int i = 0; i < 5; i++) {
+        out.coefficients[i] = numbers[4 + i];
+        out.distortion = numbers[4 + i] != 0 ? T3R_DISTORTION_RADTAN : out.distortion;
+    }
+    return out;
+}
+
 /* A focal length: the given one, else from a field of view over `pixels`, else the other axis's. */
 static double focal_length(double given, double angle, double pixels, double other)
 {
@@ -129,6 +157,8 @@ int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height
         return t3r_reason(error, error_bytes, "h: %.17g, but the picture is %u pixels high", in->height, height);
     }
     *camera = (t3r_recorded_camera){.width = width, .height = height, .distortion = in->distortion};
+    double across = in->grid_width > 0 ? width / in->grid_width : 1;
+    double down = in->grid_height > 0 ? height / in->grid_height : 1;
     double fx = focal_length(in->fx, in->angle_x, width, NAN);
     double fy = focal_length(in->fy, in->angle_y, height, fx);
     camera->fx = isnan(fx) ? fy : fx;
@@ -136,8 +166,10 @@ int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height
     if (isnan(camera->fx)) {
         return t3r_reason(error, error_bytes, "fl_x: missing, and no camera_angle_x to derive it from");
     }
-    camera->cx = (isnan(in->cx) ? width / 2.0 : in->cx) - 0.5;
-    camera->cy = (isnan(in->cy) ? height / 2.0 : in->cy) - 0.5;
+    camera->fx *= across;
+    camera->fy *= down;
+    camera->cx = (isnan(in->cx) ? width / 2.0 : in->cx * across) - 0.5;
+    camera->cy = (isnan(in->cy) ? height / 2.0 : in->cy * down) - 0.5;
     if (!(camera->fx > 0 && isfinite(camera->fx)) || !(camera->fy > 0 && isfinite(camera->fy))) {
         return t3r_reason(error, error_bytes, "fl_x, fl_y: %g, %g: focal lengths must be positive", camera->fx,
                           camera->fy);
@@ -156,7 +188,8 @@ static bool exists(const char *directory, const char *name)
     return found;
 }
 
-static int read_transforms(const char *directory, posed_folder *out, char *error, size_t error_bytes)
+static int read_transforms(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                           size_t error_bytes)
 {
     char *path = posed_path(directory, "transforms.json");
     if (path == NULL) {
@@ -167,7 +200,7 @@ static int read_transforms(const char *directory, posed_folder *out, char *error
     char *text = (char *)t3r_file_bytes(path, MAX_TEXT_BYTES, &bytes, error, error_bytes);
     int status = -1;
     if (text != NULL) {
-        status = transforms_json_parse(text, bytes, out, reason, sizeof reason);
+        status = transforms_json_parse(text, bytes, options, out, reason, sizeof reason);
         if (status != 0) {
             t3r_reason(error, error_bytes, "%s: %s", path, reason);
         }
@@ -187,14 +220,16 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
     if (exists(directory, "transforms.json")) {
         if (options != NULL && options->intrinsics_count != 0) {
             return t3r_reason(error, error_bytes,
-                              "%s/transforms.json: has its own intrinsics; --intrinsics is for "
-                              "TUM RGB-D folders",
+                              "%s/transforms.json: has its own intrinsics; --intrinsics is for folders without",
                               directory);
         }
-        return read_transforms(directory, out, error, error_bytes);
+        return read_transforms(directory, options, out, error, error_bytes);
     }
     if (exists(directory, "rgb.txt") || exists(directory, "groundtruth.txt")) {
         return tum_rgbd_read(directory, options, out, error, error_bytes);
+    }
+    if (options != NULL && options->without_poses) {
+        return picture_folder_read(directory, options, out, error, error_bytes);
     }
     return t3r_reason(error, error_bytes,
                       "%s: neither transforms.json nor rgb.txt and groundtruth.txt (TUM RGB-D) is there", directory);
@@ -205,6 +240,8 @@ void posed_folder_close(posed_folder *folder)
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         free(folder->frames[i].image);
         free(folder->frames[i].depth);
+        free(folder->frames[i].pointmap);
+        free(folder->frames[i].confidence);
     }
     free(folder->frames);
     free(folder->triplets);

@@ -16,7 +16,8 @@
 typedef struct reader {
     const cJSON *root;
     const cJSON *frame; /* NULL while the top is read */
-    char where[64];     /* "frames[3]" */
+    const posed_folder_options *options;
+    char where[64]; /* "frames[3]" */
     char *error;
     size_t error_bytes;
 } reader;
@@ -63,6 +64,13 @@ static int read_path(reader *r, const char *name, char **path)
     }
     *path = strdup(item->valuestring);
     return *path != NULL ? 0 : fail(r, name, "out of memory");
+}
+
+/* NULL when absent. */
+static int read_optional_path(reader *r, const char *name, char **path)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(r->frame, name);
+    return item != NULL && !cJSON_IsNull(item) ? read_path(r, name, path) : 0;
 }
 
 /* ---- camera ---------------------------------------------------------------------------------------------------- */
@@ -173,7 +181,8 @@ static int read_intrinsics(reader *r, posed_intrinsics *out)
         read_angle(r, "camera_angle_x", &out->angle_x) != 0 || read_angle(r, "camera_angle_y", &out->angle_y) != 0) {
         return -1;
     }
-    if (isnan(out->fx) && isnan(out->fy) && isnan(out->angle_x) && isnan(out->angle_y)) {
+    if (isnan(out->fx) && isnan(out->fy) && isnan(out->angle_x) && isnan(out->angle_y) &&
+        !r->options->without_intrinsics) {
         return fail(r, "fl_x", "missing, and no camera_angle_x to derive it from");
     }
     return read_distortion(r, out);
@@ -201,8 +210,10 @@ static int read_row(reader *r, const cJSON *row, double values[4])
 static int read_pose(reader *r, posed_frame *out)
 {
     const cJSON *matrix = cJSON_GetObjectItemCaseSensitive(r->frame, "transform_matrix");
+    out->rotation[0] = 1;
+    out->posed = matrix != NULL;
     if (matrix == NULL) {
-        return fail(r, "transform_matrix", "missing");
+        return r->options->without_poses ? 0 : fail(r, "transform_matrix", "missing");
     }
     int rows = cJSON_IsArray(matrix) ? cJSON_GetArraySize(matrix) : 0;
     if (rows != 3 && rows != 4) {
@@ -261,9 +272,16 @@ static int read_frames(reader *r, posed_folder *out)
         if (read_path(r, "file_path", &frame->image) != 0) {
             return -1;
         }
-        const cJSON *depth = cJSON_GetObjectItemCaseSensitive(r->frame, "depth_path");
-        if (depth != NULL && !cJSON_IsNull(depth) && read_path(r, "depth_path", &frame->depth) != 0) {
+        if (read_optional_path(r, "depth_path", &frame->depth) != 0 ||
+            read_optional_path(r, "pointmap_path", &frame->pointmap) != 0 ||
+            read_optional_path(r, "confidence_path", &frame->confidence) != 0) {
             return -1;
+        }
+        if (frame->confidence != NULL && frame->pointmap == NULL) {
+            return fail(r, "confidence_path", "there is no pointmap_path");
+        }
+        if (frame->depth != NULL && frame->pointmap != NULL) {
+            return fail(r, "pointmap_path", "there is a depth_path too");
         }
         if (read_pose(r, frame) != 0 || read_intrinsics(r, &frame->intrinsics) != 0) {
             return -1;
@@ -290,6 +308,7 @@ static int read_depth_unit(reader *r, posed_folder *out)
         return fail(r, "integer_depth_scale", "not between 1e-12 and 128");
     }
     out->depth_unit = isnan(unit) ? 0.001 : unit;
+    out->depth_unit_given = !isnan(unit);
     return 0;
 }
 
@@ -336,8 +355,10 @@ static int read_triplets(reader *r, posed_folder *out)
     return 0;
 }
 
-int transforms_json_parse(const char *text, size_t bytes, posed_folder *out, char *error, size_t error_bytes)
+int transforms_json_parse(const char *text, size_t bytes, const posed_folder_options *options, posed_folder *out,
+                          char *error, size_t error_bytes)
 {
+    static const posed_folder_options strict = {0};
     memset(out, 0, sizeof *out);
     out->kind = "transforms.json";
     const char *end = NULL;
@@ -346,7 +367,8 @@ int transforms_json_parse(const char *text, size_t bytes, posed_folder *out, cha
         size_t at = end == NULL ? 0 : (size_t)(end - text);
         return t3r_reason(error, error_bytes, "byte %zu: not JSON (NaN and Infinity are not either)", at);
     }
-    reader r = {.root = root, .error = error, .error_bytes = error_bytes};
+    reader r = {
+        .root = root, .options = options != NULL ? options : &strict, .error = error, .error_bytes = error_bytes};
     int status;
     if (!cJSON_IsObject(root)) {
         status = t3r_reason(error, error_bytes, "byte 0: not a JSON object");

@@ -244,23 +244,13 @@ static int find_intrinsics(const char *directory, const posed_folder_options *op
         }
         memcpy(numbers, row->numbers, sizeof numbers);
     }
-    *out = (posed_intrinsics){.width = NAN,
-                              .height = NAN,
-                              .angle_x = NAN,
-                              .angle_y = NAN,
-                              .fx = numbers[0],
-                              .fy = numbers[1],
-                              .cx = numbers[2] + 0.5,
-                              .cy = numbers[3] + 0.5};
-    for (int i = 0; i < 5; i++) {
-        out->coefficients[i] = numbers[4 + i];
-        out->distortion = numbers[4 + i] != 0 ? T3R_DISTORTION_RADTAN : out->distortion;
-    }
+    *out = posed_intrinsics_of(numbers);
     return 0;
 }
 
 static int join(const stamped_list *colour, const stamped_list *depth, const stamped_list *trajectory,
-                const posed_intrinsics *intrinsics, posed_folder *out, char *error, size_t error_bytes)
+                const posed_intrinsics *intrinsics, bool without_poses, posed_folder *out, char *error,
+                size_t error_bytes)
 {
     if (colour->count > POSED_FOLDER_MAX_FRAMES) {
         return t3r_reason(error, error_bytes, "rgb.txt: more than 100000 pictures");
@@ -271,11 +261,15 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
     }
     for (size_t i = 0; i < colour->count; i++) {
         posed_frame *frame = &out->frames[out->frame_count];
-        if (!find_pose(trajectory, colour->items[i].stamp, frame)) {
+        frame->posed = find_pose(trajectory, colour->items[i].stamp, frame);
+        if (!frame->posed && !without_poses) {
             out->skipped++;
             continue;
         }
         out->frame_count++;
+        if (!frame->posed) {
+            frame->rotation[0] = 1;
+        }
         const stamped *measured = nearest(depth, colour->items[i].stamp);
         frame->intrinsics = *intrinsics;
         frame->image = strdup(colour->items[i].name);
@@ -290,32 +284,39 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
     return 0;
 }
 
+static bool is_there(const char *directory, const char *name)
+{
+    char *path = posed_path(directory, name);
+    FILE *file = path != NULL ? fopen(path, "rb") : NULL;
+    if (file != NULL) {
+        fclose(file);
+    }
+    free(path);
+    return file != NULL;
+}
+
 int tum_rgbd_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                   size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
     out->kind = "TUM RGB-D";
     out->depth_unit = 1 / DEPTH_STEPS_PER_METRE;
+    out->depth_unit_given = true;
     posed_intrinsics intrinsics;
     stamped_list colour = {0}, depth = {0}, trajectory = {0};
     int status = find_intrinsics(directory, options, &intrinsics, error, error_bytes);
     if (status == 0) {
         status = read_list(directory, "rgb.txt", false, &colour, error, error_bytes);
     }
-    if (status == 0) {
+    bool without_poses = options != NULL && options->without_poses;
+    if (status == 0 && (!without_poses || is_there(directory, "groundtruth.txt"))) {
         status = read_list(directory, "groundtruth.txt", true, &trajectory, error, error_bytes);
     }
-    char *depth_list = posed_path(directory, "depth.txt");
-    FILE *there = depth_list != NULL ? fopen(depth_list, "rb") : NULL;
-    if (status == 0 && there != NULL) {
+    if (status == 0 && is_there(directory, "depth.txt")) {
         status = read_list(directory, "depth.txt", false, &depth, error, error_bytes);
     }
-    if (there != NULL) {
-        fclose(there);
-    }
-    free(depth_list);
     if (status == 0) {
-        status = join(&colour, &depth, &trajectory, &intrinsics, out, error, error_bytes);
+        status = join(&colour, &depth, &trajectory, &intrinsics, without_poses, out, error, error_bytes);
     }
     list_free(&colour);
     list_free(&depth);

@@ -122,8 +122,9 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
     char reason[384] = "";
     posed_folder folder;
     char *wrapped = wrap_pose((const char *)bytes, count);
-    int result = wrapped != NULL ? transforms_json_parse(wrapped, strlen(wrapped), &folder, reason, sizeof reason)
-                                 : transforms_json_parse((const char *)bytes, count, &folder, reason, sizeof reason);
+    const char *text = wrapped != NULL ? wrapped : (const char *)bytes;
+    size_t length = wrapped != NULL ? strlen(wrapped) : count;
+    int result = transforms_json_parse(text, length, NULL, &folder, reason, sizeof reason);
     if (result == 0) {
         result = convert_frames(&folder, out, reason, sizeof reason);
     }

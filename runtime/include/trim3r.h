@@ -168,7 +168,7 @@ typedef struct t3r_config {
     uint32_t refinements;       /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
     t3r_depth depth;            /* by stereo, width and height must be 32 and more */
     uint32_t fill_radius;       /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
-    uint32_t bridge_radius;     /* wider holes bracketed within this many pixels likewise, 0..255; 0 = none */
+    uint32_t bridge_radius;     /* wider ones of a sensor bracketed within so many are bridged, 0..255; 0 = none */
     uint32_t flying;            /* 1 = points between surfaces, or in front of what another view measured, come last */
     uint32_t redundancy;        /* 1 = small budgets pass over points that another view covers */
     uint32_t exposure;          /* 1 = colours of all views are brought to their mean exposure */

@@ -7,11 +7,11 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static void parse(const uint8_t *data, size_t size, const posed_folder_options *options)
 {
     posed_folder folder;
     char error[256] = "";
-    int status = transforms_json_parse((const char *)data, size, &folder, error, sizeof error);
+    int status = transforms_json_parse((const char *)data, size, options, &folder, error, sizeof error);
     if ((status != 0) != (error[0] != '\0')) {
         abort();
     }
@@ -33,5 +33,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         }
     }
     posed_folder_close(&folder);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const posed_folder_options without = {.without_poses = true, .without_intrinsics = true};
+    parse(data, size, NULL);
+    parse(data, size, &without);
     return 0;
 }

@@ -74,7 +74,7 @@ static void check_reprojection(scratch *s, uint32_t from_width, uint32_t from_he
     t3r_recorded_frame out;
     uint32_t checked = 0;
     write_ramps(s, from_width, from_height, from_width, from_height);
-    if (import_frame(s->directory, &frame, width, height, &buffers, &out, error, sizeof error) != 0) {
+    if (import_frame(s->directory, &frame, NULL, width, height, &buffers, &out, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
     assert_int_equal(out.width, width);
@@ -141,7 +141,7 @@ static void test_depth_of_another_resolution(void **state)
     import_buffers buffers;
     t3r_recorded_frame out;
     write_ramps(s, 240, 160, 120, 80);
-    assert_int_equal(import_frame(s->directory, &frame, 40, 40, &buffers, &out, error, sizeof error), 0);
+    assert_int_equal(import_frame(s->directory, &frame, NULL, 40, 40, &buffers, &out, error, sizeof error), 0);
     /* the colour's crop is columns 40..200, so the depth's 20..100: two source pixels a box, its centre the second */
     assert_int_equal(out.depth_width, 40);
     for (uint32_t y = 0; y < 40; y++) {
@@ -151,7 +151,7 @@ static void test_depth_of_another_resolution(void **state)
     }
     import_buffers_free(&buffers);
     /* without a size both stay as they are */
-    assert_int_equal(import_frame(s->directory, &frame, 0, 0, &buffers, &out, error, sizeof error), 0);
+    assert_int_equal(import_frame(s->directory, &frame, NULL, 0, 0, &buffers, &out, error, sizeof error), 0);
     assert_int_equal(out.width * 1000 + out.height, 240160);
     assert_int_equal(out.depth_width * 1000 + out.depth_height, 120080);
     assert_int_equal(buffers.depth[79 * 120 + 119], 79 * 256 + 119);
@@ -164,7 +164,7 @@ static void refuse(scratch *s, const posed_frame *frame, uint32_t side, const ch
     char error[512] = "";
     import_buffers buffers;
     t3r_recorded_frame out;
-    int status = import_frame(s->directory, frame, side, side, &buffers, &out, error, sizeof error);
+    int status = import_frame(s->directory, frame, NULL, side, side, &buffers, &out, error, sizeof error);
     import_buffers_free(&buffers);
     assert_int_equal(status, -1);
     if (strstr(error, why) == NULL) {
@@ -212,7 +212,7 @@ static void test_the_ending_may_be_left_out(void **state)
     frame.depth = bare_depth;
     import_buffers buffers;
     t3r_recorded_frame out;
-    assert_int_equal(import_frame(s->directory, &frame, 16, 16, &buffers, &out, error, sizeof error), 0);
+    assert_int_equal(import_frame(s->directory, &frame, NULL, 16, 16, &buffers, &out, error, sizeof error), 0);
     import_buffers_free(&buffers);
 }
 
@@ -258,7 +258,7 @@ static void test_hololens_scene(void **state)
         picture source;
         char *path = posed_path(folder_path, folder.frames[i].image);
         const posed_frame *frame = &folder.frames[i];
-        assert_int_equal(import_frame(folder_path, frame, 256, 256, &buffers, &out, error, sizeof error), 0);
+        assert_int_equal(import_frame(folder_path, frame, NULL, 256, 256, &buffers, &out, error, sizeof error), 0);
         assert_int_equal(picture_read(path, &source, error, sizeof error), 0);
         assert_true(fabs(out.camera.fx - 495.56775700934577 * 256 / 360) < 1e-9);
         assert_true(fabs(out.camera.cx - ((270.00289719626164 - 90) * 256 / 360 - 0.5)) < 1e-9);

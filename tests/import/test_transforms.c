@@ -20,7 +20,7 @@
 static void parse(const char *text, posed_folder *folder)
 {
     char error[512] = "";
-    if (transforms_json_parse(text, strlen(text), folder, error, sizeof error) != 0) {
+    if (transforms_json_parse(text, strlen(text), NULL, folder, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
 }
@@ -29,7 +29,7 @@ static void refuse(const char *text, const char *why)
 {
     posed_folder folder;
     char error[512] = "";
-    int status = transforms_json_parse(text, strlen(text), &folder, error, sizeof error);
+    int status = transforms_json_parse(text, strlen(text), NULL, &folder, error, sizeof error);
     posed_folder_close(&folder);
     assert_int_equal(status, -1);
     if (strstr(error, why) == NULL) {
@@ -231,7 +231,7 @@ static void test_every_cut_is_refused(void **state)
         char error[512] = "";
         char *exact = malloc(cut + 1); /* so that a read beyond the end is noticed by a sanitizer */
         memcpy(exact, text, cut);
-        assert_int_equal(transforms_json_parse(exact, cut, &folder, error, sizeof error), -1);
+        assert_int_equal(transforms_json_parse(exact, cut, NULL, &folder, error, sizeof error), -1);
         assert_true(error[0] != '\0');
         posed_folder_close(&folder);
         free(exact);

@@ -404,6 +404,28 @@ static void replay_hands_out_the_frames(void **state)
     assert_non_null(strstr(error, "directory"));
 }
 
+/* A pose that is set takes the place of the recorded one; another frame keeps its own. */
+static void a_set_pose_wins(void **state)
+{
+    (void)state;
+    static const int64_t position_q32[3] = {INT64_C(5) << 40, -7, 0};
+    static const int32_t rotation_q30[4] = {3, 1 << 29, -5, 1 << 28};
+    bag_bytes bytes = sample(T3R_PIXEL_RGB24);
+    t3r_recording *recording = parse(bytes.data, bytes.count);
+    t3r_capture_frame frame;
+    char error[256] = "";
+    assert_int_equal(t3r_recording_set_pose(recording, SAMPLE_FRAMES, position_q32, rotation_q30), -1);
+    assert_int_equal(t3r_recording_set_pose(recording, 1, position_q32, rotation_q30), 0);
+    assert_int_equal(t3r_recording_frame(recording, 1, &frame, error, sizeof error), T3R_CAPTURE_FRAME);
+    assert_true(frame.has_pose);
+    assert_memory_equal(frame.camera.position_q32, position_q32, sizeof position_q32);
+    assert_memory_equal(frame.camera.rotation_q30, rotation_q30, sizeof rotation_q30);
+    assert_int_equal(t3r_recording_frame(recording, 0, &frame, error, sizeof error), T3R_CAPTURE_FRAME);
+    check_frame(&frame, 0, T3R_PIXEL_RGB24);
+    t3r_recording_close(recording);
+    bag_bytes_free(&bytes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -416,6 +438,7 @@ int main(void)
         cmocka_unit_test(a_failing_sink_fails_the_recorder),
         cmocka_unit_test(the_recorder_refuses_bad_arguments),
         cmocka_unit_test(replay_hands_out_the_frames),
+        cmocka_unit_test(a_set_pose_wins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

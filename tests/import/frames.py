@@ -1,0 +1,96 @@
+"""Frames of a recording as arrays, and pictures as files: what the scripts of this folder share. Needs numpy."""
+
+import struct
+import zlib
+
+import numpy as np
+
+
+class Cdr:
+    def __init__(self, data):
+        self.data, self.at = data[4:], 0
+
+    def take(self, form):
+        size = struct.calcsize("<" + form)
+        self.at += -self.at % size
+        self.at += size
+        return struct.unpack_from("<" + form, self.data, self.at - size)[0]
+
+    def text(self):
+        length = self.take("I")
+        self.at += length
+        return self.data[self.at - length:self.at - 1].decode()
+
+    def header(self):
+        self.take("i"), self.take("I"), self.text()
+
+
+def image(data):
+    c = Cdr(data)
+    c.header()
+    height, width = c.take("I"), c.take("I")
+    encoding = c.text()
+    c.take("B"), c.take("I")
+    length = c.take("I")
+    raw = c.data[c.at:c.at + length]
+    if encoding == "16UC1":
+        return np.frombuffer(raw, "<u2").reshape(height, width)
+    return np.frombuffer(raw, np.uint8).reshape(height, width, 3)
+
+
+def pose(data):
+    c = Cdr(data)
+    c.header()
+    x, y, z, qx, qy, qz, qw = (c.take("d") for _ in range(7))
+    return matrix((qw, qx, qy, qz), (x, y, z))
+
+
+def intrinsics(data):
+    c = Cdr(data)
+    c.header()
+    c.take("I"), c.take("I"), c.text()
+    for _ in range(c.take("I")):
+        c.take("d")
+    return np.array([c.take("d") for _ in range(9)]).reshape(3, 3)
+
+
+def matrix(q, t):
+    w, x, y, z = np.array(q) / np.linalg.norm(q)
+    m = np.eye(4)
+    m[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                 [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                 [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    m[:3, 3] = t
+    return m
+
+
+def read(path):
+    """{topic: [message, ...]} of an unchunked recording."""
+    with open(path, "rb") as file:
+        data = file.read()
+    at, topics, out = 8, {}, {}
+    readers = {"image": image, "depth": image, "pose": pose, "camera_info": intrinsics}
+    while at < len(data) - 8:
+        op, length = struct.unpack_from("<BQ", data, at)
+        body = data[at + 9:at + 9 + length]
+        at += 9 + length
+        if op == 4:
+            number, _, size = struct.unpack_from("<HHI", body)
+            topics[number] = body[8:8 + size].decode().split("/")[-1]
+        elif op == 5:
+            name = topics[struct.unpack_from("<H", body)[0]]
+            if name in readers:
+                out.setdefault(name, []).append(readers[name](body[22:]))
+    return out
+
+
+def png(pixels):
+    """8-bit RGB or 16-bit grey."""
+    grey = pixels.ndim == 2
+
+    def chunk(kind, content):
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+    rows = b"".join(b"\0" + (row.astype(">u2") if grey else row).tobytes() for row in pixels)
+    header = struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 16 if grey else 8, 0 if grey else 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")

@@ -1,0 +1,250 @@
+"""trim3r import of pointmaps that NumPy wrote, made of the built-in room's depth: every step comes back exactly, poses and
+intrinsics come from where they should, and files that are not right are refused by name.
+
+pointmaps.py TRIM3R
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is not there")
+    sys.exit(77)
+
+from frames import png, read
+
+program = os.path.abspath(sys.argv[1])
+SIDE, FRAMES = 96, 4
+failures = []
+
+
+def check(condition, what):
+    if not condition:
+        failures.append(what)
+        print("FAILED:", what)
+
+
+def run(*arguments):
+    done = subprocess.run([program, *arguments], capture_output=True, text=True, timeout=300, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+# --- folders ---------------------------------------------------------------------------------------------------------
+
+
+def points(room):
+    """Pointmaps in the first camera's frame, as the networks give them: float32."""
+    first, maps = np.linalg.inv(room["pose"][0]), []
+    for depth, camera, k in zip(room["depth"], room["pose"], room["camera_info"]):
+        z = depth / 1000.0
+        v, u = np.mgrid[:z.shape[0], :z.shape[1]]
+        local = np.stack([(u - k[0, 2]) / k[0, 0] * z, (v - k[1, 2]) / k[1, 1] * z, z, np.ones_like(z)], -1)
+        maps.append((local @ (first @ camera).T)[..., :3].astype(np.float32))
+    return np.stack(maps)
+
+
+def folder(name, room, posed=True, **fields):
+    """The room's pictures; transforms.json unless posed is None, its frames with fields[key][i]."""
+    path = f"{work}/{name}"
+    os.makedirs(path)
+    frames = []
+    for i, rgb in enumerate(room["image"]):
+        with open(f"{path}/{i}.png", "wb") as file:
+            file.write(png(rgb))
+        k = room["camera_info"][i]
+        frame = {"file_path": f"{i}.png", "fl_x": k[0, 0], "fl_y": k[1, 1], "cx": k[0, 2] + 0.5, "cy": k[1, 2] + 0.5}
+        if posed:
+            camera = room["pose"][i] @ np.diag([1, -1, -1, 1])
+            frame["transform_matrix"] = camera.tolist()
+        frame.update({key: values[i] for key, values in fields.items() if key != "top"})
+        frames.append(frame)
+    if posed is not None:
+        with open(f"{path}/transforms.json", "w", encoding="utf-8") as file:
+            json.dump({"frames": frames, **fields.get("top", {})}, file)
+    return path
+
+
+def imported(name, path, *options):
+    target = f"{work}/{name}.mcap"
+    status, out, error = run("import", path, "-o", target, "--json", *options)
+    check(status == 0, f"{name}: {error}")
+    return (json.loads(out), read(target)) if status == 0 else ({}, {})
+
+
+def refused(path, expected, *options):
+    target = f"{work}/refused.mcap"
+    status, out, error = run("import", path, "-o", target, *options)
+    check(status == 1 and out == "", f"{expected}: status {status}")
+    for text in expected:
+        check(text in error, f"'{error.strip()}' does not say '{text}'")
+    check(not os.path.exists(target), f"{expected}: left a recording behind")
+
+
+def same(name, got, room, pose_limit=1e-6, lens_limit=1e-4):
+    for i in range(FRAMES):
+        check(np.array_equal(got["depth"][i], room["depth"][i]),
+              f"{name}: depth of frame {i}: {np.count_nonzero(got['depth'][i] != room['depth'][i])} steps differ")
+        off = np.abs(np.linalg.inv(room["pose"][0]) @ room["pose"][i] -
+                     np.linalg.inv(got["pose"][0]) @ got["pose"][i]).max()
+        check(off < pose_limit, f"{name}: pose of frame {i} is {off} off")
+        off = np.abs(got["camera_info"][i] - room["camera_info"][i]).max()
+        check(off < lens_limit, f"{name}: intrinsics of frame {i} are {off} off")
+
+
+MM = {"top": {"integer_depth_scale": 0.001}}
+
+
+def test_files_of_frames(room, maps):
+    names = [f"{i}.npz" for i in range(FRAMES)]
+    path = folder("npz", room, pointmap_path=names, **MM)
+    for i, name in enumerate(names):
+        (np.savez_compressed if i % 2 else np.savez)(f"{path}/{name}", pts3d=maps[i])
+    report, got = imported("npz", path)
+    same("npz", got, room)
+    check(report.get("pointmaps") == FRAMES and report.get("depth_unit") == 0.001, f"npz: {report}")
+
+    names = [f"{i}.npy" for i in range(FRAMES)]
+    confidence = [f"c{i}.npy" for i in range(FRAMES)]
+    path = folder("npy", room, pointmap_path=names, confidence_path=confidence, **MM)
+    unsure = np.ones(maps.shape[:3], np.float32) * 5
+    unsure[:, ::3, ::2] = 1.5
+    for i, name in enumerate(names):
+        np.save(f"{path}/{name}", maps[i])
+        np.save(f"{path}/{confidence[i]}", unsure[i])
+    _, got = imported("npy", path)
+    same("npy, any confidence", got, room)
+    _, got = imported("npy", path, "--min-confidence", "3")
+    for i in range(FRAMES):
+        check(np.array_equal(got["depth"][i], np.where(unsure[i] < 3, 0, room["depth"][i])), f"confidence: frame {i}")
+
+
+def test_one_file(room, maps):
+    relative = np.stack([np.linalg.inv(room["pose"][0]) @ p for p in room["pose"]])
+    k = np.stack(room["camera_info"])
+    bare, unit = folder("bare", room, posed=None), ("--depth-unit", "0.001")
+    # DUSt3R: focals as a column, poses to the points' frame
+    np.savez(f"{work}/dust3r.npz", pts3d=maps, conf=np.ones(maps.shape[:3], np.float32),
+             poses=relative.astype(np.float32), focals=k[:, 0, :1].astype(np.float32))
+    _, got = imported("dust3r", bare, "--pointmaps", f"{work}/dust3r.npz", *unit)
+    same("dust3r", got, room, lens_limit=0.501)
+    check(abs(got["camera_info"][0][0, 2] - SIDE / 2) < 1e-9, "dust3r: the principal point is where it has it")
+    # VGGT: a batch of one, the inverse of the poses
+    np.savez(f"{work}/vggt.npz", world_points=maps[None], world_points_conf=np.ones((1, *maps.shape[:3]), np.float32),
+             extrinsic=np.linalg.inv(relative)[None, :, :3].astype(np.float32), intrinsic=k[None].astype(np.float32))
+    _, got = imported("vggt", bare, "--pointmaps", f"{work}/vggt.npz", *unit)
+    same("vggt", got, room)
+    # poses from the points: with the picture's intrinsics, and against a folder whose own are wrong
+    np.savez(f"{work}/points.npz", pts3d=maps)
+    numbers = ",".join(repr(float(x)) for x in (k[0, 0, 0], k[0, 1, 1], k[0, 0, 2], k[0, 1, 2]))
+    report, got = imported("points", bare, "--pointmaps", f"{work}/points.npz", "--intrinsics", numbers, *unit)
+    same("points", got, room, 1e-5)
+    check(0 <= report.get("resection_pixels", 9) < 0.01, f"points: {report}")
+    _, got = imported("posed", folder("posed", room, **MM), "--pointmaps", f"{work}/points.npz")
+    same("posed", got, room)
+    wrong = dict(room, pose=[room["pose"][1]] * FRAMES)
+    _, got = imported("wrong", folder("wrong", wrong, **MM), "--pointmaps", f"{work}/points.npz", "--poses", "estimate")
+    same("wrong poses estimated", got, room, 1e-5)
+    # outliers do not move a pose that comes from points
+    noisy = maps.copy()
+    noisy[:, 10:40, 10:50] += 3
+    np.savez(f"{work}/noisy.npz", pts3d=noisy)
+    _, got = imported("noisy", bare, "--pointmaps", f"{work}/noisy.npz", "--intrinsics", numbers, *unit)
+    for i in range(FRAMES):
+        off = np.abs(relative[i] - np.linalg.inv(got["pose"][0]) @ got["pose"][i]).max()
+        check(off < 1e-3, f"noisy: pose of frame {i} is {off} off")
+    # the unit chosen: a power of two that gives the median 4096 to 8192 steps
+    report, got = imported("unit", bare, "--pointmaps", f"{work}/vggt.npz")
+    unit = report.get("depth_unit", 0)
+    median = np.median(np.stack(got["depth"]))
+    check(unit > 0 and np.log2(unit) % 1 == 0 and 4000 < median <= 8250, f"unit: {unit}, median {median}")
+    for i in range(FRAMES):
+        off = np.abs(got["depth"][i] * unit - room["depth"][i] / 1000.0).max()
+        check(off <= unit * 0.51, f"unit: depth of frame {i} is {off} off")
+    # a map of another size than the picture
+    half = maps[:, 1::2, 1::2]
+    np.savez(f"{work}/half.npz", pts3d=half, poses=relative)
+    _, got = imported("half", bare, "--pointmaps", f"{work}/half.npz", "--intrinsics", numbers, "--depth-unit", "0.001")
+    check(got["depth"][2].shape == (SIDE // 2, SIDE // 2), "half: the map's size is kept")
+    _, got = imported("half", bare, "--pointmaps", f"{work}/half.npz", "--intrinsics", numbers, "--depth-unit", "0.001",
+                      "--size", "24x24")
+    check(got["depth"][2].shape == (24, 24), "half: resized")
+
+
+def test_refusals(room, maps):
+    path = folder("bad", room, **MM)
+    file = f"{work}/bad.npz"
+
+    def bad(expected, *options, **arrays):
+        np.savez(file, **arrays)
+        refused(path, ["bad.npz", *expected], "--pointmaps", file, *options)
+
+    def changed(value, at=(1, 20, 30, 2)):
+        out = maps.copy()
+        out[at] = value
+        return out
+
+    bad(["array pts3d: [1, 20, 30, 2] is not a number"], pts3d=changed(np.nan))
+    bad(["array pts3d: [1, 20, 30, 2] is infinite"], pts3d=changed(-np.inf))
+    bad(["array conf: [0, 1, 2] is not a number"], pts3d=maps,
+        conf=np.where(np.arange(maps[..., 0].size).reshape(maps.shape[:3]) == SIDE + 2, np.nan, 1).astype(np.float32))
+    bad(["array conf of 4x96x95", "4 views of 96x96"], pts3d=maps, conf=np.ones((4, 96, 95), np.float32))
+    bad(["3 pointmaps", "has 4 frames"], pts3d=maps[:3])
+    bad(["array pts3d of 4x96x96x2", "last dimension is not 3"], pts3d=maps[..., :2])
+    bad(["array pts3d of 96x96", "not so many dimensions"], pts3d=maps[0, ..., 0])
+    bad(["array pts3d", "float64, but points are float32"], pts3d=maps.astype(np.float64))
+    bad(["array pts3d", "descr is neither"], pts3d=maps.astype(np.float16))
+    bad(["array pts3d", "descr is neither"], pts3d=maps.astype(">f4"))
+    bad(["array pts3d", "fortran_order"], pts3d=np.asfortranarray(maps))
+    bad(["no array pts3d"], depth=maps)
+    bad(["array poses of 3x4x4", "not as many"], pts3d=maps, poses=np.stack([np.eye(4)] * 3))
+    bad(["array poses", "orthonormal"], pts3d=maps, poses=np.stack([np.eye(4) * [2, 1, 1, 1]] * 4))
+    bad(["array intrinsics", "focal length"], pts3d=maps, intrinsics=np.zeros((4, 3, 3)))
+    bad(["array pts3d", "descr"], pts3d=np.array([{"a": 1}], dtype=object))
+    np.savez(file, pts3d=maps[:, :, :64])
+    refused(path, ["pointmap of 64x96 pixels", "96x96"], "--pointmaps", file)
+    np.savez(file, pts3d=maps, conf=np.ones(maps.shape[:3], np.float32))
+    refused(path, ["no point", "confident enough"], "--pointmaps", file, "--min-confidence", "2")
+    np.savez(file, pts3d=np.random.default_rng(1).normal(size=maps.shape).astype(np.float32))
+    refused(path, ["do not lie on the pixels' rays"], "--pointmaps", file, "--poses", "estimate")
+    # cut off, changed, foreign
+    np.savez(file, pts3d=maps)
+    with open(file, "rb") as f:
+        whole = f.read()
+    for keep in (0, 10, len(whole) // 2, len(whole) - 30):
+        with open(file, "wb") as f:
+            f.write(whole[:keep])
+        refused(path, ["bad.npz: "], "--pointmaps", file)
+    with open(file, "wb") as f:
+        f.write(whole[:5000] + bytes([whole[5000] ^ 1]) + whole[5001:])
+    refused(path, ["array pts3d: CRC error"], "--pointmaps", file)
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("pts3d.npy", b"not an array")
+    refused(path, ["array pts3d: not a NumPy array"], "--pointmaps", file)
+    refused(path, ["0.png: neither .npz nor .npy"], "--pointmaps", f"{path}/0.png")
+    refused(path, ["nowhere.npz: No such file"], "--pointmaps", f"{work}/nowhere.npz")
+    array = f"{work}/one.npy"
+    np.save(array, maps[0])
+    with open(array, "rb") as f:
+        whole = f.read()
+    for content, expected in ((whole[:-4], "cut off"), (whole + b"\0", "bytes of numbers"), (whole[:60], "cut off in its")):
+        with open(array, "wb") as f:
+            f.write(content)
+        refused(path, ["one.npy: ", expected], "--pointmaps", array)
+    refused(folder("both", room, depth_path=["0.png"] * FRAMES, pointmap_path=["0.npy"] * FRAMES, **MM),
+            ["frames[0]: pointmap_path: there is a depth_path too"])
+
+
+with tempfile.TemporaryDirectory() as work:
+    code, _, message = run("room", "--size", f"{SIDE}x{SIDE}", "--frames", str(FRAMES), "-o", f"{work}/room.mcap")
+    check(code == 0, f"room: {message}")
+    the_room = read(f"{work}/room.mcap")
+    for test in (test_files_of_frames, test_one_file, test_refusals):
+        test(the_room, points(the_room))
+print("failed:" if failures else "all passed", len(failures) or "")
+sys.exit(1 if failures else 0)

@@ -1,0 +1,28 @@
+/* NumPy's .npy: a header in text, then numbers without gaps. Little-endian floats in C order are read. */
+#ifndef TRIM3R_TOOLS_NPY_H
+#define TRIM3R_TOOLS_NPY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define NPY_MOST_DIMENSIONS 5
+
+typedef struct npy_array {
+    uint32_t dimensions;
+    uint32_t shape[NPY_MOST_DIMENSIONS];
+    uint32_t item_bytes; /* 4: float32, 8: float64 */
+    size_t count;        /* of numbers */
+    const uint8_t *data; /* into the bytes that were parsed */
+} npy_array;
+
+/* A whole .npy (versions 1 to 3): exactly as many bytes as its shape asks for, at most 5 dimensions, none of them 0. 0,
+ * or -1 with what is wrong in error[]. */
+int npy_parse(const uint8_t *bytes, size_t count, npy_array *out, char *error, size_t error_bytes);
+
+/* Number `index`, below out->count. */
+double npy_value(const npy_array *array, size_t index);
+
+/* "2x288x512x3" */
+void npy_shape_text(const npy_array *array, char *text, size_t bytes);
+
+#endif

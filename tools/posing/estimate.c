@@ -1,0 +1,295 @@
+#include "posing/estimate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera.h"
+#include "cli.h"
+#include "posed_folder.h"
+#include "posing/relative.h"
+#include "reason.h"
+
+#define DEEP_LEAST 20u  /* matching corners with depth in both views, or colour decides */
+#define SHARED_LEAST 8u /* depths that must agree on a scale */
+#define PARALLAX 0.01   /* radians between rays whose meeting place is kept as a depth */
+#define REASON_BYTES 256
+#define NAME_COUNT 3
+
+static const char *const names_of[NAME_COUNT] = {"given", "estimate", "estimate-colour"};
+
+bool poses_named(const char *name, poses_source *source)
+{
+    for (int i = 0; i < NAME_COUNT; i++) {
+        if (strcmp(name, names_of[i]) == 0) {
+            *source = (poses_source)i;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* ---- pairs ------------------------------------------------------------------------------------------------------ */
+
+/* Two views, the first with the smaller number. */
+typedef struct edge {
+    uint32_t a, b, count;
+    pose_match *matches;
+    bool refused;
+    char why[REASON_BYTES];
+    bool unscaled; /* refused for want of a scale, which another view may bring */
+} edge;
+
+typedef struct graph {
+    edge *edges;
+    uint32_t count;
+} graph;
+
+static void graph_free(graph *g)
+{
+    for (uint32_t i = 0; i < g->count; i++) {
+        free(g->edges[i].matches);
+    }
+    free(g->edges);
+}
+
+static int graph_make(const pose_view *views, uint32_t count, graph *g)
+{
+    pose_match *found = malloc(CORNERS_MOST * sizeof *found);
+    g->count = 0;
+    g->edges = malloc(((size_t)count * POSES_WINDOW + 1) * sizeof *g->edges);
+    int status = found != NULL && g->edges != NULL ? 0 : -1;
+    for (uint32_t a = 0; a < count && status == 0; a++) {
+        cli_progress("matching", a, count);
+        for (uint32_t b = a + 1; b < count && b <= a + POSES_WINDOW && status == 0; b++) {
+            edge *e = &g->edges[g->count];
+            *e = (edge){.a = a, .b = b, .count = matches_mutual(&views[a], &views[b], found)};
+            e->matches = malloc((e->count + 1) * sizeof *e->matches);
+            if (e->matches == NULL) {
+                status = -1;
+            } else {
+                memcpy(e->matches, found, e->count * sizeof *found);
+                g->count++;
+            }
+        }
+    }
+    free(found);
+    return status;
+}
+
+/* The pair with most matches of which one view has its pose; NULL when none is left. */
+static edge *best_edge(const graph *g, const bool *posed)
+{
+    edge *best = NULL;
+    for (uint32_t i = 0; i < g->count; i++) {
+        edge *e = &g->edges[i];
+        if (!e->refused && posed[e->a] != posed[e->b] && (best == NULL || e->count > best->count)) {
+            best = e;
+        }
+    }
+    return best;
+}
+
+/* ---- scale ------------------------------------------------------------------------------------------------------ */
+
+static int ascending(const void *a, const void *b)
+{
+    double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+/* The median of known depths over those that rays meet at for |t| = 1; 0 where too few are known. */
+static double scale_by_depth(const pose_view *a, const pose_view *b, const relative_pose *r)
+{
+    double *ratios = malloc((2 * (size_t)r->count + 1) * sizeof *ratios), scale = 0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < r->count && ratios != NULL; i++) {
+        const pose_match *m = &r->matches[i];
+        double depth_a, depth_b;
+        if (relative_triangulate(&r->motion, a->rays[m->a], b->rays[m->b], &depth_a, &depth_b)) {
+            if (a->depth[m->a] > 0) {
+                ratios[count++] = a->depth[m->a] / depth_a;
+            }
+            if (b->depth[m->b] > 0) {
+                ratios[count++] = b->depth[m->b] / depth_b;
+            }
+        }
+    }
+    if (count >= SHARED_LEAST) {
+        qsort(ratios, count, sizeof *ratios, ascending);
+        scale = ratios[count / 2];
+    }
+    free(ratios);
+    return scale;
+}
+
+/* Depths of corners where rays meet well, for views that came without: what a third view gets its scale from. */
+static void keep_depths(pose_view *a, pose_view *b, const relative_pose *r)
+{
+    for (uint32_t i = 0; i < r->count; i++) {
+        const pose_match *m = &r->matches[i];
+        const double ray[3] = {a->rays[m->a][0], a->rays[m->a][1], 1},
+                     seen[3] = {b->rays[m->b][0], b->rays[m->b][1], 1};
+        double turned[3], depth_a, depth_b;
+        apply3(r->motion.r, ray, turned);
+        if (direction_angle(turned, seen) < PARALLAX ||
+            !relative_triangulate(&r->motion, a->rays[m->a], b->rays[m->b], &depth_a, &depth_b)) {
+            continue;
+        }
+        if (!a->measured && a->depth[m->a] == 0) {
+            a->depth[m->a] = depth_a;
+        }
+        if (!b->measured && b->depth[m->b] == 0) {
+            b->depth[m->b] = depth_b;
+        }
+    }
+}
+
+/* ---- joining ---------------------------------------------------------------------------------------------------- */
+
+/* By depth where enough corners have it in both views. */
+static int relate(const pose_view *views, const edge *e, poses_source source, relative_pose *out, char *error)
+{
+    const pose_view *a = &views[e->a], *b = &views[e->b];
+    uint32_t deep = 0;
+    for (uint32_t i = 0; i < e->count && a->measured && b->measured; i++) {
+        deep += a->depth[e->matches[i].a] > 0 && b->depth[e->matches[i].b] > 0;
+    }
+    if (source != POSES_ESTIMATE_COLOUR && deep >= DEEP_LEAST) {
+        return relative_by_depth(a, b, e->matches, e->count, out, error, REASON_BYTES);
+    }
+    return relative_by_colour(a, b, e->matches, e->count, out, error, REASON_BYTES);
+}
+
+/* Gives the pair's unposed view its pose. *scaled: whether lengths have a unit already. */
+static int join(pose_view *views, edge *e, poses_source source, bool *scaled, bool *posed, motion *poses,
+                pose_account *accounts)
+{
+    relative_pose r;
+    int status = relate(views, e, source, &r, e->why);
+    double scale = 1;
+    if (status == 0 && !r.metric) {
+        scale = scale_by_depth(&views[e->a], &views[e->b], &r);
+        if (scale == 0 && *scaled) {
+            e->unscaled = true;
+            status = t3r_reason(e->why, REASON_BYTES, "too few corners in common with a third view to tell the scale");
+        }
+        scale = scale == 0 ? 1 : scale;
+    }
+    if (status == 0) {
+        *scaled = true;
+        for (int i = 0; i < 3; i++) {
+            r.motion.t[i] *= scale;
+        }
+        keep_depths(&views[e->a], &views[e->b], &r);
+        uint32_t known = posed[e->a] ? e->a : e->b, next = posed[e->a] ? e->b : e->a;
+        motion back = posed[e->a] ? motion_inverse(&r.motion) : r.motion; /* next camera to the known one */
+        poses[next] = motion_after(&poses[known], &back);
+        posed[next] = true;
+        accounts[next] = (pose_account){.from = known,
+                                        .matches = r.count,
+                                        .tried = r.tried,
+                                        .metric = r.metric,
+                                        .pixels = r.account.pixels,
+                                        .turn_degrees = r.account.turn_degrees,
+                                        .direction_degree = r.account.direction_degree};
+    }
+    relative_free(&r);
+    return status;
+}
+
+/* The first view that has no pose, and why its most promising pair gave none. */
+static int tell_refusal(const graph *g, const bool *posed, uint32_t count, const uint32_t *names, char *error,
+                        size_t error_bytes)
+{
+    const edge *best = NULL;
+    uint32_t left = 0;
+    while (left < count - 1 && posed[left]) {
+        left++;
+    }
+    for (uint32_t i = 0; i < g->count; i++) {
+        const edge *e = &g->edges[i];
+        if ((e->a == left || e->b == left) && posed[e->a] != posed[e->b] && (best == NULL || e->count > best->count)) {
+            best = e;
+        }
+    }
+    if (best == NULL) {
+        return t3r_reason(error, error_bytes, "frame %u cannot be posed: no frame near it in order has a pose",
+                          names != NULL ? names[left] : left);
+    }
+    uint32_t other = best->a == left ? best->b : best->a;
+    return t3r_reason(error, error_bytes, "frame %u cannot be posed from frame %u: %s",
+                      names != NULL ? names[left] : left, names != NULL ? names[other] : other, best->why);
+}
+
+static int join_all(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, graph *g, bool *posed,
+                    motion *poses, pose_account *accounts, char *error, size_t error_bytes)
+{
+    bool scaled = false;
+    uint32_t done = 1;
+    posed[0] = true;
+    poses[0] = motion_none;
+    accounts[0] = (pose_account){0};
+    edge *e;
+    while (done < count && (e = best_edge(g, posed)) != NULL) {
+        cli_progress("estimating poses", done, count);
+        if (join(views, e, source, &scaled, posed, poses, accounts) == 0) {
+            done++;
+            for (uint32_t i = 0; i < g->count; i++) {
+                g->edges[i].refused = g->edges[i].refused && !g->edges[i].unscaled;
+                g->edges[i].unscaled = false;
+            }
+        } else {
+            e->refused = true;
+        }
+    }
+    cli_progress_end();
+    return done == count ? 0 : tell_refusal(g, posed, count, names, error, error_bytes);
+}
+
+int poses_estimate(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, motion *poses,
+                   pose_account *accounts, char *error, size_t error_bytes)
+{
+    if (count > POSES_MOST) {
+        return t3r_reason(error, error_bytes, "poses of more than %u frames are not estimated at once", POSES_MOST);
+    }
+    graph g = {0};
+    bool *posed = calloc(count, sizeof *posed);
+    int status = posed != NULL && graph_make(views, count, &g) == 0
+                     ? join_all(views, count, source, names, &g, posed, poses, accounts, error, error_bytes)
+                     : t3r_reason(error, error_bytes, "out of memory");
+    graph_free(&g);
+    free(posed);
+    return status;
+}
+
+/* ---- quantizing ------------------------------------------------------------------------------------------------- */
+
+int pose_store(const motion *pose, const t3r_camera *first, t3r_camera *camera)
+{
+    motion base;
+    int32_t rotation[9];
+    double quaternion[4];
+    t3r_camera_rotation(first->rotation_q30, rotation);
+    for (int i = 0; i < 9; i++) {
+        base.r[i] = ldexp(rotation[i], -30);
+    }
+    for (int i = 0; i < 3; i++) {
+        base.t[i] = 0;
+    }
+    motion world = motion_after(&base, pose);
+    if (posed_quaternion(world.r, quaternion) != NULL) {
+        return -1;
+    }
+    for (int i = 0; i < 3; i++) {
+        double moved = ldexp(world.t[i], 32), limit = ldexp(1, 61);
+        if (!(fabs(moved) < limit && llabs(first->position_q32[i]) < (INT64_C(1) << 61))) {
+            return -1;
+        }
+        camera->position_q32[i] = first->position_q32[i] + llrint(moved);
+    }
+    for (int i = 0; i < 4; i++) {
+        camera->rotation_q30[i] = (int32_t)lrint(ldexp(quaternion[i], 30));
+    }
+    return 0;
+}

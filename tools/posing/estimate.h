@@ -1,0 +1,43 @@
+/* Poses of any number of views: each from the best one that has its pose already. */
+#ifndef TRIM3R_TOOLS_POSING_ESTIMATE_H
+#define TRIM3R_TOOLS_POSING_ESTIMATE_H
+
+#include <stddef.h>
+
+#include "posing/motion.h"
+#include "posing/view.h"
+
+#define POSES_MOST 1000u
+#define POSES_WINDOW 16u /* views further apart in their order are not compared */
+
+/* How poses come about, as the option --poses names it. */
+typedef enum poses_source {
+    POSES_GIVEN,          /* they come with the frames */
+    POSES_ESTIMATE,       /* estimated, with depth where two frames have it */
+    POSES_ESTIMATE_COLOUR /* from colour alone; depth, where there is some, only sets the scale */
+} poses_source;
+
+#define POSES_NAMES "given, estimate, estimate-colour"
+/* false: no such name. */
+bool poses_named(const char *name, poses_source *source);
+
+/* What an estimate rests on. */
+typedef struct pose_account {
+    uint32_t from;                         /* the view that it was made from; its own number for the first */
+    uint32_t matches, tried;               /* corners that agree with the motion, of those that match */
+    bool metric;                           /* by depth in both */
+    double pixels;                         /* root of the mean square of their errors */
+    double turn_degrees, direction_degree; /* standard deviations to expect of the motion between the two */
+} pose_account;
+
+/* Poses, camera to the first camera. The unit of length is that of the depths; without any, the distance of the first
+ * two cameras that are joined. views[].depth gains the depths of corners found on the way. Deterministic: fixed seeds,
+ * bounded work. 0, or -1 with "view N: why" in error[], N as `names` has it (NULL: the index). */
+int poses_estimate(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, motion *poses,
+                   pose_account *accounts, char *error, size_t error_bytes);
+
+/* The pose `pose` in the first camera's axes, behind the first camera's own pose in `first`, rounded to the fixed point
+ * of t3r_camera into `camera`: positions to Q32, the quaternion to Q30. -1 when a position is out of range. */
+int pose_store(const motion *pose, const t3r_camera *first, t3r_camera *camera);
+
+#endif

@@ -1,0 +1,124 @@
+#include "posing/view.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "reason.h"
+
+#define EDGE 0.05 /* depths around a corner that differ by more of the nearest one are of two surfaces */
+
+/* A frame after the runtime's image stage: undistorted, at the size that is worked on. */
+typedef struct developed {
+    uint32_t width, height;
+    uint8_t *rgb;
+    uint16_t *depth;
+    t3r_camera camera;
+} developed;
+
+static int develop(const t3r_frame *frame, const t3r_camera *camera, developed *out, char *error, size_t error_bytes)
+{
+    uint32_t longest = frame->width > frame->height ? frame->width : frame->height;
+    uint32_t reduced = longest > POSE_SIDE_MOST ? POSE_SIDE_MOST : longest;
+    out->width = (frame->width * reduced + longest / 2) / longest;
+    out->height = (frame->height * reduced + longest / 2) / longest;
+    t3r_config config = t3r_default_config(out->width, out->height, 1, 1);
+    t3r_plan_info plan;
+    t3r_status status = t3r_plan(&config, &plan);
+    if (status != T3R_OK) {
+        return t3r_reason(error, error_bytes, "%ux%u pixels are too few", frame->width, frame->height);
+    }
+    t3r_camera identified = *camera;
+    for (int i = 0; i < 4; i++) {
+        identified.rotation_q30[i] = i == 0 ? 1 << 30 : 0;
+    }
+    for (int i = 0; i < 3; i++) {
+        identified.position_q32[i] = 0;
+    }
+    size_t pixels = (size_t)out->width * out->height;
+    out->rgb = malloc(pixels * 3);
+    out->depth = malloc(pixels * sizeof *out->depth);
+    void *arena = NULL;
+    t3r_runtime *runtime;
+    if (out->rgb == NULL || out->depth == NULL || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    status = t3r_init(&runtime, arena, plan.min_bytes, &config);
+    if (status == T3R_OK) {
+        status = t3r_develop(runtime, frame, &identified, out->rgb, out->depth, &out->camera);
+    }
+    free(arena);
+    return status == T3R_OK ? 0 : t3r_reason(error, error_bytes, "%s", t3r_error_text(status));
+}
+
+/* Inverse depth is linear on a plane: bilinear in it. 0 where the 4 x 4 around are not one surface. */
+static double depth_at(const developed *d, double x, double y, double unit)
+{
+    int32_t left = (int32_t)floor(x), top = (int32_t)floor(y);
+    if (left < 1 || top < 1 || left + 2 >= (int32_t)d->width || top + 2 >= (int32_t)d->height) {
+        return 0;
+    }
+    uint32_t nearest = UINT16_MAX, farthest = 0;
+    for (int32_t v = top - 1; v <= top + 2; v++) {
+        for (int32_t u = left - 1; u <= left + 2; u++) {
+            uint32_t z = d->depth[(size_t)v * d->width + (size_t)u];
+            nearest = z < nearest ? z : nearest;
+            farthest = z > farthest ? z : farthest;
+        }
+    }
+    if (nearest == 0 || farthest - nearest > EDGE * nearest) {
+        return 0;
+    }
+    double fx = x - left, fy = y - top;
+    const uint16_t *row = d->depth + (size_t)top * d->width + (size_t)left, *next = row + d->width;
+    double inverse = (1 - fy) * ((1 - fx) / row[0] + fx / row[1]) + fy * ((1 - fx) / next[0] + fx / next[1]);
+    return unit / inverse;
+}
+
+static int find(const developed *d, pose_view *out, double unit)
+{
+    size_t pixels = (size_t)d->width * d->height;
+    uint8_t *grey = malloc(pixels);
+    out->corners = malloc(CORNERS_MOST * sizeof *out->corners);
+    out->rays = malloc(CORNERS_MOST * sizeof *out->rays);
+    out->depth = malloc(CORNERS_MOST * sizeof *out->depth);
+    int status = grey != NULL && out->corners != NULL && out->rays != NULL && out->depth != NULL ? 0 : -1;
+    for (size_t i = 0; i < pixels && status == 0; i++) {
+        const uint8_t *p = d->rgb + 3 * i;
+        grey[i] = (uint8_t)((77 * p[0] + 150 * p[1] + 29 * p[2] + 128) >> 8);
+    }
+    if (status == 0) {
+        status = corners_find(grey, d->width, d->height, out->corners, &out->count);
+    }
+    free(grey);
+    double fx = ldexp(d->camera.fx_q16, -16), fy = ldexp(d->camera.fy_q16, -16);
+    double cx = ldexp(d->camera.cx_q16, -16), cy = ldexp(d->camera.cy_q16, -16);
+    out->focal = (fx + fy) / 2;
+    for (uint32_t i = 0; i < out->count && status == 0; i++) {
+        double x = out->corners[i].x_q8 / 256.0, y = out->corners[i].y_q8 / 256.0;
+        out->rays[i][0] = (x - cx) / fx;
+        out->rays[i][1] = (y - cy) / fy;
+        out->depth[i] = out->measured ? depth_at(d, x, y, unit) : 0;
+    }
+    return status;
+}
+
+int pose_view_make(const t3r_frame *frame, const t3r_camera *camera, pose_view *out, char *error, size_t error_bytes)
+{
+    *out = (pose_view){.measured = frame->depth != NULL};
+    developed d = {0};
+    int status = develop(frame, camera, &d, error, error_bytes);
+    if (status == 0 && find(&d, out, ldexp((double)frame->depth_unit_q40, -40)) != 0) {
+        status = t3r_reason(error, error_bytes, "out of memory");
+    }
+    free(d.rgb);
+    free(d.depth);
+    return status;
+}
+
+void pose_view_free(pose_view *view)
+{
+    free(view->corners);
+    free(view->rays);
+    free(view->depth);
+    *view = (pose_view){0};
+}
