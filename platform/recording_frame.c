@@ -275,7 +275,9 @@ int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capt
     const t3r_frame_links *links = &recording->links[index];
     t3r_capture_frame result = {
         .index = index,
+        .sequence = index,
         .stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
+        .depth_stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
         .has_pose = links->pose != T3R_NO_MESSAGE,
         .has_intrinsics = links->camera_info != T3R_NO_MESSAGE,
     };
@@ -284,6 +286,9 @@ int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capt
         (result.has_intrinsics && read_intrinsics(&r, links->camera_info, &result.frame, &result.camera) != 0) ||
         (result.has_pose && read_pose(&r, links->pose, &result.camera) != 0)) {
         return T3R_CAPTURE_FAILED;
+    }
+    if (links->depth != T3R_NO_MESSAGE) {
+        result.depth_stamp_ns = recording->streams[recording->depth].messages[links->depth].stamp_ns;
     }
     *frame = result;
     return T3R_CAPTURE_FRAME;
