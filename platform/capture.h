@@ -112,8 +112,8 @@ typedef struct t3r_capture_settings {
     uint32_t deadline_ms;               /* of t3r_capture_next(), 1..60000; default 100 */
     uint32_t stall_ms;                  /* no frame for so long: LOST; default 3000 */
     uint32_t pair_ms;                   /* colour and depth of one instant are at most this far apart; default 20 */
-    uint32_t repeat;                    /* of `replay`: the recording so many times over, its clock going on; default 1 */
-    const char *backend;                /* of `opencv`: FFMPEG, V4L2, IMAGES, CV_MJPEG, GSTREAMER; default: its choice */
+    uint32_t repeat;     /* of `replay`: the recording so many times over, its clock going on; default 1 */
+    const char *backend; /* of `opencv`: FFMPEG, V4L2, IMAGES, CV_MJPEG, GSTREAMER; default: its choice */
 } t3r_capture_settings;
 
 /* "YUYV UYVY NV12 RGB3 BGR3 GREY MJPG", those of this build, in the order in which they are tried. */

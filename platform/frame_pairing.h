@@ -19,9 +19,9 @@ typedef struct t3r_pairing_queue {
 
 typedef struct t3r_pairing {
     t3r_pairing_queue colour, depth;
-    uint32_t most;      /* of either kind that may wait, 1..T3R_PAIRING_MOST */
-    int64_t near_ns;    /* of one instant are images at most this far apart */
-    int64_t patience_ns; /* so long a colour image waits for its depth */
+    uint32_t most;                            /* of either kind that may wait, 1..T3R_PAIRING_MOST */
+    int64_t near_ns;                          /* of one instant are images at most this far apart */
+    int64_t patience_ns;                      /* so long a colour image waits for its depth */
     int64_t depth_last_ns, depth_interval_ns; /* 0: not known yet */
 } t3r_pairing;
 

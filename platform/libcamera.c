@@ -50,7 +50,7 @@ static bool format_of(const char *name, t3r_pixel_format *format)
     static const struct {
         const char *name;
         t3r_pixel_format format;
-    } known[] = {{"YUYV", T3R_PIXEL_YUYV}, {"UYVY", T3R_PIXEL_UYVY},  {"NV12", T3R_PIXEL_NV12},
+    } known[] = {{"YUYV", T3R_PIXEL_YUYV},  {"UYVY", T3R_PIXEL_UYVY},  {"NV12", T3R_PIXEL_NV12},
                  {"RGB3", T3R_PIXEL_RGB24}, {"BGR3", T3R_PIXEL_BGR24}, {"GREY", T3R_PIXEL_GREY}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         if (strcmp(known[i].name, name) == 0) {

@@ -27,7 +27,8 @@
 
 namespace lc = libcamera;
 
-namespace {
+namespace
+{
 
 // DRM's names tell the order in a little-endian word, so its BGR888 is R, G, B in memory.
 struct named_format {
@@ -97,8 +98,7 @@ struct t3r_libcamera_stream {
             for (const auto &plane : m.planes()) {
                 d.bytes += plane.bytesused;
             }
-            d.whole = request->status() == lc::Request::RequestComplete &&
-                      m.status == lc::FrameMetadata::FrameSuccess;
+            d.whole = request->status() == lc::Request::RequestComplete && m.status == lc::FrameMetadata::FrameSuccess;
         }
         more.notify_one();
     }
@@ -111,7 +111,8 @@ struct t3r_libcamera_stream {
     }
 };
 
-namespace {
+namespace
+{
 
 int complain(char *error, size_t error_bytes, const char *camera, const char *what)
 {

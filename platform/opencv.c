@@ -1,5 +1,5 @@
-/* The adapter `opencv`: films, pictures and devices by OpenCV's VideoCapture, colour as BGR or grey; depth from a second
- * one with 16 bits a pixel, picture by picture. */
+/* The adapter `opencv`: films, pictures and devices by OpenCV's VideoCapture, colour as BGR or grey; depth from a
+ * second one with 16 bits a pixel, picture by picture. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -19,7 +19,8 @@ struct t3r_opencv_film {
     bool live = false;
 };
 
-namespace {
+namespace
+{
 
 int complain(char *error, size_t error_bytes, const char *url, const char *what)
 {

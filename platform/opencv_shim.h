@@ -20,13 +20,13 @@ typedef struct t3r_opencv_picture {
 } t3r_opencv_picture;
 
 typedef struct t3r_opencv_request {
-    const char *url;           /* a number alone is a device */
-    const char *backend;       /* NULL = OpenCV's choice */
-    uint32_t width, height;    /* of devices; 0 = as it is */
-    uint32_t rate_millihertz;  /* of devices; 0 = as it is */
-    const char *fourcc;        /* of devices; NULL = as it is */
-    uint32_t timeout_ms;       /* of back ends that have one: FFMPEG, GStreamer */
-    bool unchanged;            /* samples as they are stored: for depth */
+    const char *url;          /* a number alone is a device */
+    const char *backend;      /* NULL = OpenCV's choice */
+    uint32_t width, height;   /* of devices; 0 = as it is */
+    uint32_t rate_millihertz; /* of devices; 0 = as it is */
+    const char *fourcc;       /* of devices; NULL = as it is */
+    uint32_t timeout_ms;      /* of back ends that have one: FFMPEG, GStreamer */
+    bool unchanged;           /* samples as they are stored: for depth */
 } t3r_opencv_request;
 
 typedef struct t3r_opencv_shim {

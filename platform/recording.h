@@ -113,7 +113,8 @@ typedef struct t3r_recorded_frame {
     const uint8_t *planes[2];
     uint32_t stride_bytes[2];
     const uint16_t *depth; /* NULL = none; host order */
-    const uint8_t *depth_z16; /* where depth is NULL: little-endian samples, rows depth_stride_bytes apart; NULL = none */
+    const uint8_t
+        *depth_z16; /* where depth is NULL: little-endian samples, rows depth_stride_bytes apart; NULL = none */
     uint32_t depth_width, depth_height, depth_stride_bytes;
     bool unposed, uncalibrated; /* camera's pose, or its intrinsics, are not known and not written */
     t3r_recorded_camera camera;
@@ -148,7 +149,11 @@ int t3r_recorder_begin(t3r_recorder *recorder, t3r_sink sink, const t3r_recordin
 int t3r_recorder_frame(t3r_recorder *recorder, const t3r_recorded_frame *frame);
 /* A line of text of that time, as rcl_interfaces/msg/Log; -1 also without `events` in the header, or when the text is
  * longer than 1,024 bytes. */
-typedef enum t3r_recorder_level { T3R_RECORDER_INFO = 20, T3R_RECORDER_WARNING = 30, T3R_RECORDER_ERROR = 40 } t3r_recorder_level;
+typedef enum t3r_recorder_level {
+    T3R_RECORDER_INFO = 20,
+    T3R_RECORDER_WARNING = 30,
+    T3R_RECORDER_ERROR = 40
+} t3r_recorder_level;
 int t3r_recorder_event(t3r_recorder *recorder, int64_t stamp_ns, t3r_recorder_level level, const char *text);
 /* Bytes of the recording so far, and the most that t3r_recorder_end() adds. */
 uint64_t t3r_recorder_offset(const t3r_recorder *recorder);

@@ -108,8 +108,8 @@ static void put_channels(t3r_recorder *recorder)
         memcpy(topic + 1, recorder->camera, prefix);
         topic[1 + prefix] = '/';
         memcpy(topic + prefix + 2, channels[i].name, name);
-        t3r_mcap_channel(&recorder->out, (uint16_t)i, channels[i].schema,
-                         (t3r_text){topic, prefix + 2 + name}, t3r_text_of("cdr"), &quality, 1);
+        t3r_mcap_channel(&recorder->out, (uint16_t)i, channels[i].schema, (t3r_text){topic, prefix + 2 + name},
+                         t3r_text_of("cdr"), &quality, 1);
     }
 }
 
@@ -328,9 +328,8 @@ static bool frame_is_recordable(const t3r_recorded_frame *frame)
         t3r_pixel_size_error(frame->format, frame->width, frame->height)) {
         return false;
     }
-    if (!frame->uncalibrated &&
-        ((uint32_t)frame->camera.distortion >= T3R_DISTORTION_COUNT || frame->camera.width != frame->width ||
-         frame->camera.height != frame->height)) {
+    if (!frame->uncalibrated && ((uint32_t)frame->camera.distortion >= T3R_DISTORTION_COUNT ||
+                                 frame->camera.width != frame->width || frame->camera.height != frame->height)) {
         return false;
     }
     uint32_t row_bytes = t3r_pixel_row_bytes(frame->format, frame->width);

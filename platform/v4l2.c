@@ -29,13 +29,13 @@ typedef struct v4l2_capture {
     char *path[NODES]; /* NULL = no such node */
     t3r_v4l2_node node[NODES];
     uint32_t nodes;
-    t3r_pairing pairing; /* of two nodes; of one the queue of colour alone */
+    t3r_pairing pairing;                        /* of two nodes; of one the queue of colour alone */
     uint32_t bytes_used[T3R_V4L2_MOST_BUFFERS]; /* of a colour buffer's JPEG */
     t3r_mjpeg *mjpeg;
     uint8_t *rgb; /* of MJPG */
     size_t rgb_bytes;
     uint32_t index;
-    uint64_t taken; /* images dequeued, broken ones too */
+    uint64_t taken;            /* images dequeued, broken ones too */
     int64_t left_ns, alive_ns; /* when the last call ended; when the last image came */
 } v4l2_capture;
 
@@ -303,12 +303,11 @@ static int deliver(v4l2_capture *self, bool with_depth, int64_t gap_ns, t3r_capt
         fill_depth(self, &depth, &frame->frame);
     }
     if (self->nodes > 1) {
-        t3r_capture_tell(&self->capture,
-                         (t3r_capture_event){.kind = with_depth ? T3R_EVENT_PAIRED : T3R_EVENT_ALONE,
-                                             .stamp_ns = colour.stamp_ns,
-                                             .sequence = colour.sequence,
-                                             .depth_sequence = depth.sequence,
-                                             .gap_ns = gap_ns});
+        t3r_capture_tell(&self->capture, (t3r_capture_event){.kind = with_depth ? T3R_EVENT_PAIRED : T3R_EVENT_ALONE,
+                                                             .stamp_ns = colour.stamp_ns,
+                                                             .sequence = colour.sequence,
+                                                             .depth_sequence = depth.sequence,
+                                                             .gap_ns = gap_ns});
     }
     return t3r_capture_deliver(&self->capture, frame);
 }

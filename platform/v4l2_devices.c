@@ -20,8 +20,8 @@ static void say_node(int fd, const char *path, void (*say)(void *user, const cha
         return;
     }
     char line[256];
-    int used = snprintf(line, sizeof line, "v4l2:%s  %.32s (%.16s):", path, (const char *)can.card,
-                        (const char *)can.driver);
+    int used =
+        snprintf(line, sizeof line, "v4l2:%s  %.32s (%.16s):", path, (const char *)can.card, (const char *)can.driver);
     for (uint32_t i = 0; i < 64 && used < (int)sizeof line - 8; i++) {
         struct v4l2_fmtdesc listed = {.index = i, .type = V4L2_BUF_TYPE_VIDEO_CAPTURE};
         if (t3r_v4l2_ioctl(system, fd, VIDIOC_ENUM_FMT, &listed) != 0) {

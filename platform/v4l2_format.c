@@ -150,9 +150,9 @@ const char *t3r_v4l2_choose(const t3r_v4l2_system *system, int fd, const t3r_v4l
         return "the format is not one that is read";
     }
     if (best == UINT64_MAX) {
-        return wish->depth               ? "the device offers neither Z16 nor Y16"
+        return wish->depth            ? "the device offers neither Z16 nor Y16"
                : wish->format != NULL ? "the device does not offer the format"
-                                         : "the device offers no format that is read";
+                                      : "the device offers no format that is read";
     }
     return NULL;
 }

@@ -7,7 +7,7 @@
 #include "pixel_layout.h"
 #include "reason.h"
 
-#define MOST_REFUSED 8u    /* EIO so often in a row is no hiccup */
+#define MOST_REFUSED 8u       /* EIO so often in a row is no hiccup */
 #define FAR_AHEAD 0x80000000u /* a sequence that is "ahead" by more went backwards */
 
 static int control(const t3r_v4l2_node *node, unsigned long request, void *argument)
@@ -75,8 +75,7 @@ static int set_format(t3r_v4l2_node *node, const t3r_v4l2_choice *choice, char *
     node->height = pix->height;
     node->needed_bytes = 0;
     if (!node->format->jpeg) {
-        node->row_bytes =
-            node->format->depth ? pix->width * 2 : t3r_pixel_row_bytes(node->format->pixels, pix->width);
+        node->row_bytes = node->format->depth ? pix->width * 2 : t3r_pixel_row_bytes(node->format->pixels, pix->width);
         node->stride = pix->bytesperline != 0 ? pix->bytesperline : node->row_bytes;
         uint32_t rows = pix->height;
         if (!node->format->depth) {

@@ -28,10 +28,10 @@ typedef struct t3r_v4l2_node {
     t3r_v4l2_buffer buffers[T3R_V4L2_MOST_BUFFERS];
     uint32_t buffer_count;
     bool streaming;
-    bool monotonic;        /* its stamps are CLOCK_MONOTONIC; else they are taken on arrival */
-    bool end_of_frame;     /* stamps are of its end, not of the start of its exposure */
-    int64_t interval_ns;   /* between frames, as agreed or measured; 0: unknown */
-    bool has_sequence;     /* next_sequence is known */
+    bool monotonic;      /* its stamps are CLOCK_MONOTONIC; else they are taken on arrival */
+    bool end_of_frame;   /* stamps are of its end, not of the start of its exposure */
+    int64_t interval_ns; /* between frames, as agreed or measured; 0: unknown */
+    bool has_sequence;   /* next_sequence is known */
     uint32_t next_sequence;
     int64_t last_stamp_ns;
     uint32_t slow;    /* gaps in so many of the next frames are the caller's doing */
