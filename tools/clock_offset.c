@@ -5,8 +5,7 @@
 
 #include "reason.h"
 
-#define SIDE ((int)CLOCK_OFFSET_SIDE)
-#define MOST_SHIFT 16     /* columns or rows between neighbours: a sixth of the picture */
+#define MOST_SHIFT 8      /* of columns and rows between neighbours: a tenth of the picture */
 #define LEAST_MOTIONS 12u /* with poses at both ends */
 #define COARSE_NS INT64_C(4000000)
 #define FINE_NS INT64_C(250000)
@@ -17,7 +16,7 @@
 /* ---- pictures ---- */
 
 /* 0..255; of colours the green one, of YUV luma. */
-static double brightness(const t3r_frame *f, uint32_t x, uint32_t y)
+static float brightness(const t3r_frame *f, uint32_t x, uint32_t y)
 {
     const uint8_t *row = f->planes[0] + (size_t)y * f->stride_bytes[0];
     switch (f->format) {
@@ -36,74 +35,77 @@ static double brightness(const t3r_frame *f, uint32_t x, uint32_t y)
     }
 }
 
-/* Gradients of the sums, not the sums: exposure and shading move little. */
-static void differentiate(double profile[CLOCK_OFFSET_SIDE])
+/* Box means of every second sample at most. */
+void clock_picture_of(const t3r_frame *frame, clock_picture *out)
 {
-    for (int i = 0; i < SIDE - 1; i++) {
-        profile[i] = profile[i + 1] - profile[i];
-    }
-    profile[SIDE - 1] = 0;
-}
-
-void clock_profiles_of(const t3r_frame *frame, clock_profiles *out)
-{
+    float count[CLOCK_ROWS][CLOCK_COLUMNS] = {{0}};
     memset(out, 0, sizeof *out);
-    uint32_t step_x = frame->width / CLOCK_OFFSET_SIDE + (frame->width < CLOCK_OFFSET_SIDE);
-    uint32_t step_y = frame->height / CLOCK_OFFSET_SIDE + (frame->height < CLOCK_OFFSET_SIDE);
-    double columns[CLOCK_OFFSET_SIDE] = {0}, rows[CLOCK_OFFSET_SIDE] = {0};
-    for (uint32_t y = 0; y<frame->height; y += step_y> 1 ? step_y / 2 : 1) {
-        uint32_t row = (uint32_t)((uint64_t)y * CLOCK_OFFSET_SIDE / frame->height);
-        for (uint32_t x = 0; x<frame->width; x += step_x> 1 ? step_x / 2 : 1) {
-            uint32_t column = (uint32_t)((uint64_t)x * CLOCK_OFFSET_SIDE / frame->width);
-            double value = brightness(frame, x, y);
-            out->column[column] += value;
-            out->row[row] += value;
-            columns[column]++;
-            rows[row]++;
+    uint32_t step_x = frame->width >= 4 * CLOCK_COLUMNS ? 2 : 1, step_y = frame->height >= 4 * CLOCK_ROWS ? 2 : 1;
+    for (uint32_t y = 0; y < frame->height; y += step_y) {
+        uint32_t row = (uint32_t)((uint64_t)y * CLOCK_ROWS / frame->height);
+        for (uint32_t x = 0; x < frame->width; x += step_x) {
+            uint32_t column = (uint32_t)((uint64_t)x * CLOCK_COLUMNS / frame->width);
+            out->value[row][column] += brightness(frame, x, y);
+            count[row][column]++;
         }
     }
-    for (int i = 0; i < SIDE; i++) {
-        out->column[i] /= columns[i] > 0 ? columns[i] : 1;
-        out->row[i] /= rows[i] > 0 ? rows[i] : 1;
+    float mean = 0;
+    for (int r = 0; r < CLOCK_ROWS; r++) {
+        for (int c = 0; c < CLOCK_COLUMNS; c++) {
+            out->value[r][c] /= count[r][c] > 0 ? count[r][c] : 1;
+            mean += out->value[r][c] / (CLOCK_ROWS * CLOCK_COLUMNS);
+        }
     }
-    differentiate(out->column);
-    differentiate(out->row);
+    for (int r = 0; r < CLOCK_ROWS; r++) {
+        for (int c = 0; c < CLOCK_COLUMNS; c++) {
+            out->value[r][c] -= mean;
+        }
+    }
 }
 
-/* Mean squared difference of two profiles, the second moved back by `shift`. */
-static double mismatch(const double a[CLOCK_OFFSET_SIDE], const double b[CLOCK_OFFSET_SIDE], int shift)
+/* Sum of squared differences, the second picture moved back by (right, down). */
+static float mismatch(const clock_picture *a, const clock_picture *b, int right, int down)
 {
-    double sum = 0;
-    int count = 0;
-    for (int i = MOST_SHIFT; i < SIDE - 1 - MOST_SHIFT; i++) {
-        double d = a[i] - b[i + shift];
-        sum += d * d;
-        count++;
+    float sum = 0;
+    for (int r = MOST_SHIFT; r < CLOCK_ROWS - MOST_SHIFT; r++) {
+        for (int c = MOST_SHIFT; c < CLOCK_COLUMNS - MOST_SHIFT; c++) {
+            float d = a->value[r][c] - b->value[r + down][c + right];
+            sum += d * d;
+        }
     }
-    return sum / count;
+    return sum;
 }
 
-/* How far b is ahead of a, as a share of their length; between two whole steps by the parabola through three. */
-static double shift_of(const double a[CLOCK_OFFSET_SIDE], const double b[CLOCK_OFFSET_SIDE])
+/* Where the parabola through three equally spaced values is lowest, from the middle one. */
+static double lowest(float before, float middle, float after)
 {
-    double worth[2 * MOST_SHIFT + 1];
-    int best = 0;
-    for (int s = 0; s <= 2 * MOST_SHIFT; s++) {
-        worth[s] = mismatch(a, b, s - MOST_SHIFT);
-        best = worth[s] < worth[best] ? s : best;
-    }
-    double between = 0;
-    if (best > 0 && best < 2 * MOST_SHIFT) {
-        double curve = worth[best - 1] - 2 * worth[best] + worth[best + 1];
-        between = curve > 0 ? (worth[best - 1] - worth[best + 1]) / (2 * curve) : 0;
-    }
-    return (best - MOST_SHIFT + between) / SIDE;
+    double curve = (double)before - 2 * (double)middle + (double)after;
+    return curve > 0 ? ((double)before - (double)after) / (2 * curve) : 0;
 }
 
-void clock_motion_of(const clock_profiles *before, const clock_profiles *after, clock_motion *out)
+void clock_motion_of(const clock_picture *before, const clock_picture *after, clock_motion *out)
 {
-    out->right = shift_of(before->column, after->column);
-    out->down = shift_of(before->row, after->row);
+    enum { SHIFTS = 2 * MOST_SHIFT + 1 };
+    float worth[SHIFTS][SHIFTS];
+    int right = 0, down = 0;
+    for (int y = 0; y < SHIFTS; y++) {
+        for (int x = 0; x < SHIFTS; x++) {
+            worth[y][x] = mismatch(before, after, x - MOST_SHIFT, y - MOST_SHIFT);
+            if (worth[y][x] < worth[down][right]) {
+                right = x;
+                down = y;
+            }
+        }
+    }
+    double more_right = 0, more_down = 0;
+    if (right > 0 && right < SHIFTS - 1) {
+        more_right = lowest(worth[down][right - 1], worth[down][right], worth[down][right + 1]);
+    }
+    if (down > 0 && down < SHIFTS - 1) {
+        more_down = lowest(worth[down - 1][right], worth[down][right], worth[down + 1][right]);
+    }
+    out->right = (right - MOST_SHIFT + more_right) / CLOCK_COLUMNS;
+    out->down = (down - MOST_SHIFT + more_down) / CLOCK_ROWS;
 }
 
 /* ---- poses ---- */
@@ -210,7 +212,7 @@ int clock_offset_estimate(const clock_motion *motions, size_t count, const traje
     }
     /* offsets at which much of the capture lies outside the trajectory do not compete */
     size_t enough = count / 2 > LEAST_MOTIONS ? count / 2 : LEAST_MOTIONS;
-    if (count < LEAST_MOTIONS || moved / (double)count < 0.2 / SIDE) {
+    if (count < LEAST_MOTIONS || moved / (double)count < 0.2 / CLOCK_COLUMNS) {
         return t3r_reason(error, error_bytes, "the clocks' offset is not to be told: %s",
                           count < LEAST_MOTIONS ? "fewer than 13 frames" : "the picture hardly moves");
     }

@@ -1,6 +1,6 @@
-/* How much a trajectory's clock is ahead of the camera's, from how the picture moves: the shift between neighbouring
- * frames is told by their row and column sums, what it should be by the rotation and the translation between the poses;
- * the offset at which one explains the other best is the answer. */
+/* How much a trajectory's clock is ahead of the camera's, from how the picture moves: how far is told by matching
+ * neighbouring frames, made small, as a whole; how far it should be by the rotation and the translation between the
+ * poses; the offset at which one explains the other best is the answer. */
 #ifndef TRIM3R_TOOLS_CLOCK_OFFSET_H
 #define TRIM3R_TOOLS_CLOCK_OFFSET_H
 
@@ -11,7 +11,7 @@
 #include "trajectory.h"
 #include "trim3r.h"
 
-#define CLOCK_OFFSET_SIDE 96u /* pictures are looked at as so many columns and rows */
+enum { CLOCK_COLUMNS = 80, CLOCK_ROWS = 60 }; /* pictures are looked at in this size */
 
 /* How much the picture moved from one frame to the next, as shares of its width and height. */
 typedef struct clock_motion {
@@ -19,14 +19,14 @@ typedef struct clock_motion {
     double right, down;
 } clock_motion;
 
-/* The profiles of one picture. */
-typedef struct clock_profiles {
-    double column[CLOCK_OFFSET_SIDE], row[CLOCK_OFFSET_SIDE];
-} clock_profiles;
+/* A picture made small, its mean taken off. */
+typedef struct clock_picture {
+    float value[CLOCK_ROWS][CLOCK_COLUMNS];
+} clock_picture;
 
-void clock_profiles_of(const t3r_frame *frame, clock_profiles *out);
-/* From the profiles of two neighbours; stamps are the caller's. */
-void clock_motion_of(const clock_profiles *before, const clock_profiles *after, clock_motion *out);
+void clock_picture_of(const t3r_frame *frame, clock_picture *out);
+/* From one picture to the next; stamps are the caller's. */
+void clock_motion_of(const clock_picture *before, const clock_picture *after, clock_motion *out);
 
 typedef struct clock_offset {
     int64_t offset_ns; /* trajectory's time less camera's */

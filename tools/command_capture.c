@@ -425,7 +425,7 @@ static clock_motion *motions_of(const capture_options *o, uint32_t *count, char 
         return NULL;
     }
     clock_motion *motions = calloc(MOST_MOTIONS, sizeof *motions);
-    clock_profiles profiles[2];
+    clock_picture pictures[2];
     int64_t last_ns = 0;
     uint32_t frames = 0;
     *count = 0;
@@ -440,11 +440,11 @@ static clock_motion *motions_of(const capture_options *o, uint32_t *count, char 
             continue;
         }
         cli_progress("looking for the clocks' offset", frames, MOST_MOTIONS);
-        clock_profiles_of(&frame.frame, &profiles[frames & 1]);
+        clock_picture_of(&frame.frame, &pictures[frames & 1]);
         if (frames++ > 0) {
             clock_motion *motion = &motions[(*count)++];
             *motion = (clock_motion){.from_ns = last_ns, .to_ns = frame.stamp_ns};
-            clock_motion_of(&profiles[frames & 1], &profiles[(frames & 1) ^ 1], motion);
+            clock_motion_of(&pictures[frames & 1], &pictures[(frames & 1) ^ 1], motion);
         }
         last_ns = frame.stamp_ns;
     }

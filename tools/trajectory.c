@@ -129,6 +129,9 @@ static const char *parse_line(char *line, bool commas, trajectory_pose *out)
     if (commas ? !take_nanoseconds(&line, &out->stamp_ns) : !take_seconds(&line, &out->stamp_ns)) {
         return commas ? "no time in nanoseconds" : "no time in seconds";
     }
+    if (*line != ' ' && *line != '\t' && *line != ',') {
+        return commas ? "no whole number of nanoseconds" : "no time in seconds";
+    }
     for (int i = 0; i < POSE_NUMBERS; i++) {
         if (!take_number(&line, &out->pose[commas ? euroc[i] : tum[i]])) {
             return commas ? "not 'nanoseconds,px,py,pz,qw,qx,qy,qz'" : "not 'seconds tx ty tz qx qy qz qw'";
