@@ -63,11 +63,13 @@ static int open_films(opencv_capture *self, char *error, size_t error_bytes)
         t3r_capture_remark(&self->capture, "%s: depth by the back end %s", self->depth_url,
                            self->shim->backend(self->depth));
     }
-    double rate = self->shim->rate(self->film);
+    /* numbered pictures have no rate */
+    bool pictures = strcmp(self->shim->backend(self->film), "CV_IMAGES") == 0;
+    double rate = s->rate_millihertz != 0 ? s->rate_millihertz / 1000.0 : pictures ? 0 : self->shim->rate(self->film);
     self->rate = isfinite(rate) && rate >= 0.001 && rate <= 10000 ? rate : DEFAULT_RATE;
     t3r_capture_remark(&self->capture, "%s: OpenCV %s, back end %s", self->url, self->shim->version,
                        self->shim->backend(self->film));
-    self->capture.clock = self->shim->live(self->film) ? "unknown" : "stream";
+    self->capture.clock = self->shim->live(self->film) ? "unknown" : pictures ? "synthetic" : "stream";
     return 0;
 }
 
@@ -104,7 +106,8 @@ static const char *fill_depth(const t3r_opencv_picture *p, uint64_t unit_q40, t3
     return NULL;
 }
 
-/* Of devices what the back end tells, V4L2's stamp say; films run at their rate: back ends disagree on positions. */
+/* Of devices what the back end tells, V4L2's stamp say; films run at their rate, or the one asked for: back ends
+ * disagree on positions. */
 static int64_t stamp_of(const opencv_capture *self, const t3r_opencv_picture *picture)
 {
     double ms = picture->position_ms;

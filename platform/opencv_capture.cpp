@@ -95,7 +95,9 @@ t3r_opencv_film *open(const t3r_opencv_request *request, char *error, size_t err
 {
     t3r_opencv_film *film = nullptr;
     try {
-        int api = backend_named(request->backend);
+        // of numbered pictures FFMPEG keeps 8 bits
+        bool pictures = request->backend == nullptr && std::strchr(request->url, '%') != nullptr;
+        int api = pictures ? static_cast<int>(cv::CAP_IMAGES) : backend_named(request->backend);
         if (api < 0) {
             complain(error, error_bytes, request->backend, "is not a back end of this OpenCV");
             return nullptr;

@@ -287,6 +287,11 @@ bool trajectory_at(const trajectory *t, int64_t stamp_ns, double pose[POSE_NUMBE
     if (gap > TRAJECTORY_BRACKET_NS) {
         return false;
     }
+    double position[3], rotation[4];
     pose_between(a->pose, b->pose, (double)(stamp_ns - a->stamp_ns) / (double)gap, pose);
+    pose_split(pose, position, rotation);
+    for (int i = 0; i < 4; i++) {
+        pose[3 + i] = rotation[(i + 1) % 4];
+    }
     return true;
 }

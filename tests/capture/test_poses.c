@@ -84,8 +84,8 @@ static void poses_are_interpolated_within_a_bracket(void **state)
 
 /* ---- clocks ---- */
 
-enum { WIDTH = 160, HEIGHT = 120, FRAMES = 150 };
-#define FOCAL 150.0
+enum { WIDTH = 80, HEIGHT = 60, FRAMES = 150 };
+#define FOCAL 75.0
 #define DISTANCE 3.0
 
 /* Where the camera looks and stands at a time, in radians and metres. */
@@ -114,8 +114,8 @@ static motion shaking(double s) /* the same every 0.4 s: no telling which of the
 static double wall(double x, double y)
 {
     double v = 128;
-    for (int i = 1; i <= 9; i++) {
-        v += 14 * sin(x * 0.031 * i * (1 + 0.37 * (i % 3)) + i * 1.7) * cos(y * 0.027 * i * (1 + 0.29 * (i % 4)) + i);
+    for (int i = 1; i <= 6; i++) {
+        v += 14 * sin(x * 0.062 * i * (1 + 0.37 * (i % 3)) + i * 1.7) * cos(y * 0.054 * i * (1 + 0.29 * (i % 4)) + i);
     }
     return v;
 }
