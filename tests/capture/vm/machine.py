@@ -1,0 +1,167 @@
+"""A virtual machine with Debian's kernel, its virtual camera driver vivid, and one program to be run in it. No root is
+needed; with KVM where that works, without where not."""
+import glob
+import gzip
+import lzma
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+
+MODULES = ("mc/mc v4l2-core/videodev common/videobuf2/videobuf2-common common/videobuf2/videobuf2-memops "
+           "common/videobuf2/videobuf2-v4l2 common/videobuf2/videobuf2-vmalloc common/videobuf2/videobuf2-dma-contig "
+           "common/v4l2-tpg/v4l2-tpg v4l2-core/v4l2-dv-timings rc/rc-core cec/core/cec "
+           "test-drivers/vivid/vivid").split()
+
+INIT = """#!/bin/busybox sh
+/bin/busybox --install -s /bin
+export PATH=/bin LD_LIBRARY_PATH=/lib
+mount -t proc p /proc; mount -t sysfs s /sys; mount -t devtmpfs d /dev; mount -t tmpfs t /tmp
+ip link set lo up
+for m in $(cat /mod/list); do
+    case $m in
+    vivid.ko) insmod /mod/$m n_devs=1 node_types=0x1 num_inputs=1 input_types=0 ;;
+    *) insmod /mod/$m ;;
+    esac
+done
+for i in 1 2 3 4 5 6 7 8 9; do [ -e /dev/video0 ] && break; sleep 0.1; done
+mkdir /tmp/out
+echo BOOTED
+cd /tmp && sh /job.sh > /tmp/out/log 2>&1
+echo $? > /tmp/out/rc
+stty -F /dev/ttyS1 raw
+tar -cf - -C /tmp/out . > /dev/ttyS1
+sync
+reboot -f
+"""
+
+
+def skip(why):
+    print(f"SKIPPED: {why}")
+    sys.exit(77)
+
+
+def need(*commands):
+    for command in commands:
+        if shutil.which(command) is None:
+            skip(f"{command} is not there (tools/setup --cameras)")
+
+
+def kernel_package(folder):
+    """The path of Debian's kernel package, downloaded once; it is not installed."""
+    listed = subprocess.run(["apt-cache", "depends", "linux-image-amd64"], capture_output=True, text=True)
+    found = re.search(r"Depends: (linux-image-\S+)", listed.stdout)
+    if found is None:
+        skip("apt knows no linux-image-amd64")
+    name = found.group(1)
+    if not glob.glob(f"{folder}/{name}_*.deb"):
+        subprocess.run(["apt-get", "download", "-q", name], cwd=folder, capture_output=True, timeout=300)
+    packages = glob.glob(f"{folder}/{name}_*.deb")
+    return (name, packages[0]) if packages else skip(f"{name} cannot be downloaded")
+
+
+def unpack_kernel(folder):
+    """(vmlinux, folder of modules)"""
+    name, package = kernel_package(folder)
+    version = name.removeprefix("linux-image-")
+    vmlinux, modules = f"{folder}/vmlinux-{version}", f"{folder}/lib/modules/{version}/kernel/drivers/media"
+    if not os.path.exists(vmlinux):
+        wanted = [f"./boot/vmlinuz-{version}"]
+        wanted += [f"./lib/modules/{version}/kernel/drivers/media/{m}.ko" for m in MODULES]
+        with subprocess.Popen(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE) as files:
+            subprocess.run(["tar", "-x", "-C", folder, *wanted], stdin=files.stdout, check=True)
+        with open(f"{folder}/boot/vmlinuz-{version}", "rb") as file:
+            packed = file.read()
+        # an ELF, to be booted by PVH: a decompressor in an emulated processor would take its time
+        with open(vmlinux + ".part", "wb") as file:
+            file.write(lzma.LZMADecompressor().decompress(packed[packed.find(b"\xfd7zXZ\0"):]))
+        os.rename(vmlinux + ".part", vmlinux)
+    return vmlinux, modules
+
+
+def libraries(program):
+    out = subprocess.run(["ldd", program], capture_output=True, text=True, check=True).stdout
+    return re.findall(r"(/\S+)", out)
+
+
+def initramfs(folder, modules, programs, job):
+    root = f"{folder}/root"
+    shutil.rmtree(root, ignore_errors=True)
+    for name in ("bin", "mod", "proc", "sys", "dev", "tmp", "lib", "lib64"):
+        os.makedirs(f"{root}/{name}")
+    shutil.copy(shutil.which("busybox"), f"{root}/bin/busybox")
+    for program in programs:
+        shutil.copy(program, f"{root}/bin/")
+        for library in libraries(program):
+            target = "lib64" if os.path.basename(library).startswith("ld-linux") else "lib"
+            shutil.copy(library, f"{root}/{target}/")
+    for module in MODULES:
+        shutil.copy(f"{modules}/{module}.ko", f"{root}/mod/")
+    for path, text, mode in (("mod/list", "".join(os.path.basename(m) + ".ko\n" for m in MODULES), 0o644),
+                             ("init", INIT, 0o755), ("job.sh", job, 0o755)):
+        with open(f"{root}/{path}", "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(f"{root}/{path}", mode)
+    names = subprocess.run(["find", ".", "-print0"], cwd=root, capture_output=True, check=True).stdout
+    packed = subprocess.run(["cpio", "-o", "-0", "-H", "newc", "--quiet"], cwd=root, input=names, capture_output=True,
+                            check=True).stdout
+    with gzip.open(f"{folder}/initramfs.gz", "wb", compresslevel=1) as file:
+        file.write(packed)
+    return f"{folder}/initramfs.gz"
+
+
+def boot(folder, vmlinux, image, accelerator, seconds):
+    """Whether the machine came to its end; what it said, where its second serial port went."""
+    out = f"{folder}/out.tar"
+    machine = ["-accel", "kvm", "-cpu", "host"] if accelerator == "kvm" else ["-accel", "tcg", "-cpu", "max"]
+    command = ["qemu-system-x86_64", "-M", "q35", *machine, "-smp", "1", "-m", "768", "-nodefaults", "-display", "none",
+               "-serial", "stdio", "-serial", f"file:{out}", "-no-reboot", "-kernel", vmlinux, "-initrd", image,
+               "-append", "console=ttyS0 quiet loglevel=0 panic=-1 rdinit=/init"]
+    with open(f"{folder}/console", "wb") as console:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=console, stderr=subprocess.STDOUT)
+    late = ""
+    try:
+        process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        late = "\ntime is over"
+        try:
+            process.wait(5)
+        except subprocess.TimeoutExpired:
+            late += ", and the machine cannot be ended"  # a KVM that does not work may hold it
+    with open(f"{folder}/console", "rb") as console:
+        return console.read().decode(errors="replace") + late, out
+
+
+def kvm_works(folder, vmlinux, modules):
+    """Tried once, the answer kept: where KVM is there but does not work a machine hangs before its first word."""
+    if not os.access("/dev/kvm", os.R_OK | os.W_OK):
+        return False
+    answer = f"{folder}/kvm-works"
+    if not os.path.exists(answer):
+        with open(answer, "w", encoding="ascii") as file:
+            file.write("no")  # should this very test hang
+        said, _ = boot(folder, vmlinux, initramfs(folder, modules, [], "true\n"), "kvm", 20)
+        with open(answer, "w", encoding="ascii") as file:
+            file.write("yes" if "BOOTED" in said else "no")
+    with open(answer, encoding="ascii") as file:
+        return file.read() == "yes"
+
+
+def run(folder, programs, job, seconds):
+    """Runs the shell script `job` beside /dev/video0; {file name: bytes} of what it left in /tmp/out, how it ran."""
+    need("qemu-system-x86_64", "busybox", "cpio", "dpkg-deb", "apt-get")
+    os.makedirs(folder, exist_ok=True)
+    vmlinux, modules = unpack_kernel(folder)
+    accelerator = os.environ.get("T3R_VM_ACCEL") or ("kvm" if kvm_works(folder, vmlinux, modules) else "tcg")
+    image = initramfs(folder, modules, programs, job)
+    said, out = boot(folder, vmlinux, image, accelerator, seconds)
+    files = {}
+    try:
+        with tarfile.open(out) as tar:
+            files = {os.path.basename(m.name): tar.extractfile(m).read() for m in tar if m.isfile()}
+    except (OSError, tarfile.TarError):
+        pass
+    return files, accelerator, said
