@@ -1,4 +1,6 @@
 /* The adapter `libcamera`: one stream of a camera. Frames are handed on where the library put them. */
+#include "libcamera.h"
+
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +8,6 @@
 
 #include "capture_adapter.h"
 #include "capture_module.h"
-#include "libcamera_shim.h"
 #include "pixel_layout.h"
 #include "reason.h"
 
@@ -248,20 +249,17 @@ static void close_capture(t3r_capture *capture)
     free(self);
 }
 
-t3r_capture *t3r_libcamera_open(const char *camera, const t3r_capture_settings *settings, char *error,
-                                size_t error_bytes)
+t3r_capture *t3r_libcamera_open_on(const t3r_libcamera_shim *shim, const char *camera,
+                                   const t3r_capture_settings *settings, char *error, size_t error_bytes)
 {
     static const t3r_capture_operations operations = {next, reopen, close_capture};
     if (settings->depth != NULL) {
         t3r_reason(error, error_bytes, "libcamera gives no depth: take colour and depth by v4l2");
         return NULL;
     }
-    const t3r_libcamera_shim *shim = t3r_capture_module("libcamera", error, error_bytes);
-    libcamera_capture *self = shim != NULL ? calloc(1, sizeof *self) : NULL;
+    libcamera_capture *self = calloc(1, sizeof *self);
     if (self == NULL) {
-        if (shim != NULL) {
-            t3r_reason(error, error_bytes, "libcamera: out of memory");
-        }
+        t3r_reason(error, error_bytes, "libcamera: out of memory");
         return NULL;
     }
     self->capture.operations = &operations;
@@ -276,6 +274,13 @@ t3r_capture *t3r_libcamera_open(const char *camera, const t3r_capture_settings *
     }
     close_capture(&self->capture);
     return NULL;
+}
+
+t3r_capture *t3r_libcamera_open(const char *camera, const t3r_capture_settings *settings, char *error,
+                                size_t error_bytes)
+{
+    const t3r_libcamera_shim *shim = t3r_capture_module("libcamera", error, error_bytes);
+    return shim != NULL ? t3r_libcamera_open_on(shim, camera, settings, error, error_bytes) : NULL;
 }
 
 void t3r_libcamera_devices(void (*say)(void *user, const char *line), void *user)

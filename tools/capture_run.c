@@ -27,6 +27,7 @@ typedef struct run_state {
     uint32_t next_context; /* which of build->context comes next */
     uint64_t since_build;  /* frames fit for context since the last build or keep */
     uint32_t failed_in_row;
+    double lost_since; /* 0: it is not */
     double first_seconds, drawn;
     bool visible; /* the progress line is on the screen */
     int code;     /* of an event that could not be recorded */
@@ -285,16 +286,20 @@ static int handle(run_state *s, t3r_capture_frame *frame)
 
 /* ---- the loop ---- */
 
-/* Waits for a lost device: CLI_OK when it is back, or when it is time to stop. */
+/* Waits for a lost device: CLI_OK when it is back, or when it is time to stop. The time counts from when it was first
+ * lost since its last frame: one that opens again and again and gives none is not back. */
 static int reconnect(run_state *s)
 {
-    double until = cli_now() + s->plan->reconnect_seconds;
+    double now = cli_now();
+    s->lost_since = s->lost_since > 0 ? s->lost_since : now;
+    double until = s->lost_since + s->plan->reconnect_seconds;
     for (;;) {
-        int got = t3r_capture_reopen(s->capture);
+        int got = now >= until && now > s->lost_since ? T3R_CAPTURE_END : t3r_capture_reopen(s->capture);
         if (got == T3R_CAPTURE_FRAME || stopped(s->plan)) {
             return CLI_OK;
         }
-        if (got == T3R_CAPTURE_END || cli_now() >= until) {
+        now = cli_now();
+        if (got == T3R_CAPTURE_END || now >= until) {
             clear_line(s);
             return cli_error(CLI_BAD_INPUT, "%s: lost, and not back within %g s: %s", s->plan->source,
                              s->plan->reconnect_seconds, t3r_capture_error(s->capture));
@@ -318,6 +323,7 @@ static int loop(run_state *s)
         }
         if (got == T3R_CAPTURE_FRAME) {
             s->failed_in_row = 0;
+            s->lost_since = 0;
             code = handle(s, &frame);
         } else if (got == T3R_CAPTURE_LOST) {
             code = reconnect(s);

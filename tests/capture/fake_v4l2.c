@@ -389,8 +389,6 @@ static int fake_unmap(void *user, void *memory, size_t bytes)
         for (uint32_t k = 0; k < FAKE_BUFFERS; k++) {
             if (node->memory[k] == memory && memory != NULL && bytes == node->bytes) {
                 node->mapped--;
-                free(memory);
-                node->memory[k] = NULL;
                 return 0;
             }
         }
@@ -455,11 +453,17 @@ static int fake_close(void *user, int fd)
     }
     node->opened--;
     /* it is plugged in again, the driver has recovered */
-    node->unplug_at = node->gone ? UINT32_MAX : node->unplug_at;
-    node->fatal_at = node->number >= node->fatal_at ? UINT32_MAX : node->fatal_at;
-    node->stall_at = node->number >= node->stall_at ? UINT32_MAX : node->stall_at;
+    if (!node->stays) {
+        node->unplug_at = node->gone ? UINT32_MAX : node->unplug_at;
+        node->fatal_at = node->number >= node->fatal_at ? UINT32_MAX : node->fatal_at;
+        node->stall_at = node->number >= node->stall_at ? UINT32_MAX : node->stall_at;
+    }
     node->gone = node->streaming = false;
     node->queued = node->finished = 0;
+    for (uint32_t i = 0; i < FAKE_BUFFERS; i++) {
+        free(node->memory[i]);
+        node->memory[i] = NULL;
+    }
     return 0;
 }
 

@@ -52,6 +52,7 @@ typedef struct fake_node {
     uint32_t fatal_at;              /* POLLERR, EIO from here on, until it is closed */
     uint32_t change_at;             /* the source changes: an event */
     bool ready_lies;                /* poll says ready, DQBUF has nothing */
+    bool stays;                     /* closing it mends nothing */
     int64_t jitter_ns[8];           /* added to stamps, by number modulo 8 */
 
     /* its state */

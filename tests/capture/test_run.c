@@ -299,6 +299,32 @@ static void a_recording_replays_what_was_live(void **state)
     }
 }
 
+/* Opened again and again it never gives a frame: that, too, has an end, and the recording is whole. */
+static void a_camera_that_stands_still_for_good_is_given_up(void **state)
+{
+    scratch *s = *state;
+    char recording[600], error[256] = "", message[256] = "";
+    snprintf(recording, sizeof recording, "%s", scratch_path(s, "c.mcap"));
+    fake_v4l2 fake;
+    start_camera(&fake, V4L2_PIX_FMT_YUYV);
+    fake.node[0].stall_at = fake.node[1].stall_at = 5;
+    fake.node[0].stays = fake.node[1].stays = true;
+    t3r_capture *camera = open_camera(&fake);
+    const capture_plan plan = {.source = "test", .output = recording, .quiet = true, .reconnect_seconds = 0.05};
+    capture_account account;
+    cli_keep_errors(message, sizeof message);
+    assert_int_equal(capture_run(camera, &plan, &account), CLI_BAD_INPUT);
+    cli_keep_errors(NULL, 0);
+    assert_non_null(strstr(message, "not back within 0.05 s"));
+    assert_int_equal(account.frames, 5);
+    t3r_capture_close(camera);
+    t3r_recording *bag = t3r_recording_open(recording, error, sizeof error);
+    assert_non_null(bag);
+    assert_int_equal(t3r_recording_frame_count(bag), 5);
+    assert_string_equal(t3r_recording_note(bag), "");
+    t3r_recording_close(bag);
+}
+
 int main(void)
 {
     draw_room();
@@ -306,6 +332,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(nothing_is_allocated_once_it_runs, scratch_setup, scratch_teardown),
         cmocka_unit_test(memory_stays_the_same_over_ten_thousand_frames),
         cmocka_unit_test_setup_teardown(a_recording_replays_what_was_live, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_camera_that_stands_still_for_good_is_given_up, scratch_setup,
+                                        scratch_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

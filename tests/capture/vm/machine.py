@@ -29,8 +29,8 @@ done
 for i in 1 2 3 4 5 6 7 8 9; do [ -e /dev/video0 ] && break; sleep 0.1; done
 mkdir /tmp/out
 echo BOOTED
-cd /tmp && sh /job.sh > /tmp/out/log 2>&1
-echo $? > /tmp/out/rc
+cd /tmp
+sh -x /job.sh 2>&1 | tee /tmp/out/log
 stty -F /dev/ttyS1 raw
 tar -cf - -C /tmp/out . > /dev/ttyS1
 sync
