@@ -68,6 +68,7 @@ function(t3r_module name source)
   set_target_properties(trim3r_${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
     CXX_VISIBILITY_PRESET default)
   target_link_libraries(trim3r_${name} PRIVATE ${ARGN})
+  set_property(GLOBAL APPEND PROPERTY T3R_MODULES trim3r_${name})
 endfunction()
 if(T3R_LIBCAMERA_THERE)
   t3r_module(libcamera libcamera.cpp PkgConfig::T3R_LIBCAMERA_LIB)

@@ -135,7 +135,7 @@ static void hear(void *user, const t3r_capture_event *event)
     if (s->record != NULL && s->code == CLI_OK && capture_record_event(s->record, event) != 0) {
         s->code = cli_error(CLI_BAD_INPUT, "%s", s->record->error);
     }
-    if (!s->plan->quiet && (event->kind == T3R_EVENT_LOST || event->kind == T3R_EVENT_REOPENED)) {
+    if (event->kind == T3R_EVENT_LOST || event->kind == T3R_EVENT_REOPENED) {
         char text[T3R_CAPTURE_EVENT_BYTES];
         clear_line(s);
         fprintf(stderr, "trim3r capture: %s\n", t3r_capture_event_text(event, text));

@@ -88,9 +88,9 @@ for name in FORMATS:
     check(replay["frames_hash"] == live["frames_hash"], f"{name}: the replay's hash is the live one")
     check(info["frames"] == FRAMES and info["note"] == "", f"{name}: {info['note']}")
     # vivid's stamps are of an ideal clock, which may run ahead
-    latency = live.get("latency_ms", {"mean": float("nan"), "worst": float("nan")})
+    latency = "{mean:.1f} / {worst:.1f}".format(**live["latency_ms"]) if "latency_ms" in live else "-"
     print(f"| {name} | {live['frames']} | {live['dropped_driver']} + {live['dropped_slow']} | {live['rate']:.1f} | "
-          f"{latency['mean']:.1f} / {latency['worst']:.1f} | "
+          f"{latency} | "
           f"{live['frame_ms']['mean']:.2f} / {live['frame_ms']['worst']:.2f} |")
 
 live = got("faults.live")
