@@ -398,7 +398,7 @@ static void watch_signals(void)
 
 static void say_device(void *user, const char *line)
 {
-    (void)user;
+    ++*(uint32_t *)user;
     printf("    %s\n", line);
 }
 
@@ -407,8 +407,13 @@ static int list(void)
     for (uint32_t i = 0; i < t3r_capture_adapter_count(); i++) {
         t3r_capture_adapter adapter = t3r_capture_adapter_of(i);
         printf("%-10s %s %s\n", adapter.name, adapter.available ? "yes " : "no  ", adapter.says);
+        uint32_t devices = 0;
         if (adapter.available) {
-            t3r_capture_devices(adapter.name, say_device, NULL);
+            t3r_capture_devices(adapter.name, say_device, &devices);
+        }
+        bool looked = strcmp(adapter.name, "v4l2") == 0 || strcmp(adapter.name, "libcamera") == 0;
+        if (adapter.available && looked && devices == 0) {
+            printf("    no device found\n");
         }
     }
     printf("formats    %s; depth Z16 Y16\n", t3r_capture_formats());

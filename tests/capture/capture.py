@@ -133,6 +133,19 @@ def stops(number):
     os.remove("signal.mcap")
 
 
+def peak_kilobytes(*options):
+    process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:room.mcap", "--quiet", "-o", "/dev/null",
+                                *options], stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    check(status == 0, f"capture {options}")
+    return used.ru_maxrss
+
+
+def memory():
+    few, many = peak_kilobytes("--repeat", "9"), peak_kilobytes("--repeat", "834")
+    check(many <= few * 1.05 + 256, f"10,000 frames take the memory of 100: {few} and {many} KB")
+
+
 def killed():
     command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "-o", "kill.mcap"]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
@@ -185,6 +198,7 @@ with tempfile.TemporaryDirectory() as folder:
     stops(signal.SIGINT)
     stops(signal.SIGTERM)
     killed()
+    memory()
     refusals()
     events()
 print(f"{checks} checks")
