@@ -1,4 +1,4 @@
-"""A virtual machine with Debian's kernel, its virtual camera driver vivid, and one program to be run in it. No root is
+"""A virtual machine with Debian's kernel, a virtual camera driver of it, and one program to be run in it. No root is
 needed; with KVM where that works, without where not."""
 import glob
 import gzip
@@ -10,10 +10,11 @@ import subprocess
 import sys
 import tarfile
 
-MODULES = ("mc/mc v4l2-core/videodev common/videobuf2/videobuf2-common common/videobuf2/videobuf2-memops "
-           "common/videobuf2/videobuf2-v4l2 common/videobuf2/videobuf2-vmalloc common/videobuf2/videobuf2-dma-contig "
-           "common/v4l2-tpg/v4l2-tpg v4l2-core/v4l2-dv-timings rc/rc-core cec/core/cec "
-           "test-drivers/vivid/vivid").split()
+DRIVERS = "kernel/drivers/media"
+BASE = ("mc/mc v4l2-core/videodev common/videobuf2/videobuf2-common common/videobuf2/videobuf2-memops "
+        "common/videobuf2/videobuf2-v4l2 common/videobuf2/videobuf2-vmalloc common/videobuf2/videobuf2-dma-contig "
+        "common/v4l2-tpg/v4l2-tpg v4l2-core/v4l2-dv-timings rc/rc-core cec/core/cec").split()
+VIVID = "test-drivers/vivid/vivid"
 
 INIT = """#!/bin/busybox sh
 /bin/busybox --install -s /bin
@@ -22,11 +23,17 @@ mount -t proc p /proc; mount -t sysfs s /sys; mount -t devtmpfs d /dev; mount -t
 ip link set lo up
 for m in $(cat /mod/list); do
     case $m in
-    vivid.ko) insmod /mod/$m n_devs=1 node_types=0x1 num_inputs=1 input_types=0 ;;
+    vivid.ko) insmod /mod/$m n_devs=2 node_types=0x1,0x1 num_inputs=1,1 input_types=0,0 ;;
     *) insmod /mod/$m ;;
     esac
 done
 for i in 1 2 3 4 5 6 7 8 9; do [ -e /dev/video0 ] && break; sleep 0.1; done
+# libcamera asks udev what there is, which is not running: everything is, and known
+mkdir -p /run/udev/data
+touch /run/udev/control
+for f in /sys/class/video4linux/*/dev /sys/bus/media/devices/*/dev; do
+    [ -e $f ] && echo I:1000000 > /run/udev/data/c$(cat $f)
+done
 mkdir /tmp/out
 echo BOOTED
 cd /tmp
@@ -49,28 +56,29 @@ def need(*commands):
             skip(f"{command} is not there (tools/setup --cameras)")
 
 
-def kernel_package(folder):
-    """The path of Debian's kernel package, downloaded once; it is not installed."""
+def kernel_version():
     listed = subprocess.run(["apt-cache", "depends", "linux-image-amd64"], capture_output=True, text=True)
-    found = re.search(r"Depends: (linux-image-\S+)", listed.stdout)
-    if found is None:
-        skip("apt knows no linux-image-amd64")
-    name = found.group(1)
+    found = re.search(r"Depends: linux-image-(\S+)", listed.stdout)
+    return found.group(1) if found else skip("apt knows no linux-image-amd64")
+
+
+def package(folder, name):
+    """The path of a package, downloaded once; it is not installed."""
     if not glob.glob(f"{folder}/{name}_*.deb"):
         subprocess.run(["apt-get", "download", "-q", name], cwd=folder, capture_output=True, timeout=300)
-    packages = glob.glob(f"{folder}/{name}_*.deb")
-    return (name, packages[0]) if packages else skip(f"{name} cannot be downloaded")
+    found = glob.glob(f"{folder}/{name}_*.deb")
+    return found[0] if found else skip(f"{name} cannot be downloaded")
 
 
 def unpack_kernel(folder):
     """(vmlinux, folder of modules)"""
-    name, package = kernel_package(folder)
-    version = name.removeprefix("linux-image-")
-    vmlinux, modules = f"{folder}/vmlinux-{version}", f"{folder}/lib/modules/{version}/kernel/drivers/media"
+    version = kernel_version()
+    image = package(folder, f"linux-image-{version}")
+    vmlinux, modules = f"{folder}/vmlinux-{version}", f"{folder}/lib/modules/{version}/{DRIVERS}"
     if not os.path.exists(vmlinux):
         wanted = [f"./boot/vmlinuz-{version}"]
-        wanted += [f"./lib/modules/{version}/kernel/drivers/media/{m}.ko" for m in MODULES]
-        with subprocess.Popen(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE) as files:
+        wanted += [f"./lib/modules/{version}/{DRIVERS}/{m}.ko" for m in [*BASE, VIVID]]
+        with subprocess.Popen(["dpkg-deb", "--fsys-tarfile", image], stdout=subprocess.PIPE) as files:
             subprocess.run(["tar", "-x", "-C", folder, *wanted], stdin=files.stdout, check=True)
         with open(f"{folder}/boot/vmlinuz-{version}", "rb") as file:
             packed = file.read()
@@ -86,7 +94,36 @@ def libraries(program):
     return re.findall(r"(/\S+)", out)
 
 
-def initramfs(folder, modules, programs, job):
+def build_vimc(folder):
+    """The driver vimc, which Debian's kernel comes without: built from its source against its headers."""
+    need("make", "cc", "xz")
+    module = f"{folder}/vimc/vimc.ko"
+    if os.path.exists(module):
+        return module
+    version = kernel_version()
+    series = ".".join(version.split(".")[:2])
+    root = os.path.abspath(f"{folder}/headers")
+    for name in (f"linux-headers-{version}", f"linux-headers-{version.removesuffix('-amd64')}-common",
+                 f"linux-kbuild-{series}"):
+        subprocess.run(["dpkg-deb", "-x", package(folder, name), root], check=True)
+    headers = f"{root}/usr/src/linux-headers-{version}"
+    with open(f"{headers}/Makefile", encoding="utf-8") as file:
+        text = file.read()
+    with open(f"{headers}/Makefile", "w", encoding="utf-8") as file:
+        file.write(text.replace("include /usr/src/", f"include {root}/usr/src/"))
+    source = f"linux-source-{series}"
+    subprocess.run(f"dpkg-deb --fsys-tarfile {package(folder, source)} | tar -xO ./usr/src/{source}.tar.xz | xz -dc | "
+                   f"tar -x -C {folder} --strip-components=4 --wildcards "
+                   f"'{source}/drivers/media/test-drivers/vimc/*'", shell=True, check=True)
+    done = subprocess.run(["make", "-s", "-C", headers, f"M={os.path.abspath(folder)}/vimc", "CONFIG_VIDEO_VIMC=m",
+                           "modules"], capture_output=True, text=True)
+    if done.returncode != 0:
+        skip(f"vimc does not build: {done.stderr[-500:]}")
+    return module
+
+
+def initramfs(folder, modules, programs, job, files=()):
+    """`programs` go to /bin with the libraries that they need; `files` go where they are."""
     root = f"{folder}/root"
     shutil.rmtree(root, ignore_errors=True)
     for name in ("bin", "mod", "proc", "sys", "dev", "tmp", "lib", "lib64"):
@@ -97,9 +134,12 @@ def initramfs(folder, modules, programs, job):
         for library in libraries(program):
             target = "lib64" if os.path.basename(library).startswith("ld-linux") else "lib"
             shutil.copy(library, f"{root}/{target}/")
-    for module in MODULES:
-        shutil.copy(f"{modules}/{module}.ko", f"{root}/mod/")
-    for path, text, mode in (("mod/list", "".join(os.path.basename(m) + ".ko\n" for m in MODULES), 0o644),
+    for file in files:
+        os.makedirs(root + os.path.dirname(file), exist_ok=True)
+        shutil.copy(file, root + file)
+    for module in modules:
+        shutil.copy(module, f"{root}/mod/")
+    for path, text, mode in (("mod/list", "".join(os.path.basename(m) + "\n" for m in modules), 0o644),
                              ("init", INIT, 0o755), ("job.sh", job, 0o755)):
         with open(f"{root}/{path}", "w", encoding="utf-8") as file:
             file.write(text)
@@ -150,13 +190,15 @@ def kvm_works(folder, vmlinux, modules):
         return file.read() == "yes"
 
 
-def run(folder, programs, job, seconds):
+def run(folder, programs, job, seconds, driver="vivid", extra=()):
     """Runs the shell script `job` beside /dev/video0; {file name: bytes} of what it left in /tmp/out, how it ran."""
     need("qemu-system-x86_64", "busybox", "cpio", "dpkg-deb", "apt-get")
     os.makedirs(folder, exist_ok=True)
-    vmlinux, modules = unpack_kernel(folder)
+    vmlinux, drivers = unpack_kernel(folder)
+    modules = [f"{drivers}/{m}.ko" for m in BASE]
+    modules.append(build_vimc(folder) if driver == "vimc" else f"{drivers}/{VIVID}.ko")
     accelerator = os.environ.get("T3R_VM_ACCEL") or ("kvm" if kvm_works(folder, vmlinux, modules) else "tcg")
-    image = initramfs(folder, modules, programs, job)
+    image = initramfs(folder, modules, programs, job, extra)
     said, out = boot(folder, vmlinux, image, accelerator, seconds)
     files = {}
     try:

@@ -24,6 +24,10 @@ for f in {" ".join(FORMATS)}; do
     trim3r info --json a.mcap > out/$f.info
     rm a.mcap
 done
+# colour and depth from two nodes, which know nothing of each other
+capture --depth-source /dev/video1 --depth-size 320x180 --rate 30 --frames 90 --hash -o a.mcap > out/pairs.live
+trim3r capture --source replay:a.mcap --hash --json > out/pairs.replay
+trim3r info --json a.mcap > out/pairs.info
 # faults, while it runs
 capture --format YUYV --rate 30 --seconds 14 --stall 1000 --reconnect 10 -o a.mcap > out/faults.live 2> out/faults.told &
 sleep 2
@@ -92,6 +96,13 @@ for name in FORMATS:
     print(f"| {name} | {live['frames']} | {live['dropped_driver']} + {live['dropped_slow']} | {live['rate']:.1f} | "
           f"{latency} | "
           f"{live['frame_ms']['mean']:.2f} / {live['frame_ms']['worst']:.2f} |")
+
+live, replay, info = got("pairs.live"), got("pairs.replay"), got("pairs.info")
+check(live["frames"] == 90 and live["paired"] + live["alone"] == 90 and live["paired"] >= 80, f"pairs: {live}")
+check(replay["frames_hash"] == live["frames_hash"] and info["depth_frames"] == live["paired"], "and in the replay")
+told = next(s["messages"] for s in info["streams"] if s["topic"] == "/camera/events")
+check(told >= 90, f"every decision is told: {told}")
+print(f"pairs: {live['paired']} of 90, colour alone {live['alone']}, depth unused {live['depth_dropped']}")
 
 live = got("faults.live")
 told = files["faults.told"].decode()
