@@ -1,11 +1,8 @@
 // libcamera behind a table in C; exceptions and the library's threads stay in here.
 //
-// Written for libcamera 0.0.3 (Debian 12). What differs in later versions, by their change logs:
-//   0.1   generateConfiguration() also takes a span of roles: the call below compiles with both
-//   0.3   CameraConfiguration has `orientation` in the place of `transform`, which is not touched here
-//   0.5   controls::FrameDurationLimits takes a Span in both; properties are in namespaced headers
-//   0.6   PixelFormat and formats:: unchanged; SharedFD unchanged
-// ColorSpace is optional in StreamConfiguration since 0.0.1.
+// Written for and tested with libcamera 0.0.3 (Debian 12). Of what later versions changed this meets two things:
+//   0.1   generateConfiguration() takes a Span of roles in the place of a vector: the list in braces below is either
+//   0.2   CameraConfiguration has `orientation` in the place of `transform`: neither is touched
 #include "libcamera_shim.h"
 
 #include <algorithm>

@@ -149,9 +149,12 @@ static int complete(run_state *s, t3r_capture_frame *frame)
 {
     const capture_plan *plan = s->plan;
     const char *wrong = NULL;
+    const capture_account *a = s->account;
+    bool resized = a->frames > 0 && (frame->frame.width != a->width || frame->frame.height != a->height);
     if (plan->intrinsics != NULL) {
-        wrong = capture_camera_set_intrinsics(plan->intrinsics, &frame->camera);
-        frame->has_intrinsics = true;
+        /* after a change of format they are another size's */
+        frame->has_intrinsics = !resized;
+        wrong = resized ? NULL : capture_camera_set_intrinsics(plan->intrinsics, &frame->camera);
     }
     if (plan->poses != NULL) {
         double pose[POSE_NUMBERS];

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "capture.h"
 #include "capture_run.h"
@@ -605,6 +606,14 @@ static void print_text(const capture_options *o, const t3r_capture *capture, con
 
 /* ---- the run ---- */
 
+/* Whether the recording to be written is the one that is replayed. */
+static bool overwrites_source(const capture_options *o)
+{
+    struct stat source, output;
+    return o->output != NULL && strncmp(o->source, "replay:", 7) == 0 && stat(o->source + 7, &source) == 0 &&
+           stat(o->output, &output) == 0 && source.st_dev == output.st_dev && source.st_ino == output.st_ino;
+}
+
 static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset)
 {
     char error[ERROR_BYTES] = "";
@@ -652,6 +661,9 @@ int command_capture(int argc, char **argv)
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     if (o.list) {
         return list();
+    }
+    if (overwrites_source(&o)) {
+        return cli_error(CLI_BAD_USAGE, "-o %s is the recording that is replayed", o.output);
     }
     watch_signals();
     trajectory poses = {0};

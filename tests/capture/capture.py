@@ -173,6 +173,8 @@ def refusals():
     run("capture", "--source", "replay:room.mcap", "-o", "/dev/full", expect=1, words="cannot be written")
     run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "1,2", expect=2, words="--intrinsics")
     run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "5,5,5,5", expect=1, words="focal length")
+    run("capture", "--source", "replay:room.mcap", "-o", "../" + os.path.basename(os.getcwd()) + "/room.mcap", expect=2,
+        words="is the recording that is replayed")
     listed = run("capture", "--list")
     check(all(name in listed for name in ("replay", "v4l2", "libcamera", "opencv")), "--list names every adapter")
     for name in ("v4l2", "libcamera", "opencv"):
