@@ -2,6 +2,7 @@
 """capture.py TRIM3R: the command as a user has it: sources, signals, files that roll over, poses, events, --build."""
 import json
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -146,6 +147,23 @@ def memory():
     check(many <= few * 1.05 + 256, f"10,000 frames take the memory of 100: {few} and {many} KB")
 
 
+def progress():
+    """On a terminal a line of rate, drops and size of the work; elsewhere none."""
+    leader, follower = pty.openpty()
+    process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--hash"],
+                               stdout=subprocess.DEVNULL, stderr=follower)
+    os.close(follower)
+    said = b""
+    while said.count(b"frames, ") < 3:
+        said += os.read(leader, 4096)
+    process.send_signal(signal.SIGINT)
+    check(process.wait(60) == 0, "Ctrl-C")
+    os.close(leader)
+    check(b"/s, dropped 0 (0 slow), corrupted 0" in said, said.decode())
+    check(subprocess.run([TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "2000", "--hash"],
+                         capture_output=True).stderr == b"", "no line where nobody looks")
+
+
 def killed():
     command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "-o", "kill.mcap"]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
@@ -201,6 +219,7 @@ with tempfile.TemporaryDirectory() as folder:
     stops(signal.SIGTERM)
     killed()
     memory()
+    progress()
     refusals()
     events()
 print(f"{checks} checks")

@@ -23,7 +23,12 @@
 
 static volatile uint64_t allocations;
 
-#if defined __SANITIZE_ADDRESS__ || !defined __GLIBC__
+#ifdef __has_feature
+#if __has_feature(address_sanitizer)
+#define SANITIZED 1
+#endif
+#endif
+#if defined __SANITIZE_ADDRESS__ || defined SANITIZED || !defined __GLIBC__
 #define COUNTS 0
 #else
 #define COUNTS 1
