@@ -210,7 +210,7 @@ static void check(struct argp_state *state, capture_options *o)
     if (o->list) {
         return;
     }
-    bool budget = o->build.gaussians != 0 || o->build.keep_percent > 0;
+    bool budget = o->build.gaussians != 0 || o->build.keep_percent > 0 || o->build.automatic;
     if (o->source == NULL) {
         argp_error(state, "--source is missing (--list tells what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {

@@ -35,9 +35,12 @@ const char *live_build_lacks(const t3r_capture_frame *frame)
 static uint32_t most_gaussians(const live_build *build)
 {
     uint64_t points = (uint64_t)build->r.config.width * build->r.config.height * build->r.context_count;
-    uint64_t most = build->options.gaussians != 0
-                        ? build->options.gaussians
-                        : (uint64_t)ceil((double)points * build->options.keep_percent / 100) + 1;
+    uint64_t most = points;
+    if (build->options.gaussians != 0) {
+        most = build->options.gaussians;
+    } else if (build->options.keep_percent > 0) {
+        most = (uint64_t)ceil((double)points * build->options.keep_percent / 100) + 1;
+    }
     most = most < points ? most : points;
     return most < T3R_MAX_GAUSSIANS ? (uint32_t)most : T3R_MAX_GAUSSIANS;
 }
@@ -192,10 +195,7 @@ static int count_valid_points(live_build *build, const t3r_capture_frame *const 
 static int start_runtime(live_build *build)
 {
     reconstruction *r = &build->r;
-    r->requested = build->options.gaussians != 0 ? build->options.gaussians
-                                                 : reconstruction_budget(r->valid_points, build->options.keep_percent);
-    uint32_t gaussians = r->requested < r->valid_points ? r->requested : r->valid_points;
-    r->config.gaussians = r->config.max_gaussians = gaussians;
+    reconstruction_request(r, &build->options);
     t3r_status status = t3r_init(&r->runtime, r->arena, r->arena_bytes, &r->config);
     if (status == T3R_OK) {
         t3r_hooks hooks = reconstruction_hooks(r, &build->options);
@@ -234,7 +234,7 @@ int live_build_make(live_build *build, const t3r_capture_frame *newest)
         }
     }
     double added = cli_now();
-    t3r_status status = t3r_reconstruct(r->runtime, &r->scene);
+    t3r_status status = reconstruction_make(r, &build->options, NULL);
     r->add_views_seconds = added - start;
     r->build_seconds = cli_now() - added;
     build->builds++;

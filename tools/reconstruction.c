@@ -291,7 +291,7 @@ static int bind_head(reconstruction *r)
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
 }
 
-static t3r_status reconstruct(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
+t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
 {
     if (planes != NULL) {
         return t3r_reconstruct_given(r->runtime, planes, r->config.width * 2, &r->scene);
@@ -327,6 +327,15 @@ void reconstruction_configure(reconstruction *r, const reconstruction_options *o
     }
 }
 
+void reconstruction_request(reconstruction *r, const reconstruction_options *options)
+{
+    r->requested = options->gaussians != 0     ? options->gaussians
+                   : options->keep_percent > 0 ? reconstruction_budget(r->valid_points, options->keep_percent)
+                                               : r->valid_points;
+    r->config.gaussians = T3R_MIN(r->requested, r->valid_points);
+    r->config.max_gaussians = r->config.gaussians;
+}
+
 /* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
 static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
                       const t3r_capture_frame *frames, const uint16_t *const *planes)
@@ -353,11 +362,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     if (r->valid_points == 0) {
         return cli_error(CLI_BAD_INPUT, "%s: the context frames hold no valid depth", path);
     }
-    r->requested = options->gaussians != 0     ? options->gaussians
-                   : options->keep_percent > 0 ? reconstruction_budget(r->valid_points, options->keep_percent)
-                                               : r->valid_points;
-    r->config.gaussians = T3R_MIN(r->requested, r->valid_points);
-    r->config.max_gaussians = r->config.gaussians;
+    reconstruction_request(r, options);
 
     code = open_arena(r, options);
     if (code == CLI_OK) {
@@ -375,7 +380,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     }
     double added = cli_now();
     r->add_views_seconds = added - start;
-    t3r_status status = reconstruct(r, options, planes);
+    t3r_status status = reconstruction_make(r, options, planes);
     r->build_seconds = cli_now() - added;
     cli_progress_end();
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, path, &r->config, r->arena_bytes);

@@ -5,28 +5,11 @@ import os
 import pty
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 
 import mcap_read
-
-TRIM3R = os.path.abspath(sys.argv[1])
-checks = 0
-
-
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        print(f"FAILED: {text}")
-        sys.exit(1)
-
-
-def run(*command, expect=0, words=""):
-    done = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
-    check(done.returncode == expect and words in done.stderr, f"{command}: {done.returncode} {done.stderr}")
-    return done.stdout
+from common import TRIM3R, check, done, run
 
 
 def capture(source, *options, expect=0, words=""):
@@ -70,6 +53,10 @@ def builds():
     later = json.loads(run("build", "room.mcap", "-o", "later.ply", "--context", "4,8", "--keep", "5%", "--refine", 0,
                            "--json"))
     check(often["hash"] == later["hash"] and read("often.ply") == read("later.ply"), "the last of them")
+    few = capture("replay:room.mcap", "--build", "auto.ply", "--auto", "--max-loss", 3, "--refine", 1)
+    later = json.loads(run("build", "room.mcap", "-o", "later.ply", "--auto", "--max-loss", 3, "--refine",
+                           1, "--json"))
+    check(few["hash"] == later["hash"] and few["gaussians"] == later["gaussians"] < 6144, "--auto, live")
     capture("replay:room.mcap", "--build", "no.ply", "--context", "0,40", expect=1, words="nothing was built")
     capture("replay:bare.mcap", "--build", "no.ply", expect=1, words="has no pose")
     capture("replay:room.mcap", "--build", "no.ply", "--arena", 1000, expect=3, words="too small")
@@ -222,4 +209,4 @@ with tempfile.TemporaryDirectory() as folder:
     progress()
     refusals()
     events()
-print(f"{checks} checks")
+done()

@@ -3,7 +3,6 @@
 Gaussians of them against those of a recording made without OpenCV. Skipped without the adapter or numpy and cv2."""
 import json
 import os
-import subprocess
 import sys
 import tempfile
 
@@ -14,24 +13,8 @@ except ImportError as error:
     print(f"SKIPPED: {error}")
     sys.exit(77)
 
-import mcap_read
-
-TRIM3R = os.path.abspath(sys.argv[1])
-checks = 0
-
-
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        print(f"FAILED: {text}")
-        sys.exit(1)
-
-
-def run(*command, expect=0, words=""):
-    done = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
-    check(done.returncode == expect and words in done.stderr, f"{command}: {done.returncode} {done.stderr}")
-    return done.stdout
+import mcap_read  # noqa: E402
+from common import check, done, run, skip  # noqa: E402
 
 
 def images(path, topic, dtype, channels):
@@ -58,8 +41,7 @@ def capture(source, name, *options):
 
 listed = run("capture", "--list")
 if " yes " not in next(line for line in listed.splitlines() if line.startswith("opencv")):
-    print("SKIPPED: the adapter is not there")
-    sys.exit(77)
+    skip("the adapter is not there")
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
@@ -110,4 +92,4 @@ with tempfile.TemporaryDirectory() as folder:
     run("capture", "--source", "opencv:missing.avi", "--hash", expect=1, words="cannot open")
     run("capture", "--source", "opencv:c%03d.png", "--backend", "NONE", "--hash", expect=1, words="not a back end")
     run("capture", "--source", "opencv:d%03d.png", "--depth-source", "c%03d.png", "--hash", expect=1)
-print(f"{checks} checks")
+done()
