@@ -2,7 +2,8 @@
  *
  * A source is opened by its adapter, asked for one frame after the other, and closed. Frames lend their memory, the
  * driver's own buffers where there are such: it stays valid until the next call on the same source. No call but those
- * that open waits longer than its deadline, and none allocates after opening, MJPEG and OpenCV aside. */
+ * that open waits longer than its deadline (OpenCV's back ends: their own, at most 10 s), and none allocates after
+ * opening, MJPEG and OpenCV aside. */
 #ifndef T3R_PLATFORM_CAPTURE_H
 #define T3R_PLATFORM_CAPTURE_H
 
