@@ -36,7 +36,7 @@ typedef struct v4l2_capture {
     size_t rgb_bytes;
     uint32_t index;
     uint64_t taken;            /* images dequeued, broken ones too */
-    int64_t left_ns, alive_ns; /* when the last call ended; when the last image came */
+    int64_t left_ns, alive_ns; /* when the last call ended; when the last colour image came */
 } v4l2_capture;
 
 static int64_t now_ns(const v4l2_capture *self)
@@ -198,7 +198,7 @@ static int take_image(v4l2_capture *self, uint32_t which, bool error_polled)
     t3r_v4l2_image image;
     t3r_v4l2_fetched got = t3r_v4l2_node_fetch(node, error_polled, &image, what, sizeof what);
     if (got == T3R_V4L2_IMAGE || got == T3R_V4L2_BROKEN) {
-        self->alive_ns = image.arrived_ns;
+        self->alive_ns = which == COLOUR ? image.arrived_ns : self->alive_ns;
         self->taken++;
         tell_missed(self, which, &image);
     }
@@ -356,11 +356,7 @@ static int await(v4l2_capture *self, int64_t until_ns, bool error_polled[NODES])
         return errno == EINTR ? 0 : t3r_capture_lose(&self->capture, "%s: poll: %s", self->path[0], strerror(errno));
     }
     if (ready == 0) {
-        int64_t still_ns = now_ns(self) - self->alive_ns;
-        return still_ns < self->settings.stall_ms * NS_PER_MS
-                   ? 0
-                   : t3r_capture_lose(&self->capture, "%s: no image for %" PRId64 " ms", self->path[0],
-                                      still_ns / NS_PER_MS);
+        return 0;
     }
     for (uint32_t i = 0; i < self->nodes; i++) {
         error_polled[i] = (fds[i].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0;
@@ -423,6 +419,11 @@ static int next(t3r_capture *capture, t3r_capture_frame *frame)
         }
     }
     self->left_ns = now_ns(self);
+    int64_t still_ns = self->left_ns - self->alive_ns;
+    if (result == T3R_CAPTURE_NOTHING && still_ns >= self->settings.stall_ms * NS_PER_MS) {
+        result = t3r_capture_lose(&self->capture, "%s: no image for %" PRId64 " ms", self->path[COLOUR],
+                                  still_ns / NS_PER_MS);
+    }
     if (result == T3R_CAPTURE_LOST) {
         close_nodes(self);
     }

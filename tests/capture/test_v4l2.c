@@ -563,6 +563,23 @@ static void a_still_depth_camera_does_not_hold_colour_up(void **state)
     assert_true(t3r_capture_counts_of(capture).depth_dropped > 50);
     finish(&fake, capture);
 
+    /* and a still colour camera is lost, however much depth comes */
+    fake_start(&fake);
+    fake_add_depth(&fake);
+    fake.node[0].stall_at = 5;
+    capture = open_small(&fake);
+    for (uint32_t number = 0; number < 5; number++) {
+        take(capture);
+    }
+    int64_t before = fake.now_ns;
+    int got = T3R_CAPTURE_NOTHING;
+    for (int i = 0; i < 1000 && got == T3R_CAPTURE_NOTHING; i++) {
+        got = t3r_capture_next(capture, &frame);
+    }
+    assert_int_equal(got, T3R_CAPTURE_LOST);
+    assert_true(fake.now_ns - before < 3300000000);
+    finish(&fake, capture);
+
     /* a depth node that cannot be opened leaves no half-open pair */
     fake_start(&fake);
     fake_add_depth(&fake);
