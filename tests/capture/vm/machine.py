@@ -152,11 +152,11 @@ def initramfs(folder, modules, programs, job, files=()):
     return f"{folder}/initramfs.gz"
 
 
-def boot(folder, vmlinux, image, accelerator, seconds):
+def boot(folder, vmlinux, image, accelerator, seconds, megabytes=768):
     """Whether the machine came to its end; what it said, where its second serial port went."""
     out = f"{folder}/out.tar"
     machine = ["-accel", "kvm", "-cpu", "host"] if accelerator == "kvm" else ["-accel", "tcg", "-cpu", "max"]
-    command = ["qemu-system-x86_64", "-M", "q35", *machine, "-smp", "1", "-m", "768", "-nodefaults", "-display", "none",
+    command = ["qemu-system-x86_64", "-M", "q35", *machine, "-smp", "1", "-m", str(megabytes), "-nodefaults", "-display", "none",
                "-serial", "stdio", "-serial", f"file:{out}", "-no-reboot", "-kernel", vmlinux, "-initrd", image,
                "-append", "console=ttyS0 quiet loglevel=0 panic=-1 rdinit=/init"]
     with open(f"{folder}/console", "wb") as console:
@@ -190,7 +190,7 @@ def kvm_works(folder, vmlinux, modules):
         return file.read() == "yes"
 
 
-def run(folder, programs, job, seconds, driver="vivid", extra=()):
+def run(folder, programs, job, seconds, driver="vivid", extra=(), megabytes=768):
     """Runs the shell script `job` beside /dev/video0; {file name: bytes} of what it left in /tmp/out, how it ran."""
     need("qemu-system-x86_64", "busybox", "cpio", "dpkg-deb", "apt-get")
     os.makedirs(folder, exist_ok=True)
@@ -199,7 +199,7 @@ def run(folder, programs, job, seconds, driver="vivid", extra=()):
     modules.append(build_vimc(folder) if driver == "vimc" else f"{drivers}/{VIVID}.ko")
     accelerator = os.environ.get("T3R_VM_ACCEL") or ("kvm" if kvm_works(folder, vmlinux, modules) else "tcg")
     image = initramfs(folder, modules, programs, job, extra)
-    said, out = boot(folder, vmlinux, image, accelerator, seconds)
+    said, out = boot(folder, vmlinux, image, accelerator, seconds, megabytes)
     files = {}
     try:
         with tarfile.open(out) as tar:
