@@ -107,7 +107,8 @@ def rolls_over():
 
 def stops(number):
     """A signal: exit status 0, a recording that is whole."""
-    command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "-o", "signal.mcap", "--json"]
+    command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--json", "-o",
+               "signal.mcap"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         until = time.monotonic() + 60
         while not (os.path.exists("signal.mcap") and os.path.getsize("signal.mcap") > 200000):
@@ -171,7 +172,8 @@ def refusals():
     run("capture", "--source", "replay:missing.mcap", "--hash", expect=1, words="No such file")
     run("capture", "--source", "v4l2:/dev/null", "--hash", expect=1, words="is not a video device")
     run("capture", "--source", "v4l2:missing", "--hash", expect=1, words="No such file")
-    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "2,1", expect=2, words="must ascend")
+    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "2,1", expect=2,
+        words="must ascend")
     run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "1,2", "--every", 2, expect=2,
         words="exclude")
     run("capture", "--source", "replay:room.mcap", "--hash", "--max-bytes", "10X", expect=2, words="--max-bytes")

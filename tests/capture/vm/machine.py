@@ -156,8 +156,8 @@ def boot(folder, vmlinux, image, accelerator, seconds, megabytes=768):
     """Whether the machine came to its end; what it said, where its second serial port went."""
     out = f"{folder}/out.tar"
     machine = ["-accel", "kvm", "-cpu", "host"] if accelerator == "kvm" else ["-accel", "tcg", "-cpu", "max"]
-    command = ["qemu-system-x86_64", "-M", "q35", *machine, "-smp", "1", "-m", str(megabytes), "-nodefaults", "-display", "none",
-               "-serial", "stdio", "-serial", f"file:{out}", "-no-reboot", "-kernel", vmlinux, "-initrd", image,
+    command = ["qemu-system-x86_64", "-M", "q35", *machine, "-smp", "1", "-m", str(megabytes), "-nodefaults",
+               "-display", "none", "-serial", "stdio", "-serial", f"file:{out}", "-no-reboot", "-kernel", vmlinux, "-initrd", image,
                "-append", "console=ttyS0 quiet loglevel=0 panic=-1 rdinit=/init"]
     with open(f"{folder}/console", "wb") as console:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=console, stderr=subprocess.STDOUT)

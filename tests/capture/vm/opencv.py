@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""opencv.py TRIM3R MODULE FOLDER: the kernel's virtual camera vivid through OpenCV and through V4L2, in a virtual machine:
-the same samples where OpenCV converts nothing, others where it does. MODULE is OpenCV's adapter."""
+"""opencv.py TRIM3R MODULE FOLDER: the kernel's virtual camera vivid through OpenCV and through V4L2, in a virtual
+machine: the same samples where OpenCV converts nothing, others where it does. MODULE is OpenCV's adapter."""
 import json
 import os
 import subprocess
@@ -69,5 +69,5 @@ size, encoding, converted = image("YUYV.mcap")
 check(encoding == "bgr8" and len(converted) == len(ours), "YUYV comes as OpenCV's BGR")
 differing = sum(a != b for a, b in zip(ours, converted))
 worst = max(abs(a - b) for a, b in zip(ours, converted))
-print(f"YUYV converted by OpenCV: {differing} of {len(ours)} samples differ from the driver's own BGR, by {worst} at most")
+print(f"YUYV converted by OpenCV: {differing} of {len(ours)} samples differ from the driver's own BGR, by {worst}")
 print(f"{checks} checks, {accelerator}, {time.monotonic() - start:.0f} s")

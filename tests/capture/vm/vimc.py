@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""vimc.py TRIM3R MODULE FOLDER [FRAMES]: capture by libcamera from the kernel's virtual camera vimc, in a virtual machine:
-frames of its formats recorded and replayed with the same hash. MODULE is the adapter's."""
+"""vimc.py TRIM3R MODULE FOLDER [FRAMES]: capture by libcamera from the kernel's virtual camera vimc, in a virtual
+machine: frames of its formats recorded and replayed with the same hash. MODULE is the adapter's."""
 import glob
 import json
 import os

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""vivid.py TRIM3R FOLDER [FRAMES]: capture by V4L2 from the kernel's own virtual camera, in a virtual machine: frames of
-every pixel format recorded and replayed with the same hash, then every fault that the driver can be asked for."""
+"""vivid.py TRIM3R FOLDER [FRAMES]: capture by V4L2 from the kernel's own virtual camera, in a virtual machine: frames
+of every pixel format recorded and replayed with the same hash, then every fault that the driver can be asked for."""
 import json
 import os
 import subprocess
@@ -29,7 +29,7 @@ capture --depth-source /dev/video1 --depth-size 320x180 --rate 30 --frames 90 --
 trim3r capture --source replay:a.mcap --hash --json > out/pairs.replay
 trim3r info --json a.mcap > out/pairs.info
 # faults, while it runs
-capture --format YUYV --rate 30 --seconds 14 --stall 1000 --reconnect 10 -o a.mcap > out/faults.live 2> out/faults.told &
+capture --rate 30 --seconds 14 --stall 1000 --reconnect 10 -o a.mcap > out/faults.live 2> out/faults.told &
 sleep 2
 for control in 0x00f0f042 0x00f0f044 0x00f0f046 0x00f0f041; do
     inject /dev/video0 $control 1
