@@ -4,16 +4,51 @@
 
 #include "capture.h"
 
+#define T3R_CAPTURE_NOTE_BYTES 512
+
 typedef struct t3r_capture_operations {
     /* As t3r_capture_next(); the reason of a failure goes into capture->error. */
     int (*next)(t3r_capture *capture, t3r_capture_frame *frame);
+    /* As t3r_capture_reopen(); NULL: this source cannot. */
+    int (*reopen)(t3r_capture *capture);
     /* Frees everything, the capture included. */
     void (*close)(t3r_capture *capture);
 } t3r_capture_operations;
 
 struct t3r_capture {
     const t3r_capture_operations *operations;
+    const char *clock;
+    uint64_t depth_unit_q40;
+    t3r_capture_counts counts;
+    int64_t last_stamp_ns; /* of the frame delivered last */
+    void (*hear)(void *user, const t3r_capture_event *event);
+    void *hear_user;
     char error[256]; /* "" until something goes wrong */
+    char note[T3R_CAPTURE_NOTE_BYTES];
 };
+
+#define T3R_DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* 0.001 */
+
+/* Adds a line to the note. */
+void t3r_capture_remark(t3r_capture *capture, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Counts the event and tells the listener; its stamp, where it is 0, becomes that of the last frame. */
+void t3r_capture_tell(t3r_capture *capture, t3r_capture_event event);
+/* Sets the reason, tells that the device is lost. T3R_CAPTURE_LOST. */
+int t3r_capture_lose(t3r_capture *capture, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Counts a frame that is about to be delivered; T3R_CAPTURE_FRAME. */
+int t3r_capture_deliver(t3r_capture *capture, const t3r_capture_frame *frame);
+
+/* The settings with every default filled in. NULL, or which of them is out of range. */
+const char *t3r_capture_settings_fill(const t3r_capture_settings *settings, t3r_capture_settings *filled);
+
+/* Adapters; each NULL with a reason in error[] on failure. Settings are filled. */
+t3r_capture *t3r_replay_open_repeated(const char *path, uint32_t times, char *error, size_t error_bytes);
+t3r_capture *t3r_v4l2_open(const char *device, const t3r_capture_settings *settings, char *error, size_t error_bytes);
+t3r_capture *t3r_libcamera_open(const char *camera, const t3r_capture_settings *settings, char *error,
+                                size_t error_bytes);
+t3r_capture *t3r_opencv_open(const char *url, const t3r_capture_settings *settings, char *error, size_t error_bytes);
+/* Devices there are, a line each. */
+void t3r_v4l2_devices(void (*say)(void *user, const char *line), void *user);
+void t3r_libcamera_devices(void (*say)(void *user, const char *line), void *user);
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef T3R_PLATFORM_RECORDING_H
 #define T3R_PLATFORM_RECORDING_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -26,7 +27,8 @@ typedef struct t3r_triplet {
  *           the fifth are 0; all D zero and not equidistant is T3R_DISTORTION_NONE
  *   pose    geometry_msgs/PoseStamped or TransformStamped (child to frame): camera to world
  * Depth, intrinsics and pose come from the topic below the colour topic's prefix ("/camera/"), else from the only one
- * in the file. Depth and pose pair with the colour image of the same header.stamp, else the nearest within 20 ms;
+ * in the file. Depth and pose pair with the colour image of the same header.stamp, else the nearest within 20 ms,
+ * unless that has the very stamp of another colour image;
  * intrinsics hold from their stamp on, the first ones also before. A stamp of 0 means the log time.
  *
  * Doubles become fixed point by t3r_fixed_from_double(): intrinsics Q16, distortion Q24, position Q32, rotation Q30;
@@ -77,6 +79,19 @@ typedef struct t3r_pairing_info {
 t3r_pairing_info t3r_recording_pairing(const t3r_recording *recording);
 /* The clock named in the recording's metadata ("synthetic", "monotonic", ...), or "unknown". */
 const char *t3r_recording_clock(const t3r_recording *recording);
+/* Steps of its 16-bit depth in world units, Q40. */
+uint64_t t3r_recording_depth_unit_q40(const t3r_recording *recording);
+
+/* A pose message as the file holds it: camera (or whatever carries the frame) to world. */
+typedef struct t3r_recorded_pose {
+    int64_t stamp_ns;
+    double position[3];
+    double rotation[4]; /* w x y z */
+} t3r_recorded_pose;
+/* Poses of stream `stream`, in the order of their stamps where it is the stream that poses the frames, else in the
+ * file's; 0 when its type is none of PoseStamped and TransformStamped. */
+uint32_t t3r_recording_pose_count(const t3r_recording *recording, uint32_t stream);
+t3r_recorded_pose t3r_recording_pose(const t3r_recording *recording, uint32_t stream, uint32_t index);
 
 /* ---- writing: no heap, one pass, unchunked, uncompressed, CRC-checked ------------------------------- */
 
@@ -103,7 +118,10 @@ typedef struct t3r_recorded_frame {
     const uint8_t *planes[2];
     uint32_t stride_bytes[2];
     const uint16_t *depth; /* NULL = none; host order */
-    uint32_t depth_width, depth_height;
+    const uint8_t
+        *depth_z16; /* where depth is NULL: little-endian samples, rows depth_stride_bytes apart; NULL = none */
+    uint32_t depth_width, depth_height, depth_stride_bytes;
+    bool unposed, uncalibrated; /* camera's pose, or its intrinsics, are not known and not written */
     t3r_recorded_camera camera;
 } t3r_recorded_frame;
 
@@ -120,6 +138,10 @@ typedef struct t3r_recording_header {
     double depth_unit;  /* world units a step; kept in Q40; more than 2^-41, less than 2^16 */
     const t3r_triplet *triplets;
     uint32_t triplet_count;
+    bool events; /* the recording also has a topic /<camera>/events: t3r_recorder_event() */
+    /* Called with the sink's `user` behind each whole message, so that it can be put out of harm's way; 0 = done.
+     * NULL = not called. */
+    int (*message_end)(void *user);
 } t3r_recording_header;
 
 /* 0, or -1 once the sink has failed; also -1, and nothing written, for an argument outside its range: a frame's
@@ -130,6 +152,17 @@ typedef struct t3r_recording_header {
  * pose, intrinsics and depth. */
 int t3r_recorder_begin(t3r_recorder *recorder, t3r_sink sink, const t3r_recording_header *header);
 int t3r_recorder_frame(t3r_recorder *recorder, const t3r_recorded_frame *frame);
+/* A line of text of that time, as rcl_interfaces/msg/Log; -1 also without `events` in the header, or when the text is
+ * longer than 1,024 bytes. */
+typedef enum t3r_recorder_level {
+    T3R_RECORDER_INFO = 20,
+    T3R_RECORDER_WARNING = 30,
+    T3R_RECORDER_ERROR = 40
+} t3r_recorder_level;
+int t3r_recorder_event(t3r_recorder *recorder, int64_t stamp_ns, t3r_recorder_level level, const char *text);
+/* Bytes of the recording so far, and the most that t3r_recorder_end() adds. */
+uint64_t t3r_recorder_offset(const t3r_recorder *recorder);
+#define T3R_RECORDER_END_BYTES 16384u
 int t3r_recorder_end(t3r_recorder *recorder);
 
 /* A sink that appends to a stdio stream. */

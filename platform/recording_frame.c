@@ -277,7 +277,9 @@ int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capt
         recording->set_poses != NULL && recording->set_poses[index].set ? &recording->set_poses[index] : NULL;
     t3r_capture_frame result = {
         .index = index,
+        .sequence = index,
         .stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
+        .depth_stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
         .has_pose = links->pose != T3R_NO_MESSAGE || set != NULL,
         .has_intrinsics = links->camera_info != T3R_NO_MESSAGE,
     };
@@ -286,6 +288,9 @@ int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capt
         (result.has_intrinsics && read_intrinsics(&r, links->camera_info, &result.frame, &result.camera) != 0) ||
         (result.has_pose && set == NULL && read_pose(&r, links->pose, &result.camera) != 0)) {
         return T3R_CAPTURE_FAILED;
+    }
+    if (links->depth != T3R_NO_MESSAGE) {
+        result.depth_stamp_ns = recording->streams[recording->depth].messages[links->depth].stamp_ns;
     }
     if (set != NULL) {
         memcpy(result.camera.position_q32, set->position_q32, sizeof set->position_q32);

@@ -97,8 +97,29 @@ static size_t nearest(const t3r_stream *stream, int64_t stamp)
     return gap_after == 0 || gap_after < gap_before ? after : after - 1;
 }
 
-/* The nearest within NEAR_NS; widens *worst_ns to its distance. */
-static size_t pair_near(const t3r_stream *stream, int64_t stamp, int64_t *worst_ns)
+static int by_value(const void *left, const void *right)
+{
+    const int64_t *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+/* The stamps of all colour images, ascending; NULL when memory is out. */
+static int64_t *sorted_stamps(const t3r_stream *colour)
+{
+    int64_t *stamps = malloc((colour->kept + 1) * sizeof *stamps);
+    for (size_t i = 0; stamps != NULL && i < colour->kept; i++) {
+        stamps[i] = colour->messages[i].stamp_ns;
+    }
+    if (stamps != NULL) {
+        qsort(stamps, colour->kept, sizeof *stamps, by_value);
+    }
+    return stamps;
+}
+
+/* The nearest within NEAR_NS that no other colour image has a better claim to, being of its very stamp; widens
+ * *worst_ns to its distance. */
+static size_t pair_near(const t3r_stream *stream, int64_t stamp, const int64_t *taken, size_t taken_count,
+                        int64_t *worst_ns)
 {
     size_t found = nearest(stream, stamp);
     if (found == T3R_NO_MESSAGE) {
@@ -106,7 +127,8 @@ static size_t pair_near(const t3r_stream *stream, int64_t stamp, int64_t *worst_
     }
     int64_t gap = stream->messages[found].stamp_ns - stamp;
     gap = gap < 0 ? -gap : gap;
-    if (gap > NEAR_NS) {
+    if (gap > NEAR_NS ||
+        (gap > 0 && bsearch(&stream->messages[found].stamp_ns, taken, taken_count, sizeof *taken, by_value) != NULL)) {
         return T3R_NO_MESSAGE;
     }
     *worst_ns = gap > *worst_ns ? gap : *worst_ns;
@@ -155,7 +177,9 @@ int t3r_recording_pair(t3r_recording *recording)
     }
     recording->links = calloc(colour->kept > 0 ? colour->kept : 1, sizeof *recording->links);
     recording->depth_z16 = calloc(depth->kept > 0 ? depth->kept : 1, sizeof *recording->depth_z16);
-    if (recording->links == NULL || recording->depth_z16 == NULL) {
+    int64_t *taken = sorted_stamps(colour);
+    if (recording->links == NULL || recording->depth_z16 == NULL || taken == NULL) {
+        free(taken);
         return -1;
     }
     t3r_pairing_info *pairing = &recording->pairing;
@@ -163,12 +187,13 @@ int t3r_recording_pair(t3r_recording *recording)
     for (size_t i = 0; i < colour->kept; i++) {
         t3r_frame_links *links = &recording->links[i];
         int64_t stamp = colour->messages[i].stamp_ns;
-        links->depth = pair_near(depth, stamp, &pairing->worst_depth_gap_ns);
-        links->pose = pair_near(pose, stamp, &pairing->worst_pose_gap_ns);
+        links->depth = pair_near(depth, stamp, taken, colour->kept, &pairing->worst_depth_gap_ns);
+        links->pose = pair_near(pose, stamp, taken, colour->kept, &pairing->worst_pose_gap_ns);
         links->camera_info = pair_standing(camera_info, stamp);
         pairing->with_depth += links->depth != T3R_NO_MESSAGE;
         pairing->with_pose += links->pose != T3R_NO_MESSAGE;
         pairing->with_intrinsics += links->camera_info != T3R_NO_MESSAGE;
     }
+    free(taken);
     return 0;
 }

@@ -453,3 +453,45 @@ const char *t3r_recording_clock(const t3r_recording *recording)
 {
     return recording->clock;
 }
+
+uint64_t t3r_recording_depth_unit_q40(const t3r_recording *recording)
+{
+    return recording->depth_unit_q40;
+}
+
+uint32_t t3r_recording_pose_count(const t3r_recording *recording, uint32_t stream)
+{
+    if (stream >= recording->stream_count) {
+        return 0;
+    }
+    const t3r_stream *s = &recording->streams[stream];
+    return s->type == T3R_ROS_POSE || s->type == T3R_ROS_TRANSFORM ? (uint32_t)s->kept : 0;
+}
+
+static double double_of_bits(uint64_t bits)
+{
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+t3r_recorded_pose t3r_recording_pose(const t3r_recording *recording, uint32_t stream, uint32_t index)
+{
+    const t3r_stream *s = &recording->streams[stream];
+    const t3r_indexed_message *message = &s->messages[index];
+    t3r_recorded_pose out = {.stamp_ns = message->stamp_ns};
+    t3r_ros_pose pose = {0};
+    /* read once already when it was indexed */
+    if (s->type == T3R_ROS_POSE) {
+        t3r_ros_read_pose(message->data, message->bytes, &pose);
+    } else {
+        t3r_ros_read_transform(message->data, message->bytes, &pose);
+    }
+    for (uint32_t i = 0; i < 3; i++) {
+        out.position[i] = double_of_bits(pose.position_f64[i]);
+    }
+    for (uint32_t i = 0; i < 4; i++) {
+        out.rotation[(i + 1) % 4] = double_of_bits(pose.rotation_f64[i]); /* x y z w to w x y z */
+    }
+    return out;
+}

@@ -14,19 +14,23 @@
 #define CAMERA_ROOM 48u
 #define TOPIC_ROOM (CAMERA_ROOM + 16u)
 #define SCHEMA_COUNT 3u /* T3R_ROS_IMAGE, T3R_ROS_CAMERA_INFO, T3R_ROS_POSE; schema ids are these + 1 */
+#define LOG_SCHEMA (SCHEMA_COUNT + 1)
+#define MAX_EVENT_BYTES 1024u
 #define MAX_STAMP_NS ((int64_t)1000000000 << 31) /* ROS keeps seconds in int32_t */
 #define MAX_TRIPLETS (1u << 20)
 
-enum { CHANNEL_IMAGE, CHANNEL_DEPTH, CHANNEL_CAMERA_INFO, CHANNEL_POSE, CHANNEL_COUNT };
+/* The events come last: without them the other channels are as they are with them. */
+enum { CHANNEL_IMAGE, CHANNEL_DEPTH, CHANNEL_CAMERA_INFO, CHANNEL_POSE, CHANNEL_EVENTS, CHANNEL_COUNT };
 
 static const struct {
     const char *name;
-    t3r_ros_type type;
+    uint16_t schema;
 } channels[CHANNEL_COUNT] = {
-    [CHANNEL_IMAGE] = {"image", T3R_ROS_IMAGE},
-    [CHANNEL_DEPTH] = {"depth", T3R_ROS_IMAGE},
-    [CHANNEL_CAMERA_INFO] = {"camera_info", T3R_ROS_CAMERA_INFO},
-    [CHANNEL_POSE] = {"pose", T3R_ROS_POSE},
+    [CHANNEL_IMAGE] = {"image", T3R_ROS_IMAGE + 1},
+    [CHANNEL_DEPTH] = {"depth", T3R_ROS_IMAGE + 1},
+    [CHANNEL_CAMERA_INFO] = {"camera_info", T3R_ROS_CAMERA_INFO + 1},
+    [CHANNEL_POSE] = {"pose", T3R_ROS_POSE + 1},
+    [CHANNEL_EVENTS] = {"events", LOG_SCHEMA},
 };
 
 static const char metadata_name[] = "trim3r";
@@ -38,6 +42,8 @@ struct t3r_recorder {
     uint32_t messages[CHANNEL_COUNT]; /* also the next sequence number */
     uint32_t metadata_count;
     uint64_t metadata_at[3]; /* where each metadata record starts, and the last one ends */
+    uint32_t channel_count;
+    int (*message_end)(void *user);
     char camera[CAMERA_ROOM];
 };
 _Static_assert(sizeof(t3r_recorder) <= T3R_RECORDER_BYTES, "T3R_RECORDER_BYTES must hold the state");
@@ -66,11 +72,28 @@ static bool camera_name_fits(const char *camera)
     return count > 0;
 }
 
-static void put_schemas(t3r_mcap_writer *out)
+/* What is written so far is whole. */
+static void end_message(t3r_recorder *recorder)
+{
+    if (!recorder->out.failed && recorder->message_end != NULL) {
+        recorder->out.failed = recorder->message_end(recorder->out.sink.user) != 0;
+    }
+}
+
+static bool has_events(const t3r_recorder *recorder)
+{
+    return recorder->channel_count > CHANNEL_EVENTS;
+}
+
+static void put_schemas(t3r_recorder *recorder)
 {
     for (uint32_t i = 0; i < SCHEMA_COUNT; i++) {
-        t3r_mcap_schema(out, (uint16_t)(i + 1), t3r_text_of(t3r_ros_names[i]), t3r_text_of("ros2msg"),
+        t3r_mcap_schema(&recorder->out, (uint16_t)(i + 1), t3r_text_of(t3r_ros_names[i]), t3r_text_of("ros2msg"),
                         t3r_text_of(t3r_ros_schemas[i]));
+    }
+    if (has_events(recorder)) {
+        t3r_mcap_schema(&recorder->out, LOG_SCHEMA, t3r_text_of(t3r_ros_log_name), t3r_text_of("ros2msg"),
+                        t3r_text_of(t3r_ros_log_schema));
     }
 }
 
@@ -78,15 +101,15 @@ static void put_channels(t3r_recorder *recorder)
 {
     /* The profile "ros2" requires the key; empty = unknown. */
     const t3r_mcap_pair quality = {t3r_text_of("offered_qos_profiles"), t3r_text_of("")};
-    for (uint32_t i = 0; i < CHANNEL_COUNT; i++) {
+    for (uint32_t i = 0; i < recorder->channel_count; i++) {
         char topic[TOPIC_ROOM];
         size_t prefix = strlen(recorder->camera), name = strlen(channels[i].name);
         topic[0] = '/';
         memcpy(topic + 1, recorder->camera, prefix);
         topic[1 + prefix] = '/';
         memcpy(topic + prefix + 2, channels[i].name, name);
-        t3r_mcap_channel(&recorder->out, (uint16_t)i, (uint16_t)(channels[i].type + 1),
-                         (t3r_text){topic, prefix + 2 + name}, t3r_text_of("cdr"), &quality, 1);
+        t3r_mcap_channel(&recorder->out, (uint16_t)i, channels[i].schema, (t3r_text){topic, prefix + 2 + name},
+                         t3r_text_of("cdr"), &quality, 1);
     }
 }
 
@@ -164,10 +187,13 @@ int t3r_recorder_begin(t3r_recorder *recorder, t3r_sink sink, const t3r_recordin
     t3r_q40_to_text((uint64_t)unit_q40, depth_unit);
     memset(recorder, 0, sizeof *recorder);
     memcpy(recorder->camera, header->camera, strlen(header->camera) + 1);
+    recorder->channel_count = header->events ? CHANNEL_COUNT : CHANNEL_EVENTS;
+    recorder->message_end = header->message_end;
     t3r_mcap_begin(&recorder->out, sink, t3r_text_of("ros2"), t3r_text_of("trim3r " T3R_VERSION));
     put_metadata(recorder, header, depth_unit);
-    put_schemas(&recorder->out);
+    put_schemas(recorder);
     put_channels(recorder);
+    end_message(recorder);
     return status(recorder);
 }
 
@@ -181,6 +207,11 @@ static void begin_message(t3r_recorder *recorder, uint32_t channel, int64_t stam
     recorder->first_ns = first || time < recorder->first_ns ? time : recorder->first_ns;
     recorder->last_ns = first || time > recorder->last_ns ? time : recorder->last_ns;
     t3r_mcap_message(&recorder->out, (uint16_t)channel, recorder->messages[channel]++, time, data_bytes);
+}
+
+uint64_t t3r_recorder_offset(const t3r_recorder *recorder)
+{
+    return recorder->out.offset;
 }
 
 static void put_camera_info(t3r_recorder *recorder, int64_t stamp_ns, const t3r_recorded_camera *camera)
@@ -208,6 +239,7 @@ static void put_camera_info(t3r_recorder *recorder, int64_t stamp_ns, const t3r_
     begin_message(recorder, CHANNEL_CAMERA_INFO, stamp_ns, counter.at);
     t3r_cdr_begin(&cdr, t3r_mcap_record_sink(&recorder->out));
     t3r_ros_write_camera_info(&cdr, &info);
+    end_message(recorder);
 }
 
 static void put_pose(t3r_recorder *recorder, int64_t stamp_ns, const t3r_recorded_camera *camera)
@@ -225,6 +257,7 @@ static void put_pose(t3r_recorder *recorder, int64_t stamp_ns, const t3r_recorde
     begin_message(recorder, CHANNEL_POSE, stamp_ns, counter.at);
     t3r_cdr_begin(&cdr, t3r_mcap_record_sink(&recorder->out));
     t3r_ros_write_pose(&cdr, &pose);
+    end_message(recorder);
 }
 
 /* Opens the message of an image; its data follow through the returned writer. */
@@ -250,7 +283,10 @@ static void put_depth(t3r_recorder *recorder, const t3r_recorded_frame *frame)
         .data_bytes = frame->depth_width * 2 * frame->depth_height,
     };
     t3r_cdr_writer cdr = begin_image(recorder, CHANNEL_DEPTH, &image);
-    size_t samples = (size_t)frame->depth_width * frame->depth_height;
+    for (uint32_t y = 0; frame->depth == NULL && y < frame->depth_height; y++) {
+        t3r_cdr_put_raw(&cdr, frame->depth_z16 + (size_t)y * frame->depth_stride_bytes, image.step);
+    }
+    size_t samples = frame->depth == NULL ? 0 : (size_t)frame->depth_width * frame->depth_height;
     for (size_t start = 0; start < samples; start += 64) {
         uint8_t bytes[128];
         size_t count = samples - start < 64 ? samples - start : 64;
@@ -259,6 +295,7 @@ static void put_depth(t3r_recorder *recorder, const t3r_recorded_frame *frame)
         }
         t3r_cdr_put_raw(&cdr, bytes, 2 * count);
     }
+    end_message(recorder);
 }
 
 static void put_image(t3r_recorder *recorder, const t3r_recorded_frame *frame)
@@ -282,13 +319,17 @@ static void put_image(t3r_recorder *recorder, const t3r_recorded_frame *frame)
             t3r_cdr_put_raw(&cdr, frame->planes[plane] + (size_t)y * frame->stride_bytes[plane], row_bytes);
         }
     }
+    end_message(recorder);
 }
 
 static bool frame_is_recordable(const t3r_recorded_frame *frame)
 {
     if (frame->stamp_ns < 0 || frame->stamp_ns >= MAX_STAMP_NS || (uint32_t)frame->format >= T3R_PIXEL_FORMAT_COUNT ||
-        (uint32_t)frame->camera.distortion >= T3R_DISTORTION_COUNT || frame->camera.width != frame->width ||
-        frame->camera.height != frame->height || t3r_pixel_size_error(frame->format, frame->width, frame->height)) {
+        t3r_pixel_size_error(frame->format, frame->width, frame->height)) {
+        return false;
+    }
+    if (!frame->uncalibrated && ((uint32_t)frame->camera.distortion >= T3R_DISTORTION_COUNT ||
+                                 frame->camera.width != frame->width || frame->camera.height != frame->height)) {
         return false;
     }
     uint32_t row_bytes = t3r_pixel_row_bytes(frame->format, frame->width);
@@ -298,8 +339,12 @@ static bool frame_is_recordable(const t3r_recorded_frame *frame)
             return false;
         }
     }
-    return frame->depth == NULL || (frame->depth_width >= 2 && frame->depth_width <= T3R_MAX_SIDE &&
-                                    frame->depth_height >= 2 && frame->depth_height <= T3R_MAX_SIDE);
+    if (frame->depth == NULL && frame->depth_z16 == NULL) {
+        return true;
+    }
+    return frame->depth_width >= 2 && frame->depth_width <= T3R_MAX_SIDE && frame->depth_height >= 2 &&
+           frame->depth_height <= T3R_MAX_SIDE &&
+           (frame->depth != NULL || frame->depth_stride_bytes >= frame->depth_width * 2);
 }
 
 int t3r_recorder_frame(t3r_recorder *recorder, const t3r_recorded_frame *frame)
@@ -307,12 +352,33 @@ int t3r_recorder_frame(t3r_recorder *recorder, const t3r_recorded_frame *frame)
     if (recorder == NULL || frame == NULL || !frame_is_recordable(frame)) {
         return -1;
     }
-    put_camera_info(recorder, frame->stamp_ns, &frame->camera);
-    put_pose(recorder, frame->stamp_ns, &frame->camera);
-    if (frame->depth != NULL) {
+    if (!frame->uncalibrated) {
+        put_camera_info(recorder, frame->stamp_ns, &frame->camera);
+    }
+    if (!frame->unposed) {
+        put_pose(recorder, frame->stamp_ns, &frame->camera);
+    }
+    if (frame->depth != NULL || frame->depth_z16 != NULL) {
         put_depth(recorder, frame);
     }
     put_image(recorder, frame);
+    return status(recorder);
+}
+
+int t3r_recorder_event(t3r_recorder *recorder, int64_t stamp_ns, t3r_recorder_level level, const char *text)
+{
+    if (recorder == NULL || text == NULL || !has_events(recorder) || stamp_ns < 0 || stamp_ns >= MAX_STAMP_NS ||
+        strlen(text) > MAX_EVENT_BYTES) {
+        return -1;
+    }
+    t3r_ros_log log = {stamp_ns, (uint8_t)level, t3r_text_of("capture"), t3r_text_of(text)};
+    t3r_cdr_writer counter, cdr;
+    t3r_cdr_begin(&counter, (t3r_sink){NULL, NULL});
+    t3r_ros_write_log(&counter, &log);
+    begin_message(recorder, CHANNEL_EVENTS, stamp_ns, counter.at);
+    t3r_cdr_begin(&cdr, t3r_mcap_record_sink(&recorder->out));
+    t3r_ros_write_log(&cdr, &log);
+    end_message(recorder);
     return status(recorder);
 }
 
@@ -320,20 +386,21 @@ static void put_statistics(t3r_recorder *recorder)
 {
     t3r_mcap_writer *out = &recorder->out;
     uint64_t messages = 0;
-    for (uint32_t i = 0; i < CHANNEL_COUNT; i++) {
+    uint32_t channel_count = recorder->channel_count;
+    for (uint32_t i = 0; i < channel_count; i++) {
         messages += recorder->messages[i];
     }
-    t3r_mcap_record(out, T3R_MCAP_STATISTICS, 8 + 2 + 4 * 4 + 8 + 8 + 4 + CHANNEL_COUNT * 10);
+    t3r_mcap_record(out, T3R_MCAP_STATISTICS, 8 + 2 + 4 * 4 + 8 + 8 + 4 + channel_count * 10);
     t3r_mcap_put_u64(out, messages);
-    t3r_mcap_put_u16(out, SCHEMA_COUNT);
-    t3r_mcap_put_u32(out, CHANNEL_COUNT);
+    t3r_mcap_put_u16(out, has_events(recorder) ? LOG_SCHEMA : SCHEMA_COUNT);
+    t3r_mcap_put_u32(out, channel_count);
     t3r_mcap_put_u32(out, 0); /* attachments */
     t3r_mcap_put_u32(out, recorder->metadata_count);
     t3r_mcap_put_u32(out, 0); /* chunks */
     t3r_mcap_put_u64(out, recorder->first_ns);
     t3r_mcap_put_u64(out, recorder->last_ns);
-    t3r_mcap_put_u32(out, CHANNEL_COUNT * 10);
-    for (uint32_t i = 0; i < CHANNEL_COUNT; i++) {
+    t3r_mcap_put_u32(out, channel_count * 10);
+    for (uint32_t i = 0; i < channel_count; i++) {
         t3r_mcap_put_u16(out, (uint16_t)i);
         t3r_mcap_put_u64(out, recorder->messages[i]);
     }
@@ -362,7 +429,7 @@ int t3r_recorder_end(t3r_recorder *recorder)
     uint64_t starts[GROUPS + 1];
     t3r_mcap_data_end(out);
     starts[0] = out->offset;
-    put_schemas(out);
+    put_schemas(recorder);
     starts[1] = out->offset;
     put_channels(recorder);
     starts[2] = out->offset;
@@ -377,5 +444,6 @@ int t3r_recorder_end(t3r_recorder *recorder)
         t3r_mcap_put_u64(out, starts[i + 1] - starts[i]);
     }
     t3r_mcap_finish(out, starts[0], starts[GROUPS]);
+    end_message(recorder);
     return status(recorder);
 }

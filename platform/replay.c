@@ -5,20 +5,55 @@
 #include "reason.h"
 #include "recording.h"
 
+#define LONE_FRAME_NS 33333333 /* the interval after a recording of a single frame */
+
 typedef struct replay {
     t3r_capture capture; /* first: a t3r_capture * is a replay * */
     t3r_recording *recording;
-    uint32_t next;
+    uint32_t next;           /* in the recording */
+    uint32_t index;          /* over all its turns */
+    bool started;            /* first_ns is known */
+    uint32_t turns;          /* left, this one included */
+    int64_t first_ns;        /* of the recording's frames */
+    int64_t turn_ns, ago_ns; /* a turn's length; how much later this turn's frames are */
+    char clock[64];
 } replay;
+
+/* Once more from the start, later by the length of a turn. */
+static bool turn_over(replay *self)
+{
+    if (self->turns <= 1 || self->next == 0) {
+        return false;
+    }
+    uint32_t frames = self->next;
+    int64_t span = self->capture.last_stamp_ns - self->ago_ns - self->first_ns;
+    self->turn_ns = frames > 1 && span > 0 ? span + span / (frames - 1) : LONE_FRAME_NS;
+    self->ago_ns += self->turn_ns;
+    self->turns--;
+    self->next = 0;
+    return true;
+}
 
 /* A frame that cannot be read is a failure once; the call after it goes on with the next one. */
 static int next(t3r_capture *capture, t3r_capture_frame *frame)
 {
     replay *self = (replay *)capture;
-    if (self->next == t3r_recording_frame_count(self->recording)) {
+    if (self->next == t3r_recording_frame_count(self->recording) && !turn_over(self)) {
         return T3R_CAPTURE_END;
     }
-    return t3r_recording_frame(self->recording, self->next++, frame, capture->error, sizeof capture->error);
+    int got = t3r_recording_frame(self->recording, self->next, frame, capture->error, sizeof capture->error);
+    uint32_t index = self->index++;
+    self->next++;
+    if (got != T3R_CAPTURE_FRAME) {
+        return got;
+    }
+    self->first_ns = self->started ? self->first_ns : frame->stamp_ns;
+    self->started = true;
+    frame->stamp_ns += self->ago_ns;
+    frame->depth_stamp_ns += self->ago_ns;
+    frame->index = frame->sequence = index;
+    capture->counts.paired += frame->frame.depth != NULL;
+    return t3r_capture_deliver(capture, frame);
 }
 
 static void close_replay(t3r_capture *capture)
@@ -28,9 +63,9 @@ static void close_replay(t3r_capture *capture)
     free(self);
 }
 
-t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes)
+t3r_capture *t3r_replay_open_repeated(const char *path, uint32_t times, char *error, size_t error_bytes)
 {
-    static const t3r_capture_operations operations = {next, close_replay};
+    static const t3r_capture_operations operations = {next, NULL, close_replay};
     replay *self = calloc(1, sizeof *self);
     if (self == NULL) {
         t3r_reason(error, error_bytes, "%s: out of memory", path);
@@ -42,5 +77,17 @@ t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes)
         free(self);
         return NULL;
     }
+    self->turns = times;
+    t3r_reason(self->clock, sizeof self->clock, "%s", t3r_recording_clock(self->recording));
+    self->capture.clock = self->clock;
+    self->capture.depth_unit_q40 = t3r_recording_depth_unit_q40(self->recording);
+    if (t3r_recording_note(self->recording)[0] != '\0') {
+        t3r_capture_remark(&self->capture, "%s", t3r_recording_note(self->recording));
+    }
     return &self->capture;
+}
+
+t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes)
+{
+    return t3r_replay_open_repeated(path, 1, error, error_bytes);
 }

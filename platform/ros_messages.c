@@ -103,10 +103,15 @@ const char *t3r_ros_read_transform(const uint8_t *bytes, size_t count, t3r_ros_p
     return in.failed ? "child_frame_id is malformed or cut short" : get_pose(&in, pose);
 }
 
+static void put_stamp(t3r_cdr_writer *out, int64_t stamp_ns)
+{
+    t3r_cdr_put_u32(out, (uint32_t)(stamp_ns / NS_PER_S));
+    t3r_cdr_put_u32(out, (uint32_t)(stamp_ns % NS_PER_S));
+}
+
 static void put_header(t3r_cdr_writer *out, const t3r_ros_header *header)
 {
-    t3r_cdr_put_u32(out, (uint32_t)(header->stamp_ns / NS_PER_S));
-    t3r_cdr_put_u32(out, (uint32_t)(header->stamp_ns % NS_PER_S));
+    put_stamp(out, header->stamp_ns);
     t3r_cdr_put_string(out, header->frame_id);
 }
 
@@ -153,4 +158,15 @@ void t3r_ros_write_pose(t3r_cdr_writer *out, const t3r_ros_pose *pose)
     put_header(out, &pose->header);
     put_f64s(out, pose->position_f64, 3);
     put_f64s(out, pose->rotation_f64, 4);
+}
+
+void t3r_ros_write_log(t3r_cdr_writer *out, const t3r_ros_log *log)
+{
+    put_stamp(out, log->stamp_ns);
+    t3r_cdr_put_u8(out, log->level);
+    t3r_cdr_put_string(out, log->name);
+    t3r_cdr_put_string(out, log->message);
+    t3r_cdr_put_string(out, (t3r_text){"", 0}); /* file */
+    t3r_cdr_put_string(out, (t3r_text){"", 0}); /* function */
+    t3r_cdr_put_u32(out, 0);                    /* line */
 }

@@ -25,6 +25,10 @@ extern const char *const t3r_ros_names[T3R_ROS_TYPE_COUNT];
 /* The message and all that it refers to, as MCAP's schema encoding "ros2msg" wants it. */
 extern const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT];
 
+/* What only the recorder writes: lines of text. */
+extern const char *const t3r_ros_log_name;
+extern const char *const t3r_ros_log_schema;
+
 typedef struct t3r_ros_header {
     int64_t stamp_ns; /* seconds in int32_t, so |stamp_ns| < 2^62 */
     t3r_text frame_id;
@@ -66,10 +70,18 @@ const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros
 const char *t3r_ros_read_pose(const uint8_t *bytes, size_t count, t3r_ros_pose *pose);
 const char *t3r_ros_read_transform(const uint8_t *bytes, size_t count, t3r_ros_pose *pose);
 
+/* rcl_interfaces/msg/Log without file, function and line. */
+typedef struct t3r_ros_log {
+    int64_t stamp_ns;
+    uint8_t level; /* 10 debug, 20 info, 30 warning, 40 error */
+    t3r_text name, message;
+} t3r_ros_log;
+
 /* The stamp must lie in 0 .. 2^31 seconds. An image is written up to the count of its data; the caller's
  * t3r_cdr_put_raw() adds the data_bytes bytes themselves. */
 void t3r_ros_write_image_head(t3r_cdr_writer *out, const t3r_ros_image *image);
 void t3r_ros_write_camera_info(t3r_cdr_writer *out, const t3r_ros_camera_info *info);
 void t3r_ros_write_pose(t3r_cdr_writer *out, const t3r_ros_pose *pose);
+void t3r_ros_write_log(t3r_cdr_writer *out, const t3r_ros_log *log);
 
 #endif

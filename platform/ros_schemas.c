@@ -61,3 +61,19 @@ const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT] = {
                           "geometry_msgs/Vector3 translation\n"
                           "geometry_msgs/Quaternion rotation\n" RULER "MSG: geometry_msgs/Vector3\n" XYZ QUATERNION,
 };
+
+const char *const t3r_ros_log_name = "rcl_interfaces/msg/Log";
+const char *const t3r_ros_log_schema = "byte DEBUG=10\n"
+                                       "byte INFO=20\n"
+                                       "byte WARN=30\n"
+                                       "byte ERROR=40\n"
+                                       "byte FATAL=50\n"
+                                       "builtin_interfaces/Time stamp\n"
+                                       "uint8 level\n"
+                                       "string name\n"
+                                       "string msg\n"
+                                       "string file\n"
+                                       "string function\n"
+                                       "uint32 line\n" RULER "MSG: builtin_interfaces/Time\n"
+                                       "int32 sec\n"
+                                       "uint32 nanosec\n";

@@ -5,6 +5,7 @@
 
 int command_chart(int argc, char **argv);
 int command_import(int argc, char **argv);
+int command_capture(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_build(int argc, char **argv);
 int command_render(int argc, char **argv);

@@ -14,6 +14,7 @@ static const struct {
     const char *summary;
 } commands[] = {
     {"import", command_import, "a folder of posed pictures to a recording"},
+    {"capture", command_capture, "a camera, live, to a recording or straight to Gaussians"},
     {"room", command_room, "the built-in room as a recording"},
     {"info", command_info, "what recordings and scenes hold: frames, clocks; Gaussians, scales"},
     {"build", command_build, "frames of a recording to exactly Z Gaussians, as a .ply"},
@@ -39,8 +40,8 @@ static void print_help(FILE *out)
         fprintf(out, "  %-9s %s\n", commands[i].name, commands[i].summary);
     }
     fputs("\nThe way of the data:\n"
-          "  import|room > REC.mcap > build > SCENE.ply > render > view.png\n"
-          "                REC.mcap > eval > scores > chart > report.html;  REC.mcap > replay > hashes\n\n"
+          "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
+          "                        REC.mcap > eval > scores > chart > report.html;  REC.mcap > replay > hashes\n\n"
           "  trim3r room -o room.mcap\n"
           "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
           "  trim3r render scene.ply room.mcap --view 1 -o view.png\n\n"

@@ -118,6 +118,15 @@ void reconstruction_clear_hashes(reconstruction *r)
     memset(r->stage_hashed, 0, sizeof r->stage_hashed);
 }
 
+t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *options)
+{
+    return (t3r_hooks){
+        .user = r,
+        .stage_hash = options->hash ? keep_hash : NULL,
+        .parallel_for = r->threads != NULL ? run_parallel : NULL,
+    };
+}
+
 /* ---- the arena -------------------------------------------------------------------------------------------- */
 
 /* Arena of the wanted size, runtime in it, hooks bound. */
@@ -149,12 +158,8 @@ static int open_arena(reconstruction *r, const reconstruction_options *options)
             return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", options->threads);
         }
     }
-    t3r_hooks hooks = {
-        .user = r,
-        .progress = show_progress,
-        .stage_hash = options->hash ? keep_hash : NULL,
-        .parallel_for = r->threads != NULL ? run_parallel : NULL,
-    };
+    t3r_hooks hooks = reconstruction_hooks(r, options);
+    hooks.progress = show_progress;
     status = t3r_set_hooks(r->runtime, &hooks);
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "hooks", &r->config, r->arena_bytes);
 }
@@ -365,7 +370,7 @@ static int bind_head(reconstruction *r)
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
 }
 
-static t3r_status reconstruct(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
+t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
 {
     if (planes != NULL) {
         return t3r_reconstruct_given(r->runtime, planes, r->config.width * 2, &r->scene);
@@ -376,20 +381,8 @@ static t3r_status reconstruct(reconstruction *r, const reconstruction_options *o
     return t3r_reconstruct(r->runtime, &r->scene);
 }
 
-/* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
-static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
-                      const t3r_capture_frame *frames, const uint16_t *const *planes)
+void reconstruction_configure(reconstruction *r, const reconstruction_options *options)
 {
-    int code = chosen_head_open(&r->head, options->head);
-    if (code == CLI_OK && options->hide_mask) {
-        code = chosen_head_hide_mask(&r->head);
-    }
-    if (code == CLI_OK) {
-        code = need_depth(r, path, frames, options->depth);
-    }
-    if (code != CLI_OK) {
-        return code;
-    }
     r->config = t3r_default_config(r->config.width, r->config.height, r->context_count, 1);
     r->config.allocation = options->allocation;
     chosen_head_configure(&r->head, &r->config);
@@ -413,6 +406,32 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
         r->config.render_width = options->render_width;
         r->config.render_height = options->render_height;
     }
+}
+
+void reconstruction_request(reconstruction *r, const reconstruction_options *options)
+{
+    r->requested = options->gaussians != 0     ? options->gaussians
+                   : options->keep_percent > 0 ? reconstruction_budget(r->valid_points, options->keep_percent)
+                                               : r->valid_points;
+    r->config.gaussians = T3R_MIN(r->requested, r->valid_points);
+    r->config.max_gaussians = r->config.gaussians;
+}
+
+/* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
+static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
+                      const t3r_capture_frame *frames, const uint16_t *const *planes)
+{
+    int code = chosen_head_open(&r->head, options->head);
+    if (code == CLI_OK && options->hide_mask) {
+        code = chosen_head_hide_mask(&r->head);
+    }
+    if (code == CLI_OK) {
+        code = need_depth(r, path, frames, options->depth);
+    }
+    if (code != CLI_OK) {
+        return code;
+    }
+    reconstruction_configure(r, options);
     if (t3r_config_error(&r->config) != NULL) {
         return reconstruction_error(T3R_ERR_CONFIG, "settings", &r->config, 0);
     }
@@ -423,11 +442,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
         return code;
     }
     r->valid_points = points.valid;
-    r->requested = options->gaussians != 0     ? options->gaussians
-                   : options->keep_percent > 0 ? reconstruction_budget(r->valid_points, options->keep_percent)
-                                               : r->valid_points;
-    r->config.gaussians = T3R_MIN(r->requested, r->valid_points);
-    r->config.max_gaussians = r->config.gaussians;
+    reconstruction_request(r, options);
 
     code = open_arena(r, options);
     if (code == CLI_OK) {
@@ -445,7 +460,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     }
     double added = cli_now();
     r->add_views_seconds = added - start;
-    t3r_status status = reconstruct(r, options, planes);
+    t3r_status status = reconstruction_make(r, options, planes);
     r->build_seconds = cli_now() - added;
     cli_progress_end();
     return status == T3R_OK ? CLI_OK : build_error(r, status, path);

@@ -109,6 +109,16 @@ uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent);
 int reconstruction_build(reconstruction *r, const t3r_recording *recording, const char *path,
                          const reconstruction_options *options);
 
+/* For those who build without a recording (live_build.h). The configuration of the options for the working size in
+ * r->config, r->context_count views and r->head; its budget is left to the next. */
+void reconstruction_configure(reconstruction *r, const reconstruction_options *options);
+/* The budget that the options ask for, of r->valid_points. */
+void reconstruction_request(reconstruction *r, const reconstruction_options *options);
+/* From the views added to r->scene; `planes` are the importance of the allocation `given`, else NULL. */
+t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes);
+/* Hooks that collect hashes into `r` and use its threads, without a progress line. */
+t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *options);
+
 /* An arena that only renders, filled with a scene from a file; targets up to width x height. Of the options only
  * arena, threads and hash are read. */
 int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,

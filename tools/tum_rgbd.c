@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "file_bytes.h"
+#include "pose_between.h"
 #include "reason.h"
 #include "trim3r.h"
 
@@ -16,7 +17,6 @@
 #define NEAR_SECONDS 0.020
 #define BRACKET_SECONDS 0.100
 #define DEPTH_STEPS_PER_METRE 5000.0
-#define POSE_NUMBERS 7
 
 typedef struct stamped {
     double stamp;
@@ -181,18 +181,6 @@ static const stamped *nearest(const stamped_list *list, double stamp)
     return best;
 }
 
-static void set_pose(posed_frame *frame, const double pose[POSE_NUMBERS])
-{
-    double norm = sqrt(pose[3] * pose[3] + pose[4] * pose[4] + pose[5] * pose[5] + pose[6] * pose[6]);
-    memcpy(frame->position, pose, sizeof frame->position);
-    frame->rotation[0] = pose[6] / norm;
-    for (int i = 0; i < 3; i++) {
-        frame->rotation[1 + i] = pose[3 + i] / norm;
-    }
-}
-
-/* The straight line between two positions and the normalised line between two quaternions: neighbours of a
- * trajectory are a few degrees apart, where that differs from the arc by less than a thousandth of their angle. */
 static bool find_pose(const stamped_list *trajectory, double stamp, posed_frame *frame)
 {
     size_t after = lower_bound(trajectory, stamp);
@@ -200,21 +188,15 @@ static bool find_pose(const stamped_list *trajectory, double stamp, posed_frame 
         const stamped *a = &trajectory->items[after - 1], *b = &trajectory->items[after];
         double gap = b->stamp - a->stamp;
         if (gap <= BRACKET_SECONDS) {
-            double t = (stamp - a->stamp) / gap;
-            double dot =
-                a->pose[3] * b->pose[3] + a->pose[4] * b->pose[4] + a->pose[5] * b->pose[5] + a->pose[6] * b->pose[6];
             double pose[POSE_NUMBERS];
-            for (int i = 0; i < POSE_NUMBERS; i++) {
-                double end = i >= 3 && dot < 0 ? -b->pose[i] : b->pose[i];
-                pose[i] = a->pose[i] + t * (end - a->pose[i]);
-            }
-            set_pose(frame, pose);
+            pose_between(a->pose, b->pose, (stamp - a->stamp) / gap, pose);
+            pose_split(pose, frame->position, frame->rotation);
             return true;
         }
     }
     const stamped *only = nearest(trajectory, stamp);
     if (only != NULL) {
-        set_pose(frame, only->pose);
+        pose_split(only->pose, frame->position, frame->rotation);
     }
     return only != NULL;
 }

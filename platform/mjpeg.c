@@ -1,0 +1,88 @@
+#include "mjpeg.h"
+
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <jpeglib.h>
+
+struct t3r_mjpeg {
+    struct jpeg_decompress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    jmp_buf back;
+    char message[JMSG_LENGTH_MAX];
+};
+
+static void give_up(j_common_ptr jpeg)
+{
+    t3r_mjpeg *self = jpeg->client_data;
+    jpeg->err->format_message(jpeg, self->message);
+    longjmp(self->back, 1);
+}
+
+/* Warnings are of damaged data: as bad as errors. */
+static void emit(j_common_ptr jpeg, int level)
+{
+    if (level < 0) {
+        give_up(jpeg);
+    }
+}
+
+static int create(t3r_mjpeg *self)
+{
+    self->jpeg.err = jpeg_std_error(&self->errors);
+    self->errors.error_exit = give_up;
+    self->errors.emit_message = emit;
+    self->jpeg.client_data = self;
+    if (setjmp(self->back) != 0) {
+        return -1;
+    }
+    jpeg_create_decompress(&self->jpeg); /* keeps err and client_data */
+    return 0;
+}
+
+t3r_mjpeg *t3r_mjpeg_open(void)
+{
+    t3r_mjpeg *self = calloc(1, sizeof *self);
+    if (self == NULL) {
+        return NULL;
+    }
+    if (create(self) != 0) {
+        free(self);
+        return NULL;
+    }
+    return self;
+}
+
+void t3r_mjpeg_close(t3r_mjpeg *self)
+{
+    if (self != NULL) {
+        jpeg_destroy_decompress(&self->jpeg);
+        free(self);
+    }
+}
+
+const char *t3r_mjpeg_decode(t3r_mjpeg *self, const uint8_t *jpeg, size_t bytes, uint32_t width, uint32_t height,
+                             uint8_t *rgb)
+{
+    if (setjmp(self->back) != 0) {
+        jpeg_abort_decompress(&self->jpeg);
+        return self->message;
+    }
+    jpeg_mem_src(&self->jpeg, jpeg, (unsigned long)bytes);
+    jpeg_read_header(&self->jpeg, TRUE);
+    if (self->jpeg.image_width != width || self->jpeg.image_height != height) {
+        jpeg_abort_decompress(&self->jpeg);
+        return "the JPEG has another size";
+    }
+    self->jpeg.out_color_space = JCS_RGB;
+    self->jpeg.dct_method = JDCT_ISLOW;
+    self->jpeg.do_fancy_upsampling = FALSE;
+    jpeg_start_decompress(&self->jpeg);
+    while (self->jpeg.output_scanline < height) {
+        JSAMPROW row = rgb + (size_t)self->jpeg.output_scanline * width * 3;
+        jpeg_read_scanlines(&self->jpeg, &row, 1);
+    }
+    jpeg_finish_decompress(&self->jpeg);
+    return NULL;
+}

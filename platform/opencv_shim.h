@@ -1,0 +1,48 @@
+/* What the module of OpenCV offers, in C. */
+#ifndef T3R_PLATFORM_OPENCV_SHIM_H
+#define T3R_PLATFORM_OPENCV_SHIM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct t3r_opencv_film t3r_opencv_film;
+
+typedef struct t3r_opencv_picture {
+    const uint8_t *data; /* until the next read */
+    uint32_t width, height, stride;
+    uint32_t channels, bytes; /* a pixel's, a channel's */
+    double position_ms;       /* as the back end tells it; often 0 */
+} t3r_opencv_picture;
+
+typedef struct t3r_opencv_request {
+    const char *url;          /* a number alone is a device */
+    const char *backend;      /* NULL = OpenCV's choice */
+    uint32_t width, height;   /* of devices; 0 = as it is */
+    uint32_t rate_millihertz; /* of devices; 0 = as it is */
+    const char *fourcc;       /* of devices; NULL = as it is */
+    uint32_t timeout_ms;      /* of back ends that have one: FFMPEG, GStreamer */
+    bool unchanged;           /* samples as they are stored: for depth */
+} t3r_opencv_request;
+
+typedef struct t3r_opencv_shim {
+    const char *version;
+    t3r_opencv_film *(*open)(const t3r_opencv_request *request, char *error, size_t error_bytes);
+    /* 1: a picture, 0: the end, or a device that gave nothing in time, -1: failed with a reason. */
+    int (*read)(t3r_opencv_film *film, t3r_opencv_picture *picture, char *error, size_t error_bytes);
+    void (*close)(t3r_opencv_film *film);
+    const char *(*backend)(const t3r_opencv_film *film);
+    double (*rate)(const t3r_opencv_film *film); /* frames a second as told; 0 = not */
+    bool (*live)(const t3r_opencv_film *film);   /* a device, not a film that ends */
+} t3r_opencv_shim;
+
+extern const t3r_opencv_shim t3r_shim;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

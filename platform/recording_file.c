@@ -1,0 +1,81 @@
+#include "recording_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "reason.h"
+
+int t3r_recording_file_open(t3r_recording_file *file, const char *path, bool sync, char *error, size_t error_bytes)
+{
+    file->held = 0;
+    file->sync = sync;
+    file->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    return file->fd >= 0 ? 0 : t3r_reason(error, error_bytes, "%s: %s", path, strerror(errno));
+}
+
+/* A signal interrupts a write at most between bytes; what is left goes on. */
+static int write_all(int fd, const uint8_t *bytes, size_t count)
+{
+    while (count > 0) {
+        ssize_t written = write(fd, bytes, count);
+        if (written < 0 && errno != EINTR) {
+            return -1;
+        }
+        if (written > 0) {
+            bytes += written;
+            count -= (size_t)written;
+        }
+    }
+    return 0;
+}
+
+static int flush(t3r_recording_file *file)
+{
+    size_t held = file->held;
+    file->held = 0;
+    return write_all(file->fd, file->room, held);
+}
+
+static int append(void *user, const void *bytes, size_t count)
+{
+    t3r_recording_file *file = user;
+    if (count > sizeof file->room - file->held && flush(file) != 0) {
+        return -1;
+    }
+    if (count > sizeof file->room) {
+        return write_all(file->fd, bytes, count);
+    }
+    memcpy(file->room + file->held, bytes, count);
+    file->held += count;
+    return 0;
+}
+
+t3r_sink t3r_recording_file_sink(t3r_recording_file *file)
+{
+    return (t3r_sink){append, file};
+}
+
+int t3r_recording_file_message_end(void *user)
+{
+    t3r_recording_file *file = user;
+    if (flush(file) != 0) {
+        return -1;
+    }
+    /* devices and pipes have nothing to synchronise */
+    return file->sync && fdatasync(file->fd) != 0 && errno != EINVAL && errno != EROFS ? -1 : 0;
+}
+
+int t3r_recording_file_close(t3r_recording_file *file)
+{
+    if (file->fd < 0) {
+        return 0;
+    }
+    int error = flush(file) != 0 ? errno : 0;
+    if (close(file->fd) != 0 && error == 0) {
+        error = errno;
+    }
+    file->fd = -1;
+    return error;
+}

@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""capture.py TRIM3R: the command as a user has it: sources, signals, files that roll over, poses, events, --build."""
+import json
+import os
+import pty
+import signal
+import subprocess
+import tempfile
+import time
+
+import mcap_read
+from common import TRIM3R, check, done, run
+
+
+def capture(source, *options, expect=0, words=""):
+    out = run("capture", "--source", source, "--json", *options, expect=expect, words=words)
+    return json.loads(out) if expect == 0 else None
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def of_topic(path, topic):
+    return [message for name, _, message in mcap_read.messages(read(path)) if name == topic]
+
+
+def copies():
+    """A recording of a recording is the same to the last bit of its frames."""
+    room = capture("replay:room.mcap", "--hash", "-o", "copy.mcap")
+    again = capture("replay:copy.mcap", "--hash")
+    check(room["frames"] == again["frames"] == 12 and room["paired"] == 12, "all frames")
+    check(room["frames_hash"] == again["frames_hash"], "the frames' hash")
+    check(room["bytes"] == os.path.getsize("copy.mcap"), "bytes told are those on the disk")
+    room = json.loads(run("replay", "room.mcap", "--json", "--refine", 0))
+    copy = json.loads(run("replay", "copy.mcap", "--json", "--refine", 0))
+    check(room["hash"] == copy["hash"], "every stage")
+    thrice = capture("replay:room.mcap", "--repeat", 3, "-o", "thrice.mcap")
+    stamps = [mcap_read.stamp(mcap_read.Cdr(m)) for m in of_topic("thrice.mcap", "/camera/image")]
+    check(thrice["frames"] == 36 and stamps == sorted(set(stamps)), "repeated, its clock going on")
+    check(capture("replay:room.mcap", "--frames", 5, "--hash")["frames"] == 5, "--frames")
+
+
+def builds():
+    live = capture("replay:room.mcap", "--build", "live.ply", "--context", "1,4", "--gaussians", 700, "--refine", 1)
+    later = json.loads(run("build", "room.mcap", "-o", "later.ply", "--context", "1,4", "--gaussians", 700, "--refine",
+                           1, "--json"))
+    check(live["hash"] == later["hash"] and live["context"] == [1, 4], "live is what build makes")
+    check(read("live.ply") == read("later.ply"), "the scenes' files")
+    often = capture("replay:room.mcap", "--build", "often.ply", "--every", 4, "--keep", "5%", "--refine", 0)
+    check(often["builds"] == 2 and often["context"] == [4, 8], "builds of every fourth frame")
+    later = json.loads(run("build", "room.mcap", "-o", "later.ply", "--context", "4,8", "--keep", "5%", "--refine", 0,
+                           "--json"))
+    check(often["hash"] == later["hash"] and read("often.ply") == read("later.ply"), "the last of them")
+    few = capture("replay:room.mcap", "--build", "auto.ply", "--auto", "--max-loss", 3, "--refine", 1)
+    later = json.loads(run("build", "room.mcap", "-o", "later.ply", "--auto", "--max-loss", 3, "--refine",
+                           1, "--json"))
+    check(few["hash"] == later["hash"] and few["gaussians"] == later["gaussians"] < 6144, "--auto, live")
+    capture("replay:room.mcap", "--build", "no.ply", "--context", "0,40", expect=1, words="nothing was built")
+    capture("replay:bare.mcap", "--build", "no.ply", expect=1, words="has no pose")
+    capture("replay:room.mcap", "--build", "no.ply", "--arena", 1000, expect=3, words="too small")
+
+
+def bare():
+    """A recording without poses and intrinsics, as a camera alone makes it."""
+    with open("far.txt", "w", encoding="ascii") as file:
+        file.write("9000 0 0 0 0 0 0 1\n9000.1 0 0 0 0 0 0 1\n")
+    told = capture("replay:room.mcap", "--poses", "far.txt", "-o", "bare.mcap")
+    check(told["unposed"] == 12 and not of_topic("bare.mcap", "/camera/pose"), "no pose is made up")
+
+
+def poses():
+    room = [mcap_read.pose(m) for m in of_topic("room.mcap", "/camera/pose")]
+    with open("tum.txt", "w", encoding="ascii") as file:
+        for stamp, pose in room:
+            file.write(f"{stamp // 10**9 + 100}.{stamp % 10**9:09d} " + " ".join(map(repr, pose)) + "\n")
+    asked = ("--hash", "--poses")
+    expected = capture("replay:room.mcap", "--hash")["frames_hash"]
+    for source, offset in (("tum.txt", "100"), ("room.mcap", "0")):
+        told = capture("replay:bare.mcap", *asked, source, "--clock-offset", offset)
+        check(told["frames_hash"] == expected and told["unposed"] == 0, f"poses by {source}")
+    half = capture("replay:bare.mcap", *asked, "tum.txt", "--clock-offset", "100.016666666", "-o", "half.mcap")
+    between = [mcap_read.pose(m)[1] for m in of_topic("half.mcap", "/camera/pose")]
+    check(half["unposed"] == 1 and len(between) == 11, "the last frame lies behind the trajectory")
+    check(all(abs(b - (r[1][i] + s[1][i]) / 2) < 1e-6 for b_, r, s in zip(between, room, room[1:])
+              for i, b in enumerate(b_[:3])), "positions in the middle")
+    lens = capture("replay:bare.mcap", "--intrinsics", "70,71,31.5,23.5,0.1,-0.2,0.001,0.002,0.05", "-o", "lens.mcap")
+    check(lens["frames"] == 12, "intrinsics")
+    check(json.loads(run("info", "lens.mcap", "--json"))["distortion"] == "radtan", "a lens with distortion")
+    run("capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash",
+        expect=1, words="offset is not")
+    run("capture", "--source", "v4l2:/dev/video0", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash",
+        expect=2, words="record, then")
+
+
+def rolls_over():
+    most = 40000
+    told = capture("replay:room.mcap", "--repeat", 4, "--max-bytes", most, "-o", "roll.mcap")
+    names = ["roll.mcap"] + [f"roll-{i}.mcap" for i in range(1, told["files"])]
+    sizes = [os.path.getsize(name) for name in names]
+    check(len(names) > 4 and max(sizes) <= most and sum(sizes) == told["bytes"], f"{sizes}")
+    frames = [json.loads(run("info", name, "--json"))["frames"] for name in names]
+    check(sum(frames) == 48, f"no frame is lost between files: {frames}")
+    capture("replay:room.mcap", "--max-bytes", "20k", "-o", "no.mcap", expect=1, words="does not hold one frame")
+
+
+def stops(number):
+    """A signal: exit status 0, a recording that is whole."""
+    command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--json", "-o",
+               "signal.mcap"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        until = time.monotonic() + 60
+        while not (os.path.exists("signal.mcap") and os.path.getsize("signal.mcap") > 200000):
+            check(time.monotonic() < until, "it records")
+            time.sleep(0.005)
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    check(process.returncode == 0, f"signal {number}: {process.returncode} {err}")
+    told, info = json.loads(out), json.loads(run("info", "signal.mcap", "--json"))
+    check(info["frames"] == told["frames"] and info["note"] == "", f"a whole recording: {info['note']}")
+    os.remove("signal.mcap")
+
+
+def peak_kilobytes(*options):
+    process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:room.mcap", "--quiet", "-o", "/dev/null",
+                                *options], stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    check(status == 0, f"capture {options}")
+    return used.ru_maxrss
+
+
+def memory():
+    few, many = peak_kilobytes("--repeat", "9"), peak_kilobytes("--repeat", "834")
+    check(many <= few * 1.05 + 256, f"10,000 frames take the memory of 100: {few} and {many} KB")
+
+
+def progress():
+    """On a terminal a line of rate, drops and size of the work; elsewhere none."""
+    leader, follower = pty.openpty()
+    process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--hash"],
+                               stdout=subprocess.DEVNULL, stderr=follower)
+    os.close(follower)
+    said = b""
+    while said.count(b"frames, ") < 3:
+        said += os.read(leader, 4096)
+    process.send_signal(signal.SIGINT)
+    check(process.wait(60) == 0, "Ctrl-C")
+    os.close(leader)
+    check(b"/s, dropped 0 (0 slow), corrupted 0" in said, said.decode())
+    check(subprocess.run([TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "2000", "--hash"],
+                         capture_output=True).stderr == b"", "no line where nobody looks")
+
+
+def killed():
+    command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "-o", "kill.mcap"]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        until = time.monotonic() + 60
+        while not (os.path.exists("kill.mcap") and os.path.getsize("kill.mcap") > 200000):
+            check(time.monotonic() < until, "it records")
+            time.sleep(0.005)
+        process.kill()
+    info = json.loads(run("info", "kill.mcap", "--json"))
+    check(info["frames"] > 5 and "cut off" in info["note"], "what was whole is there")
+    os.remove("kill.mcap")
+
+
+def refusals():
+    run("capture", expect=2, words="--source is missing")
+    run("capture", "--source", "replay:room.mcap", expect=2, words="what is to become")
+    run("capture", "--source", "nothing:at-all", "--hash", expect=1, words="is none of")
+    run("capture", "--source", "replay:missing.mcap", "--hash", expect=1, words="No such file")
+    run("capture", "--source", "v4l2:/dev/null", "--hash", expect=1, words="is not a video device")
+    run("capture", "--source", "v4l2:missing", "--hash", expect=1, words="No such file")
+    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "2,1", expect=2,
+        words="must ascend")
+    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "1,2", "--every", 2, expect=2,
+        words="exclude")
+    run("capture", "--source", "replay:room.mcap", "--hash", "--max-bytes", "10X", expect=2, words="--max-bytes")
+    run("capture", "--source", "replay:room.mcap", "-o", "/dev/full", expect=1, words="cannot be written")
+    run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "1,2", expect=2, words="--intrinsics")
+    run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "5,5,5,5", expect=1, words="focal length")
+    run("capture", "--source", "replay:room.mcap", "-o", "../" + os.path.basename(os.getcwd()) + "/room.mcap", expect=2,
+        words="is the recording that is replayed")
+    listed = run("capture", "--list")
+    check(all(name in listed for name in ("replay", "v4l2", "libcamera", "opencv")), "--list names every adapter")
+    for name in ("v4l2", "libcamera", "opencv"):
+        line = next(line for line in listed.splitlines() if line.startswith(name))
+        check(" yes " in line or "not in this build" in line or "does not load" in line, f"--list: {line}")
+
+
+def events():
+    """What is counted stands in the recording, too, level and all."""
+    run("capture", "--source", "replay:room.mcap", "-o", "quiet.mcap", "--quiet")
+    schemas = [content for opcode, content in mcap_read.records(read("quiet.mcap")) if opcode == 0x03]
+    check(any(b"rcl_interfaces/msg/Log" in content for content in schemas), "the topic of events")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    run("room", "--size", "64x48", "--frames", 12, "-o", "room.mcap")
+    copies()
+    bare()
+    builds()
+    poses()
+    rolls_over()
+    stops(signal.SIGINT)
+    stops(signal.SIGTERM)
+    killed()
+    memory()
+    progress()
+    refusals()
+    events()
+done()

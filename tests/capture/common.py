@@ -1,0 +1,16 @@
+"""What scripts of this folder share; the program is their first argument."""
+import os
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from checks import check, done, skip  # noqa: E402, F401
+
+TRIM3R = os.path.abspath(sys.argv[1])
+
+
+def run(*command, expect=0, words=""):
+    """What the program prints; `words` must stand in its messages."""
+    ended = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
+    check(ended.returncode == expect and words in ended.stderr, f"{command}: {ended.returncode} {ended.stderr}")
+    return ended.stdout

@@ -1,0 +1,69 @@
+"""A reader of MCAP records and of the few ROS 2 messages that these tests look at, by the formats' documentation."""
+import struct
+
+
+def records(data):
+    """(opcode, content) of whole records; a file may be cut off."""
+    assert data[:8] == b"\x89MCAP0\r\n"
+    at = 8
+    while at + 9 <= len(data):
+        opcode, size = struct.unpack_from("<BQ", data, at)
+        if data[at:at + 8] == b"\x89MCAP0\r\n" or at + 9 + size > len(data):
+            return
+        yield opcode, data[at + 9:at + 9 + size]
+        at += 9 + size
+
+
+def text(data, at):
+    count, = struct.unpack_from("<I", data, at)
+    return data[at + 4:at + 4 + count].decode(), at + 4 + count
+
+
+def messages(data):
+    """(topic, log time, message) in the file's order."""
+    topics = {}
+    for opcode, content in records(data):
+        if opcode == 0x04:
+            number, _ = struct.unpack_from("<HH", content)
+            topics[number] = text(content, 4)[0]
+        elif opcode == 0x05:
+            number, _, log_ns, _ = struct.unpack_from("<HIQQ", content)
+            yield topics[number], log_ns, content[22:]
+
+
+class Cdr:
+    def __init__(self, data):
+        self.data, self.at = data[4:], 0
+
+    def number(self, kind):
+        size = struct.calcsize(kind)
+        self.at = (self.at + size - 1) // size * size
+        value, = struct.unpack_from("<" + kind, self.data, self.at)
+        self.at += size
+        return value
+
+    def string(self):
+        count = self.number("I")
+        value = self.data[self.at:self.at + count - 1].decode()
+        self.at += count
+        return value
+
+
+def stamp(cdr):
+    return cdr.number("i") * 10**9 + cdr.number("I")
+
+
+def pose(message):
+    """stamp in ns, [x y z qx qy qz qw]"""
+    cdr = Cdr(message)
+    when = stamp(cdr)
+    cdr.string()
+    return when, [cdr.number("d") for _ in range(7)]
+
+
+def log(message):
+    """stamp in ns, level, text"""
+    cdr = Cdr(message)
+    when, level = stamp(cdr), cdr.number("B")
+    cdr.string()
+    return when, level, cdr.string()

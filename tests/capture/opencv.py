@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""opencv.py TRIM3R: pictures and films by OpenCV's VideoCapture against the very samples they were made of, and the
+Gaussians of them against those of a recording made without OpenCV. Skipped without the adapter or numpy and cv2."""
+import json
+import os
+import sys
+import tempfile
+
+try:
+    import cv2
+    import numpy
+except ImportError as error:
+    print(f"SKIPPED: {error}")
+    sys.exit(77)
+
+import mcap_read  # noqa: E402
+from common import check, done, run, skip  # noqa: E402
+
+
+def images(path, topic, dtype, channels):
+    out = []
+    for name, _, message in mcap_read.messages(open(path, "rb").read()):
+        if name == topic:
+            cdr = mcap_read.Cdr(message)
+            mcap_read.stamp(cdr)
+            cdr.string()
+            height, width = cdr.number("I"), cdr.number("I")
+            encoding = cdr.string()
+            cdr.number("B")
+            cdr.number("I")
+            count = cdr.number("I")
+            samples = numpy.frombuffer(cdr.data[cdr.at:cdr.at + count], dtype)
+            out.append((encoding, samples.reshape(height, width, channels) if channels > 1 else
+                        samples.reshape(height, width)))
+    return out
+
+
+def capture(source, name, *options):
+    return json.loads(run("capture", "--source", source, "-o", name, "--json", *options))
+
+
+listed = run("capture", "--list")
+if " yes " not in next(line for line in listed.splitlines() if line.startswith("opencv")):
+    skip("the adapter is not there")
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    run("room", "--size", "64x48", "--frames", 5, "-o", "room.mcap")
+    colour = [a for _, a in images("room.mcap", "/camera/image", numpy.uint8, 3)]
+    depth = [a for _, a in images("room.mcap", "/camera/depth", "<u2", 1)]
+    poses = [mcap_read.pose(m) for t, _, m in mcap_read.messages(open("room.mcap", "rb").read()) if t == "/camera/pose"]
+    film = cv2.VideoWriter("film.avi", cv2.VideoWriter_fourcc(*"FFV1"), 30, (64, 48))
+    for i, (c, d) in enumerate(zip(colour, depth)):
+        cv2.imwrite(f"c{i:03d}.png", cv2.cvtColor(c, cv2.COLOR_RGB2BGR))
+        cv2.imwrite(f"d{i:03d}.png", d)
+        film.write(cv2.cvtColor(c, cv2.COLOR_RGB2BGR))
+    film.release()
+    capture("opencv:c%03d.png", "stamps.mcap")
+    stamps = [mcap_read.stamp(mcap_read.Cdr(m)) for t, _, m in mcap_read.messages(open("stamps.mcap", "rb").read())
+              if t == "/camera/image"]
+    check(len(stamps) == 5 and abs(stamps[1] - 1e9 / 30) <= 1, f"stamps a thirtieth of a second apart: {stamps}")
+    with open("euroc.csv", "w", encoding="ascii") as file:
+        for stamp, (_, (x, y, z, qx, qy, qz, qw)) in zip(stamps, poses):
+            file.write(",".join(map(repr, (stamp, x, y, z, qw, qx, qy, qz))) + "\n")
+    # intrinsics as the room has them, exactly
+    info = next(m for t, _, m in mcap_read.messages(open("room.mcap", "rb").read()) if t == "/camera/camera_info")
+    cdr = mcap_read.Cdr(info)
+    mcap_read.stamp(cdr), cdr.string(), cdr.number("I"), cdr.number("I"), cdr.string()
+    for _ in range(cdr.number("I")):
+        cdr.number("d")
+    k = [cdr.number("d") for _ in range(9)]
+    lens = ",".join(repr(k[i]) for i in (0, 4, 2, 5))
+
+    told = capture("opencv:c%03d.png", "pictures.mcap", "--depth-source", "d%03d.png", "--intrinsics", lens, "--poses",
+                   "euroc.csv")
+    check(told["frames"] == told["paired"] == 5 and told["format"] == "bgr24", f"{told}")
+    for (encoding, got), want in zip(images("pictures.mcap", "/camera/image", numpy.uint8, 3), colour):
+        check(encoding == "bgr8" and (got[..., ::-1] == want).all(), "colour, sample by sample")
+    for (encoding, got), want in zip(images("pictures.mcap", "/camera/depth", "<u2", 1), depth):
+        check(encoding == "16UC1" and (got == want).all(), "depth, sample by sample")
+    ours = json.loads(run("replay", "room.mcap", "--json", "--refine", 0))
+    theirs = json.loads(run("replay", "pictures.mcap", "--json", "--refine", 0))
+    check(ours["hash"] == theirs["hash"], "the same Gaussians and the same view as without OpenCV")
+
+    told = capture("opencv:film.avi", "film.mcap", "--backend", "FFMPEG")
+    check(told["frames"] == 5 and told["clock"] == "stream", f"{told}")
+    reader = cv2.VideoCapture("film.avi", cv2.CAP_FFMPEG)
+    for _, got in images("film.mcap", "/camera/image", numpy.uint8, 3):
+        good, want = reader.read()
+        check(good and (got == want).all(), "a film as cv2 itself decodes it")
+    check("FFMPEG" in told["note"], "the back end is named")
+    run("capture", "--source", "opencv:missing.avi", "--hash", expect=1, words="cannot open")
+    run("capture", "--source", "opencv:c%03d.png", "--backend", "NONE", "--hash", expect=1, words="not a back end")
+    run("capture", "--source", "opencv:d%03d.png", "--depth-source", "c%03d.png", "--hash", expect=1)
+done()

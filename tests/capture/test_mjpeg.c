@@ -1,0 +1,165 @@
+/* Motion JPEG: pictures that a camera compressed, with and without Huffman tables, and damaged ones. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jpeglib.h>
+
+#include <cmocka.h>
+
+#include "capture_adapter.h"
+#include "fake_v4l2.h"
+#include "mjpeg.h"
+#include "v4l2.h"
+
+enum { WIDTH = 32, HEIGHT = 16 };
+
+static uint8_t rgb_of(uint32_t number, uint32_t x, uint32_t y, uint32_t channel)
+{
+    return (uint8_t)(x * 3 + number * 4 + y * 2 + channel * 20);
+}
+
+/* A JPEG of 4:2:2, as webcams make it; returns its bytes. */
+static uint32_t compress(uint32_t number, uint8_t *out, uint32_t room)
+{
+    struct jpeg_compress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    jpeg.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&jpeg);
+    unsigned char *memory = NULL;
+    unsigned long bytes = 0;
+    jpeg_mem_dest(&jpeg, &memory, &bytes);
+    jpeg.image_width = WIDTH;
+    jpeg.image_height = HEIGHT;
+    jpeg.input_components = 3;
+    jpeg.in_color_space = JCS_RGB;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, 92, TRUE);
+    jpeg.comp_info[0].h_samp_factor = 2;
+    jpeg.comp_info[0].v_samp_factor = 1;
+    jpeg_start_compress(&jpeg, TRUE);
+    for (uint32_t y = 0; y < HEIGHT; y++) {
+        uint8_t row[WIDTH * 3];
+        for (uint32_t i = 0; i < WIDTH * 3; i++) {
+            row[i] = rgb_of(number, i / 3, y, i % 3);
+        }
+        JSAMPROW rows[1] = {row};
+        jpeg_write_scanlines(&jpeg, rows, 1);
+    }
+    jpeg_finish_compress(&jpeg);
+    jpeg_destroy_compress(&jpeg);
+    assert_true(bytes <= room);
+    memcpy(out, memory, bytes);
+    free(memory);
+    return (uint32_t)bytes;
+}
+
+/* Takes the segments DHT out: many cameras send none, the tables being those of the standard. */
+static uint32_t without_tables(uint8_t *jpeg, uint32_t bytes)
+{
+    uint32_t removed = 0;
+    for (uint32_t at = 2; at + 4 < bytes && jpeg[at] == 0xff && jpeg[at + 1] != 0xda;) {
+        uint32_t length = 2u + jpeg[at + 2] * 256u + jpeg[at + 3];
+        if (jpeg[at + 1] == 0xc4) {
+            memmove(jpeg + at, jpeg + at + length, bytes - at - length);
+            bytes -= length;
+            removed++;
+        } else {
+            at += length;
+        }
+    }
+    assert_true(removed > 0);
+    return bytes;
+}
+
+static void check(const uint8_t *rgb, uint32_t number)
+{
+    for (uint32_t i = 0; i < WIDTH * HEIGHT * 3; i++) {
+        int expected = rgb_of(number, i / 3 % WIDTH, i / 3 / WIDTH, i % 3), off = rgb[i] - expected;
+        assert_true(off >= -12 && off <= 12); /* chroma has half the columns */
+    }
+}
+
+static void pictures_are_decoded_with_and_without_tables(void **state)
+{
+    (void)state;
+    uint8_t jpeg[4096], rgb[WIDTH * HEIGHT * 3], again[WIDTH * HEIGHT * 3];
+    t3r_mjpeg *decoder = t3r_mjpeg_open();
+    assert_non_null(decoder);
+    uint32_t bytes = compress(0, jpeg, sizeof jpeg);
+    assert_null(t3r_mjpeg_decode(decoder, jpeg, bytes, WIDTH, HEIGHT, rgb));
+    check(rgb, 0);
+    bytes = without_tables(jpeg, bytes);
+    assert_null(t3r_mjpeg_decode(decoder, jpeg, bytes, WIDTH, HEIGHT, again));
+    assert_memory_equal(rgb, again, sizeof rgb);
+    assert_non_null(t3r_mjpeg_decode(decoder, jpeg, bytes, WIDTH, HEIGHT + 8, rgb));
+    /* cut anywhere: a reason, no crash, and the next one is decoded */
+    bytes = compress(1, jpeg, sizeof jpeg);
+    for (uint32_t cut = 0; cut < bytes - 2; cut++) {
+        assert_non_null(t3r_mjpeg_decode(decoder, jpeg, cut, WIDTH, HEIGHT, rgb));
+    }
+    assert_null(t3r_mjpeg_decode(decoder, jpeg, bytes, WIDTH, HEIGHT, rgb));
+    t3r_mjpeg_close(decoder);
+    t3r_mjpeg_close(NULL);
+}
+
+static uint32_t fill(void *user, const fake_node *node, uint32_t number, uint8_t *memory)
+{
+    (void)user;
+    uint32_t bytes = compress(number, memory, node->bytes);
+    if (number == 2) {
+        memory[bytes - 20] = 0xff; /* the end, too early */
+        memory[bytes - 19] = 0xd9;
+    }
+    return bytes;
+}
+
+static void a_camera_of_motion_jpeg_is_captured(void **state)
+{
+    (void)state;
+    fake_v4l2 fake;
+    fake_start(&fake);
+    fake.node[0].formats[0] = V4L2_PIX_FMT_MJPEG;
+    fake.node[0].padding = 128; /* so that a buffer holds a JPEG */
+    fake.node[0].fill = fill;
+    fake.node[0].unplug_at = 6;
+    t3r_capture_settings wish = {.width = WIDTH, .height = HEIGHT, .format = "MJPG"}, filled;
+    assert_null(t3r_capture_settings_fill(&wish, &filled));
+    char error[256] = "";
+    t3r_v4l2_system system = fake_system(&fake);
+    t3r_capture *capture = t3r_v4l2_open_on(&system, "/dev/video0", &filled, error, sizeof error);
+    if (capture == NULL) {
+        fail_msg("%s", error);
+    }
+    uint32_t frames = 0;
+    for (int round = 0; round < 100 && frames < 9; round++) {
+        t3r_capture_frame frame;
+        int got = t3r_capture_next(capture, &frame);
+        if (got == T3R_CAPTURE_LOST) {
+            assert_int_equal(t3r_capture_reopen(capture), T3R_CAPTURE_FRAME);
+        }
+        if (got == T3R_CAPTURE_FRAME) {
+            assert_int_equal(frame.frame.format, T3R_PIXEL_RGB24);
+            assert_int_not_equal(frame.sequence, 2);
+            check(frame.frame.planes[0], frame.sequence);
+            frames++;
+        }
+    }
+    assert_int_equal(frames, 9);
+    assert_int_equal(t3r_capture_counts_of(capture).corrupted, 1);
+    t3r_capture_close(capture);
+    assert_true(fake_clean(&fake));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_are_decoded_with_and_without_tables),
+        cmocka_unit_test(a_camera_of_motion_jpeg_is_captured),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
