@@ -9,12 +9,18 @@
 #define TRIAL_PART 100u     /* of the points are the first trial's; the second has twice as many */
 #define LEAST_PART 400u     /* of the points are kept whatever the prediction */
 #define PAIRS_LEAST 256u    /* below which views are not believed to disagree so much */
-#define NOISE_Q8 (40u << 8) /* levels^2: less is held for so much, as what it would forbid, 3 levels^2, is not seen */
+#define NOISE_Q8 (4u << 8) /* levels^2: roundings alone make that much */
+#define SEEN_Q8 (3u << 8)  /* levels^2, 43 dB: nobody sees less, whatever all points could do */
 
 /* Of the disagreement is added to the error by every dB that may be lost, and a quarter of that in any case: measured
  * on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
 #define SHARE_DIVISOR 10u
 #define LOSS_OFFSET_Q8 64u
+
+static uint64_t ceil_div(uint64_t a, uint64_t b)
+{
+    return (a + b - 1) / b;
+}
 
 uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_t max_loss_q8)
 {
@@ -24,8 +30,11 @@ uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_
     uint64_t floor_q8 = e->error_q8[1] > fall_q8 ? e->error_q8[1] - fall_q8 : 0;
     uint64_t yardstick_q8 = T3R_MAX(e->disagreement_q8 != 0 ? e->disagreement_q8 : floor_q8, NOISE_Q8);
 
-    uint64_t allowed = yardstick_q8 * (max_loss_q8 + LOSS_OFFSET_Q8);            /* x 256 x SHARE_DIVISOR */
-    uint64_t wanted = (slope_q8 * (SHARE_DIVISOR << 8) + allowed - 1) / allowed; /* 2^48 x 2^12 */
+    uint64_t allowed = yardstick_q8 * (max_loss_q8 + LOSS_OFFSET_Q8); /* x 256 x SHARE_DIVISOR */
+    uint64_t wanted = ceil_div(slope_q8 * (SHARE_DIVISOR << 8), allowed); /* 2^48 x 2^12 */
+    if (floor_q8 < SEEN_Q8) {
+        wanted = T3R_MIN(wanted, ceil_div(slope_q8, SEEN_Q8 - floor_q8));
+    }
     uint64_t least = T3R_MAX(e->points / LEAST_PART, 1u);
     return (uint32_t)T3R_MIN(T3R_MAX(wanted, least), (uint64_t)most);
 }

@@ -20,13 +20,17 @@ static void as_in_double(void **state)
     for (int turn = 0; turn < 20000; turn++) {
         t3r_budget_evidence e = {.points = (uint32_t)unit_between(&seed, 1000, 1 << 28)};
         e.trial = e.points / 100;
-        e.error_q8[1] = (uint32_t)unit_between(&seed, 0, 1 << 24);
-        e.error_q8[0] = (uint32_t)unit_between(&seed, e.error_q8[1], 1 << 24);
+        int64_t range = unit_random(&seed) % 4 == 0 ? 4 * 256 : 1 << 24; /* hardly any error, often enough */
+        e.error_q8[1] = (uint32_t)unit_between(&seed, 0, range);
+        e.error_q8[0] = (uint32_t)unit_between(&seed, e.error_q8[1], range);
         e.disagreement_q8 = unit_random(&seed) % 4 == 0 ? 0 : (uint32_t)unit_between(&seed, 1, 1 << 24);
         uint32_t loss_q8 = (uint32_t)unit_between(&seed, 1, T3R_MAX_LOSS_Q8);
         double fall = e.error_q8[0] - (double)e.error_q8[1], ground = fmax(0, e.error_q8[1] - fall);
-        double yardstick = fmax(e.disagreement_q8 != 0 ? e.disagreement_q8 : ground, 40 * 256);
+        double yardstick = fmax(e.disagreement_q8 != 0 ? e.disagreement_q8 : ground, 4 * 256);
         double wanted = fall * 2 * e.trial / ((loss_q8 / 256.0 + 0.25) / 10 * yardstick);
+        if (ground < 3 * 256) {
+            wanted = fmin(wanted, fall * 2 * e.trial / (3 * 256 - ground));
+        }
         wanted = fmin(fmax(wanted, e.points / 400), e.points); /* whole points */
         double got = t3r_predict_budget(&e, e.points, loss_q8);
         assert_true(got >= wanted * (1 - 1e-12) && got < wanted * (1 + 1e-12) + 1);
