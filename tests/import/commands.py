@@ -6,24 +6,13 @@ commands.py TRIM3R DATA
 import json
 import os
 import struct
-import subprocess
 import sys
 import tempfile
 import zlib
 
-program, data = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-failures = []
+from common import check, done, run
 
-
-def check(condition, what):
-    if not condition:
-        failures.append(what)
-        print("FAILED:", what)
-
-
-def run(*arguments):
-    done = subprocess.run([program, *arguments], capture_output=True, text=True, timeout=300, check=False)
-    return done.returncode, done.stdout, done.stderr
+data = os.path.abspath(sys.argv[2])
 
 
 def png(width, height, bits=8, channels=3, value=lambda x, y: 0):
@@ -252,5 +241,4 @@ with tempfile.TemporaryDirectory() as work:
     for test in (test_good_folder, test_tum_folder, test_bad_folders, test_usage, test_room, test_info_refuses,
                  test_stereo_pair, test_scenes):
         test()
-print("failed:" if failures else "all passed", len(failures) or "")
-sys.exit(1 if failures else 0)
+done()

@@ -6,7 +6,6 @@ pointmaps.py TRIM3R
 
 import json
 import os
-import subprocess
 import sys
 import tempfile
 import zipfile
@@ -17,22 +16,10 @@ except ImportError:
     print("skipped: numpy is not there")
     sys.exit(77)
 
+from common import check, done, run  # noqa: E402
 from frames import png, read
 
-program = os.path.abspath(sys.argv[1])
 SIDE, FRAMES = 96, 4
-failures = []
-
-
-def check(condition, what):
-    if not condition:
-        failures.append(what)
-        print("FAILED:", what)
-
-
-def run(*arguments):
-    done = subprocess.run([program, *arguments], capture_output=True, text=True, timeout=300, check=False)
-    return done.returncode, done.stdout, done.stderr
 
 
 # --- folders ---------------------------------------------------------------------------------------------------------
@@ -246,5 +233,4 @@ with tempfile.TemporaryDirectory() as work:
     the_room = read(f"{work}/room.mcap")
     for test in (test_files_of_frames, test_one_file, test_refusals):
         test(the_room, points(the_room))
-print("failed:" if failures else "all passed", len(failures) or "")
-sys.exit(1 if failures else 0)
+done()

@@ -6,7 +6,6 @@ poses.py TRIM3R
 
 import json
 import os
-import subprocess
 import sys
 import tempfile
 
@@ -16,22 +15,10 @@ except ImportError:
     print("skipped: numpy is not there")
     sys.exit(77)
 
+from common import check, done, run  # noqa: E402
 from frames import matrix, png, read
 
-program = os.path.abspath(sys.argv[1])
 FRAMES = 4
-failures = []
-
-
-def check(condition, what):
-    if not condition:
-        failures.append(what)
-        print("FAILED:", what)
-
-
-def run(*arguments):
-    done = subprocess.run([program, *arguments], capture_output=True, text=True, timeout=300, check=False)
-    return done.returncode, done.stdout, done.stderr
 
 
 def good(*arguments):
@@ -186,5 +173,4 @@ with tempfile.TemporaryDirectory() as work:
     the_room = read(f"{work}/room.mcap")
     for test in (test_import, test_build, test_refusals):
         test(the_room)
-print("failed:" if failures else "all passed", len(failures) or "")
-sys.exit(1 if failures else 0)
+done()

@@ -1,57 +1,11 @@
 /* Wide depth holes: depth lent by other views, bridged between what is known, and what other views say against it. */
-#include "unit.h"
+#include "rig.h"
 
 #include "bridge.h"
 #include "flying_pixels.h"
 #include "redundancy.h"
 
-enum { W = 64, H = 48, PIXELS = W * H, F = 64, VIEWS = 2 };
-
-/* Depth steps of 1/1024 scene unit; exponent 0, so that a world unit is a scene unit. */
-#define UNIT 1024
-#define UNIT_Q40 (UINT64_C(1) << 30)
-
-typedef struct rig {
-    uint8_t colour[VIEWS][3][PIXELS];
-    uint16_t depth[VIEWS][PIXELS];
-    uint8_t confidence[VIEWS][PIXELS];
-    t3r_view view[VIEWS];
-} rig;
-
-/* Cameras that look along +z from (x, 0, 0), everything measured at `depth` scene units. */
-static void place_view(rig *s, int v, double x, double depth, uint64_t unit_q40)
-{
-    t3r_view *view = &s->view[v];
-    *view = (t3r_view){
-        .width = W,
-        .height = H,
-        .colour = {s->colour[v][0], s->colour[v][1], s->colour[v][2]},
-        .depth = s->depth[v],
-        .confidence = s->confidence[v],
-        .fx_q16 = F << 16,
-        .fy_q16 = F << 16,
-        .cx_q16 = (W / 2) << 16,
-        .cy_q16 = (H / 2) << 16,
-        .depth_unit_q40 = unit_q40,
-    };
-    for (int i = 0; i < 3; i++) {
-        view->pose.rotation_q30[4 * i] = 1 << 30;
-    }
-    view->pose.position_q20[0] = (int32_t)lround(x * (1 << 20));
-    for (int i = 0; i < PIXELS; i++) {
-        s->depth[v][i] = (uint16_t)lround(depth * (double)(UINT64_C(1) << 40) / (double)unit_q40);
-        s->confidence[v][i] = T3R_CONFIDENCE_MEASURED;
-    }
-}
-
-/* Two cameras 8 pixels of disparity apart on a plane at 2. */
-static rig *pair_new(void)
-{
-    rig *s = unit_array(1, sizeof *s);
-    place_view(s, 0, 0, 2, UNIT_Q40);
-    place_view(s, 1, 0.25, 2, UNIT_Q40);
-    return s;
-}
+enum { PAIR = 2 };
 
 static void forget(rig *s, int v, int pixel)
 {
@@ -161,7 +115,7 @@ static void as_defined(void **state)
     rig *s = unit_array(1, sizeof *s), *before = unit_array(1, sizeof *before);
     uint32_t bridged = 0;
     for (int turn = 0; turn < 60; turn++) {
-        place_view(s, 0, 0, 2, UNIT_Q40);
+        place_view(s, 0, 0, 0, 2);
         int64_t share = unit_between(&seed, 2, 40), spread = turn % 3 == 0 ? 65534 : 200;
         int64_t base = unit_between(&seed, 1, 65535 - spread);
         for (int i = 0; i < PIXELS; i++) {
@@ -233,14 +187,14 @@ static void nothing_is_trusted(void **state)
     uint64_t seed = 17;
     rig *s = pair_new();
     for (int turn = 0; turn < 20; turn++) {
-        for (int v = 0; v < VIEWS; v++) {
+        for (int v = 0; v < PAIR; v++) {
             for (int i = 0; i < PIXELS; i++) {
                 s->confidence[v][i] = unit_random(&seed) % 3 == 0 ? (uint8_t)unit_random(&seed)
                                                                   : (uint8_t)(255 * (unit_random(&seed) & 1));
                 s->depth[v][i] = unit_random(&seed) % 2 == 0 ? 0 : (uint16_t)unit_random(&seed);
             }
         }
-        (void)bridge(s, VIEWS, 9);
+        (void)bridge(s, PAIR, 9);
     }
     for (int i = 0; i < PIXELS; i++) {
         s->confidence[0][i] = i % 5 == 0 ? T3R_CONFIDENCE_MEASURED : T3R_CONFIDENCE_NONE;
@@ -259,12 +213,12 @@ static void lent(void **state)
     const uint64_t unit[] = {UNIT_Q40, UNIT_Q40 / 7, 3 * UNIT_Q40, UNIT_Q40 >> 4};
     for (int turn = 0; turn < 4; turn++) {
         rig *s = unit_array(1, sizeof *s);
-        place_view(s, 0, 0, 2, unit[turn]);
-        place_view(s, 1, 0.25, 2, UNIT_Q40);
+        place_view_in_steps(s, 0, 0, 0, 2, unit[turn]);
+        place_view(s, 1, 0.25, 0, 2);
         uint16_t depth = s->depth[0][0];
         disc(s, 0, 40, 24, 15);
         uint32_t holes = of_kind(s, 0, T3R_CONFIDENCE_NONE);
-        assert_int_equal(bridge(s, VIEWS, turn == 0 ? 0 : 30), 0);
+        assert_int_equal(bridge(s, PAIR, turn == 0 ? 0 : 30), 0);
         assert_int_equal(of_kind(s, 0, T3R_CONFIDENCE_BRIDGED_COVERED), holes);
         for (int i = 0; i < PIXELS; i++) {
             assert_true(s->depth[0][i] == depth || (s->depth[0][i] == depth + 1 && turn != 0));
@@ -281,7 +235,7 @@ static void nearest_lent(void **state)
     rig *s = pair_new();
     forget(s, 0, 20 * W + 40); /* the plane's point from 8 pixels to the left, one at 1 from 16 */
     s->depth[1][20 * W + 24] = UNIT;
-    t3r_bridge_lend(s->view, VIEWS, 0, 0);
+    t3r_bridge_lend(s->view, PAIR, 0, 0);
     assert_int_equal(s->confidence[0][20 * W + 40], T3R_CONFIDENCE_LENT);
     assert_int_equal(s->depth[0][20 * W + 40], UNIT);
     free(s);
@@ -295,7 +249,7 @@ static void bridged_once(void **state)
     disc(s, 0, 40, 24, 10);
     disc(s, 1, 32, 24, 10); /* the same place */
     uint32_t holes = of_kind(s, 0, T3R_CONFIDENCE_NONE);
-    assert_int_equal(bridge(s, VIEWS, 30), holes);
+    assert_int_equal(bridge(s, PAIR, 30), holes);
     assert_int_equal(of_kind(s, 0, T3R_CONFIDENCE_BRIDGED), holes);
     assert_int_equal(of_kind(s, 1, T3R_CONFIDENCE_BRIDGED_COVERED), holes);
     for (int i = 0; i < PIXELS; i++) {
@@ -316,7 +270,7 @@ static void seen_through(void **state)
         s->confidence[0][at] = T3R_CONFIDENCE_BRIDGED;
         int behind = steps - s->depth[1][there];
         bool before = 16 * -behind > steps, same = 16 * abs(behind) <= steps;
-        assert_int_equal(t3r_bridge_settle(s->view, VIEWS, 0, 0), !before && !same);
+        assert_int_equal(t3r_bridge_settle(s->view, PAIR, 0, 0), !before && !same);
         assert_int_equal(s->confidence[0][at], before ? T3R_CONFIDENCE_NONE
                                                : same ? T3R_CONFIDENCE_BRIDGED_COVERED
                                                       : T3R_CONFIDENCE_BRIDGED);
@@ -336,20 +290,20 @@ static void forgotten(void **state)
     s->depth[1][5 * W + 5] = UNIT;
     memcpy(before->depth, s->depth, sizeof s->depth);
     memcpy(before->confidence, s->confidence, sizeof s->confidence);
-    (void)bridge(s, VIEWS, 30);
+    (void)bridge(s, PAIR, 30);
     uint32_t bridged = of_kind(s, 0, T3R_CONFIDENCE_BRIDGED), covered = of_kind(s, 0, T3R_CONFIDENCE_BRIDGED_COVERED);
     assert_true(bridged > 0 && covered > 0);
-    for (uint32_t v = VIEWS; v-- > 0;) {
-        (void)t3r_mark_flying(s->view, VIEWS, v, 0, false);
+    for (uint32_t v = PAIR; v-- > 0;) {
+        (void)t3r_mark_flying(s->view, PAIR, v, 0, false);
     }
-    for (uint32_t v = VIEWS; v-- > 0;) {
-        (void)t3r_mark_covered(s->view, VIEWS, v, 0);
+    for (uint32_t v = PAIR; v-- > 0;) {
+        (void)t3r_mark_covered(s->view, PAIR, v, 0);
     }
-    t3r_forget_witnesses(s->view, VIEWS);
+    t3r_forget_witnesses(s->view, PAIR);
     assert_int_equal(of_kind(s, 0, T3R_CONFIDENCE_BRIDGED), bridged);
     assert_int_equal(of_kind(s, 0, T3R_CONFIDENCE_BRIDGED_COVERED), covered);
     assert_int_equal(s->confidence[1][5 * W + 5], T3R_CONFIDENCE_DOUBTFUL);
-    t3r_forget_marks(s->view, VIEWS);
+    t3r_forget_marks(s->view, PAIR);
     assert_memory_equal(s->depth, before->depth, sizeof s->depth);
     assert_memory_equal(s->confidence, before->confidence, sizeof s->confidence);
     free(before);

@@ -1,5 +1,5 @@
 /* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
-#include "unit.h"
+#include "rig.h"
 
 #include "disagreement.h"
 #include "exposure.h"
@@ -7,55 +7,6 @@
 #include "flying_pixels.h"
 #include "redundancy.h"
 #include "reproject.h"
-
-enum { W = 64, H = 48, PIXELS = W * H, F = 64, VIEWS = 3 };
-
-/* Depth steps of 1/1024 scene unit; exponent 0, so that a world unit is a scene unit. */
-#define UNIT 1024
-#define UNIT_Q40 (UINT64_C(1) << 30)
-
-typedef struct rig {
-    uint8_t colour[VIEWS][3][PIXELS];
-    uint16_t depth[VIEWS][PIXELS];
-    uint8_t confidence[VIEWS][PIXELS];
-    t3r_view view[VIEWS];
-} rig;
-
-/* Cameras that look along +z from x, 0, z, on a plane across at depth `plane` from the origin. */
-static void place_view(rig *s, int v, double x, double z, double plane)
-{
-    t3r_view *view = &s->view[v];
-    *view = (t3r_view){
-        .width = W,
-        .height = H,
-        .colour = {s->colour[v][0], s->colour[v][1], s->colour[v][2]},
-        .depth = s->depth[v],
-        .confidence = s->confidence[v],
-        .fx_q16 = F << 16,
-        .fy_q16 = F << 16,
-        .cx_q16 = (W / 2) << 16,
-        .cy_q16 = (H / 2) << 16,
-        .depth_unit_q40 = UNIT_Q40,
-    };
-    for (int i = 0; i < 3; i++) {
-        view->pose.rotation_q30[4 * i] = 1 << 30;
-    }
-    view->pose.position_q20[0] = (int32_t)lround(x * (1 << 20));
-    view->pose.position_q20[2] = (int32_t)lround(z * (1 << 20));
-    for (int i = 0; i < PIXELS; i++) {
-        s->depth[v][i] = (uint16_t)lround((plane - z) * UNIT);
-        s->confidence[v][i] = T3R_CONFIDENCE_MEASURED;
-    }
-}
-
-/* Two cameras 8 pixels of disparity apart on a plane at 2. */
-static rig *pair_new(void)
-{
-    rig *s = unit_array(1, sizeof *s);
-    place_view(s, 0, 0, 0, 2);
-    place_view(s, 1, 0.25, 0, 2);
-    return s;
-}
 
 static uint32_t mark_covered(const rig *s, uint32_t views)
 {
