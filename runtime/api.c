@@ -12,6 +12,8 @@
 #include "pipeline.h"
 #include "scene_frame.h"
 #include "state.h"
+#include "stream.h"
+#include "stream_overlap.h"
 #include "superclusters.h"
 #include "weights.h"
 
@@ -113,11 +115,20 @@ static bool is_scene(const t3r_runtime *rt)
     return true;
 }
 
+/* Whether the slots of a stream's keyframes are those that taking them one after the other fills. */
+static bool is_stream(const t3r_runtime *rt)
+{
+    bool full = rt->views == rt->config.views;
+    return !rt->analysed && rt->next_slot <= rt->views && rt->next_slot < rt->config.views &&
+           (full || rt->next_slot == rt->views) && rt->gaussians <= rt->config.gaussians &&
+           (rt->has_scene ? rt->keyframes >= rt->views : rt->views == 0);
+}
+
 /* Whether a copied arena holds what the stages rely on. Planes may hold anything. */
 static bool is_consistent(const t3r_runtime *rt)
 {
     if (rt->views > rt->config.views || rt->gaussians > rt->config.max_gaussians || rt->analysed > 1 ||
-        rt->has_scene > 1 || !is_frame(&rt->frame)) {
+        rt->has_scene > 1 || !is_frame(&rt->frame) || (rt->config.stream ? !is_stream(rt) : rt->next_slot != 0)) {
         return false;
     }
     for (uint32_t v = 0; v < rt->views; v++) {
@@ -214,6 +225,8 @@ t3r_status t3r_reset(t3r_runtime *rt)
     rt->has_scene = 0;
     rt->gaussians = 0;
     rt->valid_points = 0;
+    rt->keyframes = 0;
+    rt->next_slot = 0;
     return T3R_OK;
 }
 
@@ -235,7 +248,7 @@ static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
 {
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(rt->views < rt->config.views && !rt->has_scene, T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(!rt->config.stream && rt->views < rt->config.views && !rt->has_scene, T3R_ERR_STATE);
     const bool stereo = rt->config.depth == T3R_DEPTH_STEREO;
     t3r_frame shown = *frame;
     if (stereo) {
@@ -282,6 +295,40 @@ t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera
         memcpy(depth_out, views[0].depth, pixels * sizeof *depth_out);
     }
     return T3R_OK;
+}
+
+/* --- streams ------------------------------------------------------------------------------------------------------ */
+
+t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
+                               t3r_stream_report *report)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->config.stream && has_head(rt, rt->config.head) && rt->config.allocation != T3R_ALLOCATE_GIVEN,
+                      T3R_ERR_STATE);
+    if (frame->depth == NULL) {
+        return T3R_ERR_NO_DEPTH;
+    }
+    t3r_status status = t3r_stream_follow(rt, frame, camera);
+    if (status != T3R_OK) {
+        return status;
+    }
+    t3r_stream_report told;
+    status = t3r_stream_take(rt, frame, camera, &told);
+    if (status == T3R_OK && report != NULL) {
+        *report = told;
+    }
+    return status;
+}
+
+t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
+                              uint32_t *overlap_q8)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && camera != NULL && overlap_q8 != NULL && width >= 2 && width <= T3R_MAX_SIDE &&
+                          height >= 2 && height <= T3R_MAX_SIDE,
+                      T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->config.stream && rt->keyframes > 0, T3R_ERR_STATE);
+    t3r_status status = t3r_camera_check(camera);
+    return status == T3R_OK ? t3r_overlap_with_newest(rt, camera, width, height, overlap_q8) : status;
 }
 
 /* --- scenes ------------------------------------------------------------------------------------------------------- */
@@ -339,7 +386,7 @@ static t3r_status reconstruct(t3r_runtime *rt, const t3r_config *config, const t
                               t3r_scene *scene)
 {
     const uint32_t least = config->depth == T3R_DEPTH_STEREO ? 2 : 1;
-    T3R_REFUSE_UNLESS(rt->views >= least && is_served(rt, config, importance), T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(!rt->config.stream && rt->views >= least && is_served(rt, config, importance), T3R_ERR_STATE);
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
@@ -388,7 +435,8 @@ static t3r_status build_within(t3r_runtime *rt, const t3r_config *config, uint32
 t3r_status t3r_reconstruct_within(t3r_runtime *rt, uint32_t max_loss_q8, t3r_scene *scene)
 {
     T3R_REFUSE_UNLESS(rt != NULL && scene != NULL && is_loss(max_loss_q8), T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(rt->views > 0 && is_tried(&rt->config) && is_served(rt, &rt->config, NULL), T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(!rt->config.stream && rt->views > 0 && is_tried(&rt->config) && is_served(rt, &rt->config, NULL),
+                      T3R_ERR_STATE);
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_config config = rt->config;
@@ -451,6 +499,7 @@ t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame)
     if (!is_frame(frame)) {
         return T3R_ERR_ARGUMENT;
     }
+    T3R_REFUSE_UNLESS(!rt->config.stream, T3R_ERR_STATE);
     (void)t3r_reset(rt);
     rt->frame = *frame;
     rt->has_scene = 1;
@@ -463,7 +512,7 @@ t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian)
     if (!is_sound(gaussian)) {
         return T3R_ERR_ARGUMENT;
     }
-    T3R_REFUSE_UNLESS(rt->has_scene, T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(rt->has_scene && !rt->config.stream, T3R_ERR_STATE);
     if (rt->gaussians >= rt->config.max_gaussians) {
         return T3R_ERR_FULL;
     }

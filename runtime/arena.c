@@ -4,6 +4,7 @@
 #include "raster_splat.h"
 #include "refine.h"
 #include "state.h"
+#include "stream_map.h"
 #include "superclusters.h"
 
 _Static_assert(sizeof(t3r_gaussian) == T3R_GAUSSIAN_BYTES, "trim3r_arena.h knows the Gaussian's size");
@@ -11,6 +12,7 @@ _Static_assert(sizeof(t3r_splat) == T3R_SPLAT_BYTES, "trim3r_arena.h knows the s
 _Static_assert(sizeof(t3r_cluster) == T3R_CLUSTER_BYTES, "trim3r_arena.h knows the SuperCluster's size");
 _Static_assert(sizeof(t3r_cluster_work) <= T3R_CLUSTER_WORK_BYTES, "trim3r_arena.h knows the K-means' work");
 _Static_assert(sizeof(t3r_refine_sums) == T3R_REFINE_SUMS_BYTES, "trim3r_arena.h knows refinement's sums");
+_Static_assert(sizeof(t3r_map_record) == T3R_MAP_RECORD_BYTES, "trim3r_arena.h knows the map record's size");
 _Static_assert(sizeof(t3r_correction) == T3R_CORRECTION_BYTES, "trim3r_arena.h knows the correction's size");
 
 typedef struct buffer_row {
@@ -25,8 +27,9 @@ typedef struct buffer_row {
 
 static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
 {
+    const uint32_t keep = c->stream != 0 ? T3R_KEEP_MAP : c->keep_analysis;
     T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,
-                c->head_column_bytes, c->keep_analysis, c->refinements, c->depth == T3R_DEPTH_STEREO)
+                c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO)
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)
@@ -66,7 +69,7 @@ t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout 
     buffer_row *lists = &rows[T3R_BUFFER_LISTS], *refine = &rows[T3R_BUFFER_REFINE_WORK];
     size_t full_lists = T3R_UP_(T3R_LISTS_BYTES_(config->max_gaussians, config->render_width, config->render_height));
     size_t full_refine = T3R_REFINE_FULL_BYTES_(config->width, config->height, config->views, config->max_gaussians,
-                                                config->refinements);
+                                                config->refinements + config->stream);
     size_t raster_top = layout->offset[T3R_BUFFER_LISTS] + full_lists + rows[T3R_BUFFER_SCENE].bytes;
     size_t refine_top = layout->offset[T3R_BUFFER_REFINE_WORK] + full_refine + rows[T3R_BUFFER_SCENE].bytes;
     layout->bytes = T3R_MAX(layout->min_bytes, T3R_MAX(raster_top, refine_top));

@@ -10,8 +10,6 @@
 #define TEXTURE_FLOOR_Q4 8
 /* A pixel whose threshold (of 65536) is below this, 0.003, is retained first of all, whatever its texture. */
 #define SURE_THRESHOLD 197
-/* Keys are logarithms in Q10 above this zero. */
-#define KEY_ZERO (50 << 10)
 
 /* --- texture ---------------------------------------------------------------------------------------------------- */
 
@@ -114,8 +112,8 @@ static bool by_cluster(t3r_allocation allocation)
     return allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PAPER;
 }
 
-/* log2 of the wanted density, up to a constant, Q10: gamma log2(texture + floor), at most 32 */
-static int32_t log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings)
+/* gamma log2(texture + floor), at most 32 */
+int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings)
 {
     if (!follows_texture(settings->allocation)) {
         return 0;
@@ -143,16 +141,17 @@ static uint16_t key_of(uint32_t threshold, int32_t wanted_q10)
     }
     /* log2((2 t + 1) / 2^17) in [-17, 0] */
     int32_t log_threshold_q10 = t3r_round_shift32(t3r_log2_q16(2 * threshold + 1), 6) - (17 << 10);
-    return (uint16_t)t3r_clamp32(KEY_ZERO + log_threshold_q10 - wanted_q10, 16, UINT16_MAX);
+    return (uint16_t)t3r_clamp32(T3R_KEY_ZERO + log_threshold_q10 - wanted_q10, 16, UINT16_MAX);
 }
 
-static void fill_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings)
+void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings)
 {
     for (uint32_t v = 0; v < count; v++) {
         for (uint32_t y = 0; y < views[v].height; y++) {
             for (uint32_t x = 0; x < views[v].width; x++) {
                 size_t i = (size_t)y * views[v].width + x;
-                uint16_t key = key_of(threshold_at(v, x, y, settings), log_wanted_q10(views[v].texture[i], settings));
+                uint16_t key = key_of(threshold_at(settings->shift + v, x, y, settings),
+                                      t3r_log_wanted_q10(views[v].texture[i], settings));
                 if (t3r_set_aside(&views[v], i, settings)) { /* among these the doubtful ones last */
                     key = (uint16_t)((key >> 1) | (t3r_is_doubtful(views[v].confidence[i]) ? 0x8000u : 0));
                 }
@@ -197,10 +196,10 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
     uint32_t factor_q10[T3R_MAX_CLUSTERS];
     int32_t most = 0;
     for (uint32_t k = 0; k < count; k++) {
-        most = T3R_MAX(most, log_wanted_q10((uint16_t)clusters[k].texture_q4, settings));
+        most = T3R_MAX(most, t3r_log_wanted_q10((uint16_t)clusters[k].texture_q4, settings));
     }
     for (uint32_t k = 0; k < count; k++) {
-        int32_t below = log_wanted_q10((uint16_t)clusters[k].texture_q4, settings) - most;
+        int32_t below = t3r_log_wanted_q10((uint16_t)clusters[k].texture_q4, settings) - most;
         factor_q10[k] = below <= -(10 << 10) ? 1 : T3R_MAX(t3r_exp2_q16(below * 64) >> 6, 1u);
         weight[k] = (uint64_t)open_points(&clusters[k]) * factor_q10[k];
     }
@@ -314,7 +313,7 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
                                t3r_cluster *clusters)
 {
     for (uint32_t g = 0; g < settings->clusters; g++) {
-        clusters[g].density_q10 = (int32_t)clusters[g].threshold - KEY_ZERO;
+        clusters[g].density_q10 = (int32_t)clusters[g].threshold - T3R_KEY_ZERO;
     }
     for (int round = 0; round < 2; round++) {
         uint64_t expected_q16[T3R_MAX_CLUSTERS] = {0};
@@ -323,7 +322,7 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
             for (size_t i = 0; i < pixels; i++) {
                 uint32_t g = group_of(&views[v], i, settings);
                 if (g < settings->clusters) {
-                    int32_t wanted = log_wanted_q10(views[v].texture[i], settings);
+                    int32_t wanted = t3r_log_wanted_q10(views[v].texture[i], settings);
                     expected_q16[g] += t3r_exp2_q16(local_density_q10(clusters[g].density_q10, wanted) * 64);
                 }
             }
@@ -413,7 +412,7 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     aside->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, aside->points);
     const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
     if (!given) {
-        fill_keys(views, count, settings);
+        t3r_budget_keys(views, count, settings);
     }
     find_thresholds(views, count, settings, clusters);
     if (!given) {
@@ -436,5 +435,5 @@ int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget
         return t3r_log_share_q10(view, pixel, clusters);
     }
     const t3r_cluster *group = &clusters[g];
-    return local_density_q10(group->density_q10, log_wanted_q10(view->texture[pixel], settings));
+    return local_density_q10(group->density_q10, t3r_log_wanted_q10(view->texture[pixel], settings));
 }

@@ -14,6 +14,8 @@
 #include "trim3r.h"
 #include "views.h"
 
+/* Keys are logarithms in Q10 above this zero: where the key of a point of blue noise 1 and wanted density 1 stands. */
+#define T3R_KEY_ZERO (50 << 10)
 /* No density is told to be below 0.003: log2(197 / 65536). */
 #define T3R_LEAST_DENSITY_Q10 (-8579)
 
@@ -24,6 +26,7 @@ typedef struct t3r_budget_settings {
     uint32_t gamma_q8;
     uint32_t clusters;
     uint32_t seed;
+    uint32_t shift;         /* of the blue noise: the number of the first view, so to speak */
     bool pass_over_covered; /* the budget is so small that points of surfaces seen twice are wanted once */
 } t3r_budget_settings;
 
@@ -50,6 +53,11 @@ void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t
 
 /* Their order from the lowest texture up. */
 void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
+
+/* The keys of all pixels, of which t3r_allocate() retains the smallest; log2 of the density that a texture asks for, up
+ * to a constant, Q10: key = T3R_KEY_ZERO + log2 of the threshold - wanted but for sure and set aside points. */
+void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings);
+int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings);
 
 /* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. For `given` the key planes hold the keys already
  * (importance.h). */

@@ -33,6 +33,8 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .redundancy = 1,
         .exposure = 1,
         .keep_analysis = 0,
+        .stream = 0,
+        .half_life = 32,
         .seed = 1,
     };
 }
@@ -77,6 +79,8 @@ const char *t3r_config_error(const t3r_config *c)
         {"redundancy must be 0 or 1", c->redundancy, 0, 1},
         {"exposure must be 0 or 1", c->exposure, 0, 1},
         {"keep_analysis must be 0 or 1", c->keep_analysis, 0, 1},
+        {"stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo},
+        {"half_life must be 0..1024", c->half_life, 0, 1024},
     };
     for (size_t i = 0; i < sizeof range / sizeof range[0]; i++) {
         if (range[i].value < range[i].low || range[i].value > range[i].high) {
@@ -84,8 +88,8 @@ const char *t3r_config_error(const t3r_config *c)
         }
     }
     /* Sizes are summed in size_t: an arena of more than half of what it can count is refused, generously estimated. */
-    uint64_t bytes = (uint64_t)c->width * c->height * (c->views * (uint64_t)24 + 32) +
-                     (uint64_t)c->render_width * c->render_height * 8 + (uint64_t)c->max_gaussians * 320 +
+    uint64_t bytes = (uint64_t)c->width * c->height * (c->views * (uint64_t)24 + 38) +
+                     (uint64_t)c->render_width * c->render_height * 8 + (uint64_t)c->max_gaussians * 332 +
                      (uint64_t)(c->width + 15) * c->head_column_bytes + T3R_HEAD_KERNEL_BYTES;
     /* planes of a quarter more on a side, the right one wider; 64 rows of sums and costs, and as many path states */
     const uint64_t wide = (uint64_t)side * 5 / 4 + 8 + T3R_STEREO_DISPARITIES;

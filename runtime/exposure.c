@@ -72,7 +72,7 @@ static int32_t median_q8(const uint32_t bin[BINS], uint32_t count)
     return BINS / 2 - 1;
 }
 
-void t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3])
+uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3])
 {
     int32_t level_q8[T3R_MAX_VIEWS][3] = {{0}};
     int32_t sum_q8[3] = {0};
@@ -103,4 +103,5 @@ void t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent,
             gain_q14[v][c] = (uint16_t)T3R_MIN(gain, (int32_t)UINT16_MAX);
         }
     }
+    return (uint32_t)links;
 }

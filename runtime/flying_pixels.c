@@ -31,8 +31,7 @@ static bool is_witness(uint8_t confidence, bool filled)
     return filled ? confidence != T3R_CONFIDENCE_NONE : t3r_is_measured(confidence);
 }
 
-/* Whether `to` has a witness in the pixel that the sight falls on, and all of them about it are deeper. */
-static bool seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool filled)
+bool t3r_seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool filled)
 {
     const t3r_view *view = to->view;
     uint32_t u = (uint32_t)(sight->pixel % view->width), v = (uint32_t)(sight->pixel / view->width);
@@ -58,7 +57,7 @@ static bool seen_through_by_any(const t3r_pointmap *maps, uint32_t count, uint32
     const bool filled = guessed && !t3r_is_measured(maps[v].view->confidence[(size_t)y * maps[v].view->width + x]);
     t3r_sight sight;
     for (uint32_t w = 0; w < count; w++) {
-        if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight) && seen_through(&maps[w], &sight, filled)) {
+        if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight) && t3r_seen_through(&maps[w], &sight, filled)) {
             return true;
         }
     }

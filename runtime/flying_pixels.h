@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "reproject.h"
 #include "views.h"
 
 /* Marks the doubtful pixels of view v (t3r_is_doubtful) and returns how many they are:
@@ -16,5 +17,9 @@
  *   (`guessed`), those of the other view bear witness too, against filled ones.
  * Depths stay. What is marked does not depend on the order of the views. */
 uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed);
+
+/* Whether `to` measured the pixel that the sight falls on, and everything measured about it is deeper by more than
+ * 1/16; with `filled`, every depth counts as measured. */
+bool t3r_seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool filled);
 
 #endif

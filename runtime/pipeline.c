@@ -55,7 +55,7 @@ static t3r_status depth(t3r_runtime *rt, t3r_view *views)
         t3r_depth_fill(&views[v], rt->config.fill_radius);
     }
     rt->valid_points = count_measured(rt, views);
-    t3r_hash_depth(rt, views);
+    t3r_hash_depth(rt, views, 0, rt->views);
     return T3R_OK;
 }
 
@@ -130,23 +130,28 @@ static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
         (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent);
     }
     t3r_forget_witnesses(views, rt->views);
-    t3r_hash_pointmap(rt, views);
+    t3r_hash_pointmap(rt, views, 0, rt->views);
     return T3R_OK;
 }
 
-static t3r_status wavelet(t3r_runtime *rt, t3r_view *views)
+void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
 {
     const t3r_config *config = &rt->config;
     int16_t *plane = t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK);
     int16_t *work = plane + T3R_PIXELS_(config->width, config->height);
+    t3r_wavelet_texture((const uint8_t *const *)view->colour, config->width, config->height, config->wavelet_levels,
+                        config->wavelet, view->texture, plane, work);
+}
+
+static t3r_status wavelet(t3r_runtime *rt, t3r_view *views)
+{
     for (uint32_t v = 0; v < rt->views; v++) {
         if (!t3r_progress(rt, T3R_STAGE_WAVELET, v, rt->views)) {
             return T3R_ERR_CANCELLED;
         }
-        t3r_wavelet_texture((const uint8_t *const *)views[v].colour, config->width, config->height,
-                            config->wavelet_levels, config->wavelet, views[v].texture, plane, work);
+        t3r_view_texture(rt, &views[v]);
     }
-    t3r_hash_wavelet(rt, views);
+    t3r_hash_wavelet(rt, views, 0, rt->views);
     return T3R_OK;
 }
 
@@ -156,7 +161,7 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
     if (status != T3R_OK) {
         return status;
     }
-    t3r_hash_superclusters(rt, views);
+    t3r_hash_superclusters(rt, views, 0, rt->views);
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     t3r_cluster_texture(views, rt->views, clusters, rt->config.clusters);
     if (rt->config.shuffle) {
@@ -175,7 +180,7 @@ t3r_status t3r_analyse(t3r_runtime *rt)
         t3r_stereo_forget(views, rt->views);
     }
     t3r_forget_marks(views, rt->views); /* of an earlier analysis of the same planes */
-    t3r_hash_image(rt, views);
+    t3r_hash_image(rt, views, 0, rt->views);
 
     t3r_status status = depth(rt, views);
     if (status == T3R_OK) {
@@ -228,7 +233,7 @@ static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_sett
         t3r_importance_keys(views, rt->views, importance);
     }
     t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
-    t3r_hash_budget(rt, views);
+    t3r_hash_budget(rt, views, 0, rt->views);
 }
 
 /* The colours of a view's Gaussians brought to the mean exposure. */
@@ -264,6 +269,15 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
     };
 }
 
+uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
+                               const t3r_budget_settings *settings, t3r_gaussian *out)
+{
+    t3r_head_input input = t3r_head_input_of(rt, views, view_index, settings);
+    uint32_t made = heads[rt->config.head](&input, out);
+    level(out, made, rt->gain_q14[view_index]);
+    return made;
+}
+
 static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
 {
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
@@ -272,10 +286,7 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
         if (!t3r_progress(rt, T3R_STAGE_HEAD, v, rt->views)) {
             return T3R_ERR_CANCELLED;
         }
-        t3r_head_input input = t3r_head_input_of(rt, views, v, settings);
-        uint32_t added = heads[rt->config.head](&input, scene + rt->gaussians);
-        level(scene + rt->gaussians, added, rt->gain_q14[v]);
-        rt->gaussians += added;
+        rt->gaussians += t3r_view_to_gaussians(rt, views, v, settings, scene + rt->gaussians);
     }
     t3r_hash_scene(rt, T3R_STAGE_HEAD);
     return T3R_OK;

@@ -18,4 +18,11 @@ t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view
 t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
                                  const t3r_budget_settings *settings);
 
+/* Steps of a single view, for streams: its texture plane, not blurred yet; and its retained points by the head,
+ * levelled.
+ */
+void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view);
+uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
+                               const t3r_budget_settings *settings, t3r_gaussian *out);
+
 #endif

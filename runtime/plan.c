@@ -10,10 +10,11 @@
  * level; gathering a layer's inputs and requantizing its outputs take no more steps than that each. Features twice. */
 static uint64_t learned_operations(const t3r_config *c)
 {
+    const uint64_t views = c->stream ? 1 : c->views;
     const uint64_t block = T3R_DOT_PIXELS << T3R_MAX_LEVEL;
     uint64_t across = (c->width + block - 1) / block, down = (c->height + block - 1) / block;
-    return 3 * T3R_MAX_HEAD_MACS * across * down * block * block * c->views +
-           ((uint64_t)c->width * c->height * c->views + c->max_gaussians) * 2 * T3R_FEATURES;
+    return 3 * T3R_MAX_HEAD_MACS * across * down * block * block * views +
+           ((uint64_t)c->width * c->height * views + c->max_gaussians) * 2 * T3R_FEATURES;
 }
 
 /* Windows of retained points, at every pixel for a learned head, at most twice at every retained one. */
@@ -25,7 +26,7 @@ static uint64_t share_operations(const t3r_config *c)
 
 static uint64_t head_operations(const t3r_config *c)
 {
-    uint64_t pixels = (uint64_t)c->width * c->height * c->views, gaussians = c->max_gaussians;
+    uint64_t pixels = (uint64_t)c->width * c->height * (c->stream ? 1 : c->views), gaussians = c->max_gaussians;
     switch (c->head) {
     case T3R_HEAD_LEARNED:
         return learned_operations(c);
@@ -60,7 +61,8 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
 {
     const uint64_t side = T3R_MAX_SIDE, frame = side * side; /* the largest frame */
     const uint64_t tile = T3R_TILE_SIDE * T3R_TILE_SIDE;
-    uint64_t view = (uint64_t)c->width * c->height, pixels = view * c->views;
+    const uint64_t analysed = c->stream ? 1 : c->views; /* of a stream these are the steps of a keyframe */
+    uint64_t view = (uint64_t)c->width * c->height, pixels = view * analysed;
     uint64_t tiles = T3R_TILES_(c->render_width, c->render_height);
     uint64_t tiles_of_view = T3R_TILES_(c->width, c->height);
     uint64_t clusters = c->clusters, gaussians = c->max_gaussians;
@@ -68,7 +70,7 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
 
     /* source pixels converted and summed along x, rows summed along y, planes and depth written, undistorted; the lens
      * search and the grid */
-    operations[T3R_STAGE_IMAGE] = c->views * (4 * frame + 3 * (side + c->height) * c->width + 6 * view +
+    operations[T3R_STAGE_IMAGE] = analysed * (4 * frame + 3 * (side + c->height) * c->width + 6 * view +
                                               64 * T3R_GRID_NODES_(c->width, c->height) + 8192);
     operations[T3R_STAGE_DEPTH] = pixels * (4 * (uint64_t)c->fill_radius + 2) + stereo_operations(c);
     /* two looks at the depths for their median, marks forgotten twice; wide holes: every pixel sought in all other
@@ -79,6 +81,10 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
         pixels * (4 + (c->bridge_radius > 0) * (22 * others + 8 * (uint64_t)c->bridge_radius) +
                   c->flying * (4 + 10 * others) + c->redundancy * 2 * others + c->exposure * 2 * others) +
         c->views * 3 * 512 + 1120;
+    if (c->stream) { /* marks of all keyframes forgotten; each Gaussian moved, sought, nine looks; what is drawn
+                        compared */
+        operations[T3R_STAGE_POINTMAP] += view * (c->views + 2) + gaussians * (2 + 10);
+    }
     /* two lifting passes of three steps and a sum a level, the levels adding up to less than 4 / 3 */
     operations[T3R_STAGE_WAVELET] = pixels * (7 * 4 / 3 + c->wavelet_levels + 1);
     /* seeding: a draw and a sum for each trial, one update; neighbours a batch; a point against all centres at most */
@@ -86,14 +92,21 @@ static void count_operations(const t3r_config *c, uint64_t operations[T3R_STAGE_
         T3R_DIMENSIONS * (clusters * T3R_CLUSTER_SAMPLE * (2 * T3R_CLUSTER_TRIALS + 1) +
                           (c->cluster_batches + 1) * clusters * clusters * (1 + T3R_NEIGHBOURS) +
                           assigned * (clusters + T3R_NEIGHBOURS * 2));
+    if (c->stream) { /* one group */
+        operations[T3R_STAGE_SUPERCLUSTERS] = pixels;
+    }
     /* textures, two blurs of nine taps, points counted twice, keys, 17 bisections, two density rounds, masks; ranking
      * and quotas */
     operations[T3R_STAGE_BUDGET] = pixels * (2 + 18 + 2 + 1 + 17 + 2 + 1) + 3 * clusters * clusters + 64 * clusters;
+    if (c->stream) { /* keys once more, 18 looks at all keys that compete; who stays moved and widened */
+        operations[T3R_STAGE_BUDGET] += pixels * (1 + 18 + 1) + gaussians * (18 + 1 + 16);
+    }
     operations[T3R_STAGE_HEAD] = head_operations(c) + share_operations(c);
     /* at most eight slices, each view drawn for each: as the raster below, once more with a look at every pixel; eight
      * sweeps over six equations a Gaussian */
     uint64_t drawn = gaussians * (32 + 8 + tiles_of_view * (1 + 2 + 3 * tile + tile / 16)) + tiles_of_view * 4 * tile;
-    operations[T3R_STAGE_REFINE] = c->refinements * (8 * c->views * (drawn + 2048) + gaussians * (8 * 36 + 64));
+    operations[T3R_STAGE_REFINE] = c->refinements * (8 * c->views * (drawn + 2048) + gaussians * (8 * 36 + 64)) +
+                                   c->stream * (drawn + 2048); /* the map as the keyframe sees it */
     /* project; four radix passes and their counts; counting and listing tiles; at most a pass a tile; each pixel of
      * each tile blended and its depth noted, a look for stopped tiles every 16 splats; tiles cleared and written */
     operations[T3R_STAGE_RASTER] =

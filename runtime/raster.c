@@ -60,6 +60,23 @@ static uint64_t hash_target(const t3r_target *target)
     return hash;
 }
 
+t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const t3r_target *target, uint32_t *passes)
+{
+    *passes = 0;
+    for (uint32_t first = 0; first < bin->tiles; ++*passes) {
+        uint32_t end = t3r_bin_pass(bin, first);
+        for (uint32_t tile = first; tile < end; tile += DRAW_CHUNK) {
+            if (!t3r_progress(rt, T3R_STAGE_RASTER, tile, bin->tiles)) {
+                return T3R_ERR_CANCELLED;
+            }
+            tile_job job = {bin, target, first, tile};
+            t3r_parallel(rt, T3R_MIN(end - tile, DRAW_CHUNK), draw_job, &job);
+        }
+        first = end;
+    }
+    return T3R_OK;
+}
+
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target)
 {
     T3R_REFUSE_UNLESS(rt != NULL && camera != NULL && target != NULL, T3R_ERR_ARGUMENT);
@@ -72,7 +89,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     if (status != T3R_OK) {
         return status;
     }
-    if (!rt->config.keep_analysis) {
+    if (!rt->config.keep_analysis && !rt->config.stream) {
         rt->views = 0; /* the raster's buffers lie where the planes were */
         rt->analysed = 0;
     }
@@ -88,17 +105,10 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
         .capacity = rt->list_capacity,
     };
     t3r_binning bin = t3r_raster_list(rt, &projection, &room);
-    uint32_t passes = 0;
-    for (uint32_t first = 0; first < bin.tiles; passes++) {
-        uint32_t end = t3r_bin_pass(&bin, first);
-        for (uint32_t tile = first; tile < end; tile += DRAW_CHUNK) {
-            if (!t3r_progress(rt, T3R_STAGE_RASTER, tile, bin.tiles)) {
-                return T3R_ERR_CANCELLED;
-            }
-            tile_job job = {&bin, target, first, tile};
-            t3r_parallel(rt, T3R_MIN(end - tile, DRAW_CHUNK), draw_job, &job);
-        }
-        first = end;
+    uint32_t passes;
+    status = t3r_raster_tiles(rt, &bin, target, &passes);
+    if (status != T3R_OK) {
+        return status;
     }
     rt->render_passes = passes;
     if (rt->hooks.stage_hash != NULL) {

@@ -18,7 +18,12 @@ typedef struct t3r_raster_room {
  * z_q20 = 0. t3r_bin_pass() goes on from there. */
 t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_raster_room *room);
 
-/* Where the keys were: of no use to anyone once the view is listed, T3R_RASTER_SPARE_BYTES a Gaussian of max_gaussians. */
+/* Draws all tiles of the binning into the target (through the parallel hook), reporting progress; *passes: how many it
+ * took. T3R_ERR_CANCELLED leaves the target part drawn. */
+t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const t3r_target *target, uint32_t *passes);
+
+/* Where the keys were: of no use to anyone once the view is listed, T3R_RASTER_SPARE_BYTES a Gaussian of max_gaussians.
+ */
 #define T3R_RASTER_SPARE_BYTES 8
 static inline void *t3r_raster_spare(const t3r_raster_room *room)
 {

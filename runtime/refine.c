@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "fixed.h"
-#include "raster_list.h"
 #include "refine_tile.h"
 #include "state.h"
 
@@ -37,6 +36,11 @@ static workshop workshop_of(const t3r_runtime *rt)
     w.room.lists = (void *)at;
     w.room.capacity = T3R_MIN((uint64_t)(size_t)(end - at) / sizeof(uint32_t), (uint64_t)UINT32_MAX);
     return w;
+}
+
+t3r_raster_room t3r_refine_room(const t3r_runtime *rt)
+{
+    return workshop_of(rt).room;
 }
 
 /* Before a view adds to a Gaussian's sums they are brought to the scale that its box asks for. */
@@ -111,7 +115,7 @@ static void measure(const t3r_runtime *rt, const workshop *w, const t3r_view *vi
     }
 }
 
-t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
+t3r_status t3r_refine_map(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records)
 {
     workshop w = workshop_of(rt);
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
@@ -139,10 +143,17 @@ t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
             }
         }
         for (uint32_t i = 0; i < rt->gaussians; i++) {
-            t3r_refine_apply(&w.corrections[i], &scene[i]);
+            if (records == NULL || records[i].idle < rt->config.views) {
+                t3r_refine_apply(&w.corrections[i], &scene[i]);
+            }
         }
     }
     return T3R_OK;
+}
+
+t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
+{
+    return t3r_refine_map(rt, views, NULL);
 }
 
 t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *error_q8)

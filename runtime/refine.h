@@ -6,7 +6,8 @@
 
 #include <stdint.h>
 
-#include "raster_splat.h"
+#include "raster_list.h"
+#include "stream_map.h"
 #include "views.h"
 
 /* Parameters of a Gaussian's appearance: log opacity; shift along its two surface axes; log scale and shear in them. */
@@ -44,6 +45,13 @@ void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);
 
 /* All passes over the scene in the arena. T3R_ERR_CANCELLED leaves it somewhere between two passes. */
 t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views);
+
+/* The same of a map: Gaussians of which none of the keyframes at hand has as much to tell as their own had stay as they
+ * are. records: one a Gaussian; NULL: all change. */
+t3r_status t3r_refine_map(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records);
+
+/* The room in which refinement draws a view of the working size: whoever draws one before can use it. */
+t3r_raster_room t3r_refine_room(const t3r_runtime *rt);
 
 /* How far the scene in the arena is from the context views: mean squared residual a channel, levels^2 Q8, at most 2^24,
  * over the pixels that refinement counts. Works where t3r_refine() does: needs refinements. */

@@ -11,14 +11,9 @@ static int64_t place(int64_t x, int64_t z, int32_t focal_q16, int32_t centre_q16
     return t3r_round_shift64(t3r_round_shift64(ratio_q24 * focal_q16, 24) + centre_q16, 16); /* 2^28 x 2^30 */
 }
 
-bool t3r_reproject(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_pointmap *to, t3r_sight *sight)
+bool t3r_sight_of(const t3r_view *view, const int32_t point[3], t3r_sight *sight)
 {
-    const t3r_view *view = to->view;
     const int32_t *r_q30 = view->pose.rotation_q30;
-    int32_t point[3];
-    if (!t3r_point(from, u, v, point)) {
-        return false;
-    }
     int64_t offset[3], camera[3];
     for (int i = 0; i < 3; i++) {
         offset[i] = (int64_t)point[i] - view->pose.position_q20[i];
@@ -39,4 +34,10 @@ bool t3r_reproject(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_p
     sight->pixel = (size_t)row * view->width + (size_t)column;
     sight->z_q20 = (int32_t)z;
     return true;
+}
+
+bool t3r_reproject(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_pointmap *to, t3r_sight *sight)
+{
+    int32_t point[3];
+    return t3r_point(from, u, v, point) && t3r_sight_of(to->view, point, sight);
 }

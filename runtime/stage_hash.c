@@ -28,13 +28,13 @@ static uint64_t hash_frame(const t3r_runtime *rt)
     return t3r_hash_u32(hash, (uint32_t)rt->frame.exponent);
 }
 
-void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views)
+void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (silent(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
-    for (uint32_t v = 0; v < rt->views; v++) {
+    for (uint32_t v = first; v < end; v++) {
         for (int c = 0; c < 3; c++) {
             hash = t3r_hash_bytes(hash, views[v].colour[c], pixels_of(rt));
         }
@@ -46,26 +46,26 @@ void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views)
     tell(rt, T3R_STAGE_IMAGE, hash);
 }
 
-void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views)
+void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (silent(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
-    for (uint32_t v = 0; v < rt->views; v++) {
+    for (uint32_t v = first; v < end; v++) {
         hash = t3r_hash_u16s(hash, views[v].depth, pixels_of(rt));
         hash = t3r_hash_bytes(hash, views[v].confidence, pixels_of(rt));
     }
     tell(rt, T3R_STAGE_DEPTH, hash);
 }
 
-void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views)
+void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (silent(rt)) {
         return;
     }
     uint64_t hash = hash_frame(rt);
-    for (uint32_t v = 0; v < rt->views; v++) {
+    for (uint32_t v = first; v < end; v++) {
         t3r_pointmap map = t3r_pointmap_of(&views[v], rt->frame.exponent);
         for (uint32_t y = 0; y < views[v].height; y++) {
             for (uint32_t x = 0; x < views[v].width; x++) {
@@ -78,7 +78,7 @@ void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views)
             }
         }
     }
-    for (uint32_t v = 0; v < rt->views; v++) {
+    for (uint32_t v = first; v < end; v++) {
         for (int c = 0; c < 3; c++) {
             hash = t3r_hash_u16(hash, rt->gain_q14[v][c]);
         }
@@ -87,19 +87,19 @@ void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views)
     tell(rt, T3R_STAGE_POINTMAP, hash);
 }
 
-void t3r_hash_wavelet(const t3r_runtime *rt, const t3r_view *views)
+void t3r_hash_wavelet(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (silent(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
-    for (uint32_t v = 0; v < rt->views; v++) {
+    for (uint32_t v = first; v < end; v++) {
         hash = t3r_hash_u16s(hash, views[v].texture, pixels_of(rt));
     }
     tell(rt, T3R_STAGE_WAVELET, hash);
 }
 
-void t3r_hash_superclusters(const t3r_runtime *rt, const t3r_view *views)
+void t3r_hash_superclusters(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (silent(rt)) {
         return;
@@ -112,19 +112,19 @@ void t3r_hash_superclusters(const t3r_runtime *rt, const t3r_view *views)
         }
         hash = t3r_hash_u32(hash, clusters[k].points);
     }
-    for (uint32_t v = 0; v < rt->views; v++) {
+    for (uint32_t v = first; v < end; v++) {
         hash = t3r_hash_u16s(hash, views[v].label, pixels_of(rt));
     }
     tell(rt, T3R_STAGE_SUPERCLUSTERS, hash);
 }
 
-void t3r_hash_budget(const t3r_runtime *rt, const t3r_view *views)
+void t3r_hash_budget(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (silent(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
-    for (uint32_t v = 0; v < rt->views; v++) {
+    for (uint32_t v = first; v < end; v++) {
         for (size_t i = 0; i < (pixels_of(rt) + 31) / 32; i++) {
             hash = t3r_hash_u32(hash, views[v].mask[i]);
         }

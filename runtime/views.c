@@ -8,6 +8,7 @@ void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
     size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
     size_t words = (pixels + 31) / 32;
     for (uint32_t v = 0; v < rt->config.views; v++) {
+        const uint32_t plane = rt->config.stream ? 0 : v; /* a stream analyses one keyframe at a time */
         uint8_t *colour = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_COLOUR) + 3 * pixels * v;
         const t3r_camera *camera = &rt->camera[v];
         views[v] = (t3r_view){
@@ -16,10 +17,10 @@ void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
             .colour = {colour, colour + pixels, colour + 2 * pixels},
             .depth = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_DEPTH) + pixels * v,
             .confidence = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_CONFIDENCE) + pixels * v,
-            .texture = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_TEXTURE) + pixels * v,
-            .key = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_KEYS) + pixels * v,
-            .label = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * v,
-            .mask = (uint32_t *)t3r_buffer_at(rt, T3R_BUFFER_MASK) + words * v,
+            .texture = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_TEXTURE) + pixels * plane,
+            .key = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_KEYS) + pixels * plane,
+            .label = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * plane,
+            .mask = (uint32_t *)t3r_buffer_at(rt, T3R_BUFFER_MASK) + words * plane,
             .fx_q16 = camera->fx_q16,
             .fy_q16 = camera->fy_q16,
             .cx_q16 = camera->cx_q16,

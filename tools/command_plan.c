@@ -157,6 +157,9 @@ static void print_table(const t3r_plan_info *plan, bool markdown)
     }
     for (uint32_t i = 0; i < plan->buffer_count; i++) {
         const t3r_plan_buffer *b = &plan->buffers[i];
+        if (b->bytes == 0) {
+            continue;
+        }
         printf(markdown ? "| %s | %zu | %zu | %s | %s |\n" : "%-30s %12zu %12zu  %-13s  %s\n", b->name, b->bytes,
                b->offset, t3r_stage_name(b->first), t3r_stage_name(b->last));
     }

@@ -8,31 +8,23 @@
 #include <string.h>
 
 #include "cli.h"
-#include "file_bytes.h"
 #include "hash.h"
 #include "json_output.h"
 #include "option_values.h"
 #include "reconstruction.h"
+#include "replay_expectation.h"
+#include "replay_stream.h"
 
 #define ERROR_BYTES 512
-#define MAX_EXPECTATION_BYTES ((size_t)64 << 20)
 
 typedef struct replay_options {
     const char *recording;
     const char *expect;
     bool json;
+    replay_stream_options stream;
+    bool streams, has_half_life;
     reconstruction_options settings;
 } replay_options;
-
-/* What an earlier run found: of a lone hash only the last field. */
-typedef struct expectation {
-    bool given;
-    bool has_stage[T3R_STAGE_COUNT];
-    uint64_t stage[T3R_STAGE_COUNT];
-    uint64_t *tiles; /* heap; NULL = none */
-    uint32_t tile_count;
-    uint64_t hash;
-} expectation;
 
 typedef struct replayed_view {
     uint32_t frame;
@@ -43,14 +35,41 @@ typedef struct replayed_view {
     uint64_t hash; /* of the whole run */
 } replayed_view;
 
-enum { KEY_EXPECT = 0x1000, KEY_JSON };
+enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_HALF_LIFE, KEY_OVERLAP, KEY_IMAGES };
 
 static const struct argp_option options[] = {
     {"expect", KEY_EXPECT, "HASH|FILE", 0,
      "the final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout, fit for --expect", 0},
+    {NULL, 0, NULL, 0, "A map that follows the camera:", 5},
+    {"stream", KEY_STREAM, NULL, 0,
+     "all frames in turn: keyframes go into one map of at most --gaussians, the frames between them are drawn and "
+     "compared",
+     0},
+    {"every", KEY_EVERY, "N", 0, "every Nth frame is a keyframe, 1..1000 (3)", 0},
+    {"overlap", KEY_OVERLAP, "P%", 0,
+     "a frame between is a keyframe too when it has less than that in common with the last one, 1..100", 0},
+    {"at-hand", KEY_AT_HAND, "K", 0, "keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
+    {"half-life", KEY_HALF_LIFE, "K", 0,
+     "keyframes that halve the density of what they do not see, 0..1024; 0 = nothing fades (32)", 0},
+    {"images", KEY_IMAGES, "DIR", 0,
+     "write the held-back frames, where they have a depth, and their views: DIR/frame_<frame>.png, mask_, live_, "
+     "final_",
+     0},
     {0},
 };
+
+static void check_stream(struct argp_state *state, const replay_options *o)
+{
+    if (!o->streams && (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || o->has_half_life ||
+                        o->stream.images != NULL)) {
+        argp_error(state, "--every, --overlap, --at-hand, --half-life and --images belong to --stream");
+    }
+    if (o->streams && (o->settings.context_count > 0 || o->settings.automatic ||
+                       o->settings.depth == T3R_DEPTH_STEREO || o->settings.allocation == T3R_ALLOCATE_GIVEN)) {
+        argp_error(state, "--stream takes no --context, --auto, --allocate given or --depth stereo");
+    }
+}
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -64,7 +83,30 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->expect = arg;
         return 0;
     case KEY_JSON:
-        o->json = true;
+        o->json = o->stream.json = true;
+        return 0;
+    case KEY_STREAM:
+        o->streams = true;
+        return 0;
+    case KEY_EVERY:
+        o->stream.every = option_number(state, "every", arg, 1, 1000);
+        return 0;
+    case KEY_OVERLAP: {
+        double percent;
+        uint32_t count;
+        option_percents(state, "overlap", arg, &percent, 1, &count);
+        o->stream.overlap_q8 = (uint32_t)(percent * 2.56 + 0.5);
+        return 0;
+    }
+    case KEY_AT_HAND:
+        o->stream.at_hand = option_number(state, "at-hand", arg, 1, T3R_MAX_VIEWS);
+        return 0;
+    case KEY_HALF_LIFE:
+        o->settings.half_life = option_number(state, "half-life", arg, 0, 1024);
+        o->has_half_life = true;
+        return 0;
+    case KEY_IMAGES:
+        o->stream.images = arg;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->recording}, 1);
@@ -76,6 +118,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
             o->settings.keep_percent = 10;
         }
+        check_stream(state, o);
         if (o->settings.method != METHOD_TRIM3R) {
             argp_error(state, "--method %s is made in floats, which promise no bits; trim3r alone is replayed",
                        method_name(o->settings.method));
@@ -95,106 +138,34 @@ static const struct argp argp = {
     .doc =
         "Builds (10 % kept unless told otherwise), draws the first frame that is not a context view, and prints the "
         "hash "
-        "of every stage and of the whole."
+        "of every stage and of the whole. With --stream, all frames of the recording in turn: percents kept are then "
+        "of "
+        "the first two keyframes' points."
         "\vExamples:\n"
         "  trim3r replay room.mcap\n"
         "  trim3r replay room.mcap --json > golden.json\n"
-        "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n\n"
+        "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n"
+        "  trim3r replay walk.mcap --stream --every 3 --gaussians 10000\n\n"
         "With a file to compare with, the first stage that differs is named, and for the raster the first 16x16 tile.",
     .children = children,
 };
 
-/* ---- the expectation ------------------------------------------------------------------------------------------ */
-
-static int read_hash(const cJSON *item, uint64_t *hash)
-{
-    return cJSON_IsString(item) && hash_parse(item->valuestring, hash) == 0 ? 0 : -1;
-}
-
-static int read_tiles(const cJSON *tiles, expectation *e)
-{
-    int count = cJSON_GetArraySize(tiles);
-    e->tiles = calloc((size_t)count + 1, sizeof *e->tiles);
-    if (e->tiles == NULL) {
-        return -1;
-    }
-    const cJSON *item;
-    cJSON_ArrayForEach(item, tiles)
-    {
-        if (read_hash(item, &e->tiles[e->tile_count++]) != 0) {
-            return -1;
-        }
-    }
-    return 0;
-}
-
-static int read_expectation(const char *text, expectation *e)
-{
-    *e = (expectation){0};
-    if (text == NULL) {
-        return CLI_OK;
-    }
-    e->given = true;
-    if (hash_parse(text, &e->hash) == 0) {
-        return CLI_OK;
-    }
-    char error[ERROR_BYTES] = "";
-    size_t count;
-    uint8_t *bytes = t3r_file_bytes(text, MAX_EXPECTATION_BYTES, &count, error, sizeof error);
-    if (bytes == NULL) {
-        return cli_error(CLI_BAD_INPUT, "--expect takes 16 hexadecimal digits or a file: %s", error);
-    }
-    cJSON *root = cJSON_ParseWithLength((const char *)bytes, count);
-    free(bytes);
-    const cJSON *stages = cJSON_GetObjectItemCaseSensitive(root, "stages");
-    const cJSON *tiles = cJSON_GetObjectItemCaseSensitive(root, "tiles");
-    const char *wrong = NULL;
-    if (root == NULL) {
-        wrong = "is not JSON";
-    } else if (read_hash(cJSON_GetObjectItemCaseSensitive(root, "hash"), &e->hash) != 0) {
-        wrong = "has no field hash of 16 hexadecimal digits";
-    }
-    for (int stage = 0; wrong == NULL && stage < T3R_STAGE_COUNT; stage++) {
-        const cJSON *item = cJSON_GetObjectItemCaseSensitive(stages, t3r_stage_name((t3r_stage)stage));
-        if (item != NULL) {
-            e->has_stage[stage] = true;
-            wrong =
-                read_hash(item, &e->stage[stage]) == 0 ? NULL : "has a stage whose hash is not 16 hexadecimal digits";
-        }
-    }
-    if (wrong == NULL && cJSON_IsArray(tiles) && read_tiles(tiles, e) != 0) {
-        wrong = "has a tile whose hash is not 16 hexadecimal digits";
-    }
-    cJSON_Delete(root);
-    return wrong == NULL ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s: %s", text, wrong);
-}
+/* ---- the run ---------------------------------------------------------------------------------------------------- */
 
 /* The first place that differs, as text; "" when none does. */
 static void find_difference(const expectation *e, const reconstruction *r, const replayed_view *view, char *text,
                             size_t text_bytes)
 {
-    text[0] = '\0';
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        if (!e->has_stage[stage] || (r->stage_hashed[stage] && e->stage[stage] == r->stage_hash[stage])) {
-            continue;
+    t3r_stage stage = expectation_missed(e, r, view->hash, text, text_bytes);
+    for (uint32_t i = 0; stage == T3R_STAGE_RASTER && i < e->tile_count && i < view->tile_count; i++) {
+        if (e->tiles[i] != view->tiles[i]) {
+            snprintf(text, text_bytes, "stage %s, tile %" PRIu32 " (pixels from %" PRIu32 ", %" PRIu32 ")",
+                     t3r_stage_name(stage), i, i % view->tile_columns * T3R_TILE_SIDE,
+                     i / view->tile_columns * T3R_TILE_SIDE);
+            break;
         }
-        snprintf(text, text_bytes, "stage %s", t3r_stage_name((t3r_stage)stage));
-        for (uint32_t i = 0; stage == T3R_STAGE_RASTER && i < e->tile_count && i < view->tile_count; i++) {
-            if (e->tiles[i] != view->tiles[i]) {
-                snprintf(text, text_bytes, "stage %s, tile %" PRIu32 " (pixels from %" PRIu32 ", %" PRIu32 ")",
-                         t3r_stage_name((t3r_stage)stage), i, i % view->tile_columns * T3R_TILE_SIDE,
-                         i / view->tile_columns * T3R_TILE_SIDE);
-                break;
-            }
-        }
-        return;
-    }
-    if (e->given && e->hash != view->hash) {
-        snprintf(text, text_bytes, "the final hash");
     }
 }
-
-/* ---- the run ---------------------------------------------------------------------------------------------------- */
 
 static void hash_tiles(replayed_view *view)
 {
@@ -285,11 +256,7 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
         cJSON_AddItemToArray(tiles, cJSON_CreateString(text));
     }
     json_add_hash(root, "hash", view->hash);
-    if (e->given) {
-        json_add_hash(root, "expected", e->hash);
-        cJSON_AddBoolToObject(root, "match", difference[0] == '\0');
-        cJSON_AddStringToObject(root, "first_difference", difference);
-    }
+    expectation_add(root, e, difference);
     json_print(root);
 }
 
@@ -319,11 +286,6 @@ static int replay(const replay_options *o, const t3r_recording *recording, const
     if (code != CLI_OK) {
         return code;
     }
-    uint32_t epoch = t3r_recording_bits_epoch(recording);
-    if (epoch != 0 && epoch != T3R_BITS_EPOCH) {
-        fprintf(stderr, "trim3r replay: %s is of bits epoch %" PRIu32 ", this is %d: hashes of then do not hold\n",
-                o->recording, epoch, T3R_BITS_EPOCH);
-    }
     replayed_view view = {0};
     code = draw_target(recording, o->recording, &r, &view);
     if (code == CLI_OK) {
@@ -334,20 +296,21 @@ static int replay(const replay_options *o, const t3r_recording *recording, const
         } else {
             print_text(o, &r, &view);
         }
-        if (difference[0] != '\0') {
-            char expected[HASH_TEXT_BYTES], found[HASH_TEXT_BYTES];
-            hash_text(e->hash, expected);
-            hash_text(view.hash, found);
-            code = cli_error(CLI_BAD_INPUT, "%s: expected %s, found %s; first difference: %s", o->recording, expected,
-                             found, difference);
-        } else if (e->given && !o->json) {
-            puts("as expected");
-        }
+        code = expectation_verdict(e, o->recording, view.hash, difference, o->json);
     }
     free(view.tiles);
     free(view.rgb);
     reconstruction_close(&r);
     return code;
+}
+
+static void warn_of_epoch(const replay_options *o, const t3r_recording *recording)
+{
+    uint32_t epoch = t3r_recording_bits_epoch(recording);
+    if (epoch != 0 && epoch != T3R_BITS_EPOCH) {
+        fprintf(stderr, "trim3r replay: %s is of bits epoch %" PRIu32 ", this is %d: hashes of then do not hold\n",
+                o->recording, epoch, T3R_BITS_EPOCH);
+    }
 }
 
 int command_replay(int argc, char **argv)
@@ -357,17 +320,19 @@ int command_replay(int argc, char **argv)
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
     expectation e;
-    int code = read_expectation(o.expect, &e);
+    int code = expectation_read(&e, o.expect);
     if (code == CLI_OK) {
         char error[ERROR_BYTES] = "";
         t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
         if (recording == NULL) {
             code = cli_error(CLI_BAD_INPUT, "%s", error);
         } else {
-            code = replay(&o, recording, &e);
+            warn_of_epoch(&o, recording);
+            code = o.streams ? replay_stream(&o.stream, recording, o.recording, &o.settings, &e)
+                             : replay(&o, recording, &e);
             t3r_recording_close(recording);
         }
     }
-    free(e.tiles);
+    expectation_free(&e);
     return code;
 }

@@ -59,11 +59,15 @@ static void write_buffer(FILE *file, const t3r_plan_info *plan, uint32_t index)
 static void write_legend(FILE *file, const t3r_plan_info *plan)
 {
     int x = LEFT + COLUMN * T3R_STAGE_COUNT + 20, y = TOP + 6;
-    for (uint32_t i = 0; i < plan->buffer_count; i++, y += LEGEND_ROW) {
+    for (uint32_t i = 0; i < plan->buffer_count; i++) {
+        if (plan->buffers[i].bytes == 0) {
+            continue;
+        }
         fprintf(file,
                 "<rect x='%d' y='%d' width='12' height='12' fill='hsl(%d 55%% 55%%)'/>"
                 "<text x='%d' y='%d'>%s, %.1f KiB</text>\n",
                 x, y - 10, hue(i), x + 18, y, plan->buffers[i].name, (double)plan->buffers[i].bytes / 1024);
+        y += LEGEND_ROW;
     }
     fprintf(file,
             "<line class='least' x1='%d' x2='%d' y1='%d' y2='%d'/><text x='%d' y='%d'>least arena, %.2f MiB</text>\n",

@@ -27,6 +27,7 @@ void reconstruction_defaults(reconstruction_options *options)
         .shuffle = c.shuffle,
         .adapt = c.adapt,
         .refine = c.refinements,
+        .half_life = c.half_life,
         .depth = c.depth,
         .fill_radius = c.fill_radius,
         .bridge_radius = c.bridge_radius,
@@ -394,6 +395,7 @@ void reconstruction_configure(reconstruction *r, const reconstruction_options *o
     r->config.shuffle = options->shuffle;
     r->config.adapt = options->adapt;
     r->config.refinements = options->refine;
+    r->config.half_life = options->half_life;
     r->config.depth = options->depth;
     r->config.fill_radius = options->fill_radius;
     r->config.bridge_radius = options->bridge_radius;
@@ -417,9 +419,9 @@ void reconstruction_request(reconstruction *r, const reconstruction_options *opt
     r->config.max_gaussians = r->config.gaussians;
 }
 
-/* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
-static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
-                      const t3r_capture_frame *frames, const uint16_t *const *planes)
+/* Head, settings, budget, arena; of a stream that has `keyframes` at hand, or of the context frames (0). */
+static int prepare(reconstruction *r, const char *path, const reconstruction_options *options,
+                   const t3r_capture_frame *frames, uint32_t keyframes)
 {
     int code = chosen_head_open(&r->head, options->head);
     if (code == CLI_OK && options->hide_mask) {
@@ -432,6 +434,10 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
         return code;
     }
     reconstruction_configure(r, options);
+    if (keyframes > 0) {
+        r->config.stream = 1;
+        r->config.views = keyframes;
+    }
     if (t3r_config_error(&r->config) != NULL) {
         return reconstruction_error(T3R_ERR_CONFIG, "settings", &r->config, 0);
     }
@@ -443,11 +449,19 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     }
     r->valid_points = points.valid;
     reconstruction_request(r, options);
+    if (keyframes > 0) {
+        r->config.gaussians = r->config.max_gaussians = r->requested;
+    }
 
     code = open_arena(r, options);
-    if (code == CLI_OK) {
-        code = bind_head(r);
-    }
+    return code == CLI_OK ? bind_head(r) : code;
+}
+
+/* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
+static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
+                      const t3r_capture_frame *frames, const uint16_t *const *planes)
+{
+    int code = prepare(r, path, options, frames, 0);
     if (code != CLI_OK) {
         return code;
     }
@@ -494,6 +508,21 @@ int reconstruction_build(reconstruction *r, const t3r_recording *recording, cons
 {
     *r = (reconstruction){0};
     int code = build(r, recording, path, options);
+    if (code != CLI_OK) {
+        reconstruction_close(r);
+    }
+    return code;
+}
+
+int reconstruction_stream(reconstruction *r, const t3r_recording *recording, const char *path,
+                          const reconstruction_options *options, uint32_t keyframes)
+{
+    *r = (reconstruction){0};
+    t3r_capture_frame frames[T3R_MAX_VIEWS];
+    int code = choose_context(r, recording, path, options, frames);
+    if (code == CLI_OK) {
+        code = prepare(r, path, options, frames, keyframes);
+    }
     if (code != CLI_OK) {
         reconstruction_close(r);
     }

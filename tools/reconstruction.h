@@ -52,6 +52,7 @@ typedef struct reconstruction_options {
     uint32_t flying, redundancy, exposure; /* 0 or 1 each: what views tell of each other */
     uint32_t seed;
     uint32_t refine;    /* passes of refinement */
+    uint32_t half_life; /* of a stream */
     bool keep_analysis; /* so that t3r_rebudget() and t3r_reallocate() work afterwards */
     bool hash;          /* collect the stages' hashes */
     arena_choice arena;
@@ -109,6 +110,10 @@ uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent);
 int reconstruction_build(reconstruction *r, const t3r_recording *recording, const char *path,
                          const reconstruction_options *options);
 
+/* An arena for a stream that has `keyframes` at hand (t3r_stream_keyframe()), nothing taken yet; a budget in percent is
+ * of the valid points of the context frames, which nothing else is made of. */
+int reconstruction_stream(reconstruction *r, const t3r_recording *recording, const char *path,
+                          const reconstruction_options *options, uint32_t keyframes);
 /* For those who build without a recording (live_build.h). The configuration of the options for the working size in
  * r->config, r->context_count views and r->head; its budget is left to the next. */
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options);

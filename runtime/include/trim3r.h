@@ -173,6 +173,10 @@ typedef struct t3r_config {
     uint32_t redundancy;        /* 1 = small budgets pass over points that another view covers */
     uint32_t exposure;          /* 1 = colours of all views are brought to their mean exposure */
     uint32_t keep_analysis;     /* 1 = planes outlive the build, so that t3r_rebudget() works */
+    uint32_t stream;            /* 1 = a map of at most `gaussians` follows a camera: t3r_stream_keyframe() alone, by
+                                   depth of a sensor */
+    uint32_t half_life;         /* of a stream: keyframes that halve the density of what they do not see, 0..1024;
+                                   0 = nothing fades */
     uint32_t seed;              /* of the K-means, of the allocation `random`, and of blue-noise ties */
 } t3r_config;
 
@@ -333,6 +337,42 @@ t3r_status t3r_rebudget_given(t3r_runtime *rt, uint32_t gaussians, const uint16_
  * before. */
 t3r_status t3r_reconstruct_within(t3r_runtime *rt, uint32_t max_loss_q8, t3r_scene *scene);
 t3r_status t3r_rebudget_within(t3r_runtime *rt, uint32_t most, uint32_t max_loss_q8, t3r_scene *scene);
+
+/* What a keyframe did to the map of a stream. */
+typedef struct t3r_stream_report {
+    uint32_t keyframes; /* taken so far, this one too */
+    uint32_t gaussians; /* in the map, at most the configuration's */
+    uint32_t added;
+    uint32_t removed; /* of those there were: contradicted by the keyframe, or replaced by what it sees far finer */
+    uint32_t crowded; /* of those there were: dropped for lack of room */
+    uint32_t points;  /* pixels with a depth, filled ones too */
+    uint32_t shown;   /* of these, those that the map showed already */
+} t3r_stream_report;
+
+/* Streams (t3r_config.stream): takes the next keyframe of a moving camera into the map, the scene in the arena, which
+ * holds at most the configuration's `gaussians` over any number of keyframes, in bounded time. Pixels that the map
+ * shows already add nothing; the others compete with the Gaussians there are by one score, texture density against blue
+ * noise (allocations by SuperClusters count as `pixel`, for the score is to mean the same in every keyframe); who stays
+ * grows over the gaps, and refinement on the last `views` keyframes corrects what these see as finely as the Gaussian's
+ * own. The map's scale is the first keyframe's; its origin follows the camera by whole scene units, and what falls more
+ * than 1,024 scene units behind is forgotten. Which frames are keyframes is the caller's choice. A Gaussian's `view` is
+ * its keyframe's number modulo `views`. t3r_render(), t3r_get_scene() and t3r_reset(), which begins anew, work in
+ * between; `report` may be NULL and is written when all went well. T3R_ERR_STATE: not an arena for streams, the learned
+ * head without weights, or the allocation `given`; T3R_ERR_FRAME; T3R_ERR_CAMERA, also more than 1,024 scene units from
+ * the origin: all as before. T3R_ERR_NO_DEPTH, a lens that shows too little, T3R_ERR_CANCELLED: the keyframe adds
+ * nothing and is not among those that refinement looks at, nor is the one of `views` keyframes ago, and Gaussians that
+ * it contradicts may be gone. T3R_ERR_CANCELLED during refinement: it is taken, passes are missing. The map stays valid
+ * and within its cap whatever happens. */
+t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
+                               t3r_stream_report *report);
+
+/* How much a picture of width x height by this camera (its distortion is ignored) would have in common with the newest
+ * keyframe, Q8, 0..256: the share of that one's points that it would show, or of an 8 x 8 grid over the picture that
+ * they fall on, against what they fall on in their own, whichever is less. For choosing keyframes: when it sinks below
+ * some 70 %, say, it is time. T3R_ERR_STATE before the first keyframe, T3R_ERR_CAMERA where t3r_stream_keyframe() has
+ * it. */
+t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
+                              uint32_t *overlap_q8);
 
 /* The scene in the arena, after t3r_attach() say. T3R_ERR_STATE when there is none. */
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);

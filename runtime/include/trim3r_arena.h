@@ -39,6 +39,7 @@
 #define T3R_HEAD_KERNEL_BYTES 4096
 #define T3R_CORRECTION_BYTES 20   /* what refinement will change in a Gaussian */
 #define T3R_REFINE_SUMS_BYTES 104 /* what refinement sums over a Gaussian's pixels */
+#define T3R_MAP_RECORD_BYTES 12   /* what a stream notes about a Gaussian of its map */
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8 /* undistortion grid, pixels */
 
@@ -113,36 +114,50 @@
 
 /* X(p, NAME, text, bytes, first, last); p is handed through.
  * w x h working size, v views, z Gaussians, k clusters, rw x rh largest target, hc the learned head's bytes a column;
- * keep: the analysis outlives the build; n refinements; s: depth is made by stereo. Buffers come in the order of their
+ * keep: the analysis outlives the build, or T3R_KEEP_MAP: a stream, whose map and keyframes outlive everything, one
+ * keyframe being analysed at a time; n refinements; s: depth is made by stereo. Buffers come in the order of their
  * first stage; `scene` and nothing else is laid from the arena's end, so that lifetimes nest and the sum over the live
  * buffers of a stage is what that stage needs. `tile lists` and `refinement work` grow: more bytes than their minimum
  * save passes. */
+#define T3R_KEEP_MAP 2
+#define T3R_STREAMS_(keep) ((keep) == T3R_KEEP_MAP)
 #define T3R_LAST_(keep, stage) ((keep) ? T3R_AT_RASTER : (stage))
+#define T3R_LAST_ANALYSIS_(keep, stage) ((keep) && !T3R_STREAMS_(keep) ? T3R_AT_RASTER : (stage))
+#define T3R_ANALYSED_(v, keep) (T3R_STREAMS_(keep) ? T3R_ANY_(v) : (size_t)(v))
 #define T3R_BUFFERS(X, p, w, h, v, z, k, rw, rh, hc, keep, n, s)                                                       \
     X(p, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                               \
+    X(p, MAP_RECORDS, "map records", T3R_STREAMS_(keep) * (size_t)(z)*T3R_MAP_RECORD_BYTES, T3R_AT_IMAGE,              \
+      T3R_AT_RASTER)                                                                                                   \
     X(p, COLOUR, "colour planes", T3R_PIXELS_(w, h) * (v)*3, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))             \
     X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))               \
     X(p, CONFIDENCE, "confidence planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))       \
     X(p, IMAGE_WORK, "undistortion and resize work",                                                                   \
       T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w)*24), T3R_AT_IMAGE, T3R_AT_IMAGE)  \
     X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \
-    X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_WAVELET, T3R_LAST_(keep, T3R_AT_HEAD))           \
+    X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_WAVELET,                    \
+      T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16),               \
       T3R_AT_WAVELET, T3R_AT_WAVELET)                                                                                  \
-    X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_SUPERCLUSTERS, T3R_LAST_(keep, T3R_AT_HEAD)) \
+    X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_SUPERCLUSTERS,          \
+      T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * ((k) + 1) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                 \
-      T3R_LAST_(keep, T3R_AT_HEAD))                                                                                    \
+      T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, CLUSTER_WORK, "K-means work", T3R_ANY_(v) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS,                     \
       T3R_AT_SUPERCLUSTERS)                                                                                            \
-    X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * (v)*4, T3R_AT_BUDGET, T3R_LAST_(keep, T3R_AT_HEAD))            \
-    X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_BUDGET, T3R_AT_BUDGET)                                 \
+    X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * T3R_ANALYSED_(v, keep) * 4, T3R_AT_BUDGET,                     \
+      T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
+    X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_BUDGET,                           \
+      T3R_STREAMS_(keep) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                                \
     X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_HEAD_WORK_(w, h, hc), T3R_AT_HEAD, T3R_AT_HEAD)                     \
-    X(p, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(w, h, v, z, n), T3R_AT_REFINE, T3R_AT_REFINE)               \
+    X(p, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(keep) * T3R_PIXELS_(w, h) * 6, T3R_AT_REFINE,             \
+      T3R_AT_REFINE)                                                                                                   \
+    X(p, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep)), T3R_AT_REFINE,       \
+      T3R_AT_REFINE)                                                                                                   \
     X(p, SPLATS, "projected splats", (size_t)(z)*T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)                        \
     X(p, ORDER, "depth order", (size_t)(z)*T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)             \
     X(p, TILES, "tile table", T3R_TILES_(rw, rh) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                    \
     X(p, LISTS, "tile lists", (size_t)(z)*4, T3R_AT_RASTER, T3R_AT_RASTER)                                             \
-    X(p, SCENE, "scene", (size_t)(z)*T3R_GAUSSIAN_BYTES, T3R_AT_HEAD, T3R_AT_RASTER)
+    X(p, SCENE, "scene", (size_t)(z)*T3R_GAUSSIAN_BYTES, T3R_STREAMS_(keep) ? T3R_AT_IMAGE : T3R_AT_HEAD, T3R_AT_RASTER)
 
 #define T3R_NAME_(p, NAME, text, bytes, first, last) T3R_BUFFER_##NAME,
 enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0) T3R_BUFFER_COUNT };
@@ -168,7 +183,8 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0) T3R
 #define T3R_FULL_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s)                                                         \
     T3R_MOST_(T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s),                                                   \
               T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s) -                                 \
-                  T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, n)) + T3R_UP_(T3R_REFINE_FULL_BYTES_(w, h, v, z, n)),          \
+                  T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))) +                                   \
+                  T3R_UP_(T3R_REFINE_FULL_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))),                               \
               T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s) - T3R_UP_((size_t)(z)*4) +        \
                   T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)),                                                                \
               0)
@@ -184,5 +200,11 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0) T3R
     T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1)
 #define T3R_STEREO_ARENA_BYTES(width, height, views, gaussians)                                                        \
     T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1)
+
+/* Likewise of a stream (t3r_config.stream) with `views` keyframes at hand, otherwise of the default configuration. */
+#define T3R_STREAM_MIN_BYTES(width, height, views, gaussians)                                                          \
+    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, T3R_KEEP_MAP, 4, 0)
+#define T3R_STREAM_BYTES(width, height, views, gaussians)                                                              \
+    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, T3R_KEEP_MAP, 4, 0)
 
 #endif

@@ -404,6 +404,38 @@ def test_replay(room):
     expect(2, "replay", room, room, err="too many")
 
 
+def test_stream(room):
+    base = ["replay", room, "--working", "64x64", "--stream", "--every", 2, "--at-hand", 2]
+    found = expect_json(*base, "--gaussians", 500, "--images", "held")
+    frames = expect_json("info", room)["frames"]
+    keyframes, held = found["keyframes"], found["held_back"]
+    check([k["frame"] for k in keyframes] == list(range(0, frames, 2)), "every second frame is to be a keyframe")
+    check([h["frame"] for h in held] == list(range(1, frames, 2)), "the others are to be held back")
+    check(all(k["gaussians"] == 500 for k in keyframes) and found["gaussians"] == found["cap"] == 500, "no 500 Gaussians")
+    check(keyframes[0]["shown"] == 0 < keyframes[1]["shown"] <= keyframes[1]["points"], "what the map shows is not told")
+    check(all(k["added"] == k["removed"] + k["crowded"] for k in keyframes[1:]), "a full map is to stay full")
+    check(found["live_psnr"] > 18 and found["final_psnr"] > 18, f"held-back views are poor: {found['live_psnr']}")
+    check(all(os.path.exists(f"held/{what}_00001.png") for what in ("frame", "mask", "live", "final")), "no pictures")
+    write("stream.json", json.dumps(found))
+    base += ["--gaussians", 500]
+    for more in ([], ["--threads", 2], ["--arena", "min"]):
+        expect(0, *base, "--expect", "stream.json", *more, out="as expected")
+        expect(0, *base, "--expect", found["hash"], *more, out="as expected")
+    expect(1, *base, "--expect", "stream.json", "--wavelet", "haar", err="keyframe 0")
+    expect(1, *base, "--expect", "stream.json", "--half-life", 1, err="keyframe 2")
+    expect(1, *base, "--expect", "0" * 16, err=found["hash"])
+    expect(0, "replay", room, "--stream", "--keep", 2, "--working", "32x32", "--refine", 0, out="2 keyframes, one in 3")
+    turned = expect_json("replay", room, "--working", "64x64", "--stream", "--every", 100, "--overlap", "90%",
+                         "--gaussians", 500)
+    check(0 == turned["keyframes"][0]["frame"] and 1 < len(turned["keyframes"]) < frames, "overlap chooses no keyframes")
+    expect(2, "replay", room, "--overlap", "80%", err="belong to --stream")
+    expect(2, "replay", room, "--every", 2, err="belong to --stream")
+    expect(2, "replay", room, "--stream", "--context", "0,1", err="--context")
+    expect(2, "replay", room, "--stream", "--auto", err="--auto")
+    expect(2, *base, "--at-hand", 17, err="--at-hand")
+    expect(1, *base, "--images", room + "/absent", err="absent")
+
+
 def test_diff():
     expect(2, "diff", err="two files")
     expect(2, "diff", "scene.ply", err="two files")
@@ -451,8 +483,8 @@ def test_plan():
         check(buffer["offset"] + buffer["bytes"] <= found["arena_bytes"], f"{buffer['name']} leaves the arena")
     xml.dom.minidom.parse("arena.svg")
     table = expect(0, *base, "--markdown", out="|---|")
-    check(all(f"| {b['name']} | {b['bytes']} |" in table for b in found["buffers"]),
-          "the Markdown table lacks a buffer")
+    check(all((f"| {b['name']} | {b['bytes']} |" in table) == (b['bytes'] > 0) for b in found["buffers"]),
+          "the Markdown table is to have all buffers that have bytes")
     check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
     # a head needs what plan says: one with wider activations more, and a closed form nothing
     small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
@@ -506,6 +538,7 @@ def main():
         test_arena("room.mcap")
         test_render("room.mcap")
         test_replay("room.mcap")
+        test_stream("room.mcap")
         test_diff()
         test_plan()
         test_bench()

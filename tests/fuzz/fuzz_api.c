@@ -104,6 +104,7 @@ static t3r_config take_config(input *in)
     c.shuffle = c.seed >> 4 & 1;
     c.depth = c.seed & 32 && c.width >= T3R_STEREO_LEAST_SIDE && c.height >= T3R_STEREO_LEAST_SIDE ? T3R_DEPTH_STEREO
                                                                                                    : T3R_DEPTH_SENSOR;
+    c.stream = c.seed >> 6 == 3 && c.views > 0 && c.depth == T3R_DEPTH_SENSOR;
     c.head_column_bytes = c.seed & 4 ? below(in, 2048) : c.head_column_bytes;
     return c;
 }
@@ -369,6 +370,27 @@ static void call_add_view(session *s, input *in)
     free_frame(&held);
 }
 
+/* A keyframe or a few, in an arena for streams or in one that refuses them. */
+static void call_stream(session *s, input *in)
+{
+    for (uint32_t n = 1 + below(in, 3); n > 0; n--) {
+        t3r_camera camera = take_camera(in);
+        held_frame held = take_frame(in);
+        t3r_stream_report report;
+        t3r_status status = t3r_stream_keyframe(s->rt, &held.frame, &camera, take8(in) & 1 ? &report : NULL);
+        require_status(status);
+        uint32_t overlap_q8 = 0;
+        require_status(t3r_stream_overlap(s->rt, &camera, held.frame.width, held.frame.height, &overlap_q8));
+        REQUIRE(overlap_q8 <= 256);
+        REQUIRE(s->config.stream || status != T3R_OK);
+        t3r_scene scene;
+        if (t3r_get_scene(s->rt, &scene) == T3R_OK && s->config.stream) {
+            REQUIRE(scene.count <= s->config.gaussians);
+        }
+        free_frame(&held);
+    }
+}
+
 static void call_scene(session *s, input *in)
 {
     t3r_scene_frame frame = {{0}, 0};
@@ -481,7 +503,10 @@ static void call_bind(session *s, input *in)
 static void call(session *s, input *in)
 {
     t3r_scene scene;
-    switch (take8(in) % 18) {
+    switch (s->config.stream && (take8(in) & 3) != 0 ? 18 : take8(in) % 19) {
+    case 18:
+        call_stream(s, in);
+        break;
     case 17:
         call_within(s, in);
         break;

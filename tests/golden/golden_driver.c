@@ -226,10 +226,11 @@ static t3r_status begin_step(run *r, const char *step)
     return t3r_set_hooks(r->rt, &hooks);
 }
 
-static t3r_status begin_run(run *r)
+static t3r_status begin_run(run *r, bool stream)
 {
     const configuration *c = r->configuration;
     t3r_config config = t3r_default_config(c->width, c->height, CONTEXT_VIEWS, c->gaussians);
+    config.stream = stream;
     config.wavelet = c->wavelet;
     config.wavelet_levels = c->levels;
     config.clusters = c->clusters;
@@ -263,16 +264,22 @@ static t3r_status begin_run(run *r)
     return t3r_init(&r->rt, arenas[0], r->arena_bytes, &config);
 }
 
+/* Frame `index` of the room as the configuration's camera takes it. */
+static void capture(const configuration *c, uint32_t index, t3r_frame *frame, t3r_camera *camera)
+{
+    *frame = (t3r_frame){.format = c->format, .width = c->frame_width, .height = c->frame_height};
+    room_frame(index, frame->width, frame->height, 1, rgb, depth_mm);
+    room_camera(index, frame->width, frame->height, camera);
+    encode(frame);
+    encode_depth(frame, c->holes);
+    put_lens(camera, c->distortion);
+}
+
 static t3r_status add_view(run *r, uint32_t index)
 {
-    const configuration *c = r->configuration;
-    t3r_frame frame = {.format = c->format, .width = c->frame_width, .height = c->frame_height};
+    t3r_frame frame;
     t3r_camera camera;
-    room_frame(index, frame.width, frame.height, 1, rgb, depth_mm);
-    room_camera(index, frame.width, frame.height, &camera);
-    encode(&frame);
-    encode_depth(&frame, c->holes);
-    put_lens(&camera, c->distortion);
+    capture(r->configuration, index, &frame, &camera);
     t3r_status status = begin_step(r, "add_view");
     return status == T3R_OK ? t3r_add_view(r->rt, &frame, &camera) : status;
 }
@@ -331,7 +338,7 @@ static int run_configuration(const configuration *c, variation ways)
 {
     run r = {.configuration = c, .ways = ways};
     t3r_scene scene = {0};
-    t3r_status status = begin_run(&r);
+    t3r_status status = begin_run(&r, false);
     for (uint32_t i = 0; status == T3R_OK && i < CONTEXT_VIEWS; i++) {
         status = add_view(&r, 2 * i);
     }
@@ -348,6 +355,37 @@ static int run_configuration(const configuration *c, variation ways)
     if (status == T3R_OK) {
         printf("%s %s gaussians %" PRIu32 " of %" PRIu32 "\n", c->name, r.step, scene.count, scene.valid_points);
         status = draw(&r, "render_rebudgeted");
+    }
+    free(r.made);
+    return status == T3R_OK ? 0 : failed(&r, status);
+}
+
+/* A stream with two keyframes at hand: the map in each step, and a view of it in the end. */
+static const configuration streamed = {"stream", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2,
+                                       2, 64, T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 700, true, 0, T3R_DEPTH_SENSOR};
+
+static int run_stream(variation ways)
+{
+    static const char *const steps[] = {"keyframe_0", "keyframe_1", "keyframe_2", "keyframe_3"};
+    run r = {.configuration = &streamed, .ways = ways};
+    t3r_status status = begin_run(&r, true);
+    for (uint32_t i = 0; status == T3R_OK && i < sizeof steps / sizeof *steps; i++) {
+        t3r_frame frame;
+        t3r_camera camera;
+        t3r_stream_report report;
+        capture(&streamed, i, &frame, &camera);
+        status = begin_step(&r, steps[i]);
+        if (status == T3R_OK) {
+            status = t3r_stream_keyframe(r.rt, &frame, &camera, &report);
+        }
+        if (status == T3R_OK) {
+            printf("%s %s gaussians %" PRIu32 " added %" PRIu32 " removed %" PRIu32 " crowded %" PRIu32 " shown %" PRIu32
+                   " of %" PRIu32 "\n", streamed.name, r.step, report.gaussians, report.added, report.removed,
+                   report.crowded, report.shown, report.points);
+        }
+    }
+    if (status == T3R_OK) {
+        status = draw(&r, "render");
     }
     free(r.made);
     return status == T3R_OK ? 0 : failed(&r, status);
@@ -388,5 +426,5 @@ int main(int argc, char **argv)
             return 1;
         }
     }
-    return 0;
+    return run_stream(ways);
 }

@@ -91,20 +91,28 @@ static void plan_equals_macros(void **state)
     dice d = {1};
     for (int i = 0; i < 20000; i++) {
         t3r_config c = random_config(&d, T3R_MAX_SIDE, T3R_MAX_GAUSSIANS);
+        c.stream = c.views > 0 && c.depth == T3R_DEPTH_SENSOR && dice_below(&d, 4) == 0;
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
+        const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                     c.render_width, c.render_height, c.head_column_bytes,
-                                                     c.keep_analysis, c.refinements, c.depth == T3R_DEPTH_STEREO));
+                                                     c.render_width, c.render_height, c.head_column_bytes, keep,
+                                                     c.refinements, c.depth == T3R_DEPTH_STEREO));
         assert_true(plan.bytes == T3R_FULL_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                  c.render_width, c.render_height, c.head_column_bytes, c.keep_analysis,
+                                                  c.render_width, c.render_height, c.head_column_bytes, keep,
                                                   c.refinements, c.depth == T3R_DEPTH_STEREO));
         /* the public macros speak of the defaults */
         c = t3r_default_config(c.width, c.height, c.views, c.max_gaussians);
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         assert_true(plan.min_bytes == T3R_ARENA_MIN_BYTES(c.width, c.height, c.views, c.max_gaussians));
         assert_true(plan.bytes == T3R_ARENA_BYTES(c.width, c.height, c.views, c.max_gaussians));
+        c.stream = c.views > 0;
+        assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
+        assert_true(c.views == 0 ||
+                    (plan.min_bytes == T3R_STREAM_MIN_BYTES(c.width, c.height, c.views, c.max_gaussians) &&
+                     plan.bytes == T3R_STREAM_BYTES(c.width, c.height, c.views, c.max_gaussians)));
+        c.stream = 0;
         c.depth = T3R_DEPTH_STEREO;
         if (t3r_config_error(&c) == NULL) {
             assert_int_equal(t3r_plan(&c, &plan), T3R_OK);

@@ -1,0 +1,480 @@
+/* Streams: a camera goes along a textured wall with boxes before it, for a long time. The cap holds, the bits depend on
+ * nothing that must not matter, what cannot be is refused, what was cancelled does no harm. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "drawing.h"
+#include "state.h"
+#include "stream_map.h"
+
+enum { W = 24, H = 16, PIXELS = W * H, CAP = 150, AT_HAND = 3, WALL_MM = 2000, BOX_MM = 1600 };
+
+/* ---- the walk ------------------------------------------------------------------------------------ */
+
+typedef struct pose {
+    double x, z, yaw; /* metres, radians; the wall stands at z = 2, boxes 0.4 before it */
+    bool boxes;
+} pose;
+
+static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
+
+/* What a camera there sees: colour of the wall by place, depth along its axis; 0 where it looks past the wall. */
+static void look_from(const pose *p, t3r_frame *frame, t3r_camera *camera)
+{
+    *camera = plain_camera(20, W, H);
+    camera->position_q32[0] = (int64_t)(p->x * 4294967296.0);
+    camera->position_q32[2] = (int64_t)(p->z * 4294967296.0);
+    camera->rotation_q30[0] = (int32_t)(cos(p->yaw / 2) * (1 << 30));
+    camera->rotation_q30[2] = (int32_t)(sin(p->yaw / 2) * (1 << 30));
+    for (int i = 0; i < PIXELS; i++) {
+        double u = (i % W - (W - 1) / 2.0) / 20, v = ((double)(i / W) - (H - 1) / 2.0) / 20;
+        double ahead = cos(p->yaw) - u * sin(p->yaw), aside = sin(p->yaw) + u * cos(p->yaw);
+        double z = ahead > 0.1 ? (WALL_MM / 1000.0 - p->z) / ahead : 0, x = p->x + aside * z, y = v * z;
+        double nearer = ahead > 0.1 ? (BOX_MM / 1000.0 - p->z) / ahead : 0, at = p->x + aside * nearer;
+        bool box = p->boxes && nearer > 0.05 && at - floor(at) < 0.3;
+        if (box) {
+            z = nearer;
+            x = at + 17;
+            y = v * z;
+        }
+        uint32_t steps = z > 0 && z < 60 ? (uint32_t)(z * 1000 + 0.5) : 0;
+        rgb[3 * i] = (uint8_t)(128 + 90 * sin(x * 3) * cos(y * 4));
+        rgb[3 * i + 1] = (uint8_t)(128 + 60 * sin(x * 11 + y * 5));
+        rgb[3 * i + 2] = box ? 220 : 60;
+        depth[2 * i] = (uint8_t)steps;
+        depth[2 * i + 1] = (uint8_t)(steps >> 8);
+    }
+    *frame = (t3r_frame){.format = T3R_PIXEL_RGB24,
+                         .width = W,
+                         .height = H,
+                         .planes = {rgb},
+                         .stride_bytes = {3 * W},
+                         .depth = depth,
+                         .depth_width = W,
+                         .depth_height = H,
+                         .depth_stride_bytes = 2 * W,
+                         .depth_unit_q40 = 1099511628};
+}
+
+static t3r_config stream_config(void)
+{
+    t3r_config c = t3r_default_config(W, H, AT_HAND, CAP);
+    c.stream = 1;
+    c.refinements = 2;
+    return c;
+}
+
+typedef struct site {
+    t3r_config config;
+    arena memory;
+    t3r_runtime *rt;
+    uint32_t calls, cancel_at; /* of the progress hook; 0 = never */
+} site;
+
+static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    site *s = user;
+    assert_true(stage < T3R_STAGE_COUNT && done <= total);
+    return ++s->calls == s->cancel_at;
+}
+
+static void in_reverse(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context)
+{
+    (void)user;
+    while (count-- > 0) {
+        task(context, count);
+    }
+}
+
+static site site_of(t3r_config config, int arena_size)
+{
+    site s = {.config = config, .memory = arena_of(&config, arena_size)};
+    assert_int_equal(t3r_init(&s.rt, s.memory.bytes, s.memory.count, &config), T3R_OK);
+    return s;
+}
+
+static t3r_status take(site *s, const pose *p, t3r_stream_report *report)
+{
+    t3r_frame frame;
+    t3r_camera camera;
+    look_from(p, &frame, &camera);
+    return t3r_stream_keyframe(s->rt, &frame, &camera, report);
+}
+
+static t3r_scene scene_of(const site *s)
+{
+    t3r_scene scene;
+    assert_int_equal(t3r_get_scene(s->rt, &scene), T3R_OK);
+    return scene;
+}
+
+/* A copy of the arena elsewhere, where the first place is overwritten. */
+static void move_arena(site *s)
+{
+    arena other = arena_of_bytes(s->memory.count);
+    memcpy(other.bytes, s->memory.bytes, s->memory.count);
+    memset(s->memory.bytes, 0x77, s->memory.count);
+    arena_free(&s->memory);
+    s->memory = other;
+    assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_OK);
+}
+
+/* Along the wall, to and fro a little, looking about. */
+static pose step_of(uint32_t i)
+{
+    return (pose){.x = i * 0.3, .z = 0.4 * sin(i * 0.13), .yaw = 0.5 * sin(i * 0.37), .boxes = true};
+}
+
+/* ---- tests --------------------------------------------------------------------------------------- */
+
+static void the_cap_holds(void **state)
+{
+    (void)state;
+    enum { KEYFRAMES = 10000 };
+    t3r_config config = stream_config();
+    config.refinements = 1;
+    site s = site_of(config, ARENA_AT_MINIMUM);
+    t3r_hooks hooks = {.user = &s, .progress = progress};
+    assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
+    uint32_t before = 0, most_calls = 0, origins = 0;
+    t3r_scene_frame frame = {{0}, 0};
+    for (uint32_t i = 0; i < KEYFRAMES; i++) {
+        pose p = step_of(i);
+        t3r_stream_report r;
+        s.calls = 0;
+        assert_int_equal(take(&s, &p, &r), T3R_OK);
+        t3r_scene scene = scene_of(&s);
+        assert_int_equal(r.keyframes, i + 1);
+        assert_int_equal(r.gaussians, scene.count);
+        assert_true(scene.count <= CAP && r.shown <= r.points && r.points <= PIXELS);
+        assert_true(r.added <= CAP && r.removed + r.crowded <= before + r.added);
+        if (i > 0) {
+            bool moved = memcmp(frame.origin_q32, scene.frame.origin_q32, sizeof frame.origin_q32) != 0;
+            origins += moved;
+            if (!moved) {
+                assert_int_equal(r.gaussians, before - r.removed - r.crowded + r.added);
+            }
+            assert_int_equal(frame.exponent, scene.frame.exponent);
+        }
+        if (r.crowded > 0) {
+            assert_int_equal(scene.count, CAP);
+        }
+        /* the steps that a keyframe is made of are as many in the end as in the beginning */
+        most_calls = i < 2 * AT_HAND && s.calls > most_calls ? s.calls : most_calls;
+        assert_true(s.calls <= most_calls);
+        frame = scene.frame;
+        before = scene.count;
+        if (i % 1000 == 999) {
+            move_arena(&s);
+            assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
+        }
+    }
+    assert_true(origins >= 2); /* 3 km are 1,500 scene units and more */
+    arena_free(&s.memory);
+}
+
+/* Of a long way the map holds what stands before the camera, all the more the faster the rest fades. */
+static void follows(void **state)
+{
+    (void)state;
+    uint32_t near[2] = {0, 0};
+    for (int i = 0; i < 2; i++) {
+        t3r_config config = stream_config();
+        config.half_life = i == 0 ? 0 : 4;
+        site s = site_of(config, ARENA_AT_FULL);
+        pose p = {0};
+        t3r_stream_report r;
+        for (uint32_t k = 0; k < 120; k++) {
+            p = (pose){k * 0.2, 0, 0, false};
+            assert_int_equal(take(&s, &p, &r), T3R_OK);
+        }
+        assert_int_equal(take(&s, &p, &r), T3R_OK);
+        assert_true(r.shown * 4 > PIXELS * 3); /* standing still */
+        t3r_scene scene = scene_of(&s);
+        for (uint32_t k = 0; k < scene.count; k++) {
+            double x = ldexp(scene.gaussians[k].position_q20[0], scene.frame.exponent - 20);
+            near[i] += fabs(x - p.x) < 1.2;
+        }
+        arena_free(&s.memory);
+    }
+    assert_true(near[1] > 2 * near[0] && near[1] > CAP / 4);
+}
+
+static void same_bits_whatever_does_not_matter(void **state)
+{
+    (void)state;
+    enum { WAYS = 6, KEYFRAMES = 25 };
+    static t3r_gaussian first[KEYFRAMES][CAP];
+    static uint32_t counts[KEYFRAMES];
+    const t3r_head heads[] = {T3R_HEAD_ANALYTIC, T3R_HEAD_MOMENT};
+    for (size_t h = 0; h < 2; h++) {
+        for (int way = 0; way < WAYS; way++) {
+            t3r_config config = stream_config();
+            config.head = heads[h];
+            site s = site_of(config, way == 1 ? ARENA_AT_MINIMUM : way == 2 ? ARENA_AT_TEN_TIMES : ARENA_AT_FULL);
+            t3r_hooks hooks = {.user = &s, .parallel_for = way == 3 ? in_reverse : NULL};
+            for (uint32_t i = 0; i < KEYFRAMES; i++) {
+                if (way == 4) {
+                    move_arena(&s);
+                }
+                assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
+                pose p = step_of(i);
+                assert_int_equal(take(&s, &p, NULL), T3R_OK);
+                if (way == 5) { /* drawing in between */
+                    t3r_camera camera = plain_camera(20, W, H);
+                    drawing d = draw(s.rt, &camera, W, H);
+                    drawing_free(&d);
+                }
+                t3r_scene scene = scene_of(&s);
+                if (way == 0) {
+                    counts[i] = scene.count;
+                    memcpy(first[i], scene.gaussians, scene.count * sizeof first[i][0]);
+                }
+                assert_int_equal(scene.count, counts[i]);
+                assert_memory_equal(scene.gaussians, first[i], scene.count * sizeof first[i][0]);
+            }
+            arena_free(&s.memory);
+        }
+    }
+}
+
+static void what_is_shown_adds_nothing(void **state)
+{
+    (void)state;
+    site s = site_of(stream_config(), ARENA_AT_FULL);
+    pose p = {0, 0, 0, false};
+    t3r_stream_report r;
+    assert_int_equal(take(&s, &p, &r), T3R_OK);
+    assert_true(r.added == CAP && r.shown == 0 && r.points == PIXELS && r.gaussians == CAP);
+    for (int i = 0; i < 5; i++) {
+        assert_int_equal(take(&s, &p, &r), T3R_OK);
+        assert_true(r.shown > PIXELS * 9 / 10);
+        assert_true(r.added <= CAP / 10 && r.gaussians == CAP && r.removed == 0);
+    }
+    arena_free(&s.memory);
+}
+
+static uint32_t of_boxes(const t3r_scene *scene)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->count; i++) {
+        count += ldexp(scene->gaussians[i].position_q20[2], scene->frame.exponent - 20) < 1.8;
+    }
+    return count;
+}
+
+/* The boxes are taken away: the wall behind them shows, and they go. */
+static void contradicted_ones_leave(void **state)
+{
+    (void)state;
+    site s = site_of(stream_config(), ARENA_AT_FULL);
+    pose p = {0, 0, 0, true};
+    t3r_stream_report r;
+    assert_int_equal(take(&s, &p, &r), T3R_OK);
+    t3r_scene scene = scene_of(&s);
+    uint32_t there = of_boxes(&scene);
+    assert_true(there > CAP / 10);
+    p.boxes = false;
+    assert_int_equal(take(&s, &p, &r), T3R_OK);
+    scene = scene_of(&s);
+    assert_true(r.removed > there / 2 && of_boxes(&scene) < there / 2);
+    assert_int_equal(scene.count, CAP);
+    arena_free(&s.memory);
+}
+
+/* From a quarter of the distance the wall has sixteen times the pixels. */
+static void finer_sights_replace(void **state)
+{
+    (void)state;
+    site s = site_of(stream_config(), ARENA_AT_FULL);
+    pose far = {0, 0, 0, false}, near = {0, 1.5, 0, false};
+    t3r_stream_report r;
+    assert_int_equal(take(&s, &far, &r), T3R_OK);
+    assert_int_equal(take(&s, &near, &r), T3R_OK);
+    assert_true(r.removed > 0 && r.added > CAP / 10);
+    uint32_t added = r.added;
+    assert_int_equal(take(&s, &near, &r), T3R_OK);
+    assert_true(r.added < added);
+    arena_free(&s.memory);
+}
+
+/* Wherever the hook stops it, the map is a map, and what follows works. */
+static void cancelled_anywhere(void **state)
+{
+    (void)state;
+    uint32_t cancelled = 0;
+    for (uint32_t at = 1;; at++) {
+        site s = site_of(stream_config(), ARENA_AT_MINIMUM);
+        t3r_hooks hooks = {.user = &s, .progress = progress};
+        assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
+        t3r_status status = T3R_OK;
+        for (uint32_t i = 0; i < AT_HAND + 2; i++) {
+            pose p = step_of(i);
+            s.calls = 0;
+            s.cancel_at = i == AT_HAND || (i == 0 && at % 2 == 0) ? at : 0;
+            status = take(&s, &p, NULL);
+            assert_true(status == T3R_OK || (status == T3R_ERR_CANCELLED && s.calls == s.cancel_at));
+            cancelled += status == T3R_ERR_CANCELLED;
+            t3r_scene scene;
+            if (t3r_get_scene(s.rt, &scene) == T3R_OK) {
+                assert_true(scene.count <= CAP);
+            }
+            move_arena(&s);
+            assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
+        }
+        assert_int_equal(status, T3R_OK);
+        bool through = s.calls < at;
+        arena_free(&s.memory);
+        if (through) {
+            break;
+        }
+    }
+    assert_true(cancelled > 15);
+}
+
+/* Whatever a copied arena holds beside its Gaussians does no harm. */
+static void wild_records(void **state)
+{
+    (void)state;
+    dice d = {3};
+    for (int round = 0; round < 40; round++) {
+        site s = site_of(stream_config(), ARENA_AT_MINIMUM);
+        for (uint32_t i = 0; i < 4; i++) {
+            pose p = step_of(i);
+            assert_int_equal(take(&s, &p, NULL), T3R_OK);
+            uint8_t *records = t3r_buffer_at(s.rt, T3R_BUFFER_MAP_RECORDS);
+            for (uint32_t b = 0; b < CAP * T3R_MAP_RECORD_BYTES; b++) {
+                records[b] = (uint8_t)dice_below(&d, 256);
+            }
+            move_arena(&s); /* checks every Gaussian */
+        }
+        arena_free(&s.memory);
+    }
+}
+
+static uint32_t overlap_at(const site *s, pose p)
+{
+    t3r_frame frame;
+    t3r_camera camera;
+    uint32_t overlap_q8 = 999;
+    look_from(&p, &frame, &camera);
+    assert_int_equal(t3r_stream_overlap(s->rt, &camera, W, H, &overlap_q8), T3R_OK);
+    return overlap_q8;
+}
+
+/* All in common where it stands, less the farther it goes aside, turns, comes near or goes back, nothing behind. */
+static void overlap_tells_of_motion(void **state)
+{
+    (void)state;
+    site s = site_of(stream_config(), ARENA_AT_FULL);
+    pose p = {5, 0, 0, false};
+    assert_int_equal(take(&s, &p, NULL), T3R_OK);
+    assert_int_equal(overlap_at(&s, p), 256);
+    const pose ways[] = {{0.3, 0, 0, false}, {0, 0, 0.2, false}, {0, 0.3, 0, false}, {0, -0.8, 0, false}};
+    for (int way = 0; way < 4; way++) {
+        uint32_t last = 256;
+        for (int k = 1; k <= 4; k++) {
+            pose q = {5 + k * ways[way].x, k * ways[way].z, k * ways[way].yaw, false};
+            uint32_t overlap_q8 = overlap_at(&s, q);
+            assert_true(overlap_q8 <= last);
+            last = overlap_q8;
+        }
+        assert_true(last < 160);
+    }
+    p.yaw = 3.14159;
+    assert_int_equal(overlap_at(&s, p), 0);
+    p.yaw = 0;
+    p.x += 2.4 * 0.75; /* the picture is 2.4 m wide there: a quarter is left */
+    uint32_t quarter = overlap_at(&s, p);
+    assert_true(quarter >= 64 - 22 && quarter <= 64 + 22);
+    arena_free(&s.memory);
+}
+
+static void refused(void **state)
+{
+    (void)state;
+    site s = site_of(stream_config(), ARENA_AT_FULL);
+    t3r_frame frame;
+    t3r_camera camera;
+    t3r_scene scene;
+    t3r_stream_report report;
+    const t3r_scene_frame plain = {{0}, 0};
+    t3r_gaussian g = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
+    pose p = {0, 0, 0, true};
+    look_from(&p, &frame, &camera);
+    assert_int_equal(t3r_stream_keyframe(NULL, &frame, &camera, &report), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_stream_keyframe(s.rt, NULL, &camera, &report), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_stream_keyframe(s.rt, &frame, NULL, &report), T3R_ERR_ARGUMENT);
+    uint32_t overlap_q8;
+    assert_int_equal(t3r_stream_overlap(s.rt, &camera, W, H, &overlap_q8), T3R_ERR_STATE);
+    assert_int_equal(t3r_stream_overlap(NULL, &camera, W, H, &overlap_q8), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_stream_overlap(s.rt, &camera, 1, H, &overlap_q8), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_add_view(s.rt, &frame, &camera), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(s.rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_rebudget(s.rt, 10, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_scene_begin(s.rt, &plain), T3R_ERR_STATE);
+    assert_int_equal(t3r_get_scene(s.rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(take(&s, &p, &report), T3R_OK);
+    assert_int_equal(t3r_scene_append(s.rt, &g), T3R_ERR_STATE);
+
+    /* nothing of these changes the arena */
+    arena before = arena_of_bytes(s.memory.count);
+    memcpy(before.bytes, s.memory.bytes, s.memory.count);
+    look_from(&p, &frame, &camera);
+    t3r_camera far = camera;
+    far.position_q32[0] = (int64_t)5000 << 32;
+    assert_int_equal(t3r_stream_keyframe(s.rt, &frame, &far, &report), T3R_ERR_CAMERA);
+    assert_int_equal(t3r_stream_overlap(s.rt, &far, W, H, &overlap_q8), T3R_ERR_CAMERA);
+    t3r_frame bad = frame;
+    bad.stride_bytes[0] = 1;
+    assert_int_equal(t3r_stream_keyframe(s.rt, &bad, &camera, &report), T3R_ERR_FRAME);
+    bad = frame;
+    bad.depth = NULL;
+    assert_int_equal(t3r_stream_keyframe(s.rt, &bad, &camera, &report), T3R_ERR_NO_DEPTH);
+    assert_memory_equal(before.bytes, s.memory.bytes, s.memory.count);
+    memset(depth, 0, sizeof depth);
+    assert_int_equal(t3r_stream_keyframe(s.rt, &frame, &camera, &report), T3R_ERR_NO_DEPTH);
+    assert_int_equal(scene_of(&s).count, CAP);
+    assert_int_equal(t3r_reset(s.rt), T3R_OK);
+    assert_int_equal(take(&s, &p, &report), T3R_OK);
+    assert_int_equal(report.keyframes, 1);
+    arena_free(&before);
+    arena_free(&s.memory);
+
+    t3r_config config = t3r_default_config(W, H, 2, CAP);
+    site ordinary = site_of(config, ARENA_AT_FULL);
+    assert_int_equal(take(&ordinary, &p, &report), T3R_ERR_STATE);
+    arena_free(&ordinary.memory);
+    config = stream_config();
+    config.head = T3R_HEAD_LEARNED;
+    site headless = site_of(config, ARENA_AT_FULL);
+    assert_int_equal(take(&headless, &p, &report), T3R_ERR_STATE);
+    arena_free(&headless.memory);
+    config.views = 0;
+    assert_non_null(t3r_config_error(&config));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_cap_holds),
+        cmocka_unit_test(follows),
+        cmocka_unit_test(same_bits_whatever_does_not_matter),
+        cmocka_unit_test(what_is_shown_adds_nothing),
+        cmocka_unit_test(contradicted_ones_leave),
+        cmocka_unit_test(finer_sights_replace),
+        cmocka_unit_test(cancelled_anywhere),
+        cmocka_unit_test(wild_records),
+        cmocka_unit_test(overlap_tells_of_motion),
+        cmocka_unit_test(refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
