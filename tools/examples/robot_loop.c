@@ -1,6 +1,6 @@
 /* What a robot does: all memory of its map is one block whose size is a promise. Two frames at a time become as many
- * Gaussians as that has room for, and the map tells how far ahead the way is clear. Nothing is allocated, no number is
- * a float, and which map fits is known when this compiles:
+ * Gaussians as that has room for, and the map tells how far ahead the way is clear. Nothing is allocated once the
+ * camera is open, no number is a float, and which map fits is known when this compiles:
  *
  *     cc -DROBOT_BYTES=589824 ...      less room: fewer Gaussians; too little: an error of the compiler */
 #include <inttypes.h>
@@ -46,7 +46,7 @@ static uint64_t clear_way(const t3r_scene_frame *frame)
             nearest = depth != 0 && depth < nearest ? depth : nearest;
         }
     }
-    /* a scene unit is 2^exponent; 20 of that are a million metres, so nothing is shifted by less than 0 */
+    /* a scene unit is 2^exponent world units, where these are metres far below 2^20 of them */
     return nearest == UINT32_MAX ? 0 : (uint64_t)nearest * 1000 >> (20 - frame->exponent);
 }
 
@@ -79,7 +79,7 @@ int main(int argc, char **argv)
     }
     t3r_capture_frame frame;
     int got, views = 0;
-    while ((got = t3r_capture_next(source, &frame)) >= T3R_CAPTURE_FRAME) {
+    while ((got = t3r_capture_next(source, &frame)) != T3R_CAPTURE_END && got != T3R_CAPTURE_LOST) {
         if (got == T3R_CAPTURE_FRAME && frame.has_pose && frame.has_intrinsics) {
             views += fine(t3r_add_view(rt, &frame.frame, &frame.camera), frame.index);
         }
