@@ -3,7 +3,7 @@
 sample changed, with a digit changed of what was written down, cut, longer, or another one."""
 import tempfile
 
-from common import EXAMPLE, check, done, room, run
+from common import EXAMPLE, check, done, room, run, without_crc
 
 SIDE = 128
 STAGES = ["image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster"]
@@ -13,12 +13,6 @@ def write(path, data):
     with open(path, "wb") as file:
         file.write(data)
     return path
-
-
-def without_crc(data):
-    """The CRC of the data section stands in the record DataEnd, opcode 15, four bytes long; 0: there is none."""
-    at = data.rindex(b"\x0f" + (4).to_bytes(8, "little"))
-    return data[:at + 9] + bytes(4) + data[at + 13:]
 
 
 def changed(data, sample, bit):
@@ -48,7 +42,7 @@ with tempfile.TemporaryDirectory() as folder:
     for frame, build in ((0, 1), (3, 3), (4, 4)):
         for image, at in ((colours[frame], 3 * middle + 1), (depths[frame], 2 * middle)):
             fails([f"frame {build} image", "expected: frame"], write(other, without_crc(changed(data, (image, at), 0))))
-    run(EXAMPLE, write(other, changed(data, (colours[0], 0), 0)), expected, expect=2) # the file's own CRC
+    run(EXAMPLE, write(other, changed(data, (colours[0], 0), 0)), expected, expect=2)  # the file's own CRC
 
     for stage in STAGES[::4]:
         at = told.index(f"frame 3 {stage} ") + len(f"frame 3 {stage} ")

@@ -91,7 +91,7 @@ int main(int argc, char **argv)
     t3r_camera last = {0};
     for (bool moving = false; next_frame(source, &frame);) {
         if (!locate(&frame)) {
-            fprintf(stderr, "frame %" PRIu32 ": nobody knows where it was taken\n", frame.index);
+            fprintf(stderr, "frame %" PRIu32 ": %s\n", frame.index, t3r_error_text(T3R_ERR_CAMERA));
             continue;
         }
         const t3r_camera ahead = foresee(moving ? &last : &frame.camera, &frame.camera);

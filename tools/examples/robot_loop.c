@@ -36,6 +36,12 @@ static bool fine(t3r_status status, uint32_t frame)
     return status == T3R_OK;
 }
 
+/* The camera of a frame: a recording knows it, live your odometry does. */
+static bool locate(t3r_capture_frame *frame)
+{
+    return frame->has_pose && frame->has_intrinsics;
+}
+
 /* The nearest thing in the middle third of what is ahead, in thousandths of world units; 0: there is nothing. */
 static uint64_t clear_way(const t3r_scene_frame *frame)
 {
@@ -60,8 +66,12 @@ static void look_ahead(t3r_runtime *rt, const t3r_camera *here, uint32_t index)
         return;
     }
     const uint64_t mm = clear_way(&scene.frame);
-    printf("frame %" PRIu32 ": %" PRIu32 " Gaussians, %" PRIu64 ".%03" PRIu64 " m ahead\n", index, scene.count,
-           mm / 1000, mm % 1000);
+    printf("frame %" PRIu32 ": %" PRIu32 " Gaussians, ", index, scene.count);
+    if (mm == 0) {
+        printf("nothing in sight\n");
+    } else {
+        printf("%" PRIu64 ".%03" PRIu64 " m ahead\n", mm / 1000, mm % 1000);
+    }
 }
 
 int main(int argc, char **argv)
@@ -80,8 +90,10 @@ int main(int argc, char **argv)
     t3r_capture_frame frame;
     int got, views = 0;
     while ((got = t3r_capture_next(source, &frame)) != T3R_CAPTURE_END && got != T3R_CAPTURE_LOST) {
-        if (got == T3R_CAPTURE_FRAME && frame.has_pose && frame.has_intrinsics) {
-            views += fine(t3r_add_view(rt, &frame.frame, &frame.camera), frame.index);
+        if (got == T3R_CAPTURE_FRAME) {
+            views += fine(locate(&frame) ? t3r_add_view(rt, &frame.frame, &frame.camera) : T3R_ERR_CAMERA, frame.index);
+        } else if (got == T3R_CAPTURE_FAILED) {
+            printf("%s\n", t3r_capture_error(source));
         }
         if (views == VIEWS) {
             look_ahead(rt, &frame.camera, frame.index);
