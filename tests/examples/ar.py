@@ -13,7 +13,8 @@ VIEW_DB, SHOWN = 20.5, 0.95  # measured: 21.4 and 0.98; the poses are 17 mm besi
 
 
 def psnr(view, frame, shown):
-    return 10 * math.log10(255**2 * 3 * len(shown) / sum((view[i + c] - frame[i + c])**2 for i in shown for c in range(3)))
+    squares = sum((view[i + c] - frame[i + c])**2 for i in shown for c in range(3))
+    return 10 * math.log10(255**2 * 3 * len(shown) / squares)
 
 
 with tempfile.TemporaryDirectory() as folder:
