@@ -267,18 +267,21 @@ static const struct argp_option argp_options[] = {
     {"size", KEY_SIZE, "WxH", 0, "to which --planar crops and averages images (256x256)", 0},
     {"from-file", KEY_FROM_FILE, NULL, 0, "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", KEY_CSV, "FILE", 0, "the rows", 0},
+    {"csv", KEY_CSV, "FILE", 0, "the rows, as they are made", 0},
     {"images", KEY_IMAGES, "DIR", 0,
      "DIR/<target>/<method>_<keep>.png (with --heads <head>, with --ablate <ablation>; settings that are not the "
      "default come before <keep>, as in trim3r_refine-0_10.png), target.png, mask.png, context_a.png, ...; the column "
      "picture names each",
      0},
     {"html", KEY_HTML, "PAGE.html", 0, "one page with the pictures side by side; it needs no other file", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, and means over the cases", 0},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, means over the cases, refused cases", 0},
     {NULL, 0, NULL, 0, "How the work is done:", 3},
-    {"jobs", KEY_JOBS, "N", 0, "processes that share the cases, 1..256, or all: one a processor (1)", 0},
+    {"jobs", KEY_JOBS, "N", 0,
+     "processes that share the cases, 1..256, or all: one a processor (1); times are then those of a busy machine", 0},
     {"resume", KEY_RESUME, NULL, 0,
-     "rows that stand in --csv already are not made again; those that do not are added to it", 0},
+     "rows that stand in --csv already are not made again; those that do not are added to it; a table that is older "
+     "than the program or a recording is refused",
+     0},
     {0},
 };
 
@@ -324,9 +327,9 @@ static const struct argp parser = {
         "--keep-percent. no-refinement: --refine 0. no-flying, no-redundancy, no-exposure: that switch off. Left out "
         "are no-mask of heads without weights, no-adaptation of the head none, and the last three of --planar. The "
         "table is Markdown, PSNR (dB) / SSIM, means over the cases of a recording; of several recordings the mean, "
-        "each counting once. It is long work: rows come to --csv as they are made.\n\n"
-        "--resume takes rows of the same program and recordings: it refuses a table that is older than one of them. "
-        "Times of rows made by several --jobs at once are those of a busy machine.\n\n"
+        "each counting once.\n\n"
+        "Of several cases one whose frames are refused (without depth, or without a stereo match) is left out, and "
+        "told on stderr and by --json; --resume tries it again. Where none is left the exit status is 1.\n\n"
         "Examples:\n"
         "  trim3r eval room.mcap --keep 100,20,10\n"
         "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
@@ -368,7 +371,7 @@ static int report_all(const options *o, const evaluation_work *work)
         return code;
     }
     evaluation_report report;
-    code = evaluation_report_open(&report, &to, evaluation_work_rows(work));
+    code = evaluation_report_open(&report, &to, work->cases->count, evaluation_work_rows_each(work));
     code = code == CLI_OK ? evaluation_work_do(work, &report) : code;
     return evaluation_report_close(&report, code);
 }

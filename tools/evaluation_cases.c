@@ -189,8 +189,10 @@ static int find_depth(const evaluation_case *what, const t3r_capture_frame *firs
                      what->path, what->context[0]);
 }
 
+/* One of several cases whose own frames do not tell how far away things are stays as it is: it will be refused in its
+ * turn, for the same reason. */
 static int fill_context(evaluation_case *what, const view_place *places, uint32_t count,
-                        const reconstruction_options *settings)
+                        const reconstruction_options *settings, bool alone)
 {
     const uint32_t views = settings->context_views;
     double depth;
@@ -200,9 +202,12 @@ static int fill_context(evaluation_case *what, const view_place *places, uint32_
     if (code != CLI_OK) {
         return code;
     }
+    char untold[1];
+    cli_keep_errors(alone ? NULL : untold, sizeof untold);
     code = find_depth(what, &first, settings, &depth);
+    cli_keep_errors(NULL, 0);
     if (code != CLI_OK) {
-        return code;
+        return alone ? code : CLI_OK;
     }
     uint32_t own = what->context_count;
     what->context_count = nearest_views(places, count, what->target, depth, views, what->context, own);
@@ -231,7 +236,7 @@ static int fill_contexts(evaluation_cases *cases, const reconstruction_options *
             code = places == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
                                   : find_places(known, what->path, places, count, settings->depth);
         }
-        code = code == CLI_OK ? fill_context(what, places, count, settings) : code;
+        code = code == CLI_OK ? fill_context(what, places, count, settings, cases->count == 1) : code;
     }
     free(places);
     return code;

@@ -1,6 +1,7 @@
 #include "evaluation_report.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,11 +30,13 @@ static int open_page(evaluation_report *report)
     return CLI_OK;
 }
 
-int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t row_total)
+int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t cases, uint32_t rows_each)
 {
-    *report = (evaluation_report){.to = *to, .row_total = row_total};
-    report->rows = calloc(row_total, sizeof *report->rows);
-    if (report->rows == NULL) {
+    *report =
+        (evaluation_report){.to = *to, .row_total = cases * rows_each, .case_total = cases, .rows_each = rows_each};
+    report->rows = calloc(report->row_total, sizeof *report->rows);
+    report->refused = cJSON_CreateArray();
+    if (report->rows == NULL || report->refused == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
     int code = to->page != NULL ? open_page(report) : CLI_OK;
@@ -49,7 +52,7 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
     if (code == CLI_OK && !to->json && !to->ablate) {
         evaluation_print_header(stdout, to->planar);
     }
-    cli_progress_within("rows", 0, row_total);
+    cli_progress_within("rows", 0, report->row_total);
     return code;
 }
 
@@ -153,6 +156,34 @@ int evaluation_report_row(evaluation_report *report, bool known, const evaluatio
     return report->to.images != NULL ? evaluation_write_render(report->to.images, views, row, render) : CLI_OK;
 }
 
+static bool of_case(const evaluation_row *row, const evaluation_row *names)
+{
+    return strcmp(row->scene, names->scene) == 0 && strcmp(row->context, names->context) == 0 &&
+           strcmp(row->target, names->target) == 0;
+}
+
+void evaluation_report_refuse(evaluation_report *report, const evaluation_case *what, const char *reason)
+{
+    const bool planar = report->to.planar;
+    evaluation_row names = {0};
+    evaluation_name_case(&names, what);
+    while (report->row_count > 0 && of_case(&report->rows[report->row_count - 1], &names)) {
+        report->row_count--;
+    }
+    cJSON *told = cJSON_CreateObject();
+    cJSON_AddStringToObject(told, "scene", names.scene);
+    if (!planar) {
+        cJSON_AddStringToObject(told, "context", names.context);
+        cJSON_AddStringToObject(told, "target", names.target);
+    }
+    cJSON_AddStringToObject(told, "reason", reason);
+    cJSON_AddItemToArray(report->refused, told);
+    (void)cli_error(CLI_OK, "left out: %s%s%s%s%s%s", planar ? "" : "context ", names.context,
+                    planar ? "" : ", target ", names.target, planar ? "" : ": ", reason);
+    report->row_total -= report->rows_each;
+    cli_progress_within("rows", report->row_count, report->row_total);
+}
+
 /* ---- what is written at the end --------------------------------------------------------------------------------- */
 
 static void print_json(const evaluation_report *report, const evaluation_row *means, uint32_t mean_count)
@@ -166,6 +197,7 @@ static void print_json(const evaluation_report *report, const evaluation_row *me
     for (uint32_t i = 0; i < mean_count; i++) {
         cJSON_AddItemToArray(mean_rows, evaluation_json(&means[i]));
     }
+    cJSON_AddItemReferenceToObject(object, "refused", report->refused);
     json_print(object);
 }
 
@@ -190,6 +222,25 @@ static void page_table(html_page *page, const char *heading, const evaluation_ro
     }
 }
 
+static void page_refused(html_page *page, const cJSON *refused)
+{
+    const cJSON *told, *cell;
+    html_page_table(page, "Refused", false);
+    cJSON_ArrayForEach(cell, refused->child)
+    {
+        html_page_table_cell(page, cell->string);
+    }
+    html_page_table_end_row(page);
+    cJSON_ArrayForEach(told, refused)
+    {
+        cJSON_ArrayForEach(cell, told)
+        {
+            html_page_table_cell(page, cell->valuestring);
+        }
+        html_page_table_end_row(page);
+    }
+}
+
 static int finish_page(evaluation_report *report, const evaluation_row *means, uint32_t mean_count, bool several)
 {
     char error[ERROR_BYTES] = "";
@@ -197,6 +248,9 @@ static int finish_page(evaluation_report *report, const evaluation_row *means, u
         page_table(report->page, "Means", means, mean_count, report->to.planar, false);
     }
     page_table(report->page, "Scores", report->rows, report->row_count, report->to.planar, several);
+    if (cJSON_GetArraySize(report->refused) > 0) {
+        page_refused(report->page, report->refused);
+    }
     if (html_page_write(report->page, report->page_file.stream) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s: out of memory for the page", report->to.page);
     }
@@ -209,6 +263,10 @@ static int finish_page(evaluation_report *report, const evaluation_row *means, u
 /* A mean of one row is no news. */
 static int finish(evaluation_report *report)
 {
+    const int refused = cJSON_GetArraySize(report->refused);
+    if (report->row_count == 0) {
+        return cli_error(CLI_BAD_INPUT, "every case was refused");
+    }
     evaluation_row *means = calloc(report->row_count, sizeof *means);
     if (means == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
@@ -227,6 +285,9 @@ static int finish(evaluation_report *report)
     }
     if (code == CLI_OK && report->page != NULL) {
         code = finish_page(report, means, mean_count, several);
+    }
+    if (code == CLI_OK && refused > 0) {
+        (void)cli_error(CLI_OK, "%d of %" PRIu32 " cases were refused and are in no mean", refused, report->case_total);
     }
     free(means);
     return code;
@@ -247,6 +308,7 @@ int evaluation_report_close(evaluation_report *report, int code)
     }
     whole_file_abandon(&report->page_file);
     html_page_free(report->page);
+    cJSON_Delete(report->refused);
     free(report->rows);
     return code;
 }

@@ -2,6 +2,8 @@
 #ifndef TRIM3R_TOOLS_EVALUATION_REPORT_H
 #define TRIM3R_TOOLS_EVALUATION_REPORT_H
 
+#include <cjson/cJSON.h>
+
 #include "csv.h"
 #include "evaluation.h"
 #include "evaluation_resume.h"
@@ -26,12 +28,14 @@ typedef struct evaluation_report {
     whole_file page_file;
     evaluation_row *rows; /* room for all */
     uint32_t row_count, row_total;
+    uint32_t case_total, rows_each; /* of a case */
+    cJSON *refused;                 /* cases: objects of scene, context, target, reason */
 } evaluation_report;
 
 /* These report on stderr and return an exit status of cli.h. */
 
 /* Opens all that can be opened, so that a bad path is told before the work. evaluation_report_close() in any case. */
-int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t row_total);
+int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t cases, uint32_t rows_each);
 /* Whether there are pictures or a page: else views and renders are not looked at. */
 bool evaluation_report_shows(const evaluation_report *report);
 /* The recorded views of the rows that follow. */
@@ -42,7 +46,10 @@ void evaluation_report_strip(evaluation_report *report, const char *label);
 /* `known`: it stood in the table already. */
 int evaluation_report_row(evaluation_report *report, bool known, const evaluation_views *views, const char *label,
                           evaluation_row *row, uint8_t *render);
-/* Means, JSON and page when `code` is CLI_OK; no half page otherwise. `code`, or what went wrong here. */
+/* The case of the last rows, or of those to come, is left out: told, and in no mean and no table. */
+void evaluation_report_refuse(evaluation_report *report, const evaluation_case *what, const char *reason);
+/* Means, JSON and page when `code` is CLI_OK; no half page otherwise. `code`, or what went wrong here: CLI_BAD_INPUT
+ * when every case was refused. */
 int evaluation_report_close(evaluation_report *report, int code);
 
 #endif

@@ -18,13 +18,14 @@ typedef struct evaluation_work {
     evaluation_resume *resume; /* rows that need not be made again; empty: none */
 } evaluation_work;
 
-static inline uint32_t evaluation_work_rows(const evaluation_work *work)
+static inline uint32_t evaluation_work_rows_each(const evaluation_work *work)
 {
-    return work->cases->count * work->contestants->count * work->keep_count;
+    return work->contestants->count * work->keep_count;
 }
 
-/* Rows go to the report as they are made, in the order case, contestant, budget however many processes there are. An
- * exit status of cli.h. */
+/* Rows go to the report as they are made, in the order case, contestant, budget however many processes there are. Of
+ * several cases those whose frames are refused (CLI_BAD_INPUT) go there too, with the reason; a single one ends in it.
+ * An exit status of cli.h. */
 int evaluation_work_do(const evaluation_work *work, evaluation_report *report);
 
 #endif

@@ -1,0 +1,29 @@
+"""What scripts of this folder share; the program is their first argument, the example their second."""
+import os
+import pathlib
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "capture"))
+import mcap_read  # noqa: E402
+from checks import check, done, run  # noqa: E402, F401
+
+TRIM3R, EXAMPLE = (os.path.abspath(path) for path in sys.argv[1:3])
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def room(path, side, frames):
+    """The built-in recording, and the samples of its colour and depth images."""
+    run(TRIM3R, "room", "--size", f"{side}x{side}", "--frames", frames, "-o", path)
+    with open(path, "rb") as file:
+        found = list(mcap_read.messages(file.read()))
+    colours, depths = ([message for topic, _, message in found if topic.endswith(name)]
+                       for name in ("/image", "/depth"))
+    check(len(colours) == len(depths) == frames, f"{path}: {[topic for topic, _, _ in found]}")
+    return [message[-3 * side * side:] for message in colours], [message[-2 * side * side:] for message in depths]
+
+
+def without_crc(data):
+    """The CRC of the data section stands in the record DataEnd, opcode 15, four bytes long; 0: there is none."""
+    at = data.rindex(b"\x0f" + (4).to_bytes(8, "little"))
+    return data[:at + 9] + bytes(4) + data[at + 13:]
