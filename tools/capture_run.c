@@ -180,6 +180,20 @@ static uint32_t context_at(const capture_plan *plan, uint32_t i)
     return plan->build->context_count == 0 ? i : plan->build->context[i];
 }
 
+/* Opens the build with the first frame that it will use: those before may lack depth, and need less room. */
+static int open_build(run_state *s, const t3r_capture_frame *frame)
+{
+    const capture_plan *plan = s->plan;
+    bool chosen = plan->build != NULL && (plan->every > 0 || frame->index == context_at(plan, 0));
+    if (!chosen || s->building || live_build_lacks(frame) != NULL) {
+        return CLI_OK;
+    }
+    int code = live_build_open(&s->build, plan->build, views_of(plan), frame);
+    s->building = code == CLI_OK;
+    s->account->arena_bytes = s->build.r.arena_bytes;
+    return code;
+}
+
 static int write_scene(run_state *s)
 {
     char error[512] = "";
@@ -252,17 +266,15 @@ static int handle(run_state *s, t3r_capture_frame *frame)
         a->height = frame->frame.height;
         a->format = frame->frame.format;
         s->first_seconds = cli_now();
-        if (plan->build != NULL) {
-            code = live_build_open(&s->build, plan->build, views_of(plan), frame);
-            s->building = code == CLI_OK;
-            a->arena_bytes = s->build.r.arena_bytes;
-        }
+    }
+    if (code == CLI_OK) {
+        code = open_build(s, frame);
     }
     double start = cli_now();
     if (code == CLI_OK && s->record != NULL && capture_record_frame(s->record, frame) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", s->record->error);
     }
-    if (code == CLI_OK && s->building) {
+    if (code == CLI_OK && plan->build != NULL) {
         code = plan->every > 0 ? build_repeatedly(s, frame) : build_chosen(s, frame);
     }
     if (code != CLI_OK) {
@@ -344,7 +356,7 @@ static int loop(run_state *s)
     if (code == CLI_OK && s->account->frames == 0) {
         code = cli_error(CLI_BAD_INPUT, "%s: gave no frame", plan->source);
     }
-    if (code == CLI_OK && s->building && s->account->builds == 0) {
+    if (code == CLI_OK && plan->build != NULL && s->account->builds == 0) {
         code =
             cli_error(CLI_BAD_INPUT, "%s: ended before all context frames were there: nothing was built", plan->source);
     }

@@ -1,5 +1,5 @@
 /* The loop of `trim3r capture`: frames from a source to a recording, to Gaussians, or to both. Nothing is allocated
- * once the first frame is there. */
+ * once the first frame is there, or, with a build, the first that it uses. */
 #ifndef TRIM3R_TOOLS_CAPTURE_RUN_H
 #define TRIM3R_TOOLS_CAPTURE_RUN_H
 

@@ -304,6 +304,43 @@ static void a_recording_replays_what_was_live(void **state)
     }
 }
 
+/* The first image has no depth: the room for kept frames is that of the first one that is kept. */
+static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
+{
+    (void)state;
+    for (uint32_t every = 0; every < 2; every++) {
+        fake_v4l2 fake;
+        start_camera(&fake, V4L2_PIX_FMT_YUYV);
+        fake.node[1].drop_from = 0;
+        fake.node[1].drop_count = 1;
+        t3r_capture *camera = open_camera(&fake);
+        trajectory poses = path_of_room();
+        t3r_recorded_camera lens;
+        room_recorded_camera(0, WIDTH, HEIGHT, &lens);
+        reconstruction_options build;
+        reconstruction_defaults(&build);
+        build.keep_percent = 10;
+        build.refine = 0;
+        build.context_count = every > 0 ? 0 : 2;
+        build.context[0] = 1;
+        build.context[1] = 3;
+        const capture_plan plan = {.source = "test",
+                                   .poses = &poses,
+                                   .intrinsics = &lens,
+                                   .frames = 6,
+                                   .build = &build,
+                                   .every = every * 2,
+                                   .quiet = true};
+        capture_account account;
+        assert_int_equal(capture_run(camera, &plan, &account), CLI_OK);
+        assert_int_equal(account.counts.paired, 5);
+        assert_int_equal(account.builds, every > 0 ? 2 : 1);
+        assert_true(account.arena_bytes > 0);
+        t3r_capture_close(camera);
+        trajectory_free(&poses);
+    }
+}
+
 /* Opened again and again it never gives a frame: that, too, has an end, and the recording is whole. */
 static void a_camera_that_stands_still_for_good_is_given_up(void **state)
 {
@@ -337,6 +374,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(nothing_is_allocated_once_it_runs, scratch_setup, scratch_teardown),
         cmocka_unit_test(memory_stays_the_same_over_ten_thousand_frames),
         cmocka_unit_test_setup_teardown(a_recording_replays_what_was_live, scratch_setup, scratch_teardown),
+        cmocka_unit_test(a_build_begins_with_the_first_frame_that_it_uses),
         cmocka_unit_test_setup_teardown(a_camera_that_stands_still_for_good_is_given_up, scratch_setup,
                                         scratch_teardown),
     };
