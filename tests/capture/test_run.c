@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -341,6 +343,45 @@ static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
     }
 }
 
+/* Of a frame no more is read than its rows: behind the last one's samples lies memory that faults. */
+static void kept_frames_are_read_by_their_rows(void **state)
+{
+    (void)state;
+    enum { STRIDE = WIDTH * 3 + 32, BYTES = STRIDE * (HEIGHT - 1) + WIDTH * 3 };
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), whole = (BYTES + page - 1) / page * page;
+    uint8_t *memory = mmap(NULL, whole + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_ptr_not_equal(memory, MAP_FAILED);
+    assert_int_equal(mprotect(memory + whole, page, PROT_NONE), 0);
+    uint8_t *picture = memory + whole - BYTES;
+    for (uint32_t i = 0; i < BYTES; i++) {
+        picture[i] = (uint8_t)(i * 7);
+    }
+    const t3r_capture_frame frame = {.frame = {.format = T3R_PIXEL_RGB24,
+                                               .width = WIDTH,
+                                               .height = HEIGHT,
+                                               .planes = {picture},
+                                               .stride_bytes = {STRIDE},
+                                               .depth = (const uint8_t *)depth_mm,
+                                               .depth_width = WIDTH,
+                                               .depth_height = HEIGHT,
+                                               .depth_stride_bytes = WIDTH * 2,
+                                               .depth_unit_q40 = T3R_DEFAULT_DEPTH_UNIT_Q40}};
+    reconstruction_options options;
+    reconstruction_defaults(&options);
+    options.gaussians = 100;
+    live_build build;
+    assert_int_equal(live_build_open(&build, &options, 2, &frame), CLI_OK);
+    assert_int_equal(live_build_keep(&build, &frame), CLI_OK);
+    const t3r_frame *kept = &build.kept[0].frame.frame;
+    for (uint32_t y = 0; y < HEIGHT; y++) {
+        assert_memory_equal(kept->planes[0] + (size_t)y * kept->stride_bytes[0], picture + (size_t)y * STRIDE,
+                            WIDTH * 3);
+    }
+    assert_memory_equal(kept->depth, depth_mm, (size_t)WIDTH * HEIGHT * 2);
+    live_build_close(&build);
+    munmap(memory, whole + page);
+}
+
 /* Opened again and again it never gives a frame: that, too, has an end, and the recording is whole. */
 static void a_camera_that_stands_still_for_good_is_given_up(void **state)
 {
@@ -374,6 +415,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(nothing_is_allocated_once_it_runs, scratch_setup, scratch_teardown),
         cmocka_unit_test(memory_stays_the_same_over_ten_thousand_frames),
         cmocka_unit_test_setup_teardown(a_recording_replays_what_was_live, scratch_setup, scratch_teardown),
+        cmocka_unit_test(kept_frames_are_read_by_their_rows),
         cmocka_unit_test(a_build_begins_with_the_first_frame_that_it_uses),
         cmocka_unit_test_setup_teardown(a_camera_that_stands_still_for_good_is_given_up, scratch_setup,
                                         scratch_teardown),
