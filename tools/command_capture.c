@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "capture.h"
 #include "capture_run.h"
@@ -606,15 +605,7 @@ static void print_text(const capture_options *o, const t3r_capture *capture, con
 
 /* ---- the run ---- */
 
-/* Whether the recording to be written is the one that is replayed. */
-static bool overwrites_source(const capture_options *o)
-{
-    struct stat source, output;
-    return o->output != NULL && strncmp(o->source, "replay:", 7) == 0 && stat(o->source + 7, &source) == 0 &&
-           stat(o->output, &output) == 0 && source.st_dev == output.st_dev && source.st_ino == output.st_ino;
-}
-
-static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset)
+static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset, const char *const *spared)
 {
     char error[ERROR_BYTES] = "";
     t3r_capture *capture = t3r_capture_open(o->source, &o->settings, error, sizeof error);
@@ -629,6 +620,7 @@ static int run(const capture_options *o, const trajectory *poses, const clock_of
         .output = o->output,
         .max_bytes = o->max_bytes,
         .sync = o->sync,
+        .spared = spared,
         .poses = poses,
         .offset_ns = offset->offset_ns,
         .intrinsics = o->has_intrinsics ? &o->intrinsics : NULL,
@@ -662,8 +654,10 @@ int command_capture(int argc, char **argv)
     if (o.list) {
         return list();
     }
-    if (overwrites_source(&o)) {
-        return cli_error(CLI_BAD_USAGE, "-o %s is the recording that is replayed", o.output);
+    const char *colon = strchr(o.source, ':');
+    const char *const spared[CAPTURE_RECORD_SPARED] = {colon != NULL ? colon + 1 : NULL, o.settings.depth, o.poses};
+    if (o.output != NULL && capture_record_would_replace(o.output, spared) != NULL) {
+        return cli_error(CLI_BAD_USAGE, "-o %s is a file that is read: it would be overwritten", o.output);
     }
     watch_signals();
     trajectory poses = {0};
@@ -677,7 +671,7 @@ int command_capture(int argc, char **argv)
         code = o.estimate ? estimate_offset(&o, &poses, &offset) : CLI_OK;
     }
     if (code == CLI_OK) {
-        code = run(&o, o.poses != NULL ? &poses : NULL, &offset);
+        code = run(&o, o.poses != NULL ? &poses : NULL, &offset, spared);
     }
     trajectory_free(&poses);
     return code;

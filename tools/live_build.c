@@ -134,7 +134,8 @@ int live_build_keep(live_build *build, const t3r_capture_frame *frame)
         return CLI_OK;
     }
     if (all_bytes(f) > build->frame_bytes) {
-        return cli_error(CLI_BAD_INPUT, "frame %" PRIu32 " is larger than the first one of the build: the format changed",
+        return cli_error(CLI_BAD_INPUT,
+                         "frame %" PRIu32 " is larger than the first one of the build: the format changed",
                          frame->index);
     }
     if (build->kept_count == build->room) {

@@ -105,6 +105,20 @@ def rolls_over():
     capture("replay:room.mcap", "--max-bytes", "20k", "-o", "no.mcap", expect=1, words="does not hold one frame")
 
 
+def spares_what_it_reads():
+    """Neither the first file nor one that it rolls over to replaces the recording or the poses, by whatever name."""
+    with open("spare-1.mcap", "wb") as file:
+        file.write(read("room.mcap"))
+    os.symlink("spare-1.mcap", "link-2.mcap")
+    for name in ("spare.mcap", "link.mcap"):
+        capture("replay:spare-1.mcap", "--repeat", 4, "--max-bytes", 40000, "-o", name, expect=1,
+                words="is spare-1.mcap, which is read")
+        check(read("spare-1.mcap") == read("room.mcap"), "the recording that is replayed is whole")
+        check(json.loads(run("info", name, "--json"))["note"] == "", "and the file before is")
+    capture("replay:room.mcap", "--poses", "spare-1.mcap", "-o", "spare-1.mcap", expect=2, words="is a file that is")
+    check(read("spare-1.mcap") == read("room.mcap"), "the poses are whole")
+
+
 def stops(number):
     """A signal: exit status 0, a recording that is whole."""
     command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--json", "-o",
@@ -181,7 +195,7 @@ def refusals():
     run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "1,2", expect=2, words="--intrinsics")
     run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "5,5,5,5", expect=1, words="focal length")
     run("capture", "--source", "replay:room.mcap", "-o", "../" + os.path.basename(os.getcwd()) + "/room.mcap", expect=2,
-        words="is the recording that is replayed")
+        words="is a file that is read")
     listed = run("capture", "--list")
     check(all(name in listed for name in ("replay", "v4l2", "libcamera", "opencv")), "--list names every adapter")
     for name in ("v4l2", "libcamera", "opencv"):
@@ -204,6 +218,7 @@ with tempfile.TemporaryDirectory() as folder:
     builds()
     poses()
     rolls_over()
+    spares_what_it_reads()
     stops(signal.SIGINT)
     stops(signal.SIGTERM)
     killed()
