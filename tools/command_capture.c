@@ -222,6 +222,8 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--method %s needs a recording: trim3r build", method_name(o->build.method));
     } else if (o->scene != NULL && o->build.allocation == T3R_ALLOCATE_GIVEN) {
         argp_error(state, "--allocate given needs a recording: trim3r build");
+    } else if (o->build.depth == T3R_DEPTH_STEREO) {
+        argp_error(state, "--depth stereo needs a recording: trim3r build");
     } else if (o->every > 0 && o->build.context_count > 0) {
         argp_error(state, "--every and --context exclude each other");
     } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL)) {

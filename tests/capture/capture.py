@@ -190,6 +190,8 @@ def refusals():
         words="must ascend")
     run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "1,2", "--every", 2, expect=2,
         words="exclude")
+    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--depth", "stereo", expect=2,
+        words="--depth stereo needs a recording")
     run("capture", "--source", "replay:room.mcap", "--hash", "--max-bytes", "10X", expect=2, words="--max-bytes")
     run("capture", "--source", "replay:room.mcap", "-o", "/dev/full", expect=1, words="cannot be written")
     run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "1,2", expect=2, words="--intrinsics")
