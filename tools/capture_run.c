@@ -158,7 +158,7 @@ static int complete(run_state *s, t3r_capture_frame *frame)
     }
     if (plan->poses != NULL) {
         double pose[POSE_NUMBERS];
-        frame->has_pose = trajectory_at(plan->poses, frame->stamp_ns + plan->offset_ns, pose);
+        frame->has_pose = trajectory_at_offset(plan->poses, frame->stamp_ns, plan->offset_ns, pose);
         if (frame->has_pose) {
             t3r_recorded_camera camera = {.position = {pose[0], pose[1], pose[2]},
                                           .rotation = {pose[6], pose[3], pose[4], pose[5]}};

@@ -19,6 +19,8 @@
 #define ERROR_BYTES 512
 #define MOST_MOTIONS 3000u           /* frames that an offset is estimated from */
 #define RANGE_NS INT64_C(1000000000) /* of offsets about the one to be expected */
+#define MOST_OFFSET_S INT64_C(4000000000)
+#define MOST_OFFSET_NS (MOST_OFFSET_S * 1000000000)
 
 typedef struct capture_options {
     const char *source, *output, *poses, *pose_topic;
@@ -138,15 +140,18 @@ static uint64_t bytes_of(struct argp_state *state, const char *text)
     return value << shift;
 }
 
-/* Seconds with up to nine digits behind the point, exactly. */
+/* Seconds below MOST_OFFSET_S with up to nine digits behind the point, exactly. */
 static bool signed_seconds(const char *text, int64_t *ns)
 {
     bool negative = *text == '-';
     text += *text == '-' || *text == '+';
     int64_t seconds = 0, fraction = 0, unit = 100000000;
     size_t digits = 0;
-    for (; *text >= '0' && *text <= '9' && seconds < INT64_C(8000000000); text++, digits++) {
+    for (; *text >= '0' && *text <= '9'; text++, digits++) {
         seconds = seconds * 10 + (*text - '0');
+        if (seconds >= MOST_OFFSET_S) {
+            return false;
+        }
     }
     if (*text == '.') {
         for (text++; *text >= '0' && *text <= '9'; text++, digits++, unit /= 10) {
@@ -154,7 +159,7 @@ static bool signed_seconds(const char *text, int64_t *ns)
         }
     }
     *ns = (seconds * 1000000000 + fraction) * (negative ? -1 : 1);
-    return digits > 0 && *text == '\0' && seconds < INT64_C(8000000000);
+    return digits > 0 && *text == '\0';
 }
 
 static void parse_offset(struct argp_state *state, const char *text, capture_options *o)
@@ -478,8 +483,14 @@ static int estimate_offset(const capture_options *o, const trajectory *poses, cl
     int64_t centre = o->offset_ns;
     if (!o->has_centre && count > 0) {
         int64_t first = poses->poses[0].stamp_ns, last = poses->poses[poses->count - 1].stamp_ns;
-        bool overlap = motions[0].from_ns < last && motions[count - 1].to_ns > first;
-        centre = overlap ? 0 : first - motions[0].from_ns;
+        int64_t from = motions[0].from_ns;
+        /* stamps may be 2^63 apart: halves */
+        if (llabs(first / 2 - from / 2) >= MOST_OFFSET_NS / 2) {
+            free(motions);
+            return cli_error(CLI_BAD_INPUT, "the poses' clock and the camera's are 4e9 s apart or more");
+        }
+        bool overlap = from < last && motions[count - 1].to_ns > first;
+        centre = overlap ? 0 : first - from;
     }
     int status = clock_offset_estimate(motions, count, poses, centre, RANGE_NS, found, error, sizeof error);
     free(motions);

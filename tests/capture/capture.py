@@ -90,6 +90,11 @@ def poses():
     check(json.loads(run("info", "lens.mcap", "--json"))["distortion"] == "radtan", "a lens with distortion")
     run("capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash",
         expect=1, words="offset is not")
+    for far in ("4000000000", "79999999999", "-18446744073", "99999999999999999999", "estimate:4000000000"):
+        run("capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", far, "--hash",
+            expect=2, words="--clock-offset takes")
+    told = capture("replay:bare.mcap", *asked, "tum.txt", "--clock-offset", "-3999999999.999999999")
+    check(told["unposed"] == 12, "the farthest offset there is")
     run("capture", "--source", "v4l2:/dev/video0", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash",
         expect=2, words="record, then")
 
