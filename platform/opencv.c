@@ -8,6 +8,7 @@
 #include "capture_module.h"
 #include "opencv_shim.h"
 #include "reason.h"
+#include "source_name.h"
 
 #define DEFAULT_RATE 30.0
 
@@ -15,7 +16,8 @@ typedef struct opencv_capture {
     t3r_capture capture; /* first: a t3r_capture * is an opencv_capture * */
     const t3r_opencv_shim *shim;
     t3r_capture_settings settings;
-    char *url, *depth_url; /* depth_url NULL = colour alone */
+    char *url, *depth_url;            /* depth_url NULL = colour alone */
+    char name[T3R_SOURCE_NAME_BYTES]; /* of url, in messages */
     t3r_opencv_film *film, *depth;
     double rate; /* of films, frames a second */
     uint32_t index;
@@ -37,6 +39,7 @@ static int open_films(opencv_capture *self, char *error, size_t error_bytes)
     const t3r_capture_settings *s = &self->settings;
     t3r_opencv_request request = {
         .url = self->url,
+        .name = self->name,
         .backend = s->backend,
         .width = s->width,
         .height = s->height,
@@ -50,7 +53,10 @@ static int open_films(opencv_capture *self, char *error, size_t error_bytes)
         return -1;
     }
     if (self->depth_url != NULL) {
+        char depth_name[T3R_SOURCE_NAME_BYTES];
+        t3r_source_name(self->depth_url, depth_name, sizeof depth_name);
         request.url = self->depth_url;
+        request.name = depth_name;
         request.unchanged = true;
         request.fourcc = NULL;
         request.width = s->depth_width;
@@ -60,14 +66,14 @@ static int open_films(opencv_capture *self, char *error, size_t error_bytes)
             close_films(self);
             return -1;
         }
-        t3r_capture_remark(&self->capture, "%s: depth by the back end %s", self->depth_url,
+        t3r_capture_remark(&self->capture, "%s: depth by the back end %s", depth_name,
                            self->shim->backend(self->depth));
     }
     /* numbered pictures have no rate */
     bool pictures = strcmp(self->shim->backend(self->film), "CV_IMAGES") == 0;
     double rate = s->rate_millihertz != 0 ? s->rate_millihertz / 1000.0 : pictures ? 0 : self->shim->rate(self->film);
     self->rate = isfinite(rate) && rate >= 0.001 && rate <= 10000 ? rate : DEFAULT_RATE;
-    t3r_capture_remark(&self->capture, "%s: OpenCV %s, back end %s", self->url, self->shim->version,
+    t3r_capture_remark(&self->capture, "%s: OpenCV %s, back end %s", self->name, self->shim->version,
                        self->shim->backend(self->film));
     self->capture.clock = self->shim->live(self->film) ? "unknown" : pictures ? "synthetic" : "stream";
     return 0;
@@ -122,7 +128,7 @@ static int end_of(opencv_capture *self)
     if (!self->shim->live(self->film)) {
         return T3R_CAPTURE_END;
     }
-    int result = t3r_capture_lose(&self->capture, "%s: no image from the device", self->url);
+    int result = t3r_capture_lose(&self->capture, "%s: no image from the device", self->name);
     close_films(self);
     return result;
 }
@@ -130,7 +136,7 @@ static int end_of(opencv_capture *self)
 static int failed(opencv_capture *self, const char *what)
 {
     t3r_capture_event event = {.kind = T3R_EVENT_CORRUPTED, .sequence = self->index++, .detail = what};
-    t3r_reason(self->capture.error, sizeof self->capture.error, "%s: picture %u %s", self->url, event.sequence, what);
+    t3r_reason(self->capture.error, sizeof self->capture.error, "%s: picture %u %s", self->name, event.sequence, what);
     t3r_capture_tell(&self->capture, event);
     return T3R_CAPTURE_FAILED;
 }
@@ -197,17 +203,18 @@ t3r_capture *t3r_opencv_open(const char *url, const t3r_capture_settings *settin
     }
     opencv_capture *self = calloc(1, sizeof *self);
     if (self == NULL) {
-        t3r_reason(error, error_bytes, "%s: out of memory", url);
+        t3r_reason(error, error_bytes, "out of memory");
         return NULL;
     }
     self->capture.operations = &operations;
     self->capture.depth_unit_q40 = settings->depth_unit_q40;
     self->shim = shim;
     self->settings = *settings;
+    t3r_source_name(url, self->name, sizeof self->name);
     self->url = strdup(url);
     self->depth_url = settings->depth != NULL ? strdup(settings->depth) : NULL;
     if (self->url == NULL || (settings->depth != NULL && self->depth_url == NULL)) {
-        t3r_reason(error, error_bytes, "%s: out of memory", url);
+        t3r_reason(error, error_bytes, "out of memory");
     } else if (open_films(self, error, error_bytes) == 0) {
         return &self->capture;
     }

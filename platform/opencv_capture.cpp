@@ -22,9 +22,9 @@ struct t3r_opencv_film {
 namespace
 {
 
-int complain(char *error, size_t error_bytes, const char *url, const char *what)
+int complain(char *error, size_t error_bytes, const char *name, const char *what)
 {
-    std::snprintf(error, error_bytes, "%s: %s", url, what);
+    std::snprintf(error, error_bytes, "%s: %s", name, what);
     return -1;
 }
 
@@ -125,9 +125,9 @@ t3r_opencv_film *open(const t3r_opencv_request *request, char *error, size_t err
             film->backend = film->capture.getBackendName();
             return film;
         }
-        complain(error, error_bytes, request->url, "OpenCV cannot open it");
+        complain(error, error_bytes, request->name, "OpenCV cannot open it");
     } catch (const std::exception &wrong) {
-        complain(error, error_bytes, request->url, wrong.what());
+        complain(error, error_bytes, request->name, wrong.what());
     }
     delete film;
     return nullptr;

@@ -21,6 +21,7 @@ typedef struct t3r_opencv_picture {
 
 typedef struct t3r_opencv_request {
     const char *url;          /* a number alone is a device */
+    const char *name;         /* of the URL in messages */
     const char *backend;      /* NULL = OpenCV's choice */
     uint32_t width, height;   /* of devices; 0 = as it is */
     uint32_t rate_millihertz; /* of devices; 0 = as it is */

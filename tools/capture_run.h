@@ -13,7 +13,7 @@
 #include "trajectory.h"
 
 typedef struct capture_plan {
-    const char *source;                    /* for messages and the recording */
+    const char *source;                    /* its name for messages and the recording */
     const char *output;                    /* NULL = no recording */
     uint64_t max_bytes;                    /* of a recording's file; 0 = no end */
     bool sync;                             /* every message to the disk */

@@ -15,6 +15,7 @@
 #include "json_output.h"
 #include "option_values.h"
 #include "reconstruction.h"
+#include "source_name.h"
 
 #define ERROR_BYTES 512
 #define MOST_MOTIONS 3000u           /* frames that an offset is estimated from */
@@ -518,7 +519,7 @@ static double rate_of(const capture_account *a)
     return a->seconds > 0 && a->frames > 1 ? (double)(a->frames - 1) / a->seconds : 0;
 }
 
-static void print_json(const capture_options *o, const t3r_capture *capture, const capture_account *a,
+static void print_json(const capture_options *o, const char *name, const t3r_capture *capture, const capture_account *a,
                        const clock_offset *offset)
 {
     cJSON *root = cJSON_CreateObject();
@@ -539,7 +540,7 @@ static void print_json(const capture_options *o, const t3r_capture *capture, con
                   {"unposed", a->unposed},
                   {"files", a->files},
                   {"bytes", a->bytes}};
-    cJSON_AddStringToObject(root, "source", o->source);
+    cJSON_AddStringToObject(root, "source", name);
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
         json_add_integer(root, counts[i].key, (int64_t)counts[i].value);
     }
@@ -573,12 +574,12 @@ static void print_json(const capture_options *o, const t3r_capture *capture, con
     json_print(root);
 }
 
-static void print_text(const capture_options *o, const t3r_capture *capture, const capture_account *a,
+static void print_text(const capture_options *o, const char *name, const t3r_capture *capture, const capture_account *a,
                        const clock_offset *offset)
 {
     const t3r_capture_counts *n = &a->counts;
     char text[HASH_TEXT_BYTES];
-    printf("%s: %" PRIu64 " frames of %ux%u %s, %.1f/s, clock %s\n", o->source, a->frames, a->width, a->height,
+    printf("%s: %" PRIu64 " frames of %ux%u %s, %.1f/s, clock %s\n", name, a->frames, a->width, a->height,
            t3r_pixel_format_name(a->format), rate_of(a), t3r_capture_clock(capture));
     printf("lost:     driver %" PRIu64 ", too slow %" PRIu64 ", corrupted %" PRIu64 ", unreadable %" PRIu64
            "; faults %" PRIu64 ", reconnects %" PRIu64 "\n",
@@ -628,8 +629,10 @@ static int run(const capture_options *o, const trajectory *poses, const clock_of
     if (!o->quiet && !o->json && t3r_capture_note(capture)[0] != '\0') {
         fprintf(stderr, "%s\n", t3r_capture_note(capture));
     }
+    char name[T3R_SOURCE_NAME_BYTES];
+    t3r_source_name(o->source, name, sizeof name);
     const capture_plan plan = {
-        .source = o->source,
+        .source = name,
         .output = o->output,
         .max_bytes = o->max_bytes,
         .sync = o->sync,
@@ -651,9 +654,9 @@ static int run(const capture_options *o, const trajectory *poses, const clock_of
     capture_account account;
     int code = capture_run(capture, &plan, &account);
     if (code == CLI_OK && o->json) {
-        print_json(o, capture, &account, offset);
+        print_json(o, name, capture, &account, offset);
     } else if (code == CLI_OK) {
-        print_text(o, capture, &account, offset);
+        print_text(o, name, capture, &account, offset);
     }
     t3r_capture_close(capture);
     return code;

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """opencv.py TRIM3R: pictures and films by OpenCV's VideoCapture against the very samples they were made of, and the
 Gaussians of them against those of a recording made without OpenCV. Skipped without the adapter or numpy and cv2."""
+import functools
+import http.server
 import json
 import os
 import sys
 import tempfile
+import threading
 
 try:
     import cv2
@@ -33,6 +36,24 @@ def images(path, topic, dtype, channels):
             out.append((encoding, samples.reshape(height, width, channels) if channels > 1 else
                         samples.reshape(height, width)))
     return out
+
+
+class Server(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
+def keeps_secrets(film):
+    """Of a stream's URL neither user nor password nor query is recorded or told."""
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Server, directory=os.getcwd())) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        place = f"127.0.0.1:{server.server_port}/{film}"
+        out = run("capture", "--source", f"opencv:http://me:hidden@{place}?token=hidden", "-o", "stream.mcap", "--json")
+        server.shutdown()
+    check(json.loads(out)["source"] == f"opencv:http://{place}" and "hidden" not in out, out)
+    with open("stream.mcap", "rb") as file:
+        held = file.read()
+    check(place.encode() in held and b"hidden" not in held, "the recording knows the stream and no secret")
 
 
 def capture(source, name, *options):
@@ -89,6 +110,7 @@ with tempfile.TemporaryDirectory() as folder:
         good, want = reader.read()
         check(good and (got == want).all(), "a film as cv2 itself decodes it")
     check("FFMPEG" in told["note"], "the back end is named")
+    keeps_secrets("film.avi")
     os.rename("film.avi", "100%.avi")
     check("CV_IMAGES" not in capture("opencv:100%.avi", "film.mcap")["note"], "a film whose name holds a %")
     os.rename("100%.avi", "100%3d.avi")
