@@ -36,6 +36,11 @@ const char *t3r_capture_clock(const t3r_capture *capture)
     return capture->clock != NULL ? capture->clock : "unknown";
 }
 
+bool t3r_capture_recorded(const t3r_capture *capture)
+{
+    return capture->recorded;
+}
+
 const char *t3r_capture_note(const t3r_capture *capture)
 {
     return capture->note;

@@ -49,6 +49,8 @@ void t3r_capture_close(t3r_capture *capture);
  * taken when the frame was fetched, as the driver's stamps name no clock), "stream" (from the start of a film),
  * "synthetic", "unknown"; a recording's as it was recorded. */
 const char *t3r_capture_clock(const t3r_capture *capture);
+/* Whether frames come from a recording: their clock, whatever its name, is that of then. */
+bool t3r_capture_recorded(const t3r_capture *capture);
 /* Formats, sizes, rates and buffers that were agreed on, and what a user should know of them: lines, never NULL. */
 const char *t3r_capture_note(const t3r_capture *capture);
 /* Steps of depth in world units, Q40. */

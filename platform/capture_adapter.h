@@ -18,6 +18,7 @@ typedef struct t3r_capture_operations {
 struct t3r_capture {
     const t3r_capture_operations *operations;
     const char *clock;
+    bool recorded; /* stamps are of when the recording was made */
     uint64_t depth_unit_q40;
     t3r_capture_counts counts;
     int64_t last_stamp_ns; /* of the frame delivered last */

@@ -72,6 +72,7 @@ t3r_capture *t3r_replay_open_repeated(const char *path, uint32_t times, char *er
         return NULL;
     }
     self->capture.operations = &operations;
+    self->capture.recorded = true;
     self->recording = t3r_recording_open(path, error, error_bytes);
     if (self->recording == NULL) {
         free(self);

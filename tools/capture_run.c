@@ -283,10 +283,11 @@ static int handle(run_state *s, t3r_capture_frame *frame)
     double end = cli_now();
     add_time(&a->work, (end - start) * 1e3);
     const char *clock = t3r_capture_clock(s->capture);
-    if (strcmp(clock, "monotonic") == 0 || strcmp(clock, "arrival") == 0 || strcmp(clock, "boottime") == 0) {
+    bool ours = strcmp(clock, "monotonic") == 0 || strcmp(clock, "arrival") == 0 || strcmp(clock, "boottime") == 0;
+    if (ours && !t3r_capture_recorded(s->capture)) {
         int64_t now = clock_now_ns(clock[0] == 'b' ? CLOCK_BOOTTIME : CLOCK_MONOTONIC);
         double ms = (double)(now - frame->stamp_ns) * 1e-6;
-        if (ms >= 0 && ms < 60000) { /* a replay has the clock of then */
+        if (ms >= 0 && ms < 60000) { /* else the driver's clock is not the one that it names */
             add_time(&a->latency, ms);
         }
     }

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -382,6 +383,33 @@ static void kept_frames_are_read_by_their_rows(void **state)
     munmap(memory, whole + page);
 }
 
+/* Between a frame's stamp and its replay lies no latency, however lately it was recorded. */
+static void a_replay_has_no_latency(void **state)
+{
+    scratch *s = *state;
+    char recording[600], error[256] = "";
+    snprintf(recording, sizeof recording, "%s", scratch_path(s, "d.mcap"));
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    fake_v4l2 fake;
+    start_camera(&fake, V4L2_PIX_FMT_GREY);
+    fake.now_ns = fake.node[0].first_ns = fake.node[1].first_ns = ((int64_t)now.tv_sec - 5) * 1000000000;
+    t3r_capture *camera = open_camera(&fake);
+    capture_plan plan = {.source = "test", .output = recording, .frames = 20, .quiet = true};
+    capture_account live, replayed;
+    assert_int_equal(capture_run(camera, &plan, &live), CLI_OK);
+    t3r_capture_close(camera);
+    assert_int_equal(live.latency.count, 20);
+    t3r_capture *replay = t3r_replay_open(recording, error, sizeof error);
+    assert_non_null(replay);
+    assert_string_equal(t3r_capture_clock(replay), "monotonic");
+    plan.output = NULL;
+    assert_int_equal(capture_run(replay, &plan, &replayed), CLI_OK);
+    t3r_capture_close(replay);
+    assert_int_equal(replayed.frames, 20);
+    assert_int_equal(replayed.latency.count, 0);
+}
+
 /* Opened again and again it never gives a frame: that, too, has an end, and the recording is whole. */
 static void a_camera_that_stands_still_for_good_is_given_up(void **state)
 {
@@ -415,6 +443,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(nothing_is_allocated_once_it_runs, scratch_setup, scratch_teardown),
         cmocka_unit_test(memory_stays_the_same_over_ten_thousand_frames),
         cmocka_unit_test_setup_teardown(a_recording_replays_what_was_live, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_replay_has_no_latency, scratch_setup, scratch_teardown),
         cmocka_unit_test(kept_frames_are_read_by_their_rows),
         cmocka_unit_test(a_build_begins_with_the_first_frame_that_it_uses),
         cmocka_unit_test_setup_teardown(a_camera_that_stands_still_for_good_is_given_up, scratch_setup,
