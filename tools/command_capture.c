@@ -36,6 +36,7 @@ typedef struct capture_options {
     uint64_t max_bytes, frames;
     double seconds, reconnect_seconds;
     reconstruction_options build;
+    uint64_t given; /* a bit for each KEY_* that stands in the command */
 } capture_options;
 
 enum {
@@ -210,6 +211,57 @@ static void parse_intrinsics(struct argp_state *state, const char *text, capture
     o->has_intrinsics = true;
 }
 
+/* Which adapters use an option of the camera's, and what it needs besides. */
+static const struct {
+    int key;
+    const char *option, *adapters;
+    bool of_depth; /* belongs to --depth-source */
+} uses[] = {
+    {KEY_SIZE, "size", "v4l2 libcamera opencv", false},
+    {KEY_RATE, "rate", "v4l2 libcamera opencv", false},
+    {KEY_FORMAT, "format", "v4l2 libcamera opencv", false},
+    {KEY_BACKEND, "backend", "opencv", false},
+    {KEY_BUFFERS, "buffers", "v4l2 libcamera", false},
+    {KEY_REPEAT, "repeat", "replay", false},
+    {KEY_DEPTH_SOURCE, "depth-source", "v4l2 opencv", false},
+    {KEY_DEPTH_SIZE, "depth-size", "v4l2 opencv", true},
+    {KEY_DEPTH_UNIT, "depth-unit", "v4l2 opencv", true},
+    {KEY_PAIR, "pair", "v4l2", true},
+    {KEY_STALL, "stall", "v4l2 libcamera opencv", false},
+    {KEY_RECONNECT, "reconnect", "v4l2 libcamera opencv", false},
+};
+
+/* Whether the word is one of the words, each but the last with a space behind it. */
+static bool is_among(const char *word, size_t length, const char *words)
+{
+    for (const char *at = words; *at != '\0'; at += strspn(at, " ")) {
+        size_t here = strcspn(at, " ");
+        if (here == length && strncmp(at, word, length) == 0) {
+            return true;
+        }
+        at += here;
+    }
+    return false;
+}
+
+/* No option is taken that its adapter would pass over. */
+static void check_uses(struct argp_state *state, const capture_options *o)
+{
+    size_t length = strcspn(o->source, ":");
+    for (size_t i = 0; i < sizeof uses / sizeof uses[0]; i++) {
+        if ((o->given >> (uses[i].key - KEY_SOURCE) & 1) == 0) {
+            continue;
+        }
+        if (is_among(o->source, length, "replay v4l2 libcamera opencv") &&
+            !is_among(o->source, length, uses[i].adapters)) {
+            argp_error(state, "--%s is of no use to %.*s: it belongs to %s", uses[i].option, (int)length, o->source,
+                       uses[i].adapters);
+        } else if (uses[i].of_depth && o->settings.depth == NULL) {
+            argp_error(state, "--%s belongs to --depth-source", uses[i].option);
+        }
+    }
+}
+
 static void check(struct argp_state *state, capture_options *o)
 {
     if (o->list) {
@@ -234,11 +286,12 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--every and --context exclude each other");
     } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL)) {
         argp_error(state, "--clock-offset and --pose-topic belong to --poses");
-    } else if (o->max_bytes > 0 && o->output == NULL) {
-        argp_error(state, "--max-bytes belongs to -o");
+    } else if ((o->max_bytes > 0 || o->sync) && o->output == NULL) {
+        argp_error(state, "--max-bytes and --sync belong to -o");
     } else if (o->fisheye && !o->has_intrinsics) {
         argp_error(state, "--fisheye belongs to --intrinsics");
     }
+    check_uses(state, o);
     for (uint32_t i = 1; i < o->build.context_count; i++) {
         if (o->build.context[i] <= o->build.context[i - 1]) {
             argp_error(state, "--context must ascend: frames are used as they come in");
@@ -256,6 +309,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     capture_options *o = state->input;
     t3r_capture_settings *s = &o->settings;
+    if (key >= KEY_SOURCE && key <= KEY_JSON) {
+        o->given |= UINT64_C(1) << (key - KEY_SOURCE);
+    }
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->build;

@@ -203,6 +203,25 @@ def refusals():
     run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "5,5,5,5", expect=1, words="focal length")
     run("capture", "--source", "replay:room.mcap", "-o", "../" + os.path.basename(os.getcwd()) + "/room.mcap", expect=2,
         words="is a file that is read")
+    for source, options, words in (
+            ("replay:room.mcap", ("--size", "64x48"), "--size is of no use to replay: it belongs to v4l2 libcamera"),
+            ("replay:room.mcap", ("--rate", "30"), "--rate is of no use"),
+            ("replay:room.mcap", ("--format", "GREY"), "--format is of no use"),
+            ("replay:room.mcap", ("--depth-source", "a"), "--depth-source is of no use"),
+            ("replay:room.mcap", ("--pair", "5"), "--pair is of no use"),
+            ("replay:room.mcap", ("--reconnect", "5"), "--reconnect is of no use"),
+            ("v4l2:/dev/null", ("--repeat", "2"), "--repeat is of no use to v4l2: it belongs to replay"),
+            ("v4l2:/dev/null", ("--backend", "V4L2"), "--backend is of no use"),
+            ("opencv:a.avi", ("--buffers", "3"), "--buffers is of no use"),
+            ("libcamera:0", ("--depth-source", "a"), "--depth-source is of no use"),
+            ("v4l2:/dev/null", ("--depth-size", "64x48"), "--depth-size belongs to --depth-source"),
+            ("v4l2:/dev/null", ("--depth-unit", "0.001"), "--depth-unit belongs to"),
+            ("v4l2:/dev/null", ("--pair", "5"), "--pair belongs to"),
+            ("v4l2:/dev/null", ("--sync",), "--sync belong to -o")):
+        run("capture", "--source", source, "--hash", *options, expect=2, words=words)
+    run("capture", "--source", "v4l2:/dev/null", "--hash", "--depth-source", "/dev/null", "--pair", 5, "--depth-size",
+        "64x48", "--depth-unit", 0.001, "--size", "64x48", "--rate", 30, "--format", "GREY", "--buffers", 3, "--stall",
+        100, "--reconnect", 0, expect=1, words="is not a video device")
     listed = run("capture", "--list")
     check(all(name in listed for name in ("replay", "v4l2", "libcamera", "opencv")), "--list names every adapter")
     for name in ("v4l2", "libcamera", "opencv"):
