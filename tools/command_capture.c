@@ -537,6 +537,10 @@ static int estimate_offset(const capture_options *o, const trajectory *poses, cl
     if (motions == NULL) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
+    if (stop != 0) { /* of a part of the frames an offset would pass for that of all */
+        free(motions);
+        return CLI_OK;
+    }
     int64_t centre = o->offset_ns;
     if (!o->has_centre && count > 0) {
         int64_t first = poses->poses[0].stamp_ns, last = poses->poses[poses->count - 1].stamp_ns;
@@ -742,7 +746,9 @@ int command_capture(int argc, char **argv)
         }
         code = o.estimate ? estimate_offset(&o, &poses, &offset) : CLI_OK;
     }
-    if (code == CLI_OK) {
+    if (code == CLI_OK && stop != 0) {
+        code = cli_error(CLI_BAD_INPUT, "stopped before the capture began: nothing was written");
+    } else if (code == CLI_OK) {
         code = run(&o, o.poses != NULL ? &poses : NULL, &offset, spared);
     }
     trajectory_free(&poses);

@@ -171,6 +171,30 @@ def progress():
                          capture_output=True).stderr == b"", "no line where nobody looks")
 
 
+def stops_before_it_begins():
+    """Ctrl-C while the clocks' offset is looked for: what there is under the output's name stays."""
+    with open("kept.mcap", "wb") as file:
+        file.write(b"of before")
+    run("room", "--size", "640x480", "--frames", 2, "-o", "large.mcap")  # so that it takes long
+    leader, follower = pty.openpty()
+    process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:large.mcap", "--repeat", "4000000000", "--poses",
+                                "tum.txt", "--clock-offset", "estimate", "-o", "kept.mcap"],
+                               stdout=subprocess.DEVNULL, stderr=follower)
+    os.close(follower)
+    said = b""
+    while b"clocks' offset" not in said:
+        said += os.read(leader, 4096)
+    process.send_signal(signal.SIGINT)
+    try:
+        while more := os.read(leader, 4096):
+            said += more
+    except OSError:  # the other end is closed
+        pass
+    check(process.wait(60) == 1 and b"stopped before the capture began" in said, said.decode())
+    os.close(leader)
+    check(read("kept.mcap") == b"of before", "the output is not touched")
+
+
 def killed():
     command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "-o", "kill.mcap"]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
@@ -247,6 +271,7 @@ with tempfile.TemporaryDirectory() as folder:
     spares_what_it_reads()
     stops(signal.SIGINT)
     stops(signal.SIGTERM)
+    stops_before_it_begins()
     killed()
     memory()
     progress()
