@@ -101,7 +101,7 @@ static const struct argp_option options[] = {
      "S; S is 0 where the times overlap, else what brings their starts together",
      0},
     {NULL, 0, NULL, 0, "What becomes of it:", 4},
-    {"output", 'o', "REC.mcap", 0, "a recording; what is there is overwritten", 0},
+    {"output", 'o', "REC.mcap", 0, "a recording; what is there is overwritten, but for what is read", 0},
     {"max-bytes", KEY_MAX_BYTES, "N[k|M|G]", 0, "of a file; the next one is REC-1.mcap and so on", 0},
     {"sync", KEY_SYNC, NULL, 0, "every message to the disk at once: power loss, too, costs one message at most", 0},
     {"frames", KEY_FRAMES, "N", 0, "stop after N frames", 0},
