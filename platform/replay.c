@@ -5,41 +5,51 @@
 #include "reason.h"
 #include "recording.h"
 
-#define LONE_FRAME_NS 33333333 /* the interval after a recording of a single frame */
+#define LONE_FRAME_NS 33333333          /* the interval after a recording of a single frame */
+#define MOST_AGO_NS (UINT64_C(1) << 61) /* a recording's stamps lie within 2^62: int64_t holds their sum */
 
 typedef struct replay {
     t3r_capture capture; /* first: a t3r_capture * is a replay * */
     t3r_recording *recording;
-    uint32_t next;           /* in the recording */
-    uint32_t index;          /* over all its turns */
-    bool started;            /* first_ns is known */
-    uint32_t turns;          /* left, this one included */
-    int64_t first_ns;        /* of the recording's frames */
-    int64_t turn_ns, ago_ns; /* a turn's length; how much later this turn's frames are */
+    uint32_t next;    /* in the recording */
+    uint32_t index;   /* over all its turns */
+    bool started;     /* first_ns is known */
+    uint32_t turns;   /* left, this one included */
+    int64_t first_ns; /* of the recording's frames */
+    int64_t ago_ns;   /* how much later this turn's frames are, at most MOST_AGO_NS */
     char clock[64];
 } replay;
 
-/* Once more from the start, later by the length of a turn. */
-static bool turn_over(replay *self)
+/* Once more from the start, later by the length of a turn: FRAME; END after the last turn; FAILED, and no turn is left,
+ * where the clock does not hold it. */
+static int turn_over(replay *self)
 {
     if (self->turns <= 1 || self->next == 0) {
-        return false;
+        return T3R_CAPTURE_END;
     }
     uint32_t frames = self->next;
-    int64_t span = self->capture.last_stamp_ns - self->ago_ns - self->first_ns;
-    self->turn_ns = frames > 1 && span > 0 ? span + span / (frames - 1) : LONE_FRAME_NS;
-    self->ago_ns += self->turn_ns;
+    int64_t last_ns = self->capture.last_stamp_ns - self->ago_ns;
+    uint64_t span = last_ns > self->first_ns ? (uint64_t)last_ns - (uint64_t)self->first_ns : 0;
+    bool holds = span <= MOST_AGO_NS;
+    uint64_t turn_ns = holds && frames > 1 && span > 0 ? span + span / (frames - 1) : LONE_FRAME_NS;
+    if (!holds || turn_ns > MOST_AGO_NS - (uint64_t)self->ago_ns) {
+        self->turns = 1;
+        t3r_reason(self->capture.error, sizeof self->capture.error, "the clock does not hold another turn");
+        return T3R_CAPTURE_FAILED;
+    }
+    self->ago_ns += (int64_t)turn_ns;
     self->turns--;
     self->next = 0;
-    return true;
+    return T3R_CAPTURE_FRAME;
 }
 
 /* A frame that cannot be read is a failure once; the call after it goes on with the next one. */
 static int next(t3r_capture *capture, t3r_capture_frame *frame)
 {
     replay *self = (replay *)capture;
-    if (self->next == t3r_recording_frame_count(self->recording) && !turn_over(self)) {
-        return T3R_CAPTURE_END;
+    int turned = self->next < t3r_recording_frame_count(self->recording) ? T3R_CAPTURE_FRAME : turn_over(self);
+    if (turned != T3R_CAPTURE_FRAME) {
+        return turned;
     }
     int got = t3r_recording_frame(self->recording, self->next, frame, capture->error, sizeof capture->error);
     uint32_t index = self->index++;

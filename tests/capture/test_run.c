@@ -410,6 +410,37 @@ static void a_replay_has_no_latency(void **state)
     assert_int_equal(replayed.latency.count, 0);
 }
 
+/* Repeated until its clock is full a recording ends with a reason; no stamp goes back. */
+static void a_repeated_recording_ends_with_its_clock(void **state)
+{
+    scratch *s = *state;
+    char recording[600], error[256] = "";
+    snprintf(recording, sizeof recording, "%s", scratch_path(s, "e.mcap"));
+    static const int64_t span_ns = 500000000000000000;
+    t3r_capture_frame frame = {.frame = {.format = T3R_PIXEL_RGB24,
+                                         .width = WIDTH,
+                                         .height = HEIGHT,
+                                         .planes = {&rgb[0][0][0][0]},
+                                         .stride_bytes = {WIDTH * 3}}};
+    static capture_record record;
+    assert_int_equal(capture_record_begin(&record, recording, 0, false, NULL, "test", "monotonic", 1099511628), 0);
+    for (int i = 0; i < 2; i++) {
+        frame.stamp_ns = frame.depth_stamp_ns = 1000 + i * span_ns;
+        assert_int_equal(capture_record_frame(&record, &frame), 0);
+    }
+    assert_int_equal(capture_record_end(&record), 0);
+    t3r_capture *replay = t3r_replay_open_repeated(recording, UINT32_MAX, error, sizeof error);
+    assert_non_null(replay);
+    for (int i = 0; i < 6; i++) { /* a third turn's length on is 3e18 ns, more than 2^61 */
+        assert_int_equal(t3r_capture_next(replay, &frame), T3R_CAPTURE_FRAME);
+        assert_int_equal(frame.stamp_ns, 1000 + i * span_ns);
+    }
+    assert_int_equal(t3r_capture_next(replay, &frame), T3R_CAPTURE_FAILED);
+    assert_non_null(strstr(t3r_capture_error(replay), "the clock does not hold"));
+    assert_int_equal(t3r_capture_next(replay, &frame), T3R_CAPTURE_END);
+    t3r_capture_close(replay);
+}
+
 /* Opened again and again it never gives a frame: that, too, has an end, and the recording is whole. */
 static void a_camera_that_stands_still_for_good_is_given_up(void **state)
 {
@@ -444,6 +475,7 @@ int main(void)
         cmocka_unit_test(memory_stays_the_same_over_ten_thousand_frames),
         cmocka_unit_test_setup_teardown(a_recording_replays_what_was_live, scratch_setup, scratch_teardown),
         cmocka_unit_test_setup_teardown(a_replay_has_no_latency, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(a_repeated_recording_ends_with_its_clock, scratch_setup, scratch_teardown),
         cmocka_unit_test(kept_frames_are_read_by_their_rows),
         cmocka_unit_test(a_build_begins_with_the_first_frame_that_it_uses),
         cmocka_unit_test_setup_teardown(a_camera_that_stands_still_for_good_is_given_up, scratch_setup,
