@@ -14,11 +14,11 @@ static bool agree(int64_t a, int64_t b)
 void t3r_stereo_fuse(const t3r_view *view, const t3r_view *found)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    const uint32_t cut = T3R_MAX(found->depth_unit_q40, view->depth_unit_q40) >> 45 != 0 ? 2 : 0;
+    const int64_t from = (int64_t)(found->depth_unit_q40 >> cut), to = T3R_MAX((int64_t)(view->depth_unit_q40 >> cut), 1);
     for (size_t i = 0; i < pixels; i++) {
         const int32_t old = view->confidence[i], new = found->confidence[i];
-        /* 16 bits times 47 */
-        const int64_t steps =
-            t3r_round_div64((int64_t)found->depth[i] * (int64_t)found->depth_unit_q40, (int64_t)view->depth_unit_q40);
+        const int64_t steps = t3r_round_div64((int64_t)found->depth[i] * from, to); /* below 2^16 x 2^45 */
         if (new == T3R_STEREO_NONE || steps < 1 || steps > UINT16_MAX || (new == T3R_STEREO_FILLED &&old >= new)) {
             continue;
         }
