@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "import_frame.h"
 #include "posing/resection.h"
 #include "reason.h"
 
@@ -88,30 +89,40 @@ static double median_confidence(const float *confidence, size_t pixels)
     return median;
 }
 
+/* The lens of a frame's picture, on the pixels of its map. */
+static int map_lens(const pointmap_source *source, const posed_frame *frame, const pointmaps *maps,
+                    t3r_recorded_camera *lens, char *error, size_t error_bytes)
+{
+    uint32_t width, height;
+    char reason[256];
+    if (import_picture_size(source->directory, frame, &width, &height, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (posed_frame_camera(frame, width, height, lens, reason, sizeof reason) != 0) {
+        return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
+    }
+    const import_crop whole = {.width = width, .height = height};
+    import_crop_camera(lens, &whole, maps->width, maps->height);
+    return 0;
+}
+
 /* The pose from which the points lie on their pixels' rays: of the more confident half, spread over the view. */
-static int resect_map(const pointmaps *maps, uint32_t which, const posed_intrinsics *in, double least, motion *camera,
-                      double *pixels_off)
+static int resect_map(const pointmaps *maps, uint32_t which, const t3r_recorded_camera *lens, double least,
+                      motion *camera, double *pixels_off)
 {
     size_t pixels = (size_t)maps->width * maps->height, stride = pixels / (2 * (size_t)RESECTED) + 1, count = 0;
     const float *confidence = maps->confidence != NULL ? maps->confidence + pixels * which : NULL;
     double(*points)[3] = malloc((pixels / stride + 1) * sizeof *points);
     double(*rays)[2] = malloc((pixels / stride + 1) * sizeof *rays), error = 0;
-    t3r_recorded_camera k;
-    posed_frame frame = {.intrinsics = *in, .rotation = {1}};
-    frame.intrinsics.grid_width = in->grid_width > 0 ? in->grid_width : in->width;
-    frame.intrinsics.grid_height = in->grid_height > 0 ? in->grid_height : in->height;
-    frame.intrinsics.width = frame.intrinsics.height = NAN;
-    int status =
-        points != NULL && rays != NULL && posed_frame_camera(&frame, maps->width, maps->height, &k, NULL, 0) == 0 ? 0
-                                                                                                                  : -1;
+    int status = points != NULL && rays != NULL ? 0 : -1;
     double enough = confidence != NULL ? fmax(least, median_confidence(confidence, pixels)) : 0;
     for (size_t i = stride / 2; i < pixels && status == 0; i += stride) {
         if (confidence == NULL || confidence[i] >= enough) {
             for (int c = 0; c < 3; c++) {
                 points[count][c] = maps->points[3 * (pixels * which + i) + (size_t)c];
             }
-            rays[count][0] = ((double)(i % maps->width) - k.cx) / k.fx;
-            rays[count][1] = ((double)(i / maps->width) - k.cy) / k.fy;
+            rays[count][0] = ((double)(i % maps->width) - lens->cx) / lens->fx;
+            rays[count][1] = ((double)(i / maps->width) - lens->cy) / lens->fy;
             count++;
         }
     }
@@ -119,7 +130,7 @@ static int resect_map(const pointmaps *maps, uint32_t which, const posed_intrins
                          : -1;
     free(points);
     free(rays);
-    *pixels_off = error * k.fx;
+    *pixels_off = error * lens->fx;
     return status == 0 && *pixels_off < RESECTION_PIXELS * fmax(maps->width, maps->height) / 512 ? 0 : -1;
 }
 
@@ -154,7 +165,11 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
                           frame->image);
     }
     double off = 0;
-    if (resect_map(maps, which, &frame->intrinsics, source->options.confidence_least, camera, &off) != 0) {
+    t3r_recorded_camera lens;
+    if (map_lens(source, frame, maps, &lens, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (resect_map(maps, which, &lens, source->options.confidence_least, camera, &off) != 0) {
         return t3r_reason(
             error, error_bytes,
             "%s: no pose, and the points do not lie on the pixels' rays from any: intrinsics are wrong or "

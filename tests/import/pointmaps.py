@@ -163,6 +163,33 @@ def test_one_file(room, maps):
     check(got["depth"][2].shape == (24, 24), "half: resized")
 
 
+def test_larger_pictures(room, maps):
+    """Intrinsics are the pictures'; the maps have half their sides. Cropped to the maps' size, all is the room's."""
+    k = room["camera_info"][0]
+    large = dict(room, image=[rgb.repeat(2, 0).repeat(2, 1) for rgb in room["image"]],
+                 camera_info=[np.diag([2, 2, 1]) @ k + [[0, 0, 0.5], [0, 0, 0.5], [0, 0, 0]] for k in room["camera_info"]])
+    numbers = ",".join(repr(float(x)) for x in (2 * k[0, 0], 2 * k[1, 1], 2 * k[0, 2] + 0.5, 2 * k[1, 2] + 0.5))
+    size, unit = ("--size", f"{SIDE}x{SIDE}"), ("--depth-unit", "0.001")
+    np.savez(f"{work}/points.npz", pts3d=maps)
+    bare = folder("large", large, posed=None)
+    _, got = imported("large", bare, "--pointmaps", f"{work}/points.npz", "--intrinsics", numbers, *size, *unit)
+    same("large", got, room, 1e-5)
+    path = folder("large_json", large, posed=False, **MM)
+    _, got = imported("large_json", path, "--pointmaps", f"{work}/points.npz", *size)
+    same("large, transforms.json without w", got, room, 1e-5)
+    with open(f"{path}/transforms.json", encoding="utf-8") as file:
+        text = json.load(file)
+    for frame in text["frames"]:
+        frame.update(w=2 * SIDE, h=2 * SIDE, camera_angle_x=2 * np.arctan(SIDE / frame.pop("fl_x")),
+                     camera_angle_y=2 * np.arctan(SIDE / frame.pop("fl_y")))
+    with open(f"{path}/transforms.json", "w", encoding="utf-8") as file:
+        json.dump(text, file)
+    _, got = imported("large_angle", path, "--pointmaps", f"{work}/points.npz", *size)
+    same("large, by field of view", got, room, 1e-5)
+    os.remove(f"{path}/2.png")
+    refused(path, ["2.png: No such file"], "--pointmaps", f"{work}/points.npz")
+
+
 def test_refusals(room, maps):
     path = folder("bad", room, **MM)
     file = f"{work}/bad.npz"
@@ -231,6 +258,6 @@ with tempfile.TemporaryDirectory() as work:
     code, _, message = run("room", "--size", f"{SIDE}x{SIDE}", "--frames", str(FRAMES), "-o", f"{work}/room.mcap")
     check(code == 0, f"room: {message}")
     the_room = read(f"{work}/room.mcap")
-    for test in (test_files_of_frames, test_one_file, test_refusals):
+    for test in (test_files_of_frames, test_one_file, test_larger_pictures, test_refusals):
         test(the_room, points(the_room))
 done()
