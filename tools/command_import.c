@@ -328,6 +328,12 @@ static void print_text(const options *o, const material *m, const totals *t)
     }
 }
 
+/* Whether options that only pointmaps heed are given: the one to name, else NULL. */
+static const char *pointmap_option(const pointmap_options *o)
+{
+    return o->confidence_least != -HUGE_VAL ? "--min-confidence" : o->depth_unit != 0 ? "--depth-unit" : NULL;
+}
+
 /* The folder's lists, then what options make of them: pointmaps, poses. */
 static int prepare(const options *o, material *m, char *error)
 {
@@ -347,6 +353,10 @@ static int prepare(const options *o, material *m, char *error)
         pointmap_options points = o->pointmaps;
         points.resect = estimate;
         return pointmap_source_open(&m->pointmaps, o->directory, &points, &m->folder, error, ERROR_BYTES);
+    }
+    if (pointmap_option(&o->pointmaps) != NULL) {
+        return t3r_reason(error, ERROR_BYTES, "%s: %s is for pointmaps, but no frame has one", o->directory,
+                          pointmap_option(&o->pointmaps));
     }
     if (!estimate) {
         return 0;
@@ -403,7 +413,8 @@ static int estimate_all(t3r_recording *recording, const options *o, uint32_t cou
 static int import_recording(const options *o)
 {
     char error[ERROR_BYTES] = "";
-    if (o->poses == POSES_GIVEN || o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL) {
+    if (o->poses == POSES_GIVEN || o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL ||
+        pointmap_option(&o->pointmaps) != NULL) {
         return cli_error(CLI_BAD_USAGE, "%s is a recording: --poses estimate is all that import does to one",
                          o->directory);
     }

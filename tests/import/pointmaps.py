@@ -163,6 +163,18 @@ def test_one_file(room, maps):
     check(got["depth"][2].shape == (24, 24), "half: resized")
 
 
+def test_options_of_pointmaps_alone(room, _):
+    path = folder("no_maps", room, **MM)
+    refused(path, ["no_maps", "--min-confidence is for pointmaps"], "--min-confidence", "3")
+    refused(path, ["no_maps", "--depth-unit is for pointmaps"], "--depth-unit", "5")
+    refused(path, ["no_maps", "--depth-unit is for pointmaps"], "--depth-unit", "5", "--poses", "estimate")
+    for option, value in (("--min-confidence", "3"), ("--depth-unit", "5")):
+        target = f"{work}/refused.mcap"
+        status, _, error = run("import", f"{work}/room.mcap", "--poses", "estimate", option, value, "-o", target)
+        check(status == 2 and "is a recording" in error, f"{option} with a recording: {status}, {error}")
+        check(not os.path.exists(target), f"{option} with a recording: left one behind")
+
+
 def test_larger_pictures(room, maps):
     """Intrinsics are the pictures'; the maps have half their sides. Cropped to the maps' size, all is the room's."""
     k = room["camera_info"][0]
@@ -258,6 +270,7 @@ with tempfile.TemporaryDirectory() as work:
     code, _, message = run("room", "--size", f"{SIDE}x{SIDE}", "--frames", str(FRAMES), "-o", f"{work}/room.mcap")
     check(code == 0, f"room: {message}")
     the_room = read(f"{work}/room.mcap")
-    for test in (test_files_of_frames, test_one_file, test_larger_pictures, test_refusals):
+    for test in (test_files_of_frames, test_one_file, test_options_of_pointmaps_alone, test_larger_pictures,
+                 test_refusals):
         test(the_room, points(the_room))
 done()
