@@ -13,6 +13,7 @@
 #define SAMPLED 20000u       /* depths a frame for the median */
 #define MEDIAN_STEPS 8192.0
 #define MOST_STEPS 65535.0
+#define SAME_POSE 1e-3 /* of two poses: what a rotation's entries, and a share of the position, may differ by */
 
 static int read_maps(const pointmap_source *source, uint32_t index, pointmaps *maps, char *error, size_t error_bytes)
 {
@@ -141,6 +142,24 @@ static motion in_first(const posed_folder *folder, uint32_t index)
     return motion_after(&back, &here);
 }
 
+/* Whether the folder gives the frame this pose as well: then it does not tell their worlds apart. */
+static bool folder_agrees(const posed_frame *frame, const motion *pose)
+{
+    if (!frame->posed) {
+        return false;
+    }
+    motion own = pose_of(frame);
+    double off = 0, apart = 0, far = 0;
+    for (int i = 0; i < 9; i++) {
+        off = fmax(off, fabs(own.r[i] - pose->r[i]));
+    }
+    for (int i = 0; i < 3; i++) {
+        apart = fmax(apart, fabs(own.t[i] - pose->t[i]));
+        far = fmax(far, fmax(fabs(own.t[i]), fabs(pose->t[i])));
+    }
+    return off <= SAME_POSE && apart <= SAME_POSE * far;
+}
+
 static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t index, const pointmaps *maps,
                         uint32_t which, char *error, size_t error_bytes)
 {
@@ -154,10 +173,12 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     }
     if (maps->poses != NULL && !source->options.resect) {
         *camera = maps->poses[which];
+        source->in_points = folder_agrees(frame, camera) ? source->in_points : frame->image;
         return set_pose(frame, camera);
     }
     if (frame->posed && folder->frames[0].posed && !source->options.resect) {
         *camera = in_first(folder, index);
+        source->in_folder = frame->image;
         return 0;
     }
     if (frame->intrinsics.distortion != T3R_DISTORTION_NONE) {
@@ -178,8 +199,10 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     }
     source->worst_px = fmax(source->worst_px, off);
     if (source->options.resect || !folder->frames[0].posed) {
+        source->in_points = frame->image;
         return set_pose(frame, camera); /* the points' frame is the world */
     }
+    source->in_folder = frame->image;
     motion first = pose_of(&folder->frames[0]), world = motion_after(&first, camera);
     return set_pose(frame, &world);
 }
@@ -261,8 +284,11 @@ static int note_frame(pointmap_source *source, posed_folder *folder, uint32_t in
             source->count++;
         }
         free(depth);
-    } else if (status == 0 && !folder->frames[index].posed) {
-        status = t3r_reason(error, error_bytes, "%s: neither a pose nor a pointmap", folder->frames[index].image);
+    } else if (status == 0 && (source->options.resect || !folder->frames[index].posed)) {
+        status = t3r_reason(error, error_bytes, "%s: no pointmap to estimate its pose from, as the others have",
+                            folder->frames[index].image);
+    } else if (status == 0) {
+        source->in_folder = folder->frames[index].image;
     }
     pointmaps_free(&own);
     return status;
@@ -290,6 +316,11 @@ int pointmap_source_open(pointmap_source *source, const char *directory, const p
     /* the first camera's pose last: the others are told against it */
     for (uint32_t i = folder->frame_count; i-- > 0 && status == 0;) {
         status = note_frame(source, folder, i, &d, error, error_bytes);
+    }
+    if (status == 0 && source->in_folder != NULL && source->in_points != NULL) {
+        status = t3r_reason(error, error_bytes,
+                            "%s: its pose is the folder's, but that of %s is in its points' frame, another world",
+                            source->in_folder, source->in_points);
     }
     if (status == 0 && source->count > 0) {
         status = settle_unit(source, &d, folder, error, error_bytes);
