@@ -41,6 +41,24 @@ bool is_number(const char *text)
     return true;
 }
 
+// Whether the text names pictures by number, as p%d.png or p%03d.png: a % of a URL stands for a byte.
+bool is_numbered(const char *text)
+{
+    if (std::strstr(text, "://") != nullptr) {
+        return false;
+    }
+    for (const char *at = std::strchr(text, '%'); at != nullptr; at = std::strchr(at + 1, '%')) {
+        const char *end = at + 1;
+        while (std::isdigit(static_cast<unsigned char>(*end))) {
+            end++;
+        }
+        if (*end == 'd' || *end == 'u') { // OpenCV's patterns
+            return true;
+        }
+    }
+    return false;
+}
+
 // The back end of this name, or CAP_ANY; -1 when there is none.
 int backend_named(const char *name)
 {
@@ -96,7 +114,7 @@ t3r_opencv_film *open(const t3r_opencv_request *request, char *error, size_t err
     t3r_opencv_film *film = nullptr;
     try {
         // of numbered pictures FFMPEG keeps 8 bits
-        bool pictures = request->backend == nullptr && std::strchr(request->url, '%') != nullptr;
+        bool pictures = request->backend == nullptr && is_numbered(request->url);
         int api = pictures ? static_cast<int>(cv::CAP_IMAGES) : backend_named(request->backend);
         if (api < 0) {
             complain(error, error_bytes, request->backend, "is not a back end of this OpenCV");

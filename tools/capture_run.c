@@ -158,7 +158,7 @@ static int complete(run_state *s, t3r_capture_frame *frame)
     }
     if (plan->poses != NULL) {
         double pose[POSE_NUMBERS];
-        frame->has_pose = trajectory_at(plan->poses, frame->stamp_ns + plan->offset_ns, pose);
+        frame->has_pose = trajectory_at_offset(plan->poses, frame->stamp_ns, plan->offset_ns, pose);
         if (frame->has_pose) {
             t3r_recorded_camera camera = {.position = {pose[0], pose[1], pose[2]},
                                           .rotation = {pose[6], pose[3], pose[4], pose[5]}};
@@ -178,6 +178,20 @@ static uint32_t views_of(const capture_plan *plan)
 static uint32_t context_at(const capture_plan *plan, uint32_t i)
 {
     return plan->build->context_count == 0 ? i : plan->build->context[i];
+}
+
+/* Opens the build with the first frame that it will use: those before may lack depth, and need less room. */
+static int open_build(run_state *s, const t3r_capture_frame *frame)
+{
+    const capture_plan *plan = s->plan;
+    bool chosen = plan->build != NULL && (plan->every > 0 || frame->index == context_at(plan, 0));
+    if (!chosen || s->building || live_build_lacks(frame) != NULL) {
+        return CLI_OK;
+    }
+    int code = live_build_open(&s->build, plan->build, views_of(plan), frame);
+    s->building = code == CLI_OK;
+    s->account->arena_bytes = s->build.r.arena_bytes;
+    return code;
 }
 
 static int write_scene(run_state *s)
@@ -252,17 +266,15 @@ static int handle(run_state *s, t3r_capture_frame *frame)
         a->height = frame->frame.height;
         a->format = frame->frame.format;
         s->first_seconds = cli_now();
-        if (plan->build != NULL) {
-            code = live_build_open(&s->build, plan->build, views_of(plan), frame);
-            s->building = code == CLI_OK;
-            a->arena_bytes = s->build.r.arena_bytes;
-        }
+    }
+    if (code == CLI_OK) {
+        code = open_build(s, frame);
     }
     double start = cli_now();
     if (code == CLI_OK && s->record != NULL && capture_record_frame(s->record, frame) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", s->record->error);
     }
-    if (code == CLI_OK && s->building) {
+    if (code == CLI_OK && plan->build != NULL) {
         code = plan->every > 0 ? build_repeatedly(s, frame) : build_chosen(s, frame);
     }
     if (code != CLI_OK) {
@@ -344,7 +356,7 @@ static int loop(run_state *s)
     if (code == CLI_OK && s->account->frames == 0) {
         code = cli_error(CLI_BAD_INPUT, "%s: gave no frame", plan->source);
     }
-    if (code == CLI_OK && s->building && s->account->builds == 0) {
+    if (code == CLI_OK && plan->build != NULL && s->account->builds == 0) {
         code =
             cli_error(CLI_BAD_INPUT, "%s: ended before all context frames were there: nothing was built", plan->source);
     }
@@ -361,7 +373,7 @@ static int begin_record(run_state *s)
     if (s->record == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    if (capture_record_begin(s->record, plan->output, plan->max_bytes, plan->sync, plan->source,
+    if (capture_record_begin(s->record, plan->output, plan->max_bytes, plan->sync, plan->spared, plan->source,
                              t3r_capture_clock(s->capture), t3r_capture_depth_unit_q40(s->capture)) == 0) {
         return CLI_OK;
     }

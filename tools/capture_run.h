@@ -1,5 +1,5 @@
 /* The loop of `trim3r capture`: frames from a source to a recording, to Gaussians, or to both. Nothing is allocated
- * once the first frame is there. */
+ * once the first frame is there, or, with a build, the first that it uses. */
 #ifndef TRIM3R_TOOLS_CAPTURE_RUN_H
 #define TRIM3R_TOOLS_CAPTURE_RUN_H
 
@@ -17,6 +17,7 @@ typedef struct capture_plan {
     const char *output;                    /* NULL = no recording */
     uint64_t max_bytes;                    /* of a recording's file; 0 = no end */
     bool sync;                             /* every message to the disk */
+    const char *const *spared;             /* as of capture_record_begin() */
     const trajectory *poses;               /* NULL = the source's own */
     int64_t offset_ns;                     /* their clock less the camera's */
     const t3r_recorded_camera *intrinsics; /* NULL = the source's own; its size is the frames' */

@@ -153,8 +153,8 @@ static double explained_at(const clock_motion *motions, size_t count, const traj
     *used = 0;
     for (size_t i = 0; i < count; i++) {
         double from[POSE_NUMBERS], to[POSE_NUMBERS], x[2][TERMS];
-        if (!trajectory_at(t, motions[i].from_ns + offset_ns, from) ||
-            !trajectory_at(t, motions[i].to_ns + offset_ns, to)) {
+        if (!trajectory_at_offset(t, motions[i].from_ns, offset_ns, from) ||
+            !trajectory_at_offset(t, motions[i].to_ns, offset_ns, to)) {
             continue;
         }
         expected(from, to, x[0], x[1]);

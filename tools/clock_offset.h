@@ -34,8 +34,8 @@ typedef struct clock_offset {
     double runner_up;  /* the best explained elsewhere, 50 ms away or more */
 } clock_offset;
 
-/* Searches offsets within +-range_ns of `around_ns`. 0, or -1 with a reason: too few frames with poses, too little
- * motion, or an answer that is not clear. */
+/* Searches offsets within +-range_ns of `around_ns`, both below 2^62. 0, or -1 with a reason: too few frames with
+ * poses, too little motion, or an answer that is not clear. */
 int clock_offset_estimate(const clock_motion *motions, size_t count, const trajectory *t, int64_t around_ns,
                           int64_t range_ns, clock_offset *out, char *error, size_t error_bytes);
 

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "capture.h"
 #include "capture_run.h"
@@ -20,6 +19,8 @@
 #define ERROR_BYTES 512
 #define MOST_MOTIONS 3000u           /* frames that an offset is estimated from */
 #define RANGE_NS INT64_C(1000000000) /* of offsets about the one to be expected */
+#define MOST_OFFSET_S INT64_C(4000000000)
+#define MOST_OFFSET_NS (MOST_OFFSET_S * 1000000000)
 
 typedef struct capture_options {
     const char *source, *output, *poses, *pose_topic;
@@ -139,15 +140,18 @@ static uint64_t bytes_of(struct argp_state *state, const char *text)
     return value << shift;
 }
 
-/* Seconds with up to nine digits behind the point, exactly. */
+/* Seconds below MOST_OFFSET_S with up to nine digits behind the point, exactly. */
 static bool signed_seconds(const char *text, int64_t *ns)
 {
     bool negative = *text == '-';
     text += *text == '-' || *text == '+';
     int64_t seconds = 0, fraction = 0, unit = 100000000;
     size_t digits = 0;
-    for (; *text >= '0' && *text <= '9' && seconds < INT64_C(8000000000); text++, digits++) {
+    for (; *text >= '0' && *text <= '9'; text++, digits++) {
         seconds = seconds * 10 + (*text - '0');
+        if (seconds >= MOST_OFFSET_S) {
+            return false;
+        }
     }
     if (*text == '.') {
         for (text++; *text >= '0' && *text <= '9'; text++, digits++, unit /= 10) {
@@ -155,7 +159,7 @@ static bool signed_seconds(const char *text, int64_t *ns)
         }
     }
     *ns = (seconds * 1000000000 + fraction) * (negative ? -1 : 1);
-    return digits > 0 && *text == '\0' && seconds < INT64_C(8000000000);
+    return digits > 0 && *text == '\0';
 }
 
 static void parse_offset(struct argp_state *state, const char *text, capture_options *o)
@@ -223,6 +227,8 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--method %s needs a recording: trim3r build", method_name(o->build.method));
     } else if (o->scene != NULL && o->build.allocation == T3R_ALLOCATE_GIVEN) {
         argp_error(state, "--allocate given needs a recording: trim3r build");
+    } else if (o->build.depth == T3R_DEPTH_STEREO) {
+        argp_error(state, "--depth stereo needs a recording: trim3r build");
     } else if (o->every > 0 && o->build.context_count > 0) {
         argp_error(state, "--every and --context exclude each other");
     } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL)) {
@@ -477,8 +483,14 @@ static int estimate_offset(const capture_options *o, const trajectory *poses, cl
     int64_t centre = o->offset_ns;
     if (!o->has_centre && count > 0) {
         int64_t first = poses->poses[0].stamp_ns, last = poses->poses[poses->count - 1].stamp_ns;
-        bool overlap = motions[0].from_ns < last && motions[count - 1].to_ns > first;
-        centre = overlap ? 0 : first - motions[0].from_ns;
+        int64_t from = motions[0].from_ns;
+        /* stamps may be 2^63 apart: halves */
+        if (llabs(first / 2 - from / 2) >= MOST_OFFSET_NS / 2) {
+            free(motions);
+            return cli_error(CLI_BAD_INPUT, "the poses' clock and the camera's are 4e9 s apart or more");
+        }
+        bool overlap = from < last && motions[count - 1].to_ns > first;
+        centre = overlap ? 0 : first - from;
     }
     int status = clock_offset_estimate(motions, count, poses, centre, RANGE_NS, found, error, sizeof error);
     free(motions);
@@ -606,15 +618,7 @@ static void print_text(const capture_options *o, const t3r_capture *capture, con
 
 /* ---- the run ---- */
 
-/* Whether the recording to be written is the one that is replayed. */
-static bool overwrites_source(const capture_options *o)
-{
-    struct stat source, output;
-    return o->output != NULL && strncmp(o->source, "replay:", 7) == 0 && stat(o->source + 7, &source) == 0 &&
-           stat(o->output, &output) == 0 && source.st_dev == output.st_dev && source.st_ino == output.st_ino;
-}
-
-static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset)
+static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset, const char *const *spared)
 {
     char error[ERROR_BYTES] = "";
     t3r_capture *capture = t3r_capture_open(o->source, &o->settings, error, sizeof error);
@@ -629,6 +633,7 @@ static int run(const capture_options *o, const trajectory *poses, const clock_of
         .output = o->output,
         .max_bytes = o->max_bytes,
         .sync = o->sync,
+        .spared = spared,
         .poses = poses,
         .offset_ns = offset->offset_ns,
         .intrinsics = o->has_intrinsics ? &o->intrinsics : NULL,
@@ -662,8 +667,10 @@ int command_capture(int argc, char **argv)
     if (o.list) {
         return list();
     }
-    if (overwrites_source(&o)) {
-        return cli_error(CLI_BAD_USAGE, "-o %s is the recording that is replayed", o.output);
+    const char *colon = strchr(o.source, ':');
+    const char *const spared[CAPTURE_RECORD_SPARED] = {colon != NULL ? colon + 1 : NULL, o.settings.depth, o.poses};
+    if (o.output != NULL && capture_record_would_replace(o.output, spared) != NULL) {
+        return cli_error(CLI_BAD_USAGE, "-o %s is a file that is read: it would be overwritten", o.output);
     }
     watch_signals();
     trajectory poses = {0};
@@ -677,7 +684,7 @@ int command_capture(int argc, char **argv)
         code = o.estimate ? estimate_offset(&o, &poses, &offset) : CLI_OK;
     }
     if (code == CLI_OK) {
-        code = run(&o, o.poses != NULL ? &poses : NULL, &offset);
+        code = run(&o, o.poses != NULL ? &poses : NULL, &offset, spared);
     }
     trajectory_free(&poses);
     return code;

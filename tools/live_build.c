@@ -6,21 +6,14 @@
 #include <string.h>
 
 #include "cli.h"
+#include "pixel_layout.h"
 
-static size_t plane_bytes(const t3r_frame *f, uint32_t plane)
-{
-    uint32_t rows = plane == 0 ? f->height : f->format == T3R_PIXEL_NV12 ? f->height / 2 : 0;
-    return (size_t)f->stride_bytes[plane] * rows;
-}
-
-static size_t depth_bytes(const t3r_frame *f)
-{
-    return f->depth == NULL ? 0 : (size_t)f->depth_stride_bytes * f->depth_height;
-}
-
+/* Of all rows without padding. */
 static size_t all_bytes(const t3r_frame *f)
 {
-    return plane_bytes(f, 0) + plane_bytes(f, 1) + depth_bytes(f);
+    size_t rows = (size_t)t3r_pixel_rows(f->format, 0, f->height) + t3r_pixel_rows(f->format, 1, f->height);
+    size_t depth = f->depth == NULL ? 0 : (size_t)f->depth_width * f->depth_height * 2;
+    return rows * t3r_pixel_row_bytes(f->format, f->width) + depth;
 }
 
 const char *live_build_lacks(const t3r_capture_frame *frame)
@@ -124,11 +117,13 @@ void live_build_close(live_build *build)
     *build = (live_build){0};
 }
 
-static const uint8_t *copy(uint8_t **to, const uint8_t *from, size_t bytes)
+/* Packs rows: a driver's buffer may end with the last row's samples, without its padding. */
+static const uint8_t *copy_rows(uint8_t **to, const uint8_t *from, uint32_t rows, size_t row_bytes, size_t stride_bytes)
 {
     const uint8_t *start = *to;
-    memcpy(*to, from, bytes);
-    *to += bytes;
+    for (uint32_t y = 0; y < rows; y++, *to += row_bytes) {
+        memcpy(*to, from + y * stride_bytes, row_bytes);
+    }
     return start;
 }
 
@@ -139,7 +134,8 @@ int live_build_keep(live_build *build, const t3r_capture_frame *frame)
         return CLI_OK;
     }
     if (all_bytes(f) > build->frame_bytes) {
-        return cli_error(CLI_BAD_INPUT, "frame %" PRIu32 " is larger than the first one: the format changed",
+        return cli_error(CLI_BAD_INPUT,
+                         "frame %" PRIu32 " is larger than the first one of the build: the format changed",
                          frame->index);
     }
     if (build->kept_count == build->room) {
@@ -151,12 +147,17 @@ int live_build_keep(live_build *build, const t3r_capture_frame *frame)
     live_frame *kept = &build->kept[build->kept_count++];
     uint8_t *to = kept->bytes;
     kept->frame = *frame;
-    kept->frame.frame.planes[0] = copy(&to, f->planes[0], plane_bytes(f, 0));
-    if (plane_bytes(f, 1) > 0) {
-        kept->frame.frame.planes[1] = copy(&to, f->planes[1], plane_bytes(f, 1));
+    t3r_frame *packed = &kept->frame.frame;
+    uint32_t row_bytes = t3r_pixel_row_bytes(f->format, f->width);
+    for (uint32_t p = 0; p < 2 && t3r_pixel_rows(f->format, p, f->height) > 0; p++) {
+        uint32_t rows = t3r_pixel_rows(f->format, p, f->height);
+        packed->planes[p] = copy_rows(&to, f->planes[p], rows, row_bytes, f->stride_bytes[p]);
+        packed->stride_bytes[p] = row_bytes;
     }
     if (f->depth != NULL) {
-        kept->frame.frame.depth = copy(&to, f->depth, depth_bytes(f));
+        size_t depth_row_bytes = (size_t)f->depth_width * 2;
+        packed->depth = copy_rows(&to, f->depth, f->depth_height, depth_row_bytes, f->depth_stride_bytes);
+        packed->depth_stride_bytes = (uint32_t)depth_row_bytes;
     }
     return CLI_OK;
 }

@@ -23,7 +23,7 @@ typedef struct live_build {
     uint32_t builds;
 } live_build;
 
-/* For `views` context views of frames such as this one. CLI_OK, and live_build_close() is due; or an exit status after
+/* For `views` context views of frames such as this one, which lacks nothing. CLI_OK, and live_build_close() is due; or an exit status after
  * a message. */
 int live_build_open(live_build *build, const reconstruction_options *options, uint32_t views,
                     const t3r_capture_frame *like);

@@ -11,6 +11,7 @@
 
 #define MAX_BYTES ((size_t)1 << 30)
 #define MAX_STAMP_S INT64_C(4000000000)
+#define MAX_STAMP_NS (MAX_STAMP_S * 1000000000)
 #define FAR 2147483648.0 /* positions are below it */
 
 void trajectory_free(trajectory *t)
@@ -100,10 +101,11 @@ static bool take_nanoseconds(char **text, int64_t *stamp_ns)
     char *p = *text;
     int64_t value = 0;
     for (; *p >= '0' && *p <= '9'; p++) {
-        value = value * 10 + (*p - '0');
-        if (value > MAX_STAMP_S * 1000000000) {
+        int64_t digit = *p - '0';
+        if (value > (MAX_STAMP_NS - digit) / 10) {
             return false;
         }
+        value = value * 10 + digit;
     }
     bool any = p > *text;
     *stamp_ns = value;
@@ -283,7 +285,8 @@ bool trajectory_at(const trajectory *t, int64_t stamp_ns, double pose[POSE_NUMBE
         return false;
     }
     const trajectory_pose *a = &t->poses[low - 1], *b = &t->poses[low];
-    int64_t gap = b->stamp_ns - a->stamp_ns;
+    /* b is later; stamps of a bag may be as far apart as uint64_t alone holds */
+    uint64_t gap = (uint64_t)b->stamp_ns - (uint64_t)a->stamp_ns;
     if (gap > TRAJECTORY_BRACKET_NS) {
         return false;
     }
@@ -294,4 +297,10 @@ bool trajectory_at(const trajectory *t, int64_t stamp_ns, double pose[POSE_NUMBE
         pose[3 + i] = rotation[(i + 1) % 4];
     }
     return true;
+}
+
+bool trajectory_at_offset(const trajectory *t, int64_t stamp_ns, int64_t offset_ns, double pose[POSE_NUMBERS])
+{
+    bool holds = offset_ns >= 0 ? stamp_ns <= INT64_MAX - offset_ns : stamp_ns >= INT64_MIN - offset_ns;
+    return holds && trajectory_at(t, stamp_ns + offset_ns, pose);
 }

@@ -33,5 +33,7 @@ void trajectory_free(trajectory *t);
 /* The pose at a time of the trajectory's clock: one of that very time as it was read, else between two that are at most
  * TRAJECTORY_BRACKET_NS apart, its quaternion of norm 1. False where there is none; no memory is asked for. */
 bool trajectory_at(const trajectory *t, int64_t stamp_ns, double pose[POSE_NUMBERS]);
+/* The pose at a time of another clock, `offset_ns` behind the trajectory's; no time of int64_t: none. */
+bool trajectory_at_offset(const trajectory *t, int64_t stamp_ns, int64_t offset_ns, double pose[POSE_NUMBERS]);
 
 #endif

@@ -90,6 +90,11 @@ def poses():
     check(json.loads(run("info", "lens.mcap", "--json"))["distortion"] == "radtan", "a lens with distortion")
     run("capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash",
         expect=1, words="offset is not")
+    for far in ("4000000000", "79999999999", "-18446744073", "99999999999999999999", "estimate:4000000000"):
+        run("capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", far, "--hash",
+            expect=2, words="--clock-offset takes")
+    told = capture("replay:bare.mcap", *asked, "tum.txt", "--clock-offset", "-3999999999.999999999")
+    check(told["unposed"] == 12, "the farthest offset there is")
     run("capture", "--source", "v4l2:/dev/video0", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash",
         expect=2, words="record, then")
 
@@ -103,6 +108,20 @@ def rolls_over():
     frames = [json.loads(run("info", name, "--json"))["frames"] for name in names]
     check(sum(frames) == 48, f"no frame is lost between files: {frames}")
     capture("replay:room.mcap", "--max-bytes", "20k", "-o", "no.mcap", expect=1, words="does not hold one frame")
+
+
+def spares_what_it_reads():
+    """Neither the first file nor one that it rolls over to replaces the recording or the poses, by whatever name."""
+    with open("spare-1.mcap", "wb") as file:
+        file.write(read("room.mcap"))
+    os.symlink("spare-1.mcap", "link-2.mcap")
+    for name in ("spare.mcap", "link.mcap"):
+        capture("replay:spare-1.mcap", "--repeat", 4, "--max-bytes", 40000, "-o", name, expect=1,
+                words="is spare-1.mcap, which is read")
+        check(read("spare-1.mcap") == read("room.mcap"), "the recording that is replayed is whole")
+        check(json.loads(run("info", name, "--json"))["note"] == "", "and the file before is")
+    capture("replay:room.mcap", "--poses", "spare-1.mcap", "-o", "spare-1.mcap", expect=2, words="is a file that is")
+    check(read("spare-1.mcap") == read("room.mcap"), "the poses are whole")
 
 
 def stops(number):
@@ -176,12 +195,14 @@ def refusals():
         words="must ascend")
     run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "1,2", "--every", 2, expect=2,
         words="exclude")
+    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--depth", "stereo", expect=2,
+        words="--depth stereo needs a recording")
     run("capture", "--source", "replay:room.mcap", "--hash", "--max-bytes", "10X", expect=2, words="--max-bytes")
     run("capture", "--source", "replay:room.mcap", "-o", "/dev/full", expect=1, words="cannot be written")
     run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "1,2", expect=2, words="--intrinsics")
     run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "5,5,5,5", expect=1, words="focal length")
     run("capture", "--source", "replay:room.mcap", "-o", "../" + os.path.basename(os.getcwd()) + "/room.mcap", expect=2,
-        words="is the recording that is replayed")
+        words="is a file that is read")
     listed = run("capture", "--list")
     check(all(name in listed for name in ("replay", "v4l2", "libcamera", "opencv")), "--list names every adapter")
     for name in ("v4l2", "libcamera", "opencv"):
@@ -204,6 +225,7 @@ with tempfile.TemporaryDirectory() as folder:
     builds()
     poses()
     rolls_over()
+    spares_what_it_reads()
     stops(signal.SIGINT)
     stops(signal.SIGTERM)
     killed()

@@ -89,6 +89,11 @@ with tempfile.TemporaryDirectory() as folder:
         good, want = reader.read()
         check(good and (got == want).all(), "a film as cv2 itself decodes it")
     check("FFMPEG" in told["note"], "the back end is named")
+    os.rename("film.avi", "100%.avi")
+    check("CV_IMAGES" not in capture("opencv:100%.avi", "film.mcap")["note"], "a film whose name holds a %")
+    os.rename("100%.avi", "100%3d.avi")
+    check("CV_IMAGES" not in capture("opencv:file://" + os.path.abspath("100%3d.avi"), "film.mcap")["note"],
+          "the % of a URL is no number of pictures")
     run("capture", "--source", "opencv:missing.avi", "--hash", expect=1, words="cannot open")
     run("capture", "--source", "opencv:c%03d.png", "--backend", "NONE", "--hash", expect=1, words="not a back end")
     run("capture", "--source", "opencv:d%03d.png", "--depth-source", "c%03d.png", "--hash", expect=1)

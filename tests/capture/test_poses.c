@@ -64,6 +64,12 @@ static void lines_are_read_to_the_nanosecond(void **state)
     refused("1 1 2 4e9 0 0 0 1\n", "2^31");
     refused("1.5,1,2,3,1,0,0,0\n", "nanoseconds");
     refused("99999999999 1 2 3 0 0 0 1\n", "no time");
+    parsed("4000000000000000000,1,2,3,1,0,0,0\n", &t);
+    assert_int_equal(t.poses[0].stamp_ns, INT64_C(4000000000000000000));
+    trajectory_free(&t);
+    refused("4000000000000000001,1,2,3,1,0,0,0\n", "nanoseconds");
+    refused("18446744073709551617,1,2,3,1,0,0,0\n", "nanoseconds"); /* 1, if its overflow were not seen */
+    refused("39999999999999999999,1,2,3,1,0,0,0\n", "nanoseconds");
 }
 
 static void poses_are_interpolated_within_a_bracket(void **state)
@@ -80,6 +86,19 @@ static void poses_are_interpolated_within_a_bracket(void **state)
     assert_false(trajectory_at(&t, 999999999, pose));
     assert_false(trajectory_at(&t, 2000000001, pose));
     trajectory_free(&t);
+}
+
+static void times_that_no_integer_holds_have_no_pose(void **state)
+{
+    (void)state;
+    trajectory_pose ends[2] = {{.stamp_ns = -(INT64_C(1) << 62), .pose = {0, 0, 0, 0, 0, 0, 1}},
+                               {.stamp_ns = INT64_C(1) << 62, .pose = {0, 0, 0, 0, 0, 0, 1}}};
+    const trajectory t = {.poses = ends, .count = 2, .kind = "bag"};
+    double pose[POSE_NUMBERS];
+    assert_false(trajectory_at(&t, 0, pose)); /* neighbours 2^63 ns apart */
+    assert_true(trajectory_at_offset(&t, INT64_C(1) << 61, INT64_C(1) << 61, pose));
+    assert_false(trajectory_at_offset(&t, INT64_MAX, 1, pose));
+    assert_false(trajectory_at_offset(&t, INT64_MIN, -1, pose));
 }
 
 /* ---- clocks ---- */
@@ -212,6 +231,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_are_read_to_the_nanosecond),
         cmocka_unit_test(poses_are_interpolated_within_a_bracket),
+        cmocka_unit_test(times_that_no_integer_holds_have_no_pose),
         cmocka_unit_test(the_offset_of_clocks_is_found),
         cmocka_unit_test(an_offset_that_cannot_be_told_is_not),
     };

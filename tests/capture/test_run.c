@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -304,6 +306,82 @@ static void a_recording_replays_what_was_live(void **state)
     }
 }
 
+/* The first image has no depth: the room for kept frames is that of the first one that is kept. */
+static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
+{
+    (void)state;
+    for (uint32_t every = 0; every < 2; every++) {
+        fake_v4l2 fake;
+        start_camera(&fake, V4L2_PIX_FMT_YUYV);
+        fake.node[1].drop_from = 0;
+        fake.node[1].drop_count = 1;
+        t3r_capture *camera = open_camera(&fake);
+        trajectory poses = path_of_room();
+        t3r_recorded_camera lens;
+        room_recorded_camera(0, WIDTH, HEIGHT, &lens);
+        reconstruction_options build;
+        reconstruction_defaults(&build);
+        build.keep_percent = 10;
+        build.refine = 0;
+        build.context_count = every > 0 ? 0 : 2;
+        build.context[0] = 1;
+        build.context[1] = 3;
+        const capture_plan plan = {.source = "test",
+                                   .poses = &poses,
+                                   .intrinsics = &lens,
+                                   .frames = 6,
+                                   .build = &build,
+                                   .every = every * 2,
+                                   .quiet = true};
+        capture_account account;
+        assert_int_equal(capture_run(camera, &plan, &account), CLI_OK);
+        assert_int_equal(account.counts.paired, 5);
+        assert_int_equal(account.builds, every > 0 ? 2 : 1);
+        assert_true(account.arena_bytes > 0);
+        t3r_capture_close(camera);
+        trajectory_free(&poses);
+    }
+}
+
+/* Of a frame no more is read than its rows: behind the last one's samples lies memory that faults. */
+static void kept_frames_are_read_by_their_rows(void **state)
+{
+    (void)state;
+    enum { STRIDE = WIDTH * 3 + 32, BYTES = STRIDE * (HEIGHT - 1) + WIDTH * 3 };
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), whole = (BYTES + page - 1) / page * page;
+    uint8_t *memory = mmap(NULL, whole + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_ptr_not_equal(memory, MAP_FAILED);
+    assert_int_equal(mprotect(memory + whole, page, PROT_NONE), 0);
+    uint8_t *picture = memory + whole - BYTES;
+    for (uint32_t i = 0; i < BYTES; i++) {
+        picture[i] = (uint8_t)(i * 7);
+    }
+    const t3r_capture_frame frame = {.frame = {.format = T3R_PIXEL_RGB24,
+                                               .width = WIDTH,
+                                               .height = HEIGHT,
+                                               .planes = {picture},
+                                               .stride_bytes = {STRIDE},
+                                               .depth = (const uint8_t *)depth_mm,
+                                               .depth_width = WIDTH,
+                                               .depth_height = HEIGHT,
+                                               .depth_stride_bytes = WIDTH * 2,
+                                               .depth_unit_q40 = T3R_DEFAULT_DEPTH_UNIT_Q40}};
+    reconstruction_options options;
+    reconstruction_defaults(&options);
+    options.gaussians = 100;
+    live_build build;
+    assert_int_equal(live_build_open(&build, &options, 2, &frame), CLI_OK);
+    assert_int_equal(live_build_keep(&build, &frame), CLI_OK);
+    const t3r_frame *kept = &build.kept[0].frame.frame;
+    for (uint32_t y = 0; y < HEIGHT; y++) {
+        assert_memory_equal(kept->planes[0] + (size_t)y * kept->stride_bytes[0], picture + (size_t)y * STRIDE,
+                            WIDTH * 3);
+    }
+    assert_memory_equal(kept->depth, depth_mm, (size_t)WIDTH * HEIGHT * 2);
+    live_build_close(&build);
+    munmap(memory, whole + page);
+}
+
 /* Opened again and again it never gives a frame: that, too, has an end, and the recording is whole. */
 static void a_camera_that_stands_still_for_good_is_given_up(void **state)
 {
@@ -337,6 +415,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(nothing_is_allocated_once_it_runs, scratch_setup, scratch_teardown),
         cmocka_unit_test(memory_stays_the_same_over_ten_thousand_frames),
         cmocka_unit_test_setup_teardown(a_recording_replays_what_was_live, scratch_setup, scratch_teardown),
+        cmocka_unit_test(kept_frames_are_read_by_their_rows),
+        cmocka_unit_test(a_build_begins_with_the_first_frame_that_it_uses),
         cmocka_unit_test_setup_teardown(a_camera_that_stands_still_for_good_is_given_up, scratch_setup,
                                         scratch_teardown),
     };
