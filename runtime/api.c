@@ -121,7 +121,8 @@ static bool is_stream(const t3r_runtime *rt)
     bool full = rt->views == rt->config.views;
     return !rt->analysed && rt->next_slot <= rt->views && rt->next_slot < rt->config.views &&
            (full || rt->next_slot == rt->views) && rt->gaussians <= rt->config.gaussians &&
-           (rt->has_scene ? rt->keyframes >= rt->views : rt->views == 0);
+           (rt->has_scene ? rt->views > 0 && rt->keyframes >= rt->views
+                          : rt->views == 0 && rt->keyframes == 0 && rt->gaussians == 0);
 }
 
 /* Whether a copied arena holds what the stages rely on. Planes may hold anything. */
@@ -308,13 +309,12 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
+    t3r_stream_report told = {0};
     t3r_status status = t3r_stream_follow(rt, frame, camera);
-    if (status != T3R_OK) {
-        return status;
+    if (status == T3R_OK) {
+        status = t3r_stream_take(rt, frame, camera, &told);
     }
-    t3r_stream_report told;
-    status = t3r_stream_take(rt, frame, camera, &told);
-    if (status == T3R_OK && report != NULL) {
+    if (report != NULL) {
         *report = told;
     }
     return status;
@@ -382,11 +382,16 @@ static t3r_status build_by(t3r_runtime *rt, const t3r_config *config, const t3r_
     return t3r_get_scene(rt, scene);
 }
 
+/* Whether there are views to make a scene of at once. */
+static bool has_views(const t3r_runtime *rt)
+{
+    return !rt->config.stream && rt->views >= (rt->config.depth == T3R_DEPTH_STEREO ? 2u : 1u);
+}
+
 static t3r_status reconstruct(t3r_runtime *rt, const t3r_config *config, const t3r_importance *importance,
                               t3r_scene *scene)
 {
-    const uint32_t least = config->depth == T3R_DEPTH_STEREO ? 2 : 1;
-    T3R_REFUSE_UNLESS(!rt->config.stream && rt->views >= least && is_served(rt, config, importance), T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(has_views(rt) && is_served(rt, config, importance), T3R_ERR_STATE);
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
@@ -435,8 +440,7 @@ static t3r_status build_within(t3r_runtime *rt, const t3r_config *config, uint32
 t3r_status t3r_reconstruct_within(t3r_runtime *rt, uint32_t max_loss_q8, t3r_scene *scene)
 {
     T3R_REFUSE_UNLESS(rt != NULL && scene != NULL && is_loss(max_loss_q8), T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(!rt->config.stream && rt->views > 0 && is_tried(&rt->config) && is_served(rt, &rt->config, NULL),
-                      T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(has_views(rt) && is_tried(&rt->config) && is_served(rt, &rt->config, NULL), T3R_ERR_STATE);
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_config config = rt->config;

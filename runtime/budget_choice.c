@@ -32,7 +32,7 @@ uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_
 
     uint64_t allowed = yardstick_q8 * (max_loss_q8 + LOSS_OFFSET_Q8); /* x 256 x SHARE_DIVISOR */
     uint64_t wanted = ceil_div(slope_q8 * (SHARE_DIVISOR << 8), allowed); /* 2^48 x 2^12 */
-    if (e->error_q8[0] < SEEN_Q8) { /* known of a trial, not hoped of more */
+    if (e->error_q8[0] < SEEN_Q8 && floor_q8 < SEEN_Q8) { /* known of a trial, not hoped of more */
         wanted = T3R_MIN(wanted, ceil_div(slope_q8, SEEN_Q8 - floor_q8));
     }
     uint64_t least = T3R_MAX(e->points / LEAST_PART, 1u);

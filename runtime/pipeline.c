@@ -48,7 +48,7 @@ static t3r_status depth(t3r_runtime *rt, t3r_view *views)
             return status;
         }
     }
-    for (uint32_t v = 0; v < rt->views; v++) {
+    for (uint32_t v = 0; v < rt->views && rt->config.depth == T3R_DEPTH_SENSOR; v++) { /* stereo fills its own */
         if (!t3r_progress(rt, T3R_STAGE_DEPTH, v, rt->views)) {
             return T3R_ERR_CANCELLED;
         }

@@ -147,7 +147,7 @@ static void add_moved(sums *to, const sums *s, int64_t dx, int64_t dy)
 /* n / d in Q8 of `bits` more bits in n than in d, |n| < 2^62 */
 static int32_t quotient_q8(int64_t n, int64_t d, int32_t bits)
 {
-    const int32_t shift = T3R_MIN(12, 61 - (int32_t)t3r_msb64((uint64_t)t3r_abs64(n) | 1));
+    const int32_t shift = T3R_MIN(12, 60 - (int32_t)t3r_msb64((uint64_t)t3r_abs64(n) | 1));
     const int64_t q = t3r_scale64(t3r_round_div64(n * (INT64_C(1) << shift), d), 8 - shift - bits);
     return (int32_t)t3r_clamp64(q, -SLOPE_MOST_Q8, SLOPE_MOST_Q8);
 }

@@ -148,15 +148,17 @@ static bool settle(t3r_runtime *rt, const survey *s)
 {
     bool any = false;
     for (uint32_t v = 0; v < rt->views; v++) {
-        uint32_t best = v == 0 ? 1 : 0;
-        for (uint32_t w = best + 1; w < rt->views; w++) {
-            best = w != v && precedes(s, v, w, best) ? w : best;
+        uint32_t best = v;
+        for (uint32_t w = 0; w < rt->views; w++) { /* its own first choice is one of them */
+            if (w != v && s->rank[v][w] < PARTNERS && (best == v || precedes(s, v, w, best))) {
+                best = w;
+            }
         }
+        any = any || rt->stereo_pair[v] == T3R_PAIR_OK;
         rt->stereo_partner[v] = (uint8_t)best;
         if (rt->stereo_pair[v] != T3R_PAIR_OK) {
             rt->stereo_pair[v] = s->pair[v][best];
         }
-        any = any || rt->stereo_pair[v] == T3R_PAIR_OK;
     }
     return any;
 }

@@ -48,6 +48,11 @@ t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_frame *frame, const t3r_
     if (status == T3R_OK) {
         status = t3r_camera_check(camera);
     }
+    if (status == T3R_OK) { /* before anything moves */
+        t3r_camera resized =
+            t3r_camera_resized(camera, frame->width, frame->height, rt->config.width, rt->config.height);
+        status = t3r_camera_check(&resized);
+    }
     if (status != T3R_OK || rt->keyframes == 0) {
         return status;
     }
@@ -337,6 +342,7 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
         rt->views = views;
         rt->camera[slot] = replaced;
         rt->depth_unit_q40[slot] = replaced_unit_q40;
+        *report = (t3r_stream_report){0};
         return status;
     }
     rt->next_slot = (slot + 1) % rt->config.views;

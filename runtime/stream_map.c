@@ -180,7 +180,7 @@ uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyfra
         map->gaussians[map->count] = map->gaussians[before + i];
         map->records[map->count++] = (t3r_map_record){
             .key = (uint16_t)point_key(view, pixel),
-            .wanted_q10 = (int16_t)t3r_log_wanted_q10(view->texture[pixel], settings),
+            .wanted_q10 = (int16_t)T3R_MIN(t3r_log_wanted_q10(view->texture[pixel], settings), INT16_MAX),
             .density_q10 = (int16_t)t3r_log_density_q10(view, pixel, settings, clusters),
             .grain_q8 = (int16_t)grain_of(view, t3r_depth_q20(keyframe->scale, view->depth[pixel])),
         };

@@ -150,7 +150,7 @@ static const struct argp_option argp_options[] = {
     {"poses", KEY_POSES, "SOURCE", 0,
      "given (default), those of the folder; estimate, from corners that frames share, with depth where two of them "
      "have "
-     "it, or from pointmaps; estimate-colour, from colour alone",
+     "it, or from pointmaps, of all frames then; estimate-colour, from colour alone, without pointmaps",
      0},
     {"pointmaps", KEY_POINTMAPS, "FILE.npz", 0, "Depth of all frames, one pointmap each, in the frames' order", 0},
     {"min-confidence", KEY_CONFIDENCE, "C", 0, "Points of pointmaps with less become no depth (all are kept)", 0},
@@ -181,7 +181,8 @@ static const struct argp parser = {
            "confidence_path beside it), and what the points were made with, which then wins over the folder: poses, "
            "camera to the points' frame, 4x4, or extrinsic, the inverse, 3x4; intrinsics, 3x3, or focals, in pixels of "
            "the "
-           "map. Missing poses are taken from the points. What is not a finite number is refused.\n\n"
+           "map. Missing poses are taken from the points. What is not a finite number is refused, and poses of which "
+           "some are in the folder's world, others in that of the points.\n\n"
            "Estimated poses are rounded into the recording: what is made of it later is the same everywhere. With them "
            "DIR may "
            "also be a recording, which is then written once more.\n\n"
@@ -328,6 +329,12 @@ static void print_text(const options *o, const material *m, const totals *t)
     }
 }
 
+/* Whether options that only pointmaps heed are given: the one to name, else NULL. */
+static const char *pointmap_option(const pointmap_options *o)
+{
+    return o->confidence_least != -HUGE_VAL ? "--min-confidence" : o->depth_unit != 0 ? "--depth-unit" : NULL;
+}
+
 /* The folder's lists, then what options make of them: pointmaps, poses. */
 static int prepare(const options *o, material *m, char *error)
 {
@@ -343,10 +350,19 @@ static int prepare(const options *o, material *m, char *error)
     for (uint32_t i = 0; i < m->folder.frame_count; i++) {
         maps = maps || m->folder.frames[i].pointmap != NULL;
     }
+    if (maps && o->poses == POSES_ESTIMATE_COLOUR) {
+        return t3r_reason(error, ERROR_BYTES,
+                          "%s: --poses estimate-colour does not go with pointmaps; estimate takes poses from them",
+                          o->directory);
+    }
     if (maps) {
         pointmap_options points = o->pointmaps;
         points.resect = estimate;
         return pointmap_source_open(&m->pointmaps, o->directory, &points, &m->folder, error, ERROR_BYTES);
+    }
+    if (pointmap_option(&o->pointmaps) != NULL) {
+        return t3r_reason(error, ERROR_BYTES, "%s: %s is for pointmaps, but no frame has one", o->directory,
+                          pointmap_option(&o->pointmaps));
     }
     if (!estimate) {
         return 0;
@@ -403,7 +419,8 @@ static int estimate_all(t3r_recording *recording, const options *o, uint32_t cou
 static int import_recording(const options *o)
 {
     char error[ERROR_BYTES] = "";
-    if (o->poses == POSES_GIVEN || o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL) {
+    if (o->poses == POSES_GIVEN || o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL ||
+        pointmap_option(&o->pointmaps) != NULL) {
         return cli_error(CLI_BAD_USAGE, "%s is a recording: --poses estimate is all that import does to one",
                          o->directory);
     }

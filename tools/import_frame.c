@@ -79,6 +79,16 @@ static char *find_picture(const char *directory, const char *name)
     return path;
 }
 
+int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                        size_t error_bytes)
+{
+    char *path = find_picture(directory, frame->image);
+    int status = path == NULL ? t3r_reason(error, error_bytes, "out of memory")
+                              : picture_size(path, width, height, error, error_bytes);
+    free(path);
+    return status;
+}
+
 static int read_colour(const char *path, picture *out, char *error, size_t error_bytes)
 {
     if (picture_read(path, out, error, error_bytes) != 0) {

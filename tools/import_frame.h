@@ -22,6 +22,10 @@ import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height,
 import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_width, uint32_t from_height,
                                       uint32_t width, uint32_t height);
 
+/* The sides of the frame's picture, by its header. 0, or -1 with "picture: what" in error[]. */
+int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                        size_t error_bytes);
+
 /* The camera of what is left after cropping and resizing to width x height. */
 void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, uint32_t width, uint32_t height);
 

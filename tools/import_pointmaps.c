@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "import_frame.h"
 #include "posing/resection.h"
 #include "reason.h"
 
@@ -12,6 +13,7 @@
 #define SAMPLED 20000u       /* depths a frame for the median */
 #define MEDIAN_STEPS 8192.0
 #define MOST_STEPS 65535.0
+#define SAME_POSE 1e-3 /* of two poses: what a rotation's entries, and a share of the position, may differ by */
 
 static int read_maps(const pointmap_source *source, uint32_t index, pointmaps *maps, char *error, size_t error_bytes)
 {
@@ -88,30 +90,40 @@ static double median_confidence(const float *confidence, size_t pixels)
     return median;
 }
 
+/* The lens of a frame's picture, on the pixels of its map. */
+static int map_lens(const pointmap_source *source, const posed_frame *frame, const pointmaps *maps,
+                    t3r_recorded_camera *lens, char *error, size_t error_bytes)
+{
+    uint32_t width, height;
+    char reason[256];
+    if (import_picture_size(source->directory, frame, &width, &height, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (posed_frame_camera(frame, width, height, lens, reason, sizeof reason) != 0) {
+        return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
+    }
+    const import_crop whole = {.width = width, .height = height};
+    import_crop_camera(lens, &whole, maps->width, maps->height);
+    return 0;
+}
+
 /* The pose from which the points lie on their pixels' rays: of the more confident half, spread over the view. */
-static int resect_map(const pointmaps *maps, uint32_t which, const posed_intrinsics *in, double least, motion *camera,
-                      double *pixels_off)
+static int resect_map(const pointmaps *maps, uint32_t which, const t3r_recorded_camera *lens, double least,
+                      motion *camera, double *pixels_off)
 {
     size_t pixels = (size_t)maps->width * maps->height, stride = pixels / (2 * (size_t)RESECTED) + 1, count = 0;
     const float *confidence = maps->confidence != NULL ? maps->confidence + pixels * which : NULL;
     double(*points)[3] = malloc((pixels / stride + 1) * sizeof *points);
     double(*rays)[2] = malloc((pixels / stride + 1) * sizeof *rays), error = 0;
-    t3r_recorded_camera k;
-    posed_frame frame = {.intrinsics = *in, .rotation = {1}};
-    frame.intrinsics.grid_width = in->grid_width > 0 ? in->grid_width : in->width;
-    frame.intrinsics.grid_height = in->grid_height > 0 ? in->grid_height : in->height;
-    frame.intrinsics.width = frame.intrinsics.height = NAN;
-    int status =
-        points != NULL && rays != NULL && posed_frame_camera(&frame, maps->width, maps->height, &k, NULL, 0) == 0 ? 0
-                                                                                                                  : -1;
+    int status = points != NULL && rays != NULL ? 0 : -1;
     double enough = confidence != NULL ? fmax(least, median_confidence(confidence, pixels)) : 0;
     for (size_t i = stride / 2; i < pixels && status == 0; i += stride) {
         if (confidence == NULL || confidence[i] >= enough) {
             for (int c = 0; c < 3; c++) {
                 points[count][c] = maps->points[3 * (pixels * which + i) + (size_t)c];
             }
-            rays[count][0] = ((double)(i % maps->width) - k.cx) / k.fx;
-            rays[count][1] = ((double)(i / maps->width) - k.cy) / k.fy;
+            rays[count][0] = ((double)(i % maps->width) - lens->cx) / lens->fx;
+            rays[count][1] = ((double)(i / maps->width) - lens->cy) / lens->fy;
             count++;
         }
     }
@@ -119,7 +131,7 @@ static int resect_map(const pointmaps *maps, uint32_t which, const posed_intrins
                          : -1;
     free(points);
     free(rays);
-    *pixels_off = error * k.fx;
+    *pixels_off = error * lens->fx;
     return status == 0 && *pixels_off < RESECTION_PIXELS * fmax(maps->width, maps->height) / 512 ? 0 : -1;
 }
 
@@ -128,6 +140,24 @@ static motion in_first(const posed_folder *folder, uint32_t index)
 {
     motion first = pose_of(&folder->frames[0]), here = pose_of(&folder->frames[index]), back = motion_inverse(&first);
     return motion_after(&back, &here);
+}
+
+/* Whether the folder gives the frame this pose as well: then it does not tell their worlds apart. */
+static bool folder_agrees(const posed_frame *frame, const motion *pose)
+{
+    if (!frame->posed) {
+        return false;
+    }
+    motion own = pose_of(frame);
+    double off = 0, apart = 0, far = 0;
+    for (int i = 0; i < 9; i++) {
+        off = fmax(off, fabs(own.r[i] - pose->r[i]));
+    }
+    for (int i = 0; i < 3; i++) {
+        apart = fmax(apart, fabs(own.t[i] - pose->t[i]));
+        far = fmax(far, fmax(fabs(own.t[i]), fabs(pose->t[i])));
+    }
+    return off <= SAME_POSE && apart <= SAME_POSE * far;
 }
 
 static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t index, const pointmaps *maps,
@@ -143,10 +173,12 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     }
     if (maps->poses != NULL && !source->options.resect) {
         *camera = maps->poses[which];
+        source->in_points = folder_agrees(frame, camera) ? source->in_points : frame->image;
         return set_pose(frame, camera);
     }
     if (frame->posed && folder->frames[0].posed && !source->options.resect) {
         *camera = in_first(folder, index);
+        source->in_folder = frame->image;
         return 0;
     }
     if (frame->intrinsics.distortion != T3R_DISTORTION_NONE) {
@@ -154,7 +186,11 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
                           frame->image);
     }
     double off = 0;
-    if (resect_map(maps, which, &frame->intrinsics, source->options.confidence_least, camera, &off) != 0) {
+    t3r_recorded_camera lens;
+    if (map_lens(source, frame, maps, &lens, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (resect_map(maps, which, &lens, source->options.confidence_least, camera, &off) != 0) {
         return t3r_reason(
             error, error_bytes,
             "%s: no pose, and the points do not lie on the pixels' rays from any: intrinsics are wrong or "
@@ -163,8 +199,10 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     }
     source->worst_px = fmax(source->worst_px, off);
     if (source->options.resect || !folder->frames[0].posed) {
+        source->in_points = frame->image;
         return set_pose(frame, camera); /* the points' frame is the world */
     }
+    source->in_folder = frame->image;
     motion first = pose_of(&folder->frames[0]), world = motion_after(&first, camera);
     return set_pose(frame, &world);
 }
@@ -246,8 +284,11 @@ static int note_frame(pointmap_source *source, posed_folder *folder, uint32_t in
             source->count++;
         }
         free(depth);
-    } else if (status == 0 && !folder->frames[index].posed) {
-        status = t3r_reason(error, error_bytes, "%s: neither a pose nor a pointmap", folder->frames[index].image);
+    } else if (status == 0 && (source->options.resect || !folder->frames[index].posed)) {
+        status = t3r_reason(error, error_bytes, "%s: no pointmap to estimate its pose from, as the others have",
+                            folder->frames[index].image);
+    } else if (status == 0) {
+        source->in_folder = folder->frames[index].image;
     }
     pointmaps_free(&own);
     return status;
@@ -275,6 +316,11 @@ int pointmap_source_open(pointmap_source *source, const char *directory, const p
     /* the first camera's pose last: the others are told against it */
     for (uint32_t i = folder->frame_count; i-- > 0 && status == 0;) {
         status = note_frame(source, folder, i, &d, error, error_bytes);
+    }
+    if (status == 0 && source->in_folder != NULL && source->in_points != NULL) {
+        status = t3r_reason(error, error_bytes,
+                            "%s: its pose is the folder's, but that of %s is in its points' frame, another world",
+                            source->in_folder, source->in_points);
     }
     if (status == 0 && source->count > 0) {
         status = settle_unit(source, &d, folder, error, error_bytes);

@@ -88,6 +88,9 @@ static int estimate(const char *directory, posed_folder *folder, poses_source so
                     pose_account *accounts, char *error, size_t error_bytes)
 {
     t3r_camera first = {0}, camera;
+    if (poses_check_count(folder->frame_count, error, error_bytes) != 0) {
+        return -1;
+    }
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         char reason[512];
         cli_progress("looking for corners", i, folder->frame_count);

@@ -38,6 +38,7 @@ typedef struct png_work {
     png_infop info;
     FILE *file;
     png_bytep *rows;
+    bool header_only;
     char reason[REASON_BYTES];
 } png_work;
 
@@ -95,6 +96,9 @@ static int png_decode(png_work *work, picture *out)
     out->height = png_get_image_height(work->png, work->info);
     out->channels = grey ? 1 : 3;
     out->bits = colour_type == PNG_COLOR_TYPE_GRAY && depth == 16 ? 16 : 8;
+    if (work->header_only) {
+        return 0;
+    }
     if (out->bits == 16) {
         if (little_endian()) {
             png_set_swap(work->png);
@@ -118,9 +122,9 @@ static int png_decode(png_work *work, picture *out)
     return 0;
 }
 
-static int read_png(FILE *file, const char *path, picture *out, char *error, size_t error_bytes)
+static int read_png(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
 {
-    png_work work = {.file = file, .reason = "PNG: out of memory"};
+    png_work work = {.file = file, .header_only = header_only, .reason = "PNG: out of memory"};
     int status = png_decode(&work, out);
     png_destroy_read_struct(&work.png, &work.info, NULL);
     free(work.rows);
@@ -181,6 +185,7 @@ typedef struct jpeg_work {
     struct jpeg_error_mgr manager; /* first: the library hands back a pointer to it */
     struct jpeg_decompress_struct jpeg;
     jmp_buf escape;
+    bool header_only;
     char reason[REASON_BYTES];
 } jpeg_work;
 
@@ -217,6 +222,11 @@ static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
     if (work->jpeg.image_width > T3R_MAX_SIDE || work->jpeg.image_height > T3R_MAX_SIDE) {
         jpeg_fail(work, "image exceeds the largest side");
     }
+    if (work->header_only) {
+        out->width = work->jpeg.image_width;
+        out->height = work->jpeg.image_height;
+        return 0;
+    }
     bool grey = work->jpeg.jpeg_color_space == JCS_GRAYSCALE;
     work->jpeg.out_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
     work->jpeg.dct_method = JDCT_ISLOW;
@@ -237,10 +247,11 @@ static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
     return 0;
 }
 
-static int read_jpeg(FILE *file, const char *path, picture *out, char *error, size_t error_bytes)
+static int read_jpeg(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
 {
     jpeg_work work;
     memset(&work, 0, sizeof work);
+    work.header_only = header_only;
     work.jpeg.err = jpeg_std_error(&work.manager);
     work.manager.error_exit = jpeg_on_error;
     work.manager.emit_message = jpeg_on_message;
@@ -255,7 +266,7 @@ static int read_jpeg(FILE *file, const char *path, picture *out, char *error, si
 
 /* ---- either ---------------------------------------------------------------------------------------------------- */
 
-int picture_read(const char *path, picture *out, char *error, size_t error_bytes)
+static int read_either(const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
 {
     static const uint8_t png_magic[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t jpeg_magic[3] = {0xff, 0xd8, 0xff};
@@ -274,13 +285,27 @@ int picture_read(const char *path, picture *out, char *error, size_t error_bytes
     } else if (fseek(file, 0, SEEK_SET) != 0) {
         status = fail(error, error_bytes, path, "not a seekable file");
     } else if (memcmp(magic, png_magic, sizeof png_magic) == 0) {
-        status = read_png(file, path, out, error, error_bytes);
+        status = read_png(file, path, header_only, out, error, error_bytes);
     } else if (memcmp(magic, jpeg_magic, sizeof jpeg_magic) == 0) {
-        status = read_jpeg(file, path, out, error, error_bytes);
+        status = read_jpeg(file, path, header_only, out, error, error_bytes);
     } else {
         status = fail(error, error_bytes, path, "neither PNG nor JPEG");
     }
     fclose(file);
+    return status;
+}
+
+int picture_read(const char *path, picture *out, char *error, size_t error_bytes)
+{
+    return read_either(path, false, out, error, error_bytes);
+}
+
+int picture_size(const char *path, uint32_t *width, uint32_t *height, char *error, size_t error_bytes)
+{
+    picture header;
+    int status = read_either(path, true, &header, error, error_bytes);
+    *width = header.width;
+    *height = header.height;
     return status;
 }
 

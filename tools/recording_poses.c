@@ -42,6 +42,9 @@ static int estimate(t3r_recording *recording, const char *path, const uint32_t *
 {
     char error[ERROR_BYTES] = "";
     t3r_camera first, camera;
+    if (poses_check_count(count, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s: %s", path, error);
+    }
     for (uint32_t i = 0; i < count; i++) {
         int code = look_at(recording, path, frames[i], &views[i], i == 0 ? &first : &camera);
         if (code != CLI_OK) {

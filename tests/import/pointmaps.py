@@ -57,6 +57,15 @@ def folder(name, room, posed=True, **fields):
     return path
 
 
+def edit(path, change):
+    with open(f"{path}/transforms.json", encoding="utf-8") as file:
+        text = json.load(file)
+    for i, frame in enumerate(text["frames"]):
+        change(i, frame)
+    with open(f"{path}/transforms.json", "w", encoding="utf-8") as file:
+        json.dump(text, file)
+
+
 def imported(name, path, *options):
     target = f"{work}/{name}.mcap"
     status, out, error = run("import", path, "-o", target, "--json", *options)
@@ -163,6 +172,69 @@ def test_one_file(room, maps):
     check(got["depth"][2].shape == (24, 24), "half: resized")
 
 
+def test_one_world(room, maps):
+    """Frames 0 and 1 have pointmaps, 2 and 3 the folder's poses alone."""
+    def some(name, **arrays):
+        path = folder(name, room, pointmap_path=[f"{i}.npz" for i in range(FRAMES)], **MM)
+        edit(path, lambda i, frame: frame.pop("pointmap_path") if i >= 2 else None)
+        for i in range(2):
+            np.savez(f"{path}/{i}.npz", pts3d=maps[i], **{key: values[i] for key, values in arrays.items()})
+        return path
+
+    path = some("some")
+    refused(path, ["3.png: no pointmap to estimate its pose from"], "--poses", "estimate")
+    for options in ((path,), (folder("colour", room), "--pointmaps", f"{work}/points.npz")):
+        refused(options[0], ["estimate-colour does not go with pointmaps"], *options[1:], "--poses", "estimate-colour")
+    _, got = imported("some", path)
+    check(all(np.abs(got["pose"][i] - room["pose"][i]).max() < 1e-6 for i in range(FRAMES)), "some: poses are the folder's")
+    # poses of the points' frame beside the folder's: another world, unless they agree
+    relative = [np.linalg.inv(room["pose"][0]) @ p for p in room["pose"]]
+    check(np.abs(room["pose"][0] - np.eye(4)).max() > 0.01, "the room's first pose is not the origin")
+    refused(some("other", poses=relative), ["2.png: its pose is the folder's", "of 0.png is in its points' frame"])
+    path = some("agreed", poses=[p.astype(np.float32) for p in room["pose"]])
+    for i in range(2):
+        world = np.c_[maps[i].reshape(-1, 3), np.ones(maps[i][..., 0].size)] @ room["pose"][0].T
+        np.savez(f"{path}/{i}.npz", pts3d=world[:, :3].reshape(maps[i].shape).astype(np.float32),
+                 poses=room["pose"][i].astype(np.float32))
+    _, got = imported("agreed", path)
+    check(all(np.abs(got["pose"][i] - room["pose"][i]).max() < 1e-6 for i in range(FRAMES)), "agreed: poses")
+
+
+def test_options_of_pointmaps_alone(room, _):
+    path = folder("no_maps", room, **MM)
+    refused(path, ["no_maps", "--min-confidence is for pointmaps"], "--min-confidence", "3")
+    refused(path, ["no_maps", "--depth-unit is for pointmaps"], "--depth-unit", "5")
+    refused(path, ["no_maps", "--depth-unit is for pointmaps"], "--depth-unit", "5", "--poses", "estimate")
+    for option, value in (("--min-confidence", "3"), ("--depth-unit", "5")):
+        target = f"{work}/refused.mcap"
+        status, _, error = run("import", f"{work}/room.mcap", "--poses", "estimate", option, value, "-o", target)
+        check(status == 2 and "is a recording" in error, f"{option} with a recording: {status}, {error}")
+        check(not os.path.exists(target), f"{option} with a recording: left one behind")
+
+
+def test_larger_pictures(room, maps):
+    """Intrinsics are the pictures'; the maps have half their sides. Cropped to the maps' size, all is the room's."""
+    k = room["camera_info"][0]
+    large = dict(room, image=[rgb.repeat(2, 0).repeat(2, 1) for rgb in room["image"]],
+                 camera_info=[np.diag([2, 2, 1]) @ k + [[0, 0, 0.5], [0, 0, 0.5], [0, 0, 0]] for k in room["camera_info"]])
+    numbers = ",".join(repr(float(x)) for x in (2 * k[0, 0], 2 * k[1, 1], 2 * k[0, 2] + 0.5, 2 * k[1, 2] + 0.5))
+    size, unit = ("--size", f"{SIDE}x{SIDE}"), ("--depth-unit", "0.001")
+    np.savez(f"{work}/points.npz", pts3d=maps)
+    bare = folder("large", large, posed=None)
+    _, got = imported("large", bare, "--pointmaps", f"{work}/points.npz", "--intrinsics", numbers, *size, *unit)
+    same("large", got, room, 1e-5)
+    path = folder("large_json", large, posed=False, **MM)
+    _, got = imported("large_json", path, "--pointmaps", f"{work}/points.npz", *size)
+    same("large, transforms.json without w", got, room, 1e-5)
+    edit(path, lambda _, frame: frame.update(w=2 * SIDE, h=2 * SIDE,
+                                             camera_angle_x=2 * np.arctan(SIDE / frame.pop("fl_x")),
+                                             camera_angle_y=2 * np.arctan(SIDE / frame.pop("fl_y"))))
+    _, got = imported("large_angle", path, "--pointmaps", f"{work}/points.npz", *size)
+    same("large, by field of view", got, room, 1e-5)
+    os.remove(f"{path}/2.png")
+    refused(path, ["2.png: No such file"], "--pointmaps", f"{work}/points.npz")
+
+
 def test_refusals(room, maps):
     path = folder("bad", room, **MM)
     file = f"{work}/bad.npz"
@@ -231,6 +303,7 @@ with tempfile.TemporaryDirectory() as work:
     code, _, message = run("room", "--size", f"{SIDE}x{SIDE}", "--frames", str(FRAMES), "-o", f"{work}/room.mcap")
     check(code == 0, f"room: {message}")
     the_room = read(f"{work}/room.mcap")
-    for test in (test_files_of_frames, test_one_file, test_refusals):
+    for test in (test_files_of_frames, test_one_file, test_one_world, test_options_of_pointmaps_alone, test_larger_pictures,
+                 test_refusals):
         test(the_room, points(the_room))
 done()

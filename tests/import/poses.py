@@ -164,6 +164,25 @@ def test_refusals(room):
     still = dict(room, image=[room["image"][0]] * FRAMES)
     status, out, error = run("import", folder("still", still, depth=False), "--poses", "estimate", "-o", f"{work}/no.mcap")
     check(status == 1 and "no parallax" in error, f"a camera that stands still: {error}")
+    # too many, told before the first picture is looked at: these are none
+    os.mkdir(f"{work}/many")
+    for i in range(1001):
+        with open(f"{work}/many/{i}.png", "wb"):
+            pass
+    many = "poses of 1001 frames: more than 1000"
+    status, out, error = run("import", f"{work}/many", "--poses", "estimate", "--intrinsics", "90,90,48,48", "-o",
+                             f"{work}/no.mcap")
+    check(status == 1 and many in error, f"too many: {error}")
+    small = dict(room, image=[np.full((16, 16, 3), 90, np.uint8)], depth=room["depth"][:1])
+    path = folder("many_json", small, depth=False)
+    with open(f"{path}/transforms.json", encoding="utf-8") as file:
+        text = json.load(file)
+    text["frames"] = [dict(text["frames"][0], transform_matrix=np.eye(4).tolist())] * 1001
+    with open(f"{path}/transforms.json", "w", encoding="utf-8") as file:
+        json.dump(text, file)
+    good("import", path, "-o", f"{work}/many.mcap")
+    status, out, error = run("import", f"{work}/many.mcap", "--poses", "estimate", "-o", f"{work}/no.mcap")
+    check(status == 1 and many in error, f"too many in a recording: {error}")
     check(not os.path.exists(f"{work}/no.mcap"), "a recording is left behind")
 
 

@@ -30,6 +30,7 @@ static void check_round_trip(scratch *s, uint32_t width, uint32_t height, uint32
     char error[256];
     size_t bytes = (size_t)width * height * channels * bits / 8;
     picture out = {width, height, channels, bits, malloc(bytes)}, in;
+    uint32_t sides[2];
     fill(out.samples, bytes);
     assert_int_equal(picture_write_png(scratch_path(s, "a.png"), &out, error, sizeof error), 0);
     assert_int_equal(picture_read(s->path, &in, error, sizeof error), 0);
@@ -38,6 +39,9 @@ static void check_round_trip(scratch *s, uint32_t width, uint32_t height, uint32
     assert_int_equal(in.channels, channels);
     assert_int_equal(in.bits, bits);
     assert_memory_equal(in.samples, out.samples, bytes);
+    assert_int_equal(picture_size(s->path, &sides[0], &sides[1], error, sizeof error), 0);
+    assert_int_equal(sides[0], width);
+    assert_int_equal(sides[1], height);
     picture_free(&in);
     picture_free(&out);
 }
@@ -155,7 +159,11 @@ static void test_jpeg_is_read(void **state)
     scratch *s = *state;
     char error[256];
     picture in;
+    uint32_t sides[2];
     write_jpeg(scratch_path(s, "a.jpg"), 80, 60);
+    assert_int_equal(picture_size(s->path, &sides[0], &sides[1], error, sizeof error), 0);
+    assert_int_equal(sides[0], 80);
+    assert_int_equal(sides[1], 60);
     assert_int_equal(picture_read(s->path, &in, error, sizeof error), 0);
     assert_int_equal(in.width, 80);
     assert_int_equal(in.height, 60);

@@ -225,6 +225,10 @@ static void refusals(void **state)
     s.rt->config.keep_analysis = 0;
     assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, &scene), T3R_ERR_STATE);
     arena_free(&s.memory);
+    s = site_of(100, 1);
+    s.rt->config.depth = T3R_DEPTH_STEREO; /* of one view */
+    assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, &scene), T3R_ERR_STATE);
+    arena_free(&s.memory);
 }
 
 int main(void)

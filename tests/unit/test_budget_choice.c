@@ -28,7 +28,7 @@ static void as_in_double(void **state)
         double fall = e.error_q8[0] - (double)e.error_q8[1], ground = fmax(0, e.error_q8[1] - fall);
         double yardstick = fmax(e.disagreement_q8 != 0 ? e.disagreement_q8 : ground, 4 * 256);
         double wanted = fall * 2 * e.trial / ((loss_q8 / 256.0 + 0.25) / 10 * yardstick);
-        if (e.error_q8[0] < 3 * 256) {
+        if (e.error_q8[0] < 3 * 256 && ground < 3 * 256) {
             wanted = fmin(wanted, fall * 2 * e.trial / (3 * 256 - ground));
         }
         wanted = fmin(fmax(wanted, e.points / 400), e.points); /* whole points */
@@ -58,6 +58,8 @@ static void extremes(void **state)
     e.error_q8[1] = worst;
     assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), most_points / 400);
     assert_int_equal(t3r_predict_budget(&e, 7, 1), 7);
+    e.error_q8[1] = 3 << 8; /* what nobody sees becomes what is just seen */
+    assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), most_points / 400);
     e = (t3r_budget_evidence){.points = 2, .trial = 1};
     assert_int_equal(t3r_predict_budget(&e, 2, T3R_MAX_LOSS_Q8), 1);
 }

@@ -247,11 +247,20 @@ static int join_all(pose_view *views, uint32_t count, poses_source source, const
     return done == count ? 0 : tell_refusal(g, posed, count, names, error, error_bytes);
 }
 
+int poses_check_count(uint32_t count, char *error, size_t error_bytes)
+{
+    if (count > POSES_MOST) {
+        return t3r_reason(error, error_bytes, "poses of %u frames: more than %u are not estimated at once", count,
+                          POSES_MOST);
+    }
+    return 0;
+}
+
 int poses_estimate(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, motion *poses,
                    pose_account *accounts, char *error, size_t error_bytes)
 {
-    if (count > POSES_MOST) {
-        return t3r_reason(error, error_bytes, "poses of more than %u frames are not estimated at once", POSES_MOST);
+    if (poses_check_count(count, error, error_bytes) != 0) {
+        return -1;
     }
     graph g = {0};
     bool *posed = calloc(count, sizeof *posed);

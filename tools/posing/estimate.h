@@ -30,6 +30,10 @@ typedef struct pose_account {
     double turn_degrees, direction_degree; /* standard deviations to expect of the motion between the two */
 } pose_account;
 
+/* Whether so many views are posed at once: to be asked before pictures are decoded. 0, or -1 with a reason in error[].
+ */
+int poses_check_count(uint32_t count, char *error, size_t error_bytes);
+
 /* Poses, camera to the first camera. The unit of length is that of the depths; without any, the distance of the first
  * two cameras that are joined. views[].depth gains the depths of corners found on the way. Deterministic: fixed seeds,
  * bounded work. 0, or -1 with "view N: why" in error[], N as `names` has it (NULL: the index). */
