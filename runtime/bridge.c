@@ -139,11 +139,11 @@ void t3r_bridge_view(const t3r_view *view, uint32_t radius)
 /* --- against the other views -------------------------------------------------------------------------------------- */
 
 /* What view `to` makes of a bridged or lent pixel that it sees there. */
-static uint8_t judge(uint8_t confidence, const t3r_pointmap *to, const t3r_sight *sight, bool earlier)
+static uint8_t judge(uint8_t confidence, const t3r_pointmap *to, const t3r_sight *sight, bool settled)
 {
     uint8_t there = to->view->confidence[sight->pixel];
     bool known = there == T3R_CONFIDENCE_MEASURED || there == T3R_CONFIDENCE_FILLED;
-    if (!known && !(earlier && there == T3R_CONFIDENCE_BRIDGED)) {
+    if (!known && !(settled && there == T3R_CONFIDENCE_BRIDGED)) {
         return confidence;
     }
     int64_t behind = (int64_t)sight->z_q20 - t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
@@ -153,7 +153,7 @@ static uint8_t judge(uint8_t confidence, const t3r_pointmap *to, const t3r_sight
     return 16 * t3r_abs64(behind) <= sight->z_q20 ? T3R_CONFIDENCE_BRIDGED_COVERED : confidence;
 }
 
-uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent)
+uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled)
 {
     const t3r_view *view = &views[v];
     t3r_pointmap maps[T3R_MAX_VIEWS];
@@ -174,7 +174,7 @@ uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, in
             for (uint32_t w = 0; w < count && confidence != T3R_CONFIDENCE_NONE; w++) {
                 t3r_sight sight;
                 if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight)) {
-                    confidence = judge(confidence, &maps[w], &sight, w < v);
+                    confidence = judge(confidence, &maps[w], &sight, (settled >> w & 1) != 0);
                 }
             }
             view->confidence[pixel] = confidence;

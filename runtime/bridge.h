@@ -14,10 +14,11 @@
  * many are BRIDGED.
  *
  * t3r_bridge_lend() for every view first, then t3r_bridge_view() for every view, then t3r_bridge_settle() for every
- * view in order: three steps, so that a caller may pause between any two views. Per pixel at most 22 steps for each
- * other view and 8 x radius. */
+ * view: three steps, so that a caller may pause between any two views. `settled` has a bit set for each view whose
+ * bridges stand already: this view's must agree with them. Per pixel at most 22 steps for each other view and
+ * 8 x radius. */
 void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent);
 void t3r_bridge_view(const t3r_view *view, uint32_t radius);
-uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent);
+uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled);
 
 #endif

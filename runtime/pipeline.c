@@ -72,23 +72,35 @@ static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
     return status;
 }
 
-#define POINTMAP_STEPS(rt) (4 * (rt)->views) /* of t3r_progress(): bridging, flying pixels, exposure, redundancy */
+#define POINTMAP_STEPS(rt) (6 * (rt)->views) /* of t3r_progress(): bridging (3), flying pixels, exposure, redundancy   \
+                                              */
+
+static bool pointmap_step(t3r_runtime *rt, uint32_t step)
+{
+    return t3r_progress(rt, T3R_STAGE_POINTMAP, step, POINTMAP_STEPS(rt));
+}
 
 /* Wide holes, once it is known where the views stand. What stereo left without depth shows nothing. */
 static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
 {
     const uint32_t radius = rt->config.depth == T3R_DEPTH_STEREO ? 0 : rt->config.bridge_radius;
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
+        if (!pointmap_step(rt, v)) {
+            return T3R_ERR_CANCELLED;
+        }
         t3r_bridge_lend(views, rt->views, v, rt->frame.exponent);
     }
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
-        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, v, POINTMAP_STEPS(rt))) {
+        if (!pointmap_step(rt, rt->views + v)) {
             return T3R_ERR_CANCELLED;
         }
         t3r_bridge_view(&views[v], radius);
     }
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
-        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent);
+        if (!pointmap_step(rt, 2 * rt->views + v)) {
+            return T3R_ERR_CANCELLED;
+        }
+        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent, (1u << v) - 1);
     }
     return T3R_OK;
 }
@@ -97,7 +109,7 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
 static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
 {
     for (uint32_t v = 0; v < rt->views && rt->config.flying; v++) {
-        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, rt->views + v, POINTMAP_STEPS(rt))) {
+        if (!pointmap_step(rt, 3 * rt->views + v)) {
             return T3R_ERR_CANCELLED;
         }
         (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO);
@@ -113,7 +125,7 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
         }
     }
     if (rt->config.exposure) {
-        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 2 * rt->views, POINTMAP_STEPS(rt))) {
+        if (!pointmap_step(rt, 4 * rt->views)) {
             return T3R_ERR_CANCELLED;
         }
         t3r_exposure_gains(views, rt->views, rt->frame.exponent, rt->gain_q14);
@@ -124,7 +136,7 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
 static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
 {
     for (uint32_t v = rt->views; v-- > 0 && rt->config.redundancy;) {
-        if (!t3r_progress(rt, T3R_STAGE_POINTMAP, POINTMAP_STEPS(rt) - v - 1, POINTMAP_STEPS(rt))) {
+        if (!pointmap_step(rt, 6 * rt->views - v - 1)) {
             return T3R_ERR_CANCELLED;
         }
         (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent);

@@ -162,6 +162,9 @@ t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *er
     uint64_t error = 0; /* below 3 x 2^24 x 2^28 */
     uint32_t pixels = 0;
     for (uint32_t v = 0; v < rt->views; v++) {
+        if (!t3r_progress(rt, T3R_STAGE_REFINE, v, rt->views)) {
+            return T3R_ERR_CANCELLED;
+        }
         t3r_projection projection;
         t3r_status status =
             t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width, rt->config.height, &projection);

@@ -152,7 +152,7 @@ static t3r_status compare_keyframes(t3r_runtime *rt, const t3r_view *views, uint
     if (rt->config.bridge_radius > 0) {
         t3r_bridge_lend(views, rt->views, slot, rt->frame.exponent);
         t3r_bridge_view(&views[slot], rt->config.bridge_radius);
-        (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent);
+        (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent, ~(1u << slot));
     }
     if (rt->config.flying) {
         (void)t3r_mark_flying(views, rt->views, slot, rt->frame.exponent, false);
@@ -201,7 +201,7 @@ static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot,
         return T3R_ERR_CANCELLED;
     }
     t3r_map map = t3r_map_of(rt);
-    report->removed = t3r_map_see(&map, &keyframe, rt->config.half_life);
+    report->removed = t3r_map_see(&map, &keyframe, rt->keyframes, rt->config.half_life);
     rt->gaussians = map.count;
 
     t3r_projection projection;

@@ -46,9 +46,19 @@ static void move_to(t3r_map *map, uint32_t from, uint32_t to)
     map->records[to] = map->records[from];
 }
 
-uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t half_life)
+/* An octave is spread over `half_life` keyframes: the part of the one at hand. */
+static uint32_t fade_q10(uint32_t keyframes, uint32_t half_life)
 {
-    const uint32_t fade_q10 = half_life == 0 ? 0 : (1u << 10) / half_life;
+    if (half_life == 0) {
+        return 0;
+    }
+    uint32_t at = keyframes % half_life;
+    return ((at + 1) << 10) / half_life - (at << 10) / half_life;
+}
+
+uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life)
+{
+    const uint32_t fade = fade_q10(keyframes, half_life);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < map->count; i++) {
         t3r_map_record *record = &map->records[i];
@@ -57,7 +67,7 @@ uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t half_l
             continue;
         }
         record->idle = seen == SEEN ? 0 : (uint16_t)T3R_MIN(record->idle + 1, (int32_t)UINT16_MAX);
-        record->faded_q10 = seen != UNSEEN ? 0 : (uint16_t)T3R_MIN(record->faded_q10 + fade_q10, (uint32_t)UINT16_MAX);
+        record->faded_q10 = seen != UNSEEN ? 0 : (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
         move_to(map, i, kept++);
     }
     uint32_t left = map->count - kept;

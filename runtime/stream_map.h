@@ -32,8 +32,8 @@ t3r_map t3r_map_of(const t3r_runtime *rt);
 
 /* Looks at every Gaussian from a keyframe: those that it sees through and those of a surface that it sees far finer
  * leave, those that it does not see fade to half the density in `half_life` keyframes (0: never, else up to 1,024).
- * Returns how many left. */
-uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t half_life);
+ * `keyframes` were seen before this one. Returns how many left. */
+uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life);
 
 /* Who stays when the map's Gaussians and a keyframe's points compete for `most` places. */
 typedef struct t3r_map_cut {

@@ -24,7 +24,7 @@ extern "C" {
 
 #define T3R_VERSION "0.1.0"
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
-#define T3R_BITS_EPOCH 4
+#define T3R_BITS_EPOCH 5
 
 #define T3R_MAX_SIDE 4096u        /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */
@@ -204,7 +204,8 @@ typedef struct t3r_scene {
     t3r_scene_frame frame;
     const t3r_gaussian *gaussians;
     uint32_t count;
-    uint32_t valid_points; /* pixels of the context views with a depth before hole filling: measured or matched */
+    uint32_t valid_points; /* pixels of the context views with a depth before hole filling, measured or matched; 0 of a
+                            * stream */
 } t3r_scene;
 
 /* Where a render goes. rgb may be NULL when only depth or alpha are wanted. Black background. */

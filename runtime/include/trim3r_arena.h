@@ -149,7 +149,7 @@
     X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_BUDGET,                           \
       T3R_STREAMS_(keep) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                                \
     X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_HEAD_WORK_(w, h, hc), T3R_AT_HEAD, T3R_AT_HEAD)                     \
-    X(p, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(keep) * T3R_PIXELS_(w, h) * 6, T3R_AT_REFINE,             \
+    X(p, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(keep) * T3R_PIXELS_(w, h) * 4, T3R_AT_REFINE,             \
       T3R_AT_REFINE)                                                                                                   \
     X(p, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep)), T3R_AT_REFINE,       \
       T3R_AT_REFINE)                                                                                                   \

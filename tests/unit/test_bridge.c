@@ -33,7 +33,7 @@ static uint32_t bridge(rig *s, uint32_t views, uint32_t radius)
         t3r_bridge_view(&s->view[v], radius);
     }
     for (uint32_t v = 0; v < views; v++) {
-        bridged += t3r_bridge_settle(s->view, views, v, 0);
+        bridged += t3r_bridge_settle(s->view, views, v, 0, (1u << v) - 1);
     }
     return bridged;
 }
@@ -270,11 +270,30 @@ static void seen_through(void **state)
         s->confidence[0][at] = T3R_CONFIDENCE_BRIDGED;
         int behind = steps - s->depth[1][there];
         bool before = 16 * -behind > steps, same = 16 * abs(behind) <= steps;
-        assert_int_equal(t3r_bridge_settle(s->view, PAIR, 0, 0), !before && !same);
+        assert_int_equal(t3r_bridge_settle(s->view, PAIR, 0, 0, 0), !before && !same);
         assert_int_equal(s->confidence[0][at], before ? T3R_CONFIDENCE_NONE
                                                : same ? T3R_CONFIDENCE_BRIDGED_COVERED
                                                       : T3R_CONFIDENCE_BRIDGED);
         assert_int_equal(s->depth[0][at], before ? 0 : steps);
+        free(s);
+    }
+}
+
+/* Of two bridges of one surface the second to settle is covered by the first, whichever view comes first. */
+static void settled_cover(void **state)
+{
+    (void)state;
+    for (uint32_t v = 0; v < PAIR; v++) {
+        rig *s = pair_new();
+        int at[PAIR] = {24 * W + 45, 24 * W + 45 - (int)lround(0.25 * F)};
+        for (int w = 0; w < PAIR; w++) {
+            s->depth[w][at[w]] = UNIT;
+            s->confidence[w][at[w]] = T3R_CONFIDENCE_BRIDGED;
+        }
+        assert_int_equal(t3r_bridge_settle(s->view, PAIR, v, 0, 0), 1);
+        assert_int_equal(t3r_bridge_settle(s->view, PAIR, v, 0, 1u << (1 - v)), 0);
+        assert_int_equal(s->confidence[v][at[v]], T3R_CONFIDENCE_BRIDGED_COVERED);
+        assert_int_equal(s->confidence[1 - v][at[1 - v]], T3R_CONFIDENCE_BRIDGED);
         free(s);
     }
 }
@@ -387,10 +406,10 @@ static void budgets_hold(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(planes_go_on), cmocka_unit_test(as_defined),         cmocka_unit_test(edges),
-        cmocka_unit_test(borders_stay), cmocka_unit_test(nothing_is_trusted), cmocka_unit_test(lent),
-        cmocka_unit_test(nearest_lent), cmocka_unit_test(bridged_once),       cmocka_unit_test(seen_through),
-        cmocka_unit_test(forgotten),    cmocka_unit_test(budgets_hold),
+        cmocka_unit_test(planes_go_on),  cmocka_unit_test(as_defined),         cmocka_unit_test(edges),
+        cmocka_unit_test(borders_stay),  cmocka_unit_test(nothing_is_trusted), cmocka_unit_test(lent),
+        cmocka_unit_test(nearest_lent),  cmocka_unit_test(bridged_once),       cmocka_unit_test(seen_through),
+        cmocka_unit_test(settled_cover), cmocka_unit_test(forgotten),          cmocka_unit_test(budgets_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -138,6 +138,28 @@ static void widens_by_density(void **state)
     }
 }
 
+/* Half the density, an octave, in every `half_life` keyframes on end, evenly. */
+static void fades_by_half_life(void **state)
+{
+    (void)state;
+    static site s;
+    const uint32_t half_lives[] = {1, 3, 32, 341, 342, 600, 1000, 1024};
+    for (size_t h = 0; h < sizeof half_lives / sizeof *half_lives; h++) {
+        uint64_t seed = 11;
+        fill(&s, &seed, 100);
+        memset(s.confidence, T3R_CONFIDENCE_NONE, sizeof s.confidence); /* a keyframe that sees nothing */
+        s.map.count = 1;
+        s.records[0].faded_q10 = 0;
+        s.view.fx_q16 = s.view.fy_q16 = 30 << 16;
+        const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
+        for (uint32_t n = 1; n <= 2 * half_lives[h]; n++) {
+            assert_int_equal(t3r_map_see(&s.map, &keyframe, 7 * half_lives[h] + n - 1, half_lives[h]), 0);
+            assert_int_equal(s.records[0].faded_q10, n * 1024 / half_lives[h]);
+            assert_int_equal(s.records[0].idle, n);
+        }
+    }
+}
+
 static void moves_are_exact(void **state)
 {
     (void)state;
@@ -163,6 +185,6 @@ static void moves_are_exact(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(compete_as_sorted), cmocka_unit_test(widens_by_density),
-                                       cmocka_unit_test(moves_are_exact)};
+                                       cmocka_unit_test(fades_by_half_life), cmocka_unit_test(moves_are_exact)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
