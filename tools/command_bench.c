@@ -24,7 +24,7 @@
 #define SIDE 256u
 #define VIEWS 2u
 #define POINTS (SIDE * SIDE * VIEWS)
-#define TRIMMED 13107u /* 10 % of them */
+#define TRIMMED_TO 13107u /* 10 % of them */
 #define REFINEMENTS 4u
 #define SEED 1u
 #define WAVELET_WIDTH 1280u
@@ -33,16 +33,17 @@
 #define ERROR_BYTES 512
 
 typedef struct bench_options {
-    const char *points, *head;
+    const char *points, *head, *stages;
     uint32_t runs, threads;
     bool json;
 } bench_options;
 
-enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_RUNS, KEY_THREADS, KEY_JSON };
+enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_STAGES, KEY_RUNS, KEY_THREADS, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", 0, "cluster these points instead: raw float32, N x 6", 0},
     {"head", KEY_HEAD, "HEAD", 0, "the network of head_gmac_per_s: nano, small (default), base, or FILE.t3w", 0},
+    {"stages", KEY_STAGES, "LIST", 0, "time these rows alone, as kmeans_ms,stereo_ms (all)", 0},
     {"runs", KEY_RUNS, "N", 0, "timed runs of each stage, 1..101 (7)", 0},
     {"threads", KEY_THREADS, "N", 0, "1..64 (1); with more than one, elapsed time instead of processor time", 0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
@@ -58,6 +59,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_HEAD:
         o->head = option_head(state, "head", arg);
+        return 0;
+    case KEY_STAGES:
+        o->stages = arg;
         return 0;
     case KEY_RUNS:
         o->runs = option_number(state, "runs", arg, 1, MAX_RUNS);
@@ -87,7 +91,7 @@ static const struct argp argp = {
         "  trim3r bench\n"
         "  trim3r bench --head base\n"
         "  trim3r bench --json --runs 21\n"
-        "  trim3r bench --points cloud.f32 --json\n\n"
+        "  trim3r bench --points cloud.f32 --stages kmeans_ms --json\n\n"
         "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of the "
         "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
         "255; a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
@@ -96,6 +100,24 @@ static const struct argp argp = {
 };
 
 /* ---- the work ---------------------------------------------------------------------------------------------------- */
+
+/* What the stages work on, each built before the first of them that needs it. */
+typedef enum scene_kind { FULL, TRIMMED, LEARNED, REFINED, MATCHED, HEADED, SCENES, NO_SCENE = SCENES } scene_kind;
+
+static const struct {
+    uint32_t gaussians;
+    enum { ANALYTIC, SMALL, MEASURED } head; /* the closed form; `small`; the one that --head names */
+    bool keep;                               /* the analysis, to run a stage alone again */
+    uint32_t refinements;
+    t3r_depth depth;
+} settings_of[SCENES] = {
+    [FULL] = {POINTS, ANALYTIC, false, REFINEMENTS, T3R_DEPTH_SENSOR},
+    [TRIMMED] = {TRIMMED_TO, ANALYTIC, false, REFINEMENTS, T3R_DEPTH_SENSOR},
+    [LEARNED] = {TRIMMED_TO, SMALL, false, REFINEMENTS, T3R_DEPTH_SENSOR},
+    [REFINED] = {TRIMMED_TO, ANALYTIC, true, 1, T3R_DEPTH_SENSOR},
+    [MATCHED] = {TRIMMED_TO, ANALYTIC, true, 0, T3R_DEPTH_STEREO},
+    [HEADED] = {POINTS, MEASURED, true, 0, T3R_DEPTH_SENSOR},
+};
 
 typedef struct scene_bench {
     t3r_runtime *runtime;
@@ -107,12 +129,8 @@ typedef struct workload {
     uint16_t *depth[VIEWS];
     t3r_camera camera[VIEWS];
     t3r_camera viewpoint;
-    scene_bench full, trimmed;
-    scene_bench learned; /* `trimmed` with the head small */
-    scene_bench refined; /* `trimmed` with one pass of refinement, analysis kept */
-    t3r_gaussian *start; /* what each measured pass begins with: `refined` as it was built */
-    scene_bench matched; /* `trimmed` from colours alone, analysis kept */
-    scene_bench headed;  /* `full` with the measured head, analysis kept */
+    scene_bench scene[SCENES];
+    t3r_gaussian *start; /* what each measured pass of refinement begins with: its scene as it was built */
     chosen_head small, measured;
     t3r_threads *threads;
     uint8_t *view; /* where renders go */
@@ -146,14 +164,15 @@ static t3r_status build(workload *w, t3r_runtime *runtime)
     return status == T3R_OK ? t3r_reconstruct(runtime, &scene) : status;
 }
 
-/* head NULL: the closed form `analytic`; keep: to run a stage alone again */
-static t3r_status open_scene(workload *w, scene_bench *s, uint32_t gaussians, const chosen_head *head, bool keep,
-                             uint32_t refinements, t3r_depth depth)
+static t3r_status open_scene(workload *w, scene_kind kind)
 {
-    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, gaussians);
-    config.depth = depth;
-    config.keep_analysis = keep;
-    config.refinements = refinements;
+    scene_bench *s = &w->scene[kind];
+    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, settings_of[kind].gaussians);
+    const chosen_head *heads[] = {[ANALYTIC] = NULL, [SMALL] = &w->small, [MEASURED] = &w->measured};
+    const chosen_head *head = heads[settings_of[kind].head];
+    config.depth = settings_of[kind].depth;
+    config.keep_analysis = settings_of[kind].keep;
+    config.refinements = settings_of[kind].refinements;
     if (head != NULL) {
         chosen_head_configure(head, &config);
     }
@@ -174,6 +193,21 @@ static t3r_status open_scene(workload *w, scene_bench *s, uint32_t gaussians, co
     return status == T3R_OK ? build(w, s->runtime) : status;
 }
 
+static t3r_status keep_start(workload *w)
+{
+    t3r_scene scene;
+    t3r_status status = t3r_get_scene(w->scene[REFINED].runtime, &scene);
+    if (status != T3R_OK) {
+        return status;
+    }
+    w->start = malloc(TRIMMED_TO * sizeof *w->start);
+    if (w->start == NULL) {
+        return T3R_ERR_ARENA;
+    }
+    memcpy(w->start, scene.gaussians, scene.count * sizeof *w->start);
+    return T3R_OK;
+}
+
 static t3r_status draw(workload *w, t3r_runtime *runtime)
 {
     t3r_target target = {.width = SIDE, .height = SIDE, .rgb = w->view, .rgb_stride_bytes = 3 * SIDE};
@@ -186,13 +220,10 @@ static void close_workload(workload *w)
         free(w->rgb[v]);
         free(w->depth[v]);
     }
-    free(w->full.arena);
-    free(w->trimmed.arena);
-    free(w->learned.arena);
-    free(w->refined.arena);
-    free(w->matched.arena);
+    for (int kind = 0; kind < SCENES; kind++) {
+        free(w->scene[kind].arena);
+    }
     free(w->start);
-    free(w->headed.arena);
     chosen_head_close(&w->small);
     chosen_head_close(&w->measured);
     free(w->view);
@@ -236,40 +267,15 @@ static int open_heads(workload *w, const bench_options *o)
     return code;
 }
 
-static t3r_status open_scenes(workload *w)
-{
-    t3r_status status = open_scene(w, &w->full, POINTS, NULL, false, REFINEMENTS, T3R_DEPTH_SENSOR);
-    if (status == T3R_OK) {
-        status = open_scene(w, &w->trimmed, TRIMMED, NULL, false, REFINEMENTS, T3R_DEPTH_SENSOR);
-    }
-    if (status == T3R_OK) {
-        status = open_scene(w, &w->learned, TRIMMED, &w->small, false, REFINEMENTS, T3R_DEPTH_SENSOR);
-    }
-    if (status == T3R_OK) {
-        status = open_scene(w, &w->refined, TRIMMED, NULL, true, 1, T3R_DEPTH_SENSOR);
-    }
-    if (status == T3R_OK) {
-        status = open_scene(w, &w->matched, TRIMMED, NULL, true, 0, T3R_DEPTH_STEREO);
-    }
-    if (status == T3R_OK) {
-        w->start = malloc(TRIMMED * sizeof *w->start);
-        status = w->start != NULL ? T3R_OK : T3R_ERR_ARENA;
-    }
-    if (status == T3R_OK) {
-        t3r_scene scene;
-        status = t3r_get_scene(w->refined.runtime, &scene);
-        if (status == T3R_OK) {
-            memcpy(w->start, scene.gaussians, scene.count * sizeof *w->start);
-        }
-    }
-    return status == T3R_OK ? open_scene(w, &w->headed, POINTS, &w->measured, true, 0, T3R_DEPTH_SENSOR) : status;
-}
-
 static int open_workload(workload *w, const bench_options *o)
 {
     int code = open_heads(w, o);
     if (code != CLI_OK) {
         return code;
+    }
+    char error[ERROR_BYTES] = "";
+    if (o->points != NULL && bench_points_read(&w->points, o->points, error, sizeof error)) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     if (!allocate(w)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
@@ -288,52 +294,48 @@ static int open_workload(workload *w, const bench_options *o)
     for (size_t i = 0; i < pixels * 3; i++) {
         w->wavelet_planes[i % 3 * pixels + i / 3] = w->wavelet_rgb[i];
     }
-    t3r_status status = open_scenes(w);
-    if (status != T3R_OK) {
-        return cli_error(CLI_BAD_INPUT, "the built-in room: %s", t3r_error_text(status));
+    if (o->points == NULL &&
+        bench_points_unproject(&w->points, VIEWS, SIDE, SIDE, w->rgb, w->depth, w->camera, error, sizeof error)) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    char error[ERROR_BYTES] = "";
-    int failed = o->points != NULL ? bench_points_read(&w->points, o->points, error, sizeof error)
-                                   : bench_points_unproject(&w->points, VIEWS, SIDE, SIDE, w->rgb, w->depth, w->camera,
-                                                            error, sizeof error);
-    return failed ? cli_error(CLI_BAD_INPUT, "%s", error) : CLI_OK;
+    return CLI_OK;
 }
 
 /* ---- the stages -------------------------------------------------------------------------------------------------- */
 
 static bool run_raster_full(workload *w)
 {
-    return draw(w, w->full.runtime) == T3R_OK;
+    return draw(w, w->scene[FULL].runtime) == T3R_OK;
 }
 
 static bool run_raster_trimmed(workload *w)
 {
-    return draw(w, w->trimmed.runtime) == T3R_OK;
+    return draw(w, w->scene[TRIMMED].runtime) == T3R_OK;
 }
 
 static bool run_build(workload *w)
 {
-    return build(w, w->trimmed.runtime) == T3R_OK;
+    return build(w, w->scene[TRIMMED].runtime) == T3R_OK;
 }
 
 static bool run_build_learned(workload *w)
 {
-    return build(w, w->learned.runtime) == T3R_OK;
+    return build(w, w->scene[LEARNED].runtime) == T3R_OK;
 }
 
 static bool run_head(workload *w)
 {
-    return bench_head_run(w->headed.runtime);
+    return bench_head_run(w->scene[HEADED].runtime);
 }
 
 static bool run_refine(workload *w)
 {
-    return bench_refine_run(w->refined.runtime, w->start);
+    return bench_refine_run(w->scene[REFINED].runtime, w->start);
 }
 
 static bool run_stereo(workload *w)
 {
-    return bench_stereo_run(w->matched.runtime);
+    return bench_stereo_run(w->scene[MATCHED].runtime);
 }
 
 static bool run_kmeans(workload *w)
@@ -370,19 +372,57 @@ static const struct {
     const char *key;
     bool (*run)(workload *w);
     double unit; /* per second; 0: 10^9 multiply-accumulates of the head a second */
+    scene_kind scene;
 } stages[] = {
-    {"raster_131k_ms", run_raster_full, MILLISECONDS},
-    {"raster_13k_ms", run_raster_trimmed, MILLISECONDS},
-    {"refine_ms", run_refine, MILLISECONDS},
-    {"stereo_ms", run_stereo, MILLISECONDS},
-    {"kmeans_ms", run_kmeans, MILLISECONDS},
-    {"wavelet_ns_per_pixel", run_wavelet, NANOSECONDS_A_PIXEL},
-    {"texture_ns_per_pixel", run_texture, NANOSECONDS_A_PIXEL},
-    {"build_analytic_ms", run_build, MILLISECONDS},
-    {"build_small_ms", run_build_learned, MILLISECONDS},
-    {"head_gmac_per_s", run_head, 0},
+    {"raster_131k_ms", run_raster_full, MILLISECONDS, FULL},
+    {"raster_13k_ms", run_raster_trimmed, MILLISECONDS, TRIMMED},
+    {"refine_ms", run_refine, MILLISECONDS, REFINED},
+    {"stereo_ms", run_stereo, MILLISECONDS, MATCHED},
+    {"kmeans_ms", run_kmeans, MILLISECONDS, NO_SCENE},
+    {"wavelet_ns_per_pixel", run_wavelet, NANOSECONDS_A_PIXEL, NO_SCENE},
+    {"texture_ns_per_pixel", run_texture, NANOSECONDS_A_PIXEL, NO_SCENE},
+    {"build_analytic_ms", run_build, MILLISECONDS, TRIMMED},
+    {"build_small_ms", run_build_learned, MILLISECONDS, LEARNED},
+    {"head_gmac_per_s", run_head, 0, HEADED},
 };
 enum { STAGE_COUNT = sizeof stages / sizeof stages[0] };
+
+/* Which stages are timed, of a comma-separated list of keys; NULL: all. */
+static int choose_stages(const char *list, bool chosen[STAGE_COUNT])
+{
+    for (int s = 0; s < STAGE_COUNT; s++) {
+        chosen[s] = list == NULL;
+    }
+    for (const char *word = list; word != NULL;) {
+        size_t length = strcspn(word, ",");
+        int s = 0;
+        while (s < STAGE_COUNT && (strlen(stages[s].key) != length || strncmp(stages[s].key, word, length) != 0)) {
+            s++;
+        }
+        if (s == STAGE_COUNT) {
+            return cli_error(CLI_BAD_USAGE, "--stages: no row is called '%.*s'; see trim3r bench", (int)length, word);
+        }
+        chosen[s] = true;
+        word = word[length] == ',' ? word + length + 1 : NULL;
+    }
+    return CLI_OK;
+}
+
+static int open_scenes(workload *w, const bool chosen[STAGE_COUNT])
+{
+    t3r_status status = T3R_OK;
+    for (int s = 0; s < STAGE_COUNT && status == T3R_OK; s++) {
+        scene_kind kind = stages[s].scene;
+        if (!chosen[s] || kind == NO_SCENE || w->scene[kind].arena != NULL) {
+            continue;
+        }
+        status = open_scene(w, kind);
+        if (status == T3R_OK && kind == REFINED) {
+            status = keep_start(w);
+        }
+    }
+    return status == T3R_OK ? CLI_OK : cli_error(CLI_BAD_INPUT, "the built-in room: %s", t3r_error_text(status));
+}
 
 static double seconds(clockid_t clock)
 {
@@ -404,12 +444,16 @@ static double median(const double *sorted, uint32_t count)
 
 /* Round after round through all stages, so that a slow moment of the machine hits each alike; the first is not counted.
  */
-static int time_stages(workload *w, const bench_options *o, double times[STAGE_COUNT][MAX_RUNS])
+static int time_stages(workload *w, const bench_options *o, const bool chosen[STAGE_COUNT],
+                       double times[STAGE_COUNT][MAX_RUNS])
 {
     const double giga_macs = bench_head_macs(w->measured.weights, SIDE, SIDE, VIEWS) / 1e9;
     clockid_t clock = o->threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
     for (uint32_t run = 0; run <= o->runs; run++) {
         for (int s = 0; s < STAGE_COUNT; s++) {
+            if (!chosen[s]) {
+                continue;
+            }
             double start = seconds(clock);
             if (!stages[s].run(w)) {
                 return cli_error(CLI_BAD_INPUT, "%s: the stage failed", stages[s].key);
@@ -457,12 +501,16 @@ static void read_cpu_flags(char *flags, size_t flags_bytes)
     }
 }
 
-static void print_results(const workload *w, const bench_options *o, double times[STAGE_COUNT][MAX_RUNS])
+static void print_results(const workload *w, const bench_options *o, const bool chosen[STAGE_COUNT],
+                          double times[STAGE_COUNT][MAX_RUNS])
 {
     char flags[1024];
     read_cpu_flags(flags, sizeof flags);
     if (!o->json) {
         for (int s = 0; s < STAGE_COUNT; s++) {
+            if (!chosen[s]) {
+                continue;
+            }
             printf("%-22s %9.3f  (%.3f to %.3f)\n", stages[s].key, median(times[s], o->runs), times[s][0],
                    times[s][o->runs - 1]);
         }
@@ -472,6 +520,9 @@ static void print_results(const workload *w, const bench_options *o, double time
     }
     cJSON *root = cJSON_CreateObject();
     for (int s = 0; s < STAGE_COUNT; s++) {
+        if (!chosen[s]) {
+            continue;
+        }
         char key[64];
         cJSON_AddNumberToObject(root, stages[s].key, median(times[s], o->runs));
         snprintf(key, sizeof key, "%s_min", stages[s].key);
@@ -494,15 +545,23 @@ int command_bench(int argc, char **argv)
     bench_options o = {.head = CHOSEN_HEAD_DEFAULT, .runs = 7, .threads = 1};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
+    bool chosen[STAGE_COUNT];
+    int code = choose_stages(o.stages, chosen);
+    if (code != CLI_OK) {
+        return code;
+    }
     workload w = {0};
-    double times[STAGE_COUNT][MAX_RUNS];
-    int code = open_workload(&w, &o);
+    double times[STAGE_COUNT][MAX_RUNS] = {0};
+    code = open_workload(&w, &o);
     if (code == CLI_OK) {
-        code = time_stages(&w, &o, times);
+        code = open_scenes(&w, chosen);
+    }
+    if (code == CLI_OK) {
+        code = time_stages(&w, &o, chosen, times);
     }
     if (code == CLI_OK) {
         w.kmeans_msd = bench_points_mean_squared_distance(&w.points);
-        print_results(&w, &o, times);
+        print_results(&w, &o, chosen, times);
     }
     close_workload(&w);
     return code;

@@ -35,7 +35,8 @@ def mean_squared_distance(points, centres):
 
 def compare(name, trim3r, points_file):
     points = np.fromfile(points_file, "<f4").reshape(-1, 6)
-    ours = json.loads(run(trim3r, "bench", "--points", points_file, "--json", "--runs", "1"))["kmeans_msd"]
+    ours = json.loads(run(trim3r, "bench", "--stages", "kmeans_ms", "--points", points_file, "--json", "--runs",
+                          "1"))["kmeans_msd"]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         fit = MiniBatchKMeans(n_clusters=CLUSTERS, random_state=0).fit(points)
