@@ -170,24 +170,24 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0) T3R
     +((first) <= (stage) && (stage) <= (last) ? T3R_UP_(bytes) : (size_t)0)
 #define T3R_STAGE_BYTES_(stage, w, h, v, z, k, rw, rh, hc, keep, n, s)                                                 \
     (0 T3R_BUFFERS(T3R_LIVE_, stage, w, h, v, z, k, rw, rh, hc, keep, n, s))
+/* Every argument is written out 2^depth times, so the tree is kept flat. */
 #define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
-#define T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s)                                                          \
-    T3R_MAX_(T3R_MOST_(T3R_MAX_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, w, h, v, z, k, rw, rh, hc, keep, n, s),                 \
-                                T3R_STAGE_BYTES_(T3R_AT_DEPTH, w, h, v, z, k, rw, rh, hc, keep, n, s)),                \
+#define T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, more_refine, more_raster)                           \
+    T3R_MAX_(T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, w, h, v, z, k, rw, rh, hc, keep, n, s),                          \
+                       T3R_STAGE_BYTES_(T3R_AT_DEPTH, w, h, v, z, k, rw, rh, hc, keep, n, s),                          \
                        T3R_STAGE_BYTES_(T3R_AT_WAVELET, w, h, v, z, k, rw, rh, hc, keep, n, s),                        \
-                       T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, w, h, v, z, k, rw, rh, hc, keep, n, s),                  \
-                       T3R_STAGE_BYTES_(T3R_AT_BUDGET, w, h, v, z, k, rw, rh, hc, keep, n, s)),                        \
-             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_HEAD, w, h, v, z, k, rw, rh, hc, keep, n, s),                           \
-                       T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s),                         \
-                       T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s), 0))
+                       T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, w, h, v, z, k, rw, rh, hc, keep, n, s)),                 \
+             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, w, h, v, z, k, rw, rh, hc, keep, n, s),                         \
+                       T3R_STAGE_BYTES_(T3R_AT_HEAD, w, h, v, z, k, rw, rh, hc, keep, n, s),                           \
+                       T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s) + (more_refine),         \
+                       T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s) + (more_raster)))
+#define T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s)                                                          \
+    T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, 0, 0)
 #define T3R_FULL_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s)                                                         \
-    T3R_MOST_(T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s),                                                   \
-              T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s) -                                 \
-                  T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))) +                                   \
-                  T3R_UP_(T3R_REFINE_FULL_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))),                               \
-              T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s) - T3R_UP_((size_t)(z)*4) +        \
-                  T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)),                                                                \
-              0)
+    T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s,                                                         \
+                        T3R_UP_(T3R_REFINE_FULL_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))) -                        \
+                            T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))),                          \
+                        T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)) - T3R_UP_((size_t)(z)*4))
 
 /* For the default configuration (300 SuperClusters, four refinements, targets of the working size, analysis not kept):
  * the smallest arena that works, and the one with which a view takes one pass (views of wide splats may take more). */
