@@ -7,18 +7,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include <sys/ioctl.h>
 #include <sys/mman.h>
+
+#include <linux/videodev2.h>
 
 #include <libcamera/libcamera.h>
 
@@ -80,13 +85,16 @@ struct t3r_libcamera_stream {
     std::condition_variable more;
     std::array<t3r_libcamera_done, T3R_LIBCAMERA_MOST_BUFFERS> done{};
     size_t first = 0, count = 0; // a ring: a buffer is in it at most once
-    bool gone = false;
+    bool gone = false;           // as the library was told by udev
+    bool refused = false;        // the device took a buffer no more
 
     void on_done(lc::Request *request)
     {
         const lc::FrameMetadata &m = request->buffers().at(stream)->metadata();
         std::lock_guard<std::mutex> held(lock);
-        if (count < done.size()) {
+        // handed back, a buffer that was cancelled would be cancelled again, without end
+        refused = refused || request->status() == lc::Request::RequestCancelled;
+        if (count < done.size() && !refused) {
             t3r_libcamera_done &d = done[(first + count++) % done.size()];
             d.index = static_cast<uint32_t>(request->cookie());
             d.sequence = m.sequence;
@@ -224,9 +232,50 @@ const char *prepare(t3r_libcamera_stream &s, const t3r_libcamera_request &r, t3r
     return nullptr;
 }
 
+// Whether a video device that this process has open is there no more.
+bool device_is_gone()
+{
+    std::error_code wrong;
+    for (const auto &entry : std::filesystem::directory_iterator("/proc/self/fd", wrong)) {
+        std::string path = std::filesystem::read_symlink(entry.path(), wrong).string();
+        struct v4l2_capability can;
+        int fd = std::atoi(entry.path().filename().c_str());
+        if (path.rfind("/dev/video", 0) == 0 && ioctl(fd, VIDIOC_QUERYCAP, &can) != 0 && errno == ENODEV) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void unmap(t3r_libcamera_stream *s)
+{
+    for (const mapping &m : s->mappings) {
+        munmap(m.memory, m.bytes);
+    }
+    s->mappings.clear();
+}
+
+// Where udevd does not run the library is not told of an unplugging, and its stop() of a device that is gone ends the
+// process (an assertion). So its thread is ended with its manager, and what belongs to the camera is never touched
+// again, nor freed; a manager made later looks for cameras anew.
+void abandon(t3r_libcamera_stream *s)
+{
+    s->cameras.reset();
+    unmap(s);
+}
+
 void close(t3r_libcamera_stream *s)
 {
     if (s == nullptr) {
+        return;
+    }
+    bool told = true;
+    {
+        std::lock_guard<std::mutex> held(s->lock);
+        told = s->gone;
+    }
+    if (s->started && !told && device_is_gone()) {
+        abandon(s);
         return;
     }
     if (s->started) {
@@ -236,9 +285,7 @@ void close(t3r_libcamera_stream *s)
         s->camera->requestCompleted.disconnect(s);
         s->camera->disconnected.disconnect(s);
     }
-    for (const mapping &m : s->mappings) {
-        munmap(m.memory, m.bytes);
-    }
+    unmap(s);
     s->requests.clear();
     if (s->allocator && s->stream != nullptr) {
         s->allocator->free(s->stream);
@@ -289,14 +336,15 @@ t3r_libcamera_stream *open(const t3r_libcamera_request *request, t3r_libcamera_a
 int wait(t3r_libcamera_stream *s, uint32_t timeout_ms, t3r_libcamera_done *done)
 {
     std::unique_lock<std::mutex> held(s->lock);
-    s->more.wait_for(held, std::chrono::milliseconds(timeout_ms), [s] { return s->gone || s->count > 0; });
+    s->more.wait_for(held, std::chrono::milliseconds(timeout_ms),
+                     [s] { return s->gone || s->refused || s->count > 0; });
     if (s->count > 0) {
         *done = s->done[s->first];
         s->first = (s->first + 1) % s->done.size();
         s->count--;
         return 1;
     }
-    return s->gone ? -1 : 0;
+    return s->gone ? -1 : s->refused ? -2 : 0;
 }
 
 int queue(t3r_libcamera_stream *s, uint32_t index)

@@ -129,7 +129,7 @@ def faults(name, first_loss, second_loss, broken, starts_late=False):
     trial.check(live["corrupted"] == 2 and live["reopened"] == 2, f"{name}: {live}")
     trial.check(live["dropped_driver"] + live["dropped_slow"] == len(missing) - 2, f"{name}: {live} {missing}")
     first, second = lost(others)
-    trial.check(first_loss in first and second_loss in second, f"{name}: {others}")
+    trial.check(re.search(first_loss, first) and re.search(second_loss, second), f"{name}: {others}")
     print(f"{name}: {live['rate']:.1f} frames/s, without {missing}; {others}")
 
 
@@ -165,6 +165,6 @@ faults("faults", "no image for", "No such device", "the driver calls it corrupte
 left("left", 3, "No such device")
 if MODULE:
     trial.check("libcamera:0" in trial.text("libcamera.list"), trial.text("libcamera.list"))
-    faults("libcamera", "was unplugged", "no image for", "the library calls it failed", starts_late=True)
+    faults("libcamera", "was unplugged|takes no buffers", "no image for", "the library calls it failed", starts_late=True)
     left("unheard", 3, "no image for")
 trial.done()
