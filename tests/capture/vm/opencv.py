@@ -10,7 +10,7 @@ TRIM3R, MODULE, INJECT, FOLDER = sys.argv[1:5]
 
 # the driver's bars without its clock: every image is the same
 JOB = """
-inject /dev/video0 0x00f0f001 2
+vivid_inject /dev/video0 0x00f0f001 2
 trim3r capture --source v4l2:/dev/video0 --size 320x180 --format BGR3 --frames 2 --json -o out/ours.mcap > out/ours
 for f in BGR3 YUYV; do
     trim3r capture --source opencv:/dev/video0 --backend V4L2 --size 320x180 --format $f --frames 2 --json \\

@@ -14,7 +14,7 @@ FORMATS = ("YUYV", "UYVY", "NV12", "RGB3", "BGR3", "GREY")
 JOB = f"""{RECORD}
 camera="--source v4l2:/dev/video0 --size 320x180"
 capture() {{ trim3r capture $camera --json --quiet "$@"; }}
-inject /dev/video0 0x00f0f001 2
+vivid_inject /dev/video0 0x00f0f001 2
 for f in {" ".join(FORMATS)}; do
     record $f $camera --format $f --rate 120 --frames {FRAMES} --buffers 16
 done
@@ -24,7 +24,7 @@ record pairs $camera --depth-source /dev/video1 --depth-size 320x180 --rate 30 -
 capture --rate 30 --seconds 14 --stall 1000 --reconnect 10 -o a.mcap > out/faults.live 2> out/faults.told &
 sleep 2
 for control in 0x00f0f042 0x00f0f044 0x00f0f046 0x00f0f041; do
-    inject /dev/video0 $control 1
+    vivid_inject /dev/video0 $control 1
     sleep 2.5
 done
 wait $!
@@ -32,19 +32,19 @@ echo $? > out/faults.rc
 trim3r info --json a.mcap > out/faults.info
 # faults of opening: refused once, told, and good the next time
 for control in 0x00f0f043 0x00f0f045; do
-    inject /dev/video0 $control 1
+    vivid_inject /dev/video0 $control 1
     capture --frames 3 -o b.mcap > /dev/null 2>> out/refused.told
     echo $? >> out/refused.rc
     capture --frames 3 --json -o b.mcap > /dev/null 2>> out/refused.told
     echo $? >> out/refused.rc
 done
 # half of the images dropped by the driver; all of them: a camera that stands still
-inject /dev/video0 0x00f0f040 50
+vivid_inject /dev/video0 0x00f0f040 50
 capture --rate 60 --frames 60 -o b.mcap > out/dropping.live
-inject /dev/video0 0x00f0f040 100
+vivid_inject /dev/video0 0x00f0f040 100
 capture --rate 60 --frames 60 --stall 1000 --reconnect 1 -o b.mcap > out/still.live 2> out/still.told
 echo $? > out/still.rc
-inject /dev/video0 0x00f0f040 0
+vivid_inject /dev/video0 0x00f0f040 0
 trim3r info --json b.mcap > out/still.info
 trim3r capture --list > out/list
 """
