@@ -13,15 +13,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include <dirent.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <linux/videodev2.h>
 
@@ -232,19 +233,29 @@ const char *prepare(t3r_libcamera_stream &s, const t3r_libcamera_request &r, t3r
     return nullptr;
 }
 
-// Whether a video device that this process has open is there no more.
-bool device_is_gone()
+// The video devices that this process has open and that are there no more, as many as there is room for.
+size_t gone_devices(std::array<int, 16> &found)
 {
-    std::error_code wrong;
-    for (const auto &entry : std::filesystem::directory_iterator("/proc/self/fd", wrong)) {
-        std::string path = std::filesystem::read_symlink(entry.path(), wrong).string();
-        struct v4l2_capability can;
-        int fd = std::atoi(entry.path().filename().c_str());
-        if (path.rfind("/dev/video", 0) == 0 && ioctl(fd, VIDIOC_QUERYCAP, &can) != 0 && errno == ENODEV) {
-            return true;
+    size_t count = 0;
+    DIR *folder = opendir("/proc/self/fd");
+    while (folder != nullptr && count < found.size()) {
+        const dirent *entry = readdir(folder);
+        if (entry == nullptr) {
+            break;
+        }
+        char path[32] = ""; // what is behind /dev/video matters not
+        ssize_t length = readlinkat(dirfd(folder), entry->d_name, path, sizeof path - 1);
+        int fd = std::atoi(entry->d_name);
+        v4l2_capability can;
+        if (length > 0 && std::strncmp(path, "/dev/video", 10) == 0 && ioctl(fd, VIDIOC_QUERYCAP, &can) != 0 &&
+            errno == ENODEV) {
+            found[count++] = fd;
         }
     }
-    return false;
+    if (folder != nullptr) {
+        closedir(folder);
+    }
+    return count;
 }
 
 void unmap(t3r_libcamera_stream *s)
@@ -255,13 +266,29 @@ void unmap(t3r_libcamera_stream *s)
     s->mappings.clear();
 }
 
-// Where udevd does not run the library is not told of an unplugging, and its stop() of a device that is gone ends the
-// process (an assertion). So its thread is ended with its manager, and what belongs to the camera is never touched
-// again, nor freed; a manager made later looks for cameras anew.
-void abandon(t3r_libcamera_stream *s)
+bool heard_of_unplugging(t3r_libcamera_stream *s)
 {
+    std::lock_guard<std::mutex> held(s->lock);
+    return s->gone;
+}
+
+// Where udevd's messages do not come (containers) the library does not hear of an unplugging, and its stop() of a
+// device that is gone ends the process (an assertion). So its thread is ended with its manager, and what belongs to the
+// camera is never touched again, nor freed; its devices are closed, for the next one to get their names. A manager made
+// later looks for cameras anew. Whether a device was left in this way.
+bool abandon(t3r_libcamera_stream *s)
+{
+    std::array<int, 16> devices;
+    size_t count = heard_of_unplugging(s) ? 0 : gone_devices(devices);
+    if (count == 0) {
+        return false;
+    }
     s->cameras.reset();
     unmap(s);
+    for (size_t i = 0; i < count; i++) {
+        ::close(devices[i]);
+    }
+    return true;
 }
 
 void close(t3r_libcamera_stream *s)
@@ -269,13 +296,7 @@ void close(t3r_libcamera_stream *s)
     if (s == nullptr) {
         return;
     }
-    bool told = true;
-    {
-        std::lock_guard<std::mutex> held(s->lock);
-        told = s->gone;
-    }
-    if (s->started && !told && device_is_gone()) {
-        abandon(s);
+    if (s->started && abandon(s)) {
         return;
     }
     if (s->started) {

@@ -44,12 +44,13 @@ class Trial:
         print(f"{self.accelerator}, {time.monotonic() - self.start:.0f} s")
 
 
-# in a job: capture, replay and look; what is left is .live, .replay and .info of the name that comes first
+# in a job: capture, replay and look; what is left is .live, .replay and .info of the name that comes first. $through
+# may have a command that runs another
 RECORD = """
 record() {
     name=$1
     shift
-    trim3r capture --hash --json --quiet -o a.mcap "$@" > out/$name.live 2> out/$name.told
+    $through trim3r capture --hash --json --quiet -o a.mcap "$@" > out/$name.live 2> out/$name.told
     status=$?
     trim3r capture --source replay:a.mcap --hash --json > out/$name.replay
     trim3r info --json a.mcap > out/$name.info

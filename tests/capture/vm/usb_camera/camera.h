@@ -1,8 +1,9 @@
 /* A camera of the USB Video Class (UVC), as a program: what its parts agree on.
  *
  * Sources, named where they are used: "USB 2.0", Universal Serial Bus Specification 2.0; "UVC 1.0", USB Device Class
- * Definition for Video Devices 1.0 (the numbers of its sections hold in 1.1 and 1.5 too, whose probe control is
- * longer); "usbip", the Linux kernel's Documentation/usb/usbip_protocol.rst. */
+ * Definition for Video Devices 1.0 with its payload papers (1.1 keeps the numbers of the sections; 1.5 has a longer
+ * probe control, a few later sections shifted); "usbip", the Linux kernel's Documentation/usb/usbip_protocol.rst.
+ * Constants are those of <linux/usb/ch9.h> and <linux/usb/video.h>, which name their sections. */
 #ifndef T3R_TESTS_USB_CAMERA_H
 #define T3R_TESTS_USB_CAMERA_H
 

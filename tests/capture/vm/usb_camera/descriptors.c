@@ -2,15 +2,11 @@
 
 #include <string.h>
 
+#include <linux/usb/ch9.h>
+#include <linux/usb/video.h>
+
 #include "camera.h"
 #include "little_endian.h"
-
-/* USB 2.0, table 9-5; the interface association: Interface Association Descriptors ECN, table 9-Z */
-enum { DEVICE = 1, CONFIGURATION, STRING, INTERFACE, ENDPOINT, INTERFACE_ASSOCIATION = 11 };
-/* UVC 1.0, A.1 to A.4 and A.5, A.6 */
-enum { CC_VIDEO = 0x0e, SC_CONTROL = 1, SC_STREAMING, SC_COLLECTION, CS_INTERFACE = 0x24 };
-enum { VC_HEADER = 1, VC_INPUT_TERMINAL, VC_OUTPUT_TERMINAL };
-enum { VS_INPUT_HEADER = 1, VS_FORMAT_YUYV = 4, VS_FRAME_YUYV, VS_FORMAT_MJPG, VS_FRAME_MJPG, VS_COLOUR = 13 };
 
 /* One that is under way: descriptors start with their length, the total of a group is known at its end. */
 typedef struct text {
@@ -32,21 +28,21 @@ static void add(text *t, const uint8_t *bytes, uint32_t count)
 /* UVC 1.0, 3.7: a camera terminal whose images go to the streaming interface. */
 static void add_control(text *t)
 {
-    ADD(t, INTERFACE, 0, 0, 0, CC_VIDEO, SC_CONTROL, 0, 0);
+    ADD(t, USB_DT_INTERFACE, 0, 0, 0, USB_CLASS_VIDEO, UVC_SC_VIDEOCONTROL, 0, 0);
     uint32_t start = t->count;
     /* version 1.0, a clock of 48 MHz, one streaming interface */
-    ADD(t, CS_INTERFACE, VC_HEADER, 0x00, 0x01, 0, 0, 0x00, 0x6c, 0xdc, 0x02, 1, CAMERA_STREAMING);
-    /* a camera without controls: ITT_CAMERA, table B-2 */
-    ADD(t, CS_INTERFACE, VC_INPUT_TERMINAL, 1, 0x01, 0x02, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0);
-    /* TT_STREAMING, table B-1, fed by terminal 1 */
-    ADD(t, CS_INTERFACE, VC_OUTPUT_TERMINAL, 2, 0x01, 0x01, 0, 1, 0);
+    ADD(t, USB_DT_CS_INTERFACE, UVC_VC_HEADER, 0x00, 0x01, 0, 0, 0x00, 0x6c, 0xdc, 0x02, 1, CAMERA_STREAMING);
+    /* UVC_ITT_CAMERA, without controls */
+    ADD(t, USB_DT_CS_INTERFACE, UVC_VC_INPUT_TERMINAL, 1, 0x01, 0x02, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0);
+    /* UVC_TT_STREAMING, fed by terminal 1 */
+    ADD(t, USB_DT_CS_INTERFACE, UVC_VC_OUTPUT_TERMINAL, 2, 0x01, 0x01, 0, 1, 0);
     put_le(t->bytes + start + 5, t->count - start, 2);
 }
 
-/* One size at one rate: UVC 1.0 Uncompressed Payload, table 3-2, and MJPEG Payload, table 3-2, which are alike. */
+/* One size at one rate: UVC 1.0, Uncompressed Payload and MJPEG Payload, 3.1.2, which are alike. */
 static void add_frame(text *t, uint8_t subtype)
 {
-    uint8_t frame[30] = {sizeof frame, CS_INTERFACE, subtype, 1, 0};
+    uint8_t frame[30] = {sizeof frame, USB_DT_CS_INTERFACE, subtype, 1, 0};
     put_le(frame + 5, CAMERA_WIDTH, 2);
     put_le(frame + 7, CAMERA_HEIGHT, 2);
     put_le(frame + 9, CAMERA_YUYV_BYTES * 8 * CAMERA_RATE, 4); /* least and most bits a second */
@@ -61,26 +57,26 @@ static void add_frame(text *t, uint8_t subtype)
 /* UVC 1.0, 3.9: both formats over one bulk endpoint, so there is no alternate setting to be chosen. */
 static void add_streaming(text *t)
 {
-    ADD(t, INTERFACE, CAMERA_STREAMING, 0, 1, CC_VIDEO, SC_STREAMING, 0, 0);
+    ADD(t, USB_DT_INTERFACE, CAMERA_STREAMING, 0, 1, USB_CLASS_VIDEO, UVC_SC_VIDEOSTREAMING, 0, 0);
     uint32_t start = t->count;
-    ADD(t, CS_INTERFACE, VS_INPUT_HEADER, 2, 0, 0, 0x80 | CAMERA_ENDPOINT, 0, 2, 0, 0, 0, 1, 0, 0);
-    /* the GUID of YUY2: Uncompressed Payload, table 3-1 */
-    ADD(t, CS_INTERFACE, VS_FORMAT_YUYV, CAMERA_YUYV, 1, 'Y', 'U', 'Y', '2', 0x00, 0x00, 0x10, 0x00, 0x80, 0x00, 0x00,
-        0xaa, 0x00, 0x38, 0x9b, 0x71, 16, 1, 0, 0, 0, 0);
-    add_frame(t, VS_FRAME_YUYV);
-    ADD(t, CS_INTERFACE, VS_COLOUR, 1, 1, 4);
-    ADD(t, CS_INTERFACE, VS_FORMAT_MJPG, CAMERA_MJPG, 1, 0, 1, 0, 0, 0, 0);
-    add_frame(t, VS_FRAME_MJPG);
-    ADD(t, CS_INTERFACE, VS_COLOUR, 1, 1, 4);
+    ADD(t, USB_DT_CS_INTERFACE, UVC_VS_INPUT_HEADER, 2, 0, 0, USB_DIR_IN | CAMERA_ENDPOINT, 0, 2, 0, 0, 0, 1, 0, 0);
+    /* the GUID of YUY2, 16 bits a pixel: UVC 1.0, Uncompressed Payload, 3.1.1 */
+    ADD(t, USB_DT_CS_INTERFACE, UVC_VS_FORMAT_UNCOMPRESSED, CAMERA_YUYV, 1, 'Y', 'U', 'Y', '2', 0x00, 0x00, 0x10, 0x00,
+        0x80, 0x00, 0x00, 0xaa, 0x00, 0x38, 0x9b, 0x71, 16, 1, 0, 0, 0, 0);
+    add_frame(t, UVC_VS_FRAME_UNCOMPRESSED);
+    ADD(t, USB_DT_CS_INTERFACE, UVC_VS_COLORFORMAT, 1, 1, 4);
+    ADD(t, USB_DT_CS_INTERFACE, UVC_VS_FORMAT_MJPEG, CAMERA_MJPG, 1, 0, 1, 0, 0, 0, 0);
+    add_frame(t, UVC_VS_FRAME_MJPEG);
+    ADD(t, USB_DT_CS_INTERFACE, UVC_VS_COLORFORMAT, 1, 1, 4);
     put_le(t->bytes + start + 4, t->count - start, 2);
-    /* bulk, 512 bytes a packet: USB 2.0, table 9-13 and 5.8.3 */
-    ADD(t, ENDPOINT, 0x80 | CAMERA_ENDPOINT, 2, 0x00, 0x02, 0);
+    /* 512 bytes a packet: USB 2.0, 5.8.3 */
+    ADD(t, USB_DT_ENDPOINT, USB_DIR_IN | CAMERA_ENDPOINT, USB_ENDPOINT_XFER_BULK, 0x00, 0x02, 0);
 }
 
 static void add_configuration(text *t)
 {
-    ADD(t, CONFIGURATION, 0, 0, 2, 1, 0, 0x80, 50); /* fed by the bus, 100 mA */
-    ADD(t, INTERFACE_ASSOCIATION, 0, 2, CC_VIDEO, SC_COLLECTION, 0, 0);
+    ADD(t, USB_DT_CONFIG, 0, 0, 2, 1, 0, USB_CONFIG_ATT_ONE, 50); /* fed by the bus, 100 mA */
+    ADD(t, USB_DT_INTERFACE_ASSOCIATION, 0, 2, USB_CLASS_VIDEO, UVC_SC_VIDEO_INTERFACE_COLLECTION, 0, 0);
     add_control(t);
     add_streaming(t);
     put_le(t->bytes + 2, t->count, 2);
@@ -91,11 +87,11 @@ static void add_string(text *t, uint8_t index)
 {
     static const char *const strings[] = {NULL, "trim3r", "test camera"};
     if (index == 0) {
-        ADD(t, STRING, 0x09, 0x04);
+        ADD(t, USB_DT_STRING, 0x09, 0x04);
     } else if (index < sizeof strings / sizeof strings[0]) {
         const char *string = strings[index];
         uint32_t letters = (uint32_t)strlen(string);
-        add(t, (const uint8_t[]){(uint8_t)(2 + 2 * letters), STRING}, 2);
+        add(t, (const uint8_t[]){(uint8_t)(2 + 2 * letters), USB_DT_STRING}, 2);
         for (uint32_t i = 0; i < letters; i++) {
             add(t, (const uint8_t[]){(uint8_t)string[i], 0}, 2);
         }
@@ -105,12 +101,12 @@ static void add_string(text *t, uint8_t index)
 uint32_t descriptor_get(uint8_t type, uint8_t index, uint8_t *out)
 {
     text t = {out, 0};
-    if (type == DEVICE) {
+    if (type == USB_DT_DEVICE) {
         /* USB 2.0; the class says that interfaces are associated; pid.codes' number for tests; names 1 and 2 */
-        ADD(&t, DEVICE, 0x00, 0x02, 0xef, 2, 1, 64, 0x09, 0x12, 0x01, 0x00, 0x00, 0x01, 1, 2, 0, 1);
-    } else if (type == CONFIGURATION) {
+        ADD(&t, USB_DT_DEVICE, 0x00, 0x02, USB_CLASS_MISC, 2, 1, 64, 0x09, 0x12, 0x01, 0x00, 0x00, 0x01, 1, 2, 0, 1);
+    } else if (type == USB_DT_CONFIG) {
         add_configuration(&t);
-    } else if (type == STRING) {
+    } else if (type == USB_DT_STRING) {
         add_string(&t, index);
     }
     return t.count;

@@ -8,7 +8,7 @@
 
 typedef enum fault_kind {
     FAULT_NONE,
-    FAULT_ERROR,  /* the frame carries the error bit (UVC 1.0, table 2-5) */
+    FAULT_ERROR,  /* the frame carries the error bit (UVC 1.0, 2.4.3.3) */
     FAULT_CUT,    /* the frame ends after half of its bytes */
     FAULT_STALL,  /* from this frame on the stream stands still */
     FAULT_UNPLUG, /* the plug is pulled within the frame, and put back later */

@@ -14,7 +14,7 @@
 #include "stream.h"
 #include "usbip.h"
 
-#define AWAY_NS 500000000 /* between unplugging and the next plug */
+#define AWAY_S 1 /* between unplugging and the next plug */
 #define TRY_NS 50000000
 #define MOST_TRIES 100 /* of plugging in: the port is taken until the kernel has seen the camera leave */
 
@@ -118,6 +118,6 @@ int main(int argc, char **argv)
             fprintf(stderr, "usb_camera: %s\n", end == STREAM_LEAVE ? "left" : "the bus is gone");
             return end == STREAM_LEAVE ? 0 : 1;
         }
-        nanosleep(&(struct timespec){0, AWAY_NS}, NULL);
+        nanosleep(&(struct timespec){AWAY_S, 0}, NULL);
     }
 }

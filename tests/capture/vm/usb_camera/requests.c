@@ -2,27 +2,14 @@
 
 #include <string.h>
 
+#include <linux/usb/ch9.h>
+#include <linux/usb/video.h>
+
 #include "camera.h"
 #include "descriptors.h"
 #include "little_endian.h"
 
-#define PROBE_BYTES 26u /* UVC 1.0, table 4-47 */
-
-/* USB 2.0, table 9-4 */
-enum {
-    GET_STATUS = 0,
-    CLEAR_FEATURE = 1,
-    SET_FEATURE = 3,
-    GET_DESCRIPTOR = 6,
-    GET_CONFIGURATION = 8,
-    SET_CONFIGURATION = 9,
-    GET_INTERFACE = 10,
-    SET_INTERFACE = 11
-};
-/* UVC 1.0, A.8 */
-enum { SET_CUR = 0x01, GET_CUR = 0x81, GET_MIN, GET_MAX, GET_RES, GET_LEN, GET_INFO, GET_DEF };
-/* UVC 1.0, A.9.7 */
-enum { VS_PROBE = 1, VS_COMMIT };
+#define PROBE_BYTES 26u /* UVC 1.0, 4.3.1.1 */
 
 static int answer(uint8_t *data, const uint8_t *bytes, uint32_t count, uint32_t length)
 {
@@ -35,21 +22,21 @@ static int standard(uint8_t request, uint16_t value, uint8_t *data, uint32_t len
 {
     uint8_t bytes[DESCRIPTOR_MOST_BYTES] = {0};
     switch (request) {
-    case GET_DESCRIPTOR: {
+    case USB_REQ_GET_DESCRIPTOR: {
         uint32_t count = descriptor_get((uint8_t)(value >> 8), (uint8_t)value, bytes);
         return count != 0 ? answer(data, bytes, count, length) : REQUEST_STALL;
     }
-    case GET_STATUS:
+    case USB_REQ_GET_STATUS:
         return answer(data, bytes, 2, length);
-    case GET_CONFIGURATION:
+    case USB_REQ_GET_CONFIGURATION:
         bytes[0] = 1;
         return answer(data, bytes, 1, length);
-    case GET_INTERFACE:
+    case USB_REQ_GET_INTERFACE:
         return answer(data, bytes, 1, length);
-    case CLEAR_FEATURE:
-    case SET_FEATURE:
-    case SET_CONFIGURATION:
-    case SET_INTERFACE:
+    case USB_REQ_CLEAR_FEATURE:
+    case USB_REQ_SET_FEATURE:
+    case USB_REQ_SET_CONFIGURATION:
+    case USB_REQ_SET_INTERFACE:
         return 0;
     default:
         return REQUEST_STALL;
@@ -72,27 +59,27 @@ static int negotiation(requests *self, uint8_t request, uint8_t control, uint8_t
 {
     uint8_t bytes[PROBE_BYTES] = {0};
     switch (request) {
-    case SET_CUR:
+    case UVC_SET_CUR:
         if (length < PROBE_BYTES) {
             return REQUEST_STALL;
         }
         self->probed = data[2] == CAMERA_MJPG ? CAMERA_MJPG : CAMERA_YUYV;
-        if (control == VS_COMMIT) {
+        if (control == UVC_VS_COMMIT_CONTROL) {
             self->format = self->probed;
             self->committed = true;
         }
         return 0;
-    case GET_CUR:
-    case GET_MIN:
-    case GET_MAX:
-    case GET_DEF:
-        terms(request == GET_DEF || self->probed == 0 ? CAMERA_YUYV : self->probed, bytes);
+    case UVC_GET_CUR:
+    case UVC_GET_MIN:
+    case UVC_GET_MAX:
+    case UVC_GET_DEF:
+        terms(request == UVC_GET_DEF || self->probed == 0 ? CAMERA_YUYV : self->probed, bytes);
         return answer(data, bytes, PROBE_BYTES, length);
-    case GET_LEN:
+    case UVC_GET_LEN:
         put_le(bytes, PROBE_BYTES, 2);
         return answer(data, bytes, 2, length);
-    case GET_INFO:
-        bytes[0] = 3; /* can be read and set: UVC 1.0, table 4-3 */
+    case UVC_GET_INFO:
+        bytes[0] = UVC_CONTROL_CAP_GET | UVC_CONTROL_CAP_SET;
         return answer(data, bytes, 1, length);
     default:
         return REQUEST_STALL;
@@ -101,14 +88,15 @@ static int negotiation(requests *self, uint8_t request, uint8_t control, uint8_t
 
 int request_answer(requests *self, const uint8_t setup[8], uint8_t *data, uint32_t length)
 {
-    /* USB 2.0, table 9-2 */
-    uint8_t type = setup[0] >> 5 & 3, request = setup[1];
+    /* USB 2.0, 9.3 */
+    uint8_t type = setup[0] & USB_TYPE_MASK, request = setup[1];
     uint16_t value = (uint16_t)get_le(setup + 2, 2), index = (uint16_t)get_le(setup + 4, 2);
     uint8_t control = (uint8_t)(value >> 8);
-    if (type == 0) {
+    if (type == USB_TYPE_STANDARD) {
         return standard(request, value, data, length);
     }
-    if (type == 1 && (index & 255) == CAMERA_STREAMING && (control == VS_PROBE || control == VS_COMMIT)) {
+    if (type == USB_TYPE_CLASS && (index & 255) == CAMERA_STREAMING &&
+        (control == UVC_VS_PROBE_CONTROL || control == UVC_VS_COMMIT_CONTROL)) {
         return negotiation(self, request, control, data, length);
     }
     return REQUEST_STALL;

@@ -2,11 +2,10 @@
 
 #include <string.h>
 
-#define HEADER_BYTES 2u /* neither PTS nor SCR */
-#define INTERVAL_NS (INT64_C(100) * CAMERA_INTERVAL)
+#include <linux/usb/video.h>
 
-/* UVC 1.0, table 2-5: bmHeaderInfo */
-enum { HEADER_FID = 1 << 0, HEADER_EOF = 1 << 1, HEADER_ERR = 1 << 6, HEADER_EOH = 1 << 7 };
+#define HEADER_BYTES 2u /* of a payload, with neither PTS nor SCR: UVC 1.0, 2.4.3.3 */
+#define INTERVAL_NS (INT64_C(100) * CAMERA_INTERVAL)
 
 void stream_begin(stream *self, uint8_t format, int64_t now_ns)
 {
@@ -84,8 +83,8 @@ stream_end stream_send(stream *self, int bus)
     uint32_t count = end - self->sent < room - HEADER_BYTES ? end - self->sent : room - HEADER_BYTES;
     bool last = self->sent + count == end;
     payload[0] = HEADER_BYTES;
-    payload[1] = (uint8_t)(HEADER_EOH | (self->frame % 2 != 0 ? HEADER_FID : 0) | (last ? HEADER_EOF : 0) |
-                           (fault == FAULT_ERROR ? HEADER_ERR : 0));
+    payload[1] = (uint8_t)(UVC_STREAM_EOH | (self->frame % 2 != 0 ? UVC_STREAM_FID : 0) | (last ? UVC_STREAM_EOF : 0) |
+                           (fault == FAULT_ERROR ? UVC_STREAM_ERR : 0));
     memcpy(payload + HEADER_BYTES, image.bytes + self->sent, count);
     self->sent += count;
     if (last) {

@@ -7,6 +7,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <linux/usb/ch9.h>
+
 #define PORT "/sys/devices/platform/vhci_hcd.0/attach"
 #define HEADER_WORDS 12u /* of 32 bits, big-endian: usbip, "USBIP_CMD_SUBMIT" and following */
 
@@ -32,9 +34,9 @@ int usbip_plug(void)
     if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) {
         return -1;
     }
-    /* port, socket, device 1 of bus 1, USB_SPEED_HIGH: drivers/usb/usbip/vhci_sysfs.c, attach_store() */
+    /* port, socket, device 1 of bus 1: drivers/usb/usbip/vhci_sysfs.c, attach_store() */
     char line[64];
-    int length = snprintf(line, sizeof line, "0 %d %d 3", ends[1], 1 << 16 | 1);
+    int length = snprintf(line, sizeof line, "0 %d %d %d", ends[1], 1 << 16 | 1, USB_SPEED_HIGH);
     FILE *port = fopen(PORT, "w");
     bool plugged = port != NULL && fwrite(line, 1, (size_t)length, port) == (size_t)length;
     plugged = port != NULL && fclose(port) == 0 && plugged;
