@@ -80,8 +80,8 @@ export LIBCAMERA_LOG_LEVELS=*:ERROR
 camera="--source libcamera:0 --size {WIDTH}x{HEIGHT} --format YUYV"
 trim3r capture --list > out/libcamera.list
 keep libcamera $camera --frames 30 --stall 1500
-# which it does not where udevd is on the other side of a container's wall; there the camera leaves once while its images
-# are waited for, and once while they are not: the recording goes through a pipe that is not emptied before
+# which it does not where udevd is on the other side of a container's wall; there the camera leaves once while its
+# images are waited for, and once while they are not: the recording goes through a pipe that is not emptied before
 through="unshare -n"
 keep unheard $camera --frames 10 --stall 1500
 to=pipe
