@@ -193,7 +193,8 @@ static int await(libcamera_capture *self, t3r_capture_frame *frame)
         t3r_libcamera_done done;
         int got = self->shim->wait(self->stream, left_ms > 0 ? (uint32_t)left_ms : 0, &done);
         if (got < 0) {
-            return t3r_capture_lose(&self->capture, "libcamera:%s: was unplugged", self->camera);
+            return t3r_capture_lose(&self->capture, "libcamera:%s: %s", self->camera,
+                                    got == -1 ? "was unplugged" : "takes no buffers");
         }
         if (got == 0) {
             int64_t still_ms = (now_ns() - self->alive_ns) / 1000000;

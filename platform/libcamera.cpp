@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -18,7 +19,12 @@
 #include <string>
 #include <vector>
 
+#include <dirent.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <unistd.h>
+
+#include <linux/videodev2.h>
 
 #include <libcamera/libcamera.h>
 
@@ -80,13 +86,16 @@ struct t3r_libcamera_stream {
     std::condition_variable more;
     std::array<t3r_libcamera_done, T3R_LIBCAMERA_MOST_BUFFERS> done{};
     size_t first = 0, count = 0; // a ring: a buffer is in it at most once
-    bool gone = false;
+    bool gone = false;           // as the library was told by udev
+    bool refused = false;        // the device took a buffer no more
 
     void on_done(lc::Request *request)
     {
         const lc::FrameMetadata &m = request->buffers().at(stream)->metadata();
         std::lock_guard<std::mutex> held(lock);
-        if (count < done.size()) {
+        // handed back, a buffer that was cancelled would be cancelled again, without end
+        refused = refused || request->status() == lc::Request::RequestCancelled;
+        if (count < done.size() && !refused) {
             t3r_libcamera_done &d = done[(first + count++) % done.size()];
             d.index = static_cast<uint32_t>(request->cookie());
             d.sequence = m.sequence;
@@ -224,9 +233,70 @@ const char *prepare(t3r_libcamera_stream &s, const t3r_libcamera_request &r, t3r
     return nullptr;
 }
 
+// The video devices that this process has open and that are there no more, as many as there is room for.
+size_t gone_devices(std::array<int, 16> &found)
+{
+    size_t count = 0;
+    DIR *folder = opendir("/proc/self/fd");
+    while (folder != nullptr && count < found.size()) {
+        const dirent *entry = readdir(folder);
+        if (entry == nullptr) {
+            break;
+        }
+        char path[32] = ""; // what is behind /dev/video matters not
+        ssize_t length = readlinkat(dirfd(folder), entry->d_name, path, sizeof path - 1);
+        int fd = std::atoi(entry->d_name);
+        v4l2_capability can;
+        if (length > 0 && std::strncmp(path, "/dev/video", 10) == 0 && ioctl(fd, VIDIOC_QUERYCAP, &can) != 0 &&
+            errno == ENODEV) {
+            found[count++] = fd;
+        }
+    }
+    if (folder != nullptr) {
+        closedir(folder);
+    }
+    return count;
+}
+
+void unmap(t3r_libcamera_stream *s)
+{
+    for (const mapping &m : s->mappings) {
+        munmap(m.memory, m.bytes);
+    }
+    s->mappings.clear();
+}
+
+bool heard_of_unplugging(t3r_libcamera_stream *s)
+{
+    std::lock_guard<std::mutex> held(s->lock);
+    return s->gone;
+}
+
+// Where udevd's messages do not come (containers) the library does not hear of an unplugging, and its stop() of a
+// device that is gone ends the process (an assertion). So its thread is ended with its manager, and what belongs to the
+// camera is never touched again, nor freed; its devices are closed, for the next one to get their names. A manager made
+// later looks for cameras anew. Whether a device was left in this way.
+bool abandon(t3r_libcamera_stream *s)
+{
+    std::array<int, 16> devices;
+    size_t count = heard_of_unplugging(s) ? 0 : gone_devices(devices);
+    if (count == 0) {
+        return false;
+    }
+    s->cameras.reset();
+    unmap(s);
+    for (size_t i = 0; i < count; i++) {
+        ::close(devices[i]);
+    }
+    return true;
+}
+
 void close(t3r_libcamera_stream *s)
 {
     if (s == nullptr) {
+        return;
+    }
+    if (s->started && abandon(s)) {
         return;
     }
     if (s->started) {
@@ -236,9 +306,7 @@ void close(t3r_libcamera_stream *s)
         s->camera->requestCompleted.disconnect(s);
         s->camera->disconnected.disconnect(s);
     }
-    for (const mapping &m : s->mappings) {
-        munmap(m.memory, m.bytes);
-    }
+    unmap(s);
     s->requests.clear();
     if (s->allocator && s->stream != nullptr) {
         s->allocator->free(s->stream);
@@ -289,14 +357,15 @@ t3r_libcamera_stream *open(const t3r_libcamera_request *request, t3r_libcamera_a
 int wait(t3r_libcamera_stream *s, uint32_t timeout_ms, t3r_libcamera_done *done)
 {
     std::unique_lock<std::mutex> held(s->lock);
-    s->more.wait_for(held, std::chrono::milliseconds(timeout_ms), [s] { return s->gone || s->count > 0; });
+    s->more.wait_for(held, std::chrono::milliseconds(timeout_ms),
+                     [s] { return s->gone || s->refused || s->count > 0; });
     if (s->count > 0) {
         *done = s->done[s->first];
         s->first = (s->first + 1) % s->done.size();
         s->count--;
         return 1;
     }
-    return s->gone ? -1 : 0;
+    return s->gone ? -1 : s->refused ? -2 : 0;
 }
 
 int queue(t3r_libcamera_stream *s, uint32_t index)

@@ -39,7 +39,7 @@ typedef struct t3r_libcamera_done {
     uint32_t index, sequence;
     uint64_t stamp_ns; /* CLOCK_BOOTTIME */
     uint32_t bytes;
-    bool whole; /* the library says neither error nor cancelled */
+    bool whole; /* the library calls it no error */
 } t3r_libcamera_done;
 
 typedef struct t3r_libcamera_shim {
@@ -47,7 +47,7 @@ typedef struct t3r_libcamera_shim {
     /* Opens the camera and starts; NULL with a reason. */
     t3r_libcamera_stream *(*open)(const t3r_libcamera_request *request, t3r_libcamera_agreed *agreed, char *error,
                                   size_t error_bytes);
-    /* The next finished buffer: 1; 0: none within the time; -1: the camera was unplugged. */
+    /* The next finished buffer: 1; 0: none within the time; -1: the camera was unplugged; -2: it takes no buffers. */
     int (*wait)(t3r_libcamera_stream *stream, uint32_t timeout_ms, t3r_libcamera_done *done);
     /* Hands a buffer back: 0, or -1. */
     int (*queue)(t3r_libcamera_stream *stream, uint32_t index);

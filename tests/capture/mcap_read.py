@@ -67,3 +67,15 @@ def log(message):
     when, level = stamp(cdr), cdr.number("B")
     cdr.string()
     return when, level, cdr.string()
+
+
+def image(message):
+    """height, width, encoding, samples"""
+    cdr = Cdr(message)
+    stamp(cdr)
+    cdr.string()
+    height, width, encoding = cdr.number("I"), cdr.number("I"), cdr.string()
+    cdr.number("B")
+    cdr.number("I")
+    count = cdr.number("I")
+    return height, width, encoding, cdr.data[cdr.at:cdr.at + count]

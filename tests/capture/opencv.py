@@ -24,15 +24,8 @@ def images(path, topic, dtype, channels):
     out = []
     for name, _, message in mcap_read.messages(open(path, "rb").read()):
         if name == topic:
-            cdr = mcap_read.Cdr(message)
-            mcap_read.stamp(cdr)
-            cdr.string()
-            height, width = cdr.number("I"), cdr.number("I")
-            encoding = cdr.string()
-            cdr.number("B")
-            cdr.number("I")
-            count = cdr.number("I")
-            samples = numpy.frombuffer(cdr.data[cdr.at:cdr.at + count], dtype)
+            height, width, encoding, data = mcap_read.image(message)
+            samples = numpy.frombuffer(data, dtype)
             out.append((encoding, samples.reshape(height, width, channels) if channels > 1 else
                         samples.reshape(height, width)))
     return out

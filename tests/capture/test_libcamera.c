@@ -19,7 +19,7 @@ static struct {
     const char *refuses; /* opening; NULL = not */
     const char *format;
     uint32_t stride, short_bytes;
-    uint32_t failed_at, skip_at, gone_at, still_at, refuse_queue_at;
+    uint32_t failed_at, skip_at, gone_at, still_at, refuse_queue_at, cancel_at;
     uint32_t opened, number, queued, lent, line[BUFFERS];
     uint8_t memory[BUFFERS][STRIDE * HEIGHT * 2];
 } library;
@@ -29,7 +29,8 @@ static void start(void)
     memset(&library, 0, sizeof library);
     library.format = "YUYV";
     library.stride = STRIDE * 2;
-    library.failed_at = library.skip_at = library.gone_at = library.still_at = library.refuse_queue_at = NEVER;
+    library.failed_at = library.skip_at = library.gone_at = library.still_at = library.refuse_queue_at =
+        library.cancel_at = NEVER;
 }
 
 static t3r_libcamera_stream *open_stream(const t3r_libcamera_request *request, t3r_libcamera_agreed *agreed,
@@ -58,6 +59,9 @@ static int wait_for(t3r_libcamera_stream *stream, uint32_t timeout_ms, t3r_libca
     (void)timeout_ms;
     if (library.number >= library.gone_at) {
         return -1;
+    }
+    if (library.number >= library.cancel_at) {
+        return -2;
     }
     if (library.number >= library.still_at || library.queued == 0) {
         return 0;
@@ -171,11 +175,12 @@ static void what_cannot_be_read_is_refused(void **state)
 static void lost_cameras_are_told_and_come_back(void **state)
 {
     (void)state;
-    static const char *const words[] = {"unplugged", "takes no buffers", "no image for"};
-    for (int i = 0; i < 3; i++) {
+    static const char *const words[] = {"unplugged", "takes no buffers", "takes no buffers", "no image for"};
+    uint32_t *const at[] = {&library.gone_at, &library.refuse_queue_at, &library.cancel_at, &library.still_at};
+    for (int i = 0; i < 4; i++) {
         char error[256] = "";
         start();
-        *(i == 0 ? &library.gone_at : i == 1 ? &library.refuse_queue_at : &library.still_at) = 3;
+        *at[i] = 3;
         t3r_capture *capture = open_fake(1, error);
         assert_non_null(capture);
         t3r_capture_frame frame;
@@ -193,7 +198,7 @@ static void lost_cameras_are_told_and_come_back(void **state)
         library.refuses = "there is no such camera";
         assert_int_equal(t3r_capture_reopen(capture), T3R_CAPTURE_LOST);
         library.refuses = NULL;
-        library.gone_at = library.refuse_queue_at = library.still_at = NEVER;
+        *at[i] = NEVER;
         assert_int_equal(t3r_capture_reopen(capture), T3R_CAPTURE_FRAME);
         check_next(capture, 3);
         t3r_capture_close(capture);

@@ -1,5 +1,5 @@
-"""A virtual machine with Debian's kernel, a virtual camera driver of it, and one program to be run in it. No root is
-needed; with KVM where that works, without where not."""
+"""A virtual machine with Debian's kernel, drivers of it, and one program to be run in it. No root is needed; with KVM
+where that works, without where not."""
 import glob
 import gzip
 import lzma
@@ -10,11 +10,22 @@ import subprocess
 import sys
 import tarfile
 
-DRIVERS = "kernel/drivers/media"
-BASE = ("mc/mc v4l2-core/videodev common/videobuf2/videobuf2-common common/videobuf2/videobuf2-memops "
-        "common/videobuf2/videobuf2-v4l2 common/videobuf2/videobuf2-vmalloc common/videobuf2/videobuf2-dma-contig "
-        "common/v4l2-tpg/v4l2-tpg v4l2-core/v4l2-dv-timings rc/rc-core cec/core/cec").split()
-VIVID = "test-drivers/vivid/vivid"
+sys.path[:0] = [os.path.join(os.path.dirname(os.path.abspath(__file__)), up) for up in ("..", "../..")]
+from checks import skip  # noqa: E402
+
+# what insmod is given, in the order of their needs
+CAPTURE = [f"media/{name}" for name in (
+    "mc/mc v4l2-core/videodev common/videobuf2/videobuf2-common common/videobuf2/videobuf2-memops "
+    "common/videobuf2/videobuf2-v4l2 common/videobuf2/videobuf2-vmalloc").split()]
+PATTERNS = [f"media/{name}" for name in (
+    "common/videobuf2/videobuf2-dma-contig common/v4l2-tpg/v4l2-tpg v4l2-core/v4l2-dv-timings rc/rc-core "
+    "cec/core/cec").split()]
+MODULES = {
+    "vivid": [*CAPTURE, *PATTERNS, "media/test-drivers/vivid/vivid"],
+    "vimc": [*CAPTURE, *PATTERNS],  # and vimc itself, which is built
+    "uvcvideo": [*CAPTURE, "usb/common/usb-common", "usb/core/usbcore", "usb/usbip/usbip-core", "usb/usbip/vhci-hcd",
+                 "media/usb/uvc/uvcvideo"],
+}
 
 INIT = """#!/bin/busybox sh
 /bin/busybox --install -s /bin
@@ -27,27 +38,17 @@ for m in $(cat /mod/list); do
     *) insmod /mod/$m ;;
     esac
 done
-for i in 1 2 3 4 5 6 7 8 9; do [ -e /dev/video0 ] && break; sleep 0.1; done
-# libcamera asks udev what there is, which is not running: everything is, and known
-mkdir -p /run/udev/data
-touch /run/udev/control
-for f in /sys/class/video4linux/*/dev /sys/bus/media/devices/*/dev; do
-    [ -e $f ] && echo I:1000000 > /run/udev/data/c$(cat $f)
-done
-mkdir /tmp/out
+mkdir /run /tmp/out
+: > /tmp/out/log
 echo BOOTED
 cd /tmp
-sh -x /job.sh 2>&1 | tee /tmp/out/log
+tail -f /tmp/out/log & # no pipe, which would last as long as the last of the job's programs
+sh -x /job.sh > /tmp/out/log 2>&1
 stty -F /dev/ttyS1 raw
 tar -cf - -C /tmp/out . > /dev/ttyS1
 sync
 reboot -f
 """
-
-
-def skip(why):
-    print(f"SKIPPED: {why}")
-    sys.exit(77)
 
 
 def need(*commands):
@@ -64,6 +65,8 @@ def kernel_version():
 
 def package(folder, name):
     """The path of a package, downloaded once; it is not installed."""
+    need("dpkg-deb", "apt-get")
+    os.makedirs(folder, exist_ok=True)
     if not glob.glob(f"{folder}/{name}_*.deb"):
         subprocess.run(["apt-get", "download", "-q", name], cwd=folder, capture_output=True, timeout=300)
     found = glob.glob(f"{folder}/{name}_*.deb")
@@ -71,13 +74,14 @@ def package(folder, name):
 
 
 def unpack_kernel(folder):
-    """(vmlinux, folder of modules)"""
+    """(vmlinux, folder of drivers)"""
     version = kernel_version()
     image = package(folder, f"linux-image-{version}")
-    vmlinux, modules = f"{folder}/vmlinux-{version}", f"{folder}/lib/modules/{version}/{DRIVERS}"
-    if not os.path.exists(vmlinux):
+    vmlinux, drivers = f"{folder}/vmlinux-{version}", f"{folder}/lib/modules/{version}/kernel/drivers"
+    modules = sorted({module for wanted in MODULES.values() for module in wanted})
+    if not all(map(os.path.exists, [vmlinux, *(f"{drivers}/{m}.ko" for m in modules)])):
         wanted = [f"./boot/vmlinuz-{version}"]
-        wanted += [f"./lib/modules/{version}/{DRIVERS}/{m}.ko" for m in [*BASE, VIVID]]
+        wanted += [f"./lib/modules/{version}/kernel/drivers/{m}.ko" for m in modules]
         with subprocess.Popen(["dpkg-deb", "--fsys-tarfile", image], stdout=subprocess.PIPE) as files:
             subprocess.run(["tar", "-x", "-C", folder, *wanted], stdin=files.stdout, check=True)
         with open(f"{folder}/boot/vmlinuz-{version}", "rb") as file:
@@ -86,12 +90,25 @@ def unpack_kernel(folder):
         with open(vmlinux + ".part", "wb") as file:
             file.write(lzma.LZMADecompressor().decompress(packed[packed.find(b"\xfd7zXZ\0"):]))
         os.rename(vmlinux + ".part", vmlinux)
-    return vmlinux, modules
+    return vmlinux, drivers
+
+
+def unpack_udev(folder):
+    """The program of udevd, which libcamera hears of cameras from."""
+    program = f"{folder}/udev/bin/udevadm"
+    if not os.path.exists(program):
+        subprocess.run(["dpkg-deb", "-x", package(folder, "udev"), f"{folder}/udev"], check=True)
+    if "not found" in linked(program):
+        skip("udevd's libraries are not there (tools/setup --tests --cameras)")
+    return program
+
+
+def linked(program):
+    return subprocess.run(["ldd", program], capture_output=True, text=True, check=True).stdout
 
 
 def libraries(program):
-    out = subprocess.run(["ldd", program], capture_output=True, text=True, check=True).stdout
-    return re.findall(r"(/\S+)", out)
+    return re.findall(r"(/\S+)", linked(program))
 
 
 def build_vimc(folder):
@@ -122,8 +139,8 @@ def build_vimc(folder):
     return module
 
 
-def initramfs(folder, modules, programs, job, files=()):
-    """`programs` go to /bin with the libraries that they need; `files` go where they are."""
+def initramfs(folder, modules, programs, job, files=(), data=None):
+    """`programs` go to /bin with the libraries that they need; `files` go where they are; `data` is {path: bytes}."""
     root = f"{folder}/root"
     shutil.rmtree(root, ignore_errors=True)
     for name in ("bin", "mod", "proc", "sys", "dev", "tmp", "lib", "lib64"):
@@ -137,6 +154,10 @@ def initramfs(folder, modules, programs, job, files=()):
     for file in files:
         os.makedirs(root + os.path.dirname(file), exist_ok=True)
         shutil.copy(file, root + file)
+    for path, content in (data or {}).items():
+        os.makedirs(root + os.path.dirname(path), exist_ok=True)
+        with open(root + path, "wb") as file:
+            file.write(content)
     for module in modules:
         shutil.copy(module, f"{root}/mod/")
     for path, text, mode in (("mod/list", "".join(os.path.basename(m) + "\n" for m in modules), 0o644),
@@ -157,8 +178,8 @@ def boot(folder, vmlinux, image, accelerator, seconds, megabytes=768):
     out = f"{folder}/out.tar"
     machine = ["-accel", "kvm", "-cpu", "host"] if accelerator == "kvm" else ["-accel", "tcg", "-cpu", "max"]
     command = ["qemu-system-x86_64", "-M", "q35", *machine, "-smp", "1", "-m", str(megabytes), "-nodefaults",
-               "-display", "none", "-serial", "stdio", "-serial", f"file:{out}", "-no-reboot", "-kernel", vmlinux, "-initrd", image,
-               "-append", "console=ttyS0 quiet loglevel=0 panic=-1 rdinit=/init"]
+               "-display", "none", "-serial", "stdio", "-serial", f"file:{out}", "-no-reboot", "-kernel", vmlinux,
+               "-initrd", image, "-append", "console=ttyS0 quiet loglevel=0 panic=-1 rdinit=/init"]
     with open(f"{folder}/console", "wb") as console:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=console, stderr=subprocess.STDOUT)
     late = ""
@@ -190,20 +211,21 @@ def kvm_works(folder, vmlinux, modules):
         return file.read() == "yes"
 
 
-def run(folder, programs, job, seconds, driver="vivid", extra=(), megabytes=768):
-    """Runs the shell script `job` beside /dev/video0; {file name: bytes} of what it left in /tmp/out, how it ran."""
-    need("qemu-system-x86_64", "busybox", "cpio", "dpkg-deb", "apt-get")
-    os.makedirs(folder, exist_ok=True)
+def run(folder, programs, job, seconds, driver, files=(), data=None, megabytes=768):
+    """Runs the shell script `job` with that driver; {file name: bytes} of what it left in /tmp/out, how it ran, what
+    the console said. `programs`, `files` and `data` are those of initramfs()."""
+    need("qemu-system-x86_64", "busybox", "cpio")
     vmlinux, drivers = unpack_kernel(folder)
-    modules = [f"{drivers}/{m}.ko" for m in BASE]
-    modules.append(build_vimc(folder) if driver == "vimc" else f"{drivers}/{VIVID}.ko")
+    modules = [f"{drivers}/{m}.ko" for m in MODULES[driver]]
+    if driver == "vimc":
+        modules.append(build_vimc(folder))
     accelerator = os.environ.get("T3R_VM_ACCEL") or ("kvm" if kvm_works(folder, vmlinux, modules) else "tcg")
-    image = initramfs(folder, modules, programs, job, extra)
+    image = initramfs(folder, modules, programs, job, files, data)
     said, out = boot(folder, vmlinux, image, accelerator, seconds, megabytes)
-    files = {}
+    left = {}
     try:
         with tarfile.open(out) as tar:
-            files = {os.path.basename(m.name): tar.extractfile(m).read() for m in tar if m.isfile()}
+            left = {os.path.basename(m.name): tar.extractfile(m).read() for m in tar if m.isfile()}
     except (OSError, tarfile.TarError):
         pass
-    return files, accelerator, said
+    return left, accelerator, said

@@ -1,4 +1,4 @@
-/* inject DEVICE CONTROL VALUE: one V4L2 control, numbers as in C. */
+/* vivid_inject DEVICE CONTROL VALUE: one V4L2 control, numbers as in C. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>

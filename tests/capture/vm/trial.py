@@ -1,0 +1,59 @@
+"""What the scripts of this folder share: one job in a virtual machine, and a look at what it left."""
+import json
+import os
+import time
+
+import machine
+from checks import check, done, skip  # noqa: F401
+
+OUT_OF_TIME = 600  # seconds: a machine without KVM on a busy processor
+
+
+class Trial:
+    """The files that `job` left in the machine's /tmp/out; `told` are those that a failure shows besides its log."""
+
+    def __init__(self, folder, programs, job, driver, told=(), **options):
+        self.start, self.told = time.monotonic(), told
+        self.files, self.accelerator, said = machine.run(os.path.abspath(folder), list(map(os.path.abspath, programs)),
+                                                         job, OUT_OF_TIME, driver, **options)
+        check("log" in self.files, f"the machine ({self.accelerator}) comes to its end:\n{said[-3000:]}")
+
+    def check(self, condition, text):
+        shown = "" if condition else "".join(
+            f"\n--- {name}\n{self.text(name)[-3000:]}" for name in ("log", *self.told) if name in self.files)
+        check(condition, f"{text}{shown}")
+
+    def text(self, name):
+        self.check(name in self.files, f"{name} is there")
+        return self.files[name].decode(errors="replace")
+
+    def json(self, name):
+        self.check(self.text(name).strip() != "", f"{name} is not empty")
+        return json.loads(self.files[name])
+
+    def recorded(self, name, frames):
+        """NAME.live, .replay, .info: a capture, the replay of its recording, what `info` says of it. The first."""
+        live, replay, info = (self.json(f"{name}.{part}") for part in ("live", "replay", "info"))
+        self.check(live["frames"] == frames, f"{name}: {live}")
+        self.check(replay["frames_hash"] == live["frames_hash"], f"{name}: the replay's hash is the live one")
+        self.check(info["frames"] == frames and info["note"] == "", f"{name}: {info}")
+        return live
+
+    def done(self):
+        done()
+        print(f"{self.accelerator}, {time.monotonic() - self.start:.0f} s")
+
+
+# in a job: capture, replay and look; what is left is .live, .replay and .info of the name that comes first. $through
+# may have a command that runs another; $to a pipe for the recording, which the process $reader empties into a.mcap
+RECORD = """
+record() {
+    name=$1
+    shift
+    $through trim3r capture --hash --json --quiet -o ${to:-a.mcap} "$@" > out/$name.live 2> out/$name.told
+    status=$?
+    [ -z "$reader" ] || wait $reader
+    trim3r capture --source replay:a.mcap --hash --json > out/$name.replay
+    trim3r info --json a.mcap > out/$name.info
+}
+"""

@@ -1,0 +1,32 @@
+/* What befalls the camera, and when: so often a stream began, so many of its frames were sent. */
+#ifndef T3R_TESTS_USB_FAULTS_H
+#define T3R_TESTS_USB_FAULTS_H
+
+#include <stdint.h>
+
+#define FAULTS_MOST 16u
+
+typedef enum fault_kind {
+    FAULT_NONE,
+    FAULT_ERROR,  /* the frame carries the error bit (UVC 1.0, 2.4.3.3) */
+    FAULT_CUT,    /* the frame ends after half of its bytes */
+    FAULT_STALL,  /* from this frame on the stream stands still */
+    FAULT_UNPLUG, /* the plug is pulled within the frame, and put back later */
+    FAULT_LEAVE,  /* the plug is pulled within the frame for good */
+} fault_kind;
+
+typedef struct planned_fault {
+    uint32_t stream, frame; /* both from 0 */
+    fault_kind kind;
+} planned_fault;
+
+typedef struct faults {
+    planned_fault list[FAULTS_MOST];
+    uint32_t count;
+} faults;
+
+/* "STREAM.FRAME=error", likewise cut, stall, unplug, leave. 0, or -1: it is none of these, or one too many. */
+int faults_add(faults *self, const char *text);
+fault_kind faults_at(const faults *self, uint32_t stream, uint32_t frame);
+
+#endif

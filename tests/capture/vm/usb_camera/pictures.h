@@ -1,0 +1,24 @@
+/* The images that the camera sends, from two files: YUYV images one behind the other; JPEGs, each behind its length in
+ * four bytes, little-endian. */
+#ifndef T3R_TESTS_USB_PICTURES_H
+#define T3R_TESTS_USB_PICTURES_H
+
+#include <stdint.h>
+
+#define PICTURES_MOST 64u
+
+typedef struct picture {
+    const uint8_t *bytes;
+    uint32_t count;
+} picture;
+
+typedef struct pictures {
+    uint32_t yuyv_count, jpeg_count; /* at least 1 */
+    picture yuyv[PICTURES_MOST], jpeg[PICTURES_MOST];
+    uint8_t yuyv_bytes[2500000], jpeg_bytes[2500000];
+} pictures;
+
+/* 0, or -1: a file cannot be read, or is not of that form. */
+int pictures_read(pictures *self, const char *yuyv_path, const char *jpeg_path);
+
+#endif

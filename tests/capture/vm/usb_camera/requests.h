@@ -1,0 +1,19 @@
+/* Answers on the control pipe: standard requests (USB 2.0, 9.4), and the negotiation of a stream (UVC 1.0, 4.3.1.1). */
+#ifndef T3R_TESTS_USB_REQUESTS_H
+#define T3R_TESTS_USB_REQUESTS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define REQUEST_STALL (-1) /* the answer to what is not known: USB 2.0, 9.2.7 */
+
+typedef struct requests {
+    uint8_t probed, format; /* CAMERA_YUYV or CAMERA_MJPG: wished for, agreed on */
+    bool committed;         /* a stream begins: the caller takes notice and clears it */
+} requests;
+
+/* `data` holds what came with the request and has room for DESCRIPTOR_MOST_BYTES. The bytes of the answer,
+ * `length` at most, or REQUEST_STALL. */
+int request_answer(requests *self, const uint8_t setup[8], uint8_t *data, uint32_t length);
+
+#endif

@@ -1,0 +1,44 @@
+/* The stream of images: cut into payloads (UVC 1.0, 2.4.3), one to each transfer that the host has asked for. */
+#ifndef T3R_TESTS_USB_STREAM_H
+#define T3R_TESTS_USB_STREAM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "camera.h"
+#include "faults.h"
+#include "pictures.h"
+#include "usbip.h"
+
+#define STREAM_MOST_WAITING 32u
+#define STREAM_STEP 16u /* frame F of stream S is picture STREAM_STEP x S + F, modulo their number */
+
+typedef struct stream {
+    const pictures *pictures;
+    const faults *faults;
+    usbip_call waiting[STREAM_MOST_WAITING]; /* transfers that the host waits for, the oldest first */
+    uint32_t waiting_count;
+    uint8_t format;
+    uint32_t begun; /* streams, this one too */
+    uint32_t frame; /* of this stream */
+    uint32_t sent;  /* bytes of this frame */
+    int64_t due_ns; /* when the frame may begin */
+    bool stuck;     /* until the next stream */
+} stream;
+
+typedef enum stream_end { STREAM_GOES_ON, STREAM_BUS_GONE, STREAM_UNPLUG, STREAM_LEAVE } stream_end;
+
+/* The host committed to a format: frame 0 comes next. */
+void stream_begin(stream *self, uint8_t format, int64_t now_ns);
+/* The bus is another one: nobody waits. */
+void stream_reset(stream *self);
+/* A transfer to be filled; false: too many are. */
+bool stream_ask(stream *self, const usbip_call *call);
+/* The host no longer waits for that transfer; false: it has been filled. */
+bool stream_forget(stream *self, uint32_t sequence);
+/* When the next payload goes out; -1: the host has to do something first. */
+int64_t stream_next_ns(const stream *self);
+/* Sends the next payload. */
+stream_end stream_send(stream *self, int bus);
+
+#endif

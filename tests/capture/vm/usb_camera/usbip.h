@@ -1,0 +1,30 @@
+/* The virtual bus: a socket whose other end is a port of the kernel's vhci_hcd (usbip). */
+#ifndef T3R_TESTS_USBIP_H
+#define T3R_TESTS_USBIP_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* What the host asks for. */
+typedef struct usbip_call {
+    uint32_t sequence; /* the answer names it */
+    bool unlink;       /* the call `unlinked` is given up; else a transfer */
+    uint32_t unlinked;
+    bool in; /* to the host */
+    uint32_t endpoint;
+    uint32_t bytes; /* that it sent, or has room for */
+    uint8_t setup[8];
+} usbip_call;
+
+/* Plugs a high-speed device into port 0: the socket, or -1 with errno. Closing the socket unplugs it. */
+int usbip_plug(void);
+/* The next call; what it sent goes to data[most]. 0, or -1: the bus is gone, or asks for more than that. */
+int usbip_receive(int bus, usbip_call *call, uint8_t *data, uint32_t most);
+/* A transfer is over: `bytes` were sent or taken; of `in` they are in data. */
+int usbip_answer(int bus, const usbip_call *call, const uint8_t *data, uint32_t bytes);
+/* It was refused: the endpoint stalls. */
+int usbip_refuse(int bus, const usbip_call *call);
+/* The answer to `unlink`: whether that call was still there. */
+int usbip_unlinked(int bus, const usbip_call *call, bool was_there);
+
+#endif
