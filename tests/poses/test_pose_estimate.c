@@ -20,21 +20,28 @@
 #define DEGREE (3.14159265358979323846 / 180)
 
 typedef struct shot {
+    uint32_t side;
     uint8_t *rgb, *depth; /* depth in millimetres, as t3r_frame has it; NULL = none */
     t3r_camera camera;
 } shot;
 
-static shot photograph(uint32_t index, bool depth)
+static shot photograph_sized(uint32_t index, uint32_t side, bool depth)
 {
-    shot s = {.rgb = malloc(SIDE * SIDE * 3), .depth = depth ? malloc(SIDE * SIDE * 2) : NULL};
-    uint16_t *mm = malloc(SIDE * SIDE * sizeof *mm);
-    room_frame(index, SIDE, SIDE, 1, s.rgb, mm);
-    room_camera(index, SIDE, SIDE, &s.camera);
-    for (size_t i = 0; i < SIDE * SIDE && depth; i++) {
+    size_t pixels = (size_t)side * side;
+    shot s = {.side = side, .rgb = malloc(pixels * 3), .depth = depth ? malloc(pixels * 2) : NULL};
+    uint16_t *mm = malloc(pixels * sizeof *mm);
+    room_frame(index, side, side, 1, s.rgb, mm);
+    room_camera(index, side, side, &s.camera);
+    for (size_t i = 0; i < pixels && depth; i++) {
         t3r_store_le16(s.depth + 2 * i, mm[i]);
     }
     free(mm);
     return s;
+}
+
+static shot photograph(uint32_t index, bool depth)
+{
+    return photograph_sized(index, SIDE, depth);
 }
 
 static void discard(shot *s)
@@ -46,14 +53,14 @@ static void discard(shot *s)
 static pose_view view_of(const shot *s)
 {
     t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                       .width = SIDE,
-                       .height = SIDE,
+                       .width = s->side,
+                       .height = s->side,
                        .planes = {s->rgb},
-                       .stride_bytes = {SIDE * 3},
+                       .stride_bytes = {s->side * 3},
                        .depth = s->depth,
-                       .depth_width = s->depth != NULL ? SIDE : 0,
-                       .depth_height = s->depth != NULL ? SIDE : 0,
-                       .depth_stride_bytes = s->depth != NULL ? SIDE * 2 : 0,
+                       .depth_width = s->depth != NULL ? s->side : 0,
+                       .depth_height = s->depth != NULL ? s->side : 0,
+                       .depth_stride_bytes = s->depth != NULL ? s->side * 2 : 0,
                        .depth_unit_q40 = s->depth != NULL ? ROOM_DEPTH_UNIT_Q40 : 0};
     pose_view view;
     char error[256] = "";
@@ -138,6 +145,28 @@ static void test_pairs_from_colour(void **state)
     check_pair(0, 2, false, 0.5, 4);
     check_pair(5, 2, false, 0.7, 4);
     check_pair(1, 4, false, 0.7, 4);
+}
+
+/* Small pictures are enlarged: too few corners would be told apart otherwise. */
+static void test_small_pictures(void **state)
+{
+    (void)state;
+    shot shots[2] = {photograph_sized(0, SIDE / 2, false), photograph_sized(3, SIDE / 2, false)};
+    pose_view view = view_of(&shots[0]);
+    assert_true(view.enlarged == 4 && view.count > 500);
+    pose_view_free(&view);
+    motion poses[2], known = between(&shots[0].camera, &shots[1].camera);
+    pose_account accounts[2];
+    char error[256];
+    if (estimate(shots, 2, POSES_ESTIMATE_COLOUR, poses, accounts, error) != 0) {
+        fail_msg("%s", error);
+    }
+    double turn = rotation_angle(poses[1].r, known.r) / DEGREE;
+    double direction = direction_angle(poses[1].t, known.t) / DEGREE;
+    assert_true(turn < 0.6 && direction < 2.2); /* at their own size 0.9 and 2.6 */
+    assert_true(accounts[1].turn_degrees > turn / 5 && accounts[1].direction_degree > direction / 8);
+    discard(&shots[0]);
+    discard(&shots[1]);
 }
 
 /* Lengths of colour alone agree among views, by corners that a third one shares. */
@@ -334,6 +363,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs_with_depth),
         cmocka_unit_test(test_pairs_from_colour),
+        cmocka_unit_test(test_small_pictures),
         cmocka_unit_test(test_chain),
         cmocka_unit_test(test_depth_for_scale),
         cmocka_unit_test(test_turned_camera),

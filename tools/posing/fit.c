@@ -91,12 +91,12 @@ double fit_error(const fit_pair *pair, uint32_t match, const motion *m)
 double fit_cost(const fit_pair *pair, const motion *m, uint32_t *inliers)
 {
     frames_of f = frames_for(m);
-    double sum = 0;
+    double sum = 0, limit = fit_pixels(pair);
     uint32_t count = 0;
     for (uint32_t i = 0; i < pair->count; i++) {
         double error = error_of(pair, i, &f);
-        count += error < FIT_PIXELS;
-        error = error < FIT_PIXELS ? error : FIT_PIXELS;
+        count += error < limit;
+        error = error < limit ? error : limit;
         sum += error * error;
     }
     if (inliers != NULL) {
@@ -287,7 +287,9 @@ static int account_for(const fit_pair *pair, const uint8_t *inlier, const motion
         return -1;
     }
     account->pixels = sqrt(sum / count);
-    double deviation = fmax(sqrt(sum / told), 0.1);
+    /* pixels of an enlarged picture err together */
+    double enlarged = fmax(1, fmax(pair->a->enlarged, pair->b->enlarged));
+    double deviation = enlarged * fmax(sqrt(sum / told), 0.1);
     account->turn_degrees = deviation * largest_deviation(covariance, f.unknowns, 0, 3) * 180 / PI;
     double move = deviation * largest_deviation(covariance, f.unknowns, 3, f.unknowns - 3);
     double far = norm3(m->t);
@@ -332,7 +334,7 @@ int fit_refine(const fit_pair *pair, motion *m, fit_account *account)
     for (int round = 0; round < ROUNDS; round++) {
         frames_of f = frames_for(&best);
         for (uint32_t i = 0; i < pair->count; i++) {
-            inlier[i] = error_of(pair, i, &f) < FIT_PIXELS;
+            inlier[i] = error_of(pair, i, &f) < fit_pixels(pair);
         }
         descend(pair, inlier, &best, length);
     }

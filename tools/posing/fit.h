@@ -13,14 +13,22 @@ typedef struct fit_pair {
     bool metric; /* corners with a depth are projected into the other view, and |t| is sought too; else |t| = 1 */
 } fit_pair;
 
-#define FIT_PIXELS 2.0 /* a match that a motion misses by more is none of its inliers; of level 0, wider above */
+/* A match that a motion misses by more is none of its inliers; pixels of level 0, wider above. Depths are less exact
+ * than the places of corners; and the narrower the band about an epipolar line, the fewer wrong matches lie in it. */
+#define FIT_PIXELS_DEPTH 2.0
+#define FIT_PIXELS_COLOUR 1.2
+
+static inline double fit_pixels(const fit_pair *pair)
+{
+    return pair->metric ? FIT_PIXELS_DEPTH : FIT_PIXELS_COLOUR;
+}
 
 /* Root of the mean square over what a match tells of the motion (from a to b): the epipolar error, or, where a corner
  * has a depth and the pair is metric, the distances from its projections; pixels, divided by the coarser corner's
  * level. */
 double fit_error(const fit_pair *pair, uint32_t match, const motion *m);
 
-/* Sum over matches of min(error, FIT_PIXELS)^2: the smaller the better. `inliers` (may be NULL): how many are
+/* Sum over matches of min(error, fit_pixels())^2: the smaller the better. `inliers` (may be NULL): how many are
  * below. */
 double fit_cost(const fit_pair *pair, const motion *m, uint32_t *inliers);
 

@@ -13,8 +13,8 @@
 #define TRIES_ALL 1000u /* after so many the samples come from all matches, before from the better ones */
 #define RIVALS 6        /* distinct motions that are refined */
 #define RIVAL_DEGREES 10.0
-#define LEAD_LEAST 5.0        /* matches that the best motion explains and no other, where most agree with it, */
-#define LEAD_CERTAIN 15.0     /* and where fewer do: an epipolar line lets one in twenty by chance */
+#define LEAD_LEAST 3.0        /* matches that the best motion explains and no other, where most agree with it, */
+#define LEAD_CERTAIN 9.0      /* and where fewer do: an epipolar line lets one in thirty by chance */
 #define PARALLAX_LEAST 1.0    /* pixels, of the median match */
 #define DIRECTION_DEGREES 6.0 /* standard deviation of a direction that is refused */
 #define TURN_DEGREES 2.0      /* of a rotation */
@@ -129,7 +129,7 @@ static uint32_t in_front(const fit_pair *pair, const motion *m)
     double a, b;
     for (uint32_t i = 0; i < pair->count; i++) {
         const pose_match *match = &pair->matches[i];
-        count += fit_error(pair, i, m) < FIT_PIXELS &&
+        count += fit_error(pair, i, m) < fit_pixels(pair) &&
                  relative_triangulate(m, pair->a->rays[match->a], pair->b->rays[match->b], &a, &b);
     }
     return count;
@@ -168,7 +168,7 @@ static int take_inliers(const fit_pair *pair, relative_pose *out)
     out->matches = malloc((pair->count + 1) * sizeof *out->matches);
     out->count = 0;
     for (uint32_t i = 0; i < pair->count && moved != NULL && out->matches != NULL; i++) {
-        if (fit_error(pair, i, &out->motion) < FIT_PIXELS) {
+        if (fit_error(pair, i, &out->motion) < fit_pixels(pair)) {
             const double *a = pair->a->rays[pair->matches[i].a], *b = pair->b->rays[pair->matches[i].b];
             const double ray[3] = {a[0], a[1], 1}, seen[3] = {b[0], b[1], 1};
             double turned[3];
@@ -246,7 +246,7 @@ static uint32_t more_matches(const fit_pair *pair, const motion *m, pose_match *
 {
     double e[9];
     essential_of(m, e);
-    uint32_t count = matches_along(pair->a, pair->b, e, 2 * FIT_PIXELS, found);
+    uint32_t count = matches_along(pair->a, pair->b, e, 2 * fit_pixels(pair), found);
     if (count < pair->count * 3 / 4) {
         memcpy(found, pair->matches, pair->count * sizeof *found);
         count = pair->count;
@@ -265,7 +265,8 @@ static void weigh_by_lines(const fit_pair *pair, candidates *c, pose_match *foun
         lines.count = more_matches(pair, &one.motion, found);
         lines.matches = found;
         if (fit_refine(&lines, &one.motion, &one.account) == 0) {
-            one.cost = fit_cost(&lines, &one.motion, &one.inliers) / (FIT_PIXELS * FIT_PIXELS) - lines.count;
+            one.cost =
+                fit_cost(&lines, &one.motion, &one.inliers) / (fit_pixels(pair) * fit_pixels(pair)) - lines.count;
             keep(&weighed, &one, true);
         }
     }
@@ -401,7 +402,8 @@ static void try_threes(const fit_pair *pair, const uint32_t *deep, uint32_t deep
     }
 }
 
-static int best_by_depth(fit_pair *pair, relative_pose *out, pose_match *more)
+/* -1 where there is none: *lack is what too few matches, out->count, do. */
+static int best_by_depth(fit_pair *pair, relative_pose *out, pose_match *more, const char **lack)
 {
     uint32_t *deep = malloc((pair->count + 1) * sizeof *deep), deep_count = 0;
     candidates c = {.count = 0};
@@ -410,12 +412,15 @@ static int best_by_depth(fit_pair *pair, relative_pose *out, pose_match *more)
             deep[deep_count++] = i;
         }
     }
+    *lack = "have depth in both views";
+    out->count = deep_count;
     if (deep_count >= MATCHES_LEAST / 2) {
         try_threes(pair, deep, deep_count, &c);
+        *lack = "agree on a motion";
+        out->count = c.count > 0 ? c.best[0].inliers : 0;
     }
     free(deep);
     if (c.count == 0 || fit_refine(pair, &c.best[0].motion, &c.best[0].account) != 0) {
-        out->count = deep_count;
         return -1;
     }
     pair->count = more_matches(pair, &c.best[0].motion, more);
@@ -438,10 +443,17 @@ int relative_by_depth(const pose_view *a, const pose_view *b, const pose_match *
         return t3r_reason(error, error_bytes, "only %u corners match, %u are needed", count, MATCHES_LEAST);
     }
     pose_match *more = malloc(CORNERS_MOST * sizeof *more);
-    int status = more != NULL ? best_by_depth(&pair, out, more) : -1;
+    if (more == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    const char *lack;
+    int status = best_by_depth(&pair, out, more, &lack);
     free(more);
     if (status != 0) {
-        return too_few(out, "have depth in both views", error, error_bytes);
+        return out->count < MATCHES_LEAST
+                   ? too_few(out, lack, error, error_bytes)
+                   : t3r_reason(error, error_bytes, "the %u matching corners that agree do not determine a motion",
+                                out->count);
     }
     if (out->count < MATCHES_LEAST) {
         return too_few(out, "agree on a motion", error, error_bytes);

@@ -18,9 +18,9 @@ typedef struct developed {
 static int develop(const t3r_frame *frame, const t3r_camera *camera, developed *out, char *error, size_t error_bytes)
 {
     uint32_t longest = frame->width > frame->height ? frame->width : frame->height;
-    uint32_t reduced = longest > POSE_SIDE_MOST ? POSE_SIDE_MOST : longest;
-    out->width = (frame->width * reduced + longest / 2) / longest;
-    out->height = (frame->height * reduced + longest / 2) / longest;
+    uint32_t side = longest > POSE_SIDE_MOST ? POSE_SIDE_MOST : longest < POSE_SIDE_LEAST ? POSE_SIDE_LEAST : longest;
+    out->width = (frame->width * side + longest / 2) / longest;
+    out->height = (frame->height * side + longest / 2) / longest;
     t3r_config config = t3r_default_config(out->width, out->height, 1, 1);
     t3r_plan_info plan;
     t3r_status status = t3r_plan(&config, &plan);
@@ -107,6 +107,7 @@ int pose_view_make(const t3r_frame *frame, const t3r_camera *camera, pose_view *
     *out = (pose_view){.measured = frame->depth != NULL};
     developed d = {0};
     int status = develop(frame, camera, &d, error, error_bytes);
+    out->enlarged = (double)d.width / frame->width;
     if (status == 0 && find(&d, out, ldexp((double)frame->depth_unit_q40, -40)) != 0) {
         status = t3r_reason(error, error_bytes, "out of memory");
     }

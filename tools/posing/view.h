@@ -8,7 +8,10 @@
 #include "posing/corners.h"
 #include "trim3r.h"
 
-#define POSE_SIDE_MOST 1024u /* a larger frame is worked on at this size */
+#define POSE_SIDE_MOST 1024u /* a frame whose longer side is more is worked on at this size, */
+#define POSE_SIDE_LEAST                                                                                                \
+    512u /* one whose is less at this: corners between pixels have their own, and borders shrink                       \
+          */
 
 typedef struct pose_view {
     corner *corners;
@@ -16,6 +19,7 @@ typedef struct pose_view {
     double (*rays)[2]; /* x and y at depth 1, the lens undone */
     double *depth;     /* a corner: along z in world units; 0 = not known, or at an edge */
     double focal;      /* mean focal length, pixels of the corners' places */
+    double enlarged;   /* pixels of the corners' places to one of the frame */
     bool measured;     /* depth came with the frame */
 } pose_view;
 
