@@ -27,6 +27,7 @@
 #define TRIMMED_TO 13107u /* 10 % of them */
 #define REFINEMENTS 4u
 #define SEED 1u
+#define MORE_PATHS 8u /* of stereo, beside the four of the pipeline */
 #define WAVELET_WIDTH 1280u
 #define WAVELET_HEIGHT 720u
 #define MAX_RUNS 101u
@@ -34,15 +35,18 @@
 
 typedef struct bench_options {
     const char *points, *head, *stages;
+    t3r_depth depth;
     uint32_t runs, threads;
     bool json;
 } bench_options;
 
-enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_STAGES, KEY_RUNS, KEY_THREADS, KEY_JSON };
+enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_THREADS, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", 0, "cluster these points instead: raw float32, N x 6", 0},
     {"head", KEY_HEAD, "HEAD", 0, "the network of head_gmac_per_s: nano, small (default), base, or FILE.t3w", 0},
+    {"depth", KEY_DEPTH, "SOURCE", 0,
+     "of the scenes that are built and drawn: sensor (default), or stereo, made of the colours", 0},
     {"stages", KEY_STAGES, "LIST", 0, "time these rows alone, as kmeans_ms,stereo_ms (all)", 0},
     {"runs", KEY_RUNS, "N", 0, "timed runs of each stage, 1..101 (7)", 0},
     {"threads", KEY_THREADS, "N", 0, "1..64 (1); with more than one, elapsed time instead of processor time", 0},
@@ -59,6 +63,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_HEAD:
         o->head = option_head(state, "head", arg);
+        return 0;
+    case KEY_DEPTH:
+        o->depth = option_depth(state, "depth", arg);
         return 0;
     case KEY_STAGES:
         o->stages = arg;
@@ -90,13 +97,16 @@ static const struct argp argp = {
         "\vExamples:\n"
         "  trim3r bench\n"
         "  trim3r bench --head base\n"
+        "  trim3r bench --depth stereo\n"
         "  trim3r bench --json --runs 21\n"
         "  trim3r bench --points cloud.f32 --stages kmeans_ms --json\n\n"
         "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of the "
         "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
         "255; a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
         "multiply-accumulates of a head's layers a second of the whole head stage, every point kept. refine_ms: one "
-        "refinement pass over both views, 13,107 Gaussians. stereo_ms: depth of both views from their colours.",
+        "refinement pass over both views, 13,107 Gaussians. stereo_ms: depth of both views from their colours, holes "
+        "filled, with the four paths that --depth stereo takes; stereo_8_paths_ms: with eight. build_analytic_ms and "
+        "build_small_ms have it in them with --depth stereo.",
 };
 
 /* ---- the work ---------------------------------------------------------------------------------------------------- */
@@ -109,14 +119,14 @@ static const struct {
     enum { ANALYTIC, SMALL, MEASURED } head; /* the closed form; `small`; the one that --head names */
     bool keep;                               /* the analysis, to run a stage alone again */
     uint32_t refinements;
-    t3r_depth depth;
+    bool stereo; /* whatever --depth says */
 } settings_of[SCENES] = {
-    [FULL] = {POINTS, ANALYTIC, false, REFINEMENTS, T3R_DEPTH_SENSOR},
-    [TRIMMED] = {TRIMMED_TO, ANALYTIC, false, REFINEMENTS, T3R_DEPTH_SENSOR},
-    [LEARNED] = {TRIMMED_TO, SMALL, false, REFINEMENTS, T3R_DEPTH_SENSOR},
-    [REFINED] = {TRIMMED_TO, ANALYTIC, true, 1, T3R_DEPTH_SENSOR},
-    [MATCHED] = {TRIMMED_TO, ANALYTIC, true, 0, T3R_DEPTH_STEREO},
-    [HEADED] = {POINTS, MEASURED, true, 0, T3R_DEPTH_SENSOR},
+    [FULL] = {POINTS, ANALYTIC, false, REFINEMENTS, false},
+    [TRIMMED] = {TRIMMED_TO, ANALYTIC, false, REFINEMENTS, false},
+    [LEARNED] = {TRIMMED_TO, SMALL, false, REFINEMENTS, false},
+    [REFINED] = {TRIMMED_TO, ANALYTIC, true, 1, false},
+    [MATCHED] = {TRIMMED_TO, ANALYTIC, true, 0, true},
+    [HEADED] = {POINTS, MEASURED, true, 0, false},
 };
 
 typedef struct scene_bench {
@@ -127,10 +137,12 @@ typedef struct scene_bench {
 typedef struct workload {
     uint8_t *rgb[VIEWS];
     uint16_t *depth[VIEWS];
+    t3r_depth source; /* of the scenes' depth */
     t3r_camera camera[VIEWS];
     t3r_camera viewpoint;
     scene_bench scene[SCENES];
     t3r_gaussian *start; /* what each measured pass of refinement begins with: its scene as it was built */
+    void *stereo_work;   /* of a pair matched with eight paths */
     chosen_head small, measured;
     t3r_threads *threads;
     uint8_t *view; /* where renders go */
@@ -170,7 +182,7 @@ static t3r_status open_scene(workload *w, scene_kind kind)
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, settings_of[kind].gaussians);
     const chosen_head *heads[] = {[ANALYTIC] = NULL, [SMALL] = &w->small, [MEASURED] = &w->measured};
     const chosen_head *head = heads[settings_of[kind].head];
-    config.depth = settings_of[kind].depth;
+    config.depth = settings_of[kind].stereo ? T3R_DEPTH_STEREO : w->source;
     config.keep_analysis = settings_of[kind].keep;
     config.refinements = settings_of[kind].refinements;
     if (head != NULL) {
@@ -224,6 +236,7 @@ static void close_workload(workload *w)
         free(w->scene[kind].arena);
     }
     free(w->start);
+    free(w->stereo_work);
     chosen_head_close(&w->small);
     chosen_head_close(&w->measured);
     free(w->view);
@@ -251,8 +264,11 @@ static bool allocate(workload *w)
     w->wavelet_plane = malloc(pixels * sizeof *w->wavelet_plane);
     w->wavelet_work = malloc(t3r_wavelet_work_bytes(WAVELET_WIDTH, WAVELET_HEIGHT));
     w->texture = malloc(pixels * sizeof *w->texture);
+    if (posix_memalign(&w->stereo_work, T3R_ARENA_ALIGN, bench_stereo_bytes(SIDE, SIDE, MORE_PATHS)) != 0) {
+        w->stereo_work = NULL;
+    }
     return ok && w->view != NULL && w->wavelet_rgb != NULL && w->wavelet_planes != NULL && w->wavelet_plane != NULL &&
-           w->wavelet_work != NULL && w->texture != NULL;
+           w->wavelet_work != NULL && w->texture != NULL && w->stereo_work != NULL;
 }
 
 static int open_heads(workload *w, const bench_options *o)
@@ -338,6 +354,11 @@ static bool run_stereo(workload *w)
     return bench_stereo_run(w->scene[MATCHED].runtime);
 }
 
+static bool run_stereo_8_paths(workload *w)
+{
+    return bench_stereo_paths_run(w->scene[MATCHED].runtime, MORE_PATHS, w->stereo_work);
+}
+
 static bool run_kmeans(workload *w)
 {
     return bench_points_cluster(&w->points);
@@ -378,6 +399,7 @@ static const struct {
     {"raster_13k_ms", run_raster_trimmed, MILLISECONDS, TRIMMED},
     {"refine_ms", run_refine, MILLISECONDS, REFINED},
     {"stereo_ms", run_stereo, MILLISECONDS, MATCHED},
+    {"stereo_8_paths_ms", run_stereo_8_paths, MILLISECONDS, MATCHED},
     {"kmeans_ms", run_kmeans, MILLISECONDS, NO_SCENE},
     {"wavelet_ns_per_pixel", run_wavelet, NANOSECONDS_A_PIXEL, NO_SCENE},
     {"texture_ns_per_pixel", run_texture, NANOSECONDS_A_PIXEL, NO_SCENE},
@@ -406,6 +428,16 @@ static int choose_stages(const char *list, bool chosen[STAGE_COUNT])
         word = word[length] == ',' ? word + length + 1 : NULL;
     }
     return CLI_OK;
+}
+
+/* Whether the points have their clusters afterwards. */
+static bool clusters(const bool chosen[STAGE_COUNT])
+{
+    bool any = false;
+    for (int s = 0; s < STAGE_COUNT; s++) {
+        any = any || (chosen[s] && stages[s].run == run_kmeans);
+    }
+    return any;
 }
 
 static int open_scenes(workload *w, const bool chosen[STAGE_COUNT])
@@ -514,8 +546,10 @@ static void print_results(const workload *w, const bench_options *o, const bool 
             printf("%-22s %9.3f  (%.3f to %.3f)\n", stages[s].key, median(times[s], o->runs), times[s][0],
                    times[s][o->runs - 1]);
         }
-        printf("%-22s %9.5f  (%" PRIu32 " points)\n%-22s %s\n", "kmeans_msd", w->kmeans_msd, w->points.count,
-               "cpu_flags", flags);
+        if (clusters(chosen)) {
+            printf("%-22s %9.5f  (%" PRIu32 " points)\n", "kmeans_msd", w->kmeans_msd, w->points.count);
+        }
+        printf("%-22s %s\n", "cpu_flags", flags);
         return;
     }
     cJSON *root = cJSON_CreateObject();
@@ -530,10 +564,13 @@ static void print_results(const workload *w, const bench_options *o, const bool 
         snprintf(key, sizeof key, "%s_max", stages[s].key);
         cJSON_AddNumberToObject(root, key, times[s][o->runs - 1]);
     }
-    cJSON_AddNumberToObject(root, "kmeans_msd", w->kmeans_msd);
-    json_add_integer(root, "kmeans_points", w->points.count);
+    if (clusters(chosen)) {
+        cJSON_AddNumberToObject(root, "kmeans_msd", w->kmeans_msd);
+        json_add_integer(root, "kmeans_points", w->points.count);
+    }
     cJSON_AddStringToObject(root, "head", w->measured.name);
     cJSON_AddStringToObject(root, "head_bits", w->measured.bits);
+    cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->depth));
     cJSON_AddStringToObject(root, "cpu_flags", flags);
     json_add_integer(root, "threads", o->threads);
     json_add_integer(root, "runs", o->runs);
@@ -550,7 +587,7 @@ int command_bench(int argc, char **argv)
     if (code != CLI_OK) {
         return code;
     }
-    workload w = {0};
+    workload w = {.source = o.depth};
     double times[STAGE_COUNT][MAX_RUNS] = {0};
     code = open_workload(&w, &o);
     if (code == CLI_OK) {
@@ -560,7 +597,7 @@ int command_bench(int argc, char **argv)
         code = time_stages(&w, &o, chosen, times);
     }
     if (code == CLI_OK) {
-        w.kmeans_msd = bench_points_mean_squared_distance(&w.points);
+        w.kmeans_msd = clusters(chosen) ? bench_points_mean_squared_distance(&w.points) : 0;
         print_results(&w, &o, chosen, times);
     }
     close_workload(&w);

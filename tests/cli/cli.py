@@ -521,8 +521,13 @@ def test_bench():
     check(0 < distance[1.0] < 0.5 and max(distance.values()) <= 1.0001 * min(distance.values()), f"scales: {distance}")
     found = expect_json("bench", "--runs", 1)
     for key in ("raster_131k_ms", "raster_13k_ms", "refine_ms", "kmeans_ms", "wavelet_ns_per_pixel", "build_analytic_ms",
-                "build_small_ms", "stereo_ms", "head_gmac_per_s"):
+                "build_small_ms", "stereo_ms", "stereo_8_paths_ms", "head_gmac_per_s"):
         check(found[key] > 0 and found[key + "_min"] <= found[key] <= found[key + "_max"], f"bench lacks {key}")
+    matched = expect_json("bench", "--runs", 1, "--depth", "stereo", "--stages", "stereo_ms,build_analytic_ms,refine_ms")
+    check(found["depth"] == "sensor" and matched["depth"] == "stereo", "bench tells the depth")
+    check("kmeans_msd" in found and "kmeans_msd" not in matched, "nothing is told of clusters that were not made")
+    check(matched["build_analytic_ms"] > matched["stereo_ms"] > 0 and matched["refine_ms"] > 0, "builds by stereo")
+    expect(2, "bench", "--depth", "laser", err="--depth")
     check(found["head"] == "small" and found["head_bits"] == "8", "bench does not name the head")
     expect(2, "bench", "--head", "moment", err="--head moment")
     expect(2, "bench", "--head", "large", err="--head")
