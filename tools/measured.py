@@ -1,5 +1,5 @@
 """Measurements on recorded scenes, made when first asked for and kept in build/results until the program changes: what
-tools/results and tools/paper share."""
+tools/results, tools/paper, tools/poses and tools/stereo_results share."""
 import csv
 import hashlib
 import json
@@ -12,6 +12,10 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 DATA = os.path.join(ROOT, "..", "shared", "data")
 PROGRAM = os.path.join(ROOT, "build", "release", "trim3r")
 SCENES = ("hololens_b", "icl_livingroom_synth", "icl_livingroom_noisy_synth", "apc_shelf")  # test scenes with depth
+# What colours alone are measured on; the last two are training scenes.
+COLOUR_SCENES = ("clip_nyu_2", "clip_scannet_0", "clip_kitti_0", "strecha_fountain", "hololens_b", "icl_livingroom_synth",
+                 "icl_livingroom_noisy_synth", "ngp_fox", "tum_fr3_office")
+COLOUR_CASES = 4  # triplets of a scene
 
 
 class Measurements:
@@ -62,6 +66,13 @@ class Measurements:
         path, _ = self.made(f"{name}.csv", self.evaluation(options, jobs), ["--resume"])
         with open(path, newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
+
+
+def even_triplets(root):
+    """[(context, target)] of a scene's transforms.json, evenly chosen: COLOUR_CASES, or as many as there are."""
+    every = [t for t in root["trim3r_triplets"] if t["context"][0] != t["context"][1]]
+    count = min(COLOUR_CASES, len(every))
+    return [(every[i * len(every) // count]["context"], every[i * len(every) // count]["target"]) for i in range(count)]
 
 
 def listed(values):
