@@ -54,8 +54,8 @@ def preparer():
     rivals += [path for part in ("choose", "score*", "splat_*") for path in here("tools", "rivals", part + ".c")]
     sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals
     sources += here("quant", "heads", "small.c") + here("runtime", "*.c") + here("runtime", "kernels", "*.c")
-    headers = here("runtime", "*.h") + here("runtime", "*", "*.h") + here("tools", "method.h") + here("tools", "gaussian_shape.h")
-    headers += here("tools", "rivals", "*.h") + [os.path.join(HERE, "prepare_rival.h")]
+    headers = here("runtime", "*.h") + here("runtime", "*", "*.h") + here("tools", "rivals", "*.h")
+    headers += here("tools", "gaussian_shape.h") + here("tools", "method.h") + here("tools", "train", "prepare_rival.h")
     includes = (RUNTIME, os.path.join(RUNTIME, "include"), os.path.join(HERE, ".."), HEADS)
     flags = ("-std=c11", "-O3", "-march=native", "-ffp-contract=off", *("-I" + folder for folder in includes))
     library = ctypes.CDLL(build("prepare", sources, flags, headers))
