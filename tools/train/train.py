@@ -4,7 +4,7 @@
     tools/train/train.py --head small --out build/small     made-up pictures alone
     tools/train/train.py --head small --out build/small --data DIR --data DIR2
     tools/train/train.py --processes 2 ...                                  shares every step; so does torchrun
-    tools/train/train.py --start quant/heads/small.safetensors --mask eagles ...    goes on with it, for a rival's points
+    tools/train/train.py --start quant/heads/small.safetensors --mask eagles ...   goes on, for a rival's points
     tools/train/train.py --smoke --out build/smoke                          two minutes; fails unless the loss falls
 
 A step draws pictures (samples.py), lets the runtime analyse, prune and prepare them with a budget drawn at random, asks
