@@ -122,10 +122,10 @@ def check_trained_heads(folder, call, cache, heads):
     tells(rows["hololens_b", "eagles+head, retrained"][0], own[0])
     tells(rows["hololens_b", "eagles+head"][0], next(r for r in shipped if r["method"] == "eagles+head"))
     for text in ("`eagles`: from the shipped `nano`, 7 steps of 4", "points of eagles", "`rooms`: `nano` from nothing",
-                 "(made-up ones alone)"):
+                 "points of trim3r; made-up rooms\n", "made-up and recorded scenes (hololens_a)"):
         check(text in printed, f"how it was trained: {text}")
     kinds = [(s, k) for s, k, _ in filled(found["Other kinds of scenes"][0])]
-    check(kinds == [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "rooms scenes")], f"kinds: {kinds}")
+    check(kinds == [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "made-up rooms")], f"kinds: {kinds}")
 
 
 with tempfile.TemporaryDirectory() as folder:
