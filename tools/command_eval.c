@@ -46,6 +46,7 @@ enum {
     KEY_METHODS,
     KEY_ITERATIONS,
     KEY_HEADS,
+    KEY_MASK_HEAD,
     KEY_ABLATE,
     KEY_PLANAR,
     KEY_SIZE,
@@ -166,6 +167,11 @@ static void check_options(struct argp_state *state, options *o)
     if (o->settings.head == NULL) {
         o->settings.head = CHOSEN_HEAD_DEFAULT;
     }
+    for (uint32_t m = 0; m < o->method_count && o->settings.mask_head != NULL; m++) {
+        if (!method_ranks_for_head(o->methods[m])) {
+            argp_error(state, "--mask-head belongs to rivals with +head, not to %s", method_name(o->methods[m]));
+        }
+    }
     if (o->planar && o->width == 0) {
         o->width = o->height = 256;
     }
@@ -199,6 +205,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_HEADS:
         parse_heads(state, o, arg);
+        return 0;
+    case KEY_MASK_HEAD:
+        o->settings.mask_head = option_head(state, "mask-head", arg);
         return 0;
     case KEY_ABLATE:
         parse_ablations(state, o, arg);
@@ -258,6 +267,11 @@ static const struct argp_option argp_options[] = {
      0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
+    {"mask-head", KEY_MASK_HEAD, "HEAD", 0,
+     "of rivals with +head: the head whose unpruned scene they rank (--head's); so --head can be one that was "
+     "retrained "
+     "for their points",
+     0},
     {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
      "what each part is worth: rows with one part taken away each (all), at 60, 40, 20, 10 and 5 % unless --keep says "
      "otherwise, and one table at the end",

@@ -47,6 +47,17 @@ static void add_number(words *w, const char *name, uint32_t value, uint32_t usua
     }
 }
 
+/* A file's path is told by its hash: a name that fits among others. */
+static void add_text(words *w, const char *name, const char *text, bool whole)
+{
+    uint64_t hash = t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)text, strlen(text));
+    if (whole) {
+        add(w, "%s-%s", name, text);
+    } else {
+        add(w, "%s-%08" PRIx32, name, (uint32_t)hash);
+    }
+}
+
 static void add_rest(words *w, const reconstruction_options *s, const reconstruction_options *usual)
 {
     if (s->automatic) {
@@ -63,9 +74,11 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     add_switch(w, "exposure", s->exposure, usual->exposure);
     add_number(w, "views", s->context_views, usual->context_views);
     add_number(w, "seed", s->seed, usual->seed);
-    if (s->importance != NULL) { /* which pictures: a name that fits among others */
-        uint64_t hash = t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)s->importance, strlen(s->importance));
-        add(w, "importance-%08" PRIx32, (uint32_t)hash);
+    if (s->importance != NULL) {
+        add_text(w, "importance", s->importance, false);
+    }
+    if (s->mask_head != NULL) {
+        add_text(w, "mask-head", s->mask_head, strchr(s->mask_head, '.') == NULL);
     }
     if (s->width != usual->width || s->height != usual->height) {
         add(w, "working-%" PRIu32 "x%" PRIu32, s->width, s->height);

@@ -3,6 +3,7 @@
 #ifndef TRIM3R_TOOLS_METHOD_H
 #define TRIM3R_TOOLS_METHOD_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -40,6 +41,12 @@ static inline method_kind method_kind_of(method_id m)
 static inline method_way method_way_of(method_id m)
 {
     return (method_way)(m / METHOD_KIND_COUNT);
+}
+
+/* Whether a rival's choice of points is what our head works on. */
+static inline bool method_ranks_for_head(method_id m)
+{
+    return method_way_of(m) == METHOD_HEAD && method_kind_of(m) != METHOD_TRIM3R;
 }
 
 /* "trim3r", "eagles+finetune", "eagles+head". */

@@ -39,6 +39,7 @@ typedef struct reconstruction_options {
         *importance; /* of the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
     const uint16_t *const *importance_planes; /* one a context view at the working size, rows without gaps */
     const char *head;                         /* a text that chosen_head_is_one() */
+    const char *mask_head; /* likewise, of a rival with +head: whose unpruned scene it ranks; NULL = `head` */
     t3r_wavelet wavelet;
     uint32_t wavelet_levels;
     uint32_t clusters;

@@ -11,6 +11,7 @@ enum {
     KEY_GAUSSIANS = 256,
     KEY_KEEP,
     KEY_METHOD,
+    KEY_MASK_HEAD,
     KEY_ITERATIONS,
     KEY_CONTEXT,
     KEY_AUTO,
@@ -256,6 +257,8 @@ static const struct argp_option budget[] = {
      "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
      "+head: their points for our head",
      0},
+    {"mask-head", KEY_MASK_HEAD, "HEAD", 0, "of a rival with +head: the head whose unpruned scene it ranks (--head's)",
+     0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {0},
 };
@@ -280,12 +283,18 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
             argp_error(state, "--method does not know '%s'; there are %s", arg, METHOD_NAMES);
         }
         return 0;
+    case KEY_MASK_HEAD:
+        o->mask_head = option_head(state, "mask-head", arg);
+        return 0;
     case KEY_ITERATIONS:
         o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
         return 0;
     case ARGP_KEY_END:
         if (o->gaussians != 0 && o->keep_percent > 0) {
             argp_error(state, "--gaussians and --keep exclude each other");
+        }
+        if (o->mask_head != NULL && !method_ranks_for_head(o->method)) {
+            argp_error(state, "--mask-head belongs to a rival with +head");
         }
         return 0;
     default:

@@ -126,6 +126,30 @@ def rivals_choose(folder, room):
         check(numpy.median(head[:, -7]) > numpy.median(plain[:, -7]) + 0.3, f"{rival}+head: wider")
 
 
+def another_head_ranks(folder, room):
+    """--mask-head: the points are those of the scene that the other head makes, whichever head then works on them."""
+    def chosen(head, *more):
+        options = ["--head", head, "--refine", "0", "--keep", "10", "--method", "pup+head"]
+        return build(room, *options, *more, out=f"{folder}/masked.ply")[:, :3]
+
+    small = chosen("small")
+    own, others = chosen("none"), chosen("none", "--mask-head", "small")
+    check(len(own) == len(others) and not numpy.array_equal(own, others), "another scene, other points")
+    check(numpy.array_equal(chosen("small", "--mask-head", "small"), small), "the head's own is the default")
+    check(numpy.array_equal(others, chosen("analytic", "--mask-head", "small")), "the same points, whichever head")
+
+    text = ["eval", room, *SMALL, "--target", "1", "--keep", "10", "--head", "analytic", "--json", "--methods"]
+    rows = [json.loads(run(trim3r, *text, "pup+head", *more).stdout)["rows"][0] for more in ([], ["--mask-head", "small"])]
+    check([(r["head"], "mask-head-small" in r["settings"].split()) for r in rows] ==
+          [("analytic", False), ("analytic", True)], f"rows tell it: {rows}")
+    for methods in ("pup", "trim3r+head", "pup+head,pup+finetune"):
+        found = run(trim3r, *text, methods, "--mask-head", "small", expect=2)
+        check("--mask-head belongs to rivals with +head" in found.stderr, methods)
+    found = run(trim3r, "build", room, "--keep", "10", "--method", "pup", "--mask-head", "small", "-o",
+                f"{folder}/no.ply", expect=2)
+    check("--mask-head belongs to a rival with +head" in found.stderr, "in a build too")
+
+
 def rows_of_rivals(folder, room):
     methods = ["trim3r", "trim3r+head", *RIVALS, *(f"{rival}+head" for rival in RIVALS)]
     keeps = [100, 20, 5]
@@ -159,5 +183,6 @@ with tempfile.TemporaryDirectory() as folder:
     levels_are_spread(folder, room, every)
     errors(folder, room, names)
     rivals_choose(folder, room)
+    another_head_ranks(folder, room)
     rows_of_rivals(folder, room)
 done()

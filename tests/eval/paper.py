@@ -3,6 +3,7 @@
 means of eval's rows, what was measured is not measured again, and a run cut off goes on."""
 import csv
 import glob
+import json
 import os
 import re
 import statistics
@@ -93,16 +94,52 @@ def check_others(cache, found):
         check(medians[1] > 2 * medians[0] and medians[1] > 2 * medians[3], f"{row[0]}: pruned ones are wider: {medians}")
 
 
+def check_masks(found, retrained):
+    title = "Our head on others' points"
+    rows = {(s, m): cells for s, m, cells in filled(found[title][0])}
+    own = [name for m in METHODS[1:] for name in (f"{m}+head", *([f"{m}+head, retrained"] if m in retrained else []))]
+    first = ["trim3r", *(["trim3r, retrained"] if "trim3r" in retrained else [])]
+    check(list(rows) == [(s, m) for s in (*SCENES, "mean of the scenes") for m in first + own], f"{title}: {list(rows)}")
+    return rows
+
+
+def check_trained_heads(folder, call, cache, heads):
+    """A folder as tools/train/retrain leaves it: a head for the points of eagles, one of one kind of scenes."""
+    os.mkdir(f"{folder}/heads")
+    for name, kind, mask in (("eagles", "all", "eagles"), ("rooms", "rooms", "trim3r")):
+        run(trim3r, "quantize", f"{heads}/nano.safetensors", "--name", name, "-o", f"{folder}/heads/{name}.t3w")
+        told = {"name": name, "head": "nano", "kind": kind, "mask": mask, "start": "nano" if kind == "all" else None,
+                "steps": 7, "batch": 4, "crop": 128, "rate": 0.001, "seed": 1, "data": ["hololens_a"] * (kind == "all")}
+        with open(f"{folder}/heads/{name}.json", "w", encoding="utf-8") as file:
+            json.dump(told, file)
+    printed = run(*call, "masks", "transfer").stdout
+    found = tables(printed)
+    rows = check_masks(found, ("eagles",))
+    _, shipped = rows_of(cache, "hololens_b.masks.*.csv")
+    _, own = rows_of(cache, "hololens_b.retrained.eagles.t3w.*.csv")
+    check([(r["method"], r["head"], r["settings"]) for r in own] == [("eagles+head", "eagles", "mask-head-small")],
+          "its head on the points that it was trained for")
+    tells(rows["hololens_b", "eagles+head, retrained"][0], own[0])
+    tells(rows["hololens_b", "eagles+head"][0], next(r for r in shipped if r["method"] == "eagles+head"))
+    for text in ("`eagles`: from the shipped `nano`, 7 steps of 4", "points of eagles", "`rooms`: `nano` from nothing",
+                 "points of trim3r; made-up rooms\n", "made-up and recorded scenes (hololens_a)"):
+        check(text in printed, f"how it was trained: {text}")
+    kinds = [(s, k) for s, k, _ in filled(found["Other kinds of scenes"][0])]
+    check(kinds == [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "made-up rooms")], f"kinds: {kinds}")
+
+
 with tempfile.TemporaryDirectory() as folder:
     cache, out = f"{folder}/cache", f"{folder}/out"
     os.mkdir(out)
-    call = (sys.executable, "-B", paper, "--quick", "--program", trim3r, "--cache", cache)
+    call = (sys.executable, "-B", paper, "--quick", "--program", trim3r, "--cache", cache, "--heads", f"{folder}/heads")
     first = run(*call, "--write", out)
     check(re.search(r"\d+ tables to be made, about \d+ min on \d+ processors", first.stderr), "what it will take")
     found = tables(first.stdout)
     check("Other kinds of scenes" not in found, "no heads, no rows")
     check_quality(cache, found)
     check_others(cache, found)
+    check_masks(found, ())
+    check("No head was retrained" in first.stdout, "and that says so")
     with open(f"{out}/PAPER.md", encoding="utf-8") as file:
         check(tables(file.read()) == found, "PAPER.md is what was printed")
     for picture in ("paper.svg", "paper-scales.svg"):
@@ -126,13 +163,15 @@ with tempfile.TemporaryDirectory() as folder:
     heads = os.path.join(os.path.dirname(paper), "..", "quant", "heads")
     run(trim3r, "quantize", f"{heads}/nano.safetensors", "--name", "mine", "-o", head)
     rows = tables(run(*call, "transfer", "--head-of", f"indoor={head}").stdout)["Other kinds of scenes"][0]
-    check([(s, k) for s, k, _ in filled(rows)] == [(s, k) for s in SCENES for k in ("small, shipped", "indoor")], "heads")
+    check([(s, k) for s, k, _ in filled(rows)] ==
+          [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "indoor")], "heads")
     tells(list(filled(rows))[1][2][1], rows_of(cache, "hololens_b.head.mine.t3w.*.csv")[1][1])
 
-    for words, *wrong in (("no part is called", "speed"), ("--write takes all parts", "views", "--write"),
-                          ("needs --head-of", "transfer"), ("is not KIND=FILE.t3w", "--head-of", "indoor"),
+    for words, *wrong in (("heads of tools/train/retrain", "transfer"), ("no part is called", "speed"), ("--write takes all parts", "views", "--write"),
+                          ("is not KIND=FILE.t3w", "--head-of", "indoor"),
                           ("is not KIND=FILE.t3w", "--head-of", "indoor=absent.t3w"),
                           ("with commas between", "--tuned-pruned", "50")):
         check(words in run(*call, *wrong, expect=2).stderr, f"{wrong}: {words}")
+    check_trained_heads(folder, call, cache, heads)
     check("absent is not there" in run(*call, "--program", "absent", expect=1).stderr, "a missing program is told")
 done()

@@ -6,6 +6,7 @@
 #include "cli.h"
 #include "developed_frame.h"
 #include "fixed.h"
+#include "rivals/choose.h"
 #include "rivals/score.h"
 #include "rivals/traced.h"
 
@@ -107,22 +108,6 @@ static int build_whole(rival_source *source)
     return CLI_OK;
 }
 
-static bool fill_score(rival_source *source, method_kind kind, double *score)
-{
-    switch (kind) {
-    case METHOD_EAGLES:
-        return score_eagles(&source->model, source->views, source->view_count, score);
-    case METHOD_LIGHTGAUSSIAN:
-        return score_lightgaussian(&source->model, source->views, source->view_count, score);
-    case METHOD_PUP:
-        return score_pup(&source->model, source->views, source->view_count, score);
-    case METHOD_EFFICIENTGS:
-        return score_efficientgs(&source->model, source->views, source->view_count, score);
-    default:
-        return score_random(&source->model, source->options.seed, score);
-    }
-}
-
 static int make_score(rival_source *source, method_kind kind)
 {
     if (source->score[kind] != NULL) {
@@ -130,7 +115,8 @@ static int make_score(rival_source *source, method_kind kind)
     }
     double start = cli_now();
     source->score[kind] = malloc(((size_t)source->model.count + 1) * sizeof(double));
-    if (source->score[kind] == NULL || !fill_score(source, kind, source->score[kind])) {
+    if (source->score[kind] == NULL ||
+        !score_of(kind, &source->model, source->views, source->view_count, source->options.seed, source->score[kind])) {
         free(source->score[kind]);
         source->score[kind] = NULL;
         return cli_error(CLI_BAD_INPUT, "out of memory");
@@ -140,44 +126,6 @@ static int make_score(rival_source *source, method_kind kind)
 }
 
 /* ---- pruning -------------------------------------------------------------------------------------------------- */
-
-typedef struct ranked {
-    double score;
-    uint32_t index;
-} ranked;
-
-static int by_score(const void *a, const void *b)
-{
-    const ranked *x = a, *y = b;
-    if (x->score != y->score) {
-        return x->score > y->score ? -1 : 1;
-    }
-    return (x->index > y->index) - (x->index < y->index);
-}
-
-bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept)
-{
-    ranked *all = malloc(((size_t)of + 1) * sizeof *all);
-    bool *stays = calloc((size_t)of + 1, sizeof *stays);
-    bool done = all != NULL && stays != NULL;
-    for (uint32_t i = 0; i < of && done; i++) {
-        all[i] = (ranked){score[i], i};
-    }
-    if (done) {
-        qsort(all, of, sizeof *all, by_score);
-    }
-    for (uint32_t n = 0; n < count && done; n++) {
-        stays[all[n].index] = true;
-    }
-    for (uint32_t i = 0, n = 0; i < of && done; i++) {
-        if (stays[i]) {
-            kept[n++] = i;
-        }
-    }
-    free(all);
-    free(stays);
-    return done;
-}
 
 /* The `count` best Gaussians of the unpruned scene, unchanged. */
 static int prune(rival_source *source, method_kind kind, uint32_t count, scene_file *scene)
@@ -329,6 +277,9 @@ int rival_build(rival_source *source, const t3r_recording *recording, const char
         source->recording = recording;
         source->path = path;
         source->options = *options;
+        if (options->mask_head != NULL) {
+            source->options.head = options->mask_head;
+        }
     }
     method_kind kind = method_kind_of(m);
     if (method_way_of(m) == METHOD_HEAD) {

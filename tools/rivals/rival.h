@@ -6,6 +6,7 @@
 
 #include "method.h"
 #include "reconstruction.h"
+#include "rivals/choose.h"
 #include "rivals/finetune.h"
 #include "rivals/splat_view.h"
 
@@ -27,10 +28,6 @@ typedef struct rival_source {
     double *score[METHOD_KIND_COUNT]; /* NULL until asked for */
     double score_seconds[METHOD_KIND_COUNT];
 } rival_source;
-
-/* The `count` indices of the highest scores, of equal ones the first, in rising order. kept[] has room for
- * `count`. False without memory. */
-bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept);
 
 /* The scene of a method other than plain trim3r at the budget of `options`, in an arena that only renders, or with
  * +head in that of its build: *made, to be closed. *told says of it what reconstruction_told() says of a build: the

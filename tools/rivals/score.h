@@ -9,12 +9,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "method.h"
 #include "rivals/splat_view.h"
 
 /* LightGaussian's exponent of the volume, as its authors released it. */
 #define LIGHTGAUSSIAN_BETA 0.1
 /* How many Gaussians of a pixel EfficientGS calls dominant, as its authors released it. */
 #define EFFICIENTGS_MOST 1u
+
+/* That of the rival `kind`; of METHOD_TRIM3R, which ranks no Gaussians, score_random(). The seed is of random alone. */
+bool score_of(method_kind kind, const splat_model *model, const splat_view *views, uint32_t view_count, uint32_t seed,
+              double *score);
 
 bool score_random(const splat_model *model, uint32_t seed, double *score);
 bool score_eagles(const splat_model *model, const splat_view *views, uint32_t view_count, double *score);

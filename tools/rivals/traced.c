@@ -2,37 +2,22 @@
 
 #include <stdlib.h>
 
-#include "budget.h"
 #include "cli.h"
-#include "views.h"
+#include "rivals/choose.h"
 
 /* The masks after a build that keeps its analysis. */
 static int read_masks(traced_points *points, const reconstruction *r, const uint32_t *kept, uint32_t count)
 {
-    t3r_view views[T3R_MAX_VIEWS];
-    t3r_views_of(r->runtime, views);
     const size_t pixels = (size_t)r->config.width * r->config.height;
-    uint32_t gaussian = 0, next = 0;
     for (uint32_t v = 0; v < r->context_count; v++) {
-        points->planes[v] = calloc(pixels, sizeof *points->planes[v]);
+        points->planes[v] = malloc(pixels * sizeof *points->planes[v]);
         if (points->planes[v] == NULL) {
             return cli_error(CLI_BAD_INPUT, "out of memory");
         }
-        for (size_t i = 0; i < pixels; i++) {
-            if (!t3r_retained(&views[v], i)) {
-                continue;
-            }
-            if (gaussian >= r->scene.count || r->scene.gaussians[gaussian].view != v) {
-                return cli_error(CLI_BAD_INPUT, "the scene's Gaussians are not those of its masks");
-            }
-            if (kept == NULL || (next < count && kept[next] == gaussian)) {
-                points->planes[v][i] = UINT16_MAX;
-                next++;
-            }
-            gaussian++;
-        }
     }
-    return CLI_OK;
+    return rival_planes(r->runtime, &r->scene, r->context_count, kept, count, points->planes)
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "the scene's Gaussians are not those of its masks");
 }
 
 int traced_points_make(traced_points *points, const t3r_recording *recording, const char *path,

@@ -8,6 +8,7 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 RUNTIME = os.path.join(HERE, "..", "..", "runtime")
+HEADS = os.path.join(HERE, "..", "..", "quant", "heads")
 
 
 def build(name, sources, flags, headers=(), folder=None):
@@ -44,11 +45,20 @@ def splatter(*more):
 
 
 def preparer():
-    """prepare.c and the runtime it calls."""
-    sources = sorted(glob.glob(os.path.join(RUNTIME, "*.c")) + glob.glob(os.path.join(RUNTIME, "kernels", "*.c")))
-    headers = sorted(glob.glob(os.path.join(RUNTIME, "*.h")) + glob.glob(os.path.join(RUNTIME, "*", "*.h")))
-    flags = ("-std=c11", "-O3", "-march=native", "-I" + RUNTIME, "-I" + os.path.join(RUNTIME, "include"))
-    library = ctypes.CDLL(build("prepare", [os.path.join(HERE, "prepare.c"), *sources], flags, headers))
+    """prepare.c, the runtime that it calls, and what rivals rank with."""
+
+    def here(*pattern):
+        return sorted(glob.glob(os.path.join(HERE, "..", "..", *pattern)))
+
+    rivals = here("tools", "gaussian_shape.c")
+    rivals += [path for part in ("choose", "score*", "splat_*") for path in here("tools", "rivals", part + ".c")]
+    sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals
+    sources += here("quant", "heads", "small.c") + here("runtime", "*.c") + here("runtime", "kernels", "*.c")
+    headers = here("runtime", "*.h") + here("runtime", "*", "*.h") + here("tools", "rivals", "*.h")
+    headers += here("tools", "gaussian_shape.h") + here("tools", "method.h") + here("tools", "train", "prepare_rival.h")
+    includes = (RUNTIME, os.path.join(RUNTIME, "include"), os.path.join(HERE, ".."), HEADS)
+    flags = ("-std=c11", "-O3", "-march=native", "-ffp-contract=off", *("-I" + folder for folder in includes))
+    library = ctypes.CDLL(build("prepare", sources, flags, headers))
     library.prepare.restype = ctypes.c_int32
-    library.prepare.argtypes = [ctypes.c_uint32] * 2 + [ctypes.c_void_p] * 8
+    library.prepare.argtypes = [ctypes.c_void_p] * 6
     return library

@@ -16,13 +16,21 @@ import native
 from procedural import Procedural, degrade_depth, expose
 
 ALLOCATIONS = {"density": 0, "paper": 1, "pixel": 2, "uniform": 3, "random": 4}
+MASKS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")  # tools/method.h's kinds, in its order
+KINDS = ("all", "recorded", "rooms", "pictures")  # of scenes
 PLANE = 2000  # mm: a picture without depth is a wall two metres away
 TRIPLET = (0, 2, 1)  # context, context, target
 
 
+class _Views(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_uint32) for name in ("count", "width", "height")]
+    _fields_ += [(name, ctypes.c_void_p) for name in ("rgb", "depth", "intrinsics", "poses")]
+
+
 class _Settings(ctypes.Structure):
     _fields_ = [
-        (name, ctypes.c_uint32) for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed")
+        (name, ctypes.c_uint32)
+        for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed", "rival")
     ]
 
 
@@ -43,24 +51,46 @@ class Prepared:
     points: np.ndarray
 
 
-def prepare(image, depth, intrinsics, kept, allocation="density", gamma=0.7, clusters=300, seed=1):
-    """Analysis, budget and features by the runtime. depth: uint16 [h, w], mm; kept: share of the pixels."""
+def _quaternion(rotation):
+    """w x y z of a rotation matrix: the eigenvector of Bar-Itzhack 2000, method 3's symmetric matrix."""
+    (a, b, c), (d, e, f), (g, h, i) = np.asarray(rotation, np.float64)
+    symmetric = [[a + e + i, h - f, c - g, d - b], [h - f, a - e - i, b + d, c + g],
+                 [c - g, b + d, e - a - i, f + h], [d - b, c + g, f + h, i - a - e]]  # fmt: skip
+    found = np.linalg.eigh(np.array(symmetric) / 3)[1][:, -1]
+    return found if found[0] >= 0 else -found
+
+
+def prepare(image, depth, intrinsics, kept, **budget):
+    """One picture as the only context view; the same as prepare_views()."""
+    return prepare_views([image], [depth], [intrinsics], None, kept, **budget)[0]
+
+
+def prepare_views(images, depths, intrinsics, poses, kept, allocation="density", gamma=0.7, clusters=300, seed=1,
+                  mask="trim3r"):  # fmt: skip
+    """Analysis, budget and features of context views by the runtime, together. depths: uint16 [h, w] each, mm; poses:
+    camera to world [4, 4] each, None: of a single view; kept: share of the points with depth; mask: whose choice of
+    points, `trim3r` the allocation's, or a rival's among the Gaussians that the shipped `small` makes of all points."""
     global _library
     _library = _library or native.preparer()
-    height, width = depth.shape
-    image, depth = np.ascontiguousarray(image), np.ascontiguousarray(depth, np.uint16)
+    rgb, depth = np.ascontiguousarray(np.stack(images)), np.ascontiguousarray(np.stack(depths), np.uint16)
+    count, height, width = depth.shape
+    lenses, seats = np.ascontiguousarray(np.stack(intrinsics), np.float64), np.zeros((count, 7))
+    seats[:, 0] = 1
+    if poses is not None:
+        seats[:] = [[*_quaternion(pose[:3, :3]), *pose[:3, 3]] for pose in poses]
     wanted = max(1, round(kept * int((depth > 0).sum())))
-    settings = _Settings(wanted, ALLOCATIONS[allocation], round(gamma * 256), clusters, 4, seed)
-    camera = np.asarray(intrinsics, np.float64)
-    features, confidence = np.empty((height, width, 9), np.int8), np.empty((height, width), np.uint8)
-    points, valid = np.empty(height * width, POINT), np.zeros(1, np.int32)
-    count = _library.prepare(
-        width, height, image.ctypes.data, depth.ctypes.data, camera.ctypes.data, ctypes.addressof(settings),
-        features.ctypes.data, confidence.ctypes.data, points.ctypes.data, valid.ctypes.data,
+    settings = _Settings(wanted, ALLOCATIONS[allocation], round(gamma * 256), clusters, 4, seed, MASKS.index(mask))
+    views = _Views(count, width, height, *(a.ctypes.data for a in (rgb, depth, lenses, seats)))
+    features, confidence = np.empty((*depth.shape, 9), np.int8), np.empty(depth.shape, np.uint8)
+    points, counts = np.empty(depth.size, POINT), np.zeros(count, np.uint32)
+    status = _library.prepare(
+        ctypes.addressof(views), ctypes.addressof(settings),
+        *(a.ctypes.data for a in (features, confidence, points, counts)),
     )  # fmt: skip
-    if count < 0:
-        raise ValueError(f"the runtime refuses a picture of {width} x {height}: status {count}")
-    return Prepared(image, features, confidence, points[:count])
+    if status < 0:
+        raise ValueError(f"the runtime refuses {count} pictures of {width} x {height}: status {status}")
+    each = np.split(points[: counts.sum()], np.cumsum(counts)[:-1])
+    return [Prepared(*parts) for parts in zip(rgb, features, confidence, each)]
 
 
 def millimetres(depth):
@@ -152,13 +182,18 @@ class Folder:
 
 
 class Samples:
-    """Draws of training data. made_up: share of pictures that procedural.py makes."""
+    """Draws of training data. made_up: share of pictures that procedural.py makes. kind: of KINDS, `all` or one kind of
+    scenes alone: views and pictures of the folders; made-up rooms; made-up pictures, which have no third view. mask: of
+    MASKS, whose choice of points a head is trained for."""
 
-    def __init__(self, folders, crop, made_up, build_folder=None):
+    def __init__(self, folders, crop, made_up, build_folder=None, kind="all", mask="trim3r"):
         self.folders, self.crop, self.build_folder = [Folder(f) for f in folders], crop, build_folder
-        self.made_up = made_up if self.folders else 1.0
+        self.kind, self.mask = kind, mask
+        self.made_up = {"recorded": 0.0, "rooms": 1.0, "pictures": 1.0}.get(kind, made_up if self.folders else 1.0)
         self.images = [i for f in self.folders for i in f.images]
         self.triplets = [(f, t) for f in self.folders for t in f.triplets]
+        if kind == "recorded" and not self.triplets:
+            raise ValueError("recorded scenes need a folder of posed views with depth and triplets")
 
     def _turned(self, rng, image, depth):
         if rng.random() < 0.5:
@@ -196,13 +231,27 @@ class Samples:
         allocation = str(rng.choice(["density", "pixel", "uniform", "random"], p=[0.5, 0.3, 0.12, 0.08]))
         clusters = 300 if allocation == "density" and rng.random() < 0.5 else 40
         return dict(kept=kept, allocation=allocation, gamma=rng.uniform(0.4, 1.0), clusters=clusters,
-                    seed=int(rng.integers(1 << 31)))  # fmt: skip
+                    seed=int(rng.integers(1 << 31)), mask=self.mask)  # fmt: skip
+
+    def _procedural(self, rng):
+        return Procedural(int(rng.integers(1 << 62)), build_folder=self.build_folder)
+
+    def _picture(self, rng):
+        """A made-up picture and its depth, to be cropped; None where none is needed."""
+        source = self._procedural(rng)
+        if self.kind == "rooms":
+            (view,) = source.room(256, 256, 1)
+            return view["image"], view["depth"]
+        return source.leaves(256, 256) if self.made_up > 0 else None
 
     def crops(self, rng, count):
-        """`count` pictures, prepared, each with a budget of its own."""
-        picture = Procedural(int(rng.integers(1 << 62)), build_folder=self.build_folder).leaves(256, 256)
-        made = []
+        """`count` pictures, prepared, each with a budget of its own; of a rival's mask about half of them, two by two,
+        context views that it ranked together."""
+        picture, made = self._picture(rng), []
         while len(made) < count:
+            if self.mask != "trim3r" and self.kind != "pictures" and len(made) + 2 <= count and rng.random() < 0.5:
+                made += [prepared for prepared, _ in self.triplet(rng)[0]]
+                continue
             image, depth = self._crop(rng, picture)
             depth = millimetres(depth)
             if (depth > 0).sum() < 64:
@@ -211,22 +260,33 @@ class Samples:
             made.append(prepare(image, depth, (f, f, (n - 1) / 2, (n - 1) / 2), **self._budget(rng)))
         return made
 
-    def triplet(self, rng):
-        """Two prepared context views and the target: [(Prepared, Posed), (Prepared, Posed)], Posed."""
+    def _posed(self, rng):
         n = self.crop
         if self.triplets and rng.random() >= self.made_up:
             folder, indices = self.triplets[rng.integers(len(self.triplets))]
-            posed = [folder.posed(i, n) for i in indices]
-        else:
-            room = Procedural(int(rng.integers(1 << 62)), build_folder=self.build_folder).room(n, n, 3)
-            posed = [Posed(*(room[i][k] for k in ("image", "depth", "intrinsics", "pose"))) for i in TRIPLET]
-        budget, context = self._budget(rng), []
+            return [folder.posed(i, n) for i in indices]
+        room = self._procedural(rng).room(n, n, 3)
+        return [Posed(*(room[i][k] for k in ("image", "depth", "intrinsics", "pose"))) for i in TRIPLET]
+
+    def triplet(self, rng):
+        """Two prepared context views and the target: [(Prepared, Posed), (Prepared, Posed)], Posed. Our allocations
+        are drawn a view on its own; a rival ranks both together, and keeps points of both."""
+        posed = self._posed(rng)
+        budget, depths = self._budget(rng), []
         for view in posed[:2]:
             depth = degrade_depth(rng, view.depth) if rng.random() < 0.5 else view.depth
             if (depth > 0).sum() < 64:
                 depth = np.where(view.depth > 0, view.depth, PLANE / 1000).astype(np.float32)
-            context.append((prepare(view.image, millimetres(depth), view.intrinsics, **budget), view))
-        return context, posed[2]
+            depths.append(millimetres(depth))
+        context = posed[:2]
+        if self.mask == "trim3r":
+            made = [prepare(view.image, depth, view.intrinsics, **budget) for view, depth in zip(context, depths)]
+        else:
+            parts = zip(*((view.image, depth, view.intrinsics, view.pose) for view, depth in zip(context, depths)))
+            made = prepare_views(*parts, **budget)
+            if min(len(prepared.points) for prepared in made) == 0:
+                return self.triplet(rng)
+        return list(zip(made, context)), posed[2]
 
 
 def seen_by(target, source, tolerance=0.03):

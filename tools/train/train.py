@@ -4,6 +4,7 @@
     tools/train/train.py --head small --out build/small     made-up pictures alone
     tools/train/train.py --head small --out build/small --data DIR --data DIR2
     tools/train/train.py --processes 2 ...                                  shares every step; so does torchrun
+    tools/train/train.py --start quant/heads/small.safetensors --mask eagles ...   goes on, for a rival's points
     tools/train/train.py --smoke --out build/smoke                          two minutes; fails unless the loss falls
 
 A step draws pictures (samples.py), lets the runtime analyse, prune and prepare them with a budget drawn at random, asks
@@ -52,6 +53,14 @@ def options_of(arguments):
     parser.add_argument(
         "--made-up", type=float, default=0.6, metavar="SHARE", help="of pictures that are made up (0.6)"
     )
+    parser.add_argument(
+        "--kind", choices=samples.KINDS, default="all",
+        help="one kind of scenes alone: those of --data (recorded), made-up rooms, or made-up pictures (all)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--mask", choices=samples.MASKS, default="trim3r", metavar="METHOD",
+        help=f"whose choice of points the head is trained for: {', '.join(samples.MASKS)} (trim3r)",
+    )  # fmt: skip
     parser.add_argument("--steps", type=int, default=12000, help="(12000)")
     parser.add_argument("--batch", type=int, default=4, help="pictures a step, over all processes (4)")
     parser.add_argument("--crop", type=int, default=128, help="side of a picture, pixels (128)")
@@ -72,6 +81,10 @@ def options_of(arguments):
         "--smoke", action="store_true", help=f"{SMOKE_STEPS} steps; exit status 1 unless the loss falls"
     )
     options = parser.parse_args(arguments)
+    if (options.kind == "recorded") > bool(options.data) or options.kind in ("rooms", "pictures") and options.data:
+        parser.error(f"--kind {options.kind} {'needs' if options.kind == 'recorded' else 'excludes'} --data")
+    if options.kind == "pictures":
+        options.novel = 0.0  # one view each
     if options.smoke:
         options.steps, options.crop, options.rate = SMOKE_STEPS, 96, 5e-3
     return options
@@ -107,7 +120,9 @@ class Run:
         self.head.to(self.device)
         self.optimizer = torch.optim.Adam(self.head.parameters(), lr=options.rate)
         self.term = perceptual.Lpips(*options.lpips) if options.lpips else perceptual.StandIn()
-        self.samples = samples.Samples(options.data, options.crop, options.made_up)
+        self.samples = samples.Samples(
+            options.data, options.crop, options.made_up, kind=options.kind, mask=options.mask
+        )
         os.makedirs(options.out, exist_ok=True)
         self.checkpoint = os.path.join(options.out, "checkpoint.pt")
         if os.path.exists(self.checkpoint) and not options.smoke:
@@ -129,6 +144,8 @@ class Run:
             o.start,
             o.lpips,
             self.world,
+            o.kind,
+            o.mask,
         ]
 
     def _resume(self):
@@ -200,8 +217,9 @@ class Run:
             distributed.all_reduce(most, distributed.ReduceOp.MAX)
             seen.copy_(most)
 
-    def train(self, every=50, keep_every=250):
+    def train(self, every=50):
         o, since, gathered = self.options, time.time(), []
+        keep_every = min(250, max(1, o.steps // 8))
         while self.step < o.steps:
             phase, rate = self.phase(), self.rate()
             gathered.append(self.one_step())
@@ -273,7 +291,7 @@ def main(arguments=None):
         return launch(options, arguments)
     run = Run(options)
     before = held_out_error(run) if options.smoke else 0
-    run.train(every=20 if options.smoke else 50)
+    run.train(every=20 if options.steps <= 1000 else 50)
     if options.smoke and run.rank == 0:
         factor = held_out_error(run) / before
         print(f"smoke: squared error of pictures not trained on fell to {factor:.3f} (must be below {SMOKE_FACTOR})")

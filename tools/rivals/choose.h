@@ -1,0 +1,21 @@
+/* Which Gaussians of an unpruned scene stay, and which pixels of its views they came from. */
+#ifndef TRIM3R_TOOLS_RIVALS_CHOOSE_H
+#define TRIM3R_TOOLS_RIVALS_CHOOSE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "trim3r.h"
+
+/* The `count` indices of the highest scores, of equal ones the first, in rising order. kept[] has room for
+ * `count`. False without memory. */
+bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept);
+
+/* Importances of the allocation `given`: 65535 at the pixels whose points became the Gaussians kept[count], indices in
+ * rising order into `scene`, 0 at all others; of kept == NULL at every retained one. `scene` is the one in `rt`, which
+ * keeps its analysis; its Gaussians stand in the order of views, rows and columns. planes[views]: each of the working
+ * size, rows without gaps. False where the scene is not that of the masks. */
+bool rival_planes(const t3r_runtime *rt, const t3r_scene *scene, uint32_t views, const uint32_t *kept, uint32_t count,
+                  uint16_t *const planes[]);
+
+#endif
