@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "clock_offset.h"
-#include "trajectory.h"
+#include "capture/clock_offset.h"
+#include "import/trajectory.h"
 
 /* ---- reading ---- */
 

@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-#include "capture_record.h"
+#include "capture/record.h"
 #include "scratch.h"
 
 enum { WIDTH = 48, HEIGHT = 32, KILLS = 200, MOST_FRAMES = 4000 };

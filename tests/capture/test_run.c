@@ -15,10 +15,10 @@
 #include <cmocka.h>
 
 #include "capture_adapter.h"
-#include "capture_run.h"
-#include "cli.h"
+#include "capture/run.h"
+#include "cli/cli.h"
 #include "fake_v4l2.h"
-#include "room.h"
+#include "room/room.h"
 #include "scratch.h"
 #include "v4l2.h"
 

@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "fixed.h"
-#include "gaussian_shape.h"
-#include "scene_file.h"
+#include "scene/gaussian_shape.h"
+#include "scene/scene_file.h"
 #include "scratch.h"
 
 #define COUNT 2000u

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "gaussian_shape.h"
-#include "splat_scales.h"
+#include "scene/gaussian_shape.h"
+#include "scene/splat_scales.h"
 
 #define COUNT 2000u
 

@@ -6,9 +6,9 @@
 
 #include <stdint.h>
 
-#include "cli.h"
-#include "json_output.h"
-#include "reconstruction.h"
+#include "cli/cli.h"
+#include "cli/json_output.h"
+#include "reconstruction/reconstruction.h"
 
 static void parses_lists(void **state)
 {

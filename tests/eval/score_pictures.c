@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "metrics.h"
-#include "picture.h"
+#include "evaluation/metrics.h"
+#include "pictures/picture.h"
 
 static int read_picture(const char *path, uint32_t channels, picture *p)
 {

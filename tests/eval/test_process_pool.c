@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "cli.h"
-#include "process_pool.h"
+#include "cli/cli.h"
+#include "cli/process_pool.h"
 
 #define ITEMS 23u
 #define LARGE 300000u /* bytes: more than a pipe holds */

@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "csv.h"
-#include "evaluation_table.h"
-#include "html_page.h"
+#include "cli/csv.h"
+#include "evaluation/table.h"
+#include "cli/html_page.h"
 
 static evaluation_row make_row(const char *scene, const char *method, double keep, double psnr, double holes)
 {

@@ -2,7 +2,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "scene_file.h"
+#include "scene/scene_file.h"
 #include "trim3r.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

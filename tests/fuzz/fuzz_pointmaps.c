@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "npy.h"
-#include "pointmaps.h"
+#include "import/npy.h"
+#include "import/pointmaps.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

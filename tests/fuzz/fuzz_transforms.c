@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "posed_folder.h"
+#include "import/posed_folder.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

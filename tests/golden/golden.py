@@ -22,7 +22,7 @@ WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--
         ["--arena", "min", "--tasks", "reverse", "--moved"]]
 REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"]]
 DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", ROOT / "quant" / "heads" / "small.c",
-                  *sorted((ROOT / "tools").glob("room*.c"))]
+                  *sorted((ROOT / "tools" / "room").glob("*.c"))]
 DRIVER_INCLUDES = [ROOT / "runtime" / "include", ROOT / "runtime", ROOT / "platform", ROOT / "tools", ROOT / "tests",
                    ROOT / "quant" / "heads"]
 

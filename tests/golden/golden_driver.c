@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "hash.h"
-#include "room.h"
+#include "room/room.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
 #include "weights_maker.h"
@@ -361,8 +361,22 @@ static int run_configuration(const configuration *c, variation ways)
 }
 
 /* A stream with two keyframes at hand: the map in each step, and a view of it in the end. */
-static const configuration streamed = {"stream", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2,
-                                       2, 64, T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 700, true, 0, T3R_DEPTH_SENSOR};
+static const configuration streamed = {"stream",
+                                       128,
+                                       96,
+                                       91,
+                                       77,
+                                       T3R_PIXEL_RGB24,
+                                       T3R_DISTORTION_NONE,
+                                       T3R_WAVELET_DB2,
+                                       2,
+                                       64,
+                                       T3R_ALLOCATE_DENSITY,
+                                       T3R_HEAD_LEARNED,
+                                       700,
+                                       true,
+                                       0,
+                                       T3R_DEPTH_SENSOR};
 
 static int run_stream(variation ways)
 {
@@ -379,9 +393,10 @@ static int run_stream(variation ways)
             status = t3r_stream_keyframe(r.rt, &frame, &camera, &report);
         }
         if (status == T3R_OK) {
-            printf("%s %s gaussians %" PRIu32 " added %" PRIu32 " removed %" PRIu32 " crowded %" PRIu32 " shown %" PRIu32
-                   " of %" PRIu32 "\n", streamed.name, r.step, report.gaussians, report.added, report.removed,
-                   report.crowded, report.shown, report.points);
+            printf("%s %s gaussians %" PRIu32 " added %" PRIu32 " removed %" PRIu32 " crowded %" PRIu32
+                   " shown %" PRIu32 " of %" PRIu32 "\n",
+                   streamed.name, r.step, report.gaussians, report.added, report.removed, report.crowded, report.shown,
+                   report.points);
         }
     }
     if (status == T3R_OK) {

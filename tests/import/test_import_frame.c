@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "import_frame.h"
-#include "picture.h"
+#include "import/frame.h"
+#include "pictures/picture.h"
 #include "scratch.h"
 
 static void write_picture(scratch *s, const char *name, const picture *p)

@@ -13,7 +13,7 @@
 #include <jpeglib.h>
 #include <png.h>
 
-#include "picture.h"
+#include "pictures/picture.h"
 #include "scratch.h"
 
 static void fill(uint8_t *bytes, size_t count)

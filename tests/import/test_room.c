@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "hash.h"
-#include "room.h"
+#include "room/room.h"
 
 #define SIDE ROOM_SIDE
 #define PIXELS ((size_t)SIDE * SIDE)

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "posed_folder.h"
+#include "import/posed_folder.h"
 
 #define IDENTITY "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
 #define FRAME(more) "{\"file_path\":\"a.png\",\"transform_matrix\":" IDENTITY more "}"

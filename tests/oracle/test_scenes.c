@@ -18,7 +18,7 @@
 #include "drawing.h"
 #include "oracle_raster.h"
 #include "recording.h"
-#include "scene_file.h"
+#include "scene/scene_file.h"
 
 #define LEAST_DB 50.0
 enum { SIDE = 256, SKIPPED = 77, PATH_BYTES = 1024 };

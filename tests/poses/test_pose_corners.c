@@ -12,7 +12,7 @@
 #include "hash.h"
 #include "posing/corners.h"
 #include "posing/pyramid.h"
-#include "room.h"
+#include "room/room.h"
 
 #define SIDE 256u
 

@@ -14,7 +14,7 @@
 #include "bytes.h"
 #include "camera.h"
 #include "posing/estimate.h"
-#include "room.h"
+#include "room/room.h"
 
 #define SIDE 256u
 #define DEGREE (3.14159265358979323846 / 180)
@@ -361,16 +361,11 @@ static void test_missing_and_false_depth(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pairs_with_depth),
-        cmocka_unit_test(test_pairs_from_colour),
-        cmocka_unit_test(test_small_pictures),
-        cmocka_unit_test(test_chain),
-        cmocka_unit_test(test_depth_for_scale),
-        cmocka_unit_test(test_turned_camera),
-        cmocka_unit_test(test_turning_alone_is_refused),
-        cmocka_unit_test(test_standing_still_with_depth),
-        cmocka_unit_test(test_other_places_are_refused),
-        cmocka_unit_test(test_missing_and_false_depth),
+        cmocka_unit_test(test_pairs_with_depth),         cmocka_unit_test(test_pairs_from_colour),
+        cmocka_unit_test(test_small_pictures),           cmocka_unit_test(test_chain),
+        cmocka_unit_test(test_depth_for_scale),          cmocka_unit_test(test_turned_camera),
+        cmocka_unit_test(test_turning_alone_is_refused), cmocka_unit_test(test_standing_still_with_depth),
+        cmocka_unit_test(test_other_places_are_refused), cmocka_unit_test(test_missing_and_false_depth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

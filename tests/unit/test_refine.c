@@ -5,7 +5,7 @@
 #include "hash.h"
 #include "fixed.h"
 #include "refine.h"
-#include "room.h"
+#include "room/room.h"
 #include "state.h"
 
 enum { SIDE = 96, POINTS = 2 * SIDE * SIDE, BUDGET = POINTS / 10 };

@@ -4,7 +4,7 @@
 
 #include "fixed.h"
 #include "hash.h"
-#include "room.h"
+#include "room/room.h"
 #include "state.h"
 #include "stereo.h"
 #include "stereo_fill.h"

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "picture.h"
-#include "png_bytes.h"
+#include "pictures/picture.h"
+#include "pictures/png_bytes.h"
 #include "reason.h"
 
 #define PATH_BYTES 4096

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "csv_read.h"
+#include "cli/csv_read.h"
 #include "reason.h"
 
 #define KEY_BYTES (CHART_SETTINGS * 11u + 1)

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "reason.h"
-#include "whole_file.h"
+#include "cli/whole_file.h"
 
 /* A program rather than its library: linked, that and what it needs would load with every call of ours. */
 #define RASTERIZER "rsvg-convert"

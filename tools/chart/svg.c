@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "markup.h"
+#include "cli/markup.h"
 
 /* Pixels. */
 #define WIDTH 1040.0

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "csv_read.h"
+#include "cli/csv_read.h"
 #include "file_bytes.h"
 #include "reason.h"
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "camera.h"
-#include "cli.h"
-#include "posed_folder.h"
+#include "cli/cli.h"
+#include "import/posed_folder.h"
 #include "posing/relative.h"
 #include "reason.h"
 

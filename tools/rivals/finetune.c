@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "cli/cli.h"
 #include "rivals/photometric.h"
 
 /* as 3D Gaussian Splatting sets them */

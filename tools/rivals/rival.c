@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
-#include "developed_frame.h"
+#include "cli/cli.h"
+#include "reconstruction/developed_frame.h"
 #include "fixed.h"
 #include "rivals/choose.h"
 #include "rivals/score.h"

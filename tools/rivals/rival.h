@@ -4,8 +4,8 @@
 #ifndef TRIM3R_TOOLS_RIVALS_RIVAL_H
 #define TRIM3R_TOOLS_RIVALS_RIVAL_H
 
-#include "method.h"
-#include "reconstruction.h"
+#include "reconstruction/method.h"
+#include "reconstruction/reconstruction.h"
 #include "rivals/choose.h"
 #include "rivals/finetune.h"
 #include "rivals/splat_view.h"

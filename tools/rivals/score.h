@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "method.h"
+#include "reconstruction/method.h"
 #include "rivals/splat_view.h"
 
 /* LightGaussian's exponent of the volume, as its authors released it. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "gaussian_shape.h"
+#include "scene/gaussian_shape.h"
 
 #define COLOUR_ONE 32640.0   /* 255 in Q7 */
 #define OPACITY_ONE 32768.0  /* 1 in Q15 */

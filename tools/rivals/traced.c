@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "cli.h"
+#include "cli/cli.h"
 #include "rivals/choose.h"
 
 /* The masks after a build that keeps its analysis. */

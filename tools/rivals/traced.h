@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "reconstruction.h"
+#include "reconstruction/reconstruction.h"
 
 /* Importances of the allocation `given`, a plane a context view at the working size. */
 typedef struct traced_points {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "cli/cli.h"
 
 bool stress_capture_open(stress_capture *capture, uint32_t width, uint32_t height, uint32_t views, double depth_unit)
 {

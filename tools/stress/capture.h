@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "evaluation.h"
+#include "evaluation/evaluation.h"
 #include "recording.h"
 
 typedef struct stress_view {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "cli/cli.h"
 #include "fixed.h"
 #include "stress/promise.h"
 #include "stress/stability.h"

@@ -2,7 +2,7 @@
 #ifndef TRIM3R_TOOLS_STRESS_MEASURE_H
 #define TRIM3R_TOOLS_STRESS_MEASURE_H
 
-#include "evaluation.h"
+#include "evaluation/evaluation.h"
 #include "stress/capture.h"
 #include "stress/perturbation.h"
 #include "stress/row.h"

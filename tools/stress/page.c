@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "html_page.h"
+#include "cli/html_page.h"
 #include "stress/table.h"
 
 static void drop(stress_picture *picture)

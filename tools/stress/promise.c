@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "gaussian_shape.h"
+#include "scene/gaussian_shape.h"
 
 #define POSITION_MOST_Q20 (1 << 30)
 #define EXPONENT_LEAST (-60)

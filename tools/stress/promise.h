@@ -2,7 +2,7 @@
 #ifndef TRIM3R_TOOLS_STRESS_PROMISE_H
 #define TRIM3R_TOOLS_STRESS_PROMISE_H
 
-#include "reconstruction.h"
+#include "reconstruction/reconstruction.h"
 
 /* NULL, or the promise that the scene breaks: `count` Gaussians (at_most: 1..count), each within the ranges of
  * t3r_gaussian and finite as files hold it. */

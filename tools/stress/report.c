@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli.h"
-#include "json_output.h"
+#include "cli/cli.h"
+#include "cli/json_output.h"
 #include "stress/table.h"
 #include "stress/verdict.h"
 

@@ -2,10 +2,10 @@
 #ifndef TRIM3R_TOOLS_STRESS_REPORT_H
 #define TRIM3R_TOOLS_STRESS_REPORT_H
 
-#include "csv.h"
+#include "cli/csv.h"
 #include "stress/measure.h"
 #include "stress/page.h"
-#include "whole_file.h"
+#include "cli/whole_file.h"
 
 typedef struct stress_outputs {
     const char *csv, *page; /* paths; NULL = none */

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "method.h"
+#include "reconstruction/method.h"
 
 #define STRESS_REASON_BYTES 200
 

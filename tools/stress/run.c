@@ -1,7 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "cli/cli.h"
 #include "rivals/rival.h"
 #include "stress/measure.h"
 #include "stress/random.h"

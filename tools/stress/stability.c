@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "budget.h"
-#include "cli.h"
+#include "cli/cli.h"
 #include "rivals/rival.h"
 #include "state.h"
 #include "views.h"

@@ -4,7 +4,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "csv.h"
+#include "cli/csv.h"
 #include "stress/measure.h"
 
 void stress_csv_header(csv_table *table);

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "method.h"
+#include "reconstruction/method.h"
 #include "trim3r.h"
 
 /* The importance of every point for t3r_rebudget_given(): 65535 at those of the `count` Gaussians that `kind` ranks

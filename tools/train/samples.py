@@ -16,7 +16,7 @@ import native
 from procedural import Procedural, degrade_depth, expose
 
 ALLOCATIONS = {"density": 0, "paper": 1, "pixel": 2, "uniform": 3, "random": 4}
-MASKS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")  # tools/method.h's kinds, in its order
+MASKS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")  # method.h's kinds, in its order
 KINDS = ("all", "recorded", "rooms", "pictures")  # of scenes
 PLANE = 2000  # mm: a picture without depth is a wall two metres away
 TRIPLET = (0, 2, 1)  # context, context, target

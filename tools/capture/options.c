@@ -1,0 +1,416 @@
+#include "capture/options.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/option_values.h"
+
+enum {
+    KEY_SOURCE = 0x1000,
+    KEY_DEPTH_SOURCE,
+    KEY_DEPTH_SIZE,
+    KEY_DEPTH_UNIT,
+    KEY_SIZE,
+    KEY_RATE,
+    KEY_FORMAT,
+    KEY_BACKEND,
+    KEY_BUFFERS,
+    KEY_STALL,
+    KEY_PAIR,
+    KEY_REPEAT,
+    KEY_INTRINSICS,
+    KEY_FISHEYE,
+    KEY_POSES,
+    KEY_POSE_TOPIC,
+    KEY_OFFSET,
+    KEY_MAX_BYTES,
+    KEY_SYNC,
+    KEY_FRAMES,
+    KEY_SECONDS,
+    KEY_RECONNECT,
+    KEY_BUILD,
+    KEY_EVERY,
+    KEY_LOCAL,
+    KEY_HASH,
+    KEY_LIST,
+    KEY_QUIET,
+    KEY_JSON
+};
+
+static const struct argp_option options[] = {
+    {"source", KEY_SOURCE, "SOURCE", 0, "v4l2:/dev/video0, libcamera:0, opencv:URL or replay:REC.mcap (needed)", 0},
+    {"list", KEY_LIST, NULL, 0, "the adapters of this build, those that it lacks, and the devices found", 0},
+    {"size", KEY_SIZE, "WxH", 0, "of colour; the nearest that the device has (640x480)", 0},
+    {"rate", KEY_RATE, "FPS", 0, "frames a second (the device's)", 0},
+    {"format", KEY_FORMAT, "FOURCC", 0, "YUYV, UYVY, NV12, RGB3, BGR3, MJPG or GREY (the first that fits)", 0},
+    {"backend", KEY_BACKEND, "NAME", 0, "of OpenCV: FFMPEG, V4L2, CV_IMAGES, CV_MJPEG, GSTREAMER (its choice)", 0},
+    {"buffers", KEY_BUFFERS, "N", 0, "of a stream, 2..32 (4); more bridge longer builds", 0},
+    {"repeat", KEY_REPEAT, "N", 0, "a recording so many times over (1)", 0},
+    {"depth-source", KEY_DEPTH_SOURCE, "DEVICE", 0,
+     "depth from a second device of the same adapter: /dev/video2 with Z16 or Y16; of OpenCV pictures with 16 bits", 0},
+    {"depth-size", KEY_DEPTH_SIZE, "WxH", 0, "of depth (that of colour)", 0},
+    {"depth-unit", KEY_DEPTH_UNIT, "METRES", 0, "of a step of depth (0.001)", 0},
+    {"pair", KEY_PAIR, "MS", 0, "colour and depth so far apart are of one instant, 1..1000 (20)", 0},
+    {"stall", KEY_STALL, "MS", 0, "a device without a frame for so long is lost (3000)", 0},
+    {"reconnect", KEY_RECONNECT, "SECONDS", 0, "how long a lost device is waited for (10)", 0},
+    {NULL, 0, NULL, 0, "The camera:", 2},
+    {"intrinsics", KEY_INTRINSICS, "LIST", 0,
+     "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels of the captured size, (0, 0) being the centre of the top-left pixel", 0},
+    {"fisheye", KEY_FISHEYE, NULL, 0, "the intrinsics go on with k1,k2,k3,k4 of a fisheye lens", 0},
+    {"poses", KEY_POSES, "FILE", 0,
+     "camera to world over time: TUM lines, EuRoC's table, or a ROS 2 bag (MCAP) with PoseStamped or TransformStamped; "
+     "interpolated",
+     0},
+    {"pose-topic", KEY_POSE_TOPIC, "TOPIC", 0, "of the bag (the only one with poses)", 0},
+    {"clock-offset", KEY_OFFSET, "S|estimate[:S]", 0,
+     "the clock of the poses less the camera's in seconds (0), or found from how the picture moves, within a second of "
+     "S; S is 0 where the times overlap, else what brings their starts together",
+     0},
+    {NULL, 0, NULL, 0, "What becomes of it:", 4},
+    {"output", 'o', "REC.mcap", 0, "a recording; what is there is overwritten, but for what is read", 0},
+    {"max-bytes", KEY_MAX_BYTES, "N[k|M|G]", 0, "of a file; the next one is REC-1.mcap and so on", 0},
+    {"sync", KEY_SYNC, NULL, 0, "every message to the disk at once: power loss, too, costs one message at most", 0},
+    {"frames", KEY_FRAMES, "N", 0, "stop after N frames", 0},
+    {"seconds", KEY_SECONDS, "S", 0, "stop after S seconds", 0},
+    {"build", KEY_BUILD, "SCENE.ply", 0,
+     "Gaussians of the context frames (--context, as they come in, 0 and 1) as soon as they are there", 0},
+    {"every", KEY_EVERY, "N", 0,
+     "build anew with every N-th frame, of it and the one N before; SCENE.ply is the last one's", 0},
+    {"local", KEY_LOCAL, NULL, 0, "write positions from the first context camera's centre", 0},
+    {"hash", KEY_HASH, NULL, 0, "tell the hash of all frames: a replay of the recording has the same", 0},
+    {"quiet", KEY_QUIET, NULL, 0, "no progress line", 0},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {0},
+};
+
+/* ---- options ---- */
+
+static double positive(struct argp_state *state, const char *option, const char *text, double most)
+{
+    char *end;
+    size_t length = strspn(text, "0123456789.");
+    double value = strtod(text, &end);
+    if (length == 0 || end != text + length || *end != '\0' || !(value >= 0 && value <= most)) {
+        argp_error(state, "--%s takes a number 0..%g, not '%s'", option, most, text);
+    }
+    return value;
+}
+
+static uint64_t bytes_of(struct argp_state *state, const char *text)
+{
+    char *end;
+    size_t digits = strspn(text, "0123456789");
+    uint64_t value = strtoull(text, &end, 10);
+    uint32_t shift = *end == 'k' ? 10 : *end == 'M' ? 20 : *end == 'G' ? 30 : 0;
+    if (digits == 0 || digits > 9 + (shift == 0) * 8 || end[shift != 0] != '\0' || value == 0) {
+        argp_error(state, "--max-bytes takes a number of bytes, with k, M or G behind it or not, not '%s'", text);
+    }
+    return value << shift;
+}
+
+/* Seconds below CAPTURE_MOST_OFFSET_S with up to nine digits behind the point, exactly. */
+static bool signed_seconds(const char *text, int64_t *ns)
+{
+    bool negative = *text == '-';
+    text += *text == '-' || *text == '+';
+    int64_t seconds = 0, fraction = 0, unit = 100000000;
+    size_t digits = 0;
+    for (; *text >= '0' && *text <= '9'; text++, digits++) {
+        seconds = seconds * 10 + (*text - '0');
+        if (seconds >= CAPTURE_MOST_OFFSET_S) {
+            return false;
+        }
+    }
+    if (*text == '.') {
+        for (text++; *text >= '0' && *text <= '9'; text++, digits++, unit /= 10) {
+            fraction += (*text - '0') * unit;
+        }
+    }
+    *ns = (seconds * 1000000000 + fraction) * (negative ? -1 : 1);
+    return digits > 0 && *text == '\0';
+}
+
+static void parse_offset(struct argp_state *state, const char *text, capture_options *o)
+{
+    const char *number = text;
+    o->has_offset = true;
+    if (strncmp(text, "estimate", 8) == 0) {
+        o->estimate = true;
+        number = text[8] == ':' ? text + 9 : NULL;
+        o->has_centre = number != NULL;
+        if (text[8] == '\0') {
+            return;
+        }
+    }
+    if (number == NULL || !signed_seconds(number, &o->offset_ns)) {
+        argp_error(state, "--clock-offset takes seconds, estimate or estimate:SECONDS, not '%s'", text);
+    }
+}
+
+static void parse_intrinsics(struct argp_state *state, const char *text, capture_options *o)
+{
+    double numbers[9] = {0};
+    uint32_t count = 0;
+    for (const char *at = text; count < 9; at++) {
+        char *end;
+        numbers[count] = strtod(at, &end);
+        if (end == at || !(numbers[count] > -1e6 && numbers[count] < 1e6)) {
+            count = 0;
+            break;
+        }
+        count++;
+        at = end;
+        if (*at != ',') {
+            count = *at == '\0' ? count : 0;
+            break;
+        }
+    }
+    if (count != 4 && count != 8 && count != 9) {
+        argp_error(state, "--intrinsics takes fx,fy,cx,cy, with k1,k2,p1,p2,k3 behind them or not, not '%s'", text);
+    }
+    o->intrinsics.fx = numbers[0];
+    o->intrinsics.fy = numbers[1];
+    o->intrinsics.cx = numbers[2];
+    o->intrinsics.cy = numbers[3];
+    memcpy(o->intrinsics.coefficients, numbers + 4, sizeof o->intrinsics.coefficients);
+    o->intrinsics.distortion = count > 4 ? T3R_DISTORTION_RADTAN : T3R_DISTORTION_NONE;
+    o->has_intrinsics = true;
+}
+
+/* Which adapters use an option of the camera's, and what it needs besides. */
+static const struct {
+    int key;
+    const char *option, *adapters;
+    bool of_depth; /* belongs to --depth-source */
+} uses[] = {
+    {KEY_SIZE, "size", "v4l2 libcamera opencv", false},
+    {KEY_RATE, "rate", "v4l2 libcamera opencv", false},
+    {KEY_FORMAT, "format", "v4l2 libcamera opencv", false},
+    {KEY_BACKEND, "backend", "opencv", false},
+    {KEY_BUFFERS, "buffers", "v4l2 libcamera", false},
+    {KEY_REPEAT, "repeat", "replay", false},
+    {KEY_DEPTH_SOURCE, "depth-source", "v4l2 opencv", false},
+    {KEY_DEPTH_SIZE, "depth-size", "v4l2 opencv", true},
+    {KEY_DEPTH_UNIT, "depth-unit", "v4l2 opencv", true},
+    {KEY_PAIR, "pair", "v4l2", true},
+    {KEY_STALL, "stall", "v4l2 libcamera opencv", false},
+    {KEY_RECONNECT, "reconnect", "v4l2 libcamera opencv", false},
+};
+
+/* Whether the word is one of the words, each but the last with a space behind it. */
+static bool is_among(const char *word, size_t length, const char *words)
+{
+    for (const char *at = words; *at != '\0'; at += strspn(at, " ")) {
+        size_t here = strcspn(at, " ");
+        if (here == length && strncmp(at, word, length) == 0) {
+            return true;
+        }
+        at += here;
+    }
+    return false;
+}
+
+/* No option is taken that its adapter would pass over. */
+static void check_uses(struct argp_state *state, const capture_options *o)
+{
+    size_t length = strcspn(o->source, ":");
+    for (size_t i = 0; i < sizeof uses / sizeof uses[0]; i++) {
+        if ((o->given >> (uses[i].key - KEY_SOURCE) & 1) == 0) {
+            continue;
+        }
+        if (is_among(o->source, length, "replay v4l2 libcamera opencv") &&
+            !is_among(o->source, length, uses[i].adapters)) {
+            argp_error(state, "--%s is of no use to %.*s: it belongs to %s", uses[i].option, (int)length, o->source,
+                       uses[i].adapters);
+        } else if (uses[i].of_depth && o->settings.depth == NULL) {
+            argp_error(state, "--%s belongs to --depth-source", uses[i].option);
+        }
+    }
+}
+
+static void check(struct argp_state *state, capture_options *o)
+{
+    if (o->list) {
+        return;
+    }
+    bool budget = o->build.gaussians != 0 || o->build.keep_percent > 0 || o->build.automatic;
+    if (o->source == NULL) {
+        argp_error(state, "--source is missing (--list tells what there is)");
+    } else if (o->output == NULL && o->scene == NULL && !o->hash) {
+        argp_error(state, "neither -o REC.mcap nor --build SCENE.ply says what is to become of the frames");
+    } else if (o->scene != NULL && !path_is_ply(o->scene)) {
+        argp_error(state, "--build %s: scenes are written as .ply", o->scene);
+    } else if (o->scene == NULL && (o->every > 0 || budget || o->build.context_count > 0 || o->local)) {
+        argp_error(state, "--every, --local, --context and budgets belong to --build");
+    } else if (o->scene != NULL && o->build.method != METHOD_TRIM3R) {
+        argp_error(state, "--method %s needs a recording: trim3r build", method_name(o->build.method));
+    } else if (o->scene != NULL && o->build.allocation == T3R_ALLOCATE_GIVEN) {
+        argp_error(state, "--allocate given needs a recording: trim3r build");
+    } else if (o->build.depth == T3R_DEPTH_STEREO) {
+        argp_error(state, "--depth stereo needs a recording: trim3r build");
+    } else if (o->every > 0 && o->build.context_count > 0) {
+        argp_error(state, "--every and --context exclude each other");
+    } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL)) {
+        argp_error(state, "--clock-offset and --pose-topic belong to --poses");
+    } else if ((o->max_bytes > 0 || o->sync) && o->output == NULL) {
+        argp_error(state, "--max-bytes and --sync belong to -o");
+    } else if (o->fisheye && !o->has_intrinsics) {
+        argp_error(state, "--fisheye belongs to --intrinsics");
+    }
+    check_uses(state, o);
+    for (uint32_t i = 1; i < o->build.context_count; i++) {
+        if (o->build.context[i] <= o->build.context[i - 1]) {
+            argp_error(state, "--context must ascend: frames are used as they come in");
+        }
+    }
+    if (o->fisheye) {
+        o->intrinsics.distortion = T3R_DISTORTION_FISHEYE;
+    }
+    if (o->scene != NULL && !budget) {
+        o->build.keep_percent = 10;
+    }
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    capture_options *o = state->input;
+    t3r_capture_settings *s = &o->settings;
+    if (key >= KEY_SOURCE && key <= KEY_JSON) {
+        o->given |= UINT64_C(1) << (key - KEY_SOURCE);
+    }
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->build;
+        state->child_inputs[1] = &o->build;
+        return 0;
+    case KEY_SOURCE:
+        o->source = arg;
+        return 0;
+    case KEY_LIST:
+        o->list = true;
+        return 0;
+    case KEY_SIZE:
+        option_size(state, "size", arg, 2, &s->width, &s->height);
+        return 0;
+    case KEY_RATE:
+        s->rate_millihertz = (uint32_t)(positive(state, "rate", arg, 10000) * 1000 + 0.5);
+        return 0;
+    case KEY_FORMAT:
+        s->format = arg;
+        return 0;
+    case KEY_BACKEND:
+        s->backend = arg;
+        return 0;
+    case KEY_BUFFERS:
+        s->buffers = option_number(state, "buffers", arg, 2, 32);
+        return 0;
+    case KEY_REPEAT:
+        s->repeat = option_number(state, "repeat", arg, 1, UINT32_MAX);
+        return 0;
+    case KEY_DEPTH_SOURCE:
+        s->depth = arg;
+        return 0;
+    case KEY_DEPTH_SIZE:
+        option_size(state, "depth-size", arg, 2, &s->depth_width, &s->depth_height);
+        return 0;
+    case KEY_DEPTH_UNIT:
+        s->depth_unit_q40 = (uint64_t)(positive(state, "depth-unit", arg, 100) * 0x1p40 + 0.5);
+        return 0;
+    case KEY_PAIR:
+        s->pair_ms = option_number(state, "pair", arg, 1, 1000);
+        return 0;
+    case KEY_STALL:
+        s->stall_ms = option_number(state, "stall", arg, 1, 3600000);
+        return 0;
+    case KEY_RECONNECT:
+        o->reconnect_seconds = positive(state, "reconnect", arg, 1e6);
+        return 0;
+    case KEY_INTRINSICS:
+        parse_intrinsics(state, arg, o);
+        return 0;
+    case KEY_FISHEYE:
+        o->fisheye = true;
+        return 0;
+    case KEY_POSES:
+        o->poses = arg;
+        return 0;
+    case KEY_POSE_TOPIC:
+        o->pose_topic = arg;
+        return 0;
+    case KEY_OFFSET:
+        parse_offset(state, arg, o);
+        return 0;
+    case 'o':
+        o->output = arg;
+        return 0;
+    case KEY_MAX_BYTES:
+        o->max_bytes = bytes_of(state, arg);
+        return 0;
+    case KEY_SYNC:
+        o->sync = true;
+        return 0;
+    case KEY_FRAMES:
+        o->frames = option_number(state, "frames", arg, 1, UINT32_MAX);
+        return 0;
+    case KEY_SECONDS:
+        o->seconds = positive(state, "seconds", arg, 1e9);
+        return 0;
+    case KEY_BUILD:
+        o->scene = arg;
+        return 0;
+    case KEY_EVERY:
+        o->every = option_number(state, "every", arg, 1, 1000000);
+        return 0;
+    case KEY_LOCAL:
+        o->local = true;
+        return 0;
+    case KEY_HASH:
+        o->hash = true;
+        return 0;
+    case KEY_QUIET:
+        o->quiet = true;
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        argp_error(state, "'%s' is too many", arg);
+        return 0;
+    case ARGP_KEY_END:
+        check(state, o);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&reconstruction_budget_argp, 0, "Views and budget of --build:", 10},
+                                             {&reconstruction_settings_argp, 0, NULL, 0},
+                                             {0}};
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .doc = "Captures frames into a recording, straight into Gaussians, or both. Ctrl-C ends it; the recording is whole."
+           "\vExamples:\n"
+           "  trim3r capture --list\n"
+           "  trim3r capture --source v4l2:/dev/video0 -o rec.mcap\n"
+           "  trim3r capture --source v4l2:/dev/video0 --depth-source /dev/video2 \\\n"
+           "    --intrinsics 615,615,320,240 --max-bytes 2G -o rec.mcap\n"
+           "  trim3r capture --source replay:rec.mcap --poses tracker.txt \\\n"
+           "    --clock-offset estimate -o posed.mcap\n"
+           "  trim3r capture --source replay:posed.mcap --build s.ply --keep 10%\n\n"
+           "Poses are known after the capture as a rule: record first, then add them from the recording as above. "
+           "Devices may come back under another name: those of /dev/v4l/by-id do not.\n\n"
+           "Every frame that is not recorded is counted under its cause and told on the topic /camera/events, as is "
+           "every pair of colour and depth. A process that is killed loses at most the message that it was writing.",
+    .children = children,
+};
+
+void capture_options_read(int argc, char **argv, capture_options *o)
+{
+    *o = (capture_options){.reconnect_seconds = 10};
+    reconstruction_defaults(&o->build);
+    argp_parse(&argp, argc, argv, 0, NULL, o);
+}

@@ -1,0 +1,33 @@
+/* The command line of `trim3r capture`, checked as a whole. */
+#ifndef TRIM3R_TOOLS_CAPTURE_OPTIONS_H
+#define TRIM3R_TOOLS_CAPTURE_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "capture.h"
+#include "reconstruction/reconstruction.h"
+
+typedef struct capture_options {
+    const char *source, *output, *poses, *pose_topic;
+    t3r_capture_settings settings;
+    t3r_recorded_camera intrinsics;
+    bool has_intrinsics, fisheye;
+    bool has_offset, estimate, has_centre;
+    int64_t offset_ns; /* given; of an estimate its centre */
+    const char *scene;
+    bool list, json, sync, hash, local, quiet;
+    uint32_t every;
+    uint64_t max_bytes, frames;
+    double seconds, reconnect_seconds;
+    reconstruction_options build;
+    uint64_t given; /* a bit for each KEY_* that stands in the command */
+} capture_options;
+
+#define CAPTURE_MOST_OFFSET_S INT64_C(4000000000) /* of clocks, to either side */
+
+/* Reads the command line; an option that is wrong, or that the source would pass over, ends the process with a message.
+ * With `list` nothing else is to be read. */
+void capture_options_read(int argc, char **argv, capture_options *o);
+
+#endif

@@ -1,0 +1,133 @@
+#include "capture/result.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "cli/json_output.h"
+
+static double mean(const capture_times *times)
+{
+    return times->count > 0 ? times->sum_ms / (double)times->count : 0;
+}
+
+static void add_times(cJSON *root, const char *key, const capture_times *times)
+{
+    if (times->count > 0) {
+        cJSON *item = cJSON_AddObjectToObject(root, key);
+        cJSON_AddNumberToObject(item, "mean", mean(times));
+        cJSON_AddNumberToObject(item, "worst", times->worst_ms);
+    }
+}
+
+static double rate_of(const capture_account *a)
+{
+    return a->seconds > 0 && a->frames > 1 ? (double)(a->frames - 1) / a->seconds : 0;
+}
+
+static void print_json(const capture_options *o, const char *name, const t3r_capture *capture, const capture_account *a,
+                       const clock_offset *offset)
+{
+    cJSON *root = cJSON_CreateObject();
+    const t3r_capture_counts *n = &a->counts;
+    const struct {
+        const char *key;
+        uint64_t value;
+    } counts[] = {{"frames", a->frames},
+                  {"paired", n->paired},
+                  {"alone", n->alone},
+                  {"dropped_driver", n->dropped_driver},
+                  {"dropped_slow", n->dropped_slow},
+                  {"corrupted", n->corrupted},
+                  {"depth_dropped", n->depth_dropped},
+                  {"faults", n->faults},
+                  {"reopened", n->reopened},
+                  {"failed", a->failed},
+                  {"unposed", a->unposed},
+                  {"files", a->files},
+                  {"bytes", a->bytes}};
+    cJSON_AddStringToObject(root, "source", name);
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        json_add_integer(root, counts[i].key, (int64_t)counts[i].value);
+    }
+    cJSON_AddNumberToObject(root, "width", a->width);
+    cJSON_AddNumberToObject(root, "height", a->height);
+    cJSON_AddStringToObject(root, "format", t3r_pixel_format_name(a->format));
+    cJSON_AddStringToObject(root, "clock", t3r_capture_clock(capture));
+    cJSON_AddStringToObject(root, "note", t3r_capture_note(capture));
+    cJSON_AddNumberToObject(root, "rate", rate_of(a));
+    add_times(root, "latency_ms", &a->latency);
+    add_times(root, "frame_ms", &a->work);
+    add_times(root, "build_ms", &a->building);
+    if (o->hash) {
+        json_add_hash(root, "frames_hash", a->frames_hash);
+    }
+    if (o->poses != NULL) {
+        cJSON_AddNumberToObject(root, "clock_offset_s", (double)offset->offset_ns * 1e-9);
+    }
+    if (o->estimate) {
+        cJSON_AddNumberToObject(root, "clock_offset_explained", offset->explained);
+    }
+    if (a->builds > 0) {
+        cJSON_AddStringToObject(root, "scene", o->scene);
+        json_add_integer(root, "builds", a->builds);
+        json_add_integer(root, "gaussians", a->gaussians);
+        json_add_integer(root, "valid_points", a->valid_points);
+        json_add_integers(root, "context", a->context, a->context_count);
+        json_add_integer(root, "arena_bytes", (int64_t)a->arena_bytes);
+        json_add_hash(root, "hash", a->scene_hash);
+    }
+    json_print(root);
+}
+
+static void print_text(const capture_options *o, const char *name, const t3r_capture *capture, const capture_account *a,
+                       const clock_offset *offset)
+{
+    const t3r_capture_counts *n = &a->counts;
+    char text[HASH_TEXT_BYTES];
+    printf("%s: %" PRIu64 " frames of %ux%u %s, %.1f/s, clock %s\n", name, a->frames, a->width, a->height,
+           t3r_pixel_format_name(a->format), rate_of(a), t3r_capture_clock(capture));
+    printf("lost:     driver %" PRIu64 ", too slow %" PRIu64 ", corrupted %" PRIu64 ", unreadable %" PRIu64
+           "; faults %" PRIu64 ", reconnects %" PRIu64 "\n",
+           n->dropped_driver, n->dropped_slow, n->corrupted, a->failed, n->faults, n->reopened);
+    if (n->paired + n->alone > 0) {
+        printf("depth:    paired %" PRIu64 ", colour alone %" PRIu64 ", depth unused %" PRIu64 "\n", n->paired,
+               n->alone, n->depth_dropped);
+    }
+    if (o->poses != NULL) {
+        printf("poses:    %" PRIu64 " frames without; clock offset %+.6f s", a->unposed,
+               (double)offset->offset_ns * 1e-9);
+        if (o->estimate) {
+            printf(" estimated, explains %.0f %% of the picture's motion", offset->explained * 100);
+        }
+        putchar('\n');
+    }
+    if (a->latency.count > 0) {
+        printf("latency:  %.1f ms, worst %.1f ms\n", mean(&a->latency), a->latency.worst_ms);
+    }
+    printf("a frame:  %.2f ms, worst %.2f ms\n", mean(&a->work), a->work.worst_ms);
+    if (o->output != NULL) {
+        printf("%s: %" PRIu64 " bytes in %" PRIu32 " file%s\n", o->output, a->bytes, a->files,
+               a->files == 1 ? "" : "s");
+    }
+    if (a->builds > 0) {
+        hash_text(a->scene_hash, text);
+        printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, %" PRIu32
+               " builds of %.1f ms (worst %.1f), arena %zu bytes, hash %s\n",
+               o->scene, a->gaussians, a->valid_points, a->builds, mean(&a->building), a->building.worst_ms,
+               a->arena_bytes, text);
+    }
+    if (o->hash) {
+        hash_text(a->frames_hash, text);
+        printf("frames:   %s\n", text);
+    }
+}
+
+void capture_result_print(const capture_options *o, const char *name, const t3r_capture *capture,
+                          const capture_account *a, const clock_offset *offset)
+{
+    if (o->json) {
+        print_json(o, name, capture, a, offset);
+    } else {
+        print_text(o, name, capture, a, offset);
+    }
+}

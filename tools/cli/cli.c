@@ -1,0 +1,217 @@
+/* What every subcommand shares. The state here is the process's own: its name in messages and its progress line. */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char *command_name;
+
+static struct {
+    char *text; /* NULL: errors go to stderr */
+    size_t bytes;
+} kept;
+
+static struct {
+    double started; /* 0: no progress line is open */
+    double drawn;
+    bool visible, silent;
+    struct {
+        const char *what;
+        uint32_t done, total; /* 0: no outer work */
+        double started;
+    } outer;
+} progress;
+
+void cli_set_command(const char *name)
+{
+    command_name = name;
+}
+
+void cli_keep_errors(char *text, size_t bytes)
+{
+    kept.text = text;
+    kept.bytes = bytes;
+}
+
+int cli_error(int code, const char *format, ...)
+{
+    va_list arguments;
+    cli_progress_end();
+    if (kept.text != NULL) {
+        va_start(arguments, format);
+        vsnprintf(kept.text, kept.bytes, format, arguments);
+        va_end(arguments);
+        return code;
+    }
+    fputs("trim3r", stderr);
+    if (command_name != NULL) {
+        fprintf(stderr, " %s", command_name);
+    }
+    fputs(": ", stderr);
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fputc('\n', stderr);
+    return code;
+}
+
+/* "12 of 400 rows, 3 min left   " */
+static void draw_outer(double now)
+{
+    uint32_t done = progress.outer.done, total = progress.outer.total;
+    fprintf(stderr, "%" PRIu32 " of %" PRIu32 " %s", done, total, progress.outer.what);
+    double left = done == 0 ? 0 : (now - progress.outer.started) / done * (total - done);
+    if (left >= 90) {
+        fprintf(stderr, ", %.0f min left", left / 60);
+    } else if (done > 0) {
+        fprintf(stderr, ", %.0f s left", left);
+    }
+    fputs("   ", stderr);
+}
+
+static bool draws(void)
+{
+    return !progress.silent && isatty(STDERR_FILENO);
+}
+
+void cli_progress(const char *what, uint32_t done, uint32_t total)
+{
+    double now = cli_now();
+    if (progress.started <= 0) {
+        progress.started = now;
+    }
+    if (now - progress.started < 0.5 || now - progress.drawn < 0.1 || !draws()) {
+        return;
+    }
+    progress.drawn = now;
+    progress.visible = true;
+    uint32_t percent = total == 0 ? 100 : (uint32_t)((uint64_t)done * 100 / total);
+    fputs("\r", stderr);
+    if (progress.outer.total > 0) {
+        draw_outer(now);
+    }
+    fprintf(stderr, "%-40.40s %3u %%", what, (unsigned)percent);
+    fflush(stderr);
+}
+
+void cli_progress_within(const char *what, uint32_t done, uint32_t total)
+{
+    if (progress.outer.total == 0) {
+        progress.outer.started = cli_now();
+    }
+    progress.outer.what = what;
+    progress.outer.done = done;
+    progress.outer.total = done < total ? total : 0;
+    if (progress.outer.total > 0 && draws()) {
+        progress.visible = true;
+        fputs("\r", stderr);
+        draw_outer(cli_now());
+        fputs("\033[K", stderr);
+        fflush(stderr);
+    }
+}
+
+void cli_progress_end(void)
+{
+    if (progress.visible) {
+        fputs("\r\033[K", stderr);
+        fflush(stderr);
+    }
+    progress.started = 0;
+    progress.drawn = 0;
+    progress.visible = false;
+}
+
+void cli_progress_silence(void)
+{
+    progress.silent = true;
+}
+
+/* A decimal number at *text that fits 32 bits; *text moves behind it. */
+static int parse_u32(const char **text, uint32_t *value)
+{
+    const char *p = *text;
+    uint64_t x = 0;
+    if (*p < '0' || *p > '9') {
+        return -1;
+    }
+    for (; *p >= '0' && *p <= '9'; p++) {
+        x = x * 10 + (uint64_t)(*p - '0');
+        if (x > UINT32_MAX) {
+            return -1;
+        }
+    }
+    *value = (uint32_t)x;
+    *text = p;
+    return 0;
+}
+
+int cli_parse_list_u32(const char *text, uint32_t *values, uint32_t most, uint32_t *count)
+{
+    uint32_t n = 0;
+    for (;;) {
+        if (n == most || parse_u32(&text, &values[n]) != 0) {
+            return -1;
+        }
+        n++;
+        if (*text == '\0') {
+            *count = n;
+            return 0;
+        }
+        if (*text++ != ',') {
+            return -1;
+        }
+    }
+}
+
+int cli_parse_list_percent(const char *text, double *values, uint32_t most, uint32_t *count)
+{
+    uint32_t n = 0;
+    for (;;) {
+        /* digits and one point alone: strtod() would also take signs, exponents, hexadecimal and "nan" */
+        size_t length = strspn(text, "0123456789.");
+        char *end;
+        if (n == most || length == 0) {
+            return -1;
+        }
+        double value = strtod(text, &end);
+        if (end != text + length || !(value > 0 && value <= 100)) {
+            return -1;
+        }
+        values[n++] = value;
+        text = end;
+        if (*text == '%') {
+            text++;
+        }
+        if (*text == '\0') {
+            *count = n;
+            return 0;
+        }
+        if (*text++ != ',') {
+            return -1;
+        }
+    }
+}
+
+int cli_parse_size(const char *text, uint32_t *width, uint32_t *height)
+{
+    uint32_t w, h;
+    if (parse_u32(&text, &w) != 0 || *text++ != 'x' || parse_u32(&text, &h) != 0 || *text != '\0' || w == 0 || h == 0) {
+        return -1;
+    }
+    *width = w;
+    *height = h;
+    return 0;
+}
+
+double cli_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}

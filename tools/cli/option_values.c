@@ -1,0 +1,109 @@
+#include "cli/option_values.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#include "reconstruction/chosen_head.h"
+#include "cli/cli.h"
+#include "trim3r.h"
+
+uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
+{
+    uint32_t value = low, count;
+    if (cli_parse_list_u32(text, &value, 1, &count) != 0 || value < low || value > high) {
+        argp_error(state, "--%s takes a whole number %" PRIu32 "..%" PRIu32 ", not '%s'", option, low, high, text);
+    }
+    return value;
+}
+
+void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
+                 uint32_t *height)
+{
+    if (cli_parse_size(text, width, height) != 0 || *width < low || *height < low || *width > T3R_MAX_SIDE ||
+        *height > T3R_MAX_SIDE) {
+        argp_error(state, "--%s takes WxH, each side %" PRIu32 "..%u, not '%s'", option, low, T3R_MAX_SIDE, text);
+    }
+}
+
+void option_percents(struct argp_state *state, const char *option, const char *text, double *percents, uint32_t most,
+                     uint32_t *count)
+{
+    if (cli_parse_list_percent(text, percents, most, count) != 0) {
+        argp_error(state, "--%s takes %s above 0 and up to 100%s, not '%s'", option,
+                   most == 1 ? "a percentage" : "percentages", most == 1 ? "" : " with commas between", text);
+    }
+}
+
+void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count)
+{
+    if (cli_parse_list_u32(text, frames, T3R_MAX_VIEWS, count) != 0) {
+        argp_error(state, "--%s takes 1 to %u frame indices with commas between, not '%s'", option, T3R_MAX_VIEWS,
+                   text);
+    }
+}
+
+const char *option_head(struct argp_state *state, const char *option, const char *text)
+{
+    if (!chosen_head_is_one(text)) {
+        argp_error(state, "--%s does not know '%s'; there are " CHOSEN_HEAD_NAMES, option, text);
+    }
+    return text;
+}
+
+t3r_depth option_depth(struct argp_state *state, const char *option, const char *text)
+{
+    int depth = 0;
+    while (depth < T3R_DEPTH_COUNT && strcmp(text, t3r_depth_name((t3r_depth)depth)) != 0) {
+        depth++;
+    }
+    if (depth == T3R_DEPTH_COUNT) {
+        argp_error(state, "--%s does not know '%s'; there are sensor, stereo", option, text);
+    }
+    return (t3r_depth)depth;
+}
+
+void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (*places[i] == NULL) {
+            *places[i] = argument;
+            return;
+        }
+    }
+    argp_error(state, "'%s' is too many", argument);
+}
+
+bool path_is_ply(const char *path)
+{
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".ply") == 0;
+}
+
+static void add_method(struct argp_state *state, const char *option, const char *name, size_t length,
+                       method_id methods[METHOD_COUNT], uint32_t *count)
+{
+    method_id m = method_named(name, length);
+    if (m == METHOD_COUNT) {
+        argp_error(state, "--%s: '%.*s' is not a method; there are %s", option, (int)length, name, METHOD_NAMES);
+    }
+    for (uint32_t i = 0; i < *count; i++) {
+        if (methods[i] == m) {
+            argp_error(state, "--%s names %s twice", option, method_name(m));
+        }
+    }
+    methods[(*count)++] = m;
+}
+
+void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
+                    uint32_t *count)
+{
+    *count = 0;
+    for (;;) {
+        size_t length = strcspn(text, ",");
+        add_method(state, option, text, length, methods, count);
+        if (text[length] == '\0') {
+            return;
+        }
+        text += length + 1;
+    }
+}

@@ -1,0 +1,36 @@
+/* Values of options as the commands' argp parsers read them. A bad one is a usage error that names the option, which
+ * ends the process: nothing is returned then. */
+#ifndef TRIM3R_TOOLS_OPTION_VALUES_H
+#define TRIM3R_TOOLS_OPTION_VALUES_H
+
+#include <argp.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "reconstruction/method.h"
+#include "trim3r.h"
+
+/* A whole number in [low, high]. */
+uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
+/* "WxH", each side in [low, T3R_MAX_SIDE]. */
+void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
+                 uint32_t *height);
+/* 1 to `most` percentages above 0 and up to 100, with or without their sign, commas between. */
+void option_percents(struct argp_state *state, const char *option, const char *text, double *percents, uint32_t most,
+                     uint32_t *count);
+/* 1 to T3R_MAX_VIEWS frame indices with commas between. */
+void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
+/* A head's name, or a path that ends as weight files do. */
+const char *option_head(struct argp_state *state, const char *option, const char *text);
+/* A source of depth by its name. */
+t3r_depth option_depth(struct argp_state *state, const char *option, const char *text);
+/* One to METHOD_COUNT different methods with commas between. */
+void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
+                    uint32_t *count);
+/* The next free one of `count` places for arguments that are no options. */
+void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count);
+
+/* Whether a path ends as scene files do. */
+bool path_is_ply(const char *path);
+
+#endif

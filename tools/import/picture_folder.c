@@ -1,0 +1,57 @@
+/* A folder of pictures and nothing else. */
+#define _GNU_SOURCE /* versionsort() */
+#include "import/posed_folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "reason.h"
+
+static int is_picture(const struct dirent *entry)
+{
+    const char *dot = strrchr(entry->d_name, '.');
+    return entry->d_name[0] != '.' && dot != NULL &&
+           (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
+}
+
+int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                        size_t error_bytes)
+{
+    double numbers[9] = {NAN, NAN, NAN, NAN};
+    struct dirent **entries;
+    memset(out, 0, sizeof *out);
+    out->kind = "pictures";
+    out->depth_unit = 0.001;
+    if (options->intrinsics_count == 0 && !options->without_intrinsics) {
+        return t3r_reason(error, error_bytes, "%s: pictures without intrinsics; give --intrinsics fx,fy,cx,cy",
+                          directory);
+    }
+    memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
+    int count = scandir(directory, &entries, is_picture, versionsort);
+    if (count < 0) {
+        return t3r_reason(error, error_bytes, "%s: %s", directory, strerror(errno));
+    }
+    out->frames = calloc((size_t)count + 1, sizeof *out->frames);
+    int status = 0;
+    if (count == 0 || (uint32_t)count > POSED_FOLDER_MAX_FRAMES) {
+        status = t3r_reason(error, error_bytes, "%s: %s", directory,
+                            count == 0 ? "no transforms.json, no rgb.txt and groundtruth.txt, no pictures"
+                                       : "more than 100000 pictures");
+    }
+    for (int i = 0; i < count; i++) {
+        if (status == 0 && out->frames != NULL) {
+            posed_frame *frame = &out->frames[out->frame_count++];
+            frame->image = strdup(entries[i]->d_name);
+            frame->intrinsics = posed_intrinsics_of(numbers);
+            frame->rotation[0] = 1;
+            status = frame->image != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    return out->frames != NULL ? status : t3r_reason(error, error_bytes, "out of memory");
+}

@@ -1,0 +1,14 @@
+/* Poses of a folder's frames from what their pictures show. */
+#ifndef TRIM3R_TOOLS_IMPORT_POSES_H
+#define TRIM3R_TOOLS_IMPORT_POSES_H
+
+#include "import/posed_folder.h"
+#include "posing/estimate.h"
+
+/* Estimates the poses of all frames, from pictures of their own size, and puts them into the folder as the numbers that
+ * a recording's reader rounds to exactly these: positions in steps of 2^-32, quaternions of 2^-30. The first frame
+ * keeps its pose; without one it is the origin. accounts[]: one a frame. 0, or -1 with a reason in error[]. */
+int import_estimate_poses(const char *directory, posed_folder *folder, poses_source source, pose_account *accounts,
+                          char *error, size_t error_bytes);
+
+#endif

@@ -1,0 +1,380 @@
+/* transforms.json: camera-to-world matrices with OpenGL axes (x right, y up, z backward). Intrinsics stand in a frame
+ * or, for all frames, at the top; a frame's own win. */
+#include "import/posed_folder.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cjson/cJSON.h>
+
+#include "reason.h"
+#include "trim3r.h"
+
+#define MAX_PATH_BYTES 4096u
+
+typedef struct reader {
+    const cJSON *root;
+    const cJSON *frame; /* NULL while the top is read */
+    const posed_folder_options *options;
+    char where[64]; /* "frames[3]" */
+    char *error;
+    size_t error_bytes;
+} reader;
+
+static int fail(reader *r, const char *field, const char *what)
+{
+    return t3r_reason(r->error, r->error_bytes, "%s%s%s: %s", r->where, r->where[0] != '\0' ? ": " : "", field, what);
+}
+
+/* The field of the frame, else of the top; NULL when neither has it. */
+static const cJSON *field_of(const reader *r, const char *name)
+{
+    const cJSON *item = r->frame == NULL ? NULL : cJSON_GetObjectItemCaseSensitive(r->frame, name);
+    return item != NULL ? item : cJSON_GetObjectItemCaseSensitive(r->root, name);
+}
+
+/* A number, NAN when absent; -1 when it is something else or not finite. */
+static int read_number(reader *r, const char *name, double *value)
+{
+    const cJSON *item = field_of(r, name);
+    *value = NAN;
+    if (item == NULL || cJSON_IsNull(item)) {
+        return 0;
+    }
+    if (!cJSON_IsNumber(item)) {
+        return fail(r, name, "not a number");
+    }
+    if (!isfinite(item->valuedouble)) {
+        return fail(r, name, "not finite");
+    }
+    *value = item->valuedouble;
+    return 0;
+}
+
+static int read_path(reader *r, const char *name, char **path)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(r->frame, name);
+    if (!cJSON_IsString(item)) {
+        return fail(r, name, item == NULL ? "missing" : "not a string");
+    }
+    size_t length = strlen(item->valuestring);
+    if (length == 0 || length > MAX_PATH_BYTES) {
+        return fail(r, name, length == 0 ? "empty" : "longer than 4096 bytes");
+    }
+    *path = strdup(item->valuestring);
+    return *path != NULL ? 0 : fail(r, name, "out of memory");
+}
+
+/* NULL when absent. */
+static int read_optional_path(reader *r, const char *name, char **path)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(r->frame, name);
+    return item != NULL && !cJSON_IsNull(item) ? read_path(r, name, path) : 0;
+}
+
+/* ---- camera ---------------------------------------------------------------------------------------------------- */
+
+static int read_size(reader *r, const char *name, double *value)
+{
+    if (read_number(r, name, value) != 0) {
+        return -1;
+    }
+    if (!isnan(*value) && !(*value >= 1 && *value <= T3R_MAX_SIDE && floor(*value) == *value)) {
+        return fail(r, name, "not a whole number of pixels from 1 to 4096");
+    }
+    return 0;
+}
+
+static int read_focal(reader *r, const char *name, double *value)
+{
+    if (read_number(r, name, value) != 0) {
+        return -1;
+    }
+    return !isnan(*value) && !(*value > 0) ? fail(r, name, "not positive") : 0;
+}
+
+static int read_angle(reader *r, const char *name, double *value)
+{
+    if (read_number(r, name, value) != 0) {
+        return -1;
+    }
+    return !isnan(*value) && !(*value > 0 && *value < 3.14159) ? fail(r, name, "not between 0 and pi") : 0;
+}
+
+static bool is_true(const reader *r, const char *name)
+{
+    const cJSON *item = field_of(r, name);
+    return cJSON_IsTrue(item) || (cJSON_IsNumber(item) && item->valuedouble != 0);
+}
+
+/* Which lens: camera_model as nerfstudio and COLMAP spell it, or instant-ngp's flags. */
+static int read_lens(reader *r, bool *fisheye, bool *pinhole)
+{
+    static const char *const unsupported[] = {"ftheta_p0", "latlong", "equirectangular", "orthographic"};
+    for (size_t i = 0; i < sizeof unsupported / sizeof *unsupported; i++) {
+        const cJSON *item = field_of(r, unsupported[i]);
+        if (item != NULL && !cJSON_IsFalse(item) && !cJSON_IsNull(item)) {
+            return fail(r, unsupported[i], "this lens is not supported (pinhole, OPENCV and OPENCV_FISHEYE are)");
+        }
+    }
+    *fisheye = is_true(r, "is_fisheye");
+    *pinhole = false;
+    const cJSON *model = field_of(r, "camera_model");
+    if (model == NULL) {
+        return 0;
+    }
+    if (!cJSON_IsString(model)) {
+        return fail(r, "camera_model", "not a string");
+    }
+    const char *name = model->valuestring;
+    if (strcmp(name, "OPENCV_FISHEYE") == 0) {
+        *fisheye = true;
+    } else if (strcmp(name, "PINHOLE") == 0 || strcmp(name, "SIMPLE_PINHOLE") == 0) {
+        *pinhole = !*fisheye;
+    } else if (strcmp(name, "OPENCV") != 0) {
+        return fail(r, "camera_model", "not one of OPENCV, OPENCV_FISHEYE, PINHOLE, SIMPLE_PINHOLE");
+    }
+    return 0;
+}
+
+static int read_distortion(reader *r, posed_intrinsics *out)
+{
+    static const char *const radtan[5] = {"k1", "k2", "p1", "p2", "k3"};
+    static const char *const equidistant[4] = {"k1", "k2", "k3", "k4"};
+    bool fisheye = false, pinhole = false;
+    if (read_lens(r, &fisheye, &pinhole) != 0) {
+        return -1;
+    }
+    const char *const *names = fisheye ? equidistant : radtan;
+    int count = pinhole ? 0 : fisheye ? 4 : 5;
+    bool any = fisheye;
+    for (int i = 0; i < count; i++) {
+        double value;
+        if (read_number(r, names[i], &value) != 0) {
+            return -1;
+        }
+        out->coefficients[i] = isnan(value) ? 0 : value;
+        any = any || out->coefficients[i] != 0;
+    }
+    if (!fisheye && !pinhole) {
+        static const char *const higher[] = {"k4", "k5", "k6"};
+        for (size_t i = 0; i < sizeof higher / sizeof *higher; i++) {
+            double value;
+            if (read_number(r, higher[i], &value) != 0) {
+                return -1;
+            }
+            if (!isnan(value) && value != 0) {
+                return fail(r, higher[i], "not 0: rational distortion is not supported");
+            }
+        }
+    }
+    out->distortion = !any ? T3R_DISTORTION_NONE : fisheye ? T3R_DISTORTION_FISHEYE : T3R_DISTORTION_RADTAN;
+    return 0;
+}
+
+static int read_intrinsics(reader *r, posed_intrinsics *out)
+{
+    if (read_size(r, "w", &out->width) != 0 || read_size(r, "h", &out->height) != 0 ||
+        read_focal(r, "fl_x", &out->fx) != 0 || read_focal(r, "fl_y", &out->fy) != 0 ||
+        read_number(r, "cx", &out->cx) != 0 || read_number(r, "cy", &out->cy) != 0 ||
+        read_angle(r, "camera_angle_x", &out->angle_x) != 0 || read_angle(r, "camera_angle_y", &out->angle_y) != 0) {
+        return -1;
+    }
+    if (isnan(out->fx) && isnan(out->fy) && isnan(out->angle_x) && isnan(out->angle_y) &&
+        !r->options->without_intrinsics) {
+        return fail(r, "fl_x", "missing, and no camera_angle_x to derive it from");
+    }
+    return read_distortion(r, out);
+}
+
+/* ---- pose ------------------------------------------------------------------------------------------------------ */
+
+static int read_row(reader *r, const cJSON *row, double values[4])
+{
+    if (!cJSON_IsArray(row) || cJSON_GetArraySize(row) != 4) {
+        return fail(r, "transform_matrix", "a row is not 4 numbers");
+    }
+    const cJSON *item;
+    int column = 0;
+    cJSON_ArrayForEach(item, row)
+    {
+        if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble)) {
+            return fail(r, "transform_matrix", "an entry is not a finite number");
+        }
+        values[column++] = item->valuedouble;
+    }
+    return 0;
+}
+
+static int read_pose(reader *r, posed_frame *out)
+{
+    const cJSON *matrix = cJSON_GetObjectItemCaseSensitive(r->frame, "transform_matrix");
+    out->rotation[0] = 1;
+    out->posed = matrix != NULL;
+    if (matrix == NULL) {
+        return r->options->without_poses ? 0 : fail(r, "transform_matrix", "missing");
+    }
+    int rows = cJSON_IsArray(matrix) ? cJSON_GetArraySize(matrix) : 0;
+    if (rows != 3 && rows != 4) {
+        return fail(r, "transform_matrix", "not an array of 4 rows");
+    }
+    double m[4][4] = {[3] = {0, 0, 0, 1}};
+    const cJSON *row;
+    int y = 0;
+    cJSON_ArrayForEach(row, matrix)
+    {
+        if (read_row(r, row, m[y++]) != 0) {
+            return -1;
+        }
+    }
+    if (fabs(m[3][0]) > 1e-6 || fabs(m[3][1]) > 1e-6 || fabs(m[3][2]) > 1e-6 || fabs(m[3][3] - 1) > 1e-6) {
+        return fail(r, "transform_matrix", "the last row is not 0 0 0 1");
+    }
+    /* columns y and z change sign: from y up, z backward to y down, z forward */
+    double rotation[9];
+    for (int i = 0; i < 3; i++) {
+        rotation[i * 3] = m[i][0];
+        rotation[i * 3 + 1] = -m[i][1];
+        rotation[i * 3 + 2] = -m[i][2];
+        out->position[i] = m[i][3];
+        if (!(fabs(m[i][3]) < 2147483648.0)) {
+            return fail(r, "transform_matrix", "a position is 2^31 or more");
+        }
+    }
+    const char *wrong = posed_quaternion(rotation, out->rotation);
+    return wrong == NULL ? 0 : fail(r, "transform_matrix", wrong);
+}
+
+/* ---- the whole ------------------------------------------------------------------------------------------------- */
+
+static int read_frames(reader *r, posed_folder *out)
+{
+    const cJSON *frames = cJSON_GetObjectItemCaseSensitive(r->root, "frames");
+    if (!cJSON_IsArray(frames)) {
+        return fail(r, "frames", frames == NULL ? "missing" : "not an array");
+    }
+    int count = cJSON_GetArraySize(frames);
+    if (count == 0 || (uint32_t)count > POSED_FOLDER_MAX_FRAMES) {
+        return fail(r, "frames", count == 0 ? "empty" : "more than 100000");
+    }
+    out->frames = calloc((size_t)count, sizeof *out->frames);
+    if (out->frames == NULL) {
+        return fail(r, "frames", "out of memory");
+    }
+    cJSON_ArrayForEach(r->frame, frames)
+    {
+        posed_frame *frame = &out->frames[out->frame_count++];
+        snprintf(r->where, sizeof r->where, "frames[%u]", out->frame_count - 1);
+        if (!cJSON_IsObject(r->frame)) {
+            return t3r_reason(r->error, r->error_bytes, "%s: not an object", r->where);
+        }
+        if (read_path(r, "file_path", &frame->image) != 0) {
+            return -1;
+        }
+        if (read_optional_path(r, "depth_path", &frame->depth) != 0 ||
+            read_optional_path(r, "pointmap_path", &frame->pointmap) != 0 ||
+            read_optional_path(r, "confidence_path", &frame->confidence) != 0) {
+            return -1;
+        }
+        if (frame->confidence != NULL && frame->pointmap == NULL) {
+            return fail(r, "confidence_path", "there is no pointmap_path");
+        }
+        if (frame->depth != NULL && frame->pointmap != NULL) {
+            return fail(r, "pointmap_path", "there is a depth_path too");
+        }
+        if (read_pose(r, frame) != 0 || read_intrinsics(r, &frame->intrinsics) != 0) {
+            return -1;
+        }
+    }
+    r->frame = NULL;
+    r->where[0] = '\0';
+    return 0;
+}
+
+static int read_depth_unit(reader *r, posed_folder *out)
+{
+    double unit;
+    if (read_number(r, "integer_depth_scale", &unit) != 0) {
+        return -1;
+    }
+    for (uint32_t i = 0; isnan(unit) && i < out->frame_count; i++) {
+        if (out->frames[i].depth != NULL) {
+            return fail(r, "integer_depth_scale", "missing, but frames have a depth_path");
+        }
+    }
+    /* 2^-40 .. 2^7: what t3r_frame.depth_unit_q40 may hold */
+    if (!isnan(unit) && !(unit >= 0x1p-40 && unit < 0x1p7)) {
+        return fail(r, "integer_depth_scale", "not between 1e-12 and 128");
+    }
+    out->depth_unit = isnan(unit) ? 0.001 : unit;
+    out->depth_unit_given = !isnan(unit);
+    return 0;
+}
+
+static bool frame_index(const cJSON *item, uint32_t count, uint32_t *index)
+{
+    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble < count) ||
+        floor(item->valuedouble) != item->valuedouble) {
+        return false;
+    }
+    *index = (uint32_t)item->valuedouble;
+    return true;
+}
+
+static int read_triplets(reader *r, posed_folder *out)
+{
+    const cJSON *triplets = cJSON_GetObjectItemCaseSensitive(r->root, "trim3r_triplets");
+    if (triplets == NULL) {
+        return 0;
+    }
+    if (!cJSON_IsArray(triplets)) {
+        return fail(r, "trim3r_triplets", "not an array");
+    }
+    out->triplets = calloc((size_t)cJSON_GetArraySize(triplets) + 1, sizeof *out->triplets);
+    if (out->triplets == NULL) {
+        return fail(r, "trim3r_triplets", "out of memory");
+    }
+    const cJSON *item;
+    cJSON_ArrayForEach(item, triplets)
+    {
+        t3r_triplet *t = &out->triplets[out->triplet_count];
+        snprintf(r->where, sizeof r->where, "trim3r_triplets[%u]", out->triplet_count);
+        const cJSON *context = cJSON_GetObjectItemCaseSensitive(item, "context");
+        if (!cJSON_IsArray(context) || cJSON_GetArraySize(context) != 2 ||
+            !frame_index(cJSON_GetArrayItem(context, 0), out->frame_count, &t->context[0]) ||
+            !frame_index(cJSON_GetArrayItem(context, 1), out->frame_count, &t->context[1])) {
+            return fail(r, "context", "not two frame indices");
+        }
+        if (!frame_index(cJSON_GetObjectItemCaseSensitive(item, "target"), out->frame_count, &t->target)) {
+            return fail(r, "target", "not a frame index");
+        }
+        out->triplet_count++;
+    }
+    r->where[0] = '\0';
+    return 0;
+}
+
+int transforms_json_parse(const char *text, size_t bytes, const posed_folder_options *options, posed_folder *out,
+                          char *error, size_t error_bytes)
+{
+    static const posed_folder_options strict = {0};
+    memset(out, 0, sizeof *out);
+    out->kind = "transforms.json";
+    const char *end = NULL;
+    cJSON *root = cJSON_ParseWithLengthOpts(text, bytes, &end, 0);
+    if (root == NULL) {
+        size_t at = end == NULL ? 0 : (size_t)(end - text);
+        return t3r_reason(error, error_bytes, "byte %zu: not JSON (NaN and Infinity are not either)", at);
+    }
+    reader r = {
+        .root = root, .options = options != NULL ? options : &strict, .error = error, .error_bytes = error_bytes};
+    int status;
+    if (!cJSON_IsObject(root)) {
+        status = t3r_reason(error, error_bytes, "byte 0: not a JSON object");
+    } else {
+        status = read_frames(&r, out) != 0 || read_depth_unit(&r, out) != 0 || read_triplets(&r, out) != 0 ? -1 : 0;
+    }
+    cJSON_Delete(root);
+    return status;
+}

@@ -1,0 +1,316 @@
+#include "pictures/picture.h"
+
+#include <errno.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jpeglib.h>
+#include <jerror.h>
+#include <png.h>
+
+#include "reason.h"
+#include "trim3r.h"
+#include "cli/whole_file.h"
+
+/* Both libraries report errors by longjmp. Everything that must survive one or be freed after one lives in a struct
+ * of the caller's, so that no local variable is read after a jump. */
+
+#define REASON_BYTES 160
+
+static int fail(char *error, size_t error_bytes, const char *path, const char *reason)
+{
+    return t3r_reason(error, error_bytes, "%s: %s", path, reason);
+}
+
+static void *allocate_samples(const picture *p)
+{
+    return calloc((size_t)p->width * p->height, (size_t)p->channels * (p->bits / 8u));
+}
+
+/* ---- PNG ------------------------------------------------------------------------------------------------------- */
+
+typedef struct png_work {
+    png_structp png;
+    png_infop info;
+    FILE *file;
+    png_bytep *rows;
+    bool header_only;
+    char reason[REASON_BYTES];
+} png_work;
+
+static void png_on_error(png_structp png, png_const_charp message)
+{
+    png_work *work = png_get_error_ptr(png);
+    snprintf(work->reason, sizeof work->reason, "PNG: %s", message);
+    png_longjmp(png, 1);
+}
+
+static void png_on_warning(png_structp png, png_const_charp message)
+{
+    (void)png;
+    (void)message;
+}
+
+static int point_rows(png_work *work, const picture *p)
+{
+    size_t stride = (size_t)p->width * p->channels * (p->bits / 8u);
+    work->rows = malloc(p->height * sizeof *work->rows);
+    if (work->rows == NULL) {
+        snprintf(work->reason, sizeof work->reason, "out of memory");
+        return -1;
+    }
+    for (uint32_t y = 0; y < p->height; y++) {
+        work->rows[y] = (png_bytep)p->samples + y * stride;
+    }
+    return 0;
+}
+
+static bool little_endian(void)
+{
+    const uint16_t one = 1;
+    return *(const uint8_t *)&one == 1;
+}
+
+static int png_decode(png_work *work, picture *out)
+{
+    work->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, work, png_on_error, png_on_warning);
+    if (work->png == NULL || setjmp(png_jmpbuf(work->png))) {
+        return -1;
+    }
+    work->info = png_create_info_struct(work->png);
+    if (work->info == NULL) {
+        png_error(work->png, "out of memory");
+    }
+    png_init_io(work->png, work->file);
+    png_set_user_limits(work->png, T3R_MAX_SIDE, T3R_MAX_SIDE);
+    png_set_chunk_malloc_max(work->png, 8u << 20);
+    png_read_info(work->png, work->info);
+    png_byte colour_type = png_get_color_type(work->png, work->info);
+    png_byte depth = png_get_bit_depth(work->png, work->info);
+    bool grey = (colour_type & PNG_COLOR_MASK_COLOR) == 0;
+    out->width = png_get_image_width(work->png, work->info);
+    out->height = png_get_image_height(work->png, work->info);
+    out->channels = grey ? 1 : 3;
+    out->bits = colour_type == PNG_COLOR_TYPE_GRAY && depth == 16 ? 16 : 8;
+    if (work->header_only) {
+        return 0;
+    }
+    if (out->bits == 16) {
+        if (little_endian()) {
+            png_set_swap(work->png);
+        }
+    } else {
+        png_set_scale_16(work->png);
+        png_set_expand(work->png);
+        png_set_strip_alpha(work->png);
+    }
+    png_set_interlace_handling(work->png);
+    png_read_update_info(work->png, work->info);
+    if (png_get_rowbytes(work->png, work->info) != (size_t)out->width * out->channels * (out->bits / 8u)) {
+        png_error(work->png, "row size differs from what the header says");
+    }
+    out->samples = allocate_samples(out);
+    if (out->samples == NULL || point_rows(work, out) != 0) {
+        png_error(work->png, "out of memory");
+    }
+    png_read_image(work->png, work->rows);
+    png_read_end(work->png, NULL);
+    return 0;
+}
+
+static int read_png(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+{
+    png_work work = {.file = file, .header_only = header_only, .reason = "PNG: out of memory"};
+    int status = png_decode(&work, out);
+    png_destroy_read_struct(&work.png, &work.info, NULL);
+    free(work.rows);
+    if (status != 0) {
+        picture_free(out);
+        return fail(error, error_bytes, path, work.reason);
+    }
+    return 0;
+}
+
+static int png_encode(png_work *work, const picture *in)
+{
+    work->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, work, png_on_error, png_on_warning);
+    if (work->png == NULL || setjmp(png_jmpbuf(work->png))) {
+        return -1;
+    }
+    work->info = png_create_info_struct(work->png);
+    if (work->info == NULL || point_rows(work, in) != 0) {
+        png_error(work->png, "out of memory");
+    }
+    png_init_io(work->png, work->file);
+    png_set_IHDR(work->png, work->info, in->width, in->height, (int)in->bits,
+                 in->channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(work->png, work->info);
+    if (in->bits == 16 && little_endian()) {
+        png_set_swap(work->png);
+    }
+    png_write_image(work->png, work->rows);
+    png_write_end(work->png, NULL);
+    return 0;
+}
+
+int picture_write_png(const char *path, const picture *in, char *error, size_t error_bytes)
+{
+    if (in->samples == NULL || in->width == 0 || in->height == 0 || (in->channels != 1 && in->channels != 3) ||
+        (in->bits != 8 && !(in->bits == 16 && in->channels == 1))) {
+        return fail(error, error_bytes, path, "only 8-bit RGB, 8-bit grey and 16-bit grey pictures can be written");
+    }
+    whole_file file;
+    if (whole_file_begin(&file, path, error, error_bytes) != 0) {
+        return -1;
+    }
+    png_work work = {.file = file.stream, .reason = "PNG: out of memory"};
+    int status = png_encode(&work, in);
+    png_destroy_write_struct(&work.png, &work.info);
+    free(work.rows);
+    if (status != 0) {
+        whole_file_abandon(&file);
+        return fail(error, error_bytes, path, work.reason);
+    }
+    return whole_file_commit(&file, NULL, error, error_bytes);
+}
+
+/* ---- JPEG ------------------------------------------------------------------------------------------------------ */
+
+typedef struct jpeg_work {
+    struct jpeg_error_mgr manager; /* first: the library hands back a pointer to it */
+    struct jpeg_decompress_struct jpeg;
+    jmp_buf escape;
+    bool header_only;
+    char reason[REASON_BYTES];
+} jpeg_work;
+
+static void jpeg_fail(jpeg_work *work, const char *reason)
+{
+    snprintf(work->reason, sizeof work->reason, "JPEG: %s", reason);
+    longjmp(work->escape, 1);
+}
+
+static void jpeg_on_error(j_common_ptr jpeg)
+{
+    char message[JMSG_LENGTH_MAX];
+    jpeg->err->format_message(jpeg, message);
+    jpeg_fail((jpeg_work *)jpeg->err, message);
+}
+
+/* The library only warns about data cut short or damaged, and fills in grey: here that is an error. Stray bytes
+ * before a marker, which some cameras write, are harmless. */
+static void jpeg_on_message(j_common_ptr jpeg, int level)
+{
+    if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) {
+        jpeg_on_error(jpeg);
+    }
+}
+
+static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
+{
+    if (setjmp(work->escape)) {
+        return -1;
+    }
+    jpeg_create_decompress(&work->jpeg);
+    jpeg_stdio_src(&work->jpeg, file);
+    jpeg_read_header(&work->jpeg, TRUE);
+    if (work->jpeg.image_width > T3R_MAX_SIDE || work->jpeg.image_height > T3R_MAX_SIDE) {
+        jpeg_fail(work, "image exceeds the largest side");
+    }
+    if (work->header_only) {
+        out->width = work->jpeg.image_width;
+        out->height = work->jpeg.image_height;
+        return 0;
+    }
+    bool grey = work->jpeg.jpeg_color_space == JCS_GRAYSCALE;
+    work->jpeg.out_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
+    work->jpeg.dct_method = JDCT_ISLOW;
+    jpeg_start_decompress(&work->jpeg);
+    out->width = work->jpeg.output_width;
+    out->height = work->jpeg.output_height;
+    out->channels = grey ? 1 : 3;
+    out->bits = 8;
+    out->samples = allocate_samples(out);
+    if (out->samples == NULL) {
+        jpeg_fail(work, "out of memory");
+    }
+    while (work->jpeg.output_scanline < out->height) {
+        JSAMPROW row = (JSAMPROW)out->samples + (size_t)work->jpeg.output_scanline * out->width * out->channels;
+        jpeg_read_scanlines(&work->jpeg, &row, 1);
+    }
+    jpeg_finish_decompress(&work->jpeg);
+    return 0;
+}
+
+static int read_jpeg(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+{
+    jpeg_work work;
+    memset(&work, 0, sizeof work);
+    work.header_only = header_only;
+    work.jpeg.err = jpeg_std_error(&work.manager);
+    work.manager.error_exit = jpeg_on_error;
+    work.manager.emit_message = jpeg_on_message;
+    int status = jpeg_decode(&work, file, out);
+    jpeg_destroy_decompress(&work.jpeg);
+    if (status != 0) {
+        picture_free(out);
+        return fail(error, error_bytes, path, work.reason);
+    }
+    return 0;
+}
+
+/* ---- either ---------------------------------------------------------------------------------------------------- */
+
+static int read_either(const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+{
+    static const uint8_t png_magic[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    static const uint8_t jpeg_magic[3] = {0xff, 0xd8, 0xff};
+    memset(out, 0, sizeof *out);
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        return fail(error, error_bytes, path, strerror(errno));
+    }
+    uint8_t magic[8] = {0};
+    size_t got = fread(magic, 1, sizeof magic, file);
+    int status;
+    if (ferror(file)) {
+        status = fail(error, error_bytes, path, strerror(errno));
+    } else if (got == 0) {
+        status = fail(error, error_bytes, path, "the file is empty");
+    } else if (fseek(file, 0, SEEK_SET) != 0) {
+        status = fail(error, error_bytes, path, "not a seekable file");
+    } else if (memcmp(magic, png_magic, sizeof png_magic) == 0) {
+        status = read_png(file, path, header_only, out, error, error_bytes);
+    } else if (memcmp(magic, jpeg_magic, sizeof jpeg_magic) == 0) {
+        status = read_jpeg(file, path, header_only, out, error, error_bytes);
+    } else {
+        status = fail(error, error_bytes, path, "neither PNG nor JPEG");
+    }
+    fclose(file);
+    return status;
+}
+
+int picture_read(const char *path, picture *out, char *error, size_t error_bytes)
+{
+    return read_either(path, false, out, error, error_bytes);
+}
+
+int picture_size(const char *path, uint32_t *width, uint32_t *height, char *error, size_t error_bytes)
+{
+    picture header;
+    int status = read_either(path, true, &header, error, error_bytes);
+    *width = header.width;
+    *height = header.height;
+    return status;
+}
+
+void picture_free(picture *p)
+{
+    free(p->samples);
+    memset(p, 0, sizeof *p);
+}

@@ -1,0 +1,35 @@
+#include "reconstruction/developed_frame.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+#include "cli/cli.h"
+#include "reconstruction/reconstruction.h"
+
+int developed_frame(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
+                    uint8_t *rgb, t3r_camera *camera)
+{
+    t3r_capture_frame frame;
+    int code = reconstruction_frame(recording, path, index, &frame);
+    if (code != CLI_OK) {
+        return code;
+    }
+    /* in an arena of its own: the one that holds a scene cannot take frames */
+    t3r_config config = t3r_default_config(width, height, 1, 1);
+    t3r_runtime *runtime;
+    t3r_plan_info plan;
+    void *arena = NULL;
+    t3r_status status = t3r_plan(&config, &plan);
+    if (status != T3R_OK || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
+        return status != T3R_OK ? reconstruction_error(status, "image stage", &config, 0)
+                                : cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    status = t3r_init(&runtime, arena, plan.min_bytes, &config);
+    if (status == T3R_OK) {
+        status = t3r_develop(runtime, &frame.frame, &frame.camera, rgb, NULL, camera);
+    }
+    free(arena);
+    return status == T3R_OK
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, index, t3r_error_text(status));
+}

@@ -1,0 +1,567 @@
+/* One run of the runtime on a recording: arena, hooks, views, scene. */
+#include "reconstruction/reconstruction.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera.h"
+#include "cli/cli.h"
+#include "fixed.h"
+#include "hash.h"
+#include "reconstruction/importance_pictures.h"
+
+void reconstruction_defaults(reconstruction_options *options)
+{
+    t3r_config c = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
+    *options = (reconstruction_options){
+        .context_views = 2,
+        .allocation = c.allocation,
+        .head = CHOSEN_HEAD_DEFAULT,
+        .wavelet = c.wavelet,
+        .wavelet_levels = c.wavelet_levels,
+        .clusters = c.clusters,
+        .gamma_q8 = c.gamma_q8,
+        .paper_keep_percent = c.keep_percent,
+        .shuffle = c.shuffle,
+        .adapt = c.adapt,
+        .refine = c.refinements,
+        .half_life = c.half_life,
+        .depth = c.depth,
+        .fill_radius = c.fill_radius,
+        .bridge_radius = c.bridge_radius,
+        .flying = c.flying,
+        .redundancy = c.redundancy,
+        .exposure = c.exposure,
+        .seed = c.seed,
+        .hash = true,
+        .arena = ARENA_FULL,
+        .threads = 1,
+        .finetune_iterations = METHOD_ITERATIONS,
+    };
+}
+
+reconstruction_account reconstruction_told(const reconstruction *r)
+{
+    reconstruction_account told = {
+        .width = r->config.width,
+        .height = r->config.height,
+        .context_count = r->context_count,
+        .valid_points = r->valid_points,
+        .requested = r->requested,
+        .arena_bytes = r->arena_bytes,
+        .seconds = r->add_views_seconds + r->build_seconds,
+    };
+    memcpy(told.head, r->head.name, sizeof told.head);
+    memcpy(told.bits, r->head.bits, sizeof told.bits);
+    memcpy(told.crc, r->head.crc, sizeof told.crc);
+    memcpy(told.context, r->context, sizeof told.context);
+    return told;
+}
+
+uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent)
+{
+    double points = floor(valid_points * keep_percent / 100 + 0.5);
+    return points < 1 ? 1 : (uint32_t)points;
+}
+
+int reconstruction_error(t3r_status status, const char *what, const t3r_config *config, size_t arena_bytes)
+{
+    if (status == T3R_ERR_CONFIG && config != NULL && t3r_config_error(config) != NULL) {
+        return cli_error(CLI_BAD_USAGE, "%s: %s", what, t3r_config_error(config));
+    }
+    t3r_plan_info plan;
+    if (status == T3R_ERR_ARENA && config != NULL && t3r_plan(config, &plan) == T3R_OK) {
+        return cli_error(CLI_BUDGET_TOO_SMALL,
+                         "the arena of %zu bytes is too small: %zu are needed at least, %zu for full speed (--arena)",
+                         arena_bytes, plan.min_bytes, plan.bytes);
+    }
+    return cli_error(CLI_BAD_INPUT, "%s: %s", what, t3r_error_text(status));
+}
+
+/* ---- hooks ------------------------------------------------------------------------------------------------ */
+
+static int show_progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    (void)user;
+    cli_progress(t3r_stage_name(stage), done, total);
+    return 0;
+}
+
+static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
+{
+    reconstruction *r = user;
+    r->stage_hash[stage] = r->stage_hashed[stage] ? t3r_hash_u64(r->stage_hash[stage], hash) : hash;
+    r->stage_hashed[stage] = true;
+}
+
+static void run_parallel(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context)
+{
+    reconstruction *r = user;
+    t3r_threads_run(r->threads, count, task, context);
+}
+
+uint64_t reconstruction_hash(const reconstruction *r)
+{
+    uint64_t hash = T3R_HASH_START;
+    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
+        if (r->stage_hashed[stage]) {
+            hash = t3r_hash_u64(t3r_hash_u8(hash, (uint8_t)stage), r->stage_hash[stage]);
+        }
+    }
+    return hash;
+}
+
+void reconstruction_clear_hashes(reconstruction *r)
+{
+    memset(r->stage_hash, 0, sizeof r->stage_hash);
+    memset(r->stage_hashed, 0, sizeof r->stage_hashed);
+}
+
+t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *options)
+{
+    return (t3r_hooks){
+        .user = r,
+        .stage_hash = options->hash ? keep_hash : NULL,
+        .parallel_for = r->threads != NULL ? run_parallel : NULL,
+    };
+}
+
+/* ---- the arena -------------------------------------------------------------------------------------------- */
+
+/* Arena of the wanted size, runtime in it, hooks bound. */
+static int open_arena(reconstruction *r, const reconstruction_options *options)
+{
+    t3r_plan_info plan;
+    t3r_status status = t3r_plan(&r->config, &plan);
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "settings", &r->config, 0);
+    }
+    uint64_t bytes = options->arena == ARENA_BYTES ? options->arena_bytes
+                     : options->arena == ARENA_MIN ? plan.min_bytes
+                                                   : plan.bytes;
+    if (bytes < plan.min_bytes) {
+        return reconstruction_error(T3R_ERR_ARENA, "arena", &r->config, (size_t)bytes);
+    }
+    if (bytes > SIZE_MAX || posix_memalign(&r->arena, T3R_ARENA_ALIGN, (size_t)bytes) != 0) {
+        r->arena = NULL;
+        return cli_error(CLI_BAD_INPUT, "no memory for an arena of %" PRIu64 " bytes", bytes);
+    }
+    r->arena_bytes = (size_t)bytes;
+    status = t3r_init(&r->runtime, r->arena, r->arena_bytes, &r->config);
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "arena", &r->config, r->arena_bytes);
+    }
+    if (options->threads > 1) {
+        r->threads = t3r_threads_start(options->threads);
+        if (r->threads == NULL) {
+            return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", options->threads);
+        }
+    }
+    t3r_hooks hooks = reconstruction_hooks(r, options);
+    hooks.progress = show_progress;
+    status = t3r_set_hooks(r->runtime, &hooks);
+    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "hooks", &r->config, r->arena_bytes);
+}
+
+void reconstruction_close(reconstruction *r)
+{
+    cli_progress_end();
+    t3r_threads_stop(r->threads);
+    free(r->arena);
+    chosen_head_close(&r->head);
+    *r = (reconstruction){0};
+}
+
+/* ---- from a recording --------------------------------------------------------------------------------------- */
+
+int reconstruction_frame(const t3r_recording *recording, const char *path, uint32_t index, t3r_capture_frame *frame)
+{
+    uint32_t count = t3r_recording_frame_count(recording);
+    if (index >= count) {
+        return cli_error(CLI_BAD_INPUT,
+                         "%s: there is no frame %" PRIu32 ": the recording holds %" PRIu32 " (0 is the first)", path,
+                         index, count);
+    }
+    char error[512] = "";
+    if (t3r_recording_frame(recording, index, frame, error, sizeof error) != T3R_CAPTURE_FRAME) {
+        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, index, error);
+    }
+    if (!frame->has_pose || !frame->has_intrinsics) {
+        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no %s", path, index,
+                         frame->has_pose ? "camera_info" : "pose");
+    }
+    return CLI_OK;
+}
+
+static int frame_error(const char *path, uint32_t frame, t3r_status status)
+{
+    return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, frame, t3r_error_text(status));
+}
+
+t3r_camera reconstruction_camera(const t3r_camera *camera, uint32_t from_width, uint32_t from_height, uint32_t width,
+                                 uint32_t height)
+{
+    t3r_camera out = t3r_camera_resized(camera, from_width, from_height, width, height);
+    out.distortion = T3R_DISTORTION_NONE;
+    memset(out.distortion_q24, 0, sizeof out.distortion_q24);
+    return out;
+}
+
+/* Which frames give no depth together, and why. */
+static int stereo_error(const t3r_runtime *runtime, const reconstruction *r, const char *path)
+{
+    uint32_t partner;
+    t3r_pair pair = t3r_stereo_pair(runtime, 0, &partner);
+    return cli_error(CLI_BAD_INPUT, "%s: frames %" PRIu32 " and %" PRIu32 " give no depth%s: %s", path, r->context[0],
+                     r->context[partner], r->context_count > 2 ? ", nor any other two" : "", t3r_pair_text(pair));
+}
+
+static int build_error(const reconstruction *r, t3r_status status, const char *path)
+{
+    return status == T3R_ERR_STEREO ? stereo_error(r->runtime, r, path)
+                                    : reconstruction_error(status, path, &r->config, r->arena_bytes);
+}
+
+/* By stereo only the analysis knows which points exist: one with as little as possible besides. */
+static int count_matched_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
+                                reconstruction_points *points)
+{
+    reconstruction counted = {.context_count = r->context_count};
+    memcpy(counted.context, r->context, sizeof counted.context);
+    t3r_config *c = &counted.config;
+    *c = t3r_default_config(r->config.width, r->config.height, r->context_count, 1);
+    c->depth = T3R_DEPTH_STEREO;
+    c->flying = c->redundancy = c->exposure = c->refinements = c->cluster_batches = 0;
+    c->wavelet = T3R_WAVELET_HAAR;
+    c->wavelet_levels = c->clusters = c->render_width = c->render_height = 1;
+    int code = open_arena(&counted, &(reconstruction_options){.arena = ARENA_MIN, .threads = 1});
+    t3r_status status = T3R_OK;
+    for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
+        status = t3r_add_view(counted.runtime, &frames[v].frame, &frames[v].camera);
+        code = status == T3R_OK ? CLI_OK : frame_error(path, r->context[v], status);
+    }
+    if (code == CLI_OK) {
+        status = t3r_reconstruct(counted.runtime, &counted.scene);
+        code = status == T3R_OK ? CLI_OK : build_error(&counted, status, path);
+    }
+    if (code == CLI_OK) {
+        *points = (reconstruction_points){.valid = counted.scene.valid_points,
+                                          .depth = ldexp(1.5, counted.scene.frame.exponent)};
+    }
+    reconstruction_close(&counted);
+    return code;
+}
+
+/* Counts the developed depth: the runtime's own resize and undistortion decide which points exist. */
+static int count_measured_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
+                                 reconstruction_points *points)
+{
+    t3r_config config = t3r_default_config(r->config.width, r->config.height, 1, 1);
+    size_t pixels = (size_t)config.width * config.height;
+    t3r_plan_info plan;
+    t3r_status status = t3r_plan(&config, &plan);
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "settings", &config, 0);
+    }
+    t3r_runtime *runtime;
+    void *arena = NULL;
+    uint8_t *rgb = malloc(pixels * 3);
+    uint16_t *depth = malloc(pixels * 2);
+    int code = CLI_OK;
+    *points = (reconstruction_points){.valid = 0};
+    if (rgb == NULL || depth == NULL || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
+        arena = NULL;
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    } else if ((status = t3r_init(&runtime, arena, plan.min_bytes, &config)) != T3R_OK) {
+        code = reconstruction_error(status, "settings", &config, plan.min_bytes);
+    }
+    for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
+        t3r_camera camera;
+        status = t3r_develop(runtime, &frames[v].frame, &frames[v].camera, rgb, depth, &camera);
+        if (status != T3R_OK) {
+            code = frame_error(path, r->context[v], status);
+            break;
+        }
+        for (size_t i = 0; i < pixels; i++) {
+            points->valid += depth[i] != 0;
+        }
+    }
+    free(arena);
+    free(depth);
+    free(rgb);
+    return code;
+}
+
+static int count_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path, t3r_depth depth,
+                        reconstruction_points *points)
+{
+    int code = depth == T3R_DEPTH_STEREO ? count_matched_points(r, frames, path, points)
+                                         : count_measured_points(r, frames, path, points);
+    return code == CLI_OK && points->valid == 0
+               ? cli_error(CLI_BAD_INPUT, "%s: the context frames hold no valid depth", path)
+               : code;
+}
+
+static int choose_context(reconstruction *r, const t3r_recording *recording, const char *path,
+                          const reconstruction_options *options, t3r_capture_frame *frames)
+{
+    r->context_count = options->context_count;
+    memcpy(r->context, options->context, sizeof r->context);
+    if (r->context_count == 0) {
+        uint32_t frame_count = t3r_recording_frame_count(recording);
+        r->context_count = frame_count < 2 ? 1 : 2;
+        r->context[0] = 0;
+        r->context[1] = 1;
+    }
+    for (uint32_t v = 0; v < r->context_count; v++) {
+        for (uint32_t earlier = 0; earlier < v; earlier++) {
+            if (r->context[earlier] == r->context[v]) {
+                return cli_error(CLI_BAD_USAGE, "--context names frame %" PRIu32 " twice", r->context[v]);
+            }
+        }
+        int code = reconstruction_frame(recording, path, r->context[v], &frames[v]);
+        if (code != CLI_OK) {
+            return code;
+        }
+    }
+    r->config.width = options->width != 0 ? options->width : frames[0].frame.width;
+    r->config.height = options->height != 0 ? options->height : frames[0].frame.height;
+    return CLI_OK;
+}
+
+int reconstruction_views(reconstruction *r, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options)
+{
+    t3r_capture_frame frames[T3R_MAX_VIEWS];
+    return choose_context(r, recording, path, options, frames);
+}
+
+/* What the wanted source of depth needs. */
+static int need_depth(const reconstruction *r, const char *path, const t3r_capture_frame *frames, t3r_depth depth)
+{
+    if (depth == T3R_DEPTH_STEREO) {
+        return r->context_count > 1
+                   ? CLI_OK
+                   : cli_error(CLI_BAD_INPUT, "%s: --depth stereo needs two context frames and more", path);
+    }
+    for (uint32_t v = 0; v < r->context_count; v++) {
+        if (frames[v].frame.depth == NULL) {
+            return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no depth (--depth stereo needs none)", path,
+                             r->context[v]);
+        }
+    }
+    return CLI_OK;
+}
+
+int reconstruction_count(reconstruction_points *points, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options)
+{
+    reconstruction r = {.context_count = 0};
+    t3r_capture_frame frames[T3R_MAX_VIEWS];
+    int code = choose_context(&r, recording, path, options, frames);
+    code = code == CLI_OK ? need_depth(&r, path, frames, options->depth) : code;
+    return code == CLI_OK ? count_points(&r, frames, path, options->depth, points) : code;
+}
+
+static int bind_head(reconstruction *r)
+{
+    t3r_status status = r->head.weights == NULL ? T3R_OK : t3r_bind_head(r->runtime, r->head.weights, r->head.bytes);
+    return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
+}
+
+t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
+{
+    if (planes != NULL) {
+        return t3r_reconstruct_given(r->runtime, planes, r->config.width * 2, &r->scene);
+    }
+    if (options->automatic) {
+        return t3r_reconstruct_within(r->runtime, (uint32_t)(options->max_loss * 256 + 0.5), &r->scene);
+    }
+    return t3r_reconstruct(r->runtime, &r->scene);
+}
+
+void reconstruction_configure(reconstruction *r, const reconstruction_options *options)
+{
+    r->config = t3r_default_config(r->config.width, r->config.height, r->context_count, 1);
+    r->config.allocation = options->allocation;
+    chosen_head_configure(&r->head, &r->config);
+    r->config.wavelet = options->wavelet;
+    r->config.wavelet_levels = options->wavelet_levels;
+    r->config.clusters = options->clusters;
+    r->config.gamma_q8 = options->gamma_q8;
+    r->config.keep_percent = options->paper_keep_percent;
+    r->config.shuffle = options->shuffle;
+    r->config.adapt = options->adapt;
+    r->config.refinements = options->refine;
+    r->config.half_life = options->half_life;
+    r->config.depth = options->depth;
+    r->config.fill_radius = options->fill_radius;
+    r->config.bridge_radius = options->bridge_radius;
+    r->config.flying = options->flying;
+    r->config.redundancy = options->redundancy;
+    r->config.exposure = options->exposure;
+    r->config.seed = options->seed;
+    r->config.keep_analysis = options->keep_analysis || options->automatic;
+    if (options->render_width != 0) {
+        r->config.render_width = options->render_width;
+        r->config.render_height = options->render_height;
+    }
+}
+
+void reconstruction_request(reconstruction *r, const reconstruction_options *options)
+{
+    r->requested = options->gaussians != 0     ? options->gaussians
+                   : options->keep_percent > 0 ? reconstruction_budget(r->valid_points, options->keep_percent)
+                                               : r->valid_points;
+    r->config.gaussians = T3R_MIN(r->requested, r->valid_points);
+    r->config.max_gaussians = r->config.gaussians;
+}
+
+/* Head, settings, budget, arena; of a stream that has `keyframes` at hand, or of the context frames (0). */
+static int prepare(reconstruction *r, const char *path, const reconstruction_options *options,
+                   const t3r_capture_frame *frames, uint32_t keyframes)
+{
+    int code = chosen_head_open(&r->head, options->head);
+    if (code == CLI_OK && options->hide_mask) {
+        code = chosen_head_hide_mask(&r->head);
+    }
+    if (code == CLI_OK) {
+        code = need_depth(r, path, frames, options->depth);
+    }
+    if (code != CLI_OK) {
+        return code;
+    }
+    reconstruction_configure(r, options);
+    if (keyframes > 0) {
+        r->config.stream = 1;
+        r->config.views = keyframes;
+    }
+    if (t3r_config_error(&r->config) != NULL) {
+        return reconstruction_error(T3R_ERR_CONFIG, "settings", &r->config, 0);
+    }
+
+    reconstruction_points points;
+    code = count_points(r, frames, path, options->depth, &points);
+    if (code != CLI_OK) {
+        return code;
+    }
+    r->valid_points = points.valid;
+    reconstruction_request(r, options);
+    if (keyframes > 0) {
+        r->config.gaussians = r->config.max_gaussians = r->requested;
+    }
+
+    code = open_arena(r, options);
+    return code == CLI_OK ? bind_head(r) : code;
+}
+
+/* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
+static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
+                      const t3r_capture_frame *frames, const uint16_t *const *planes)
+{
+    int code = prepare(r, path, options, frames, 0);
+    if (code != CLI_OK) {
+        return code;
+    }
+    double start = cli_now();
+    for (uint32_t v = 0; v < r->context_count; v++) {
+        t3r_status status = t3r_add_view(r->runtime, &frames[v].frame, &frames[v].camera);
+        if (status != T3R_OK) {
+            return frame_error(path, r->context[v], status);
+        }
+    }
+    double added = cli_now();
+    r->add_views_seconds = added - start;
+    t3r_status status = reconstruction_make(r, options, planes);
+    r->build_seconds = cli_now() - added;
+    cli_progress_end();
+    return status == T3R_OK ? CLI_OK : build_error(r, status, path);
+}
+
+/* The same, with what the allocation `given` goes by. */
+static int build(reconstruction *r, const t3r_recording *recording, const char *path,
+                 const reconstruction_options *options)
+{
+    t3r_capture_frame frames[T3R_MAX_VIEWS];
+    importance_pictures pictures = {0};
+    const uint16_t *const *planes = NULL;
+    int code = choose_context(r, recording, path, options, frames);
+    if (options->allocation == T3R_ALLOCATE_GIVEN) {
+        planes = options->importance_planes;
+    }
+    if (code == CLI_OK && options->allocation == T3R_ALLOCATE_GIVEN && options->importance != NULL) {
+        code = importance_pictures_read(&pictures, options->importance, r->context, r->context_count, r->config.width,
+                                        r->config.height);
+        planes = (const uint16_t *const *)pictures.planes;
+    }
+    if (code == CLI_OK) {
+        code = build_from(r, path, options, frames, planes);
+    }
+    importance_pictures_free(&pictures);
+    return code;
+}
+
+int reconstruction_build(reconstruction *r, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options)
+{
+    *r = (reconstruction){0};
+    int code = build(r, recording, path, options);
+    if (code != CLI_OK) {
+        reconstruction_close(r);
+    }
+    return code;
+}
+
+int reconstruction_stream(reconstruction *r, const t3r_recording *recording, const char *path,
+                          const reconstruction_options *options, uint32_t keyframes)
+{
+    *r = (reconstruction){0};
+    t3r_capture_frame frames[T3R_MAX_VIEWS];
+    int code = choose_context(r, recording, path, options, frames);
+    if (code == CLI_OK) {
+        code = prepare(r, path, options, frames, keyframes);
+    }
+    if (code != CLI_OK) {
+        reconstruction_close(r);
+    }
+    return code;
+}
+
+/* ---- from a file ---------------------------------------------------------------------------------------------- */
+
+static int load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
+                const reconstruction_options *options)
+{
+    uint32_t count = scene->count == 0 ? 1 : scene->count;
+    r->config = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 0, count);
+    r->config.render_width = width;
+    r->config.render_height = height;
+    int code = open_arena(r, options);
+    if (code != CLI_OK) {
+        return code;
+    }
+    t3r_status status = t3r_scene_begin(r->runtime, &scene->frame);
+    for (uint32_t i = 0; i < scene->count && status == T3R_OK; i++) {
+        status = t3r_scene_append(r->runtime, &scene->gaussians[i]);
+        if (status != T3R_OK) {
+            return cli_error(CLI_BAD_INPUT, "Gaussian %" PRIu32 ": %s", i, t3r_error_text(status));
+        }
+    }
+    if (status == T3R_OK) {
+        status = t3r_get_scene(r->runtime, &r->scene);
+    }
+    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "scene", &r->config, r->arena_bytes);
+}
+
+int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
+                        const reconstruction_options *options)
+{
+    *r = (reconstruction){0};
+    int code = load(r, scene, width, height, options);
+    if (code != CLI_OK) {
+        reconstruction_close(r);
+    }
+    return code;
+}

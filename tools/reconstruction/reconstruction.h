@@ -1,0 +1,165 @@
+/* One run of the runtime on a recording: what build, eval, replay and bench share.
+ *
+ * Chosen frames go into an arena of the wanted size, the hooks are set, the scene is built; the caller then
+ * renders, changes the budget or writes files through `runtime`, and closes. The same holder takes a scene that
+ * comes from a file. Functions here report on stderr and return an exit status of cli.h. */
+#ifndef TRIM3R_TOOLS_RECONSTRUCTION_H
+#define TRIM3R_TOOLS_RECONSTRUCTION_H
+
+#include <argp.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "reconstruction/chosen_head.h"
+#include "reconstruction/method.h"
+#include "recording.h"
+#include "scene/scene_file.h"
+#include "threads.h"
+#include "trim3r.h"
+
+typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
+
+#define RECONSTRUCTION_MAX_LOSS 0.5 /* dB, of --auto */
+
+/* Settings as the command line gives them. reconstruction_defaults() fills every field. */
+typedef struct reconstruction_options {
+    uint32_t context[T3R_MAX_VIEWS];      /* frame indices of the context views */
+    uint32_t context_count;               /* 0 = the first two frames */
+    uint32_t context_views;               /* of `eval --views`: the frames of a case; 2 = the triplet's own */
+    uint32_t gaussians;                   /* budget as a count; 0 = keep_percent decides */
+    double keep_percent;                  /* budget as percent of the valid points, (0, 100]; 0 = not given */
+    bool automatic;                       /* fewer than the budget where they lose less than max_loss */
+    double max_loss;                      /* dB, against all points; 0 unless automatic */
+    method_id method;                     /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
+    uint32_t finetune_iterations;         /* of the methods that are fine-tuned */
+    uint32_t width, height;               /* working size; 0 = the first context frame's */
+    uint32_t render_width, render_height; /* largest target; 0 = the working size */
+    t3r_allocation allocation;
+    const char
+        *importance; /* of the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
+    const uint16_t *const *importance_planes; /* one a context view at the working size, rows without gaps */
+    const char *head;                         /* a text that chosen_head_is_one() */
+    const char *mask_head; /* likewise, of a rival with +head: whose unpruned scene it ranks; NULL = `head` */
+    t3r_wavelet wavelet;
+    uint32_t wavelet_levels;
+    uint32_t clusters;
+    uint32_t gamma_q8;
+    uint32_t paper_keep_percent; /* N of the allocation `paper` */
+    uint32_t shuffle, adapt;     /* of t3r_config, for ablations */
+    bool hide_mask;              /* the network is told that every pixel was retained: hidden_mask.h */
+    t3r_depth depth;             /* where it comes from */
+    uint32_t fill_radius;
+    uint32_t bridge_radius;
+    uint32_t flying, redundancy, exposure; /* 0 or 1 each: what views tell of each other */
+    uint32_t seed;
+    uint32_t refine;    /* passes of refinement */
+    uint32_t half_life; /* of a stream */
+    bool keep_analysis; /* so that t3r_rebudget() and t3r_reallocate() work afterwards */
+    bool hash;          /* collect the stages' hashes */
+    arena_choice arena;
+    uint64_t arena_bytes; /* for ARENA_BYTES */
+    uint32_t threads;
+} reconstruction_options;
+
+void reconstruction_defaults(reconstruction_options *options);
+
+/* argp children; each parent's parser hands reconstruction_options * on in state->child_inputs[].
+ * `settings`: --auto --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep --method
+ * --finetune-iterations. */
+extern const struct argp reconstruction_settings_argp;
+extern const struct argp reconstruction_budget_argp;
+
+/* The value of --arena, for parsers without the children; a usage error when it is none. */
+void reconstruction_parse_arena(struct argp_state *state, const char *text, reconstruction_options *options);
+
+typedef struct reconstruction {
+    t3r_config config;
+    chosen_head head;
+    t3r_runtime *runtime;
+    void *arena;
+    size_t arena_bytes;
+    t3r_threads *threads;
+    t3r_scene scene;
+    uint32_t context[T3R_MAX_VIEWS];
+    uint32_t context_count;
+    uint32_t valid_points;                /* pixels of the context views with a depth before filling, working size */
+    uint32_t requested;                   /* the budget asked for, as it is without max_loss; more than valid_points
+                                             when all are used */
+    double add_views_seconds;             /* image stage */
+    double build_seconds;                 /* t3r_reconstruct() */
+    uint64_t stage_hash[T3R_STAGE_COUNT]; /* a stage that reports several times: its reports chained */
+    bool stage_hashed[T3R_STAGE_COUNT];
+} reconstruction;
+
+/* What is told of a build, whatever made it. */
+typedef struct reconstruction_account {
+    char head[16], bits[8], crc[9]; /* as in chosen_head */
+    uint32_t width, height;         /* working size */
+    uint32_t context[T3R_MAX_VIEWS];
+    uint32_t context_count;
+    uint32_t valid_points, requested;
+    size_t arena_bytes;
+    double seconds; /* from recorded frames to the scene */
+} reconstruction_account;
+
+reconstruction_account reconstruction_told(const reconstruction *r);
+
+/* The budget for a share of the points: rounded half up, at least 1. */
+uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent);
+
+/* Builds the scene. On any other status than CLI_OK nothing needs closing. */
+int reconstruction_build(reconstruction *r, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options);
+
+/* An arena for a stream that has `keyframes` at hand (t3r_stream_keyframe()), nothing taken yet; a budget in percent is
+ * of the valid points of the context frames, which nothing else is made of. */
+int reconstruction_stream(reconstruction *r, const t3r_recording *recording, const char *path,
+                          const reconstruction_options *options, uint32_t keyframes);
+/* For those who build without a recording (live_build.h). The configuration of the options for the working size in
+ * r->config, r->context_count views and r->head; its budget is left to the next. */
+void reconstruction_configure(reconstruction *r, const reconstruction_options *options);
+/* The budget that the options ask for, of r->valid_points. */
+void reconstruction_request(reconstruction *r, const reconstruction_options *options);
+/* From the views added to r->scene; `planes` are the importance of the allocation `given`, else NULL. */
+t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes);
+/* Hooks that collect hashes into `r` and use its threads, without a progress line. */
+t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *options);
+
+/* An arena that only renders, filled with a scene from a file; targets up to width x height. Of the options only
+ * arena, threads and hash are read. */
+int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
+                        const reconstruction_options *options);
+
+/* What the frames of a scene hold before one is built: valid points, and by stereo the scene's depth in world units, a
+ * power of two times 1.5 (0 by sensor). */
+typedef struct reconstruction_points {
+    uint32_t valid;
+    double depth;
+} reconstruction_points;
+
+int reconstruction_count(reconstruction_points *points, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options);
+
+/* Chooses and checks the context frames of a scene that came from a file: `context` and the working size in `config`.
+ */
+int reconstruction_views(reconstruction *r, const t3r_recording *recording, const char *path,
+                         const reconstruction_options *options);
+
+void reconstruction_close(reconstruction *r);
+
+/* Over the collected stages in their order, each as its number and its hash: one name for the whole run. */
+uint64_t reconstruction_hash(const reconstruction *r);
+/* Forgets the hashes collected so far (before another render, say). */
+void reconstruction_clear_hashes(reconstruction *r);
+
+/* Frame `index` of a recording with its pose and intrinsics; CLI_BAD_INPUT with a message otherwise. */
+int reconstruction_frame(const t3r_recording *recording, const char *path, uint32_t index, t3r_capture_frame *frame);
+
+/* The camera for the same view on another pixel grid, its distortion dropped: targets are pinhole. Integers only. */
+t3r_camera reconstruction_camera(const t3r_camera *camera, uint32_t from_width, uint32_t from_height, uint32_t width,
+                                 uint32_t height);
+
+/* Says what `status` means for this arena and configuration; returns the exit status that belongs to it. */
+int reconstruction_error(t3r_status status, const char *what, const t3r_config *config, size_t arena_bytes);
+
+#endif

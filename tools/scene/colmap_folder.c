@@ -1,0 +1,232 @@
+#include "scene/colmap_folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "pictures/picture.h"
+#include "reason.h"
+#include "cli/whole_file.h"
+
+#define PATH_BYTES 4096
+#define NOWHERE UINT32_MAX
+
+typedef struct observation {
+    uint32_t index; /* within its view's; NOWHERE = the point is not observed */
+    double x, y;    /* pixels, the top-left pixel's centre at (0.5, 0.5) */
+} observation;
+
+/* World to camera. */
+typedef struct pose {
+    double quaternion[4]; /* unit, w x y z, w >= 0 */
+    double rotation[9];   /* the same, row-major */
+    double translation[3];
+} pose;
+
+typedef struct writer {
+    const char *directory;
+    const colmap_model *model;
+    pose poses[T3R_MAX_VIEWS];
+    observation *observed; /* of each Gaussian */
+    char *error;
+    size_t error_bytes;
+} writer;
+
+/* ---- geometry ---------------------------------------------------------------------------------------------------- */
+
+/* From the world's origin, or the scene frame's. */
+static void point_of(const writer *w, uint32_t index, double point[3])
+{
+    const t3r_scene_frame *frame = &w->model->scene->frame;
+    for (int i = 0; i < 3; i++) {
+        double origin = w->model->local ? 0 : ldexp((double)frame->origin_q32[i], -32);
+        point[i] = origin + ldexp(w->model->scene->gaussians[index].position_q20[i], frame->exponent - 20);
+    }
+}
+
+static pose pose_of(const writer *w, const t3r_camera *camera)
+{
+    pose p;
+    double norm = 0;
+    for (int i = 0; i < 4; i++) {
+        norm += (double)camera->rotation_q30[i] * camera->rotation_q30[i];
+    }
+    norm = camera->rotation_q30[0] < 0 ? -sqrt(norm) : sqrt(norm);
+    for (int i = 0; i < 4; i++) { /* the conjugate turns back */
+        p.quaternion[i] = (i == 0 ? 1 : -1) * (camera->rotation_q30[i] / norm);
+    }
+    double a = p.quaternion[0], x = p.quaternion[1], y = p.quaternion[2], z = p.quaternion[3];
+    const double rotation[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - a * z),     2 * (x * z + a * y),
+                                2 * (x * y + a * z),     1 - 2 * (x * x + z * z), 2 * (y * z - a * x),
+                                2 * (x * z - a * y),     2 * (y * z + a * x),     1 - 2 * (x * x + y * y)};
+    memcpy(p.rotation, rotation, sizeof rotation);
+    for (int i = 0; i < 3; i++) {
+        p.translation[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            int64_t origin = w->model->local ? w->model->scene->frame.origin_q32[k] : 0;
+            p.translation[i] -= rotation[3 * i + k] * ldexp((double)(camera->position_q32[k] - origin), -32);
+        }
+    }
+    return p;
+}
+
+/* Where Gaussian `index` stands in view v; false behind or beside it. */
+static bool project(const writer *w, uint32_t index, uint32_t v, observation *at)
+{
+    const colmap_view *view = &w->model->views[v];
+    double point[3], in[3];
+    point_of(w, index, point);
+    for (int i = 0; i < 3; i++) {
+        const double *row = &w->poses[v].rotation[3 * i];
+        in[i] = row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + w->poses[v].translation[i];
+    }
+    at->x = ldexp(view->camera.fx_q16 * (in[0] / in[2]) + view->camera.cx_q16, -16) + 0.5;
+    at->y = ldexp(view->camera.fy_q16 * (in[1] / in[2]) + view->camera.cy_q16, -16) + 0.5;
+    return in[2] > 0 && at->x >= 0 && at->x < view->width && at->y >= 0 && at->y < view->height;
+}
+
+static void observe(writer *w)
+{
+    uint32_t counts[T3R_MAX_VIEWS] = {0};
+    for (uint32_t i = 0; i < w->model->scene->count; i++) {
+        uint32_t v = w->model->scene->gaussians[i].view;
+        bool seen = w->model->sourced && v < w->model->view_count && project(w, i, v, &w->observed[i]);
+        w->observed[i].index = seen ? counts[v]++ : NOWHERE;
+    }
+}
+
+/* ---- files ------------------------------------------------------------------------------------------------------- */
+
+static void write_cameras(FILE *file, const writer *w)
+{
+    fputs("# CAMERA_ID MODEL WIDTH HEIGHT FX FY CX CY\n", file);
+    for (uint32_t v = 0; v < w->model->view_count; v++) {
+        const colmap_view *view = &w->model->views[v];
+        fprintf(file, "%" PRIu32 " PINHOLE %" PRIu32 " %" PRIu32 " %.17g %.17g %.17g %.17g\n", v + 1, view->width,
+                view->height, ldexp(view->camera.fx_q16, -16), ldexp(view->camera.fy_q16, -16),
+                ldexp(view->camera.cx_q16, -16) + 0.5, ldexp(view->camera.cy_q16, -16) + 0.5);
+    }
+}
+
+static void write_images(FILE *file, const writer *w)
+{
+    fputs("# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n# X Y POINT3D_ID ...\n", file);
+    for (uint32_t v = 0; v < w->model->view_count; v++) {
+        const pose *p = &w->poses[v];
+        fprintf(file, "%" PRIu32 " %.17g %.17g %.17g %.17g %.17g %.17g %.17g %" PRIu32 " frame_%06" PRIu32 ".png\n",
+                v + 1, p->quaternion[0], p->quaternion[1], p->quaternion[2], p->quaternion[3], p->translation[0],
+                p->translation[1], p->translation[2], v + 1, w->model->views[v].frame);
+        const char *between = "";
+        for (uint32_t i = 0; i < w->model->scene->count; i++) {
+            if (w->observed[i].index != NOWHERE && w->model->scene->gaussians[i].view == v) {
+                fprintf(file, "%s%.4f %.4f %" PRIu32, between, w->observed[i].x, w->observed[i].y, i + 1);
+                between = " ";
+            }
+        }
+        fputc('\n', file);
+    }
+}
+
+static void write_points(FILE *file, const writer *w)
+{
+    fputs("# POINT3D_ID X Y Z R G B ERROR IMAGE_ID POINT2D_IDX\n", file);
+    for (uint32_t i = 0; i < w->model->scene->count; i++) {
+        const t3r_gaussian *g = &w->model->scene->gaussians[i];
+        double point[3];
+        point_of(w, i, point);
+        fprintf(file, "%" PRIu32 " %.12g %.12g %.12g", i + 1, point[0], point[1], point[2]);
+        for (int c = 0; c < 3; c++) {
+            fprintf(file, " %d", (g->colour_q7[c] + 64) >> 7);
+        }
+        if (w->observed[i].index != NOWHERE) {
+            fprintf(file, " 0 %d %" PRIu32 "\n", g->view + 1, w->observed[i].index);
+        } else {
+            fputs(" -1\n", file);
+        }
+    }
+}
+
+static int write_file(const writer *w, const char *name, void (*write)(FILE *file, const writer *w))
+{
+    char path[PATH_BYTES];
+    whole_file file;
+    if (snprintf(path, sizeof path, "%s/sparse/0/%s", w->directory, name) >= (int)sizeof path) {
+        return t3r_reason(w->error, w->error_bytes, "%s: the path is too long", w->directory);
+    }
+    if (whole_file_begin(&file, path, w->error, w->error_bytes) != 0) {
+        return -1;
+    }
+    write(file.stream, w);
+    return whole_file_commit(&file, NULL, w->error, w->error_bytes);
+}
+
+static int write_picture(const writer *w, const colmap_view *view)
+{
+    char path[PATH_BYTES];
+    picture p = {.width = view->width, .height = view->height, .channels = 3, .bits = 8, .samples = view->rgb};
+    if (snprintf(path, sizeof path, "%s/images/frame_%06" PRIu32 ".png", w->directory, view->frame) >=
+        (int)sizeof path) {
+        return t3r_reason(w->error, w->error_bytes, "%s: the path is too long", w->directory);
+    }
+    return picture_write_png(path, &p, w->error, w->error_bytes);
+}
+
+static int make_folder(const char *directory, const char *name, char *error, size_t error_bytes)
+{
+    char path[PATH_BYTES];
+    if (snprintf(path, sizeof path, "%s%s", directory, name) >= (int)sizeof path) {
+        return t3r_reason(error, error_bytes, "%s: the path is too long", directory);
+    }
+    if (mkdir(path, 0777) != 0 && errno != EEXIST) {
+        return t3r_reason(error, error_bytes, "%s: %s", path, strerror(errno));
+    }
+    return 0;
+}
+
+int colmap_folder_begin(const char *directory, char *error, size_t error_bytes)
+{
+    if (make_folder(directory, "", error, error_bytes) != 0) {
+        return -1;
+    }
+    DIR *folder = opendir(directory);
+    if (folder == NULL) {
+        return t3r_reason(error, error_bytes, "%s: %s", directory, strerror(errno));
+    }
+    bool empty = true;
+    for (const struct dirent *entry; empty && (entry = readdir(folder)) != NULL;) {
+        empty = strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;
+    }
+    closedir(folder);
+    return empty ? 0 : t3r_reason(error, error_bytes, "%s: the folder is not empty", directory);
+}
+
+int colmap_folder_write(const char *directory, const colmap_model *model, char *error, size_t error_bytes)
+{
+    writer w = {.directory = directory, .model = model, .error = error, .error_bytes = error_bytes};
+    w.observed = malloc(((size_t)model->scene->count + 1) * sizeof *w.observed);
+    if (w.observed == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    int failed = 0;
+    static const char *const folders[] = {"/images", "/sparse", "/sparse/0"};
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0] && failed == 0; i++) {
+        failed = make_folder(directory, folders[i], error, error_bytes);
+    }
+    for (uint32_t v = 0; v < model->view_count && failed == 0; v++) {
+        w.poses[v] = pose_of(&w, &model->views[v].camera);
+        failed = write_picture(&w, &model->views[v]);
+    }
+    if (failed == 0) {
+        observe(&w);
+        failed = write_file(&w, "cameras.txt", write_cameras);
+    }
+    failed = failed == 0 ? write_file(&w, "images.txt", write_images) : failed;
+    failed = failed == 0 ? write_file(&w, "points3D.txt", write_points) : failed;
+    free(w.observed);
+    return failed;
+}

@@ -1,0 +1,135 @@
+/* One-sided Jacobi on F's rows: exact to the last bits for thin Gaussians too, where an eigen-decomposition of the
+ * covariance would lose all scales below 1e-8 of the largest. */
+#include "scene/gaussian_shape.h"
+
+#include <math.h>
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void rotate_pair(double a[3], double b[3], double cosine, double sine)
+{
+    for (int i = 0; i < 3; i++) {
+        double x = a[i], y = b[i];
+        a[i] = cosine * x - sine * y;
+        b[i] = sine * x + cosine * y;
+    }
+}
+
+/* Unit quaternion of a rotation whose columns are axis[0..2] (Shepperd: the largest of the four first). */
+static void to_quaternion(double axis[3][3], double q[4])
+{
+    double m00 = axis[0][0], m11 = axis[1][1], m22 = axis[2][2];
+    double square[4] = {1 + m00 + m11 + m22, 1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22};
+    int largest = 0;
+    for (int i = 1; i < 4; i++) {
+        largest = square[i] > square[largest] ? i : largest;
+    }
+    /* entry (row, column) of the matrix is axis[column][row] */
+    double yz = axis[1][2] - axis[2][1], zx = axis[2][0] - axis[0][2], xy = axis[0][1] - axis[1][0];
+    double sxy = axis[0][1] + axis[1][0], szx = axis[2][0] + axis[0][2], syz = axis[1][2] + axis[2][1];
+    double rows[4][4] = {
+        {square[0], yz, zx, xy}, {yz, square[1], sxy, szx}, {zx, sxy, square[2], syz}, {xy, szx, syz, square[3]}};
+    double norm = 0;
+    for (int i = 0; i < 4; i++) {
+        norm += rows[largest][i] * rows[largest][i];
+    }
+    norm = (rows[largest][0] < 0 ? -1 : 1) / sqrt(norm);
+    for (int i = 0; i < 4; i++) {
+        q[i] = rows[largest][i] * norm;
+    }
+}
+
+gaussian_shape gaussian_shape_of(const t3r_gaussian *gaussian)
+{
+    double row[3][3], axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int i = 0; i < 9; i++) {
+        row[i / 3][i % 3] = gaussian->factor[i];
+    }
+    /* three pairs a sweep; 3x3 converges in 5 or 6 */
+    for (int sweep = 0; sweep < 20; sweep++) {
+        int turned = 0;
+        for (int p = 0; p < 2; p++) {
+            for (int q = p + 1; q < 3; q++) {
+                double pp = dot(row[p], row[p]), qq = dot(row[q], row[q]), pq = dot(row[p], row[q]);
+                if (fabs(pq) <= 1e-15 * sqrt(pp * qq)) {
+                    continue;
+                }
+                double zeta = (qq - pp) / (2 * pq);
+                double tangent = copysign(1 / (fabs(zeta) + sqrt(1 + zeta * zeta)), zeta);
+                double cosine = 1 / sqrt(1 + tangent * tangent);
+                rotate_pair(row[p], row[q], cosine, cosine * tangent);
+                rotate_pair(axis[p], axis[q], cosine, cosine * tangent);
+                turned = 1;
+            }
+        }
+        if (!turned) {
+            break;
+        }
+    }
+    gaussian_shape shape;
+    double largest = 0;
+    for (int i = 0; i < 3; i++) {
+        shape.scale[i] = ldexp(sqrt(dot(row[i], row[i])), gaussian->factor_exponent);
+        largest = fmax(largest, shape.scale[i]);
+    }
+    double least = largest > 0 ? largest * GAUSSIAN_SHAPE_THINNEST : GAUSSIAN_SHAPE_POINT;
+    for (int i = 0; i < 3; i++) {
+        shape.scale[i] = fmax(shape.scale[i], least);
+    }
+    to_quaternion(axis, shape.rotation);
+    return shape;
+}
+
+int gaussian_shape_set(t3r_gaussian *gaussian, const double scale[3], const double rotation[4])
+{
+    double norm = sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2] +
+                       rotation[3] * rotation[3]);
+    if (!(norm > 0) || !isfinite(norm)) {
+        return -1;
+    }
+    double w = rotation[0] / norm, x = rotation[1] / norm, y = rotation[2] / norm, z = rotation[3] / norm;
+    double factor[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                        2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                        2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    double largest = 0;
+    for (int i = 0; i < 9; i++) {
+        factor[i] *= scale[i % 3];
+        largest = fmax(largest, fabs(factor[i]));
+    }
+    if (!isfinite(largest)) {
+        return -1;
+    }
+    int exponent = -60;
+    if (largest > 0) {
+        (void)frexp(largest, &exponent);
+        exponent -= 15; /* the largest mantissa in [2^14, 2^15] */
+        if (nearbyint(ldexp(largest, -exponent)) > INT16_MAX) {
+            exponent++;
+        }
+        exponent = exponent < -60 ? -60 : exponent;
+    }
+    if (exponent > 15) {
+        return -1;
+    }
+    for (int i = 0; i < 9; i++) {
+        gaussian->factor[i] = (int16_t)nearbyint(ldexp(factor[i], -exponent));
+    }
+    gaussian->factor_exponent = (int8_t)exponent;
+    return 0;
+}
+
+void gaussian_covariance(const t3r_gaussian *gaussian, double covariance[9])
+{
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double sum = 0; /* products below 2^30: exact */
+            for (int k = 0; k < 3; k++) {
+                sum += (double)gaussian->factor[3 * i + k] * gaussian->factor[3 * j + k];
+            }
+            covariance[3 * i + j] = ldexp(sum, 2 * gaussian->factor_exponent);
+        }
+    }
+}

@@ -1,0 +1,40 @@
+/* How wide the Gaussians of a scene are: order statistics and bins of a logarithm (a histogram as in GaussianTrim3R's
+ * Figure 6). The scale of a Gaussian is here the root of the product of its two largest standard deviations: the radius
+ * of the disc that covers as much of a surface, whatever its thickness along the normal. */
+#ifndef TRIM3R_TOOLS_SPLAT_SCALES_H
+#define TRIM3R_TOOLS_SPLAT_SCALES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "scene/scene_file.h"
+
+#define SCALE_BINS_AN_OCTAVE 4
+#define SCALE_BINS_MOST 96u
+
+typedef struct splat_scales {
+    double *scale;  /* world units, ascending; heap */
+    uint32_t count; /* at least 1 */
+} splat_scales;
+
+/* Of a scene that is not empty. False without memory; splat_scales_free() in any case. */
+bool splat_scales_of(splat_scales *scales, const scene_file *scene);
+void splat_scales_free(splat_scales *scales);
+
+/* At share 0..1 of the order, linear between neighbours. */
+double splat_scales_quantile(const splat_scales *scales, double share);
+
+/* Bin i holds scales from 2^((first + i) / 4) up to, without, 2^((first + i + 1) / 4) world units; the first also what
+ * is less, the last what is more. */
+typedef struct scale_bins {
+    int first;
+    uint32_t count; /* 1..SCALE_BINS_MOST */
+} scale_bins;
+
+/* Bins for all of `list` (count at least 1): from the least of their quantiles at 0.001 to the largest at 0.999, the
+ * upper 24 octaves. */
+scale_bins scale_bins_of(const splat_scales *list, uint32_t count);
+double scale_bins_edge(const scale_bins *bins, uint32_t index);
+void scale_bins_fill(const scale_bins *bins, const splat_scales *scales, uint32_t counts[SCALE_BINS_MOST]);
+
+#endif
