@@ -151,6 +151,7 @@ static void fades_by_half_life(void **state)
         s.map.count = 1;
         s.records[0].faded_q10 = 0;
         s.view.fx_q16 = s.view.fy_q16 = 30 << 16;
+        s.view.depth_unit_q40 = UINT64_C(1) << 30;
         const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
         for (uint32_t n = 1; n <= 2 * half_lives[h]; n++) {
             assert_int_equal(t3r_map_see(&s.map, &keyframe, 7 * half_lives[h] + n - 1, half_lives[h]), 0);
