@@ -72,8 +72,8 @@ static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
     return status;
 }
 
-#define POINTMAP_STEPS(rt) (6 * (rt)->views) /* of t3r_progress(): bridging (3), flying pixels, exposure, redundancy   \
-                                              */
+/* Of t3r_progress(), for every view: bridging takes three, flying pixels, exposure and redundancy one each. */
+#define POINTMAP_STEPS(rt) (6 * (rt)->views)
 
 static bool pointmap_step(t3r_runtime *rt, uint32_t step)
 {
