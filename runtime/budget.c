@@ -368,7 +368,7 @@ bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians)
             plain += confidence != T3R_CONFIDENCE_NONE && !t3r_is_doubtful(confidence) && !t3r_is_covered(confidence);
         }
     }
-    return 4 * (uint64_t)gaussians <= plain;
+    return 3 * (uint64_t)gaussians <= 2 * plain;
 }
 
 /* The points that this budget sets aside: of each cluster, and all as a group of their own behind the last. */

@@ -39,7 +39,7 @@ static inline bool t3r_set_aside(const t3r_view *view, size_t pixel, const t3r_b
            (t3r_is_doubtful(confidence) || (settings->pass_over_covered && t3r_is_covered(confidence)));
 }
 
-/* Whether Z is at most a quarter of the points that are neither doubtful nor covered by another view. */
+/* Whether Z is at most two thirds of the points that are neither doubtful nor covered by another view. */
 bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 
 /* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */

@@ -139,7 +139,7 @@ t3r_status t3r_refine_map(t3r_runtime *rt, const t3r_view *views, const t3r_map_
                 measure(rt, &w, views, v, &projection, first, count);
             }
             for (uint32_t i = 0; i < count; i++) {
-                w.corrections[first + i] = t3r_refine_solve(&w.sums[i], pass, &w.corrections[first + i]);
+                w.corrections[first + i] = t3r_refine_solve(&w.sums[i], &w.corrections[first + i]);
             }
         }
         for (uint32_t i = 0; i < rt->gaussians; i++) {

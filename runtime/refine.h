@@ -30,15 +30,16 @@ typedef struct t3r_refine_sums {
 typedef struct t3r_correction {
     int16_t colour_q7[3];
     int16_t step_q16[T3R_REFINE_PARAMETERS];
-    int16_t unused;
+    int16_t share_q14; /* of the Gauss-Newton step, 1/32..1/2; 0: none before */
 } t3r_correction;
 
 /* Sums of so many pixels are kept shifted right by ceil(log2 area) - 6, at least 0: 64 pixels' worth at most. */
 uint32_t t3r_refine_shift(uint32_t area);
 
-/* The damped Gauss-Newton step of one Gaussian in pass 0, 1, ... with momentum (Polyak, "Some methods of speeding up
- * the convergence of iteration methods", 1964): a share of the correction `before`, which is 0 for pass 0. */
-t3r_correction t3r_refine_solve(const t3r_refine_sums *sums, uint32_t pass, const t3r_correction *before);
+/* A share of the damped Gauss-Newton step of one Gaussian, as large as the answer to the correction `before` allows, with
+ * momentum (Polyak, "Some methods of speeding up the convergence of iteration methods", 1964): a part of `before`, which
+ * is 0 in the first pass. */
+t3r_correction t3r_refine_solve(const t3r_refine_sums *sums, const t3r_correction *before);
 
 /* Takes that step. */
 void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);

@@ -5,20 +5,22 @@
 #include "scene_frame.h"
 
 #define COLOUR_STEP_Q5 26 /* 0.8 of the weighted mean residual: neighbours correct the same pixels */
-#define STEP_Q4 4         /* 1/4 of the Gauss-Newton step, likewise */
 #define RELATIVE_DAMPING_Q4 3
 #define DAMPING 64         /* levels^2: below it a direction is noise */
 #define MOMENTUM_Q4 3      /* of the pass before, added */
 #define OPACITY_MOST 32767 /* largest step of log opacity, Q16: 1/2 */
 #define SHIFT_MOST 32767   /* of the position, in deviations: 1/2 */
-#define SHAPE_FIRST 6554   /* of log scale and shear: 0.1 in the first pass, 0.05 in those after it */
-#define SHAPE_LATER 3277
-#define COLOUR_MOST 32640 /* with what is carried on, likewise the next */
+#define SHAPE_MOST 6554    /* of log scale and shear: 0.1 */
+#define COLOUR_MOST 32640  /* with what is carried on, likewise the next */
 #define STEP_MOST 32767
 #define OPACITY_LEAST_Q15 256
 #define OPACITY_MOST_Q15 32440 /* 0.99: what the rasterizer draws at most */
 #define SWEEPS 8
 #define SOLUTION_MOST_Q16 (8 << 16)
+#define SHARE_FIRST_Q14 2816 /* 11/64 of the Gauss-Newton step in the first pass, for the same reason */
+#define SHARE_LEAST_Q14 512  /* 1/32 */
+#define SHARE_MOST_Q14 8192  /* 1/2 */
+#define ASKED_MOST_Q16 (2 << 16)
 
 uint32_t t3r_refine_shift(uint32_t area)
 {
@@ -80,13 +82,44 @@ static void solve(const equations *e, uint32_t shift, int32_t x_q16[T3R_REFINE_P
     }
 }
 
+/* The share of the Gauss-Newton step `wanted` that this pass takes: Aitken's relaxation, of each Gaussian by itself
+ * (Irons and Tuck, "A version of the Aitken accelerator for computer iteration", 1969). Of the whole step before, of
+ * which a share was taken, the part that is asked for again now says what that share and all neighbours' came to
+ * together; the other way when it was too much. Steps are compared by what they change in the pictures, the diagonal of
+ * the equations. */
+static int32_t share_q14(const equations *e, const int32_t wanted_q16[T3R_REFINE_PARAMETERS],
+                         const t3r_correction *before)
+{
+    const int64_t last = before->share_q14;
+    if (last == 0) {
+        return SHARE_FIRST_Q14;
+    }
+    int64_t largest = 0;
+    for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
+        largest = T3R_MAX(largest, e->a[i][i]);
+    }
+    uint32_t shift = largest >> 17 == 0 ? 0 : t3r_msb64((uint64_t)largest) - 16;
+    int64_t again = 0, before_squared = 0; /* below 6 x 2^17 x 2^15 x 2^17, and 6 x 2^17 x 2^30 */
+    for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
+        int64_t weighed = (T3R_MAX(e->a[i][i], 0) >> shift) * before->step_q16[i];
+        again += weighed * t3r_clamp32(wanted_q16[i], -ASKED_MOST_Q16, ASKED_MOST_Q16);
+        before_squared += weighed * before->step_q16[i];
+    }
+    if (before_squared == 0) {
+        return (int32_t)last;
+    }
+    int64_t answered = before_squared - t3r_round_shift64(again, 14) * last;                     /* 2^38 x 2^13 */
+    int64_t share = answered <= 0 ? 2 * last : t3r_round_div64(before_squared * last, answered); /* 2^49.6 x 2^13 */
+    return (int32_t)t3r_clamp64(share, T3R_MAX(last / 4, SHARE_LEAST_Q14), T3R_MIN(2 * last, SHARE_MOST_Q14));
+}
+
 /* This pass's own change, and the pass before goes on a little. Both are within 16 bits. */
 static int16_t carried_on(int64_t change, int32_t before, int32_t most)
 {
     return (int16_t)t3r_clamp64(change + t3r_round_shift32(before * MOMENTUM_Q4, 4), -most, most);
 }
 
-t3r_correction t3r_refine_solve(const t3r_refine_sums *s, uint32_t pass, const t3r_correction *before)
+t3r_correction t3r_refine_solve(const t3r_refine_sums *s, const t3r_correction *before)
 {
     t3r_correction c = {{0}, {0}, 0};
     if (s->weight <= 0) {
@@ -100,15 +133,14 @@ t3r_correction t3r_refine_solve(const t3r_refine_sums *s, uint32_t pass, const t
     equations e = normal_equations(s);
     int32_t x[T3R_REFINE_PARAMETERS];
     solve(&e, t3r_refine_shift(s->area), x);
-    for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
-        x[i] = t3r_round_shift32(x[i] * STEP_Q4, 4);
-    }
     x[0] -= t3r_round_shift32(x[3] + x[5], 1); /* what phi's halves mean for the opacity */
-    const int32_t shape = pass == 0 ? SHAPE_FIRST : SHAPE_LATER;
-    const int32_t most[T3R_REFINE_PARAMETERS] = {OPACITY_MOST, SHIFT_MOST, SHIFT_MOST, shape, shape, shape};
+    const int32_t most[] = {OPACITY_MOST, SHIFT_MOST, SHIFT_MOST, SHAPE_MOST, SHAPE_MOST, SHAPE_MOST};
+    const int32_t share = share_q14(&e, x, before);
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
-        c.step_q16[i] = carried_on(t3r_clamp32(x[i], -most[i], most[i]), before->step_q16[i], STEP_MOST);
+        int64_t taken = t3r_round_shift64((int64_t)x[i] * share, 14);
+        c.step_q16[i] = carried_on(t3r_clamp64(taken, -most[i], most[i]), before->step_q16[i], STEP_MOST);
     }
+    c.share_q14 = (int16_t)share;
     return c;
 }
 

@@ -169,25 +169,40 @@ static void solve(const sums *s, double x[PARAMETERS])
             x[i] = held(rest / (s->a[i][i] * (1 + 3.0 / 16) + 64), 8);
         }
     }
-    for (int i = 0; i < PARAMETERS; i++) {
-        x[i] *= 0.25;
-    }
     x[0] -= (x[3] + x[5]) / 2;
 }
 
-static void correct(const sums *s, unsigned pass, oracle_change *change, oracle_gaussian *g)
+static double share_of(const sums *s, const double wanted[PARAMETERS], const oracle_change *before)
+{
+    if (before->share == 0) {
+        return 11.0 / 64;
+    }
+    double again = 0, squared = 0;
+    for (int i = 0; i < PARAMETERS; i++) {
+        again += s->a[i][i] * before->step[i] * held(wanted[i], 2);
+        squared += s->a[i][i] * before->step[i] * before->step[i];
+    }
+    if (squared == 0) {
+        return before->share;
+    }
+    double answered = squared - again * before->share;
+    double share = answered <= 0 ? 2 * before->share : before->share * squared / answered;
+    return fmin(fmin(2 * before->share, 0.5), fmax(fmax(before->share / 4, 1.0 / 32), share));
+}
+
+static void correct(const sums *s, oracle_change *change, oracle_gaussian *g)
 {
     const oracle_change before = *change;
     *change = (oracle_change){0};
     if (s->weight == 0) {
         return;
     }
-    const double momentum = 3.0 / 16, shape = pass == 0 ? 0.1 : 0.05;
-    const double most[PARAMETERS] = {0.5, 0.5, 0.5, shape, shape, shape};
+    const double momentum = 3.0 / 16, most[PARAMETERS] = {0.5, 0.5, 0.5, 0.1, 0.1, 0.1};
     double x[PARAMETERS];
     solve(s, x);
+    change->share = share_of(s, x, &before);
     for (int i = 0; i < PARAMETERS; i++) {
-        x[i] = held(held(x[i], most[i]) + momentum * before.step[i], 0.5);
+        x[i] = held(held(change->share * x[i], most[i]) + momentum * before.step[i], 0.5);
         change->step[i] = x[i];
     }
     for (int c = 0; c < 3; c++) {
@@ -202,7 +217,7 @@ static void correct(const sums *s, unsigned pass, oracle_change *change, oracle_
     g->opacity = fmin(fmax(0.99, g->opacity), fmax(fmin(256.0 / 32768, g->opacity), g->opacity * exp(x[0])));
 }
 
-void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count, unsigned pass,
+void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count,
                    oracle_change *changes)
 {
     sums *all = take(count, sizeof *all);
@@ -210,7 +225,7 @@ void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *v
         measure(scene, count, &views[v], all);
     }
     for (size_t i = 0; i < count; i++) {
-        correct(&all[i], pass, &changes[i], &scene[i]);
+        correct(&all[i], &changes[i], &scene[i]);
     }
     free(all);
 }

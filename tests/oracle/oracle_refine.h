@@ -15,11 +15,12 @@ typedef struct oracle_context {
 typedef struct oracle_change {
     double colour[3]; /* levels */
     double step[6];   /* log opacity; shift along two axes; log scale, shear, log scale */
+    double share;     /* of the Gauss-Newton step; 0: none before */
 } oracle_change;
 
-/* Pass `pass`, from 0: the scene corrected in place. changes[count]: what the pass before changed, 0 before the first;
+/* A pass: the scene corrected in place. changes[count]: what the pass before changed, 0 before the first;
  * afterwards what this one did. */
-void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count, unsigned pass,
+void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count,
                    oracle_change *changes);
 
 #endif

@@ -166,7 +166,7 @@ static void follows_the_oracle(void **state)
             want[i] = scene[i];
         }
         for (uint32_t pass = 0; pass < PASSES; pass++) {
-            oracle_refine(want, plain.count, views, VIEWS, pass, changes);
+            oracle_refine(want, plain.count, views, VIEWS, changes);
             check_pass(heads[h], pass + 1, scene, want, plain.count);
         }
         free(changes);

@@ -207,8 +207,8 @@ static void set_aside_comes_last(void **state)
             }
         }
     }
-    assert_true(t3r_is_sparse(&view, 1, plain / 4));
-    assert_false(t3r_is_sparse(&view, 1, plain / 4 + 1));
+    assert_true(t3r_is_sparse(&view, 1, 2 * plain / 3));
+    assert_false(t3r_is_sparse(&view, 1, 2 * plain / 3 + 1));
 }
 
 static int by_texture(const void *a, const void *b)

@@ -161,7 +161,7 @@ static void nothing_missing_changes_nothing(void **state)
         for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
             sums.curvature[k] = (int32_t)unit_between(&seed, -INT32_MAX, INT32_MAX);
         }
-        t3r_correction correction = t3r_refine_solve(&sums, 0, &still);
+        t3r_correction correction = t3r_refine_solve(&sums, &still);
         t3r_gaussian before = {.position_q20 = {1, -2, 3 << 20},
                                .factor = {100, -7, 3, 9000, 32767, 0, -32768, 12, 1},
                                .factor_exponent = (int8_t)unit_between(&seed, -60, 15),
@@ -188,8 +188,9 @@ static void extremes_stay_in_range(void **state)
         memcpy(&sums, words, sizeof words);
         t3r_correction c = {.step_q16 = {0}};
         for (uint32_t pass = 0; pass < 4; pass++) { /* momentum adds up */
-            c = t3r_refine_solve(&sums, pass, &c);
+            c = t3r_refine_solve(&sums, &c);
             assert_true(abs(c.step_q16[0]) <= 32767);
+            assert_true(sums.weight <= 0 ? c.share_q14 == 0 : c.share_q14 >= 512 && c.share_q14 <= 8192);
             for (int k = 1; k < T3R_REFINE_PARAMETERS; k++) {
                 assert_true(abs(c.step_q16[k]) <= (k < 3 ? 32767 : 6554 * 2));
             }
@@ -222,7 +223,7 @@ static void momentum_fades(void **state)
     t3r_correction c = {.colour_q7 = {32640, -32640, 100}, .step_q16 = {32767, -32767, 1600, 160, -160, 3}};
     for (int i = 0; i < 3; i++) {
         t3r_correction before = c;
-        c = t3r_refine_solve(&sums, 1, &before);
+        c = t3r_refine_solve(&sums, &before);
         for (int k = 0; k < 3; k++) {
             assert_int_equal(c.colour_q7[k], t3r_round_shift32(before.colour_q7[k] * 3, 4));
         }
@@ -231,8 +232,34 @@ static void momentum_fades(void **state)
         }
     }
     sums.weight = 0; /* not seen: nothing moves */
-    c = t3r_refine_solve(&sums, 1, &c);
+    c = t3r_refine_solve(&sums, &c);
     assert_memory_equal(&c, &still, sizeof c);
+}
+
+/* The next share by how much of the step before is asked for again: all of it, half, none, as much and three times as
+ * much back. */
+static void share_follows_the_answer(void **state)
+{
+    (void)state;
+    static const struct {
+        int32_t again_q1; /* of what was asked for at first */
+        int32_t share_q14;
+    } cases[] = {{2, 5632}, {1, 5632}, {0, 2816}, {-2, 1408}, {-6, 704}, {-20, 704}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        t3r_refine_sums sums = {.weight = 1 << 15, .area = 64};
+        const int32_t curvature[T3R_REFINE_MOMENTS_4] = {
+            80000, 0, 0, 80000, 0, 80000, [10] = 240000, [12] = 80000, [14] = 240000};
+        const int32_t gradient[T3R_REFINE_MOMENTS_2] = {4000, 8000, -6000, 5000, 1000, 2000};
+        memcpy(sums.curvature, curvature, sizeof curvature);
+        memcpy(sums.gradient, gradient, sizeof gradient);
+        t3r_correction c = t3r_refine_solve(&sums, &still);
+        assert_int_equal(c.share_q14, 2816);
+        for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
+            sums.gradient[k] = gradient[k] * cases[i].again_q1 / 2;
+        }
+        c = t3r_refine_solve(&sums, &c);
+        assert_in_range(c.share_q14, cases[i].share_q14 - 4, cases[i].share_q14 + 4);
+    }
 }
 
 /* The scale of sums holds its bound for every area: at most 64 times what one pixel may add. */
@@ -347,6 +374,7 @@ int main(void)
         cmocka_unit_test(nothing_missing_changes_nothing),
         cmocka_unit_test(extremes_stay_in_range),
         cmocka_unit_test(momentum_fades),
+        cmocka_unit_test(share_follows_the_answer),
         cmocka_unit_test(scale_follows_area),
         cmocka_unit_test(arena_and_order_do_not_show),
         cmocka_unit_test(cancelled_anywhere_it_can_be_done_again),

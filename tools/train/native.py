@@ -40,7 +40,7 @@ def splatter(*more):
     pointer, number = ctypes.c_void_p, ctypes.c_int32
     library.splat_forward.argtypes = [number] * 3 + [pointer] * 4
     library.splat_backward.argtypes = [number] * 3 + [pointer] * 6
-    library.splat_refine.argtypes = [number] * 3 + [pointer] * 7 + [number]
+    library.splat_refine.argtypes = [number] * 3 + [pointer] * 7
     return library
 
 

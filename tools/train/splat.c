@@ -293,20 +293,23 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
 
 /* --- refinement -------------------------------------------------------------------------------------------------- */
 
-/* What runtime/refine.c does in integers (runtime/SPEC.md, "Refinement"), but for roundings, for the six equations, which
- * are solved exactly here, and for a splat's own axes: in one view any factor of its covariance will do. */
+/* What runtime/refine.c does in integers (runtime/SPEC.md, "Refinement"), but for roundings, for the six equations,
+ * which are solved exactly here, and for a splat's own axes: in one view any factor of its covariance will do. */
 #define UNKNOWNS 6
 #define MOMENTS 15
 #define DILATION 0.3f
 #define VARIANCE_LEAST 0.02f
 #define COLOUR_STEP 0.8125f
-#define STEP 0.25f /* of the Gauss-Newton step */
+#define SHARE_FIRST 0.171875f /* of the Gauss-Newton step */
+#define SHARE_LEAST 0.03125f
+#define SHARE_MOST 0.5f
+#define ASKED_MOST 2.0f
 #define RELATIVE_DAMPING 0.1875f
 #define DAMPING (64.0f / 65025.0f)
 #define MOMENTUM 0.1875f /* of the pass before */
 #define OPACITY_STEP_MOST 0.5f
 #define SHIFT_MOST 0.5f
-#define SHAPE_MOST 0.1f /* in the first pass, half as much in those after it */
+#define SHAPE_MOST 0.1f
 
 /* Sums over the pixels of one splat: w r, w, (g . r) e^ij for i + j <= 2, |g|^2 e^ij for i + j <= 4. */
 typedef struct sums {
@@ -417,8 +420,9 @@ static void gather_tile(const picture *p, int32_t t, float behind[3][SIDE][SIDE]
     }
 }
 
-/* The damped normal equations in phi = (1, x, y, xx - 1/2, 2 xy, yy - 1/2), by Gaussian elimination. */
-static void solve(const sums *s, float step[UNKNOWNS])
+/* The damped normal equations in phi = (1, x, y, xx - 1/2, 2 xy, yy - 1/2), by Gaussian elimination; `squares`: the
+ * diagonal without its damping. */
+static void solve(const sums *s, float step[UNKNOWNS], float squares[UNKNOWNS])
 {
     const float *h = s->curvature, *r = s->gradient;
     float m[UNKNOWNS][UNKNOWNS + 1] = {{h[0]},
@@ -434,7 +438,8 @@ static void solve(const sums *s, float step[UNKNOWNS])
         for (int j = i + 1; j < UNKNOWNS; j++) {
             m[i][j] = m[j][i];
         }
-        m[i][i] = fmaxf(m[i][i], 0) * (1 + RELATIVE_DAMPING) + DAMPING;
+        squares[i] = fmaxf(m[i][i], 0);
+        m[i][i] = squares[i] * (1 + RELATIVE_DAMPING) + DAMPING;
         m[i][UNKNOWNS] = right[i];
     }
     for (int i = 0; i < UNKNOWNS; i++) { /* positive definite: no pivoting */
@@ -459,11 +464,31 @@ static float held(float x, float most)
     return x > most ? most : x < -most ? -most : x == x ? x : 0;
 }
 
-/* A pass's changes of one splat: of red, green, blue; of log opacity, place along its two axes, log scale and shear. */
-#define CHANGES (3 + UNKNOWNS)
+/* A pass's changes of one splat: of red, green, blue; of log opacity, place along its two axes, log scale and shear;
+ * and the share of the Gauss-Newton step that it took. */
+#define CHANGES (3 + UNKNOWNS + 1)
+#define SHARE (3 + UNKNOWNS)
+
+static float share_of(const float wanted[UNKNOWNS], const float squares[UNKNOWNS], const float before[CHANGES])
+{
+    float last = before[SHARE], again = 0, squared = 0;
+    if (last == 0) {
+        return SHARE_FIRST;
+    }
+    for (int k = 0; k < UNKNOWNS; k++) {
+        again += squares[k] * before[3 + k] * held(wanted[k], ASKED_MOST);
+        squared += squares[k] * before[3 + k] * before[3 + k];
+    }
+    if (!(squared > 0)) {
+        return last;
+    }
+    float answered = squared - again * last;
+    float share = answered > 0 ? last * squared / answered : 2 * last;
+    return fminf(fmaxf(share, fmaxf(last / 4, SHARE_LEAST)), fminf(2 * last, SHARE_MOST));
+}
 
 /* `change` comes with what the pass before changed, 0 in the first, and leaves with what this one does. */
-static void correct(const sums *z, int32_t pass, float *change, float *s)
+static void correct(const sums *z, float *change, float *s)
 {
     float before[CHANGES];
     memcpy(before, change, sizeof before);
@@ -471,17 +496,17 @@ static void correct(const sums *z, int32_t pass, float *change, float *s)
     if (!(z->weight > 0)) {
         return;
     }
-    float step[UNKNOWNS];
-    solve(z, step);
+    float step[UNKNOWNS], squares[UNKNOWNS];
+    solve(z, step, squares);
     step[0] -= (step[3] + step[5]) / 2;
-    float shape = pass == 0 ? SHAPE_MOST : SHAPE_MOST / 2;
-    const float most[UNKNOWNS] = {OPACITY_STEP_MOST, SHIFT_MOST, SHIFT_MOST, shape, shape, shape};
+    change[SHARE] = share_of(step, squares, before);
+    const float most[UNKNOWNS] = {OPACITY_STEP_MOST, SHIFT_MOST, SHIFT_MOST, SHAPE_MOST, SHAPE_MOST, SHAPE_MOST};
     for (int c = 0; c < 3; c++) {
         change[c] = COLOUR_STEP * z->colour[c] / z->weight + MOMENTUM * before[c];
         s[6 + c] = fminf(fmaxf(s[6 + c] + change[c], 0), 1);
     }
     for (int k = 0; k < UNKNOWNS; k++) {
-        change[3 + k] = held(held(STEP * step[k], most[k]) + MOMENTUM * before[3 + k], 0.5f);
+        change[3 + k] = held(held(change[SHARE] * step[k], most[k]) + MOMENTUM * before[3 + k], 0.5f);
     }
     const float *shift = change + 4;
     float a = change[6], b = change[7], c = change[8];
@@ -499,12 +524,11 @@ static void correct(const sums *z, int32_t pass, float *change, float *s)
     s[4] = xx / det;
 }
 
-/* Pass `pass`, from 0, of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place
+/* One pass of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place
  * towards `wanted`; `counts`, [pictures][height][width], is 0 where a pixel has no say; `changes`, [splats][CHANGES],
- * goes from pass to pass, 0 before the first; NULL: no momentum. */
+ * goes from pass to pass, 0 before the first; NULL: every pass is a first one. */
 int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t *start, float *splats,
-                 const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, float *changes,
-                 int32_t pass)
+                 const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, float *changes)
 {
     int good = 1;
     size_t pixels = (size_t)width * height;
@@ -536,7 +560,7 @@ int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t 
         for (int32_t n = 0; n < count; n++) {
             size_t at = (size_t)(start[b] + n);
             float none[CHANGES] = {0};
-            correct(&totals[n], pass, changes != NULL ? changes + CHANGES * at : none, splats + PARAMETERS * at);
+            correct(&totals[n], changes != NULL ? changes + CHANGES * at : none, splats + PARAMETERS * at);
         }
         free(totals);
         free(p.first);

@@ -6,7 +6,7 @@ import native
 
 DILATION, VARIANCE_LEAST = 0.3, 0.02
 L_LEAST, L_MOST = 580 / 4096, 64  # of a Cholesky factor, pixels, as runtime/head_learned.c has them
-CHANGES = 9  # of a splat in a pass of refinement
+CHANGES = 10  # of a splat in a pass of refinement, its share of the step with them
 _library = None
 
 
@@ -49,16 +49,16 @@ def draw(splats, start, order, width, height):
 
 
 def refine(splats, start, order, pictures, counts, passes, momentum=True):
-    """Splats corrected towards `pictures` by `passes` of the runtime's refinement, or by that less its momentum; no
-    derivatives."""
+    """Splats corrected towards `pictures` by `passes` of the runtime's refinement, or by that less its momentum, every
+    step the share of a first pass; no derivatives."""
     made, pictures = splats.detach().clone().contiguous(), pictures.contiguous()
     height, width = pictures.shape[2:]
     changes = torch.zeros(len(made), CHANGES) if momentum else None
-    for n in range(passes):
+    for _ in range(passes):
         drawn = draw(made, start, order, width, height)
         if not _native().splat_refine(
             len(start) - 1, width, height, start.ctypes.data, made.data_ptr(), order.ctypes.data,
-            drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data, changes.data_ptr() if momentum else None, n,
+            drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data, changes.data_ptr() if momentum else None,
         ):  # fmt: skip
             raise MemoryError("splatter: out of memory")
     return made
