@@ -28,8 +28,8 @@ static void as_in_double(void **state)
         double fall = e.error_q8[0] - (double)e.error_q8[1], ground = fmax(0, e.error_q8[1] - fall);
         double yardstick = fmax(e.disagreement_q8 != 0 ? e.disagreement_q8 : ground, 4 * 256);
         double wanted = fall * 2 * e.trial / ((loss_q8 / 256.0 + 0.25) / 10 * yardstick);
-        if (e.error_q8[0] < 3 * 256 && ground < 3 * 256) {
-            wanted = fmin(wanted, fall * 2 * e.trial / (3 * 256 - ground));
+        if (e.error_q8[1] < 4 * 256) {
+            wanted = fmin(wanted, fall * 2 * e.trial / (4 * 256 - ground));
         }
         wanted = fmin(fmax(wanted, e.points / 400), e.points); /* whole points */
         double got = t3r_predict_budget(&e, e.points, loss_q8);
