@@ -75,7 +75,13 @@ class Retrain(unittest.TestCase):
         self.assertIn("0 heads to be trained", again)
         os.remove(os.path.join(self.out, "eagles.t3w"))  # as if cut off before: its steps are not made again
         self.assertNotIn("step", self.run_it("eagles", "--steps", "4").replace("--steps", ""))
-        self.assertTrue(os.path.exists(os.path.join(self.out, "eagles.t3w")))
+        with open(os.path.join(self.out, "eagles.t3w"), "r+b") as head:
+            kept = head.read()
+            head.seek(6)
+            head.write(b"\0\0")  # of another bits epoch: quantized again
+        self.assertNotIn("step", self.run_it("eagles", "--steps", "4").replace("--steps", ""))
+        with open(os.path.join(self.out, "eagles.t3w"), "rb") as head:
+            self.assertEqual(head.read(), kept)
         self.assertIn("1 heads to be trained", self.run_it("eagles", "--steps", "5"))
         self.assertEqual(self.told("eagles")["steps"], 5)
 
