@@ -59,6 +59,11 @@ class Measurements:
         command = [self.program, "import", source, "--size", "256x256", "-o", "OUT"]
         return self.made(f"{scene}.mcap", command)[0]
 
+    def told(self, recording):
+        """What `trim3r info` tells of it."""
+        command = [self.program, "info", recording, "--json"]
+        return json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
+
     def evaluation(self, options, jobs):
         return [self.program, "eval", *options, "--jobs", jobs, "--csv", "OUT"]
 
@@ -73,6 +78,11 @@ def even_triplets(root):
     every = [t for t in root["trim3r_triplets"] if t["context"][0] != t["context"][1]]
     count = min(COLOUR_CASES, len(every))
     return [(every[i * len(every) // count]["context"], every[i * len(every) // count]["target"]) for i in range(count)]
+
+
+def triplets(info):
+    """[(context, target)] of what told() tells, as eval's options want them."""
+    return [(listed(t["context"]), str(t["target"])) for t in info["triplets"]]
 
 
 def listed(values):
