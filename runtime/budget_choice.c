@@ -6,11 +6,10 @@
 #include "refine.h"
 #include "state.h"
 
-#define TRIAL_PART 100u  /* of the points are the first trial's; the second has twice as many */
-#define LEAST_PART 400u  /* of the points are kept whatever the prediction */
-#define PAIRS_LEAST 256u /* below which views are not believed to disagree so much */
-#define UNSEEN_Q8                                                                                                      \
-    (4u << 8) /* levels^2, 42 dB: roundings alone make as much, nobody sees less whatever all points could do */
+#define TRIAL_PART 100u     /* of the points are the first trial's; the second has twice as many */
+#define LEAST_PART 400u     /* of the points are kept whatever the prediction */
+#define PAIRS_LEAST 256u    /* below which views are not believed to disagree so much */
+#define UNSEEN_Q8 (4u << 8) /* levels^2, 42 dB: as much as roundings make; whatever all points could do */
 
 /* Of the disagreement is added to the error by every dB that may be lost, and a quarter of that in any case: measured
  * on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
