@@ -9,7 +9,7 @@
 #define TRIAL_PART 100u     /* of the points are the first trial's; the second has twice as many */
 #define LEAST_PART 400u     /* of the points are kept whatever the prediction */
 #define PAIRS_LEAST 256u    /* below which views are not believed to disagree so much */
-#define UNSEEN_Q8 (4u << 8) /* levels^2, 42 dB: as much as roundings make; whatever all points could do */
+#define UNSEEN_Q8 (4u << 8) /* levels^2, 42 dB: as much as roundings make; an error below it is not seen */
 
 /* Of the disagreement is added to the error by every dB that may be lost, and a quarter of that in any case: measured
  * on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
@@ -31,7 +31,7 @@ uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_
 
     uint64_t allowed = yardstick_q8 * (max_loss_q8 + LOSS_OFFSET_Q8);     /* x 256 x SHARE_DIVISOR */
     uint64_t wanted = ceil_div(slope_q8 * (SHARE_DIVISOR << 8), allowed); /* 2^48 x 2^12 */
-    if (e->error_q8[1] < UNSEEN_Q8) { /* known of a trial, not hoped of more; the floor is below it */
+    if (e->error_q8[1] < UNSEEN_Q8) { /* the second trial is there already; the floor is below it */
         wanted = T3R_MIN(wanted, ceil_div(slope_q8, UNSEEN_Q8 - floor_q8));
     }
     uint64_t least = T3R_MAX(e->points / LEAST_PART, 1u);

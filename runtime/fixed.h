@@ -44,7 +44,7 @@ static inline int16_t t3r_mulr_q15(int16_t a, int16_t b)
     return (int16_t)(uint16_t)((uint16_t)high + (uint16_t)high + carry);
 }
 
-/* n / d, round-half-up: floor(n / d + 1/2); d > 0, |n| and d below 2^61 */
+/* n / d, round-half-up: floor(n / d + 1/2); d > 0 and below 2^62, 2 |n| + d below 2^63 */
 static inline int64_t t3r_round_div64(int64_t n, int64_t d)
 {
     int64_t doubled = 2 * n + d;

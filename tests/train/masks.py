@@ -108,6 +108,11 @@ class Masks(unittest.TestCase):
             source = samples.Samples([], SIDE, 1.0, mask="eagles")
             for seed in range(3):
                 source.crops(np.random.default_rng(seed), 2)
+            before = len(called)
+            for seed in range(4):
+                self.assertEqual(len(source.crops(np.random.default_rng(seed), 1)), 1)
+            single = [len(arguments[0]) for arguments, _, _ in called[before:]]
+            self.assertEqual(set(single), {1, 2}, "a picture at a time, too")
             source.triplet(np.random.default_rng(7))
         finally:
             samples.prepare_views = prepare_views

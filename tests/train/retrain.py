@@ -5,6 +5,7 @@
 import glob
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -82,6 +83,10 @@ class Retrain(unittest.TestCase):
         self.assertNotIn("step", self.run_it("eagles", "--steps", "4").replace("--steps", ""))
         with open(os.path.join(self.out, "eagles.t3w"), "rb") as head:
             self.assertEqual(head.read(), kept)
+        self.assertTrue(eagles["shipped"])
+        copy = shutil.copy(os.path.join(HEADS, "nano.safetensors"), self.folder.name)
+        self.assertIn("1 heads to be trained", self.run_it("eagles", "--steps", "4", "--from", copy), "from elsewhere")
+        self.assertFalse(self.told("eagles")["shipped"])
         self.assertIn("1 heads to be trained", self.run_it("eagles", "--steps", "5"))
         self.assertEqual(self.told("eagles")["steps"], 5)
 

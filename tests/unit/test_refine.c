@@ -152,6 +152,7 @@ static void see_it_twice(void)
 
 static void many_passes_go_on(void **state)
 {
+    (void)state;
     see_it_twice();
     static const struct {
         uint32_t passes;
@@ -162,7 +163,6 @@ static void many_passes_go_on(void **state)
         print_message("seen twice, %u passes: %.2f dB\n", promises[i].passes, db);
         assert_true(db >= promises[i].least);
     }
-    draw_room(state);
 }
 
 static void black_stays_as_it_is(void **state)
@@ -179,7 +179,6 @@ static void black_stays_as_it_is(void **state)
         free(memory);
     }
     assert_true(hash[0] == hash[1]);
-    draw_room(state);
 }
 
 static const t3r_correction still;
@@ -253,7 +252,8 @@ static void momentum_fades(void **state)
 {
     (void)state;
     t3r_refine_sums sums = {.weight = 1 << 15, .area = 1};
-    t3r_correction c = {.colour_q7 = {32640, -32640, 100}, .step_q16 = {32767, -32767, 1600, 160, -160, 3}};
+    t3r_correction c = {
+        .colour_q7 = {32640, -32640, 100}, .step_q16 = {32767, -32767, 1600, 160, -160, 3}, .share_q14 = 1000};
     for (int i = 0; i < 3; i++) {
         t3r_correction before = c;
         c = t3r_refine_solve(&sums, &before);
@@ -263,35 +263,71 @@ static void momentum_fades(void **state)
         for (int k = 0; k < T3R_REFINE_PARAMETERS; k++) {
             assert_int_equal(c.step_q16[k], t3r_round_shift32(before.step_q16[k] * 3, 4));
         }
+        assert_int_equal(c.share_q14, 1000); /* no curvature: nothing is known of the answer */
     }
     sums.weight = 0; /* not seen: nothing moves */
     c = t3r_refine_solve(&sums, &c);
     assert_memory_equal(&c, &still, sizeof c);
 }
 
-/* The next share by how much of the step before is asked for again: all of it, half, none, as much and three times as
- * much back. */
+/* A Gaussian whose parameters do not mix, and which is told of `quarters` of a step. */
+static t3r_refine_sums told_of(int32_t quarters)
+{
+    t3r_refine_sums sums = {.weight = 1 << 15,
+                            .area = 64,
+                            .curvature = {80000, 0, 0, 80000, 0, 80000, [10] = 240000, [12] = 80000, [14] = 240000},
+                            .gradient = {4000, 8000, -6000, 5000, 1000, 2000}};
+    for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
+        sums.gradient[k] = sums.gradient[k] * quarters / 4;
+    }
+    return sums;
+}
+
+/* The next share by how much of the step before, which took 11/64 of it, is asked for again: all of it and half double
+ * the share, more is not believed; a quarter takes 4/3 of it; none the same; as much back half, three times as much and
+ * more a quarter, again the least that is believed. */
 static void share_follows_the_answer(void **state)
 {
     (void)state;
     static const struct {
-        int32_t again_q1; /* of what was asked for at first */
+        int32_t quarters; /* of what was asked for at first */
         int32_t share_q14;
-    } cases[] = {{2, 5632}, {1, 5632}, {0, 2816}, {-2, 1408}, {-6, 704}, {-20, 704}};
+    } cases[] = {{4, 5632}, {2, 5632}, {1, 3755}, {0, 2816}, {-4, 1408}, {-12, 704}, {-40, 704}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        t3r_refine_sums sums = {.weight = 1 << 15, .area = 64};
-        const int32_t curvature[T3R_REFINE_MOMENTS_4] = {
-            80000, 0, 0, 80000, 0, 80000, [10] = 240000, [12] = 80000, [14] = 240000};
-        const int32_t gradient[T3R_REFINE_MOMENTS_2] = {4000, 8000, -6000, 5000, 1000, 2000};
-        memcpy(sums.curvature, curvature, sizeof curvature);
-        memcpy(sums.gradient, gradient, sizeof gradient);
+        t3r_refine_sums sums = told_of(4);
         t3r_correction c = t3r_refine_solve(&sums, &still);
         assert_int_equal(c.share_q14, 2816);
-        for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
-            sums.gradient[k] = gradient[k] * cases[i].again_q1 / 2;
-        }
+        sums = told_of(cases[i].quarters);
         c = t3r_refine_solve(&sums, &c);
         assert_in_range(c.share_q14, cases[i].share_q14 - 4, cases[i].share_q14 + 4);
+    }
+    static const int32_t onward[] = {2816, 5632, 8192, 8192};
+    t3r_correction on = still, to_and_fro = still;
+    for (int pass = 0; pass < 8; pass++) {
+        t3r_refine_sums sums = told_of(4);
+        on = t3r_refine_solve(&sums, &on);
+        assert_int_equal(on.share_q14, onward[T3R_MIN(pass, 3)]);
+        sums = told_of(pass % 2 == 0 ? 4 : -4);
+        to_and_fro = t3r_refine_solve(&sums, &to_and_fro);
+    }
+    assert_int_equal(to_and_fro.share_q14, 512);
+}
+
+/* Steps at their bounds, on every diagonal the largest sum: the quotient stays in 64 bits (the sanitizers' word). */
+static void largest_share_stays_in_range(void **state)
+{
+    (void)state;
+    t3r_refine_sums sums = {.weight = 1, .area = 1 << 28};
+    for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
+        sums.curvature[k] = INT32_MAX;
+    }
+    for (int sign = -1; sign <= 1; sign++) {
+        for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
+            sums.gradient[k] = sign * INT32_MAX;
+        }
+        t3r_correction before = {.step_q16 = {32767, 32767, 32767, 8066, 8066, 8066}, .share_q14 = 8192};
+        t3r_correction c = t3r_refine_solve(&sums, &before);
+        assert_in_range(c.share_q14, 2048, 8192);
     }
 }
 
@@ -403,12 +439,13 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gains_what_it_promises),
-        cmocka_unit_test(many_passes_go_on),
-        cmocka_unit_test(black_stays_as_it_is),
+        cmocka_unit_test_teardown(many_passes_go_on, draw_room),
+        cmocka_unit_test_teardown(black_stays_as_it_is, draw_room),
         cmocka_unit_test(nothing_missing_changes_nothing),
         cmocka_unit_test(extremes_stay_in_range),
         cmocka_unit_test(momentum_fades),
         cmocka_unit_test(share_follows_the_answer),
+        cmocka_unit_test(largest_share_stays_in_range),
         cmocka_unit_test(scale_follows_area),
         cmocka_unit_test(arena_and_order_do_not_show),
         cmocka_unit_test(cancelled_anywhere_it_can_be_done_again),

@@ -245,12 +245,12 @@ class Samples:
         return source.leaves(256, 256) if self.made_up > 0 else None
 
     def crops(self, rng, count):
-        """`count` pictures, prepared, each with a budget of its own; of a rival's mask about half of them, two by two,
-        context views that it ranked together."""
+        """`count` pictures, prepared, each with a budget of its own; of a rival's mask at least about half of them context
+        views that it ranked together, both where there is room."""
         picture, made = self._picture(rng), []
         while len(made) < count:
-            if self.mask != "trim3r" and self.kind != "pictures" and len(made) + 2 <= count and rng.random() < 0.5:
-                made += [prepared for prepared, _ in self.triplet(rng)[0]]
+            if self.mask != "trim3r" and self.kind != "pictures" and rng.random() < 0.5:
+                made += [prepared for prepared, _ in self.triplet(rng)[0]][: count - len(made)]
                 continue
             image, depth = self._crop(rng, picture)
             depth = millimetres(depth)
@@ -271,6 +271,12 @@ class Samples:
     def triplet(self, rng):
         """Two prepared context views and the target: [(Prepared, Posed), (Prepared, Posed)], Posed. Our allocations
         are drawn a view on its own; a rival ranks both together, and keeps points of both."""
+        while True:
+            made, posed = self._prepared_triplet(rng)
+            if min(len(prepared.points) for prepared in made) > 0:
+                return list(zip(made, posed[:2])), posed[2]
+
+    def _prepared_triplet(self, rng):
         posed = self._posed(rng)
         budget, depths = self._budget(rng), []
         for view in posed[:2]:
@@ -284,9 +290,7 @@ class Samples:
         else:
             parts = zip(*((view.image, depth, view.intrinsics, view.pose) for view, depth in zip(context, depths)))
             made = prepare_views(*parts, **budget)
-            if min(len(prepared.points) for prepared in made) == 0:
-                return self.triplet(rng)
-        return list(zip(made, context)), posed[2]
+        return made, posed
 
 
 def seen_by(target, source, tolerance=0.03):
