@@ -1,5 +1,5 @@
-"""Measurements on recorded scenes, made when first asked for and kept in build/results until the program changes: what
-tools/results, tools/paper, tools/poses and tools/stereo_results share."""
+"""Measurements on recorded scenes, made when first asked for and kept in build/results until the program changes: what the
+measuring tools share."""
 import csv
 import hashlib
 import json
@@ -63,6 +63,11 @@ class Measurements:
         """What `trim3r info` tells of it."""
         command = [self.program, "info", recording, "--json"]
         return json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
+
+    def bits_epoch(self):
+        """What `trim3r --version` ends in."""
+        told = subprocess.run([self.program, "--version"], capture_output=True, check=True, text=True).stdout
+        return told.split()[-1]
 
     def evaluation(self, options, jobs):
         return [self.program, "eval", *options, "--jobs", jobs, "--csv", "OUT"]

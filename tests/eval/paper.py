@@ -111,8 +111,9 @@ def check_trained_heads(folder, call, cache, heads):
     os.mkdir(f"{folder}/heads")
     for name, kind, mask in (("eagles", "all", "eagles"), ("rooms", "rooms", "trim3r")):
         run(trim3r, "quantize", f"{heads}/nano.safetensors", "--name", name, "-o", f"{folder}/heads/{name}.t3w")
-        told = {"name": name, "head": "nano", "kind": kind, "mask": mask, "start": "nano" if kind == "all" else None, "shipped": True,
-                "steps": 7, "batch": 4, "crop": 128, "rate": 0.001, "seed": 1, "data": ["hololens_a"] * (kind == "all")}
+        told = {"name": name, "head": "nano", "kind": kind, "mask": mask, "start": "nano" if kind == "all" else None,
+                "shipped": kind == "all", "steps": 7, "batch": 4, "crop": 128, "rate": 0.001, "seed": 1,
+                "data": ["hololens_a"] * (kind == "all")}
         with open(f"{folder}/heads/{name}.json", "w", encoding="utf-8") as file:
             json.dump(told, file)
     printed = run(*call, "masks", "transfer").stdout
@@ -170,7 +171,8 @@ with tempfile.TemporaryDirectory() as folder:
           [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "indoor")], "heads")
     tells(list(filled(rows))[1][2][1], rows_of(cache, "hololens_b.head.mine.t3w.*.csv")[1][1])
 
-    for words, *wrong in (("heads of tools/train/retrain", "transfer"), ("no part is called", "speed"), ("--write takes all parts", "views", "--write"),
+    for words, *wrong in (("heads of tools/train/retrain", "transfer"), ("no part is called", "speed"),
+                          ("--write takes all parts", "views", "--write"),
                           ("is not KIND=FILE.t3w", "--head-of", "indoor"),
                           ("is not KIND=FILE.t3w", "--head-of", "indoor=absent.t3w"),
                           ("with commas between", "--tuned-pruned", "50")):

@@ -361,22 +361,21 @@ static int run_configuration(const configuration *c, variation ways)
 }
 
 /* A stream with two keyframes at hand: the map in each step, and a view of it in the end. */
-static const configuration streamed = {"stream",
-                                       128,
-                                       96,
-                                       91,
-                                       77,
-                                       T3R_PIXEL_RGB24,
-                                       T3R_DISTORTION_NONE,
-                                       T3R_WAVELET_DB2,
-                                       2,
-                                       64,
-                                       T3R_ALLOCATE_DENSITY,
-                                       T3R_HEAD_LEARNED,
-                                       700,
-                                       true,
-                                       0,
-                                       T3R_DEPTH_SENSOR};
+static const configuration streamed = {.name = "stream",
+                                       .frame_width = 128,
+                                       .frame_height = 96,
+                                       .width = 91,
+                                       .height = 77,
+                                       .format = T3R_PIXEL_RGB24,
+                                       .distortion = T3R_DISTORTION_NONE,
+                                       .wavelet = T3R_WAVELET_DB2,
+                                       .levels = 2,
+                                       .clusters = 64,
+                                       .allocation = T3R_ALLOCATE_DENSITY,
+                                       .head = T3R_HEAD_LEARNED,
+                                       .gaussians = 700,
+                                       .holes = true,
+                                       .depth = T3R_DEPTH_SENSOR};
 
 static int run_stream(variation ways)
 {

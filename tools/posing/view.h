@@ -8,10 +8,10 @@
 #include "posing/corners.h"
 #include "trim3r.h"
 
-#define POSE_SIDE_MOST 1024u /* a frame whose longer side is more is worked on at this size, */
-#define POSE_SIDE_LEAST                                                                                                \
-    512u /* one whose is less at this: corners between pixels have their own, and borders shrink                       \
-          */
+/* A frame whose longer side is more is worked on at this size, */
+#define POSE_SIDE_MOST 1024u
+/* one whose is less at this: corners between pixels have their own, and borders shrink. */
+#define POSE_SIDE_LEAST 512u
 
 typedef struct pose_view {
     corner *corners;

@@ -171,10 +171,9 @@ static t3r_status retain_for(preparation *p, const prepare_views *views, const p
     for (uint32_t v = 0; v < views->count; v++) {
         given[v] = planes[v] = p->importance + pixels * v;
     }
-    return prepare_rival(p->rt, &p->scene, p->cameras, views->count, (method_kind)settings->rival, count,
-                         settings->seed, planes)
-               ? t3r_rebudget_given(p->rt, count, given, 2 * views->width, &p->scene)
-               : T3R_ERR_ARENA;
+    t3r_status status = prepare_rival(p->rt, &p->scene, p->cameras, views->count, (method_kind)settings->rival, count,
+                                      settings->seed, planes);
+    return status == T3R_OK ? t3r_rebudget_given(p->rt, count, given, 2 * views->width, &p->scene) : status;
 }
 
 static t3r_status analyse(preparation *p, const prepare_views *views, const prepare_settings *settings)

@@ -1,5 +1,6 @@
 #include "prepare_rival.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "rivals/choose.h"
@@ -27,17 +28,19 @@ static bool rank(ranking *r, const t3r_runtime *rt, const t3r_scene *scene, cons
            rival_choose(r->score, scene->count, count, r->kept);
 }
 
-bool prepare_rival(const t3r_runtime *rt, const t3r_scene *scene, const t3r_camera *cameras, uint32_t views,
-                   method_kind kind, uint32_t count, uint32_t seed, uint16_t *const planes[])
+t3r_status prepare_rival(const t3r_runtime *rt, const t3r_scene *scene, const t3r_camera *cameras, uint32_t views,
+                         method_kind kind, uint32_t count, uint32_t seed, uint16_t *const planes[])
 {
     ranking r = {.score = NULL};
-    bool done =
-        rank(&r, rt, scene, cameras, views, kind, count, seed) && rival_planes(rt, scene, views, r.kept, count, planes);
+    t3r_status status = rank(&r, rt, scene, cameras, views, kind, count, seed) ? T3R_OK : T3R_ERR_ARENA;
+    if (status == T3R_OK && !rival_planes(rt, scene, views, r.kept, count, planes)) {
+        status = T3R_ERR_STATE;
+    }
     for (uint32_t v = 0; v < views; v++) {
         splat_view_close(&r.views[v]);
     }
     splat_model_free(&r.model);
     free(r.score);
     free(r.kept);
-    return done;
+    return status;
 }

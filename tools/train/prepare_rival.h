@@ -2,7 +2,6 @@
 #ifndef TRIM3R_TRAIN_PREPARE_RIVAL_H
 #define TRIM3R_TRAIN_PREPARE_RIVAL_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "reconstruction/method.h"
@@ -10,8 +9,9 @@
 
 /* The importance of every point for t3r_rebudget_given(): 65535 at those of the `count` Gaussians that `kind` ranks
  * highest, of `scene`, the unpruned one in `rt`, whose `views` views the cameras took; 0 at all others.
- * planes[views]: each of the working size. False without memory. */
-bool prepare_rival(const t3r_runtime *rt, const t3r_scene *scene, const t3r_camera *cameras, uint32_t views,
-                   method_kind kind, uint32_t count, uint32_t seed, uint16_t *const planes[]);
+ * planes[views]: each of the working size. T3R_ERR_ARENA without memory, T3R_ERR_STATE where the scene is not that of
+ * the masks in `rt`. */
+t3r_status prepare_rival(const t3r_runtime *rt, const t3r_scene *scene, const t3r_camera *cameras, uint32_t views,
+                         method_kind kind, uint32_t count, uint32_t seed, uint16_t *const planes[]);
 
 #endif
