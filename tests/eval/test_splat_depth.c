@@ -127,26 +127,6 @@ static void surface_is_sampled_at_the_centre(void **state)
     }
 }
 
-/* What another view's means put before a pixel's edge does not take its own mean away; what stands at the centre does.
- */
-static void own_mean_is_kept(void **state)
-{
-    (void)state;
-    for (int order = 0; order < 2; order++) {
-        stage s;
-        begin(&s);
-        for (int k = 0; k < 2; k++) {
-            bool own = k == order;
-            place(&s, own ? 3 : 3.2, 3, own ? 6 : 2, 32767);
-            place(&s, 6, 2, own ? 6 : 2, 32767);
-        }
-        make(&s);
-        expect_depth(&s, 3, 3, 6);
-        expect_depth(&s, 6, 2, 2);
-        free(s.depth.steps);
-    }
-}
-
 static void faint_means_are_no_surface(void **state)
 {
     (void)state;
@@ -226,7 +206,6 @@ int main(void)
         cmocka_unit_test(every_pixel_has_its_own),
         cmocka_unit_test(nearest_wins),
         cmocka_unit_test(surface_is_sampled_at_the_centre),
-        cmocka_unit_test(own_mean_is_kept),
         cmocka_unit_test(faint_means_are_no_surface),
         cmocka_unit_test(borders_and_behind),
         cmocka_unit_test(nothing_is_seen),

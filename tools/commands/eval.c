@@ -14,6 +14,7 @@
 #include "cli/option_values.h"
 #include "cli/process_pool.h"
 #include "reconstruction/reconstruction.h"
+#include "reconstruction/scene_frames.h"
 
 #define MOST_KEEPS 64u
 #define ABLATE_KEEPS "60,40,20,10,5"
@@ -399,6 +400,21 @@ static int choose_contestants(const options *o, evaluation_contestants *chosen)
     return evaluation_contestants_methods(chosen, o->methods, o->method_count, o->heads, o->head_count, &o->settings);
 }
 
+/* Opens the scene to be pruned: a bad one is told before the work. */
+static int look_at_scene(const char *path, const evaluation_cases *cases)
+{
+    if (cases->count > 1) {
+        return cli_error(CLI_BAD_USAGE, "--prune: the scene belongs to one context; name it, of one recording, by "
+                                        "--context and --target");
+    }
+    scene_file scene;
+    int code = scene_to_prune(path, &scene);
+    if (code == CLI_OK) {
+        scene_file_free(&scene);
+    }
+    return code;
+}
+
 static int report_all(const options *o, const evaluation_work *work)
 {
     evaluation_outputs to = o->to;
@@ -422,9 +438,8 @@ static int evaluate(const options *o)
     evaluation_resume resume = {0};
     int code = choose_contestants(o, &contestants);
     code = code == CLI_OK ? open_cases(o, &cases) : code;
-    if (code == CLI_OK && o->settings.points_of != NULL && cases.count > 1) {
-        code = cli_error(CLI_BAD_USAGE, "--prune: the scene belongs to one context; name it, of one recording, by "
-                                        "--context and --target");
+    if (code == CLI_OK && o->settings.points_of != NULL) {
+        code = look_at_scene(o->settings.points_of, &cases);
     }
     if (code == CLI_OK && o->to.resume) {
         code = evaluation_resume_open(&resume, o->to.csv, o->inputs, o->input_count, o->settings.points_of,

@@ -10,14 +10,7 @@
 int scene_to_prune(const char *path, scene_file *scene)
 {
     char error[512] = "";
-    if (scene_file_read_ply(path, scene, error, sizeof error) != 0) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
-    }
-    if (scene->count == 0) {
-        scene_file_free(scene);
-        return cli_error(CLI_BAD_INPUT, "%s: there are no Gaussians to be pruned", path);
-    }
-    return CLI_OK;
+    return scene_file_read_ply(path, scene, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 static int make_frame(scene_frames *made, uint32_t view, const scene_file *scene, const char *scene_path,

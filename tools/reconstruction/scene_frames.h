@@ -8,7 +8,7 @@
 #include "recording.h"
 #include "scene/scene_file.h"
 
-/* Reads a scene to be pruned: one without Gaussians is refused. An exit status of cli.h after a message. */
+/* Reads a scene to be pruned, one Gaussian at least. An exit status of cli.h after a message. */
 int scene_to_prune(const char *path, scene_file *scene);
 
 /* What the frames point into. */

@@ -13,14 +13,12 @@ typedef struct seen_mean {
     float nearest; /* depth of the foremost mean, scene units; 0 = none */
     float depth;   /* of the mean that was chosen */
     float offset;  /* of that from the centre, pixels squared */
-    bool own;      /* the foremost is at the centre: those that are not do not count */
 } seen_mean;
 
 /* A mean as the camera sees it. */
 typedef struct projected_mean {
     size_t pixel;
     float depth, offset;
-    bool own;
 } projected_mean;
 
 static bool project(const splat_camera *camera, double farthest, const t3r_gaussian *gaussian, projected_mean *out)
@@ -42,10 +40,8 @@ static bool project(const splat_camera *camera, double farthest, const t3r_gauss
         return false;
     }
     double offset = (x - column) * (x - column) + (y - row) * (y - row);
-    *out = (projected_mean){.pixel = (size_t)row * camera->width + (size_t)column,
-                            .depth = (float)z,
-                            .offset = (float)offset,
-                            .own = offset < SPLAT_DEPTH_CENTRE * SPLAT_DEPTH_CENTRE};
+    *out = (projected_mean){
+        .pixel = (size_t)row * camera->width + (size_t)column, .depth = (float)z, .offset = (float)offset};
     return out->depth > 0;
 }
 
@@ -56,16 +52,15 @@ static void see(seen_mean *pixels, const scene_file *scene, const splat_camera *
     for (uint32_t i = 0; i < scene->count; i++) {
         if (project(camera, farthest, &scene->gaussians[i], &m)) {
             seen_mean *p = &pixels[m.pixel];
-            if (p->nearest == 0 || m.own > p->own || (m.own == p->own && m.depth < p->nearest)) {
+            if (p->nearest == 0 || m.depth < p->nearest) {
                 p->nearest = m.depth;
-                p->own = m.own;
             }
         }
     }
     for (uint32_t i = 0; i < scene->count; i++) {
         if (project(camera, farthest, &scene->gaussians[i], &m)) {
             seen_mean *p = &pixels[m.pixel];
-            bool of_surface = m.own == p->own && m.depth <= p->nearest * (1 + (float)SPLAT_DEPTH_SURFACE);
+            bool of_surface = m.depth <= p->nearest * (1 + (float)SPLAT_DEPTH_SURFACE);
             if (of_surface && (p->depth == 0 || m.offset < p->offset)) {
                 p->depth = m.depth;
                 p->offset = m.offset;

@@ -9,7 +9,6 @@
 #include "trim3r.h"
 
 #define SPLAT_DEPTH_OPACITY_Q15 1638u /* 0.05; means of fainter Gaussians are no surface */
-#define SPLAT_DEPTH_CENTRE 0.03125    /* pixels; a mean this close to a pixel's centre is that pixel's own */
 #define SPLAT_DEPTH_SURFACE 0.0625    /* of the depth; means this little behind the foremost are of one surface */
 #define SPLAT_DEPTH_MEDIANS 32        /* what lies farther than so many median depths is put there */
 
@@ -20,11 +19,10 @@ typedef struct splat_depth {
     uint32_t seen;     /* pixels with a depth */
 } splat_depth;
 
-/* Each pixel has the depth of a mean that projects into it: of those at its centre, as a pixel-aligned set has one for
- * every pixel of its own views, or else of all, the foremost surface, and of that the mean nearest to the centre.
- * Gaussians behind the camera, outside the picture or too faint are not seen. `camera` is without distortion; at
- * most T3R_MAX_SIDE a side. False without memory; free(out->steps) in either case. Host floats: no bits are promised.
- */
+/* Each pixel has the depth of a mean that projects into it: of the foremost surface the one nearest to the pixel's
+ * centre, which in a view of a pixel-aligned set is that pixel's own. Gaussians behind the camera, outside the picture
+ * or too faint are not seen. `camera` is without distortion, the sides T3R_MAX_SIDE at most. False without memory;
+ * free(out->steps) in either case. Host floats: no bits are promised. */
 bool splat_depth_make(splat_depth *out, const scene_file *scene, const t3r_camera *camera, uint32_t width,
                       uint32_t height);
 
