@@ -287,9 +287,8 @@ static const struct argp_option argp_options[] = {
      "+head: their points for our head",
      0},
     {"prune", KEY_PRUNE, "SCENE.ply", 0,
-     "prune this scene, made elsewhere of the context views: percents are of its Gaussians, trim3r retains points "
-     "among "
-     "their means, the rivals Gaussians",
+     "prune this scene, made elsewhere of the views of --context: percents are of its Gaussians; trim3r makes new ones "
+     "of points among their means, the rivals keep some; the mask is of its means where a view has no depth",
      0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
