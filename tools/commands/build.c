@@ -22,7 +22,6 @@ typedef struct build_options {
     const char *recording;
     const char *output; /* NULL = no scene file */
     const char *colmap; /* NULL = no COLMAP model */
-    const char *prune;  /* a scene to be pruned in the place of one that is built */
     int flags;          /* SCENE_FILE_... */
     poses_source poses;
     bool json;
@@ -38,8 +37,8 @@ static const struct argp_option options[] = {
      "colours of the Gaussians as a COLMAP model in text",
      0},
     {"prune", KEY_PRUNE, "SCENE.ply", 0,
-     "prune this scene, made elsewhere, instead of building one, with a --method that is a rival; the recording gives "
-     "the views, --context those it was made of",
+     "prune this scene, made elsewhere, instead of building one: the recording gives its views, --context those it was "
+     "made of; percents are of its Gaussians",
      0},
     {"poses", KEY_POSES, "SOURCE", 0,
      "of the context views: given (default), those of the recording; estimate, from corners that they share, with "
@@ -69,7 +68,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->colmap = arg;
         return 0;
     case KEY_PRUNE:
-        o->prune = arg;
+        o->settings.points_of = arg;
         return 0;
     case KEY_LOCAL:
         o->flags |= SCENE_FILE_LOCAL;
@@ -97,11 +96,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "-o %s: scenes are written as .ply", o->output);
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
             argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
-        } else if (o->prune != NULL && method_kind_of(o->settings.method) == METHOD_TRIM3R) {
+        } else if (o->settings.points_of != NULL && method_ranks_for_head(o->settings.method)) {
             argp_error(state,
-                       "--prune takes one of the rivals, --method eagles, say: trim3r needs the recording's depth");
-        } else if (o->prune != NULL && method_way_of(o->settings.method) == METHOD_HEAD) {
-            argp_error(state, "--prune takes no +head: which pixels the Gaussians of a file came from is not told");
+                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not told");
         }
         return 0;
     default:
@@ -125,10 +122,13 @@ static const struct argp argp = {
         "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
         "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
         "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
-        "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% --method eagles -o less.ply\n"
+        "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% -o less.ply\n"
         "  trim3r build room.mcap --keep 10% --colmap start\n"
         "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n\n"
         "The scene stands in the recording's world frame unless --local is given.\n\n"
+        "--prune: the means of the file's Gaussians, in the same world and of opacity 0.05 and more, seen from each "
+        "context view are its depth; trim3r makes new Gaussians of points among them, the rivals keep some of the "
+        "file's as they are. The recording's own depth is not looked at.\n\n"
         "--poses estimate: the first context view keeps the pose that the recording has, or is the origin; each other "
         "one "
         "is joined to the best of those before. With depth in both views lengths are those of the depth, from colour "
@@ -175,7 +175,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     }
     json_add_integer(root, "valid_points", told->valid_points);
     json_add_integers(root, "context", told->context, told->context_count);
-    if (o->prune == NULL) {
+    if (o->settings.points_of == NULL) {
         cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.depth));
         add_unmatched(root, o, told, r);
     }
@@ -184,7 +184,12 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     if (!rival) {
         cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.allocation));
     }
-    cJSON_AddStringToObject(root, o->prune != NULL ? "pruned" : "head", o->prune != NULL ? o->prune : told->head);
+    if (o->settings.points_of != NULL) {
+        cJSON_AddStringToObject(root, "pruned", o->settings.points_of);
+    }
+    if (told->head[0] != '\0') {
+        cJSON_AddStringToObject(root, "head", told->head);
+    }
     if (told->bits[0] != '\0') {
         cJSON_AddStringToObject(root, "head_bits", told->bits);
         cJSON_AddStringToObject(root, "head_crc", told->crc);
@@ -220,7 +225,7 @@ static int build(const build_options *o, const t3r_recording *recording, reconst
                  reconstruction_account *told)
 {
     if (o->settings.method != METHOD_TRIM3R) {
-        rival_source source = {.scene = o->prune};
+        rival_source source = {0};
         int code = rival_build(&source, recording, o->recording, o->settings.method, &o->settings, r, told);
         rival_source_close(&source);
         return code;
@@ -249,7 +254,8 @@ static int write_colmap(const build_options *o, const t3r_recording *recording, 
                           .view_count = told->context_count,
                           .scene = scene,
                           .local = (o->flags & SCENE_FILE_LOCAL) != 0,
-                          .sourced = o->prune == NULL};
+                          .sourced =
+                              o->settings.points_of == NULL || method_kind_of(o->settings.method) == METHOD_TRIM3R};
     if (code == CLI_OK && colmap_folder_write(o->colmap, &model, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }

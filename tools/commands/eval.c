@@ -14,6 +14,7 @@
 #include "cli/option_values.h"
 #include "cli/process_pool.h"
 #include "reconstruction/reconstruction.h"
+#include "reconstruction/scene_frames.h"
 
 #define MOST_KEEPS 64u
 #define ABLATE_KEEPS "60,40,20,10,5"
@@ -44,6 +45,7 @@ enum {
     KEY_VIEWS,
     KEY_KEEP,
     KEY_METHODS,
+    KEY_PRUNE,
     KEY_ITERATIONS,
     KEY_HEADS,
     KEY_MASK_HEAD,
@@ -112,6 +114,19 @@ static void parse_ablations(struct argp_state *state, options *o, const char *te
     }
 }
 
+static void check_prune(struct argp_state *state, const options *o)
+{
+    if (o->planar || o->settings.context_views > 2) {
+        argp_error(state, "--prune takes the views that its scene was made of: it excludes --planar and --views");
+    }
+    for (uint32_t m = 0; m < o->method_count; m++) {
+        if (method_ranks_for_head(o->methods[m])) {
+            argp_error(state,
+                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not told");
+        }
+    }
+}
+
 static void check_options(struct argp_state *state, options *o)
 {
     if (o->input_count == 0) {
@@ -175,6 +190,9 @@ static void check_options(struct argp_state *state, options *o)
     if (o->planar && o->width == 0) {
         o->width = o->height = 256;
     }
+    if (o->settings.points_of != NULL) {
+        check_prune(state, o);
+    }
 }
 
 static error_t parse_option(int key, char *arg, struct argp_state *state)
@@ -199,6 +217,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_METHODS:
         option_methods(state, "methods", arg, o->methods, &o->method_count);
+        return 0;
+    case KEY_PRUNE:
+        o->settings.points_of = arg;
         return 0;
     case KEY_ITERATIONS:
         o->settings.finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
@@ -264,6 +285,10 @@ static const struct argp_option argp_options[] = {
     {"methods", KEY_METHODS, "M,M,...", 0,
      "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
      "+head: their points for our head",
+     0},
+    {"prune", KEY_PRUNE, "SCENE.ply", 0,
+     "prune this scene, made elsewhere of the views of --context: percents are of its Gaussians; trim3r makes new ones "
+     "of points among their means, the rivals keep some; the mask is of its means where a view has no depth",
      0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
@@ -341,15 +366,16 @@ static const struct argp parser = {
         "are no-mask of heads without weights, no-adaptation of the head none, and the last three of --planar. The "
         "table is Markdown, PSNR (dB) / SSIM, means over the cases of a recording; of several recordings the mean, "
         "each counting once.\n\n"
-        "Of several cases one whose frames are refused (without depth, or without a stereo match) is left out, and "
-        "told on stderr and by --json; --resume tries it again. Where none is left the exit status is 1.\n\n"
+        "Of several cases those refused (without depth or stereo match) are left out, and told on stderr and by "
+        "--json; --resume tries them again. Where none is left the exit status is 1.\n\n"
         "Examples:\n"
         "  trim3r eval room.mcap --keep 100,20,10\n"
-        "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images pictures\n"
+        "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images dir\n"
         "  trim3r eval room.mcap --keep 20,5 --views 4\n"
         "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune,pup+head\n"
-        "  trim3r eval room.mcap --keep 10,5 --heads analytic,moment,small,my.t3w\n"
+        "  trim3r eval room.mcap --keep 10,5 --heads analytic,small,my.t3w\n"
         "  trim3r eval room.mcap --ablate=full,no-mask,no-adaptation --keep 10,5 --refine 0\n"
+        "  trim3r eval room.mcap --prune s.ply --context 0,2 --target 1 --methods trim3r,pup --keep 20\n"
         "  trim3r eval *.mcap --keep 100,40,10 --methods trim3r,eagles --jobs all --csv all.csv --resume\n"
         "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
     .children = children,
@@ -371,6 +397,21 @@ static int choose_contestants(const options *o, evaluation_contestants *chosen)
         return evaluation_contestants_ablations(chosen, o->ablations, o->ablation_count, o->planar, &o->settings);
     }
     return evaluation_contestants_methods(chosen, o->methods, o->method_count, o->heads, o->head_count, &o->settings);
+}
+
+/* Opens the scene to be pruned: a bad one is told before the work. */
+static int look_at_scene(const char *path, const evaluation_cases *cases)
+{
+    if (cases->count > 1) {
+        return cli_error(CLI_BAD_USAGE, "--prune: the scene belongs to one context; name it, of one recording, by "
+                                        "--context and --target");
+    }
+    scene_file scene;
+    int code = scene_to_prune(path, &scene);
+    if (code == CLI_OK) {
+        scene_file_free(&scene);
+    }
+    return code;
 }
 
 static int report_all(const options *o, const evaluation_work *work)
@@ -396,8 +437,12 @@ static int evaluate(const options *o)
     evaluation_resume resume = {0};
     int code = choose_contestants(o, &contestants);
     code = code == CLI_OK ? open_cases(o, &cases) : code;
+    if (code == CLI_OK && o->settings.points_of != NULL) {
+        code = look_at_scene(o->settings.points_of, &cases);
+    }
     if (code == CLI_OK && o->to.resume) {
-        code = evaluation_resume_open(&resume, o->to.csv, o->inputs, o->input_count, o->to.images != NULL);
+        code = evaluation_resume_open(&resume, o->to.csv, o->inputs, o->input_count, o->settings.points_of,
+                                      o->to.images != NULL);
     }
     if (code == CLI_OK) {
         evaluation_work work = {

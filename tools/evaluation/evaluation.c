@@ -119,6 +119,7 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
         return looked;
     }
     options.depth = sensed ? T3R_DEPTH_SENSOR : settings->depth;
+    options.points_of = sensed ? NULL : settings->points_of;
     options.gaussians = 0;
     options.keep_percent = 100;
     options.automatic = false;
@@ -250,17 +251,25 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
     }
     evaluation_name_case(row, what);
     row->method = method_name(m);
-    snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->refine);
-    row->allocate = method_kind_of(m) == METHOD_TRIM3R ? t3r_allocation_name(settings->allocation) : "";
-    row->wavelet = t3r_wavelet_name(settings->wavelet);
-    snprintf(row->levels, sizeof row->levels, "%" PRIu32, settings->wavelet_levels);
-    if (method_kind_of(m) == METHOD_TRIM3R) {
+    row->allocate = row->wavelet = "";
+    bool ours = method_kind_of(m) == METHOD_TRIM3R;
+    bool built = ours || settings->points_of == NULL; /* no rival's scene out of a file */
+    if (built) {
+        snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->refine);
+        row->wavelet = t3r_wavelet_name(settings->wavelet);
+        snprintf(row->levels, sizeof row->levels, "%" PRIu32, settings->wavelet_levels);
+    }
+    if (ours) {
+        row->allocate = t3r_allocation_name(settings->allocation);
         snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, settings->clusters);
     }
-    row->depth = what->planar ? "plane" : t3r_depth_name(settings->depth);
+    row->depth = what->planar ? "plane" : settings->points_of != NULL ? "scene" : t3r_depth_name(settings->depth);
     row->ablation = "";
     evaluation_settings_rest(settings, row->settings);
     row->value[EVALUATION_KEEP] = keep;
+    if (!built) {
+        return CLI_OK;
+    }
     chosen_head head;
     int code = chosen_head_open(&head, settings->head);
     if (code == CLI_OK) {

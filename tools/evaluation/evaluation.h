@@ -42,7 +42,7 @@ typedef struct evaluation_views {
     struct rival_source *rivals; /* what the rows of the rivals share */
 } evaluation_views;
 
-/* Masks are of the frames' own depth where every context view has one, whatever depth the rows are made of. CLI_OK, and
+/* Masks are of the frames' own depth where every context view has one, whatever the rows are made of. CLI_OK, and
  * evaluation_views_free() is due; otherwise nothing is. */
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings);
 void evaluation_views_free(evaluation_views *views);

@@ -20,14 +20,14 @@ static bool older(const struct timespec *a, const struct timespec *b)
 }
 
 /* Rows are results of this program on these inputs, as long as neither changed. */
-static int check_age(const char *path, char *const *inputs, uint32_t input_count)
+static int check_age(const char *path, char *const *inputs, uint32_t input_count, const char *pruned)
 {
     struct stat table, other;
     if (stat(path, &table) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s: %s", path, strerror(errno));
     }
-    for (uint32_t i = 0; i <= input_count; i++) {
-        const char *name = i == 0 ? "/proc/self/exe" : inputs[i - 1];
+    for (uint32_t i = 0; i <= input_count + (pruned != NULL); i++) {
+        const char *name = i == 0 ? "/proc/self/exe" : i <= input_count ? inputs[i - 1] : pruned;
         if (stat(name, &other) == 0 && older(&table.st_mtim, &other.st_mtim)) {
             return cli_error(
                 CLI_BAD_INPUT,
@@ -106,13 +106,13 @@ static int read_table(evaluation_resume *resume, const char *path, const char *t
 }
 
 int evaluation_resume_open(evaluation_resume *resume, const char *path, char *const *inputs, uint32_t input_count,
-                           bool with_pictures)
+                           const char *pruned, bool with_pictures)
 {
     *resume = (evaluation_resume){0};
     if (access(path, F_OK) != 0) {
         return CLI_OK;
     }
-    int code = check_age(path, inputs, input_count);
+    int code = check_age(path, inputs, input_count, pruned);
     if (code != CLI_OK) {
         return code;
     }

@@ -74,6 +74,9 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     add_switch(w, "exposure", s->exposure, usual->exposure);
     add_number(w, "views", s->context_views, usual->context_views);
     add_number(w, "seed", s->seed, usual->seed);
+    if (s->points_of != NULL) {
+        add_text(w, "prune", s->points_of, false);
+    }
     if (s->importance != NULL) {
         add_text(w, "importance", s->importance, false);
     }

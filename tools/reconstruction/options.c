@@ -143,6 +143,9 @@ static void check_settings(struct argp_state *state, reconstruction_options *o)
     if ((o->allocation == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
         argp_error(state, "--allocate given and --importance belong together");
     }
+    if (o->points_of != NULL && o->depth != T3R_DEPTH_SENSOR) {
+        argp_error(state, "--depth belongs to a recording's own points, not to --prune");
+    }
     if (o->max_loss > 0 && !o->automatic) {
         argp_error(state, "--max-loss belongs to --auto");
     }

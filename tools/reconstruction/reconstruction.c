@@ -11,6 +11,7 @@
 #include "fixed.h"
 #include "hash.h"
 #include "reconstruction/importance_pictures.h"
+#include "reconstruction/scene_frames.h"
 
 void reconstruction_defaults(reconstruction_options *options)
 {
@@ -412,9 +413,10 @@ void reconstruction_configure(reconstruction *r, const reconstruction_options *o
 
 void reconstruction_request(reconstruction *r, const reconstruction_options *options)
 {
+    uint32_t all = r->pruned != 0 ? r->pruned : r->valid_points;
     r->requested = options->gaussians != 0     ? options->gaussians
-                   : options->keep_percent > 0 ? reconstruction_budget(r->valid_points, options->keep_percent)
-                                               : r->valid_points;
+                   : options->keep_percent > 0 ? reconstruction_budget(all, options->keep_percent)
+                                               : all;
     r->config.gaussians = T3R_MIN(r->requested, r->valid_points);
     r->config.max_gaussians = r->config.gaussians;
 }
@@ -473,7 +475,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
         }
     }
     double added = cli_now();
-    r->add_views_seconds = added - start;
+    r->add_views_seconds += added - start;
     t3r_status status = reconstruction_make(r, options, planes);
     r->build_seconds = cli_now() - added;
     cli_progress_end();
@@ -485,9 +487,16 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
                  const reconstruction_options *options)
 {
     t3r_capture_frame frames[T3R_MAX_VIEWS];
+    scene_frames made = {0};
     importance_pictures pictures = {0};
     const uint16_t *const *planes = NULL;
     int code = choose_context(r, recording, path, options, frames);
+    if (code == CLI_OK && options->points_of != NULL) {
+        code = scene_frames_make(&made, options->points_of, recording, path, r->context, r->context_count,
+                                 r->config.width, r->config.height, frames);
+        r->pruned = made.gaussians;
+        r->add_views_seconds = made.seconds;
+    }
     if (options->allocation == T3R_ALLOCATE_GIVEN) {
         planes = options->importance_planes;
     }
@@ -500,6 +509,7 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
         code = build_from(r, path, options, frames, planes);
     }
     importance_pictures_free(&pictures);
+    scene_frames_free(&made);
     return code;
 }
 

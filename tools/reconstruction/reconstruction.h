@@ -48,6 +48,8 @@ typedef struct reconstruction_options {
     uint32_t shuffle, adapt;     /* of t3r_config, for ablations */
     bool hide_mask;              /* the network is told that every pixel was retained: hidden_mask.h */
     t3r_depth depth;             /* where it comes from */
+    const char *points_of;       /* a .ply whose Gaussians are the depth instead (scene_frames.h), and of which percents
+                                    are; NULL = none */
     uint32_t fill_radius;
     uint32_t bridge_radius;
     uint32_t flying, redundancy, exposure; /* 0 or 1 each: what views tell of each other */
@@ -83,6 +85,7 @@ typedef struct reconstruction {
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
     uint32_t valid_points;                /* pixels of the context views with a depth before filling, working size */
+    uint32_t pruned;                      /* Gaussians of the scene that the points are of; 0 = there is none */
     uint32_t requested;                   /* the budget asked for, as it is without max_loss; more than valid_points
                                              when all are used */
     double add_views_seconds;             /* image stage */

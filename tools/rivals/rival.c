@@ -5,6 +5,7 @@
 
 #include "cli/cli.h"
 #include "reconstruction/developed_frame.h"
+#include "reconstruction/scene_frames.h"
 #include "fixed.h"
 #include "rivals/choose.h"
 #include "rivals/score.h"
@@ -62,20 +63,16 @@ static bool open_views(rival_source *source)
 static int load_whole(rival_source *source)
 {
     scene_file scene;
-    char error[512] = "";
-    if (scene_file_read_ply(source->scene, &scene, error, sizeof error) != 0) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
-    }
-    if (scene.count == 0) {
-        scene_file_free(&scene);
-        return cli_error(CLI_BAD_INPUT, "%s: there are no Gaussians to be pruned", source->scene);
+    double start = cli_now();
+    int code = scene_to_prune(source->options.points_of, &scene);
+    if (code != CLI_OK) {
+        return code;
     }
     reconstruction *whole = &source->whole;
     reconstruction_options plain = source->options;
     plain.arena = ARENA_FULL;
     plain.hash = false;
-    double start = cli_now();
-    int code = reconstruction_load(whole, &scene, T3R_MIN_SIDE, T3R_MIN_SIDE, &plain);
+    code = reconstruction_load(whole, &scene, T3R_MIN_SIDE, T3R_MIN_SIDE, &plain);
     if (code == CLI_OK) {
         code = reconstruction_views(whole, source->recording, source->path, &source->options);
     }
@@ -91,8 +88,9 @@ static int build_whole(rival_source *source)
     reconstruction_options options = source->options;
     options.gaussians = 0;
     options.keep_percent = 100;
-    int code = source->scene != NULL ? load_whole(source)
-                                     : reconstruction_build(&source->whole, source->recording, source->path, &options);
+    int code = options.points_of != NULL
+                   ? load_whole(source)
+                   : reconstruction_build(&source->whole, source->recording, source->path, &options);
     if (code == CLI_OK && !source->opened) {
         code = open_pictures(source, &source->whole);
     }

@@ -11,16 +11,16 @@
 #include "rivals/splat_view.h"
 
 /* What the scenes of one context have in common; made when it is first asked for, so that many budgets and methods
- * share it. All zero, but for `scene`: nothing is open. */
+ * share it. All zero: nothing is open. */
 typedef struct rival_source {
     bool opened, built;
     const t3r_recording *recording;
     const char *path;
-    const char *scene;              /* a .ply to be pruned; NULL: the scene that `options` make of all points */
     reconstruction_options options; /* context and working size resolved once `opened` */
     uint8_t *rgb[T3R_MAX_VIEWS];    /* the context views as the image stage gives them */
     t3r_camera camera[T3R_MAX_VIEWS];
-    reconstruction whole; /* the unpruned scene, from here on once `built` */
+    reconstruction whole; /* the unpruned scene, that of the file `points_of` where there is one; from here on once
+                             `built` */
     splat_model model;    /* the same */
     splat_view views[T3R_MAX_VIEWS];
     uint32_t view_count;
@@ -32,9 +32,9 @@ typedef struct rival_source {
 /* The scene of a method other than plain trim3r at the budget of `options`, in an arena that only renders, or with
  * +head in that of its build: *made, to be closed. *told says of it what reconstruction_told() says of a build: the
  * arena is that of the runtime's part, the largest, the time all of it, the unpruned scene, scoring and fine-tuning
- * included; of a scene from a file, which cannot be traced to points for +head, the points are its Gaussians, the head
- * "". Of `options` context, settings and recording must not change as long as the source is open. An exit status of
- * cli.h.
+ * included; of a scene from a file, which cannot be traced to points for a rival's +head, the points are its
+ * Gaussians, the head "". Of `options` context, settings and recording must not change as long as the source is open.
+ * An exit status of cli.h.
  */
 int rival_build(rival_source *source, const t3r_recording *recording, const char *path, method_id m,
                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told);
