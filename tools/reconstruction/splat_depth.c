@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "rivals/splat_view.h"
+#include "scene/splat_camera.h"
 
 #define MOST_STEPS 65535.0
 #define FARTHEST 0x1p22 /* world units; 65535 steps of the largest unit are twice that */

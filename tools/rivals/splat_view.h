@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "rivals/splat_model.h"
+#include "scene/splat_camera.h"
 #include "trim3r.h"
 
 #define SPLAT_ALPHA_LEAST (1.0 / 255)
@@ -20,16 +21,6 @@
 
 /* Tiles are as wide as a row that the compiler keeps in vectors. */
 enum { SPLAT_TILE = 8 };
-
-typedef struct splat_camera {
-    uint32_t width, height;
-    double fx, fy, cx, cy; /* pixels; (0, 0) is the centre of the top-left pixel */
-    double rotation[9];    /* row-major, camera to scene */
-    double position[3];    /* scene units */
-} splat_camera;
-
-/* The pinhole camera of a t3r_camera for a scene in this frame. */
-splat_camera splat_camera_of(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height);
 
 /* A projected Gaussian: q = (a dx^2 + 2 b dx dy + c dy^2) / 2 at dx, dy pixels from its centre. */
 typedef struct splat {
