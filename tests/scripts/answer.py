@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """answer.py TOOLS: every script that measures, and the demo, tells how it is used, and refuses what it does not know before
-it does anything."""
+it does anything; pages begin as their scripts would write them."""
 import os
+import re
 import sys
 
 from common import check, done, need_opencv, run
@@ -27,4 +28,11 @@ for name in SCRIPTS:
 demo = os.path.join(tools, "demo")
 check("tools/demo" in run(demo, "--help").stdout, "demo --help")
 check("tools/demo" in run(demo, "--no-such-option", expect=2).stderr, "the demo takes no options")
+
+for name, page in {"auto": "AUTO.md", "stream": "STREAM.md"}.items():
+    with open(os.path.join(tools, name), encoding="utf-8") as file:
+        head = re.search(r'^HEAD = """(.*?)"""$', file.read(), flags=re.M | re.S).group(1)
+    with open(os.path.join(tools, page), encoding="utf-8") as file:
+        begins = re.escape(head + "\n| scene |").replace("EPOCH", r"\d+")
+        check(re.match(begins, file.read()), f"{page} does not begin as tools/{name} --write makes it")
 done()

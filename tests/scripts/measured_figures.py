@@ -18,6 +18,10 @@ import measured  # noqa: E402
 
 # writes its arguments to the last of them, notes that it was called, and fails once where it is told to
 PROGRAM = """#!/bin/sh
+if [ "$1" = --version ]; then
+    echo "trim3r 1.0, bits epoch 7"
+    exit
+fi
 echo "$*" >>"{folder}/calls"
 for last; do :; done
 case $* in
@@ -101,6 +105,7 @@ def kept_files(folder):
     write(f"{measured.DATA}/splits.json", json.dumps({"test": ["one"], "train": ["two"]}))
     m = measurements(1)
     check(m.test_scenes == ["one"], "the test scenes")
+    check(m.bits_epoch() == "7", "the epoch of its figures")
 
     with contextlib.redirect_stderr(io.StringIO()):
         path, log = m.made("a.txt", [m.program, "make", "OUT"])
