@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """eval_fleet.py TRIM3R SNAKEFILE: the workflow over a folder of recordings: its tables are those of the program called
-by hand; what fails is tried again, the rest goes on, and a second call does what is left; a changed bit is an error."""
+by hand; what fails is tried again, the rest goes on, and a second call does what is left; a changed bit is an error; jobs
+that go through a submit command, as on a cluster, make the same tables; the program is found."""
 import csv
 import json
 import os
@@ -26,17 +27,77 @@ exec "{trim3r}" "$@"
 """
 
 
+# in the place of a cluster's: notes what was asked for, starts the job script and comes back
+SUBMIT = """#!/bin/sh
+for script; do :; done
+echo "$*" >>"{folder}/submitted"
+sh "$script" >>"{folder}/jobs.log" 2>&1 </dev/null &
+echo $!
+"""
+
+
+def write_program(path, text):
+    with open(path, "w") as file:
+        file.write(text)
+    os.chmod(path, stat.S_IRWXU)
+
+
 def rows(path):
     with open(path, newline="") as file:
         return [{k: v for k, v in r.items() if k not in ("build_ms", "render_ms")} for r in csv.DictReader(file)]
 
 
-def work(folder, status, *settings):
-    result = subprocess.run(["snakemake", "-s", snakefile, "-d", "results", "-c", "2", "--keep-going", "--config",
-                             "recordings=../recordings", f"program={folder}/flaky", "eval=--keep 20,5", *settings],
-                            cwd=folder, capture_output=True, text=True)
-    check((result.returncode != 0) == status, f"exit status {result.returncode}\n{result.stdout}{result.stderr}")
+def snakemake(folder, fails, *arguments, **others):
+    result = subprocess.run(["snakemake", *arguments], cwd=folder, capture_output=True, text=True, **others)
+    check((result.returncode != 0) == fails, f"exit status {result.returncode}\n{result.stdout}{result.stderr}")
     return result.stdout + result.stderr
+
+
+def work(folder, fails, *settings, results="results", how=("-c", "2")):
+    return snakemake(folder, fails, "-s", snakefile, "-d", results, *how, "--keep-going", "--config",
+                     "recordings=../recordings", f"program={folder}/flaky", "eval=--keep 20,5", *settings)
+
+
+def on_a_cluster(folder):
+    """The same tables through a submit command, what dies being tried again."""
+    met = [f"{folder}/recordings/{name}.mcap.met" for name in ("a", "b", "late/b")]
+    for path in met:
+        os.remove(path)
+    write_program(f"{folder}/submit", SUBMIT.format(folder=folder))
+    submit = f"{folder}/submit -c {{threads}} --mem {{resources.mem_mb}}"
+    major = int(subprocess.run(["snakemake", "--version"], capture_output=True, text=True).stdout.split(".")[0])
+    how = ("--cluster", submit) if major < 8 else ("--executor", "cluster-generic", "--cluster-generic-submit-cmd", submit)
+    work(folder, False, results="clustered", how=("--jobs", "2", *how))
+    check(rows(f"{folder}/clustered/scores.csv") == rows(f"{folder}/results/scores.csv"), "a cluster's rows are the same")
+    with open(f"{folder}/clustered/hashes.csv") as ours, open(f"{folder}/results/hashes.csv") as theirs:
+        check(ours.read() == theirs.read(), "and its hashes")
+    with open(f"{folder}/submitted") as file:
+        submitted = file.read().splitlines()
+    check(all(line.startswith("-c 1 --mem 1000 ") for line in submitted), f"what jobs ask for: {submitted}")
+    count = {rule: sum(f".{rule}." in line for line in submitted) for rule in ("eval", "replay", "report", "scores")}
+    # what died is tried again by Snakemake's process within the job, or submitted anew
+    check(3 <= count.pop("eval") <= 6 and all(map(os.path.exists, met)), f"each eval dies once: {submitted}")
+    check(count == {"replay": 3, "report": 1, "scores": 0}, f"tables are merged here: {submitted}")
+
+
+def finds_its_program(folder):
+    """That of the checkout it lies in, else the PATH's, else an error that says what to do."""
+    os.makedirs(f"{folder}/checkout/tools/fleet")
+    shutil.copy(snakefile, f"{folder}/checkout/tools/fleet")
+    dry = ("-s", "checkout/tools/fleet/Snakefile", "-d", "fresh", "-c", "1", "-n", "-p", "--config",
+           "recordings=../recordings")
+    tools = os.path.dirname(shutil.which("snakemake"))
+    path = ":".join(p for p in ("/usr/bin", "/bin", tools) if shutil.which("trim3r", path=p) is None)
+    missing = snakemake(folder, True, *dry, env={**os.environ, "PATH": path})
+    check("trim3r: no such program" in missing and "program=FILE" in missing, missing)
+    check("nowhere/trim3r: no such" in snakemake(folder, True, *dry, "program=nowhere/trim3r"), "a program that is not")
+    os.makedirs(f"{folder}/bin")
+    os.symlink(trim3r, f"{folder}/bin/trim3r")
+    on_path = {**os.environ, "PATH": f"{folder}/bin:{path}"}
+    check("\n        trim3r eval" in snakemake(folder, False, *dry, env=on_path), "the PATH's")
+    os.makedirs(f"{folder}/checkout/build/release")
+    os.symlink(trim3r, f"{folder}/checkout/build/release/trim3r")
+    check("/build/release/trim3r eval" in snakemake(folder, False, *dry, env=on_path), "the checkout's")
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -49,9 +110,7 @@ with tempfile.TemporaryDirectory() as folder:
         whole = file.read()
     with open(rooms[1], "wb") as file:
         file.write(whole[:100])
-    with open(f"{folder}/flaky", "w") as file:
-        file.write(FLAKY.format(trim3r=trim3r, row="."))
-    os.chmod(f"{folder}/flaky", stat.S_IRWXU)
+    write_program(f"{folder}/flaky", FLAKY.format(trim3r=trim3r, row="."))
 
     told = work(folder, True)
     check("eval/b.csv" in told, "the recording that failed is named")
@@ -84,6 +143,8 @@ with tempfile.TemporaryDirectory() as folder:
     with open(f"{folder}/expected/a.json", "w") as file:
         json.dump(changed, file)
     check("replay/a.json" in work(folder, True, "expected=../expected"), "a changed hash is an error")
+    on_a_cluster(folder)
+    finds_its_program(folder)
     check("no recordings" in work(folder, True, "recordings=../nowhere"), "an empty folder is told")
 
 done()

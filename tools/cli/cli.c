@@ -9,6 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/time_left.h"
+
 static const char *command_name;
 
 static struct {
@@ -22,7 +24,7 @@ static struct {
     bool visible, silent;
     struct {
         const char *what;
-        uint32_t done, total; /* 0: no outer work */
+        uint32_t before, done, total; /* 0: no outer work */
         double started;
     } outer;
 } progress;
@@ -65,10 +67,10 @@ static void draw_outer(double now)
 {
     uint32_t done = progress.outer.done, total = progress.outer.total;
     fprintf(stderr, "%" PRIu32 " of %" PRIu32 " %s", done, total, progress.outer.what);
-    double left = done == 0 ? 0 : (now - progress.outer.started) / done * (total - done);
+    double left = cli_time_left(progress.outer.before, done, total, now - progress.outer.started);
     if (left >= 90) {
         fprintf(stderr, ", %.0f min left", left / 60);
-    } else if (done > 0) {
+    } else if (left >= 0) {
         fprintf(stderr, ", %.0f s left", left);
     }
     fputs("   ", stderr);
@@ -99,12 +101,13 @@ void cli_progress(const char *what, uint32_t done, uint32_t total)
     fflush(stderr);
 }
 
-void cli_progress_within(const char *what, uint32_t done, uint32_t total)
+void cli_progress_within(const char *what, uint32_t before, uint32_t done, uint32_t total)
 {
     if (progress.outer.total == 0) {
         progress.outer.started = cli_now();
     }
     progress.outer.what = what;
+    progress.outer.before = before;
     progress.outer.done = done;
     progress.outer.total = done < total ? total : 0;
     if (progress.outer.total > 0 && draws()) {

@@ -20,8 +20,8 @@ void cli_set_command(const char *name);
 void cli_progress(const char *what, uint32_t done, uint32_t total);
 void cli_progress_end(void);
 /* What the lines to come are part of: "12 of 400 rows, 3 min left", by the time since the first of these calls; nothing
- * any more once all are done. */
-void cli_progress_within(const char *what, uint32_t done, uint32_t total);
+ * any more once all are done. before: how many of `done` were there already and took no time. */
+void cli_progress_within(const char *what, uint32_t before, uint32_t done, uint32_t total);
 /* None of it from here on: of a process that works for another. */
 void cli_progress_silence(void);
 

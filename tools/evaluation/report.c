@@ -52,7 +52,7 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
     if (code == CLI_OK && !to->json && !to->ablate) {
         evaluation_print_header(stdout, to->planar);
     }
-    cli_progress_within("rows", 0, report->row_total);
+    cli_progress_within("rows", 0, 0, report->row_total);
     return code;
 }
 
@@ -138,12 +138,13 @@ int evaluation_report_row(evaluation_report *report, bool known, const evaluatio
         return code;
     }
     report->rows[report->row_count++] = *row;
+    report->known_count += known;
     if (!report->to.json && !report->to.ablate) {
         cli_progress_end();
         evaluation_print_row(stdout, row, report->to.planar);
         fflush(stdout);
     }
-    cli_progress_within("rows", report->row_count, report->row_total);
+    cli_progress_within("rows", report->known_count, report->row_count, report->row_total);
     if (known) {
         return CLI_OK;
     }
@@ -170,6 +171,7 @@ void evaluation_report_refuse(evaluation_report *report, const evaluation_case *
     while (report->row_count > 0 && of_case(&report->rows[report->row_count - 1], &names)) {
         report->row_count--;
     }
+    report->known_count = report->known_count < report->row_count ? report->known_count : report->row_count;
     cJSON *told = cJSON_CreateObject();
     cJSON_AddStringToObject(told, "scene", names.scene);
     if (!planar) {
@@ -181,7 +183,7 @@ void evaluation_report_refuse(evaluation_report *report, const evaluation_case *
     (void)cli_error(CLI_OK, "left out: %s%s%s%s%s%s", planar ? "" : "context ", names.context,
                     planar ? "" : ", target ", names.target, planar ? "" : ": ", reason);
     report->row_total -= report->rows_each;
-    cli_progress_within("rows", report->row_count, report->row_total);
+    cli_progress_within("rows", report->known_count, report->row_count, report->row_total);
 }
 
 /* ---- what is written at the end --------------------------------------------------------------------------------- */

@@ -28,6 +28,7 @@ typedef struct evaluation_report {
     whole_file page_file;
     evaluation_row *rows; /* room for all */
     uint32_t row_count, row_total;
+    uint32_t known_count;           /* of row_count: they stood in the table already */
     uint32_t case_total, rows_each; /* of a case */
     cJSON *refused;                 /* cases: objects of scene, context, target, reason */
 } evaluation_report;

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""progress.py TRIM3R: what long commands say on a terminal: how much is done, and of an evaluation how many rows and how
+long it goes on, by what this run has made; nothing of it where stderr is no terminal."""
+import os
+import pty
+import re
+import subprocess
+import tempfile
+import threading
+
+from common import TRIM3R, check, done, run
+
+CLEARED = "\r\x1b[K"
+ROWS = re.compile(r"\r(\d+) of (\d+) rows(?:, (\d+) (s|min) left)?")
+
+
+def on_terminal(*command, expect=0):
+    """What the program writes to stderr where that is a terminal."""
+    ours, theirs = pty.openpty()
+    said = []
+
+    def read():
+        try:
+            while part := os.read(ours, 65536):
+                said.append(part)
+        except OSError:  # the other end is closed
+            pass
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    ended = subprocess.run([TRIM3R, *map(str, command)], stdout=subprocess.DEVNULL, stderr=theirs, timeout=300)
+    os.close(theirs)
+    reader.join()
+    os.close(ours)
+    text = b"".join(said).decode()
+    check(ended.returncode == expect, f"{command}: {ended.returncode} {text}")
+    return text
+
+
+def told(text):
+    """[(rows done, rows in all, whether a time left is told)]"""
+    return [(int(count), int(total), left != "") for count, total, left, _ in ROWS.findall(text)]
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    run("room", "--size", "64x64", "-o", "room.mcap")
+
+    text = on_terminal("room", "--size", "320x240", "--frames", 24, "-o", "long.mcap")
+    percents = [int(p) for p in re.findall(r"\rdrawing the room +(\d+) %", text)]
+    check(len(percents) > 1 and percents == sorted(percents) and percents[-1] < 100, f"the part that is done: {percents}")
+    check(text.endswith(CLEARED), f"the line is gone at the end: {text[-50:]!r}")
+
+    call = ("eval", "room.mcap", "--keep", "60,40,20,10", "--csv", "rows.csv")
+    lines = told(on_terminal(*call))
+    with open("rows.csv") as file:
+        table = file.read().splitlines(keepends=True)
+    total = len(table) - 1
+    check(total > 4 and {line[1] for line in lines} == {total}, f"{total} rows in all: {lines}")
+    counts = [line[0] for line in lines]
+    check(sorted(set(counts)) == list(range(total)) and counts == sorted(counts), f"each row is told, in order: {counts}")
+    check(all(timed == (count > 0) for count, _, timed in lines), f"a time is left from the first row on: {lines}")
+
+    there = total // 2
+    with open("rows.csv", "w") as file:
+        file.writelines(table[: 1 + there])
+    lines = told(on_terminal(*call, "--resume"))
+    check({line[0] for line in lines} == set(range(total)), f"rows that were there are counted: {lines}")
+    check(all(timed == (count > there) for count, _, timed in lines), f"the time is that of the rows made now: {lines}")
+
+    text = on_terminal("eval", "room.mcap", "--keep", 10, "--images", "rows.csv/none", "--csv", "one.csv", expect=1)
+    check(re.search(r"(^|\x1b\[K)trim3r eval: [^\r]*\r\n", text), f"a message has its line to itself: {text!r}")
+
+    ended = subprocess.run([TRIM3R, *call], capture_output=True, text=True, timeout=300)
+    check(ended.returncode == 0 and ended.stderr == "", f"no progress where there is no terminal: {ended.stderr!r}")
+done()

@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+"""answer.py TOOLS: every script that measures, and the demo, tells how it is used, and refuses what it does not know before
+it does anything; pages begin as their scripts would write them."""
+import os
+import re
+import sys
+
+from common import check, done, need_opencv, run
+
+tools = sys.argv[1]
+SCRIPTS = ("auto", "live", "paper", "poses", "results", "speed", "stereo_results", "stream")
+WRONG = {  # beside an unknown option
+    "live": [["--runs", "few"]],
+    "paper": [["nothing"], ["--write", "--quick"], ["views", "--write"], ["--tuned-pruned", "101"], ["--head-of", "x"]],
+    "poses": [["--jobs", "some"], ["nothing"]],
+    "results": [["nothing"], ["heads", "--write"]],
+    "speed": [["--runs", "few"], ["nothing"], ["--recorded", "--runs", "3"]],
+    "stereo_results": [["hololens_b", "--write"]],
+}
+
+need_opencv()
+for name in SCRIPTS:
+    script = os.path.join(tools, name)
+    text = run(script, "--help").stdout
+    check(text.startswith("usage: " + name) and f"tools/{name}" in text, f"{name} --help has a usage and examples")
+    for wrong in [["--no-such-option"], *WRONG.get(name, [])]:
+        check("error: " in run(script, *wrong, expect=2).stderr, f"{name} {wrong} is refused with a reason")
+demo = os.path.join(tools, "demo")
+check("tools/demo" in run(demo, "--help").stdout, "demo --help")
+check("tools/demo" in run(demo, "--no-such-option", expect=2).stderr, "the demo takes no options")
+
+for name, page in {"auto": "AUTO.md", "stream": "STREAM.md"}.items():
+    with open(os.path.join(tools, name), encoding="utf-8") as file:
+        head = re.search(r'^HEAD = """(.*?)"""$', file.read(), flags=re.M | re.S).group(1)
+    with open(os.path.join(tools, page), encoding="utf-8") as file:
+        begins = re.escape(head + "\n| scene |").replace("EPOCH", r"\d+")
+        check(re.match(begins, file.read()), f"{page} does not begin as tools/{name} --write makes it")
+done()

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""measured_figures.py TOOLS: what the scripts that measure share: tables, means, blocks of a file, triplets, and files that
+are made once for each program and command."""
+import contextlib
+import io
+import json
+import os
+import stat
+import subprocess
+import sys
+import tempfile
+
+from common import check, done
+
+sys.path.insert(0, sys.argv[1])
+sys.dont_write_bytecode = True
+import measured  # noqa: E402
+
+# writes its arguments to the last of them, notes that it was called, and fails once where it is told to
+PROGRAM = """#!/bin/sh
+if [ "$1" = --version ]; then
+    echo "trim3r 1.0, bits epoch 7"
+    exit
+fi
+echo "$*" >>"{folder}/calls"
+for last; do :; done
+case $* in
+*--resume*) eval "last=\\${{$(($# - 1))}}" ;;
+esac
+echo "part of $*" >>"$last"
+echo "told $1"
+if [ "$1" = fails ] && [ ! -e "{folder}/failed" ]; then
+    touch "{folder}/failed"
+    exit 1
+fi
+# {version}
+"""
+
+
+def raises(kind, function, *arguments):
+    with contextlib.redirect_stderr(io.StringIO()):
+        try:
+            function(*arguments)
+        except kind as error:
+            return str(error) or repr(error)
+    check(False, f"{function.__name__}{arguments} raises no {kind.__name__}")
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    return path
+
+
+def tables_and_means(folder):
+    lines = list(measured.table(("a", "b"), [["1", "2"], ["3", "4"]]))
+    check(lines == ["| a | b |", "|---|---|", "| 1 | 2 |", "| 3 | 4 |"], f"a table: {lines}")
+    rows = [{"keep": "10", "psnr": "20"}, {"keep": "5", "psnr": "7"}, {"keep": "10", "psnr": "23"}]
+    check(measured.means(rows, "psnr", "keep") == {"10": 21.5, "5": 7}, "means by a column")
+    check(measured.listed((3, "a", 5)) == "3,a,5", "a list")
+
+    page = write(f"{folder}/page.md", "before\n<!-- x:begin -->\nold\nlines\n<!-- x:end -->\nafter\n<!-- y:begin -->\n"
+                 "kept\n<!-- y:end -->\n")
+    new = "before\n<!-- x:begin -->\nnew\n<!-- x:end -->\nafter\n<!-- y:begin -->\nkept\n<!-- y:end -->\n"
+    for _ in range(2):
+        measured.write_block(page, "x", ["new"])
+        check(read(page) == new, f"a block is replaced, nothing else: {read(page)}")
+    raises(ValueError, measured.write_block, page, "z", ["lost"])
+    check(read(page) == new, "a file without the mark is left as it is")
+
+
+def triplets():
+    told = {"triplets": [{"context": [0, 2], "target": 1}, {"context": [4, 9], "target": 6}]}
+    check(measured.triplets(told) == [("0,2", "1"), ("4,9", "6")], "as eval's options want them")
+    every = [{"context": [i, i + 2], "target": i + 1} for i in range(10)]
+    still = {"context": [3, 3], "target": 3}
+    chosen = measured.even_triplets({"trim3r_triplets": [still, *every]})
+    check(chosen == [([i, i + 2], i + 1) for i in (0, 2, 5, 7)], f"four of ten, evenly, none of one frame: {chosen}")
+    check(measured.even_triplets({"trim3r_triplets": every[:2]}) == [([0, 2], 1), ([1, 3], 2)], "fewer where there are fewer")
+
+
+def program(folder, version):
+    path = write(f"{folder}/program", PROGRAM.format(folder=folder, version=version))
+    os.chmod(path, stat.S_IRWXU)
+    return path
+
+
+def kept_files(folder):
+    def calls():
+        return read(f"{folder}/calls").splitlines() if os.path.exists(f"{folder}/calls") else []
+
+    def measurements(version):
+        return measured.Measurements("test", program(folder, version), f"{folder}/cache")
+
+    said = raises(SystemExit, measured.Measurements, "test", f"{folder}/none", f"{folder}/cache")
+    check("none is not there" in said, said)
+    measured.DATA = f"{folder}/data"
+    check("data is not there" in raises(SystemExit, measurements, 1), "so it is without scenes")
+    os.mkdir(measured.DATA)
+    write(f"{measured.DATA}/splits.json", json.dumps({"test": ["one"], "train": ["two"]}))
+    m = measurements(1)
+    check(m.test_scenes == ["one"], "the test scenes")
+    check(m.bits_epoch() == "7", "the epoch of its figures")
+
+    with contextlib.redirect_stderr(io.StringIO()):
+        path, log = m.made("a.txt", [m.program, "make", "OUT"])
+        check(os.path.dirname(path) == m.folder and path.endswith(".txt"), f"kept by its name: {path}")
+        check(read(log) == "told make\n" and read(path).startswith("part of make "), "the file and what was told")
+        check(m.made("a.txt", [m.program, "make", "OUT"]) == (path, log) and len(calls()) == 1, "made once")
+        other, _ = m.made("a.txt", [m.program, "else", "OUT"])
+        check(other != path and len(calls()) == 2, "another command is another file")
+        check(measurements(1).made("a.txt", [m.program, "make", "OUT"])[0] == path and len(calls()) == 2, "found again")
+        newer = measurements(2)
+        check(newer.folder != m.folder, "another program has files of its own")
+        again, _ = newer.made("a.txt", [newer.program, "make", "OUT"])
+        check(again != path and os.path.exists(path) and len(calls()) == 3, "made again when the program changed")
+
+        command = [newer.program, "fails", "OUT"]
+        raises(subprocess.CalledProcessError, newer.made, "b.txt", command, ["--resume"])
+        check(not os.path.exists(newer.path("b.txt", command)), "what failed is not kept as made")
+        path, _ = newer.made("b.txt", command, ["--resume"])
+        check(read(path).count("part of fails") == 2, f"what it left is gone on with: {read(path)}")
+        check(calls()[-1].endswith(" --resume") and len(calls()) == 5, f"by its option: {calls()}")
+
+
+with tempfile.TemporaryDirectory() as scratch:
+    tables_and_means(scratch)
+    triplets()
+    kept_files(scratch)
+done()
