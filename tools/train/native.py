@@ -50,12 +50,12 @@ def preparer():
     def here(*pattern):
         return sorted(glob.glob(os.path.join(HERE, "..", "..", *pattern)))
 
-    rivals = here("tools", "scene", "gaussian_shape.c")
+    rivals = [path for part in ("gaussian_shape", "splat_camera") for path in here("tools", "scene", part + ".c")]
     rivals += [path for part in ("choose", "score*", "splat_*") for path in here("tools", "rivals", part + ".c")]
     sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals
     sources += here("quant", "heads", "small.c") + here("runtime", "*.c") + here("runtime", "kernels", "*.c")
     headers = here("runtime", "*.h") + here("runtime", "*", "*.h") + here("tools", "rivals", "*.h")
-    headers += here("tools", "scene", "gaussian_shape.h") + here("tools", "reconstruction", "method.h")
+    headers += here("tools", "scene", "*.h") + here("tools", "reconstruction", "method.h")
     headers += here("tools", "train", "prepare_rival.h")
     includes = (RUNTIME, os.path.join(RUNTIME, "include"), os.path.join(HERE, ".."), HEADS)
     flags = ("-std=c11", "-O3", "-march=native", "-ffp-contract=off", *("-I" + folder for folder in includes))
