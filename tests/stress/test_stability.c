@@ -10,7 +10,6 @@
 #include <cmocka.h>
 
 #include "stress/measure.h"
-#include "stress/promise.h"
 #include "stress/scene.h"
 #include "stress/table.h"
 
@@ -116,48 +115,6 @@ static void budgets_and_refusals(void **state)
     }
 }
 
-/* An arena that grew, or that changed for the same budget, is told; a rival's is that of all points. */
-static void arenas_that_change(void **state)
-{
-    (void)state;
-    stress_row base = {.method = METHOD_TRIM3R}, row;
-    base.value[STRESS_ARENA_BYTES] = base.value[STRESS_GAUSSIANS] = 1000;
-    const struct {
-        method_id method;
-        double arena, gaussians;
-        stress_status expected;
-    } cases[] = {{METHOD_TRIM3R, 1000, 1000, STRESS_MEASURED}, {METHOD_TRIM3R, 1001, 1000, STRESS_BROKEN},
-                 {METHOD_TRIM3R, 999, 1000, STRESS_BROKEN},    {METHOD_TRIM3R, 999, 500, STRESS_MEASURED},
-                 {METHOD_EAGLES, 999, 1000, STRESS_MEASURED},  {METHOD_EAGLES, 1001, 1000, STRESS_MEASURED}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        row = base;
-        row.method = cases[i].method;
-        row.value[STRESS_ARENA_BYTES] = cases[i].arena;
-        row.value[STRESS_GAUSSIANS] = cases[i].gaussians;
-        stress_relate(&row, &base, 1);
-        assert_int_equal(row.status, cases[i].expected);
-    }
-}
-
-static void promises(void **state)
-{
-    (void)state;
-    t3r_gaussian g[2] = {{.factor = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .opacity_q15 = 32767}, {.factor = {0}}};
-    t3r_scene scene = {.gaussians = g, .count = 2};
-    assert_null(stress_broken_promise(&scene, 2, false));
-    assert_string_equal(stress_broken_promise(&scene, 3, false), "the budget is not met");
-    assert_null(stress_broken_promise(&scene, 3, true));
-    assert_string_equal(stress_broken_promise(&scene, 1, true), "the budget is not met");
-    g[1].position_q20[2] = (1 << 30) + 1;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
-    g[1].position_q20[2] = 0;
-    g[0].opacity_q15 = 32768;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
-    g[0].opacity_q15 = 0;
-    g[0].factor_exponent = 16;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
-}
-
 static void means_of_rows(void **state)
 {
     (void)state;
@@ -180,6 +137,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(still_scene, open_fixture, close_fixture),
         cmocka_unit_test_setup_teardown(budgets_and_refusals, open_fixture, close_fixture),
-        cmocka_unit_test(arenas_that_change), cmocka_unit_test(promises), cmocka_unit_test(means_of_rows)};
+        cmocka_unit_test(means_of_rows)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -139,7 +139,7 @@ static void compare(stress_row *row, const snapshot *a, const snapshot *b, size_
     row->value[STRESS_MOTION] += stay == 0 ? 0 : way / stay;
 }
 
-static void judge(stress_row *row, uint32_t clusters)
+void stress_judge_still(stress_row *row, uint32_t clusters)
 {
     if (row->value[STRESS_GAUSSIANS] >= clusters && row->method == METHOD_TRIM3R &&
         !(row->value[STRESS_MASK_CHANGED] <= STRESS_MASK_CHANGED_MOST &&
@@ -193,7 +193,7 @@ int stress_stability(stress_row *rows, const stress_case *c, const stress_contes
         rows[i].value[STRESS_MASK_CHANGED] /= contest->captures - 1;
         rows[i].value[STRESS_MOTION] /= contest->captures - 1;
         if (code == CLI_OK && rows[i].status == STRESS_MEASURED) {
-            judge(&rows[i], contest->settings.clusters);
+            stress_judge_still(&rows[i], contest->settings.clusters);
         }
     }
     free(last);
