@@ -185,7 +185,29 @@ static stress_row still_row(double gaussians, double changed, double motion)
     return row;
 }
 
-@STILL@
+/* Bounds: at 1, 4 and 100 Gaussians a SuperCluster, just within and just beyond. */
+static void still_scenes_that_do_not_stay(void **state)
+{
+    (void)state;
+    const double noise = 0.125;
+    const struct {
+        method_id method;
+        double gaussians, changed, motion;
+        stress_status expected;
+    } cases[] = {{METHOD_TRIM3R, 300, 0.5, 0, STRESS_MEASURED},       {METHOD_TRIM3R, 300, 0.51, 0, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 1200, 0.299, 0, STRESS_MEASURED},    {METHOD_TRIM3R, 1200, 0.301, 0, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 30000, 0.0599, 0, STRESS_MEASURED},  {METHOD_TRIM3R, 30000, 0.0601, 0, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 30000, 0, 0.874, STRESS_MEASURED},   {METHOD_TRIM3R, 30000, 0, 0.876, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 299, 1, 1, STRESS_MEASURED},         {METHOD_TRIM3R, 30000, NAN, 0, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 30000, 0, INFINITY, STRESS_BROKEN},  {METHOD_EAGLES, 30000, 1, 1, STRESS_MEASURED}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        stress_row row = still_row(cases[i].gaussians, cases[i].changed, cases[i].motion);
+        row.method = cases[i].method;
+        stress_judge_still(&row, 300, noise);
+        assert_int_equal(row.status, cases[i].expected);
+        assert_int_equal(strncmp(row.reason, "a still scene does not stay", 27) == 0, row.status == STRESS_BROKEN);
+    }
+}
 
 /* What is told of a broken promise: a line, its cell and reason, and the exit status. */
 static void exit_status_of_a_broken_promise(void **state)
