@@ -64,7 +64,8 @@ static void cell(fixture *f, const char *name, uint32_t grade)
 }
 
 /* The noise of a still scene moves a Gaussian without refinement or network along its ray: depth noise of 0.2 % in both
- * captures, 0.954 deviations apart in the median; a rival's mask of random scores stays, as the same pixels have depth. */
+ * captures, 0.954 deviations apart in the median; a rival's mask of random scores stays, as the same pixels have depth.
+ */
 static void still_scene(void **state)
 {
     fixture *f = *state;
