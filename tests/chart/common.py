@@ -3,6 +3,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import browser  # noqa: E402, F401
 from checks import check, done, run, skip  # noqa: E402, F401
 
 HEADING = ("scene,context,target,method,head,bits,refine,wavelet,keep,gaussians,psnr,ssim,build_ms,render_ms,arena_bytes,"

@@ -5,8 +5,7 @@ import os
 import sys
 import tempfile
 
-import browser
-from common import built_in, check, done, made_up, run, skip
+from common import browser, built_in, check, done, made_up, run, skip
 
 trim3r = sys.argv[1]
 looks = sys.argv[2] if len(sys.argv) > 2 else None

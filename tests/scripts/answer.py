@@ -8,13 +8,14 @@ import sys
 from common import check, done, need_opencv, run
 
 tools = sys.argv[1]
-SCRIPTS = ("auto", "live", "paper", "poses", "results", "speed", "stereo_results", "stream")
+SCRIPTS = ("auto", "live", "paper", "poses", "results", "speed", "stability", "stereo_results", "stream")
 WRONG = {  # beside an unknown option
     "live": [["--runs", "few"]],
     "paper": [["nothing"], ["--write", "--quick"], ["views", "--write"], ["--tuned-pruned", "101"], ["--head-of", "x"]],
     "poses": [["--jobs", "some"], ["nothing"]],
     "results": [["nothing"], ["heads", "--write"]],
     "speed": [["--runs", "few"], ["nothing"], ["--recorded", "--runs", "3"]],
+    "stability": [["--jobs", "some"], ["room"]],
     "stereo_results": [["hololens_b", "--write"]],
 }
 

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "stress/measure.h"
-#include "stress/promise.h"
 #include "stress/scene.h"
+#include "stress/stability.h"
 #include "stress/table.h"
 
 enum { SIDE = 48, METHODS = 3 };
@@ -64,7 +64,8 @@ static void cell(fixture *f, const char *name, uint32_t grade)
 }
 
 /* The noise of a still scene moves a Gaussian without refinement or network along its ray: depth noise of 0.2 % in both
- * captures, 1.13 deviations apart in the mean; a rival's mask of random scores stays, as the same pixels have depth. */
+ * captures, 0.954 deviations apart in the median; a rival's mask of random scores stays, as the same pixels have depth.
+ */
 static void still_scene(void **state)
 {
     fixture *f = *state;
@@ -74,15 +75,53 @@ static void still_scene(void **state)
         assert_int_equal(row->status, STRESS_MEASURED);
         assert_int_equal((int)row->value[STRESS_GAUSSIANS], (2 * SIDE * SIDE + 2) / 5);
         double spacing = sqrt(2.0 * SIDE * SIDE / row->value[STRESS_GAUSSIANS]); /* pixels */
-        double expected = 0.002 * 1.128 * SIDE * 0.866 / spacing;                /* their distance cancels */
-        /* eagles: those that stay in both captures are no fair sample */
-        assert_true(m == 2 || fabs(row->value[STRESS_MOTION] / expected - 1) < 0.05);
+        double expected = 0.002 * 0.954 * SIDE * 0.866 / spacing;                /* their distance cancels */
+        assert_true(fabs(stress_still_motion(&f->c.base, row->value[STRESS_GAUSSIANS]) / expected - 1) < 0.01);
+        /* a median of 900 has a deviation of 4 %; eagles: those that stay in both captures are no fair sample */
+        if (m != 2 && fabs(row->value[STRESS_MOTION] / expected - 1) > 0.12) {
+            fail_msg("motion %g, not %g", row->value[STRESS_MOTION], expected);
+        }
         assert_true(row->value[STRESS_FLICKER] > 0.1 && row->value[STRESS_FLICKER] < 60);
         assert_true(row->value[STRESS_FLICKER_UNPRUNED] > 0.1 && row->value[STRESS_FLICKER_UNPRUNED] < 6);
     }
     assert_true(f->rows[1].value[STRESS_MASK_CHANGED] <= 0);
     assert_true(f->rows[0].value[STRESS_MASK_CHANGED] < 0.25);
     assert_true(f->rows[2].value[STRESS_MASK_CHANGED] > f->rows[0].value[STRESS_MASK_CHANGED]);
+}
+
+/* The promise where it can fail: the shipped head and refinement on every drawn scene, from as many Gaussians as
+ * SuperClusters up. A mask that changed by nothing would say that nothing was captured anew. */
+static void learned_and_refined(void **state)
+{
+    fixture *f = *state;
+    const double keeps[] = {2, 40};
+    reconstruction_defaults(&f->contest.settings);
+    f->contest.settings.width = f->contest.settings.height = SIDE;
+    f->contest.settings.clusters = 80;
+    f->contest.method_count = 1;
+    assert_true(f->contest.settings.refine > 0 && strcmp(f->contest.settings.head, "analytic") != 0);
+    const stress_scene *scene;
+    for (uint32_t i = 0; (scene = stress_scene_at(i)) != NULL; i++) {
+        stress_case c = {.name = scene->name, .context = "0,1", .target = "2"};
+        assert_true(stress_scene_draw(&c.base, scene, scene->strength[1], SIDE, SIDE));
+        for (uint32_t k = 0; k < 2; k++) {
+            f->contest.keep[0] = keeps[k];
+            assert_int_equal(stress_case_open(&c, &f->contest), 0);
+            assert_int_equal(stress_measure(f->rows, f->renders, &c, &f->contest, NULL, 0), 0);
+            stress_case_close(&c);
+            const double *value = f->rows[0].value;
+            double noise = stress_still_motion(&c.base, value[STRESS_GAUSSIANS]);
+            if (f->rows[0].status != STRESS_MEASURED) {
+                fail_msg("%s at %g %%: %s", scene->name, keeps[k], f->rows[0].reason);
+            }
+            assert_true(value[STRESS_GAUSSIANS] >= f->contest.settings.clusters);
+            assert_true(value[STRESS_MASK_CHANGED] > 0 && value[STRESS_MOTION] > 0);
+            /* the bounds are not out of reach */
+            assert_true(stress_mask_changed_most(value[STRESS_GAUSSIANS], 80) < 8 * value[STRESS_MASK_CHANGED]);
+            assert_true(stress_motion_most(noise) < 12 * value[STRESS_MOTION]);
+        }
+        stress_capture_free(&c.base);
+    }
 }
 
 /* A world elsewhere is the same scene; a budget larger than what is left takes what is left; nothing left is refused.
@@ -116,48 +155,6 @@ static void budgets_and_refusals(void **state)
     }
 }
 
-/* An arena that grew, or that changed for the same budget, is told; a rival's is that of all points. */
-static void arenas_that_change(void **state)
-{
-    (void)state;
-    stress_row base = {.method = METHOD_TRIM3R}, row;
-    base.value[STRESS_ARENA_BYTES] = base.value[STRESS_GAUSSIANS] = 1000;
-    const struct {
-        method_id method;
-        double arena, gaussians;
-        stress_status expected;
-    } cases[] = {{METHOD_TRIM3R, 1000, 1000, STRESS_MEASURED}, {METHOD_TRIM3R, 1001, 1000, STRESS_BROKEN},
-                 {METHOD_TRIM3R, 999, 1000, STRESS_BROKEN},    {METHOD_TRIM3R, 999, 500, STRESS_MEASURED},
-                 {METHOD_EAGLES, 999, 1000, STRESS_MEASURED},  {METHOD_EAGLES, 1001, 1000, STRESS_MEASURED}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        row = base;
-        row.method = cases[i].method;
-        row.value[STRESS_ARENA_BYTES] = cases[i].arena;
-        row.value[STRESS_GAUSSIANS] = cases[i].gaussians;
-        stress_relate(&row, &base, 1);
-        assert_int_equal(row.status, cases[i].expected);
-    }
-}
-
-static void promises(void **state)
-{
-    (void)state;
-    t3r_gaussian g[2] = {{.factor = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .opacity_q15 = 32767}, {.factor = {0}}};
-    t3r_scene scene = {.gaussians = g, .count = 2};
-    assert_null(stress_broken_promise(&scene, 2, false));
-    assert_string_equal(stress_broken_promise(&scene, 3, false), "the budget is not met");
-    assert_null(stress_broken_promise(&scene, 3, true));
-    assert_string_equal(stress_broken_promise(&scene, 1, true), "the budget is not met");
-    g[1].position_q20[2] = (1 << 30) + 1;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
-    g[1].position_q20[2] = 0;
-    g[0].opacity_q15 = 32768;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
-    g[0].opacity_q15 = 0;
-    g[0].factor_exponent = 16;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
-}
-
 static void means_of_rows(void **state)
 {
     (void)state;
@@ -179,7 +176,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(still_scene, open_fixture, close_fixture),
+        cmocka_unit_test_setup_teardown(learned_and_refined, open_fixture, close_fixture),
         cmocka_unit_test_setup_teardown(budgets_and_refusals, open_fixture, close_fixture),
-        cmocka_unit_test(arenas_that_change), cmocka_unit_test(promises), cmocka_unit_test(means_of_rows)};
+        cmocka_unit_test(means_of_rows)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -151,6 +151,57 @@ static void add_section(html_page *page, const stress_picture *picture, uint32_t
     }
 }
 
+/* ---- tables -------------------------------------------------------------------------------------------------------
+ */
+
+static void add_cells(html_page *page, const char *const *texts, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        html_page_table_cell(page, texts[i]);
+    }
+    html_page_table_end_row(page);
+}
+
+/* Why the `count` rows of a cell have no score, or are wrong: a line for all of them where it is the same. */
+static void add_why(html_page *page, const stress_row *rows, uint32_t count)
+{
+    char strength[32], who[64];
+    bool alike = true;
+    for (uint32_t i = 1; i < count; i++) {
+        alike = alike && rows[i].status == rows[0].status && strcmp(rows[i].reason, rows[0].reason) == 0;
+    }
+    stress_strength(rows, strength, sizeof strength);
+    for (uint32_t i = 0; i < (alike ? 1 : count); i++) {
+        const stress_row *row = &rows[i];
+        if (row->status == STRESS_MEASURED) {
+            continue;
+        }
+        snprintf(who, sizeof who, "%s, %.10g %%", method_name(row->method), row->keep);
+        add_cells(page,
+                  (const char *const[]){row->scene, row->target, row->what, strength,
+                                        alike && count > 1 ? "every method and budget" : who,
+                                        row->status == STRESS_BROKEN ? "a promise is broken" : "refused", row->reason},
+                  7);
+    }
+}
+
+/* What no picture shows: cells that were refused, and promises that were broken. */
+static void add_unscored(html_page *page, const stress_row *rows, uint32_t count, uint32_t cell)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < count; i++) {
+        any = any || rows[i].status != STRESS_MEASURED;
+    }
+    if (!any) {
+        return;
+    }
+    html_page_table(page, "Refused, or a promise broken", 0);
+    add_cells(page, (const char *const[]){"scene", "target", "perturbation", "strength", "method", "", "reason"}, 7);
+    for (uint32_t at = 0; at + cell <= count; at += cell) {
+        add_why(page, rows + at, cell);
+    }
+}
+
 /* The columns of the table above the pictures. */
 static void add_table(html_page *page, const stress_row *rows, uint32_t count)
 {
@@ -199,13 +250,18 @@ static void add_table(html_page *page, const stress_row *rows, uint32_t count)
 int stress_album_write(stress_album *album, uint32_t worst, const stress_row *rows, uint32_t count,
                        const stress_contest *contest, FILE *out)
 {
-    html_page *page = html_page_new("trim3r: where it fails",
-                                    "Of each perturbation the cell in which the first method loses most, the "
-                                    "worst first: the frames it was given and what each method made of them.");
+    char introduction[400];
+    snprintf(introduction, sizeof introduction,
+             "Of each perturbation the cell in which %s at %.10g %% loses most PSNR against unperturbed frames (of the "
+             "scene-* rows: against all points), the greatest loss first: the frames it was given and what each method "
+             "made of them.",
+             method_name(contest->methods[0]), contest->keep[0]);
+    html_page *page = html_page_new("trim3r: where it fails", introduction);
     if (page == NULL) {
         return -1;
     }
     qsort(album->pictures, album->count, sizeof *album->pictures, by_badness);
+    add_unscored(page, rows, count, stress_row_count(contest));
     add_table(page, rows, count);
     for (uint32_t i = 0; i < album->count && i < worst; i++) {
         add_section(page, &album->pictures[i], stress_row_count(contest));

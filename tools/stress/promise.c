@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "scene/gaussian_shape.h"
-
 #define POSITION_MOST_Q20 (1 << 30)
 #define EXPONENT_LEAST (-60)
 #define EXPONENT_MOST 15
@@ -22,15 +20,14 @@ static bool in_range(const t3r_gaussian *g)
            g->opacity_q15 <= OPACITY_MOST_Q15;
 }
 
-static bool is_finite(const t3r_gaussian *g)
+bool stress_finite(const gaussian_shape *shape)
 {
-    gaussian_shape shape = gaussian_shape_of(g);
     double sum = 0;
     for (int i = 0; i < 3; i++) {
-        sum += log(shape.scale[i]); /* as a .ply holds it */
+        sum += log(shape->scale[i]); /* as a .ply holds it */
     }
     for (int i = 0; i < 4; i++) {
-        sum += shape.rotation[i];
+        sum += shape->rotation[i];
     }
     return isfinite(sum);
 }
@@ -44,7 +41,8 @@ const char *stress_broken_promise(const t3r_scene *scene, uint32_t count, bool a
         if (!in_range(&scene->gaussians[i])) {
             return "a Gaussian is out of range";
         }
-        if (!is_finite(&scene->gaussians[i])) {
+        const gaussian_shape shape = gaussian_shape_of(&scene->gaussians[i]);
+        if (!stress_finite(&shape)) {
             return "a Gaussian is not finite";
         }
     }

@@ -28,7 +28,7 @@ typedef enum stress_value {
     STRESS_FLICKER,       /* mean change on the mask between noisy captures of the still scene, 8-bit levels */
     STRESS_FLICKER_UNPRUNED, /* the same of all points */
     STRESS_MASK_CHANGED,     /* unperturbed rows: share of the retained pixels that the next capture does not retain */
-    STRESS_MOTION,           /* unperturbed rows: mean way of those retained in both, as a share of their spacing */
+    STRESS_MOTION,           /* unperturbed rows: median way of those retained in both, of their spacing */
     STRESS_BUILD_MS,         /* the least of the captures */
     STRESS_BUILD_RATIO,      /* against the unperturbed row */
     STRESS_ARENA_BYTES,

@@ -12,6 +12,8 @@
 #include "views.h"
 
 #define NOBODY UINT32_MAX
+/* Median of the difference of two normal numbers, in their deviation: 0.6745 sqrt(2) */
+#define MEDIAN_DIFFERENCE 0.9539
 
 /* A scene by the pixels that it came from. */
 typedef struct snapshot {
@@ -52,12 +54,17 @@ static void fill_owners(snapshot *s, const t3r_runtime *rt, const uint32_t *kept
     }
 }
 
+/* Pixels between retained ones. */
+static double spacing_of(const stress_capture *capture, double gaussians)
+{
+    return sqrt((double)capture->width * capture->height * capture->views / fmax(gaussians, 1));
+}
+
 static bool fill_places(snapshot *s, const t3r_scene *scene, const stress_run *run)
 {
     s->at = malloc(((size_t)s->count + 1) * sizeof *s->at);
     s->spacing = malloc(((size_t)s->count + 1) * sizeof *s->spacing);
-    double pixels = (double)run->capture.width * run->capture.height * run->capture.views;
-    double spacing = sqrt(pixels / (s->count == 0 ? 1 : s->count)); /* pixels */
+    double spacing = spacing_of(&run->capture, s->count);
     for (uint32_t g = 0; g < s->count && s->at != NULL && s->spacing != NULL; g++) {
         double squared = 0;
         for (int i = 0; i < 3; i++) {
@@ -118,11 +125,20 @@ static int take(snapshot *s, const stress_row *row, const stress_case *c, const 
     return done ? code : cli_error(CLI_BAD_INPUT, "out of memory");
 }
 
-/* Adds the share of a's pixels that b does not retain, and the mean way of the others. */
-static void compare(stress_row *row, const snapshot *a, const snapshot *b, size_t pixels)
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Adds the share of a's pixels that b does not retain, and the median way of the others. False without memory. */
+static bool compare(stress_row *row, const snapshot *a, const snapshot *b, size_t pixels)
 {
     uint32_t stay = 0;
-    double way = 0;
+    double *way = malloc(((size_t)a->count + 1) * sizeof *way);
+    if (way == NULL) {
+        return false;
+    }
     for (size_t i = 0; i < pixels; i++) {
         uint32_t from = a->owner[i], to = b->owner[i];
         if (from == NOBODY || to == NOBODY) {
@@ -132,23 +148,45 @@ static void compare(stress_row *row, const snapshot *a, const snapshot *b, size_
         for (int k = 0; k < 3; k++) {
             squared += (a->at[from][k] - b->at[to][k]) * (a->at[from][k] - b->at[to][k]);
         }
-        way += a->spacing[from] > 0 ? sqrt(squared) / a->spacing[from] : 0;
-        stay++;
+        way[stay++] = a->spacing[from] > 0 ? sqrt(squared) / a->spacing[from] : 0;
     }
     row->value[STRESS_MASK_CHANGED] += 1 - (double)stay / (a->count == 0 ? 1 : a->count);
-    row->value[STRESS_MOTION] += stay == 0 ? 0 : way / stay;
+    qsort(way, stay, sizeof *way, by_value);
+    row->value[STRESS_MOTION] += stay == 0 ? 0 : way[stay / 2];
+    free(way);
+    return true;
 }
 
-static void judge(stress_row *row, uint32_t clusters)
+double stress_mask_changed_most(double gaussians, uint32_t clusters)
 {
-    if (row->value[STRESS_GAUSSIANS] >= clusters && row->method == METHOD_TRIM3R &&
-        !(row->value[STRESS_MASK_CHANGED] <= STRESS_MASK_CHANGED_MOST &&
-          row->value[STRESS_MOTION] <= STRESS_MOTION_MOST)) {
+    return fmin(STRESS_MASK_CHANGED_MOST, STRESS_MASK_CHANGED_ONE / sqrt(gaussians / clusters));
+}
+
+double stress_motion_most(double noise)
+{
+    return STRESS_MOTION_MOST + noise;
+}
+
+double stress_still_motion(const stress_capture *capture, double gaussians)
+{
+    double focal = 0;
+    for (uint32_t v = 0; v < capture->views; v++) {
+        focal += capture->view[v].camera.fx / capture->views;
+    }
+    return MEDIAN_DIFFERENCE * STRESS_STILL_DEPTH / 100 * focal / spacing_of(capture, gaussians);
+}
+
+void stress_judge_still(stress_row *row, uint32_t clusters, double noise)
+{
+    double gaussians = row->value[STRESS_GAUSSIANS];
+    double changed = stress_mask_changed_most(gaussians, clusters), motion = stress_motion_most(noise);
+    if (gaussians >= clusters && row->method == METHOD_TRIM3R &&
+        !(row->value[STRESS_MASK_CHANGED] <= changed && row->value[STRESS_MOTION] <= motion)) {
         row->status = STRESS_BROKEN;
         snprintf(row->reason, sizeof row->reason,
-                 "a still scene does not stay the same: %.0f %% of the mask changes, Gaussians move by %.0f %% of "
-                 "their spacing",
-                 row->value[STRESS_MASK_CHANGED] * 100, row->value[STRESS_MOTION] * 100);
+                 "a still scene does not stay the same: %.1f %% of the mask changes, of at most %.1f; half of the "
+                 "Gaussians move by %.0f %% of their spacing and more, of at most %.0f",
+                 row->value[STRESS_MASK_CHANGED] * 100, changed * 100, row->value[STRESS_MOTION] * 100, motion * 100);
     }
 }
 
@@ -167,8 +205,8 @@ static int add_capture(stress_row *rows, snapshot *last, const stress_case *c, c
         options.keep_analysis = true; /* the masks outlive the build */
         snapshot now = {0};
         code = take(&now, &rows[i], c, &run, &options);
-        if (code == CLI_OK && capture > 1) {
-            compare(&rows[i], &last[i], &now, pixels);
+        if (code == CLI_OK && capture > 1 && !compare(&rows[i], &last[i], &now, pixels)) {
+            code = cli_error(CLI_BAD_INPUT, "out of memory");
         }
         snapshot_free(&last[i]);
         last[i] = now;
@@ -193,7 +231,8 @@ int stress_stability(stress_row *rows, const stress_case *c, const stress_contes
         rows[i].value[STRESS_MASK_CHANGED] /= contest->captures - 1;
         rows[i].value[STRESS_MOTION] /= contest->captures - 1;
         if (code == CLI_OK && rows[i].status == STRESS_MEASURED) {
-            judge(&rows[i], contest->settings.clusters);
+            stress_judge_still(&rows[i], contest->settings.clusters,
+                               stress_still_motion(&c->base, rows[i].value[STRESS_GAUSSIANS]));
         }
     }
     free(last);

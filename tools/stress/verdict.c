@@ -89,12 +89,9 @@ static void print_stability(FILE *out, const stress_row *rows, uint32_t count, c
         }
         fprintf(out,
                 "still scene, %s at %.10g %%: flicker %.2f levels, x %.2f that of all points; %.1f %% of the mask "
-                "changes; Gaussians move by %.1f %% of their spacing",
+                "changes; half of the Gaussians move by at most %.1f %% of their spacing",
                 method_name(like.method), like.keep, flicker, flicker / all, changed * 100,
                 stress_mean(rows, count, &like, STRESS_MOTION, NULL) * 100);
-        if (like.method == METHOD_TRIM3R) {
-            fprintf(out, " (bounds: %.0f %%, %.0f %%)", STRESS_MASK_CHANGED_MOST * 100, STRESS_MOTION_MOST * 100);
-        }
         fputc('\n', out);
     }
 }

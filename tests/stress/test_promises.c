@@ -1,0 +1,257 @@
+/* Every promise, broken on purpose: it must be told, and end `trim3r stress` in an exit status of 1. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cli/cli.h"
+#include "stress/measure.h"
+#include "stress/promise.h"
+#include "stress/random.h"
+#include "stress/report.h"
+#include "stress/scene.h"
+#include "stress/stability.h"
+#include "stress/verdict.h"
+
+enum { SIDE = 48 };
+
+/* ---- a scene ------------------------------------------------------------------------------------------------------
+ */
+
+static void scenes_out_of_bounds(void **state)
+{
+    (void)state;
+    t3r_gaussian g[2] = {{.factor = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .opacity_q15 = 32767}, {.factor = {0}}};
+    t3r_scene scene = {.gaussians = g, .count = 2};
+    assert_null(stress_broken_promise(&scene, 2, false));
+    assert_string_equal(stress_broken_promise(&scene, 3, false), "the budget is not met");
+    assert_null(stress_broken_promise(&scene, 3, true));
+    assert_string_equal(stress_broken_promise(&scene, 1, true), "the budget is not met");
+    g[1].position_q20[2] = (1 << 30) + 1;
+    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
+    g[1].position_q20[2] = 0;
+    g[0].opacity_q15 = 32768;
+    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
+    g[0].opacity_q15 = 0;
+    g[0].factor_exponent = 16;
+    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
+}
+
+/* The extremes of what in_range lets pass are finite; what is not, by whatever fault, is told. */
+static void shapes_that_no_file_holds(void **state)
+{
+    (void)state;
+    static const int16_t entries[] = {0, 1, -1, INT16_MAX, INT16_MIN};
+    enum { ENTRIES = sizeof entries / sizeof *entries };
+    for (int exponent = -60; exponent <= 15; exponent += 75) {
+        for (uint32_t drawn = 0; drawn < 5000; drawn++) {
+            t3r_gaussian g = {.factor_exponent = (int8_t)exponent};
+            for (uint32_t i = 0; i < 9; i++) {
+                g.factor[i] = entries[stress_random(drawn, i) % ENTRIES];
+            }
+            gaussian_shape shape = gaussian_shape_of(&g);
+            assert_true(stress_finite(&shape));
+        }
+    }
+    const gaussian_shape sound = {.scale = {1, 2, 3}, .rotation = {1, 0, 0, 0}};
+    assert_true(stress_finite(&sound));
+    for (int i = 0; i < 3; i++) {
+        gaussian_shape shape = sound;
+        shape.scale[i] = 0;
+        assert_false(stress_finite(&shape));
+        shape.scale[i] = NAN;
+        assert_false(stress_finite(&shape));
+    }
+    for (int i = 0; i < 4; i++) {
+        gaussian_shape shape = sound;
+        shape.rotation[i] = INFINITY;
+        assert_false(stress_finite(&shape));
+        shape.rotation[i] = NAN;
+        assert_false(stress_finite(&shape));
+    }
+}
+
+/* ---- a cell -------------------------------------------------------------------------------------------------------
+ */
+
+typedef struct fixture {
+    stress_contest contest;
+    stress_case c;
+    stress_row row;
+    uint8_t *render;
+} fixture;
+
+static int open_fixture(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    f->contest = (stress_contest){
+        .methods = {METHOD_TRIM3R}, .method_count = 1, .keep = {20}, .keep_count = 1, .captures = 0, .seed = 1};
+    reconstruction_defaults(&f->contest.settings);
+    f->contest.settings.width = f->contest.settings.height = SIDE;
+    f->contest.settings.head = "analytic";
+    f->contest.settings.refine = 0;
+    f->c = (stress_case){.name = "plane", .context = "0,1", .target = "2"};
+    f->render = malloc((size_t)SIDE * SIDE * 3);
+    *state = f;
+    return f->render != NULL && stress_scene_draw(&f->c.base, stress_scene_at(0), 8, SIDE, SIDE) &&
+                   stress_case_open(&f->c, &f->contest) == CLI_OK
+               ? 0
+               : -1;
+}
+
+static int close_fixture(void **state)
+{
+    fixture *f = *state;
+    stress_case_close(&f->c);
+    stress_capture_free(&f->c.base);
+    free(f->render);
+    free(f);
+    return 0;
+}
+
+static void cell(fixture *f, const perturbation *p)
+{
+    assert_int_equal(stress_measure(&f->row, f->render, &f->c, &f->contest, p, p == NULL ? 0 : 1), CLI_OK);
+}
+
+/* A target no pixel of which counts has no score. */
+static void scores_that_are_no_numbers(void **state)
+{
+    fixture *f = *state;
+    cell(f, NULL);
+    assert_int_equal(f->row.status, STRESS_MEASURED);
+    memset(f->c.views.target.mask, 0, (size_t)SIDE * SIDE);
+    cell(f, NULL);
+    assert_int_equal(f->row.status, STRESS_BROKEN);
+    assert_string_equal(f->row.reason, "the render has no finite score");
+}
+
+/* Of unperturbed frames an arena that is too small is a refusal: nobody promised that it would do. Where it did for
+ * those, it must do for perturbed ones. */
+static void arenas_too_small_for_perturbed_frames(void **state)
+{
+    fixture *f = *state;
+    const perturbation *noise = stress_perturbation(0);
+    cell(f, noise);
+    assert_int_equal(f->row.status, STRESS_MEASURED);
+    f->contest.settings.arena = ARENA_BYTES;
+    f->contest.settings.arena_bytes = 1000;
+    cell(f, NULL);
+    assert_int_equal(f->row.status, STRESS_REFUSED);
+    cell(f, noise);
+    assert_int_equal(f->row.status, STRESS_BROKEN);
+    assert_non_null(strstr(f->row.reason, "too small"));
+}
+
+/* ---- rows ---------------------------------------------------------------------------------------------------------
+ */
+
+/* An arena that grew, or that changed for the same budget, is told; a rival's is that of all points. */
+static void arenas_that_change(void **state)
+{
+    (void)state;
+    stress_row base = {.method = METHOD_TRIM3R}, row;
+    base.value[STRESS_ARENA_BYTES] = base.value[STRESS_GAUSSIANS] = 1000;
+    const struct {
+        method_id method;
+        double arena, gaussians;
+        stress_status expected;
+    } cases[] = {{METHOD_TRIM3R, 1000, 1000, STRESS_MEASURED}, {METHOD_TRIM3R, 1001, 1000, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 999, 1000, STRESS_BROKEN},    {METHOD_TRIM3R, 999, 500, STRESS_MEASURED},
+                 {METHOD_EAGLES, 999, 1000, STRESS_MEASURED},  {METHOD_EAGLES, 1001, 1000, STRESS_MEASURED}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        row = base;
+        row.method = cases[i].method;
+        row.value[STRESS_ARENA_BYTES] = cases[i].arena;
+        row.value[STRESS_GAUSSIANS] = cases[i].gaussians;
+        stress_relate(&row, &base, 1);
+        assert_int_equal(row.status, cases[i].expected);
+    }
+}
+
+static stress_row still_row(double gaussians, double changed, double motion)
+{
+    stress_row row = {.what = STRESS_UNPERTURBED, .unit = "", .method = METHOD_TRIM3R, .keep = 10};
+    snprintf(row.scene, sizeof row.scene, "room");
+    row.value[STRESS_GAUSSIANS] = gaussians;
+    row.value[STRESS_MASK_CHANGED] = changed;
+    row.value[STRESS_MOTION] = motion;
+    return row;
+}
+
+/* Bounds: at 1, 4 and 100 Gaussians a SuperCluster, just within and just beyond. */
+static void still_scenes_that_do_not_stay(void **state)
+{
+    (void)state;
+    const double noise = 0.125;
+    const struct {
+        method_id method;
+        double gaussians, changed, motion;
+        stress_status expected;
+    } cases[] = {{METHOD_TRIM3R, 300, 0.5, 0, STRESS_MEASURED},      {METHOD_TRIM3R, 300, 0.51, 0, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 1200, 0.299, 0, STRESS_MEASURED},   {METHOD_TRIM3R, 1200, 0.301, 0, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 30000, 0.0599, 0, STRESS_MEASURED}, {METHOD_TRIM3R, 30000, 0.0601, 0, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 30000, 0, 0.874, STRESS_MEASURED},  {METHOD_TRIM3R, 30000, 0, 0.876, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 299, 1, 1, STRESS_MEASURED},        {METHOD_TRIM3R, 30000, NAN, 0, STRESS_BROKEN},
+                 {METHOD_TRIM3R, 30000, 0, INFINITY, STRESS_BROKEN}, {METHOD_EAGLES, 30000, 1, 1, STRESS_MEASURED}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        stress_row row = still_row(cases[i].gaussians, cases[i].changed, cases[i].motion);
+        row.method = cases[i].method;
+        stress_judge_still(&row, 300, noise);
+        assert_int_equal(row.status, cases[i].expected);
+        assert_int_equal(strncmp(row.reason, "a still scene does not stay", 27) == 0, row.status == STRESS_BROKEN);
+    }
+}
+
+/* What is told of a broken promise: a line, its cell and reason, and the exit status. */
+static void exit_status_of_a_broken_promise(void **state)
+{
+    (void)state;
+    const stress_contest contest = {.methods = {METHOD_TRIM3R}, .method_count = 1, .keep = {10}, .keep_count = 1};
+    const stress_outputs to = {.worst = 1};
+    stress_row row = still_row(1000, 0, 0);
+    stress_report report;
+    assert_int_equal(stress_report_open(&report, &to, &contest, 1), CLI_OK);
+    assert_int_equal(stress_report_cell(&report, &row, NULL, NULL, NULL, NULL), CLI_OK);
+    assert_int_equal(stress_report_close(&report, CLI_OK), CLI_OK);
+
+    row.status = STRESS_REFUSED; /* is a result */
+    assert_int_equal(stress_report_open(&report, &to, &contest, 1), CLI_OK);
+    assert_int_equal(stress_report_cell(&report, &row, NULL, NULL, NULL, NULL), CLI_OK);
+    assert_int_equal(stress_report_close(&report, CLI_OK), CLI_OK);
+
+    row.status = STRESS_BROKEN;
+    snprintf(row.reason, sizeof row.reason, "the budget is not met");
+    assert_int_equal(stress_report_open(&report, &to, &contest, 1), CLI_OK);
+    assert_int_equal(stress_report_cell(&report, &row, NULL, NULL, NULL, NULL), CLI_OK);
+    assert_int_equal(stress_report_close(&report, CLI_OK), CLI_BAD_INPUT);
+
+    char *told = NULL;
+    size_t bytes = 0;
+    FILE *out = open_memstream(&told, &bytes);
+    assert_non_null(out);
+    stress_print_verdict(out, &row, 1, &contest);
+    assert_int_equal(fclose(out), 0);
+    assert_non_null(strstr(told, "BROKEN  room: unperturbed, trim3r at 10 %: the budget is not met\n"));
+    assert_non_null(strstr(told, "1 rows: 0 measured, 0 refused with a reason, 1 with a broken promise"));
+    free(told);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scenes_out_of_bounds),
+        cmocka_unit_test(shapes_that_no_file_holds),
+        cmocka_unit_test_setup_teardown(scores_that_are_no_numbers, open_fixture, close_fixture),
+        cmocka_unit_test_setup_teardown(arenas_too_small_for_perturbed_frames, open_fixture, close_fixture),
+        cmocka_unit_test(arenas_that_change),
+        cmocka_unit_test(still_scenes_that_do_not_stay),
+        cmocka_unit_test(exit_status_of_a_broken_promise)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
