@@ -10,16 +10,12 @@
 
 #include <cmocka.h>
 
-#include "cli/cli.h"
-#include "stress/measure.h"
+#include "plane.h"
 #include "stress/promise.h"
 #include "stress/random.h"
 #include "stress/report.h"
-#include "stress/scene.h"
 #include "stress/stability.h"
 #include "stress/verdict.h"
-
-enum { SIDE = 48 };
 
 /* ---- a scene ------------------------------------------------------------------------------------------------------
  */
@@ -80,73 +76,43 @@ static void shapes_that_no_file_holds(void **state)
 /* ---- a cell -------------------------------------------------------------------------------------------------------
  */
 
-typedef struct fixture {
-    stress_contest contest;
-    stress_case c;
-    stress_row row;
-    uint8_t *render;
-} fixture;
-
-static int open_fixture(void **state)
+static int open_plane(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
-    f->contest = (stress_contest){
-        .methods = {METHOD_TRIM3R}, .method_count = 1, .keep = {20}, .keep_count = 1, .captures = 0, .seed = 1};
-    reconstruction_defaults(&f->contest.settings);
-    f->contest.settings.width = f->contest.settings.height = SIDE;
-    f->contest.settings.head = "analytic";
-    f->contest.settings.refine = 0;
-    f->c = (stress_case){.name = "plane", .context = "0,1", .target = "2"};
-    f->render = malloc((size_t)SIDE * SIDE * 3);
-    *state = f;
-    return f->render != NULL && stress_scene_draw(&f->c.base, stress_scene_at(0), 8, SIDE, SIDE) &&
-                   stress_case_open(&f->c, &f->contest) == CLI_OK
-               ? 0
-               : -1;
+    return plane_open(state, (stress_contest){.methods = {METHOD_TRIM3R}, .method_count = 1});
 }
 
-static int close_fixture(void **state)
+static void cell(plane *f, const perturbation *p)
 {
-    fixture *f = *state;
-    stress_case_close(&f->c);
-    stress_capture_free(&f->c.base);
-    free(f->render);
-    free(f);
-    return 0;
-}
-
-static void cell(fixture *f, const perturbation *p)
-{
-    assert_int_equal(stress_measure(&f->row, f->render, &f->c, &f->contest, p, p == NULL ? 0 : 1), CLI_OK);
+    assert_int_equal(stress_measure(f->rows, f->renders, &f->c, &f->contest, p, p == NULL ? 0 : 1), CLI_OK);
 }
 
 /* A target no pixel of which counts has no score. */
 static void scores_that_are_no_numbers(void **state)
 {
-    fixture *f = *state;
+    plane *f = *state;
     cell(f, NULL);
-    assert_int_equal(f->row.status, STRESS_MEASURED);
+    assert_int_equal(f->rows[0].status, STRESS_MEASURED);
     memset(f->c.views.target.mask, 0, (size_t)SIDE * SIDE);
     cell(f, NULL);
-    assert_int_equal(f->row.status, STRESS_BROKEN);
-    assert_string_equal(f->row.reason, "the render has no finite score");
+    assert_int_equal(f->rows[0].status, STRESS_BROKEN);
+    assert_string_equal(f->rows[0].reason, "the render has no finite score");
 }
 
 /* Of unperturbed frames an arena that is too small is a refusal: nobody promised that it would do. Where it did for
  * those, it must do for perturbed ones. */
 static void arenas_too_small_for_perturbed_frames(void **state)
 {
-    fixture *f = *state;
+    plane *f = *state;
     const perturbation *noise = stress_perturbation(0);
     cell(f, noise);
-    assert_int_equal(f->row.status, STRESS_MEASURED);
+    assert_int_equal(f->rows[0].status, STRESS_MEASURED);
     f->contest.settings.arena = ARENA_BYTES;
     f->contest.settings.arena_bytes = 1000;
     cell(f, NULL);
-    assert_int_equal(f->row.status, STRESS_REFUSED);
+    assert_int_equal(f->rows[0].status, STRESS_REFUSED);
     cell(f, noise);
-    assert_int_equal(f->row.status, STRESS_BROKEN);
-    assert_non_null(strstr(f->row.reason, "too small"));
+    assert_int_equal(f->rows[0].status, STRESS_BROKEN);
+    assert_non_null(strstr(f->rows[0].reason, "too small"));
 }
 
 /* ---- rows ---------------------------------------------------------------------------------------------------------
@@ -248,8 +214,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_out_of_bounds),
         cmocka_unit_test(shapes_that_no_file_holds),
-        cmocka_unit_test_setup_teardown(scores_that_are_no_numbers, open_fixture, close_fixture),
-        cmocka_unit_test_setup_teardown(arenas_too_small_for_perturbed_frames, open_fixture, close_fixture),
+        cmocka_unit_test_setup_teardown(scores_that_are_no_numbers, open_plane, plane_close),
+        cmocka_unit_test_setup_teardown(arenas_too_small_for_perturbed_frames, open_plane, plane_close),
         cmocka_unit_test(arenas_that_change),
         cmocka_unit_test(still_scenes_that_do_not_stay),
         cmocka_unit_test(exit_status_of_a_broken_promise)};

@@ -9,53 +9,18 @@
 
 #include <cmocka.h>
 
-#include "stress/measure.h"
-#include "stress/scene.h"
+#include "plane.h"
 #include "stress/stability.h"
 #include "stress/table.h"
 
-enum { SIDE = 48, METHODS = 3 };
-
-typedef struct fixture {
-    stress_contest contest;
-    stress_case c;
-    stress_row rows[METHODS];
-    uint8_t *renders;
-} fixture;
-
-static int open_fixture(void **state)
+static int open_plane(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
-    f->contest = (stress_contest){.methods = {METHOD_TRIM3R, METHOD_RANDOM, METHOD_EAGLES},
-                                  .method_count = METHODS,
-                                  .keep = {20},
-                                  .keep_count = 1,
-                                  .captures = 3,
-                                  .seed = 1};
-    reconstruction_defaults(&f->contest.settings);
-    f->contest.settings.width = f->contest.settings.height = SIDE;
-    f->contest.settings.head = "analytic";
-    f->contest.settings.refine = 0;
-    f->c = (stress_case){.name = "plane", .context = "0,1", .target = "2"};
-    f->renders = malloc(METHODS * SIDE * SIDE * 3);
-    *state = f;
-    return f->renders != NULL && stress_scene_draw(&f->c.base, stress_scene_at(0), 8, SIDE, SIDE) &&
-                   stress_case_open(&f->c, &f->contest) == 0
-               ? 0
-               : -1;
+    return plane_open(state, (stress_contest){.methods = {METHOD_TRIM3R, METHOD_RANDOM, METHOD_EAGLES},
+                                              .method_count = METHODS,
+                                              .captures = 3});
 }
 
-static int close_fixture(void **state)
-{
-    fixture *f = *state;
-    stress_case_close(&f->c);
-    stress_capture_free(&f->c.base);
-    free(f->renders);
-    free(f);
-    return 0;
-}
-
-static void cell(fixture *f, const char *name, uint32_t grade)
+static void cell(plane *f, const char *name, uint32_t grade)
 {
     const perturbation *p = NULL;
     for (uint32_t i = 0; name != NULL && (p = stress_perturbation(i)) != NULL && strcmp(p->name, name) != 0; i++) {
@@ -68,7 +33,7 @@ static void cell(fixture *f, const char *name, uint32_t grade)
  */
 static void still_scene(void **state)
 {
-    fixture *f = *state;
+    plane *f = *state;
     cell(f, NULL, 0);
     for (int m = 0; m < METHODS; m++) {
         const stress_row *row = &f->rows[m];
@@ -93,7 +58,7 @@ static void still_scene(void **state)
  * SuperClusters up. A mask that changed by nothing would say that nothing was captured anew. */
 static void learned_and_refined(void **state)
 {
-    fixture *f = *state;
+    plane *f = *state;
     const double keeps[] = {2, 40};
     reconstruction_defaults(&f->contest.settings);
     f->contest.settings.width = f->contest.settings.height = SIDE;
@@ -128,7 +93,7 @@ static void learned_and_refined(void **state)
  */
 static void budgets_and_refusals(void **state)
 {
-    fixture *f = *state;
+    plane *f = *state;
     stress_row plain[METHODS];
     f->contest.captures = 0;
     cell(f, NULL, 0);
@@ -174,10 +139,9 @@ static void means_of_rows(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(still_scene, open_fixture, close_fixture),
-        cmocka_unit_test_setup_teardown(learned_and_refined, open_fixture, close_fixture),
-        cmocka_unit_test_setup_teardown(budgets_and_refusals, open_fixture, close_fixture),
-        cmocka_unit_test(means_of_rows)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(still_scene, open_plane, plane_close),
+                                       cmocka_unit_test_setup_teardown(learned_and_refined, open_plane, plane_close),
+                                       cmocka_unit_test_setup_teardown(budgets_and_refusals, open_plane, plane_close),
+                                       cmocka_unit_test(means_of_rows)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
