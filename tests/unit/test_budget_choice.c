@@ -58,8 +58,8 @@ static void extremes(void **state)
     e.error_q8[1] = worst;
     assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), most_points / 400);
     assert_int_equal(t3r_predict_budget(&e, 7, 1), 7);
-    /* Just below 4 levels^2 nobody sees the second trial's error, and more than that trial is not needed; a 256th more is
-     * seen, and has to come down to the yardstick's share. */
+    /* Just below 4 levels^2 nobody sees the second trial's error, and more than that trial is not needed; a 256th more
+     * is seen, and has to come down to the yardstick's share. */
     e = (t3r_budget_evidence){.points = 1000, .trial = 10, .error_q8 = {1400, 1023}, .disagreement_q8 = 1024};
     assert_int_equal(t3r_predict_budget(&e, 1000, 1), 20);
     e.error_q8[0]++;
