@@ -36,9 +36,9 @@ typedef struct t3r_correction {
 /* Sums of so many pixels are kept shifted right by ceil(log2 area) - 6, at least 0: 64 pixels' worth at most. */
 uint32_t t3r_refine_shift(uint32_t area);
 
-/* A share of the damped Gauss-Newton step of one Gaussian, as large as the answer to the correction `before` allows, with
- * momentum (Polyak, "Some methods of speeding up the convergence of iteration methods", 1964): a part of `before`, which
- * is 0 in the first pass. */
+/* A share of the damped Gauss-Newton step of one Gaussian, as large as the answer to the correction `before` allows,
+ * with momentum (Polyak, "Some methods of speeding up the convergence of iteration methods", 1964): a part of `before`,
+ * which is 0 in the first pass. */
 t3r_correction t3r_refine_solve(const t3r_refine_sums *sums, const t3r_correction *before);
 
 /* Takes that step. */

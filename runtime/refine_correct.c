@@ -5,10 +5,10 @@
 #include "scene_frame.h"
 
 /* Neighbours correct the same pixels, so that no Gaussian takes all that it is told: */
-#define COLOUR_STEP_Q5 26      /* 0.8 of the weighted mean residual */
-#define SHARE_FIRST_Q14 2816   /* 11/64 of the Gauss-Newton step in the first pass */
-#define SHARE_LEAST_Q14 512    /* 1/32 */
-#define SHARE_MOST_Q14 8192    /* 1/2 */
+#define COLOUR_STEP_Q5 26    /* 0.8 of the weighted mean residual */
+#define SHARE_FIRST_Q14 2816 /* 11/64 of the Gauss-Newton step in the first pass */
+#define SHARE_LEAST_Q14 512  /* 1/32 */
+#define SHARE_MOST_Q14 8192  /* 1/2 */
 #define ASKED_MOST_Q16 (2 << 16)
 #define RELATIVE_DAMPING_Q4 3
 #define DAMPING 64         /* levels^2: below it a direction is noise */
@@ -102,7 +102,8 @@ static int32_t share_q14(const equations *e, const int32_t wanted_q16[T3R_REFINE
     uint32_t shift = largest >> 17 == 0 ? 0 : t3r_msb64((uint64_t)largest) - 16;
     /* below 2^50.9; and 2^48.7, as momentum takes steps of the shape to SHAPE_MOST 16/13 = 8,066 and others to 2^15 */
     int64_t again = 0, before_squared = 0;
-    _Static_assert(SHAPE_MOST <= 6554 && MOMENTUM_Q4 <= 3 && SHARE_MOST_Q14 <= 8192, "the quotient below is in 64 bits");
+    _Static_assert(SHAPE_MOST <= 6554 && MOMENTUM_Q4 <= 3 && SHARE_MOST_Q14 <= 8192,
+                   "the quotient below is in 64 bits");
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
         int64_t weighed = (T3R_MAX(e->a[i][i], 0) >> shift) * before->step_q16[i];
         again += weighed * t3r_clamp32(wanted_q16[i], -ASKED_MOST_Q16, ASKED_MOST_Q16);
@@ -111,7 +112,7 @@ static int32_t share_q14(const equations *e, const int32_t wanted_q16[T3R_REFINE
     if (before_squared == 0) {
         return (int32_t)last;
     }
-    int64_t answered = before_squared - t3r_round_shift64(again, 14) * last; /* below 2^50.5 */
+    int64_t answered = before_squared - t3r_round_shift64(again, 14) * last;                     /* below 2^50.5 */
     int64_t share = answered <= 0 ? 2 * last : t3r_round_div64(before_squared * last, answered); /* below 2^61.7 */
     return (int32_t)t3r_clamp64(share, T3R_MAX(last / 4, SHARE_LEAST_Q14), T3R_MIN(2 * last, SHARE_MOST_Q14));
 }

@@ -359,11 +359,11 @@ typedef struct t3r_stream_report {
  * than 1,024 scene units behind is forgotten. Which frames are keyframes is the caller's choice. A Gaussian's `view` is
  * its keyframe's number modulo `views`. t3r_render(), t3r_get_scene() and t3r_reset(), which begins anew, work in
  * between; `report` may be NULL and is all 0 unless the keyframe was taken. T3R_ERR_STATE: not an arena for streams,
- * the learned head without weights, or the allocation `given`; T3R_ERR_FRAME; T3R_ERR_CAMERA, also more than 1,024 scene
- * units from the origin: all as before. T3R_ERR_NO_DEPTH, a lens that shows too little, T3R_ERR_CANCELLED: the keyframe adds
- * nothing and is not among those that refinement looks at, nor is the one of `views` keyframes ago, and Gaussians that
- * it contradicts may be gone. T3R_ERR_CANCELLED during refinement: it is taken, passes are missing. The map stays valid
- * and within its cap whatever happens. */
+ * the learned head without weights, or the allocation `given`; T3R_ERR_FRAME; T3R_ERR_CAMERA, also more than 1,024
+ * scene units from the origin: all as before. T3R_ERR_NO_DEPTH, a lens that shows too little, T3R_ERR_CANCELLED: the
+ * keyframe adds nothing and is not among those that refinement looks at, nor is the one of `views` keyframes ago, and
+ * Gaussians that it contradicts may be gone. T3R_ERR_CANCELLED during refinement: it is taken, passes are missing. The
+ * map stays valid and within its cap whatever happens. */
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 

@@ -293,8 +293,8 @@ static const struct argp_option argp_options[] = {
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
     {"mask-head", KEY_MASK_HEAD, "HEAD", 0,
-     "of rivals with +head: the head whose unpruned scene they rank (--head's); so --head can be one retrained for their "
-     "points",
+     "of rivals with +head: the head whose unpruned scene they rank (--head's); so --head can be one retrained for "
+     "their points",
      0},
     {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
      "what each part is worth: rows with one part taken away each (all), at 60, 40, 20, 10 and 5 % unless --keep says "
