@@ -17,8 +17,7 @@
 #include "stress/stability.h"
 #include "stress/verdict.h"
 
-/* ---- a scene ------------------------------------------------------------------------------------------------------
- */
+/* ---- a scene ----------------------------------------------------------------------------------------------------- */
 
 static void scenes_out_of_bounds(void **state)
 {
@@ -73,8 +72,7 @@ static void shapes_that_no_file_holds(void **state)
     }
 }
 
-/* ---- a cell -------------------------------------------------------------------------------------------------------
- */
+/* ---- a cell ------------------------------------------------------------------------------------------------------ */
 
 static int open_plane(void **state)
 {
@@ -115,8 +113,7 @@ static void arenas_too_small_for_perturbed_frames(void **state)
     assert_non_null(strstr(f->rows[0].reason, "too small"));
 }
 
-/* ---- rows ---------------------------------------------------------------------------------------------------------
- */
+/* ---- rows -------------------------------------------------------------------------------------------------------- */
 
 /* An arena that grew, or that changed for the same budget, is told; a rival's is that of all points. */
 static void arenas_that_change(void **state)

@@ -81,8 +81,7 @@ static t3r_budget_settings settings_of(uint32_t gaussians)
                                  .pass_over_covered = false};
 }
 
-/* ---- which points --------------------------------------------------------------------------------------------------
- */
+/* ---- which points ------------------------------------------------------------------------------------------------ */
 
 typedef struct point {
     uint32_t importance, order; /* order: view after view, row after row */
@@ -139,8 +138,7 @@ static void the_highest_are_retained(void **state)
     }
 }
 
-/* ---- how dense -----------------------------------------------------------------------------------------------------
- */
+/* ---- how dense --------------------------------------------------------------------------------------------------- */
 
 static double log_share(uint32_t retained, uint32_t valid)
 {
@@ -208,8 +206,7 @@ static void density_is_counted(void **state)
     assert_true(by_window > 1000 && by_cluster > 300 && between > 300 && least > 1000);
 }
 
-/* ---- through the interface ------------------------------------------------------------------------------------------
- */
+/* ---- through the interface --------------------------------------------------------------------------------------- */
 
 static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[1 << 20], copy[1 << 20];
 static size_t arena_bytes;

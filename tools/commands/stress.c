@@ -42,8 +42,7 @@ enum {
     KEY_JSON
 };
 
-/* ---- arguments ----------------------------------------------------------------------------------------------------
- */
+/* ---- arguments --------------------------------------------------------------------------------------------------- */
 
 static void choose_row(struct argp_state *state, options *o, const char *name, size_t length)
 {
@@ -232,8 +231,7 @@ static const struct argp parser = {
     .children = children,
 };
 
-/* ---- cells --------------------------------------------------------------------------------------------------------
- */
+/* ---- cells ------------------------------------------------------------------------------------------------------- */
 
 static uint32_t grades_of(const options *o)
 {
@@ -445,8 +443,7 @@ static int stress_scenes(stress_report *report, const options *o)
     return code;
 }
 
-/* ---- recordings ---------------------------------------------------------------------------------------------------
- */
+/* ---- recordings -------------------------------------------------------------------------------------------------- */
 
 /* Opens all before the first is measured: a bad one is told at once. */
 static int open_recordings(const options *o, t3r_recording **recordings, uint32_t *cases)

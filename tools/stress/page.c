@@ -96,8 +96,7 @@ bool stress_album_offer(stress_album *album, const stress_row *rows, const uint8
     return done;
 }
 
-/* ---- the page ------------------------------------------------------------------------------------------------------
- */
+/* ---- the page ---------------------------------------------------------------------------------------------------- */
 
 static int by_badness(const void *a, const void *b)
 {
@@ -151,8 +150,7 @@ static void add_section(html_page *page, const stress_picture *picture, uint32_t
     }
 }
 
-/* ---- tables -------------------------------------------------------------------------------------------------------
- */
+/* ---- tables ------------------------------------------------------------------------------------------------------ */
 
 static void add_cells(html_page *page, const char *const *texts, uint32_t count)
 {

@@ -123,8 +123,7 @@ static void print_flicker(FILE *out, const stress_row *rows, uint32_t count, dou
     }
 }
 
-/* ---- ours against the best rival ----------------------------------------------------------------------------------
- */
+/* ---- ours against the best rival --------------------------------------------------------------------------------- */
 
 static const char *const judged[] = {"noise", "exposure", "depth-lattice", "depth-blobs", "depth-all", "pose"};
 
