@@ -19,6 +19,13 @@ def find():
     return next((path for path in map(shutil.which, NAMES) if path), None)
 
 
+def look(page, folder, name):
+    """What the page looks like, into the folder; None: nowhere."""
+    if folder:
+        os.makedirs(folder, exist_ok=True)
+        page.shot(os.path.join(folder, f"{name}.png"))
+
+
 class Page:
     """One page: what it logs, throws and asks the network for is kept."""
 

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """report.py TRIM3R [FOLDER]: the report in a headless Chromium: every axis, the legend, pointer and keyboard, pictures,
 light and dark, a phone; no errors, no requests. With FOLDER, what it looks like goes there."""
-import os
 import sys
 import tempfile
 
@@ -17,12 +16,6 @@ SPOTS = "[...document.querySelectorAll('.live .spot')]"
 TITLES = f"{SPOTS}.map((g) => g.getAttribute('aria-label'))"
 TICKS = "[...document.querySelectorAll('.live text:not(.axis)')].map((t) => t.textContent)"
 COLOUR = "getComputedStyle(document.body).backgroundColor"
-
-
-def look(page, name):
-    if looks:
-        os.makedirs(looks, exist_ok=True)
-        page.shot(os.path.join(looks, f"{name}.png"))
 
 
 def opened(page, path):
@@ -84,7 +77,7 @@ def pointer_and_keys(page):
     page.hover(".spot[data-point='0'] .mark")
     check(not page.value(f"{tip}.hidden") and "best, 100 % kept" in page.value(f"{tip}.textContent"), "hover shows settings")
     check("its quartiles" in page.value(f"{tip}.textContent"), "and the spread of a time")
-    look(page, "hover")
+    browser.look(page, looks, "hover")
     page.mouse("mouseMoved", [2, 2])
     check(page.value(f"{tip}.hidden"), "only while the pointer is there")
     check(page.value(f"{SPOTS}.filter((g) => g.tabIndex === 0).length") == 1, "the chart is one stop of the tabulator")
@@ -119,7 +112,7 @@ def colours(page):
     page.click("#theme")
     page.scheme("light")
     check(page.value(COLOUR) == dark, "dark on request")
-    look(page, "dark")
+    browser.look(page, looks, "dark")
     page.click("#theme")
     check(page.value(COLOUR) == light, "and what the reader has set again")
 
@@ -130,7 +123,7 @@ def phone(page):
     check(page.value("document.documentElement.scrollWidth") <= 360, "nothing is wider than a phone")
     check(page.value("[...document.querySelectorAll('.live text')].every((t) => t.getBoundingClientRect().right <= 361)"),
           "nor are the chart's texts")
-    look(page, "phone")
+    browser.look(page, looks, "phone")
     page.size(1200, 1000)
     page.wait("document.querySelector('.live').viewBox.baseVal.width > 900")
 
@@ -147,7 +140,7 @@ def pictures(page, path):
         let sum = 0; for (let i = 0; i < d.length; i += 4) sum += d[i] + d[i + 1] + d[i + 2]; return sum / 48 / 48 / 3; })()"""
     good = page.value(mean)
     check(good > 0, "an error map that is not empty")
-    look(page, "pictures")
+    browser.look(page, looks, "pictures")
     cases = page.value("[...document.querySelectorAll('#detail select option')].map((o) => o.textContent)")
     check(len(cases) > 2 and any(c.startswith("den, frame") for c in cases), f"the case can be chosen: {cases}")
     first = page.value(f"{shots}[0].src")
@@ -177,7 +170,7 @@ with tempfile.TemporaryDirectory() as folder:
         skip(f"{program} does not start here: {error}")
     try:
         opened(tab, known)
-        look(tab, "light")
+        browser.look(tab, looks, "light")
         for part in (axes, scenes, legend, pointer_and_keys, colours, phone):
             part(*((tab, titles) if part is axes else (tab,)))
         pictures(tab, both)

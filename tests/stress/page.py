@@ -30,12 +30,6 @@ COLOUR = "getComputedStyle(document.body).backgroundColor"
 INK = "getComputedStyle(document.querySelector('h1')).color"
 
 
-def look(page, name):
-    if looks:
-        os.makedirs(looks, exist_ok=True)
-        page.shot(os.path.join(looks, f"{name}.png"))
-
-
 def made(folder):
     """The page and the rows of a run: a scene, losses of several perturbations, a cell that is refused."""
     page, table = f"{folder}/worst.html", f"{folder}/worst.csv"
@@ -98,7 +92,7 @@ def pictures(page):
     check(set(page.value(filters)) == {"none"}, "pictures first")
     page.click("label[for='errors']")
     check(set(page.value(filters)) == {"brightness(3)"}, "then their errors")
-    look(page, "errors")
+    browser.look(page, looks, "errors")
     page.click("label[for='errors']")
 
 
@@ -112,14 +106,14 @@ def colours(page):
         page.scheme(scheme)
         paper, ink = luminance(page.value(COLOUR)), luminance(page.value(INK))
         check((paper < 0.5) == dark and (ink > 0.5) == dark and abs(paper - ink) > 0.6, f"{scheme}: {paper}, {ink}")
-        look(page, scheme)
+        browser.look(page, looks, scheme)
     page.scheme("light")
 
 
 def phone(page):
     page.size(360, 740, mobile=True)
     check(page.value("document.documentElement.scrollWidth") <= 360, "nothing is wider than a phone")
-    look(page, "phone")
+    browser.look(page, looks, "phone")
 
 
 with tempfile.TemporaryDirectory() as folder:

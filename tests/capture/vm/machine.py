@@ -38,14 +38,15 @@ for m in $(cat /mod/list); do
     *) insmod /mod/$m ;;
     esac
 done
-mkdir /run /tmp/out
-: > /tmp/out/log
-echo BOOTED
+mkdir /run
 cd /tmp
-tail -f /tmp/out/log & # no pipe, which would last as long as the last of the job's programs
-sh -x /job.sh > /tmp/out/log 2>&1
+mkdir out
+: > out/log
+echo BOOTED
+tail -f out/log & # no pipe, which would last as long as the last of the job's programs
+sh -x /job.sh > out/log 2>&1
 stty -F /dev/ttyS1 raw
-tar -cf - -C /tmp/out . > /dev/ttyS1
+tar -cf - -C out . > /dev/ttyS1
 sync
 reboot -f
 """
@@ -212,7 +213,7 @@ def kvm_works(folder, vmlinux, modules):
 
 
 def run(folder, programs, job, seconds, driver, files=(), data=None, megabytes=768):
-    """Runs the shell script `job` with that driver; {file name: bytes} of what it left in /tmp/out, how it ran, what
+    """Runs the shell script `job` with that driver; {file name: bytes} of what it left in its folder out, how it ran, what
     the console said. `programs`, `files` and `data` are those of initramfs()."""
     need("qemu-system-x86_64", "busybox", "cpio")
     vmlinux, drivers = unpack_kernel(folder)

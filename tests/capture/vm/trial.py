@@ -10,7 +10,7 @@ OUT_OF_TIME = 600  # seconds: a machine without KVM on a busy processor
 
 
 class Trial:
-    """The files that `job` left in the machine's /tmp/out; `told` are those that a failure shows besides its log."""
+    """The files that `job` left in the machine's folder out; `told` are those that a failure shows besides its log."""
 
     def __init__(self, folder, programs, job, driver, told=(), **options):
         self.start, self.told = time.monotonic(), told
