@@ -3,10 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "budget.h"
-#include "head_features.h"
+#include "budget/budget.h"
+#include "head/head_features.h"
 #include "pipeline.h"
-#include "state.h"
+#include "core/state.h"
 
 /* Histograms by size: OCTAVES x STEPS bins from 2^LOWEST on; bin 0 holds all that is smaller, the last all larger. */
 #define LOWEST (-24)

@@ -1,4 +1,4 @@
-/* The layers of a head: which reads which, and how large they are (runtime/weights.h says what they mean). What the
+/* The layers of a head: which reads which, and how large they are (runtime/head/weights.h says what they mean). What the
  * float head, the quantized head and the weight file have in common. */
 #ifndef T3R_QUANT_HEAD_GRAPH_H
 #define T3R_QUANT_HEAD_GRAPH_H
@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "weights.h"
+#include "head/weights.h"
 
 #define HEAD_NAME_BYTES 16 /* with the zero: 1..15 of a-z 0-9 _ */
 

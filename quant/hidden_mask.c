@@ -6,7 +6,7 @@
 
 #include "le_bytes.h"
 #include "weight_file.h"
-#include "weights.h"
+#include "head/weights.h"
 
 /* What stands for them, and beside 16-bit activations that much more. */
 static const struct {

@@ -42,7 +42,7 @@ typedef struct work {
     const float_layer *from;
     quantized_layer *to;
     double weight_most; /* largest weight */
-    double sum_most;    /* of |bias'| + reach x sum |weight|, runtime/weights.h */
+    double sum_most;    /* of |bias'| + reach x sum |weight|, runtime/head/weights.h */
     double reach;       /* 2^(activation bits - 1) */
 } work;
 

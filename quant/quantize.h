@@ -1,4 +1,4 @@
-/* A float head with ranges to integers (README.md, "Quantization"; the arithmetic is runtime/weights.h's). */
+/* A float head with ranges to integers (README.md, "Quantization"; the arithmetic is runtime/head/weights.h's). */
 #ifndef T3R_QUANT_QUANTIZE_H
 #define T3R_QUANT_QUANTIZE_H
 

@@ -1,4 +1,4 @@
-/* Writes the .t3w weight file (runtime/weights.h). */
+/* Writes the .t3w weight file (runtime/head/weights.h). */
 #ifndef T3R_QUANT_WEIGHT_FILE_H
 #define T3R_QUANT_WEIGHT_FILE_H
 

@@ -5,7 +5,7 @@
 void weight_source_write(FILE *to, const char *name, const char *note, const uint8_t *bytes, size_t count)
 {
     fprintf(to,
-            "/* The head `%s` as a weight file (runtime/weights.h): %s. Written by trim3r quantize. */\n"
+            "/* The head `%s` as a weight file (runtime/head/weights.h): %s. Written by trim3r quantize. */\n"
             "#include <stdint.h>\n"
             "\n"
             "extern const uint8_t t3r_head_%s[];\n"

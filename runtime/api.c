@@ -2,20 +2,20 @@
  * nowhere deeper. */
 #include <string.h>
 
-#include "arena.h"
-#include "budget_choice.h"
-#include "camera.h"
-#include "develop.h"
-#include "hash.h"
-#include "head.h"
-#include "image.h"
+#include "core/arena.h"
+#include "budget/budget_choice.h"
+#include "core/camera.h"
+#include "image/develop.h"
+#include "core/hash.h"
+#include "head/head.h"
+#include "image/image.h"
 #include "pipeline.h"
-#include "scene_frame.h"
-#include "state.h"
-#include "stream.h"
-#include "stream_overlap.h"
-#include "superclusters.h"
-#include "weights.h"
+#include "core/scene_frame.h"
+#include "core/state.h"
+#include "stream/stream.h"
+#include "stream/stream_overlap.h"
+#include "superclusters/superclusters.h"
+#include "head/weights.h"
 
 /* --- the arena ---------------------------------------------------------------------------------------------------- */
 

@@ -2,10 +2,10 @@
 #ifndef T3R_PIPELINE_H
 #define T3R_PIPELINE_H
 
-#include "head.h"
-#include "importance.h"
+#include "head/head.h"
+#include "budget/importance.h"
 #include "trim3r.h"
-#include "views.h"
+#include "core/views.h"
 
 /* Depth, pointmap, wavelet, superclusters: all that does not depend on the budget. */
 t3r_status t3r_analyse(t3r_runtime *rt);

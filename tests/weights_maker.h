@@ -1,4 +1,4 @@
-/* Weight files for tests: a head's graph as a list, its numbers at random but lively, written by runtime/weights.h's
+/* Weight files for tests: a head's graph as a list, its numbers at random but lively, written by runtime/head/weights.h's
  * text. */
 #ifndef T3R_TESTS_WEIGHTS_MAKER_H
 #define T3R_TESTS_WEIGHTS_MAKER_H
@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "weights.h"
+#include "head/weights.h"
 
 typedef struct made_layer {
     t3r_layer_kind kind;

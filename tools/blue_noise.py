@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Make runtime/blue_noise.c: a 64 x 64 void-and-cluster threshold map (Ulichney 1993).
+"""Make runtime/budget/blue_noise.c: a 64 x 64 void-and-cluster threshold map (Ulichney 1993).
 
-    tools/blue_noise.py > runtime/blue_noise.c
+    tools/blue_noise.py > runtime/budget/blue_noise.c
 
 Every rank 0..4095 occurs once; the ranks below any level are spread evenly, also across the tile's borders."""
 import numpy as np

@@ -1,4 +1,4 @@
-/* The head `base` as a weight file (runtime/weights.h): 8-bit weights, 8-bit activations. Written by trim3r quantize. */
+/* The head `base` as a weight file (runtime/head/weights.h): 8-bit weights, 8-bit activations. Written by trim3r quantize. */
 #include <stdint.h>
 
 extern const uint8_t t3r_head_base[];

@@ -1,4 +1,4 @@
-/* The shipped heads: weight files (runtime/weights.h) as constants, each in a source file of its own, so that a
+/* The shipped heads: weight files (runtime/head/weights.h) as constants, each in a source file of its own, so that a
  * firmware holds only the ones that it names. */
 #ifndef TRIM3R_HEADS_H
 #define TRIM3R_HEADS_H

@@ -1,6 +1,6 @@
 #include "blend.h"
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 /* exp(s - 0.75) on [0, 0.75] in Q16: C0 + s (C1 + s (C2 + s (C3 + s C4))), minimax, C0 and C1 lowered so that
  * the result stays below 1: error below 2^-15, with the roundings below 2^-14. */

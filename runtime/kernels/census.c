@@ -1,6 +1,6 @@
 #include "census.h"
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 /* One comparison more in every byte: bits = 2 bits + (a > b). */
 static void compare(const uint8_t *a, const uint8_t *b, uint32_t count, uint8_t *restrict bits)

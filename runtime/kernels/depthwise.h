@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "little_endian.h"
+#include "core/little_endian.h"
 
 void t3r_depthwise_w8(const int16_t *column, const int8_t *weights, uint32_t taps, uint32_t channels, int32_t *sum);
 void t3r_depthwise_w16(const int16_t *column, const t3r_le16 *weights, uint32_t taps, uint32_t channels, int32_t *sum);

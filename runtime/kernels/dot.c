@@ -1,6 +1,6 @@
 #include "dot.h"
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 /* Four sums over one run of weights: 16-bit factors, 32-bit sums, which compilers know as one instruction (SSE2
  * pmaddwd, NEON smlal). */

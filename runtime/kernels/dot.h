@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-#include "little_endian.h"
+#include "core/little_endian.h"
 
 #define T3R_DOT_PIXELS 4
 #define T3R_DOT_CHUNK 256u

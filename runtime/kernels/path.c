@@ -1,6 +1,6 @@
 #include "path.h"
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 t3r_path_costs t3r_path_costs_of(uint32_t same, uint32_t step, uint32_t least_step)
 {

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 /* How one output channel is scaled and where its layer is held. */
 typedef struct t3r_requantization {

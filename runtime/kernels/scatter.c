@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 /* What each pixel tells, before it is summed. */
 typedef struct told {

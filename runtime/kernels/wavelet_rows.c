@@ -1,7 +1,7 @@
 /* Wavelet rows in plain C. No sum leaves 16 bits for the ranges that wavelet.c proves. */
-#include "kernels/wavelet_rows.h"
+#include "wavelet_rows.h"
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row, size_t count)
 {

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "chart/front.h"
-#include "fixed.h"
+#include "core/fixed.h"
 
 enum { MOST = 40 };
 

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "fixed.h"
+#include "core/fixed.h"
 #include "scene/gaussian_shape.h"
 #include "scene/scene_file.h"
 #include "scratch.h"

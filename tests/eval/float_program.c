@@ -10,9 +10,9 @@
 
 #include "file_bytes.h"
 #include "float_run.h"
-#include "head.h"
-#include "head_features.h"
-#include "network.h"
+#include "head/head.h"
+#include "head/head_features.h"
+#include "head/network.h"
 
 static const double scale[T3R_HEAD_OUTPUTS] = {16384, 16384, 8192, 8192, 16384, 32768, 8192, 8192, 8192};
 static const float_plane *outputs; /* of the view in work */

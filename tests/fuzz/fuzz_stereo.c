@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "camera.h"
-#include "stereo.h"
+#include "core/camera.h"
+#include "stereo/stereo.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "network.h"
+#include "head/network.h"
 #include "weights_maker.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

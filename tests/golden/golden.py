@@ -63,7 +63,7 @@ def check_host(driver):
 
 
 def runtime_sources():
-    return sorted((ROOT / "runtime").glob("*.c")) + sorted((ROOT / "runtime" / "kernels").glob("*.c"))
+    return sorted((ROOT / "runtime").rglob("*.c"))
 
 
 def check_build(arguments):

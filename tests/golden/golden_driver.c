@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hash.h"
+#include "core/hash.h"
 #include "room/room.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "hash.h"
+#include "core/hash.h"
 #include "room/room.h"
 
 #define SIDE ROOM_SIDE

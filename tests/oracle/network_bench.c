@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "network.h"
+#include "head/network.h"
 #include "weights_maker.h"
 
 enum { SIDE = 256, ROUNDS = 5 };

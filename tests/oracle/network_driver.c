@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "network.h"
+#include "head/network.h"
 
 static void *read_file(const char *path, size_t *bytes)
 {

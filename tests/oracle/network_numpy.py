@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """network_numpy.py DRIVER, or network_numpy.py --build COMPILER RUNNER: random quantized networks, each layer computed in plain int64 by numpy from the text of
-runtime/weights.h, against the runtime's rows and outputs, bit for bit.
+runtime/head/weights.h, against the runtime's rows and outputs, bit for bit.
 
 Networks of every kind of layer, kernel, stride, level, phase, width of weights and activations, with two sources and
 upsampling; sums at the edge of their accumulators; images of odd and of the smallest sizes. With --build the driver is
@@ -270,7 +270,7 @@ def built(compiler, runner, folder):
         print(f"SKIPPED: no {compiler} or no {runner} here (tools/setup --tests)")
         sys.exit(77)
     made = pathlib.Path(folder) / "network_driver"
-    sources = sorted(RUNTIME.glob("*.c")) + sorted((RUNTIME / "kernels").glob("*.c"))
+    sources = sorted(RUNTIME.rglob("*.c"))
     subprocess.run([compiler, "-O2", "-static", "-I", RUNTIME, "-I", RUNTIME / "include", HERE / "network_driver.c",
                     *sources, "-o", made], check=True)
     return [runner, str(made)]

@@ -13,9 +13,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "camera.h"
-#include "match_clean.h"
-#include "stereo.h"
+#include "core/camera.h"
+#include "stereo/match_clean.h"
+#include "stereo/stereo.h"
 
 static void *allocate(size_t bytes)
 {

@@ -12,9 +12,9 @@
 
 #include "drawing.h"
 #include "oracle_analysis.h"
-#include "pointmap.h"
-#include "superclusters.h"
-#include "wavelet.h"
+#include "pointmap/pointmap.h"
+#include "superclusters/superclusters.h"
+#include "wavelet/wavelet.h"
 
 /* ---- pointmap ------------------------------------------------------------------------------------ */
 

@@ -12,8 +12,8 @@
 #include <cmocka.h>
 
 #include "drawing.h"
-#include "state.h"
-#include "stream_map.h"
+#include "core/state.h"
+#include "stream/stream_map.h"
 
 enum { W = 24, H = 16, PIXELS = W * H, CAP = 150, AT_HAND = 3, WALL_MM = 2000, BOX_MM = 1600 };
 

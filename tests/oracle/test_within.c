@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "drawing.h"
-#include "refine.h"
-#include "state.h"
+#include "refine/refine.h"
+#include "core/state.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VIEWS = 2, HALF_DB = 128 };
 

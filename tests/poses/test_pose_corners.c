@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "hash.h"
+#include "core/hash.h"
 #include "posing/corners.h"
 #include "posing/pyramid.h"
 #include "room/room.h"

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "bytes.h"
-#include "camera.h"
+#include "core/camera.h"
 #include "posing/estimate.h"
 #include "room/room.h"
 

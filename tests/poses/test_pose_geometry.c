@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "camera.h"
+#include "core/camera.h"
 #include "posing/estimate.h"
 #include "posing/five_point.h"
 #include "posing/relative.h"

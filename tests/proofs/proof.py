@@ -78,7 +78,7 @@ def compile_one(compiler, target, source, made, extra=()):
 
 
 def runtime_sources():
-    return sorted(RUNTIME.glob("*.c")) + sorted((RUNTIME / "kernels").glob("*.c"))
+    return sorted(RUNTIME.rglob("*.c"))
 
 
 def public_headers():

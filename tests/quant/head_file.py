@@ -1,4 +1,4 @@
-"""Heads in numpy, written from runtime/weights.h alone: .safetensors out, .t3w in, the graph in floats and in integers.
+"""Heads in numpy, written from runtime/head/weights.h alone: .safetensors out, .t3w in, the graph in floats and in integers.
 
 A description is the JSON object of the metadata key "trim3r"; tensors are a dict of float32 arrays."""
 import json

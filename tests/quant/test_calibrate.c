@@ -1,10 +1,10 @@
 /* Calibration: maxima and percentiles against a sort, and views of a runtime. */
 #include "calibrate.h"
 
-#include "budget.h"
-#include "head_features.h"
+#include "budget/budget.h"
+#include "head/head_features.h"
 #include "sample_head.h"
-#include "state.h"
+#include "core/state.h"
 #include "trim3r_heads.h"
 #include "unit/unit.h"
 

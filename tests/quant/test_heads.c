@@ -9,7 +9,7 @@
 
 #include "trim3r_heads.h"
 #include "weight_info.h"
-#include "weights.h"
+#include "head/weights.h"
 
 static const struct {
     const char *name;

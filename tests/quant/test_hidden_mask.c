@@ -8,9 +8,9 @@
 
 #include <cmocka.h>
 
-#include "fixed.h"
+#include "core/fixed.h"
 #include "hidden_mask.h"
-#include "network.h"
+#include "head/network.h"
 #include "trim3r_heads.h"
 #include "weights_maker.h"
 

@@ -43,12 +43,12 @@ class _Settings(ctypes.Structure):
 
 
 def tie():
-    inside = os.path.join(native.RUNTIME, "head_learned.c")
+    inside = os.path.join(native.RUNTIME, "head", "head_learned.c")
 
     def all_of(*pattern):
         return sorted(glob.glob(os.path.join(native.RUNTIME, *pattern)))
 
-    sources = [s for s in all_of("*.c") + all_of("kernels", "*.c") if s != inside]
+    sources = [s for s in all_of("*.c") + all_of("*", "*.c") if s != inside]
     sources += [os.path.join(HERE, "runtime_tie.c"), os.path.join(HEADS, "small.c")]
     headers = all_of("*.h") + all_of("*", "*.h")
     includes = (native.RUNTIME, os.path.join(native.RUNTIME, "include"), HEADS)

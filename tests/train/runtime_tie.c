@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "head_learned.c" /* footprint_of() is its own */
+#include "head/head_learned.c" /* footprint_of() is its own */
 #include "trim3r_heads.h"
 
 typedef struct tie_settings {

@@ -3,7 +3,7 @@
 #define T3R_TESTS_UNIT_RIG_H
 
 #include "unit.h"
-#include "views.h"
+#include "core/views.h"
 
 enum { W = 64, H = 48, PIXELS = W * H, F = 64, VIEWS = 3 };
 

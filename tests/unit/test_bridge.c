@@ -1,9 +1,9 @@
 /* Wide depth holes: depth lent by other views, bridged between what is known, and what other views say against it. */
 #include "rig.h"
 
-#include "bridge.h"
-#include "flying_pixels.h"
-#include "redundancy.h"
+#include "pointmap/bridge.h"
+#include "pointmap/flying_pixels.h"
+#include "pointmap/redundancy.h"
 
 enum { PAIR = 2 };
 

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "budget.h"
-#include "fixed.h"
+#include "budget/budget.h"
+#include "core/fixed.h"
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };
 

@@ -1,7 +1,7 @@
 /* Cameras: what is refused, rotation matrices and changes of size against double. */
 #include "unit.h"
 
-#include "camera.h"
+#include "core/camera.h"
 
 #define Q16(x) ((int32_t)lround((x)*65536.0))
 

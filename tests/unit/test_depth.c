@@ -1,7 +1,7 @@
 /* Depth: validity, and holes that are filled or left. */
 #include "unit.h"
 
-#include "depth.h"
+#include "depth/depth.h"
 
 enum { W = 24, H = 20 };
 

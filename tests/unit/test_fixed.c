@@ -1,7 +1,7 @@
 /* Fixed-point functions over their domain, against double. */
 #include "unit.h"
 
-#include "fixed.h"
+#include "core/fixed.h"
 #include "kernels/wavelet_rows.h"
 
 static void square_root(void **state)

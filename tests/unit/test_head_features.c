@@ -1,7 +1,7 @@
 /* The features of a learned head, against their definition in doubles. */
 #include "unit.h"
 
-#include "head_features.h"
+#include "head/head_features.h"
 
 enum { W = 23, H = 17, PIXELS = W * H, CLUSTERS = 3 };
 

@@ -1,7 +1,7 @@
 /* Frames to planes: what is refused, formats against the real BT.601, the area average against exact sums. */
 #include "unit.h"
 
-#include "image.h"
+#include "image/image.h"
 
 static const uint8_t some[64];
 

@@ -9,11 +9,11 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "budget.h"
-#include "fixed.h"
-#include "hash.h"
-#include "importance.h"
-#include "state.h"
+#include "budget/budget.h"
+#include "core/fixed.h"
+#include "core/hash.h"
+#include "budget/importance.h"
+#include "core/state.h"
 
 enum {
     W = 61, /* rows begin within words of the mask */

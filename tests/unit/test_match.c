@@ -2,8 +2,8 @@
  * what is done about disparities that are wrong. */
 #include "unit.h"
 
-#include "match.h"
-#include "match_clean.h"
+#include "stereo/match.h"
+#include "stereo/match_clean.h"
 
 /* --- census ----------------------------------------------------------------------------------------------------- */
 

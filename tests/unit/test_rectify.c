@@ -1,9 +1,9 @@
 /* Rectification: rows and distances against double precision, the rows' pictures, refusals. */
 #include "unit.h"
 
-#include "camera.h"
-#include "match.h"
-#include "rectify.h"
+#include "core/camera.h"
+#include "stereo/match.h"
+#include "stereo/rectify.h"
 
 enum { W = 96, H = 80, D = 32 };
 

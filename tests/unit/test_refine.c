@@ -2,11 +2,11 @@
  * cancelled anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
 #include "unit.h"
 
-#include "hash.h"
-#include "fixed.h"
-#include "refine.h"
+#include "core/hash.h"
+#include "core/fixed.h"
+#include "refine/refine.h"
 #include "room/room.h"
-#include "state.h"
+#include "core/state.h"
 
 enum { SIDE = 96, POINTS = 2 * SIDE * SIDE, BUDGET = POINTS / 10 };
 

@@ -3,7 +3,7 @@
  * however the scene is sliced. */
 #include "unit.h"
 
-#include "refine_tile.h"
+#include "refine/refine_tile.h"
 
 enum { SIDE = 64, ACROSS = SIDE / T3R_TILE_SIDE, SPLATS = 150, MOMENTS = T3R_REFINE_MOMENTS_4 };
 

@@ -6,10 +6,10 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "fixed.h"
-#include "hash.h"
-#include "state.h"
-#include "superclusters.h"
+#include "core/fixed.h"
+#include "core/hash.h"
+#include "core/state.h"
+#include "superclusters/superclusters.h"
 
 enum { SIDE = 48, BUDGET = 300 };
 

@@ -1,8 +1,8 @@
 /* Stereo: depth of a scene that is drawn here, from pairs of every kind. */
 #include "unit.h"
 
-#include "camera.h"
-#include "stereo.h"
+#include "core/camera.h"
+#include "stereo/stereo.h"
 
 enum { W = 120, H = 96, PIXELS = W * H };
 static const t3r_stereo_settings settings = {64, 4, 1};

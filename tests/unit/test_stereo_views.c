@@ -2,13 +2,13 @@
  * several pairs brought together, what was not matched filled. */
 #include "unit.h"
 
-#include "fixed.h"
-#include "hash.h"
+#include "core/fixed.h"
+#include "core/hash.h"
 #include "room/room.h"
-#include "state.h"
-#include "stereo.h"
-#include "stereo_fill.h"
-#include "stereo_fuse.h"
+#include "core/state.h"
+#include "stereo/stereo.h"
+#include "stereo/stereo_fill.h"
+#include "stereo/stereo_fuse.h"
 
 enum { W = 128, H = 96, PIXELS = W * H, BUDGET = 1500, MOST = 5 };
 

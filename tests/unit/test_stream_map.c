@@ -1,9 +1,9 @@
 /* Who stays in a stream's map: against sorting; what stays grows and nothing else changes; moves are exact. */
 #include "unit.h"
 
-#include "budget.h"
-#include "fixed.h"
-#include "stream_map.h"
+#include "budget/budget.h"
+#include "core/fixed.h"
+#include "stream/stream_map.h"
 
 enum { WIDTH = 24, HEIGHT = 20, PIXELS = WIDTH * HEIGHT, MOST = 400 };
 

@@ -1,12 +1,12 @@
 /* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
 #include "rig.h"
 
-#include "disagreement.h"
-#include "exposure.h"
-#include "fixed.h"
-#include "flying_pixels.h"
-#include "redundancy.h"
-#include "reproject.h"
+#include "budget/disagreement.h"
+#include "pointmap/exposure.h"
+#include "core/fixed.h"
+#include "pointmap/flying_pixels.h"
+#include "pointmap/redundancy.h"
+#include "pointmap/reproject.h"
 
 static uint32_t mark_covered(const rig *s, uint32_t views)
 {

@@ -2,8 +2,8 @@
 #include "unit.h"
 
 #include "trim3r.h"
-#include "camera.h"
-#include "undistort.h"
+#include "core/camera.h"
+#include "image/undistort.h"
 
 #define Q16(x) ((int32_t)lround((x)*65536.0))
 #define Q24(x) ((int32_t)lround((x)*16777216.0))

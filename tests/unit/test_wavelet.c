@@ -1,7 +1,7 @@
 /* Wavelets: exact inversion, the 16-bit proof recomputed and attained, db2 against its filters, texture. */
 #include "unit.h"
 
-#include "wavelet.h"
+#include "wavelet/wavelet.h"
 
 enum { KINDS = T3R_WAVELET_COUNT, LEVELS = T3R_MAX_LEVELS };
 

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "weights.h"
+#include "head/weights.h"
 #include "weights_maker.h"
 
 enum { HEADER = T3R_WEIGHTS_HEADER_BYTES, ROW = T3R_WEIGHTS_LAYER_BYTES };

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "camera.h"
-#include "undistort.h"
+#include "core/camera.h"
+#include "image/undistort.h"
 
 static int32_t fixed(const char *text, int bits)
 {

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "wavelet.h"
+#include "wavelet/wavelet.h"
 
 int main(int argc, char **argv)
 {

@@ -1,9 +1,9 @@
 #include "bench/bench_head.h"
 
-#include "head.h"
+#include "head/head.h"
 #include "pipeline.h"
-#include "state.h"
-#include "weights.h"
+#include "core/state.h"
+#include "head/weights.h"
 
 bool bench_head_run(t3r_runtime *runtime)
 {

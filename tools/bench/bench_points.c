@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "camera.h"
+#include "core/camera.h"
 #include "file_bytes.h"
 #include "reason.h"
 

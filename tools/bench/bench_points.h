@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "superclusters.h"
+#include "superclusters/superclusters.h"
 #include "trim3r.h"
 
 typedef struct bench_points {

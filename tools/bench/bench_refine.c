@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "refine.h"
-#include "state.h"
+#include "refine/refine.h"
+#include "core/state.h"
 
 bool bench_refine_run(t3r_runtime *runtime, const t3r_gaussian *scene)
 {

@@ -1,9 +1,9 @@
 #include "bench/bench_stereo.h"
 
-#include "state.h"
-#include "stereo.h"
-#include "stereo_fill.h"
-#include "stereo_views.h"
+#include "core/state.h"
+#include "stereo/stereo.h"
+#include "stereo/stereo_fill.h"
+#include "stereo/stereo_views.h"
 
 bool bench_stereo_run(t3r_runtime *runtime)
 {

@@ -9,7 +9,7 @@
 
 #include "capture/capture_camera.h"
 #include "cli/cli.h"
-#include "hash.h"
+#include "core/hash.h"
 #include "pixel_layout.h"
 #include "scene/scene_file.h"
 

@@ -19,7 +19,7 @@
 #include "cli/option_values.h"
 #include "reconstruction/reconstruction.h"
 #include "room/room.h"
-#include "wavelet.h"
+#include "wavelet/wavelet.h"
 
 #define SIDE 256u
 #define VIEWS 2u

@@ -11,7 +11,7 @@
 #include "file_bytes.h"
 #include "float_head.h"
 #include "cli/json_output.h"
-#include "network.h"
+#include "head/network.h"
 #include "cli/option_values.h"
 #include "trim3r.h"
 #include "weight_info.h"

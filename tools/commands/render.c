@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "hash.h"
+#include "core/hash.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
 #include "pictures/picture.h"

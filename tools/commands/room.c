@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "hash.h"
+#include "core/hash.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
 #include "reason.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "camera.h"
+#include "core/camera.h"
 
 #define DEPTH_STEPS (UINT32_C(1) << 16)
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "hash.h"
+#include "core/hash.h"
 
 /* A list with something between its items. */
 typedef struct words {

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "image.h"
+#include "image/image.h"
 #include "pictures/picture.h"
 #include "reason.h"
 

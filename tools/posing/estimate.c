@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "camera.h"
+#include "core/camera.h"
 #include "cli/cli.h"
 #include "import/posed_folder.h"
 #include "posing/relative.h"

@@ -10,7 +10,7 @@
 #include "hidden_mask.h"
 #include "trim3r_heads.h"
 #include "weight_file.h"
-#include "weights.h"
+#include "head/weights.h"
 
 #define FILE_END ".t3w"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "blue_noise.h"
+#include "budget/blue_noise.h"
 #include "cli/cli.h"
 #include "pictures/picture.h"
 

@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "camera.h"
+#include "core/camera.h"
 #include "cli/cli.h"
-#include "fixed.h"
-#include "hash.h"
+#include "core/fixed.h"
+#include "core/hash.h"
 #include "reconstruction/importance_pictures.h"
 #include "reconstruction/scene_frames.h"
 

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 #include "cli/cli.h"
-#include "hash.h"
+#include "core/hash.h"
 #include "cli/json_output.h"
 #include "evaluation/metrics.h"
 #include "pictures/picture.h"

@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-#include "budget.h"
-#include "views.h"
+#include "budget/budget.h"
+#include "core/views.h"
 
 typedef struct ranked {
     double score;

@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/scene_frames.h"
-#include "fixed.h"
+#include "core/fixed.h"
 #include "rivals/choose.h"
 #include "rivals/score.h"
 #include "rivals/traced.h"

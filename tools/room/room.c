@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#include "fixed.h"
+#include "core/fixed.h"
 #include "room/scene.h"
 #include "room/texture.h"
 

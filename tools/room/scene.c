@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 #define FAR ((int64_t)1 << 40)
 

@@ -11,7 +11,7 @@
 #include "file_bytes.h"
 #include "scene/gaussian_shape.h"
 #include "reason.h"
-#include "scene_frame.h"
+#include "core/scene_frame.h"
 
 #define HARMONIC_0 0.28209479177387814
 #define MAX_HEADER_BYTES 65536u

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "camera.h"
+#include "core/camera.h"
 #include "cli/cli.h"
 #include "cli/json_output.h"
 #include "reconstruction/reconstruction.h"

@@ -8,7 +8,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "camera.h"
+#include "core/camera.h"
 #include "file_bytes.h"
 #include "import/posed_folder.h"
 #include "reason.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "fixed.h"
+#include "core/fixed.h"
 #include "stress/promise.h"
 #include "stress/stability.h"
 

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "fixed.h"
+#include "core/fixed.h"
 
 static inline uint32_t stress_random(uint32_t seed, uint32_t index)
 {

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "budget.h"
+#include "budget/budget.h"
 #include "cli/cli.h"
 #include "rivals/rival.h"
-#include "state.h"
-#include "views.h"
+#include "core/state.h"
+#include "core/views.h"
 
 #define NOBODY UINT32_MAX
 /* Median of the difference of two normal numbers, in their deviation: 0.6745 sqrt(2) */

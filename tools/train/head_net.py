@@ -1,4 +1,4 @@
-"""The Gaussian head as torch trains it: the layers of runtime/weights.h, in float or rounded as quant rounds."""
+"""The Gaussian head as torch trains it: the layers of runtime/head/weights.h, in float or rounded as quant rounds."""
 import json
 import math
 import struct

@@ -53,7 +53,7 @@ def preparer():
     rivals = [path for part in ("gaussian_shape", "splat_camera") for path in here("tools", "scene", part + ".c")]
     rivals += [path for part in ("choose", "score*", "splat_*") for path in here("tools", "rivals", part + ".c")]
     sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals
-    sources += here("quant", "heads", "small.c") + here("runtime", "*.c") + here("runtime", "kernels", "*.c")
+    sources += here("quant", "heads", "small.c") + here("runtime", "*.c") + here("runtime", "*", "*.c")
     headers = here("runtime", "*.h") + here("runtime", "*", "*.h") + here("tools", "rivals", "*.h")
     headers += here("tools", "scene", "*.h") + here("tools", "reconstruction", "method.h")
     headers += here("tools", "train", "prepare_rival.h")

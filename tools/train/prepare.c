@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fixed.h"
-#include "head.h"
-#include "head_features.h"
+#include "core/fixed.h"
+#include "head/head.h"
+#include "head/head_features.h"
 #include "pipeline.h"
 #include "prepare_rival.h"
-#include "state.h"
+#include "core/state.h"
 #include "trim3r_heads.h"
 
 typedef struct prepare_settings {

@@ -5,7 +5,7 @@
 
 #include "rivals/choose.h"
 #include "rivals/score.h"
-#include "state.h"
+#include "core/state.h"
 
 typedef struct ranking {
     splat_model model;

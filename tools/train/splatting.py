@@ -5,7 +5,7 @@ import torch
 import native
 
 DILATION, VARIANCE_LEAST = 0.3, 0.02
-L_LEAST, L_MOST = 580 / 4096, 64  # of a Cholesky factor, pixels, as runtime/head_learned.c has them
+L_LEAST, L_MOST = 580 / 4096, 64  # of a Cholesky factor, pixels, as runtime/head/head_learned.c has them
 CHANGES = 10  # of a splat in a pass of refinement, its share of the step with them
 _library = None
 
@@ -105,7 +105,7 @@ def footprints(outputs, spacing, own_colour):
 
 
 def narrowed(factor):
-    """The lower factor of the footprint less the rasterizer's dilation, as runtime/head_lift.c stores it."""
+    """The lower factor of the footprint less the rasterizer's dilation, as runtime/head/head_lift.c stores it."""
     l11, l21, l22 = factor.unbind(1)
     xx = torch.clamp(l11 * l11 - DILATION, min=VARIANCE_LEAST)
     yy = torch.clamp(l21 * l21 + l22 * l22 - DILATION, min=VARIANCE_LEAST)

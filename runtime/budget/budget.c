@@ -1,0 +1,439 @@
+#include "budget.h"
+
+#include <string.h>
+
+#include "blue_noise.h"
+#include "core/fixed.h"
+#include "importance.h"
+
+/* Added to the texture before its power, 0.002 of full scale, so that blank walls keep some points. */
+#define TEXTURE_FLOOR_Q4 8
+/* A pixel whose threshold (of 65536) is below this, 0.003, is retained first of all, whatever its texture. */
+#define SURE_THRESHOLD 197
+
+/* --- texture ---------------------------------------------------------------------------------------------------- */
+
+/* The 5-box twice: weights 1 2 3 4 5 4 3 2 1 of 25; variance 4 px^2. Beyond the border the edge repeats. */
+static uint16_t blur_at(const uint16_t *line, size_t stride, uint32_t at, uint32_t length)
+{
+    uint32_t sum = 12; /* half of 25: one rounding. 25 x 65535 fits. */
+    for (int32_t tap = -4; tap <= 4; tap++) {
+        int32_t place = t3r_clamp32((int32_t)at + tap, 0, (int32_t)length - 1);
+        sum += (uint32_t)(5 - t3r_abs32(tap)) * line[(size_t)place * stride];
+    }
+    return (uint16_t)(sum / 25);
+}
+
+void t3r_blur_texture(const t3r_view *views, uint32_t count)
+{
+    for (uint32_t v = 0; v < count; v++) {
+        const t3r_view *view = &views[v];
+        for (uint32_t y = 0; y < view->height; y++) {
+            const uint16_t *row = view->texture + (size_t)y * view->width;
+            for (uint32_t x = 0; x < view->width; x++) {
+                view->key[(size_t)y * view->width + x] = blur_at(row, 1, x, view->width);
+            }
+        }
+        for (uint32_t y = 0; y < view->height; y++) {
+            for (uint32_t x = 0; x < view->width; x++) {
+                view->texture[(size_t)y * view->width + x] = blur_at(view->key + x, view->width, y, view->height);
+            }
+        }
+    }
+}
+
+static bool precedes(const t3r_cluster *clusters, uint32_t a, uint32_t b)
+{
+    return clusters[a].texture_q4 < clusters[b].texture_q4 ||
+           (clusters[a].texture_q4 == clusters[b].texture_q4 && a < b);
+}
+
+void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count)
+{
+    uint64_t sums[T3R_MAX_CLUSTERS] = {0};
+    for (uint32_t v = 0; v < count; v++) {
+        size_t pixels = (size_t)views[v].width * views[v].height;
+        for (size_t i = 0; i < pixels; i++) {
+            if (views[v].label[i] != T3R_NO_LABEL) {
+                sums[views[v].label[i]] += views[v].texture[i];
+            }
+        }
+    }
+    for (uint32_t k = 0; k < cluster_count; k++) {
+        uint32_t points = clusters[k].points;
+        clusters[k].texture_q4 = points == 0 ? 0 : (uint32_t)((sums[k] + points / 2) / points);
+    }
+}
+
+void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t seed)
+{
+    uint16_t filled[T3R_MAX_CLUSTERS];
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < cluster_count; k++) {
+        if (clusters[k].points > 0) {
+            filled[count++] = (uint16_t)k;
+        }
+    }
+    /* Fisher and Yates: what is drawn lies at or before the place it comes to */
+    for (uint32_t i = count; i > 1; i--) {
+        t3r_cluster *last = &clusters[filled[i - 1]];
+        t3r_cluster *drawn = &clusters[filled[t3r_mix32(i ^ t3r_mix32(seed)) % i]];
+        uint32_t texture_q4 = last->texture_q4;
+        last->texture_q4 = drawn->texture_q4;
+        drawn->texture_q4 = texture_q4;
+    }
+}
+
+void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count)
+{
+    /* Insertion sort: at most K^2 / 2 steps, K <= 512. */
+    for (uint32_t i = 0; i < cluster_count; i++) {
+        clusters[i].order = i;
+    }
+    for (uint32_t i = 1; i < cluster_count; i++) {
+        uint32_t moved = clusters[i].order, place = i;
+        while (place > 0 && precedes(clusters, moved, clusters[place - 1].order)) {
+            clusters[place].order = clusters[place - 1].order;
+            place--;
+        }
+        clusters[place].order = moved;
+    }
+}
+
+/* --- keys --------------------------------------------------------------------------------------------------------- */
+
+static bool follows_texture(t3r_allocation allocation)
+{
+    return allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL;
+}
+
+static bool by_cluster(t3r_allocation allocation)
+{
+    return allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PAPER;
+}
+
+/* gamma log2(texture + floor), at most 32 */
+int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings)
+{
+    if (!follows_texture(settings->allocation)) {
+        return 0;
+    }
+    int64_t log_q16 = t3r_log2_q16((uint32_t)texture_q4 + TEXTURE_FLOOR_Q4);
+    return (int32_t)t3r_round_shift64(log_q16 * settings->gamma_q8, 14);
+}
+
+/* The pixel's threshold in [0, 65535]: blue noise, whose 4,096 ranks are split by white noise. Each view sees the map
+ * shifted, so that two views of a surface complement each other. */
+static uint32_t threshold_at(uint32_t view, uint32_t x, uint32_t y, const t3r_budget_settings *settings)
+{
+    uint32_t noise = t3r_mix32((view << 26) ^ (y << 13) ^ x ^ t3r_mix32(settings->seed));
+    if (settings->allocation == T3R_ALLOCATE_RANDOM) {
+        return noise >> 16;
+    }
+    uint32_t row = (y + 23 * view) % T3R_BLUE_NOISE_SIDE, column = (x + 46 * view) % T3R_BLUE_NOISE_SIDE;
+    return t3r_blue_noise[row * T3R_BLUE_NOISE_SIDE + column] * 16u + (noise >> 28);
+}
+
+static uint16_t key_of(uint32_t threshold, int32_t wanted_q10)
+{
+    if (threshold < SURE_THRESHOLD) {
+        return (uint16_t)(threshold >> 4); /* at most 12 */
+    }
+    /* log2((2 t + 1) / 2^17) in [-17, 0] */
+    int32_t log_threshold_q10 = t3r_round_shift32(t3r_log2_q16(2 * threshold + 1), 6) - (17 << 10);
+    return (uint16_t)t3r_clamp32(T3R_KEY_ZERO + log_threshold_q10 - wanted_q10, 16, UINT16_MAX);
+}
+
+void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings)
+{
+    for (uint32_t v = 0; v < count; v++) {
+        for (uint32_t y = 0; y < views[v].height; y++) {
+            for (uint32_t x = 0; x < views[v].width; x++) {
+                size_t i = (size_t)y * views[v].width + x;
+                uint16_t key = key_of(threshold_at(settings->shift + v, x, y, settings),
+                                      t3r_log_wanted_q10(views[v].texture[i], settings));
+                if (t3r_set_aside(&views[v], i, settings)) { /* among these the doubtful ones last */
+                    key = (uint16_t)((key >> 1) | (t3r_is_doubtful(views[v].confidence[i]) ? 0x8000u : 0));
+                }
+                views[v].key[i] = key;
+            }
+        }
+    }
+}
+
+/* --- quotas ------------------------------------------------------------------------------------------------------- */
+
+/* Those of a cluster's points that are there to be retained. */
+static inline uint32_t open_points(const t3r_cluster *cluster)
+{
+    return cluster->points - T3R_MIN(cluster->aside, cluster->points);
+}
+
+/* Shares `budget` among the clusters in proportion to weight[k]; cumulative rounding makes the sum exact and each
+ * quota one of the two integers next to its share. Weights sum to less than 2^39, the budget is below 2^24. */
+static void share_out(t3r_cluster *clusters, uint32_t count, const uint64_t *weight, uint64_t budget)
+{
+    uint64_t total = 0, running = 0, given = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        total += weight[k];
+    }
+    for (uint32_t k = 0; k < count && total > 0; k++) {
+        if (weight[k] > 0) {
+            running += weight[k];
+            uint64_t due = running * budget / total;
+            clusters[k].quota = (uint32_t)(due - given);
+            given = due;
+        }
+    }
+}
+
+/* `density`: in proportion to |SC| x Texture(SC)^gamma, no cluster more than its points. A cluster whose share would
+ * exceed its points gets them all and leaves the rest to the others: at most K rounds, a few in practice. */
+static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_budget_settings *settings,
+                              uint64_t budget)
+{
+    uint64_t weight[T3R_MAX_CLUSTERS]; /* points x factor: below 2^28 x 2^10, 2^38 in sum */
+    uint32_t factor_q10[T3R_MAX_CLUSTERS];
+    int32_t most = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        most = T3R_MAX(most, t3r_log_wanted_q10((uint16_t)clusters[k].texture_q4, settings));
+    }
+    for (uint32_t k = 0; k < count; k++) {
+        int32_t below = t3r_log_wanted_q10((uint16_t)clusters[k].texture_q4, settings) - most;
+        factor_q10[k] = below <= -(10 << 10) ? 1 : T3R_MAX(t3r_exp2_q16(below * 64) >> 6, 1u);
+        weight[k] = (uint64_t)open_points(&clusters[k]) * factor_q10[k];
+    }
+    for (uint32_t round = 0; round < count; round++) {
+        uint64_t total = 0, taken = 0;
+        for (uint32_t k = 0; k < count; k++) {
+            total += weight[k];
+        }
+        for (uint32_t k = 0; k < count; k++) {
+            /* weight budget / total >= points, divided by points */
+            if (weight[k] > 0 && factor_q10[k] * budget >= total) {
+                clusters[k].quota = open_points(&clusters[k]);
+                taken += open_points(&clusters[k]);
+                weight[k] = 0;
+            }
+        }
+        if (taken == 0) {
+            break;
+        }
+        budget -= T3R_MIN(taken, budget);
+    }
+    share_out(clusters, count, weight, budget);
+}
+
+/* `paper`: from the lowest texture up each cluster keeps N % of its points until Z is met; the last is cut so that Z is
+ * exact; if Z is below N % of all, N becomes Z / valid for all. */
+static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_budget_settings *settings, uint64_t budget,
+                            uint64_t valid)
+{
+    uint64_t left = valid;
+    for (uint32_t k = 0; k < count; k++) {
+        clusters[k].quota = open_points(&clusters[k]);
+    }
+    for (uint32_t i = 0; i < count && left > budget; i++) {
+        t3r_cluster *cluster = &clusters[clusters[i].order];
+        uint64_t kept = ((uint64_t)open_points(cluster) * settings->keep_percent + 50) / 100;
+        uint64_t dropped = T3R_MIN(open_points(cluster) - kept, left - budget);
+        cluster->quota = (uint32_t)(open_points(cluster) - dropped);
+        left -= dropped;
+    }
+    if (left > budget) {
+        uint64_t weight[T3R_MAX_CLUSTERS];
+        for (uint32_t k = 0; k < count; k++) {
+            weight[k] = open_points(&clusters[k]);
+        }
+        share_out(clusters, count, weight, budget);
+    }
+}
+
+/* --- selection ---------------------------------------------------------------------------------------------------- */
+
+#define NO_GROUP UINT32_MAX
+
+/* The group whose quota a pixel falls under: its SuperCluster, or cluster 0 standing for all points; the one behind the
+ * last SuperCluster for points set aside, and none without depth. */
+static inline uint32_t group_of(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
+{
+    uint32_t label = view->label[pixel];
+    if (label == T3R_NO_LABEL) {
+        return NO_GROUP;
+    }
+    if (t3r_set_aside(view, pixel, settings)) {
+        return settings->clusters;
+    }
+    return by_cluster(settings->allocation) ? label : 0;
+}
+
+/* Finds each group's threshold, the least key of which at least `quota` points are not above it, by bisection over
+ * the 16 bits of all groups at once; then how many points at the threshold itself are wanted. */
+static void find_thresholds(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                            t3r_cluster *clusters)
+{
+    uint32_t groups = settings->clusters + 1;
+    uint32_t below[T3R_MAX_CLUSTERS + 1];
+    for (uint32_t g = 0; g < groups; g++) {
+        clusters[g].threshold = 0;
+    }
+    for (int bit = 15; bit >= -1; bit--) {
+        /* Points with a key below threshold + 2^bit; in the last round below the threshold itself */
+        memset(below, 0, sizeof below);
+        uint32_t step = bit >= 0 ? 1u << bit : 0;
+        for (uint32_t v = 0; v < count; v++) {
+            size_t pixels = (size_t)views[v].width * views[v].height;
+            for (size_t i = 0; i < pixels; i++) {
+                uint32_t g = group_of(&views[v], i, settings);
+                if (g != NO_GROUP) {
+                    below[g] += views[v].key[i] < clusters[g].threshold + step;
+                }
+            }
+        }
+        for (uint32_t g = 0; g < groups; g++) {
+            if (bit >= 0 && below[g] < clusters[g].quota) {
+                clusters[g].threshold += step;
+            } else if (bit < 0) {
+                clusters[g].ties = clusters[g].quota - below[g];
+            }
+        }
+    }
+}
+
+/* log2 of the share of points retained about a pixel, Q10, if its group's density were `density_q10`: at most all, and
+ * at least the sure ones. */
+static int32_t local_density_q10(int32_t density_q10, int32_t wanted_q10)
+{
+    return t3r_clamp32(density_q10 + wanted_q10, T3R_LEAST_DENSITY_Q10, 0);
+}
+
+/* The density of each group for which its pixels' shares sum to its quota. The threshold alone, the key of one point,
+ * is a noisy measure of it in small groups; two rounds of proportional correction from there settle it. */
+static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                               t3r_cluster *clusters)
+{
+    for (uint32_t g = 0; g < settings->clusters; g++) {
+        clusters[g].density_q10 = (int32_t)clusters[g].threshold - T3R_KEY_ZERO;
+    }
+    for (int round = 0; round < 2; round++) {
+        uint64_t expected_q16[T3R_MAX_CLUSTERS] = {0};
+        for (uint32_t v = 0; v < count; v++) {
+            size_t pixels = (size_t)views[v].width * views[v].height;
+            for (size_t i = 0; i < pixels; i++) {
+                uint32_t g = group_of(&views[v], i, settings);
+                if (g < settings->clusters) {
+                    int32_t wanted = t3r_log_wanted_q10(views[v].texture[i], settings);
+                    expected_q16[g] += t3r_exp2_q16(local_density_q10(clusters[g].density_q10, wanted) * 64);
+                }
+            }
+        }
+        for (uint32_t g = 0; g < settings->clusters; g++) {
+            if (clusters[g].quota > 0 && expected_q16[g] > 0) {
+                int32_t log_ratio_q16 =
+                    t3r_log2_wide_q16((uint64_t)clusters[g].quota << 16) - t3r_log2_wide_q16(expected_q16[g]);
+                clusters[g].density_q10 += t3r_round_shift32(log_ratio_q16, 6);
+            }
+        }
+    }
+}
+
+static void set_masks(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
+{
+    for (uint32_t v = 0; v < count; v++) {
+        const t3r_view *view = &views[v];
+        size_t pixels = (size_t)view->width * view->height;
+        memset(view->mask, 0, (pixels + 31) / 32 * sizeof *view->mask);
+        for (size_t i = 0; i < pixels; i++) {
+            uint32_t g = group_of(view, i, settings);
+            if (g == NO_GROUP) {
+                continue;
+            }
+            t3r_cluster *group = &clusters[g];
+            bool tie = view->key[i] == group->threshold && group->ties > 0;
+            group->ties -= tie;
+            if (view->key[i] < group->threshold || tie) {
+                view->mask[i / 32] |= 1u << (i % 32);
+            }
+        }
+    }
+}
+
+bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians)
+{
+    uint64_t plain = 0;
+    for (uint32_t v = 0; v < count; v++) {
+        size_t pixels = (size_t)views[v].width * views[v].height;
+        for (size_t i = 0; i < pixels; i++) {
+            uint8_t confidence = views[v].confidence[i];
+            plain += confidence != T3R_CONFIDENCE_NONE && !t3r_is_doubtful(confidence) && !t3r_is_covered(confidence);
+        }
+    }
+    return 3 * (uint64_t)gaussians <= 2 * plain;
+}
+
+/* The points that this budget sets aside: of each cluster, and all as a group of their own behind the last. */
+static void count_aside(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                        t3r_cluster *clusters)
+{
+    t3r_cluster *all = &clusters[settings->clusters];
+    *all = (t3r_cluster){0};
+    for (uint32_t k = 0; k < settings->clusters; k++) {
+        clusters[k].aside = 0;
+    }
+    for (uint32_t v = 0; v < count; v++) {
+        size_t pixels = (size_t)views[v].width * views[v].height;
+        for (size_t i = 0; i < pixels; i++) {
+            uint32_t label = views[v].label[i];
+            if (label != T3R_NO_LABEL && t3r_set_aside(&views[v], i, settings)) {
+                clusters[label].aside++;
+                all->points++;
+            }
+        }
+    }
+}
+
+void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
+{
+    count_aside(views, count, settings, clusters);
+    uint64_t valid = 0;
+    for (uint32_t k = 0; k < settings->clusters; k++) {
+        valid += open_points(&clusters[k]);
+        clusters[k].quota = 0;
+    }
+    uint64_t budget = T3R_MIN(settings->gaussians, valid);
+    if (settings->allocation == T3R_ALLOCATE_DENSITY) {
+        quotas_by_density(clusters, settings->clusters, settings, budget);
+    } else if (settings->allocation == T3R_ALLOCATE_PAPER) {
+        quotas_by_paper(clusters, settings->clusters, settings, budget, valid);
+    } else {
+        clusters[0].quota = (uint32_t)budget;
+    }
+    t3r_cluster *aside = &clusters[settings->clusters];
+    aside->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, aside->points);
+    const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
+    if (!given) {
+        t3r_budget_keys(views, count, settings);
+    }
+    find_thresholds(views, count, settings, clusters);
+    if (!given) {
+        estimate_densities(views, count, settings, clusters);
+    }
+    set_masks(views, count, settings, clusters);
+    if (given) {
+        t3r_count_shares(views, count, clusters, settings->clusters);
+    }
+}
+
+int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
+                            const t3r_cluster *clusters)
+{
+    uint32_t g = group_of(view, pixel, settings);
+    if (g >= settings->clusters) {
+        return 0; /* retained where all others are, so that nothing about it is left for it to cover */
+    }
+    if (settings->allocation == T3R_ALLOCATE_GIVEN) {
+        return t3r_log_share_q10(view, pixel, clusters);
+    }
+    const t3r_cluster *group = &clusters[g];
+    return local_density_q10(group->density_q10, t3r_log_wanted_q10(view->texture[pixel], settings));
+}

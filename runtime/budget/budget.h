@@ -1,0 +1,76 @@
+/* The budget: which Z of the valid points are retained (GaussianTrim3R 3.1.2; SPEC.md, "Budget").
+ *
+ * One mechanism serves every mode. Each point has a key, log2 of its blue-noise threshold over its wanted density;
+ * a group of points (a SuperCluster, or all) with a quota retains those with the smallest keys. So Z is met exactly,
+ * a group's retained set grows with its quota, and another Z costs no new analysis. */
+#ifndef T3R_BUDGET_H
+#define T3R_BUDGET_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "superclusters/superclusters.h"
+#include "trim3r.h"
+#include "core/views.h"
+
+/* Keys are logarithms in Q10 above this zero: where the key of a point of blue noise 1 and wanted density 1 stands. */
+#define T3R_KEY_ZERO (50 << 10)
+/* No density is told to be below 0.003: log2(197 / 65536). */
+#define T3R_LEAST_DENSITY_Q10 (-8579)
+
+typedef struct t3r_budget_settings {
+    t3r_allocation allocation;
+    uint32_t gaussians;    /* Z */
+    uint32_t keep_percent; /* N of `paper` */
+    uint32_t gamma_q8;
+    uint32_t clusters;
+    uint32_t seed;
+    uint32_t shift;         /* of the blue noise: the number of the first view, so to speak */
+    bool pass_over_covered; /* the budget is so small that points of surfaces seen twice are wanted once */
+} t3r_budget_settings;
+
+/* Whether a point is retained only once all others are: the doubtful ones, and with pass_over_covered those that
+ * another view covers. Heads let the splats of other points not grow over them. None when importance is given. */
+static inline bool t3r_set_aside(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
+{
+    uint8_t confidence = view->confidence[pixel];
+    return settings->allocation != T3R_ALLOCATE_GIVEN &&
+           (t3r_is_doubtful(confidence) || (settings->pass_over_covered && t3r_is_covered(confidence)));
+}
+
+/* Whether Z is at most two thirds of the points that are neither doubtful nor covered by another view. */
+bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
+
+/* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */
+void t3r_blur_texture(const t3r_view *views, uint32_t count);
+
+/* Mean texture of every cluster (eq. 2), from the texture planes before they are blurred. */
+void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);
+
+/* Hands the textures of the clusters that have points round among them, every permutation alike likely. */
+void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t seed);
+
+/* Their order from the lowest texture up. */
+void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
+
+/* The keys of all pixels, of which t3r_allocate() retains the smallest; log2 of the density that a texture asks for, up
+ * to a constant, Q10: key = T3R_KEY_ZERO + log2 of the threshold - wanted but for sure and set aside points. */
+void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings);
+int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings);
+
+/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. For `given` the key planes hold the keys already
+ * (importance.h). */
+void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters);
+
+/* Log2 of the density of retained points about a pixel under the allocation made last, Q10, at most 0: they are
+ * 2^(-density / 2) pixels apart. */
+int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
+                            const t3r_cluster *clusters);
+
+static inline bool t3r_retained(const t3r_view *view, size_t pixel)
+{
+    return (view->mask[pixel / 32] >> (pixel % 32) & 1) != 0;
+}
+
+#endif

@@ -1,0 +1,73 @@
+#include "budget_choice.h"
+
+#include "disagreement.h"
+#include "core/fixed.h"
+#include "pipeline.h"
+#include "refine/refine.h"
+#include "core/state.h"
+
+#define TRIAL_PART 100u     /* of the points are the first trial's; the second has twice as many */
+#define LEAST_PART 400u     /* of the points are kept whatever the prediction */
+#define PAIRS_LEAST 256u    /* below which views are not believed to disagree so much */
+#define UNSEEN_Q8 (4u << 8) /* levels^2, 42 dB: as much as roundings make; an error below it is not seen */
+
+/* Of the disagreement is added to the error by every dB that may be lost, and a quarter of that in any case: measured
+ * on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
+#define SHARE_DIVISOR 10u
+#define LOSS_OFFSET_Q8 64u
+
+static uint64_t ceil_div(uint64_t a, uint64_t b)
+{
+    return (a + b - 1) / b;
+}
+
+uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_t max_loss_q8)
+{
+    /* error(Z) = floor + slope / Z, from Z = trial and 2 trial */
+    uint64_t fall_q8 = e->error_q8[0] > e->error_q8[1] ? e->error_q8[0] - e->error_q8[1] : 0;
+    uint64_t slope_q8 = fall_q8 * 2 * e->trial; /* 2^24 x 2^24 */
+    uint64_t floor_q8 = e->error_q8[1] > fall_q8 ? e->error_q8[1] - fall_q8 : 0;
+    uint64_t yardstick_q8 = T3R_MAX(e->disagreement_q8 != 0 ? e->disagreement_q8 : floor_q8, UNSEEN_Q8);
+
+    uint64_t allowed = yardstick_q8 * (max_loss_q8 + LOSS_OFFSET_Q8);     /* x 256 x SHARE_DIVISOR */
+    uint64_t wanted = ceil_div(slope_q8 * (SHARE_DIVISOR << 8), allowed); /* 2^48 x 2^12 */
+    if (e->error_q8[1] < UNSEEN_Q8) { /* the second trial is there already; the floor is below it */
+        wanted = T3R_MIN(wanted, ceil_div(slope_q8, UNSEEN_Q8 - floor_q8));
+    }
+    uint64_t least = T3R_MAX(e->points / LEAST_PART, 1u);
+    return (uint32_t)T3R_MIN(T3R_MAX(wanted, least), (uint64_t)most);
+}
+
+/* The error of a scene of that many Gaussians. */
+static t3r_status try_budget(t3r_runtime *rt, const t3r_view *views, uint32_t gaussians, uint32_t *error_q8)
+{
+    rt->config.gaussians = gaussians;
+    t3r_status status = t3r_build_scene(rt, NULL);
+    return status == T3R_OK ? t3r_refine_error(rt, views, error_q8) : status;
+}
+
+t3r_status t3r_choose_budget(t3r_runtime *rt, uint32_t max_loss_q8, uint32_t *gaussians)
+{
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(rt, views);
+    const uint32_t most = T3R_MIN(rt->config.gaussians, rt->valid_points);
+    t3r_budget_evidence evidence = {
+        .points = rt->valid_points,
+        .trial = T3R_MIN(T3R_MAX(rt->valid_points / TRIAL_PART, 1u), most / 2),
+    };
+    if (evidence.trial == 0) {
+        *gaussians = most;
+        return T3R_OK;
+    }
+    uint32_t pairs;
+    evidence.disagreement_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, &pairs);
+    evidence.disagreement_q8 = pairs < PAIRS_LEAST ? 0 : evidence.disagreement_q8;
+    for (uint32_t i = 0; i < 2; i++) {
+        t3r_status status = try_budget(rt, views, evidence.trial << i, &evidence.error_q8[i]);
+        if (status != T3R_OK) {
+            return status;
+        }
+    }
+    *gaussians = t3r_predict_budget(&evidence, most, max_loss_q8);
+    return T3R_OK;
+}

@@ -1,0 +1,106 @@
+/* Validity of depth, and small holes filled between measured pixels. */
+#include "depth.h"
+
+#include <stdbool.h>
+
+#include "core/fixed.h"
+
+void t3r_depth_confidence(t3r_view *view)
+{
+    size_t count = (size_t)view->width * view->height;
+    for (size_t i = 0; i < count; i++) {
+        view->confidence[i] = view->depth[i] != 0 ? T3R_CONFIDENCE_MEASURED : T3R_CONFIDENCE_NONE;
+    }
+}
+
+/* The measured pixels on both sides of a hole along one axis; gap = 0: none within reach. */
+typedef struct bracket {
+    size_t first, second;   /* their indices */
+    uint32_t before, after; /* their distances, 1.. */
+    uint32_t gap;           /* before + after */
+} bracket;
+
+/* at: index of the pixel, step: to its next neighbour on the axis, back/ahead: pixels there are on either side. */
+static bracket find_bracket(const uint8_t *confidence, size_t at, size_t step, uint32_t back, uint32_t ahead,
+                            uint32_t radius)
+{
+    bracket none = {0};
+    bracket found = {0};
+
+    for (uint32_t i = 1; i <= T3R_MIN(radius, back) && found.before == 0; i++) {
+        if (confidence[at - i * step] == T3R_CONFIDENCE_MEASURED) {
+            found.first = at - i * step;
+            found.before = i;
+        }
+    }
+    if (found.before == 0) {
+        return none;
+    }
+    for (uint32_t i = 1; i <= T3R_MIN(radius, ahead) && found.after == 0; i++) {
+        if (confidence[at + i * step] == T3R_CONFIDENCE_MEASURED) {
+            found.second = at + i * step;
+            found.after = i;
+        }
+    }
+    if (found.after == 0) {
+        return none;
+    }
+    found.gap = found.before + found.after;
+    return found;
+}
+
+/* |dr| + |dg| + |db| */
+static int32_t colour_distance(const t3r_view *view, size_t a, size_t b)
+{
+    int32_t sum = 0;
+    for (uint32_t c = 0; c < 3; c++) {
+        sum += t3r_abs32((int32_t)view->colour[c][a] - (int32_t)view->colour[c][b]);
+    }
+    return sum;
+}
+
+static uint16_t depth_between(const t3r_view *view, size_t at, const bracket *between)
+{
+    int32_t first = view->depth[between->first];
+    int32_t second = view->depth[between->second];
+    int32_t before = (int32_t)between->before;
+    int32_t after = (int32_t)between->after;
+
+    if (t3r_same_surface(view->depth[between->first], view->depth[between->second])) {
+        return (uint16_t)t3r_round_div64((int64_t)first * after + (int64_t)second * before, before + after);
+    }
+    int32_t to_first = colour_distance(view, at, between->first);
+    int32_t to_second = colour_distance(view, at, between->second);
+    if (to_first == to_second) {
+        return (uint16_t)(before <= after ? first : second);
+    }
+    return (uint16_t)(to_first < to_second ? first : second);
+}
+
+uint32_t t3r_depth_fill(t3r_view *view, uint32_t radius)
+{
+    uint32_t width = view->width, height = view->height;
+    uint32_t filled = 0;
+
+    if (radius == 0) {
+        return 0;
+    }
+    for (uint32_t y = 0; y < height; y++) {
+        for (uint32_t x = 0; x < width; x++) {
+            size_t at = (size_t)y * width + x;
+            if (view->confidence[at] != T3R_CONFIDENCE_NONE) {
+                continue;
+            }
+            bracket across = find_bracket(view->confidence, at, 1, x, width - 1 - x, radius);
+            bracket along = find_bracket(view->confidence, at, width, y, height - 1 - y, radius);
+            bool vertical = along.gap != 0 && (across.gap == 0 || along.gap < across.gap);
+            const bracket *between = vertical ? &along : &across;
+            if (between->gap != 0) {
+                view->depth[at] = depth_between(view, at, between);
+                view->confidence[at] = T3R_CONFIDENCE_FILLED;
+                filled++;
+            }
+        }
+    }
+    return filled;
+}

@@ -1,0 +1,55 @@
+/* The Gaussian head: retained points to Gaussians that also cover what was pruned around them. Every head predicts a
+ * footprint in the image plane, in pixels of the source view; t3r_lift() makes it a 3-D Gaussian on the surface. */
+#ifndef T3R_HEAD_H
+#define T3R_HEAD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "budget/budget.h"
+#include "pointmap/pointmap.h"
+#include "superclusters/superclusters.h"
+
+#define T3R_HEAD_OPACITY_Q15 31457 /* 0.96, of heads that do not predict one */
+
+/* What a head sees of one view. */
+typedef struct t3r_head_input {
+    t3r_pointmap map;
+    uint32_t view_index;
+    const t3r_budget_settings *settings;
+    const t3r_cluster *clusters;
+    const void *weights; /* of `learned`, checked; NULL for the others */
+    void *work;          /* two bytes a pixel; `learned`: t3r_head_learned_work_bytes() */
+    bool unadapted;      /* the head is told that nothing was pruned: every point retained, spacing 1 */
+} t3r_head_input;
+
+/* A total footprint in the image plane: mean and covariance in pixels, as the source view shall show it. */
+typedef struct t3r_footprint {
+    int32_t offset_q12[2];
+    int32_t xx_q12, xy_q12, yy_q12; /* covariance, px^2 */
+    uint16_t colour_q7[3];
+    uint16_t opacity_q15;
+} t3r_footprint;
+
+/* A footprint at pixel (u, v) to a Gaussian: covariance [tu tv] (S - 0.3 I) [tu tv]^T and a thin normal term. The
+ * rasterizer adds the 0.3 px^2 back. The pixel must have a depth. */
+void t3r_lift(const t3r_pointmap *map, uint32_t view_index, uint32_t u, uint32_t v, const t3r_footprint *footprint,
+              t3r_gaussian *gaussian);
+
+/* Writes a factor, entries of `fraction` fraction bits below 2^62, as mantissas with a shared exponent: the largest
+ * gets 14 bits. */
+void t3r_pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gaussian);
+
+/* Kept neighbours are this far apart about a retained pixel: pixels, Q12, at least 1; 1 when unadapted. */
+uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
+
+/* Each writes the view's retained points in raster order to `out` and returns their number. */
+uint32_t t3r_head_analytic(const t3r_head_input *input, t3r_gaussian *out);
+uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out);
+uint32_t t3r_head_none(const t3r_head_input *input, t3r_gaussian *out);
+uint32_t t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out);
+
+/* Bytes of work that a learned head needs for views of this width. */
+size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width);
+
+#endif

@@ -1,0 +1,186 @@
+#include "bridge.h"
+
+#include <stdbool.h>
+
+#include "core/fixed.h"
+#include "reproject.h"
+
+#define AXES 4
+
+/* --- what other views measured ------------------------------------------------------------------------------------ */
+
+/* The least step that is at least as deep as z; 0 when none is. Depths rise with their steps. */
+static uint16_t step_at(t3r_depth_scale scale, int32_t z_q20)
+{
+    uint32_t low = 0, high = UINT16_MAX + 1u;
+    while (high - low > 1) {
+        uint32_t middle = (low + high) / 2;
+        if (t3r_depth_q20(scale, (uint16_t)middle) >= z_q20) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    return (uint16_t)high;
+}
+
+/* Of several points that fall on a pixel the nearest stays. */
+static void lend(const t3r_view *to, const t3r_sight *sight, t3r_depth_scale scale)
+{
+    uint8_t *confidence = &to->confidence[sight->pixel];
+    if (*confidence != T3R_CONFIDENCE_NONE && *confidence != T3R_CONFIDENCE_LENT) {
+        return;
+    }
+    uint16_t step = step_at(scale, sight->z_q20);
+    if (step != 0 && (*confidence == T3R_CONFIDENCE_NONE || step < to->depth[sight->pixel])) {
+        to->depth[sight->pixel] = step;
+        *confidence = T3R_CONFIDENCE_LENT;
+    }
+}
+
+void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent)
+{
+    t3r_pointmap to = t3r_pointmap_of(&views[v], exponent);
+    for (uint32_t w = 0; w < count; w++) {
+        t3r_pointmap from = t3r_pointmap_of(&views[w], exponent);
+        for (uint32_t y = 0; y < views[w].height && w != v; y++) {
+            for (uint32_t x = 0; x < views[w].width; x++) {
+                t3r_sight sight;
+                if (views[w].confidence[(size_t)y * views[w].width + x] == T3R_CONFIDENCE_MEASURED &&
+                    t3r_reproject(&from, x, y, &to, &sight)) {
+                    lend(&views[v], &sight, to.scale);
+                }
+            }
+        }
+    }
+}
+
+/* --- between what is known ---------------------------------------------------------------------------------------- */
+
+/* Planes may hold anything: what is said to be known counts with a depth alone. */
+static bool is_known(const t3r_view *view, size_t pixel)
+{
+    uint8_t confidence = view->confidence[pixel];
+    return view->depth[pixel] != 0 && (confidence == T3R_CONFIDENCE_MEASURED || confidence == T3R_CONFIDENCE_FILLED ||
+                                       confidence == T3R_CONFIDENCE_LENT);
+}
+
+/* Steps to the first known pixel from (x, y) on, 1..radius, and its depth; 0 if there is none. */
+static uint32_t look(const t3r_view *view, uint32_t x, uint32_t y, int32_t dx, int32_t dy, uint32_t radius,
+                     uint16_t *depth)
+{
+    int32_t u = (int32_t)x, v = (int32_t)y;
+    for (uint32_t i = 1; i <= radius; i++) {
+        u += dx;
+        v += dy;
+        if (u < 0 || v < 0 || u >= (int32_t)view->width || v >= (int32_t)view->height) {
+            return 0;
+        }
+        size_t pixel = (size_t)v * view->width + (size_t)u;
+        if (is_known(view, pixel)) {
+            *depth = view->depth[pixel];
+            return i;
+        }
+    }
+    return 0;
+}
+
+/* Planes are straight in 1 / depth. */
+static int64_t inverse_q36(uint16_t depth)
+{
+    return t3r_round_div64((int64_t)1 << 36, depth);
+}
+
+/* The depth of a pixel from its brackets, 0 without any. */
+static uint16_t depth_across(const t3r_view *view, uint32_t x, uint32_t y, uint32_t radius)
+{
+    static const int32_t axis[AXES][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    int64_t sum = 0, weights = 0; /* a weight is at most 2^22, an inverse 2^36: together below 2^60 */
+    uint32_t narrowest = UINT32_MAX;
+    uint16_t farther = 0;
+    for (int k = 0; k < AXES; k++) {
+        uint16_t a = 0, b = 0;
+        uint32_t before = look(view, x, y, -axis[k][0], -axis[k][1], radius, &a);
+        uint32_t after = before == 0 ? 0 : look(view, x, y, axis[k][0], axis[k][1], radius, &b);
+        if (after == 0) {
+            continue;
+        }
+        uint32_t gap = before + after;
+        uint32_t square = gap * gap * (axis[k][0] * axis[k][1] == 0 ? 1 : 2); /* of the length: 4..2^20 */
+        uint16_t near = T3R_MIN(a, b), deep = T3R_MAX(a, b);
+        if (8 * (deep - near) <= near) {
+            int64_t weight = t3r_round_div64((int64_t)1 << 24, square);
+            sum += weight * t3r_round_div64(inverse_q36(a) * after + inverse_q36(b) * before, gap);
+            weights += weight;
+        }
+        if (square < narrowest) {
+            narrowest = square;
+            farther = deep;
+        }
+    }
+    /* a mean of inverses lies between those of 65,535 and 1 */
+    return weights == 0 ? farther : (uint16_t)t3r_round_div64(weights * ((int64_t)1 << 36), sum);
+}
+
+void t3r_bridge_view(const t3r_view *view, uint32_t radius)
+{
+    for (uint32_t y = 0; y < view->height && radius > 0; y++) {
+        for (uint32_t x = 0; x < view->width; x++) {
+            size_t pixel = (size_t)y * view->width + x;
+            uint16_t depth = view->confidence[pixel] == T3R_CONFIDENCE_NONE ? depth_across(view, x, y, radius) : 0;
+            if (depth != 0) {
+                view->depth[pixel] = depth;
+                view->confidence[pixel] = T3R_CONFIDENCE_BRIDGED;
+            }
+        }
+    }
+}
+
+/* --- against the other views -------------------------------------------------------------------------------------- */
+
+/* What view `to` makes of a bridged or lent pixel that it sees there. */
+static uint8_t judge(uint8_t confidence, const t3r_pointmap *to, const t3r_sight *sight, bool settled)
+{
+    uint8_t there = to->view->confidence[sight->pixel];
+    bool known = there == T3R_CONFIDENCE_MEASURED || there == T3R_CONFIDENCE_FILLED;
+    if (!known && !(settled && there == T3R_CONFIDENCE_BRIDGED)) {
+        return confidence;
+    }
+    int64_t behind = (int64_t)sight->z_q20 - t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
+    if (known && 16 * -behind > sight->z_q20) {
+        return T3R_CONFIDENCE_NONE;
+    }
+    return 16 * t3r_abs64(behind) <= sight->z_q20 ? T3R_CONFIDENCE_BRIDGED_COVERED : confidence;
+}
+
+uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled)
+{
+    const t3r_view *view = &views[v];
+    t3r_pointmap maps[T3R_MAX_VIEWS];
+    uint32_t bridged = 0;
+    for (uint32_t w = 0; w < count; w++) {
+        maps[w] = t3r_pointmap_of(&views[w], exponent);
+    }
+    for (uint32_t y = 0; y < view->height; y++) {
+        for (uint32_t x = 0; x < view->width; x++) {
+            size_t pixel = (size_t)y * view->width + x;
+            uint8_t confidence = view->confidence[pixel];
+            if (confidence != T3R_CONFIDENCE_BRIDGED && confidence != T3R_CONFIDENCE_LENT) {
+                continue;
+            }
+            if (confidence == T3R_CONFIDENCE_LENT) {
+                confidence = T3R_CONFIDENCE_BRIDGED_COVERED;
+            }
+            for (uint32_t w = 0; w < count && confidence != T3R_CONFIDENCE_NONE; w++) {
+                t3r_sight sight;
+                if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight)) {
+                    confidence = judge(confidence, &maps[w], &sight, (settled >> w & 1) != 0);
+                }
+            }
+            view->confidence[pixel] = confidence;
+            view->depth[pixel] = confidence == T3R_CONFIDENCE_NONE ? 0 : view->depth[pixel];
+            bridged += confidence == T3R_CONFIDENCE_BRIDGED;
+        }
+    }
+    return bridged;
+}

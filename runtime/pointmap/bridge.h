@@ -1,0 +1,24 @@
+/* Wide depth holes: what the other views measured there, and between the edges of what no view measured. */
+#ifndef T3R_BRIDGE_H
+#define T3R_BRIDGE_H
+
+#include <stdint.h>
+
+#include "core/views.h"
+
+/* Gives depth to pixels of confidence NONE that have known ones within `radius` (0..255; 0 leaves
+ * what other views lend) at both ends of their row, column or diagonals, known being what is measured, filled, or
+ * measured by another view and seen from here. A pixel of an ordinary kind gets T3R_CONFIDENCE_BRIDGED; one whose
+ * surface another view has T3R_CONFIDENCE_BRIDGED_COVERED; none where another view sees through it. Reads pose, depth
+ * and confidence as t3r_depth_fill() leaves them, the frame's exponent; touches no pixel that has a depth. Returns how
+ * many are BRIDGED.
+ *
+ * t3r_bridge_lend() for every view first, then t3r_bridge_view() for every view, then t3r_bridge_settle() for every
+ * view: three steps, so that a caller may pause between any two views. `settled` has a bit set for each view whose
+ * bridges stand already: this view's must agree with them. Per pixel at most 22 steps for each other view and
+ * 8 x radius. */
+void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent);
+void t3r_bridge_view(const t3r_view *view, uint32_t radius);
+uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled);
+
+#endif

@@ -1,0 +1,25 @@
+/* Exposure levelled between views: a gain a channel for each, from surfaces that two of them measured. */
+#ifndef T3R_EXPOSURE_H
+#define T3R_EXPOSURE_H
+
+#include <stdint.h>
+
+#include "core/views.h"
+
+#define T3R_GAIN_ONE_Q14 (1u << 14)
+
+/* The gains r, g, b, Q14, at least 1/4 and at most 4, that bring each view to the mean exposure of all. View after
+ * view, the median of log2(its level / the level of an earlier view's pixel, levelled), over every second pixel of
+ * every second row that falls on a measured pixel of at most 1/64 other depth, all six levels in 16..239. A view with
+ * fewer than 256 such pairs keeps gain 1 and levels no other; returned is how many others there are, the first one
+ * among them. */
+uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3]);
+
+/* A colour of the view with that gain, levelled: Q7, held to 255. */
+static inline uint16_t t3r_level_q7(uint32_t colour_q7, uint16_t gain_q14)
+{
+    uint32_t levelled = (colour_q7 * gain_q14 + (1u << 13)) >> 14; /* below 2^15 x 2^16 */
+    return (uint16_t)(levelled < 255 * 128 ? levelled : 255 * 128);
+}
+
+#endif

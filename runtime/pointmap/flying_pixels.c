@@ -1,0 +1,86 @@
+#include "flying_pixels.h"
+
+#include <stdbool.h>
+
+#include "depth/depth.h"
+#include "core/fixed.h"
+#include "reproject.h"
+
+static bool lies_between(const t3r_view *view, size_t pixel, size_t before, size_t after)
+{
+    if (!t3r_is_measured(view->confidence[before]) || !t3r_is_measured(view->confidence[after])) {
+        return false;
+    }
+    uint16_t here = view->depth[pixel];
+    uint16_t near = T3R_MIN(view->depth[before], view->depth[after]);
+    uint16_t deep = T3R_MAX(view->depth[before], view->depth[after]);
+    return near < here && here < deep && !t3r_same_surface(near, here) && !t3r_same_surface(here, deep);
+}
+
+static bool between_surfaces(const t3r_view *view, uint32_t x, uint32_t y)
+{
+    size_t pixel = (size_t)y * view->width + x;
+    return t3r_is_measured(view->confidence[pixel]) &&
+           ((x > 0 && x + 1 < view->width && lies_between(view, pixel, pixel - 1, pixel + 1)) ||
+            (y > 0 && y + 1 < view->height && lies_between(view, pixel, pixel - view->width, pixel + view->width)));
+}
+
+/* Whose word counts: of measured pixels, or of all with depth. */
+static bool is_witness(uint8_t confidence, bool filled)
+{
+    return filled ? confidence != T3R_CONFIDENCE_NONE : t3r_is_measured(confidence);
+}
+
+bool t3r_seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool filled)
+{
+    const t3r_view *view = to->view;
+    uint32_t u = (uint32_t)(sight->pixel % view->width), v = (uint32_t)(sight->pixel / view->width);
+    if (!is_witness(view->confidence[sight->pixel], filled) || u == 0 || v == 0 || u + 1 == view->width ||
+        v + 1 == view->height) {
+        return false;
+    }
+    for (uint32_t y = v - 1; y <= v + 1; y++) {
+        for (uint32_t x = u - 1; x <= u + 1; x++) {
+            size_t pixel = (size_t)y * view->width + x;
+            int64_t behind = (int64_t)t3r_depth_q20(to->scale, view->depth[pixel]) - sight->z_q20;
+            if (is_witness(view->confidence[pixel], filled) && 16 * behind <= sight->z_q20) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+static bool seen_through_by_any(const t3r_pointmap *maps, uint32_t count, uint32_t v, uint32_t x, uint32_t y,
+                                bool guessed)
+{
+    const bool filled = guessed && !t3r_is_measured(maps[v].view->confidence[(size_t)y * maps[v].view->width + x]);
+    t3r_sight sight;
+    for (uint32_t w = 0; w < count; w++) {
+        if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight) && t3r_seen_through(&maps[w], &sight, filled)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed)
+{
+    t3r_pointmap maps[T3R_MAX_VIEWS];
+    const t3r_view *view = &views[v];
+    uint32_t marked = 0;
+    for (uint32_t w = 0; w < count; w++) {
+        maps[w] = t3r_pointmap_of(&views[w], exponent);
+    }
+    for (uint32_t y = 0; y < view->height; y++) {
+        for (uint32_t x = 0; x < view->width; x++) {
+            uint8_t *confidence = &view->confidence[(size_t)y * view->width + x];
+            if (!t3r_is_bridged(*confidence) &&
+                (between_surfaces(view, x, y) || seen_through_by_any(maps, count, v, x, y, guessed))) {
+                *confidence = t3r_is_measured(*confidence) ? T3R_CONFIDENCE_DOUBTFUL : T3R_CONFIDENCE_FILLED_DOUBTFUL;
+                marked++;
+            }
+        }
+    }
+    return marked;
+}

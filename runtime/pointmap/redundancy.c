@@ -1,0 +1,70 @@
+#include "redundancy.h"
+
+#include <stdbool.h>
+
+#include "core/fixed.h"
+#include "reproject.h"
+
+/* z / f of a sight against the pixel's own, cross-multiplied: z < 2^31, f in Q8 < 2^23. */
+static bool fine_enough(const t3r_view *view, int32_t z_q20, const t3r_view *other, int32_t other_z_q20, bool earlier)
+{
+    int64_t focal = ((int64_t)view->fx_q16 + view->fy_q16) >> 8;
+    int64_t other_focal = ((int64_t)other->fx_q16 + other->fy_q16) >> 8;
+    int64_t here = z_q20 * other_focal, there = other_z_q20 * focal;
+    return earlier ? 16 * there <= 17 * here : 17 * there < 16 * here;
+}
+
+static bool same_surface_q20(int32_t a, int32_t b)
+{
+    return 32 * t3r_abs64((int64_t)a - b) <= T3R_MIN(a, b);
+}
+
+static bool covers(const t3r_pointmap *from, uint32_t x, uint32_t y, const t3r_pointmap *to, bool earlier,
+                   t3r_sight *sight)
+{
+    if (!t3r_reproject(from, x, y, to, sight)) {
+        return false;
+    }
+    uint8_t confidence = to->view->confidence[sight->pixel];
+    if (confidence != T3R_CONFIDENCE_MEASURED && confidence != T3R_CONFIDENCE_WITNESS) {
+        return false;
+    }
+    int32_t there = t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
+    int32_t z = t3r_depth_q20(from->scale, from->view->depth[(size_t)y * from->view->width + x]);
+    return same_surface_q20(sight->z_q20, there) && fine_enough(from->view, z, to->view, sight->z_q20, earlier);
+}
+
+uint32_t t3r_mark_covered(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent)
+{
+    const t3r_view *view = &views[v];
+    t3r_pointmap from = t3r_pointmap_of(view, exponent);
+    uint32_t marked = 0;
+    for (uint32_t w = 0; w < count; w++) {
+        t3r_pointmap to = t3r_pointmap_of(&views[w], exponent);
+        for (uint32_t y = 0; y < view->height && w != v; y++) {
+            for (uint32_t x = 0; x < view->width; x++) {
+                uint8_t *confidence = &view->confidence[(size_t)y * view->width + x];
+                bool measured = *confidence == T3R_CONFIDENCE_MEASURED;
+                t3r_sight sight;
+                if ((measured || *confidence == T3R_CONFIDENCE_FILLED) && covers(&from, x, y, &to, w < v, &sight)) {
+                    *confidence = measured ? T3R_CONFIDENCE_COVERED : T3R_CONFIDENCE_FILLED_COVERED;
+                    views[w].confidence[sight.pixel] = T3R_CONFIDENCE_WITNESS;
+                    marked++;
+                }
+            }
+        }
+    }
+    return marked;
+}
+
+void t3r_forget_witnesses(const t3r_view *views, uint32_t count)
+{
+    for (uint32_t v = 0; v < count; v++) {
+        size_t pixels = (size_t)views[v].width * views[v].height;
+        for (size_t i = 0; i < pixels; i++) {
+            if (views[v].confidence[i] == T3R_CONFIDENCE_WITNESS) {
+                views[v].confidence[i] = T3R_CONFIDENCE_MEASURED;
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+/* The rasterizer: project, order, bin by tiles, blend front to back.
+ *
+ * Fewer bytes never change a pixel: the depth order is global, a pass takes as many whole tiles as its lists have
+ * room for (one tile always fits), and a tile's pixels depend on nothing but its own list. */
+#include "raster_list.h"
+
+#include "core/fixed.h"
+#include "core/hash.h"
+#include "core/state.h"
+
+typedef struct tile_job {
+    const t3r_binning *bin;
+    const t3r_target *target;
+    uint32_t pass_first; /* its list starts at 0 */
+    uint32_t first;      /* tile of index 0 */
+} tile_job;
+
+/* Tiles drawn between two looks at the progress hook. */
+#define DRAW_CHUNK 64u
+
+static void draw_job(void *context, uint32_t index)
+{
+    const tile_job *job = context;
+    const t3r_binning *bin = job->bin;
+    uint32_t tile = job->first + index;
+    uint32_t begin = tile == job->pass_first ? 0 : bin->table[tile - 1];
+    t3r_draw_tile(bin->splats, bin->lists + begin, bin->table[tile] - begin, tile % bin->across, tile / bin->across,
+                  job->target);
+}
+
+static t3r_status check_target(const t3r_runtime *rt, const t3r_target *t)
+{
+    if (t->width < 1 || t->height < 1 || t->width > rt->config.render_width || t->height > rt->config.render_height) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if ((t->rgb != NULL && t->rgb_stride_bytes < 3 * t->width) ||
+        (t->depth_q20 != NULL && (t->depth_stride_bytes < 4 * t->width || t->depth_stride_bytes % 4 != 0)) ||
+        (t->alpha_q15 != NULL && (t->alpha_stride_bytes < 2 * t->width || t->alpha_stride_bytes % 2 != 0))) {
+        return T3R_ERR_ARGUMENT;
+    }
+    return T3R_OK;
+}
+
+static uint64_t hash_target(const t3r_target *target)
+{
+    uint64_t hash = t3r_hash_u32(t3r_hash_u32(T3R_HASH_START, target->width), target->height);
+    for (uint32_t y = 0; y < target->height && target->rgb != NULL; y++) {
+        hash = t3r_hash_bytes(hash, target->rgb + (size_t)y * target->rgb_stride_bytes, (size_t)3 * target->width);
+    }
+    for (uint32_t y = 0; y < target->height && target->depth_q20 != NULL; y++) {
+        const uint32_t *row = target->depth_q20 + (size_t)y * (target->depth_stride_bytes / sizeof *row);
+        for (uint32_t x = 0; x < target->width; x++) {
+            hash = t3r_hash_u32(hash, row[x]);
+        }
+    }
+    for (uint32_t y = 0; y < target->height && target->alpha_q15 != NULL; y++) {
+        const uint16_t *row = target->alpha_q15 + (size_t)y * (target->alpha_stride_bytes / sizeof *row);
+        hash = t3r_hash_u16s(hash, row, target->width);
+    }
+    return hash;
+}
+
+t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const t3r_target *target, uint32_t *passes)
+{
+    *passes = 0;
+    for (uint32_t first = 0; first < bin->tiles; ++*passes) {
+        uint32_t end = t3r_bin_pass(bin, first);
+        for (uint32_t tile = first; tile < end; tile += DRAW_CHUNK) {
+            if (!t3r_progress(rt, T3R_STAGE_RASTER, tile, bin->tiles)) {
+                return T3R_ERR_CANCELLED;
+            }
+            tile_job job = {bin, target, first, tile};
+            t3r_parallel(rt, T3R_MIN(end - tile, DRAW_CHUNK), draw_job, &job);
+        }
+        first = end;
+    }
+    return T3R_OK;
+}
+
+t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && camera != NULL && target != NULL, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->has_scene, T3R_ERR_STATE);
+    t3r_status status = check_target(rt, target);
+    t3r_projection projection;
+    if (status == T3R_OK) {
+        status = t3r_projection_make(camera, &rt->frame, target->width, target->height, &projection);
+    }
+    if (status != T3R_OK) {
+        return status;
+    }
+    if (!rt->config.keep_analysis && !rt->config.stream) {
+        rt->views = 0; /* the raster's buffers lie where the planes were */
+        rt->analysed = 0;
+    }
+
+    if (!t3r_progress(rt, T3R_STAGE_RASTER, 0, (uint32_t)T3R_TILES_(target->width, target->height))) {
+        return T3R_ERR_CANCELLED;
+    }
+    t3r_raster_room room = {
+        .splats = t3r_buffer_at(rt, T3R_BUFFER_SPLATS),
+        .order = t3r_buffer_at(rt, T3R_BUFFER_ORDER),
+        .table = t3r_buffer_at(rt, T3R_BUFFER_TILES),
+        .lists = t3r_buffer_at(rt, T3R_BUFFER_LISTS),
+        .capacity = rt->list_capacity,
+    };
+    t3r_binning bin = t3r_raster_list(rt, &projection, &room);
+    uint32_t passes;
+    status = t3r_raster_tiles(rt, &bin, target, &passes);
+    if (status != T3R_OK) {
+        return status;
+    }
+    rt->render_passes = passes;
+    if (rt->hooks.stage_hash != NULL) {
+        rt->hooks.stage_hash(rt->hooks.user, T3R_STAGE_RASTER, hash_target(target));
+    }
+    return T3R_OK;
+}

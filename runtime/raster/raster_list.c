@@ -1,0 +1,56 @@
+#include "raster_list.h"
+
+#include "core/fixed.h"
+#include "core/state.h"
+
+#define PROJECT_CHUNK 4096u
+
+typedef struct project_job {
+    const t3r_projection *projection;
+    const t3r_gaussian *gaussians;
+    uint32_t count;
+    t3r_splat *splats;
+} project_job;
+
+/* A culled Gaussian leaves z = 0 behind. */
+static void project_chunk(void *context, uint32_t index)
+{
+    const project_job *job = context;
+    uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
+    for (uint32_t i = first; i < end; i++) {
+        if (!t3r_project(job->projection, &job->gaussians[i], &job->splats[i])) {
+            job->splats[i].z_q20 = 0;
+        }
+    }
+}
+
+t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_raster_room *room)
+{
+    uint32_t count = rt->gaussians, most = rt->config.max_gaussians;
+    uint32_t *histogram = room->order;
+    uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};
+    uint32_t *indices[2] = {keys[1] + most, keys[1] + 2 * (size_t)most};
+
+    project_job projecting = {projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, room->splats};
+    t3r_parallel(rt, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
+    uint32_t visible = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        keys[0][visible] = (uint32_t)room->splats[i].z_q20;
+        indices[0][visible] = i;
+        visible += room->splats[i].z_q20 != 0;
+    }
+    t3r_order(keys, indices, visible, histogram);
+
+    t3r_binning bin = {
+        .splats = room->splats,
+        .order = indices[0],
+        .visible = visible,
+        .across = (projection->width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE,
+        .tiles = (uint32_t)T3R_TILES_(projection->width, projection->height),
+        .table = room->table,
+        .lists = room->lists,
+        .capacity = room->capacity,
+    };
+    t3r_bin_count(&bin);
+    return bin;
+}

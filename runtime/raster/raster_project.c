@@ -1,0 +1,232 @@
+/* EWA projection of 3-D covariances (Zwicker et al. 2001, "EWA volume splatting"; the Jacobian held at 1.3 half
+ * fields of view and the 0.3 px^2 dilation as 3D Gaussian Splatting, Kerbl et al. 2023). */
+#include "core/camera.h"
+#include "core/fixed.h"
+#include "raster_splat.h"
+#include "core/scene_frame.h"
+
+#define EXTENT_MOST_Q12 (1 << 24) /* a footprint column is held within 4096 px */
+
+t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
+                               t3r_projection *projection)
+{
+    t3r_status status = t3r_camera_check(camera);
+    if (status != T3R_OK) {
+        return status;
+    }
+    t3r_pose pose;
+    status = t3r_pose_in_scene(camera, frame, &pose);
+    if (status != T3R_OK) {
+        return status;
+    }
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 3; column++) {
+            projection->world_to_camera_q30[row * 3 + column] = pose.rotation_q30[column * 3 + row];
+        }
+        projection->centre_q20[row] = pose.position_q20[row];
+    }
+    projection->fx_q16 = camera->fx_q16;
+    projection->fy_q16 = camera->fy_q16;
+    projection->cx_q16 = camera->cx_q16;
+    projection->cy_q16 = camera->cy_q16;
+    /* 1.3 (w / 2) / f = 13 w / (20 f), Q24; w < 2^13, so the numerator is below 2^57 */
+    int64_t most = (int64_t)T3R_ASIDE << 24;
+    projection->limit_x_q24 = (int32_t)T3R_MIN(((int64_t)(13 * width) << 40) / ((int64_t)20 * camera->fx_q16), most);
+    projection->limit_y_q24 = (int32_t)T3R_MIN(((int64_t)(13 * height) << 40) / ((int64_t)20 * camera->fy_q16), most);
+    projection->width = width;
+    projection->height = height;
+    return T3R_OK;
+}
+
+/* 1 / z as rn 2^(lz - 62), rn in (2^30, 2^31] */
+typedef struct reciprocal {
+    int64_t rn;
+    int32_t lz;
+} reciprocal;
+
+static reciprocal invert(uint32_t z)
+{
+    int32_t lz = 31 - (int32_t)t3r_msb32(z);
+    uint32_t normal = z << lz;
+    return (reciprocal){(int64_t)((UINT64_C(1) << 62) / normal), lz};
+}
+
+/* One row of T = J W F in pixels, Q12: (f / z) (w - aside w2) F. */
+static void footprint_row(const int32_t *w, const int32_t *w2, int32_t aside_q24, int32_t f_q16, reciprocal inverse,
+                          const t3r_gaussian *g, int32_t row_q12[3])
+{
+    int32_t r_q24[3]; /* |w| <= 1 and |aside| <= 16: below 2^29 */
+    for (int i = 0; i < 3; i++) {
+        int64_t along = t3r_round_shift64((int64_t)aside_q24 * w2[i], 24);
+        r_q24[i] = (int32_t)t3r_round_shift64(w[i] - along, 6);
+    }
+    /* f / z = scale 2^(lz - 28): scale in [2^19, 2^31] */
+    int64_t scale = t3r_round_shift64((int64_t)f_q16 * inverse.rn, 30);
+    int32_t shift = g->factor_exponent + inverse.lz - 26;
+    for (int j = 0; j < 3; j++) {
+        /* 3 x 2^29 x 2^15 < 2^46; less 14 bits, times scale: below 2^63 */
+        int64_t sum = (int64_t)r_q24[0] * g->factor[j] + (int64_t)r_q24[1] * g->factor[3 + j] +
+                      (int64_t)r_q24[2] * g->factor[6 + j];
+        int64_t pixels = t3r_round_shift64(sum, 14) * scale;
+        if (shift > 0) {
+            pixels = t3r_clamp64(pixels, -((int64_t)1 << 40), (int64_t)1 << 40);
+        }
+        row_q12[j] = (int32_t)t3r_clamp64(t3r_scale64(pixels, shift), -EXTENT_MOST_Q12, EXTENT_MOST_Q12);
+    }
+}
+
+/* value / 2^n for the recorded power n of either sign, held within int32 */
+static int32_t to_q30(int64_t value, int32_t right)
+{
+    return (int32_t)t3r_clamp64(t3r_scale64(value, -right), -INT32_MAX, INT32_MAX);
+}
+
+/* The conic of the 2 x 2 covariance T T^T + 0.3 I. The determinant is summed from squares (Cauchy-Binet), so that
+ * needles lose nothing to cancellation:
+ *   det = sum of squared 2 x 2 minors of T + 0.3 trace(T T^T) + 0.09 */
+static void conic_of(const int32_t a_q12[3], const int32_t b_q12[3], t3r_splat *splat)
+{
+    int32_t most = 1;
+    for (int j = 0; j < 3; j++) {
+        most = T3R_MAX(most, T3R_MAX(t3r_abs32(a_q12[j]), t3r_abs32(b_q12[j])));
+    }
+    int32_t n = T3R_MAX(0, (int32_t)t3r_msb32((uint32_t)most) - 14); /* 0..10 */
+    int64_t a[3], b[3];                                              /* at most 2^15 */
+    for (int j = 0; j < 3; j++) {
+        a[j] = t3r_round_shift32(a_q12[j], (uint32_t)n);
+        b[j] = t3r_round_shift32(b_q12[j], (uint32_t)n);
+    }
+    int64_t m01 = a[0] * b[1] - a[1] * b[0];
+    int64_t m02 = a[0] * b[2] - a[2] * b[0];
+    int64_t m12 = a[1] * b[2] - a[2] * b[1];
+    int64_t aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; /* Q(24 - 2n), at most 3 x 2^30 */
+    int64_t bb = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
+    int64_t ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    /* Q(48 - 4n). |m| <= 2^31; by Lagrange the three squares sum to at most aa bb <= 9 x 2^60, the trace's term to
+     * 6 x 2^30 x 2^23 and the constant to 2^45: below 2^64. */
+    uint64_t det = (uint64_t)(m01 * m01) + (uint64_t)(m02 * m02) + (uint64_t)(m12 * m12) +
+                   (uint64_t)t3r_round_shift64((aa + bb) * T3R_DILATION_Q24, (uint32_t)(2 * n)) +
+                   ((((uint64_t)T3R_DILATION_Q24 * T3R_DILATION_Q24) >> (4 * n)));
+    /* det = normal 2^s, 1 / det = rd 2^(-62 - s) */
+    int32_t s = (int32_t)t3r_msb64(det) - 31;
+    uint32_t normal = (uint32_t)(s >= 0 ? det >> s : det << -s);
+    int64_t rd = (int64_t)((UINT64_C(1) << 62) / normal);
+    int64_t dilation = t3r_round_shift64(T3R_DILATION_Q24, (uint32_t)(2 * n));
+    /* (aa + dilation) <= 2^31.6 and rd <= 2^31: the products stay below 2^63 */
+    int32_t right = 9 + 2 * n + s;
+    splat->a_q30 = to_q30((bb + dilation) * rd, right);
+    splat->b_q30 = to_q30(-ab * rd, right);
+    splat->c_q30 = to_q30((aa + dilation) * rd, right);
+}
+
+/* Half-width in pixels, Q8, of the box outside of which opacity exp(-q) < 1/255: sqrt(2 L variance), by logarithms,
+ * with more than their error (2^-13 of it) added. log_level: log2 of 2 L in Q8. */
+static int64_t half_width_q8(const int32_t row_q12[3], int32_t log_level_q16)
+{
+    int64_t variance_q24 = T3R_DILATION_Q24;
+    for (int j = 0; j < 3; j++) {
+        variance_q24 += (int64_t)row_q12[j] * row_q12[j]; /* at most 3 x 2^48 */
+    }
+    /* Q24 times Q8 is Q32, whose root is Q16; below 2^15 px */
+    int32_t log_half_q16 = ((t3r_log2_wide_q16((uint64_t)variance_q24) + log_level_q16) >> 1) - (16 << 16);
+    uint32_t half_q8 = t3r_exp2_q16(log_half_q16) >> 8;
+    return (int64_t)half_q8 + (half_q8 >> 10) + 2;
+}
+
+/* The inclusive pixels within centre -+ half, clipped to 0..size - 1; false = none */
+static bool clip_range(int32_t centre_q12, int64_t half_q8, uint32_t size, uint16_t *low, uint16_t *high)
+{
+    int64_t half_q12 = half_q8 << 4;
+    int64_t first = (centre_q12 - half_q12 + 4095) >> 12;
+    int64_t last = (centre_q12 + half_q12) >> 12;
+    first = T3R_MAX(first, 0);
+    last = T3R_MIN(last, (int64_t)size - 1);
+    if (first > last) {
+        return false;
+    }
+    *low = (uint16_t)first;
+    *high = (uint16_t)last;
+    return true;
+}
+
+/* Where a camera sees a Gaussian's mean. */
+typedef struct sight {
+    int64_t z_q20; /* in (T3R_NEAR_Q20, 2^31) */
+    reciprocal inverse;
+    int64_t u_q24, v_q24; /* x / z and y / z, at most 16 and 2^-23 */
+} sight;
+
+/* false = culled */
+static bool see(const t3r_projection *p, const t3r_gaussian *g, sight *seen)
+{
+    int64_t d[3]; /* positions and centres are within 2^30: below 2^31 */
+    for (int i = 0; i < 3; i++) {
+        d[i] = (int64_t)g->position_q20[i] - p->centre_q20[i];
+    }
+    int64_t c[3]; /* camera coordinates, Q20: |d| < 2^31.8 and the rows have norm 1 */
+    for (int i = 0; i < 3; i++) {
+        const int32_t *w = p->world_to_camera_q30 + 3 * i;
+        c[i] = t3r_round_shift64(w[0] * d[0] + w[1] * d[1] + w[2] * d[2], 30);
+    }
+    if (c[2] <= T3R_NEAR_Q20 || c[2] > INT32_MAX || t3r_abs64(c[0]) > T3R_ASIDE * c[2] ||
+        t3r_abs64(c[1]) > T3R_ASIDE * c[2]) {
+        return false;
+    }
+    seen->z_q20 = c[2];
+    seen->inverse = invert((uint32_t)c[2]);
+    /* x / z in Q24: |c| < 2^31.8 times rn <= 2^31 stays below 2^63 */
+    seen->u_q24 = t3r_round_shift64(c[0] * seen->inverse.rn, (uint32_t)(38 - seen->inverse.lz));
+    seen->v_q24 = t3r_round_shift64(c[1] * seen->inverse.rn, (uint32_t)(38 - seen->inverse.lz));
+    return true;
+}
+
+/* Both rows of T, pixels, Q12. */
+static void footprint(const t3r_projection *p, const t3r_gaussian *g, const sight *seen, int32_t a_q12[3],
+                      int32_t b_q12[3])
+{
+    const int32_t *w = p->world_to_camera_q30;
+    int32_t hold_u = (int32_t)t3r_clamp64(seen->u_q24, -p->limit_x_q24, p->limit_x_q24);
+    int32_t hold_v = (int32_t)t3r_clamp64(seen->v_q24, -p->limit_y_q24, p->limit_y_q24);
+    footprint_row(w, w + 6, hold_u, p->fx_q16, seen->inverse, g, a_q12);
+    footprint_row(w + 3, w + 6, hold_v, p->fy_q16, seen->inverse, g, b_q12);
+}
+
+bool t3r_footprint_rows(const t3r_projection *p, const t3r_gaussian *g, int32_t a_q12[3], int32_t b_q12[3])
+{
+    sight seen;
+    if (!see(p, g, &seen)) {
+        return false;
+    }
+    footprint(p, g, &seen, a_q12, b_q12);
+    return true;
+}
+
+bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *splat)
+{
+    sight seen;
+    if (g->opacity_q15 <= 128 || !see(p, g, &seen)) { /* below 1/255 everywhere, or out of sight */
+        return false;
+    }
+    /* |u| <= 16 + 2^-23 and f < 2^30: below 2^59 */
+    int64_t x_q12 = t3r_round_shift64(seen.u_q24 * p->fx_q16 + (int64_t)p->cx_q16 * (1 << 24), 28);
+    int64_t y_q12 = t3r_round_shift64(seen.v_q24 * p->fy_q16 + (int64_t)p->cy_q16 * (1 << 24), 28);
+    int32_t a_q12[3], b_q12[3];
+    footprint(p, g, &seen, a_q12, b_q12);
+
+    /* L = ln 2 (log2(255 opacity_q15) - 15), Q8; ln 2 = 45426 / 65536; 16 / 256 of margin */
+    int64_t level_q8 = ((((int64_t)t3r_log2_q16(255u * g->opacity_q15) - (15 << 16)) * 45426) >> 24) + 16;
+    int32_t log_level_q16 = t3r_log2_q16((uint32_t)(2 * T3R_MAX(level_q8, 16)));
+    splat->x_q12 = (int32_t)x_q12;
+    splat->y_q12 = (int32_t)y_q12;
+    if (!clip_range(splat->x_q12, half_width_q8(a_q12, log_level_q16), p->width, &splat->x0, &splat->x1) ||
+        !clip_range(splat->y_q12, half_width_q8(b_q12, log_level_q16), p->height, &splat->y0, &splat->y1)) {
+        return false;
+    }
+    conic_of(a_q12, b_q12, splat);
+    splat->z_q20 = (int32_t)seen.z_q20;
+    for (int i = 0; i < 3; i++) {
+        splat->colour_q7[i] = g->colour_q7[i];
+    }
+    splat->opacity_q15 = g->opacity_q15;
+    return true;
+}

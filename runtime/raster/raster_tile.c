@@ -1,0 +1,204 @@
+#include "raster_tile.h"
+
+#include <string.h>
+
+#include "core/fixed.h"
+
+/* A splat centred at most this far from a tile needs no test against its columns: within 24 + 16 px of the centre,
+ * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6), and Q17 holds
+ * 16,383. */
+#define SMALL_SPLAT 24
+/* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
+#define LEVEL_MOST 6
+
+typedef struct tile_state {
+    t3r_tile pixels;
+    uint32_t depth_q20[T3R_TILE_SIDE][T3R_TILE_SIDE];
+} tile_state;
+
+/* The least of q + 2 h t + a t^2 for t in [0, length], all Q18 but the length in pixels. */
+static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
+{
+    int64_t t_q8 = h >= 0 ? 0 : length << 8;
+    if (h < 0 && a > 0) {
+        t_q8 = T3R_MIN((-h * 256) / a, t_q8);
+    }
+    return q + ((h * t_q8) >> 7) + ((a * t_q8 * t_q8) >> 16);
+}
+
+/* Whether a large splat's quadratic falls below LEVEL_MOST anywhere on eight columns of a tile (pixel centres). It is
+ * convex, so unless the centre lies inside, its least value is on an edge. Within its box a splat is at most
+ * 2^14.6 px away: half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
+static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
+{
+    const int64_t width = T3R_LANES - 1, height = T3R_TILE_SIDE - 1;
+    int64_t left = ((int64_t)x << 12) - s->x_q12, top = ((int64_t)y << 12) - s->y_q12;
+    int64_t right = left + (width << 12), bottom = top + (height << 12);
+    if (left <= 0 && right >= 0 && top <= 0 && bottom >= 0) {
+        return true;
+    }
+    int64_t a = s->a_q30 >> 12, c = s->c_q30 >> 12;
+    int64_t least = INT64_MAX;
+    for (int corner = 0; corner < 2; corner++) { /* top left, then bottom right */
+        int64_t dx = corner == 0 ? left : right, dy = corner == 0 ? top : bottom;
+        int64_t hx = (s->a_q30 * dx + s->b_q30 * dy) >> 24, hy = (s->b_q30 * dx + s->c_q30 * dy) >> 24;
+        int64_t q = (hx * dx + hy * dy) >> 12;
+        int64_t sign = corner == 0 ? 1 : -1;
+        least = T3R_MIN(least, least_along(q, sign * hx, a, width));
+        least = T3R_MIN(least, least_along(q, sign * hy, c, height));
+    }
+    return least < (int64_t)LEVEL_MOST << 18;
+}
+
+/* The quadratic about the columns' first pixel. With the columns touched it is below 885 there (the root of 6 and the
+ * group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.3; the centre is less than 2^14.6
+ * px away: the two products of q sum to less than 2^62.8. */
+static void lane_splat_of(const t3r_splat *s, uint32_t x, uint32_t y, t3r_lane_splat *out)
+{
+    int64_t dx = ((int64_t)x << 12) - s->x_q12, dy = ((int64_t)y << 12) - s->y_q12;
+    int64_t hx_q30 = t3r_round_shift64(s->a_q30 * dx + s->b_q30 * dy, 12);
+    int64_t hy_q30 = t3r_round_shift64(s->b_q30 * dx + s->c_q30 * dy, 12);
+    out->q = (int32_t)t3r_round_shift64(hx_q30 * dx + hy_q30 * dy, 25);
+    out->gx = (int32_t)t3r_round_shift64(hx_q30, 12);
+    out->gy = (int32_t)t3r_round_shift64(hy_q30, 12);
+    out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
+    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12);
+    out->c = t3r_round_shift32(s->c_q30 >> 1, 12);
+    out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
+    for (int i = 0; i < 3; i++) {
+        out->colour_q7[i] = s->colour_q7[i];
+    }
+}
+
+/* The splat at which a pixel's transmittance first falls below one half gives it its depth. */
+static void note_depth(tile_state *tile, uint32_t column, uint32_t first, uint32_t last, int32_t z_q20)
+{
+    for (uint32_t j = first; j <= last; j++) {
+        for (uint32_t i = column; i < column + T3R_LANES; i++) {
+            uint32_t *depth = &tile->depth_q20[j][i];
+            if (*depth == 0 && tile->pixels.transmittance_q16[j][i] < T3R_HALF_Q16) {
+                *depth = (uint32_t)z_q20;
+            }
+        }
+    }
+}
+
+/* Whether a centre lies within SMALL_SPLAT pixels of the tile, along one axis. */
+static bool is_near(int32_t centre_q12, uint32_t tile)
+{
+    int32_t offset = centre_q12 - (int32_t)(tile << 12);
+    return offset >= -(SMALL_SPLAT << 12) && offset <= (SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12;
+}
+
+bool t3r_tile_lane(const t3r_splat *s, uint32_t left, uint32_t top, uint32_t column, t3r_lane_splat *lane)
+{
+    bool small = is_near(s->x_q12, left) && is_near(s->y_q12, top);
+    if (!small && !touches(s, left + column, top)) {
+        return false;
+    }
+    lane_splat_of(s, left + column, top, lane);
+    return true;
+}
+
+t3r_tile_blocks t3r_blocks_of(const t3r_splat *s, uint32_t left, uint32_t top)
+{
+    uint32_t x0 = T3R_MAX(s->x0, left) - left, x1 = T3R_MIN(s->x1, left + T3R_TILE_SIDE - 1) - left;
+    t3r_tile_blocks blocks = {
+        .count = 1,
+        .column = T3R_MIN(x0, (uint32_t)T3R_TILE_SIDE - T3R_LANES),
+        .first = T3R_MAX(s->y0, top) - top,
+        .last = T3R_MIN(s->y1, top + T3R_TILE_SIDE - 1) - top,
+    };
+    if (x1 - x0 >= T3R_LANES) {
+        blocks.count = T3R_TILE_SIDE / T3R_LANES;
+        blocks.column = 0;
+    }
+    return blocks;
+}
+
+static void blend_splat(tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top, bool with_depth)
+{
+    t3r_tile_blocks blocks = t3r_blocks_of(s, left, top);
+    for (uint32_t i = 0; i < blocks.count; i++) {
+        uint32_t column = blocks.column + i * T3R_LANES;
+        t3r_lane_splat lane;
+        if (!t3r_tile_lane(s, left, top, column, &lane)) {
+            continue;
+        }
+        t3r_blend_rows(&tile->pixels, &lane, column, blocks.first, blocks.last);
+        if (with_depth) {
+            note_depth(tile, column, blocks.first, blocks.last, s->z_q20);
+        }
+    }
+}
+
+bool t3r_tile_stopped(const t3r_tile *tile)
+{
+    uint16_t most = 0;
+    for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
+        for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
+            uint16_t t = tile->transmittance_q16[j][i];
+            most = t > most ? t : most;
+        }
+    }
+    return most < T3R_STOP_Q16;
+}
+
+static uint8_t byte_of(uint16_t colour_q7)
+{
+    uint32_t rounded = (colour_q7 + 64u) >> 7;
+    return (uint8_t)T3R_MIN(rounded, 255u);
+}
+
+static void write_tile(const tile_state *tile, uint32_t left, uint32_t top, const t3r_target *target)
+{
+    uint32_t columns = T3R_MIN(target->width - left, (uint32_t)T3R_TILE_SIDE);
+    uint32_t rows = T3R_MIN(target->height - top, (uint32_t)T3R_TILE_SIDE);
+    for (uint32_t j = 0; j < rows; j++) {
+        size_t y = top + j;
+        for (uint32_t i = 0; i < columns; i++) {
+            size_t x = left + i;
+            if (target->rgb != NULL) {
+                uint8_t *pixel = target->rgb + y * target->rgb_stride_bytes + 3 * x;
+                for (int channel = 0; channel < 3; channel++) {
+                    pixel[channel] = byte_of(tile->pixels.colour_q7[channel][j][i]);
+                }
+            }
+            if (target->alpha_q15 != NULL) {
+                target->alpha_q15[y * (target->alpha_stride_bytes / sizeof *target->alpha_q15) + x] =
+                    (uint16_t)((T3R_ONE_Q16 - tile->pixels.transmittance_q16[j][i]) >> 1);
+            }
+            if (target->depth_q20 != NULL) {
+                target->depth_q20[y * (target->depth_stride_bytes / sizeof *target->depth_q20) + x] =
+                    tile->depth_q20[j][i];
+            }
+        }
+    }
+}
+
+void t3r_tile_clear(t3r_tile *tile)
+{
+    memset(tile, 0, sizeof *tile);
+    for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
+        for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
+            tile->transmittance_q16[j][i] = T3R_ONE_Q16;
+        }
+    }
+}
+
+void t3r_draw_tile(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y,
+                   const t3r_target *target)
+{
+    uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
+    bool with_depth = target->depth_q20 != NULL;
+    tile_state tile;
+    memset(tile.depth_q20, 0, sizeof tile.depth_q20);
+    t3r_tile_clear(&tile.pixels);
+    for (uint32_t i = 0; i < count; i++) {
+        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile.pixels)) {
+            break; /* the rest would add nothing: the same pixels, sooner */
+        }
+        blend_splat(&tile, &splats[list[i]], left, top, with_depth);
+    }
+    write_tile(&tile, left, top, target);
+}

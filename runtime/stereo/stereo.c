@@ -1,0 +1,261 @@
+/* A pair of views, from colours to depth. */
+#include "stereo.h"
+
+#include "core/fixed.h"
+#include "match_clean.h"
+#include "stereo_depth.h"
+
+/* The first look is at a quarter of the size. */
+#define QUARTER 4
+/* Coarse disparities beyond the outermost 1/128 of all on either side are taken for errors. */
+#define TAIL 128
+/* Disparities more on either side than the first look found, pixels. */
+#define MARGIN 6
+/* Disparities may be below 0 by this where poses are not exact, pixels. */
+#define BEYOND_INFINITY 2
+/* The disparity with which a place is half known, as partners are compared, pixels. */
+#define HALF_KNOWN 8
+/* A pair is refused when less than 1/16 of the first look can be trusted. */
+#define LEAST_SHARE 16
+
+/* A pair of planes and what belongs to it; the right one is `disparities` - 1 columns wider. */
+typedef struct planes {
+    uint8_t *luma[2], *confidence[2];
+    uint16_t *disparity[2];
+    uint8_t *work;
+} planes;
+
+static planes divide(const t3r_stereo_settings *settings, uint32_t width, uint32_t height, uint8_t *at)
+{
+    const size_t size[2] = {T3R_UP_(T3R_STEREO_LEFT_(width, height)),
+                            T3R_UP_(T3R_STEREO_RIGHT_(width, height, settings->disparities))};
+    planes p;
+    for (int side = 0; side < 2; side++) {
+        p.luma[side] = at;
+        p.confidence[side] = at + size[side];
+        p.disparity[side] = (uint16_t *)(void *)(at + 2 * size[side]);
+        at += 4 * size[side];
+    }
+    p.work = at;
+    return p;
+}
+
+/* A quarter of the size: room for it is where disparities and confidences of the full size will be. */
+static planes divide_quarter(const planes *full, uint32_t width, uint32_t height, uint32_t disparities)
+{
+    const size_t size[2] = {T3R_UP_((size_t)width * height), T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * height)};
+    planes p = {.work = full->work};
+    for (int side = 0; side < 2; side++) {
+        uint8_t *at = full->confidence[side];
+        p.luma[side] = at;
+        p.confidence[side] = at + size[side];
+        p.disparity[side] = (uint16_t *)(void *)(at + 2 * size[side]);
+    }
+    return p;
+}
+
+static t3r_match match_of(const planes *p, const t3r_stereo_settings *settings, uint32_t width, uint32_t height,
+                          uint32_t disparities)
+{
+    return (t3r_match){
+        .width = width,
+        .height = height,
+        .disparities = disparities,
+        .paths = settings->paths,
+        .same = T3R_STEREO_SAME,
+        .step = T3R_STEREO_STEP,
+        .least_step = T3R_STEREO_LEAST_STEP,
+        .luma = {p->luma[0], p->luma[1]},
+        .disparity = {p->disparity[0], p->disparity[1]},
+        .confidence = {p->confidence[0], p->confidence[1]},
+        .work = p->work,
+    };
+}
+
+/* 1..255, 0 where the view shows nothing: there undistortion leaves black. */
+static void luma_of(const t3r_view *view, uint8_t *luma)
+{
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    for (size_t i = 0; i < pixels; i++) {
+        const int32_t r = view->colour[0][i], g = view->colour[1][i], b = view->colour[2][i];
+        const int32_t value = (77 * r + 150 * g + 29 * b + 128) >> 8;
+        luma[i] = (uint8_t)(r + g + b == 0 ? 0 : T3R_MAX(value, 1));
+    }
+}
+
+/* Where a plane's columns begin: the right one's so that `first` is the disparity at its end. */
+static int32_t begin_q16(const t3r_rectification *rect, uint32_t side, int32_t first, uint32_t disparities)
+{
+    return rect->first_q16[0] - (side == 0 ? 0 : (first + (int32_t)disparities - 1) * 65536);
+}
+
+/* One row at a quarter of the size: the mean of 4 x 4 pixels, 0 unless all of them show something. rows: four rows of
+ * 4 x count. */
+static void quarter_row(const uint8_t *rows, uint32_t count, uint8_t *out)
+{
+    for (uint32_t x = 0; x < count; x++) {
+        uint32_t sum = 0, least = UINT8_MAX;
+        for (uint32_t i = 0; i < QUARTER * QUARTER; i++) {
+            uint8_t value = rows[i / QUARTER * QUARTER * count + QUARTER * x + i % QUARTER];
+            sum += value;
+            least = T3R_MIN(least, value);
+        }
+        out[x] = (uint8_t)(least == 0 ? 0 : (sum + 8) >> 4);
+    }
+}
+
+static uint32_t lanes(uint32_t disparities)
+{
+    return (disparities + T3R_PATH_LANES - 1) / T3R_PATH_LANES * T3R_PATH_LANES;
+}
+
+/* What a first look finds: disparities from `first`, at most as many as the settings have, and what to hope for. */
+typedef struct look {
+    int32_t first;
+    uint32_t disparities;
+    uint32_t promise; /* t3r_stereo_promise() */
+} look;
+
+/* Each trusted pixel as far as its distance would be known, d / (d + HALF_KNOWN) of a disparity of d pixels, in 256ths.
+ */
+static uint32_t promise_of(const uint32_t *histogram, uint32_t count, int32_t base)
+{
+    uint64_t sum = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        const uint32_t d = (uint32_t)T3R_MAX(base + (int32_t)(QUARTER * k), 0);
+        sum += (uint64_t)histogram[k] * (256 * d / (d + HALF_KNOWN));
+    }
+    return (uint32_t)T3R_MIN(sum, (uint64_t)UINT32_MAX);
+}
+
+static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectification *rect, const t3r_view views[2],
+                           const planes *full, look *found)
+{
+    const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
+    const int32_t base = rect->least_disparity;
+    const uint32_t wanted = (uint32_t)(rect->most_disparity - base) / QUARTER + 1;
+    /* As many as there are columns at most, nor more than the work has room for. */
+    const uint32_t room = T3R_MIN(T3R_MIN(rect->width, T3R_PATH_MOST), QUARTER * settings->disparities);
+    const uint32_t count = lanes(T3R_MIN(wanted, room));
+    const planes p = divide_quarter(full, width, height, count);
+    for (uint32_t side = 0; side < 2; side++) {
+        const uint32_t columns = side == 0 ? width : (uint32_t)T3R_MATCH_RIGHT(width, count);
+        const int32_t begin = begin_q16(rect, side, base, QUARTER * (count - 1) + 1);
+        uint8_t *luma = full->work, *rows = full->luma[side];
+        luma_of(&views[side], luma);
+        for (uint32_t y = 0; y < height; y++) {
+            for (uint32_t i = 0; i < QUARTER; i++) {
+                t3r_rectified_row(rect, side, luma, begin, QUARTER * y + i, QUARTER * columns,
+                                  rows + (size_t)i * QUARTER * columns);
+            }
+            quarter_row(rows, columns, p.luma[side] + (size_t)y * columns);
+        }
+    }
+    const t3r_match match = match_of(&p, settings, width, height, count);
+    t3r_match_pair(&match);
+    t3r_match_agree(&match);
+    (void)t3r_match_speckles(&match, 0);
+
+    uint32_t histogram[T3R_PATH_MOST] = {0}, trusted = 0, shown = 0;
+    for (size_t i = 0; i < (size_t)width * height; i++) {
+        shown += p.luma[0][i] != 0;
+        if (p.confidence[0][i] != 0) {
+            histogram[T3R_MIN(p.disparity[0][i] >> T3R_DISPARITY_BITS, (int)count - 1)]++;
+            trusted++;
+        }
+    }
+    found->promise = promise_of(histogram, count, base);
+    if (trusted < 64 || trusted < shown / LEAST_SHARE) {
+        return T3R_PAIR_OVERLAP;
+    }
+    uint32_t low = 0, high = count - 1, below = histogram[low], above = histogram[high];
+    while (below <= trusted / TAIL) {
+        below += histogram[++low]; /* ends: all together are more than a tail */
+    }
+    while (above <= trusted / TAIL) {
+        above += histogram[--high];
+    }
+    const uint32_t most = (settings->disparities - 2 * MARGIN) / QUARTER; /* coarse ones that fit */
+    if (high - low + 1 > most) {
+        /* The window that holds the most pixels, the first of equals. */
+        uint32_t inside = 0, best = 0, best_low = low;
+        for (uint32_t k = low; k <= high; k++) {
+            inside += histogram[k];
+            inside -= k >= low + most ? histogram[k - most] : 0;
+            if (inside > best) {
+                best = inside;
+                best_low = k + 1 >= low + most ? k + 1 - most : low;
+            }
+        }
+        low = best_low;
+        high = low + most - 1;
+    }
+    found->first = T3R_MAX(base + (int32_t)(QUARTER * low) - MARGIN, -BEYOND_INFINITY);
+    const int32_t last = base + (int32_t)(QUARTER * (high + 1)) + MARGIN - 1;
+    found->disparities = T3R_MIN(lanes((uint32_t)(last - found->first + 1)), settings->disparities);
+    return T3R_PAIR_OK;
+}
+
+t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
+                            void *work, uint32_t *promise)
+{
+    const uint32_t width = views[0].width, height = views[0].height;
+    const planes full = divide(settings, width, height, work);
+    t3r_rectification rect;
+    look found = {.promise = 0};
+    t3r_pair pair = t3r_rectify(&cameras[0], &cameras[1], width, height, settings->disparities, &rect);
+    if (pair == T3R_PAIR_OK) {
+        pair = first_look(settings, &rect, views, &full, &found);
+    }
+    *promise = found.promise;
+    return pair;
+}
+
+t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
+                          void *work, uint64_t *depth_unit_q40)
+{
+    const uint32_t width = views[0].width, height = views[0].height;
+    const planes full = divide(settings, width, height, work);
+    t3r_rectification rect;
+    look seen = {.promise = 0};
+    t3r_pair pair = t3r_rectify(&cameras[0], &cameras[1], width, height, settings->disparities, &rect);
+    if (pair == T3R_PAIR_OK) {
+        pair = first_look(settings, &rect, views, &full, &seen);
+    }
+    if (pair != T3R_PAIR_OK) {
+        return pair;
+    }
+    t3r_stereo_planes found = {
+        .rect = &rect, .filled = settings->fill != 0, .first = seen.first, .disparities = seen.disparities};
+    const t3r_match match = match_of(&full, settings, rect.width, rect.height, found.disparities);
+    for (uint32_t side = 0; side < 2; side++) {
+        const uint32_t columns = side == 0 ? rect.width : (uint32_t)T3R_MATCH_RIGHT(rect.width, found.disparities);
+        found.begin_q16[side] = begin_q16(&rect, side, found.first, found.disparities);
+        found.columns[side] = columns;
+        found.disparity[side] = full.disparity[side];
+        found.confidence[side] = full.confidence[side];
+        luma_of(&views[side], full.work);
+        for (uint32_t y = 0; y < rect.height; y++) {
+            t3r_rectified_row(&rect, side, full.work, found.begin_q16[side], y, columns,
+                              full.luma[side] + (size_t)y * columns);
+        }
+    }
+    t3r_match_all(&match, settings->fill != 0);
+    pair = t3r_stereo_unit(&found, views, depth_unit_q40);
+    for (uint32_t side = 0; side < 2 && pair == T3R_PAIR_OK; side++) {
+        t3r_stereo_to_view(&found, side, &views[side]);
+    }
+    return pair;
+}
+
+void t3r_stereo_marks(const t3r_view *view, uint32_t least)
+{
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    for (size_t i = 0; i < pixels; i++) {
+        const uint8_t c = view->confidence[i];
+        view->confidence[i] = (uint8_t)(view->depth[i] == 0     ? T3R_CONFIDENCE_NONE
+                                        : c >= least            ? T3R_CONFIDENCE_MEASURED
+                                        : c >= T3R_STEREO_LEAST ? T3R_CONFIDENCE_DOUBTFUL
+                                                                : T3R_CONFIDENCE_FILLED);
+    }
+}

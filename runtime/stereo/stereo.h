@@ -1,0 +1,46 @@
+/* Stage stereo: depth for two posed colour views (SPEC.md, "Stereo"). Rectification (rectify.h), a range of disparities
+ * from a first look at a quarter of the size, matching (match.h), and back to the views' own pixels. */
+#ifndef T3R_STEREO_H
+#define T3R_STEREO_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "match.h"
+#include "rectify.h"
+#include "core/views.h"
+
+/* Penalties of the aggregation: P1, P2, least P2 (DESIGN.md) */
+#define T3R_STEREO_SAME 20u
+#define T3R_STEREO_STEP 120u
+#define T3R_STEREO_LEAST_STEP 30u
+/* Confidences of t3r_stereo_depth() */
+#define T3R_STEREO_NONE 0u   /* no depth */
+#define T3R_STEREO_FILLED 1u /* the surroundings' depth */
+#define T3R_STEREO_LEAST 2u  /* 2..255: matched, the more, the surer */
+#define T3R_STEREO_SURE 64u  /* from here on as good as measured: below, errors are two to four times as frequent */
+
+typedef struct t3r_stereo_settings {
+    uint32_t disparities; /* most that are compared: 16..T3R_PATH_MOST, a multiple of 16 */
+    uint32_t paths;       /* 4 or 8 */
+    uint32_t fill;        /* 1 = holes get their surroundings' depth, T3R_STEREO_FILLED */
+} t3r_stereo_settings;
+
+/* Depth and confidence planes of two views of one size from their colours and checked, undistorted cameras. Both get
+ * depths in steps of *depth_unit_q40 world units, 1..65535, 0 = none; confidences T3R_STEREO_... On anything but
+ * T3R_PAIR_OK planes and unit are undefined. */
+t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
+                          void *work, uint64_t *depth_unit_q40);
+
+/* What to hope for of a pair, to compare it with others of the same size: how many pixels a first look trusts, each as
+ * far as its distance would be known. Reasons for refusal that show only later are not seen. *promise is set whatever
+ * is returned; same work. */
+t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
+                            void *work, uint32_t *promise);
+
+/* The plane's confidences as later stages know them: T3R_CONFIDENCE_MEASURED from `least` (2..255) on, below it
+ * T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_FILLED where depth is the surroundings', T3R_CONFIDENCE_NONE where there is
+ * none. */
+void t3r_stereo_marks(const t3r_view *view, uint32_t least);
+
+#endif

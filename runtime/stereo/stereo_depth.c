@@ -1,0 +1,173 @@
+#include "stereo_depth.h"
+
+#include "core/fixed.h"
+#include "match.h"
+#include "stereo.h"
+
+#define FAR_STEPS 60000
+#define STEPS_MOST (1u << 22)
+/* Of pictures of different places two or three in a hundred pixels match surely, by chance: less than 1/25 is nothing.
+ */
+#define LEAST_SHARE 25
+/* One in so many matched pixels may be too far for the depth unit. */
+#define TOO_FAR 64
+/* The unit is chosen from every second pixel of every second row, by eighths of octaves of baselines in Q16. */
+#define SAMPLING 2
+#define BINS 384
+/* Nor is anything resolved beyond 64 times the median. */
+#define FARTHEST 48
+/* Less than half a pixel from where infinity is, a place is not known. */
+#define NO_PARALLAX_Q16 32768
+
+/* What a view's pixel sees: distance along z in baselines = numerator / denominator. */
+typedef struct sight {
+    int64_t numerator_q24, denominator_q30; /* both positive */
+    int32_t disparity_q16;                  /* pixels from where infinity is */
+    uint8_t confidence;                     /* T3R_STEREO_... */
+} sight;
+
+/* Disparity k in Q7 at a place of a plane and how far it can be trusted: between four pixels where they are of one kind
+ * and one surface, else the nearest pixel's. False: none. */
+static bool look_up(const t3r_stereo_planes *planes, uint32_t side, const int32_t place_q16[2], int32_t *k_q7,
+                    uint8_t *confidence)
+{
+    const int64_t x = t3r_round_shift64((int64_t)place_q16[0] - planes->begin_q16[side], 8);
+    const int64_t y = t3r_round_shift64(place_q16[1], 8); /* Q8 */
+    const int64_t width = planes->columns[side], height = planes->rect->height;
+    const int64_t column = t3r_round_shift64(x, 8), row = t3r_round_shift64(y, 8);
+    if (column < 0 || row < 0 || column >= width || row >= height) {
+        return false;
+    }
+    const size_t nearest = (size_t)(row * width + column);
+    const int32_t own = planes->disparity[side][nearest];
+    const bool matched = planes->confidence[side][nearest] != 0;
+    if (own == T3R_NO_DISPARITY || (!matched && !planes->filled)) {
+        return false;
+    }
+    *k_q7 = own;
+    *confidence = (uint8_t)(matched ? T3R_MAX(planes->confidence[side][nearest], T3R_STEREO_LEAST) : T3R_STEREO_FILLED);
+
+    const int64_t left = x >> 8, top = y >> 8;
+    if (left < 0 || top < 0 || left + 1 >= width || top + 1 >= height) {
+        return true;
+    }
+    const int32_t fx = (int32_t)(x & 255), fy = (int32_t)(y & 255);
+    const int32_t weight[4] = {(256 - fx) * (256 - fy), fx * (256 - fy), (256 - fx) * fy, fx * fy};
+    int64_t sum = 0; /* below 2^16 2^15 */
+    for (int i = 0; i < 4; i++) {
+        const size_t at = (size_t)((top + i / 2) * width + left + i % 2);
+        const int32_t k = planes->disparity[side][at];
+        if (k == T3R_NO_DISPARITY || (planes->confidence[side][at] != 0) != matched ||
+            t3r_abs32(k - own) > 1 << T3R_DISPARITY_BITS) {
+            return true;
+        }
+        sum += (int64_t)weight[i] * k;
+    }
+    *k_q7 = (int32_t)t3r_round_shift64(sum, 16);
+    return true;
+}
+
+static bool see(const t3r_stereo_planes *planes, uint32_t side, uint32_t u, uint32_t v, sight *s)
+{
+    int32_t place[2], across_q24, k_q7;
+    if (!t3r_rectified_place(planes->rect, side, (int32_t)(u << 16), (int32_t)(v << 16), place, &across_q24) ||
+        !look_up(planes, side, place, &k_q7, &s->confidence)) {
+        return false;
+    }
+    /* k is below 2^8, first and columns below 2^15 */
+    s->disparity_q16 = planes->first * 65536 + k_q7 * (1 << (16 - T3R_DISPARITY_BITS));
+    const int32_t apart = side == 0 ? -s->disparity_q16 : s->disparity_q16;
+    const t3r_column own = t3r_rectified_column(planes->rect, place[0]);
+    const t3r_column other = t3r_rectified_column(planes->rect, place[0] + apart);
+    const t3r_column *first = side == 0 ? &own : &other, *second = side == 0 ? &other : &own;
+    if (own.b_q24 <= 0 || other.b_q24 <= 0) {
+        return false;
+    }
+    /* |a| <= 2^27, b <= 2^24: the difference of the cotangents times both b, Q48 to Q30 */
+    int64_t apart_q30 =
+        t3r_round_shift64((int64_t)first->a_q24 * second->b_q24 - (int64_t)second->a_q24 * first->b_q24, 18);
+    apart_q30 = T3R_MAX(apart_q30, 1); /* at and beyond infinity: as far as can be */
+    s->numerator_q24 = t3r_round_shift64((int64_t)own.b_q24 * other.b_q24, 24);
+    s->denominator_q30 = T3R_MAX(t3r_round_shift64(apart_q30 * across_q24, 24), 1); /* 2^33 x 2^28.6 */
+    return true;
+}
+
+t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uint64_t *depth_unit_q40)
+{
+    const t3r_rectification *rect = planes->rect;
+    uint32_t histogram[BINS] = {0}, sampled = 0, matched = 0, still = 0;
+    for (uint32_t side = 0; side < 2; side++) {
+        for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
+            for (uint32_t u = 0; u < views[side].width; u += SAMPLING) {
+                sight s;
+                sampled++;
+                if (!see(planes, side, u, v, &s) || s.confidence < T3R_STEREO_SURE) {
+                    continue;
+                }
+                matched++;
+                if (s.disparity_q16 < NO_PARALLAX_Q16) {
+                    still++;
+                    continue;
+                }
+                const int64_t baselines_q16 = t3r_round_div64(s.numerator_q24 * (1 << 22), s.denominator_q30);
+                histogram[t3r_log2_wide_q16((uint64_t)T3R_MAX(baselines_q16, 1)) >> 13]++;
+            }
+        }
+    }
+    if (matched < sampled / LEAST_SHARE) {
+        return T3R_PAIR_OVERLAP;
+    }
+    if (4 * (uint64_t)still > 3 * (uint64_t)matched) {
+        return T3R_PAIR_PARALLAX;
+    }
+    const uint32_t moving = matched - still;
+    if (moving < sampled / LEAST_SHARE) {
+        return T3R_PAIR_OVERLAP;
+    }
+    int32_t bin = BINS - 1, middle = 0; /* the first from above with which too many are beyond it; the median */
+    for (uint32_t beyond = histogram[bin]; bin > 0 && beyond <= moving / TOO_FAR;) {
+        beyond += histogram[--bin];
+    }
+    for (uint32_t below = histogram[0]; middle < bin && 2 * below <= moving;) {
+        below += histogram[++middle];
+    }
+    bin = T3R_MIN(bin, middle + FARTHEST);
+    /* 60,000 steps at the bin's end, 2^((bin + 1) / 8 - 16) baselines */
+    const int32_t shift = (bin + 1) / 8, part = (bin + 1) % 8;
+    const int64_t limit_q16 = t3r_scale64(t3r_exp2_q16(part << 13), shift - 16);
+    planes->steps =
+        (uint32_t)t3r_clamp64(t3r_round_div64((int64_t)FAR_STEPS << 16, T3R_MAX(limit_q16, 1)), 1, STEPS_MOST);
+
+    /* baseline / steps, in Q40 */
+    const int64_t unit = t3r_round_div64((int64_t)rect->baseline_q31 << 24, planes->steps);
+    const int32_t scale = rect->baseline_exponent - 31 - 24 + 8; /* unit below 2^57 */
+    if (scale > 0 && (scale > 47 || unit >> (47 - scale) != 0)) {
+        return T3R_PAIR_SCALE;
+    }
+    const int64_t unit_q40 = t3r_scale64(unit, scale);
+    if (unit_q40 < 1 || unit_q40 >= INT64_C(1) << 47) {
+        return T3R_PAIR_SCALE;
+    }
+    *depth_unit_q40 = (uint64_t)unit_q40;
+    return T3R_PAIR_OK;
+}
+
+void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3r_view *view)
+{
+    for (uint32_t v = 0; v < view->height; v++) {
+        for (uint32_t u = 0; u < view->width; u++) {
+            const size_t at = (size_t)v * view->width + u;
+            sight s;
+            view->depth[at] = 0;
+            view->confidence[at] = T3R_STEREO_NONE;
+            const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
+            if (shown && see(planes, side, u, v, &s)) {
+                /* 2^22 x 2^25 x 2^6 */
+                int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
+                view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
+                const bool known = depth <= UINT16_MAX && s.disparity_q16 >= NO_PARALLAX_Q16;
+                view->confidence[at] = known ? s.confidence : T3R_STEREO_FILLED;
+            }
+        }
+    }
+}

@@ -1,0 +1,236 @@
+#include "stereo_fill.h"
+
+#include <string.h>
+
+#include "core/fixed.h"
+#include "stereo.h"
+
+/* Sweeps over the picture: down, up, down, up. Ways with more bends than that are found as longer ones. */
+#define SWEEPS 4
+/* The length of a step to a neighbour, straight and diagonal, and of a level of luma on it. */
+#define STRAIGHT 5
+#define DIAGONAL 7
+#define LEVEL 5
+#define CELLS T3R_STEREO_FILL_CELLS
+/* One over a depth in steps, Q30: at most 2^24, that of 64 steps */
+#define INVERSE_MOST (1 << 24)
+/* Square pixels added to the spread of places: a slope takes more than one row or column. */
+#define SPREAD 2
+#define SLOPE_MOST_Q8 INT32_MAX
+
+/* Sums over the pixels of a cell that have depth; x and y count from its middle, i is one over depth. */
+typedef struct sums {
+    int64_t n, x, y, i, xx, xy, yy, xi, yi;
+} sums;
+
+_Static_assert(sizeof(sums) == T3R_STEREO_FILL_SUMS_BYTES, "stereo_fill.h knows the sums' size");
+
+/* How one over depth grows a pixel to the right and down, Q30 + 8 */
+typedef struct slope {
+    int32_t x_q8, y_q8;
+} slope;
+
+/* A view being filled. */
+typedef struct filling {
+    const t3r_view *view;
+    uint32_t cell, columns, rows; /* side of a cell; their numbers, at most CELLS */
+    sums *sums;
+    uint32_t *source; /* the pixel whose depth is taken */
+    uint16_t *cost;   /* the length of the way there; UINT16_MAX = none yet, or longer */
+    uint8_t *luma;
+} filling;
+
+static bool shows(const t3r_view *view, size_t i)
+{
+    return (view->colour[0][i] | view->colour[1][i] | view->colour[2][i]) != 0;
+}
+
+/* ---- the nearest pixel with depth -------------------------------------------------------------------------------- */
+
+static void begin(const filling *f)
+{
+    const t3r_view *view = f->view;
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    for (size_t i = 0; i < pixels; i++) {
+        f->source[i] = (uint32_t)i;
+        f->cost[i] = view->depth[i] != 0 ? 0 : UINT16_MAX;
+        f->luma[i] =
+            (uint8_t)((77 * view->colour[0][i] + 150 * view->colour[1][i] + 29 * view->colour[2][i] + 128) >> 8);
+    }
+}
+
+/* Pixel `to` takes what pixel `from` has, if the way by it is shorter. */
+static void offer(const filling *f, size_t to, size_t from, uint32_t step)
+{
+    const int32_t level = t3r_abs32((int32_t)f->luma[to] - f->luma[from]);
+    const uint32_t cost = f->cost[from] + step + LEVEL * (uint32_t)level;
+    if (cost < f->cost[to]) {
+        f->cost[to] = (uint16_t)cost;
+        f->source[to] = f->source[from];
+    }
+}
+
+/* One row, from the row before it on the sweep and along itself both ways. */
+static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
+{
+    const uint32_t width = f->view->width;
+    const size_t row = (size_t)y * width, before = down ? row - width : row + width; /* unused of the first */
+    for (uint32_t x = 0; x < width && !first; x++) {
+        offer(f, row + x, before + x, STRAIGHT);
+        if (x > 0) {
+            offer(f, row + x, before + x - 1, DIAGONAL);
+        }
+        if (x + 1 < width) {
+            offer(f, row + x, before + x + 1, DIAGONAL);
+        }
+    }
+    for (uint32_t x = 1; x < width; x++) {
+        offer(f, row + x, row + x - 1, STRAIGHT);
+    }
+    for (uint32_t x = width - 1; x-- > 0;) {
+        offer(f, row + x, row + x + 1, STRAIGHT);
+    }
+}
+
+/* ---- slopes ------------------------------------------------------------------------------------------------------ */
+
+static int64_t inverse_q30(uint16_t depth)
+{
+    return T3R_MIN(t3r_round_div64(INT64_C(1) << 30, depth), (int64_t)INVERSE_MOST);
+}
+
+static size_t cell_of(const filling *f, uint32_t x, uint32_t y)
+{
+    return (size_t)(y / f->cell) * f->columns + x / f->cell;
+}
+
+static void sum_cells(const filling *f)
+{
+    const t3r_view *view = f->view;
+    memset(f->sums, 0, (size_t)f->columns * f->rows * sizeof *f->sums);
+    for (uint32_t v = 0; v < view->height; v++) {
+        for (uint32_t u = 0; u < view->width; u++) {
+            const uint16_t depth = view->depth[(size_t)v * view->width + u];
+            if (depth != 0) {
+                /* at most 2^18 pixels a cell, |x|, |y| at most 2^8: sums of x i below 2^50 */
+                sums *s = &f->sums[cell_of(f, u, v)];
+                const int64_t x = (int64_t)(u % f->cell) - f->cell / 2, y = (int64_t)(v % f->cell) - f->cell / 2;
+                const int64_t i = inverse_q30(depth);
+                s->n++;
+                s->x += x;
+                s->y += y;
+                s->i += i;
+                s->xx += x * x;
+                s->xy += x * y;
+                s->yy += y * y;
+                s->xi += x * i;
+                s->yi += y * i;
+            }
+        }
+    }
+}
+
+/* Those of another cell, counted from a place dx, dy away from its middle. */
+static void add_moved(sums *to, const sums *s, int64_t dx, int64_t dy)
+{
+    to->n += s->n;
+    to->x += s->x + s->n * dx;
+    to->y += s->y + s->n * dy;
+    to->i += s->i;
+    to->xx += s->xx + 2 * dx * s->x + s->n * dx * dx;
+    to->xy += s->xy + dx * s->y + dy * s->x + s->n * dx * dy;
+    to->yy += s->yy + 2 * dy * s->y + s->n * dy * dy;
+    to->xi += s->xi + dx * s->i;
+    to->yi += s->yi + dy * s->i;
+}
+
+/* n / d in Q8 of `bits` more bits in n than in d, |n| < 2^62 */
+static int32_t quotient_q8(int64_t n, int64_t d, int32_t bits)
+{
+    const int32_t shift = T3R_MIN(12, 60 - (int32_t)t3r_msb64((uint64_t)t3r_abs64(n) | 1));
+    const int64_t q = t3r_scale64(t3r_round_div64(n * (INT64_C(1) << shift), d), 8 - shift - bits);
+    return (int32_t)t3r_clamp64(q, -SLOPE_MOST_Q8, SLOPE_MOST_Q8);
+}
+
+/* The plane through one over depth in a cell and the eight about it, by least squares. */
+static slope fit(const filling *f, uint32_t column, uint32_t row)
+{
+    sums s = {0};
+    for (uint32_t r = row > 0 ? row - 1 : 0; r <= row + 1 && r < f->rows; r++) {
+        for (uint32_t c = column > 0 ? column - 1 : 0; c <= column + 1 && c < f->columns; c++) {
+            add_moved(&s, &f->sums[(size_t)r * f->columns + c], ((int64_t)c - column) * f->cell,
+                      ((int64_t)r - row) * f->cell);
+        }
+    }
+    if (s.n == 0) {
+        return (slope){0, 0};
+    }
+    /* n below 2^21.2, |x| below 2^9.6, i at most 2^24: sums of x squared below 2^62, x i below 2^55 */
+    const int64_t mean = t3r_round_div64(s.i, s.n);
+    const int64_t xx = t3r_round_div64(16 * (s.xx - t3r_round_div64(s.x * s.x, s.n)), s.n) + 16 * SPREAD;
+    const int64_t yy = t3r_round_div64(16 * (s.yy - t3r_round_div64(s.y * s.y, s.n)), s.n) + 16 * SPREAD;
+    const int64_t xy = t3r_round_div64(16 * (s.xy - t3r_round_div64(s.x * s.y, s.n)), s.n);
+    const int64_t xi = t3r_round_div64(s.xi - s.x * mean, s.n), yi = t3r_round_div64(s.yi - s.y * mean, s.n);
+    /* Q4, below 2^23.3; xi below 2^33.7: products below 2^58. Covariances of real pixels but for rounding, and the
+     * spread added: the determinant is positive. */
+    const int64_t determinant = T3R_MAX(xx * yy - xy * xy, 1);
+    return (slope){quotient_q8(xi * yy - yi * xy, determinant, -4), quotient_q8(yi * xx - xi * xy, determinant, -4)};
+}
+
+/* ---- depth ------------------------------------------------------------------------------------------------------- */
+
+/* The depth at (u, v) of the plane through a pixel's, its distance between half and twice as far. */
+static uint16_t extend(const filling *f, const slope *slopes, uint32_t u, uint32_t v)
+{
+    const t3r_view *view = f->view;
+    const uint32_t source = f->source[(size_t)v * view->width + u];
+    const uint32_t x = source % view->width, y = source / view->width;
+    const slope s = slopes[cell_of(f, x, y)];
+    const int64_t own = inverse_q30(view->depth[source]);
+    const int64_t grown = ((int64_t)u - x) * s.x_q8 + ((int64_t)v - y) * s.y_q8; /* below 2^44 */
+    const int64_t there = t3r_clamp64(own + t3r_round_shift64(grown, 8), (own + 1) / 2, 2 * own);
+    return (uint16_t)t3r_clamp64(t3r_round_div64(view->depth[source] * own, there), 1, UINT16_MAX);
+}
+
+static void finish(const filling *f)
+{
+    const t3r_view *view = f->view;
+    slope slopes[CELLS * CELLS];
+    for (uint32_t row = 0; row < f->rows; row++) {
+        for (uint32_t column = 0; column < f->columns; column++) {
+            slopes[(size_t)row * f->columns + column] = fit(f, column, row);
+        }
+    }
+    for (uint32_t v = 0; v < view->height; v++) {
+        for (uint32_t u = 0; u < view->width; u++) {
+            const size_t i = (size_t)v * view->width + u;
+            if (f->cost[i] == UINT16_MAX || f->source[i] == i) {
+                continue; /* nothing to take, or its own */
+            }
+            if (shows(view, i)) {
+                view->depth[i] = extend(f, slopes, u, v);
+                view->confidence[i] = T3R_STEREO_FILLED;
+            }
+        }
+    }
+}
+
+void t3r_stereo_fill(const t3r_view *view, void *work)
+{
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    filling f = {.view = view, .sums = work};
+    f.cell = (T3R_MAX(view->width, view->height) + CELLS - 1) / CELLS;
+    f.columns = (view->width + f.cell - 1) / f.cell;
+    f.rows = (view->height + f.cell - 1) / f.cell;
+    f.source = (uint32_t *)(void *)(f.sums + CELLS * CELLS);
+    f.cost = (uint16_t *)(void *)(f.source + pixels);
+    f.luma = (uint8_t *)(f.cost + pixels);
+    begin(&f);
+    sum_cells(&f);
+    for (uint32_t sweep = 0; sweep < SWEEPS; sweep++) {
+        for (uint32_t i = 0; i < view->height; i++) {
+            sweep_row(&f, sweep % 2 == 0 ? i : view->height - 1 - i, i == 0, sweep % 2 == 0);
+        }
+    }
+    finish(&f);
+}

@@ -1,0 +1,23 @@
+/* Depth for what stereo could not match: that of the surroundings (SPEC.md, "Stereo: filling"). */
+#ifndef T3R_STEREO_FILL_H
+#define T3R_STEREO_FILL_H
+
+#include <stddef.h>
+
+#include "core/views.h"
+
+/* Cells a view's longer side is cut into, for the slopes of surfaces */
+#define T3R_STEREO_FILL_CELLS 8u
+#define T3R_STEREO_FILL_SUMS_BYTES 72 /* of a cell; stereo_fill.c asserts it */
+
+/* Bytes of work, aligned to 64: sums of cells; planes of sources, costs and luma. Less than what matching takes. */
+#define T3R_STEREO_FILL_BYTES(width, height)                                                                           \
+    ((size_t)T3R_STEREO_FILL_CELLS * T3R_STEREO_FILL_CELLS * T3R_STEREO_FILL_SUMS_BYTES +                              \
+     T3R_PIXELS_(width, height) * 7)
+
+/* Every pixel of something that has no depth takes that of the pixel to which the way is the shortest, steps of luma
+ * counting as length, along the plane that the depths about that pixel lie on; confidence T3R_STEREO_FILLED. In a view
+ * without any depth nothing is filled. */
+void t3r_stereo_fill(const t3r_view *view, void *work);
+
+#endif

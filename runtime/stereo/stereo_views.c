@@ -1,0 +1,187 @@
+#include "stereo_views.h"
+
+#include <string.h>
+
+#include "core/fixed.h"
+#include "core/state.h"
+#include "stereo.h"
+#include "stereo_fill.h"
+#include "stereo_fuse.h"
+
+/* Each view is matched with so many others, those with the most to hope for. */
+#define PARTNERS 2u
+
+/* Every pair as a first look has it, symmetric. */
+typedef struct survey {
+    uint32_t promise[T3R_MAX_VIEWS][T3R_MAX_VIEWS];
+    uint8_t pair[T3R_MAX_VIEWS][T3R_MAX_VIEWS]; /* t3r_pair */
+    uint8_t rank[T3R_MAX_VIEWS][T3R_MAX_VIEWS]; /* how many partners are to be preferred, for the one or the other */
+} survey;
+
+void t3r_stereo_forget(const t3r_view *views, uint32_t count)
+{
+    for (uint32_t v = 0; v < count; v++) {
+        const size_t pixels = T3R_PIXELS_(views[v].width, views[v].height);
+        memset(views[v].depth, 0, pixels * sizeof *views[v].depth);
+        memset(views[v].confidence, T3R_CONFIDENCE_NONE, pixels);
+    }
+}
+
+/* Filled is what all pairs left. */
+static t3r_stereo_settings settings_of(void)
+{
+    return (t3r_stereo_settings){.disparities = T3R_STEREO_DISPARITIES, .paths = T3R_STEREO_PATHS, .fill = 0};
+}
+
+/* First looks at all pairs; of two views there is nothing to choose. */
+static t3r_status look_at_all(const t3r_runtime *rt, const t3r_view *views, survey *found)
+{
+    const t3r_stereo_settings settings = settings_of();
+    const uint32_t pairs = rt->views * (rt->views - 1) / 2;
+    uint32_t done = 0;
+    memset(found, 0, sizeof *found);
+    for (uint32_t a = 0; a < rt->views && rt->views > 2; a++) {
+        for (uint32_t b = a + 1; b < rt->views; b++) {
+            if (!t3r_progress(rt, T3R_STAGE_DEPTH, done++, 2 * pairs)) {
+                return T3R_ERR_CANCELLED;
+            }
+            const t3r_camera cameras[2] = {rt->camera[a], rt->camera[b]};
+            const t3r_view both[2] = {views[a], views[b]};
+            found->pair[a][b] = (uint8_t)t3r_stereo_promise(
+                &settings, cameras, both, t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK), &found->promise[a][b]);
+            found->pair[b][a] = found->pair[a][b];
+            found->promise[b][a] = found->promise[a][b];
+        }
+    }
+    return T3R_OK;
+}
+
+/* Whether a is to be preferred to b as a partner of v: not refused, more promise, earlier. */
+static bool precedes(const survey *s, uint32_t v, uint32_t a, uint32_t b)
+{
+    const bool refused = s->pair[v][a] != T3R_PAIR_OK, other_refused = s->pair[v][b] != T3R_PAIR_OK;
+    if (refused != other_refused) {
+        return other_refused;
+    }
+    return s->promise[v][a] != s->promise[v][b] ? s->promise[v][a] > s->promise[v][b] : a < b;
+}
+
+/* How many others are to be preferred to `a` as partners of v. */
+static uint32_t rank(const survey *s, uint32_t count, uint32_t v, uint32_t a)
+{
+    uint32_t before = 0;
+    for (uint32_t w = 0; w < count; w++) {
+        before += w != v && w != a && precedes(s, v, w, a);
+    }
+    return before;
+}
+
+static void rank_all(const t3r_runtime *rt, survey *s)
+{
+    for (uint32_t a = 0; a < rt->views; a++) {
+        for (uint32_t b = a + 1; b < rt->views; b++) {
+            const uint32_t here = rank(s, rt->views, a, b), there = rank(s, rt->views, b, a);
+            s->rank[a][b] = s->rank[b][a] = (uint8_t)T3R_MIN(here, there);
+        }
+    }
+}
+
+/* Where one pair leaves its depths when several tell of a view. */
+static void divide_pair(const t3r_runtime *rt, t3r_view both[2])
+{
+    const uint32_t width = rt->config.width, height = rt->config.height;
+    uint8_t *at = t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK);
+    at += T3R_STEREO_WORK_BYTES(width, height, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS);
+    for (int side = 0; side < 2 && rt->views > 2; side++) {
+        both[side].depth = (uint16_t *)(void *)at;
+        at += T3R_UP_(T3R_PIXELS_(width, height) * 2);
+        both[side].confidence = at;
+        at += T3R_UP_(T3R_PIXELS_(width, height));
+    }
+}
+
+static void match(t3r_runtime *rt, t3r_view *views, survey *s, uint32_t a, uint32_t b)
+{
+    const t3r_stereo_settings settings = settings_of();
+    const t3r_camera cameras[2] = {rt->camera[a], rt->camera[b]};
+    const uint32_t index[2] = {a, b};
+    t3r_view both[2] = {views[a], views[b]};
+    uint64_t unit_q40 = 1;
+    divide_pair(rt, both);
+    const t3r_pair pair =
+        t3r_stereo_depth(&settings, cameras, both, t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK), &unit_q40);
+    s->pair[a][b] = s->pair[b][a] = (uint8_t)pair;
+    for (int side = 0; side < 2 && pair == T3R_PAIR_OK; side++) {
+        t3r_view *view = &views[index[side]];
+        both[side].depth_unit_q40 = unit_q40;
+        if (rt->stereo_pair[index[side]] != T3R_PAIR_OK) { /* the first: its unit is the view's */
+            rt->stereo_pair[index[side]] = T3R_PAIR_OK;
+            rt->depth_unit_q40[index[side]] = view->depth_unit_q40 = unit_q40;
+        }
+        if (rt->views > 2) {
+            t3r_stereo_fuse(view, &both[side]);
+        }
+    }
+}
+
+/* Pairs of one rank, the earlier views first. */
+static t3r_status match_rank(t3r_runtime *rt, t3r_view *views, survey *s, uint32_t rank)
+{
+    const uint32_t pairs = rt->views * (rt->views - 1) / 2;
+    uint32_t done = pairs * (PARTNERS + rank) / PARTNERS;
+    for (uint32_t a = 0; a < rt->views; a++) {
+        for (uint32_t b = a + 1; b < rt->views; b++) {
+            if (s->rank[a][b] != rank || s->pair[a][b] != T3R_PAIR_OK) {
+                continue;
+            }
+            if (!t3r_progress(rt, T3R_STAGE_DEPTH, T3R_MIN(done++, 2 * pairs - 1), 2 * pairs)) {
+                return T3R_ERR_CANCELLED;
+            }
+            match(rt, views, s, a, b);
+        }
+    }
+    return T3R_OK;
+}
+
+/* What each view's depth came from, or why there is none. */
+static bool settle(t3r_runtime *rt, const survey *s)
+{
+    bool any = false;
+    for (uint32_t v = 0; v < rt->views; v++) {
+        uint32_t best = v;
+        for (uint32_t w = 0; w < rt->views; w++) { /* its own first choice is one of them */
+            if (w != v && s->rank[v][w] < PARTNERS && (best == v || precedes(s, v, w, best))) {
+                best = w;
+            }
+        }
+        any = any || rt->stereo_pair[v] == T3R_PAIR_OK;
+        rt->stereo_partner[v] = (uint8_t)best;
+        if (rt->stereo_pair[v] != T3R_PAIR_OK) {
+            rt->stereo_pair[v] = s->pair[v][best];
+        }
+    }
+    return any;
+}
+
+t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views)
+{
+    survey s;
+    t3r_status status = look_at_all(rt, views, &s);
+    rank_all(rt, &s);
+    for (uint32_t v = 0; v < rt->views; v++) {
+        rt->stereo_pair[v] = T3R_PAIR_OVERLAP; /* until one pair can be matched */
+    }
+    for (uint32_t rank = 0; rank < PARTNERS && status == T3R_OK; rank++) {
+        status = match_rank(rt, views, &s, rank);
+    }
+    if (status == T3R_OK && !settle(rt, &s)) {
+        status = T3R_ERR_STEREO;
+    }
+    for (uint32_t v = 0; v < rt->views && status == T3R_OK; v++) {
+        if (rt->config.fill_radius > 0) {
+            t3r_stereo_fill(&views[v], t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK));
+        }
+        t3r_stereo_marks(&views[v], T3R_STEREO_SURE);
+    }
+    return status;
+}

@@ -1,0 +1,362 @@
+/* The way of a keyframe. Its planes take the slot of the oldest of the keyframes at hand:
+ *
+ *     frame - image - depth - pointmap -+- the map seen and drawn from there -+- budget - mask - head - map - refine
+ *                                       +- wavelet -- texture energy ---------+
+ *
+ * The map is the scene; what competes with it are the pixels that it does not show. */
+#include "stream.h"
+
+#include <string.h>
+
+#include "pointmap/bridge.h"
+#include "core/camera.h"
+#include "depth/depth.h"
+#include "image/develop.h"
+#include "pointmap/exposure.h"
+#include "core/fixed.h"
+#include "pointmap/flying_pixels.h"
+#include "image/image.h"
+#include "pipeline.h"
+#include "refine/refine.h"
+#include "core/scene_frame.h"
+#include "core/stage_hash.h"
+#include "core/state.h"
+#include "stream_map.h"
+
+#define REBASE_Q20 (1 << 29) /* so far from the origin it follows: 512 scene units */
+
+/* --- where the map stands ----------------------------------------------------------------------------------------- */
+
+/* Whole scene units are whole steps of Q32 world units, whatever the exponent, and of Q20: nothing is rounded. Towards
+ * 0, so that the origin stays between where it was and the camera, below 2^62 both. */
+static void rebase(t3r_runtime *rt, const int32_t position_q20[3])
+{
+    int64_t by_q20[3];
+    for (int i = 0; i < 3; i++) {
+        int64_t units = position_q20[i] / (1 << 20);
+        by_q20[i] = -units * (1 << 20);
+        rt->frame.origin_q32[i] += units * ((int64_t)1 << (32 + rt->frame.exponent));
+    }
+    t3r_map map = t3r_map_of(rt);
+    t3r_map_move(&map, by_q20);
+    rt->gaussians = map.count;
+}
+
+t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
+{
+    t3r_status status = t3r_image_check(frame);
+    if (status == T3R_OK) {
+        status = t3r_camera_check(camera);
+    }
+    if (status == T3R_OK) { /* before anything moves */
+        t3r_camera resized =
+            t3r_camera_resized(camera, frame->width, frame->height, rt->config.width, rt->config.height);
+        status = t3r_camera_check(&resized);
+    }
+    if (status != T3R_OK || rt->keyframes == 0) {
+        return status;
+    }
+    t3r_pose pose;
+    status = t3r_pose_in_scene(camera, &rt->frame, &pose);
+    bool far = false;
+    for (int i = 0; i < 3 && status == T3R_OK; i++) {
+        far = far || t3r_abs32(pose.position_q20[i]) > REBASE_Q20;
+    }
+    if (far) {
+        rebase(rt, pose.position_q20);
+    }
+    return status;
+}
+
+/* Keyframes at hand that the new origin leaves out of range tell nothing any more, from wherever it be. */
+static void leave_far_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
+{
+    for (uint32_t v = 0; v < rt->views; v++) {
+        t3r_pose pose;
+        if (t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK) {
+            memset(views[v].confidence, T3R_CONFIDENCE_NONE, (size_t)views[v].width * views[v].height);
+            rt->camera[v] = rt->camera[slot];
+        }
+    }
+}
+
+/* --- the keyframe by itself and among those at hand --------------------------------------------------------------- */
+
+static t3r_status develop(t3r_runtime *rt, uint32_t slot, const t3r_frame *frame, const t3r_camera *camera)
+{
+    t3r_camera undistorted;
+    if (!t3r_progress(rt, T3R_STAGE_IMAGE, 0, 1)) {
+        return T3R_ERR_CANCELLED;
+    }
+    t3r_status status = t3r_develop_view(rt, slot, frame, camera, &undistorted);
+    if (status != T3R_OK) {
+        return status;
+    }
+    rt->camera[slot] = undistorted;
+    rt->depth_unit_q40[slot] = frame->depth_unit_q40;
+    return T3R_OK;
+}
+
+static bool is_measured_anywhere(const t3r_view *view)
+{
+    size_t pixels = (size_t)view->width * view->height;
+    for (size_t i = 0; i < pixels; i++) {
+        if (view->confidence[i] == T3R_CONFIDENCE_MEASURED) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The gains that bring the new keyframe and the one before to their mean exposure. Older ones keep theirs: what each
+ * keyframe is to look like is the mean of its neighbours on the way, and the map changes along with the camera's
+ * exposure.
+ */
+static void level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
+{
+    const uint32_t before = (slot + rt->config.views - 1) % rt->config.views;
+    for (int c = 0; c < 3; c++) {
+        rt->gain_q14[slot][c] = T3R_GAIN_ONE_Q14;
+    }
+    if (!rt->config.exposure || before >= rt->views || before == slot) {
+        return;
+    }
+    const t3r_view pair[2] = {views[before], views[slot]};
+    uint16_t gain_q14[2][3];
+    if (t3r_exposure_gains(pair, 2, rt->frame.exponent, gain_q14) == 2) {
+        memcpy(rt->gain_q14[before], gain_q14[0], sizeof gain_q14[0]);
+        memcpy(rt->gain_q14[slot], gain_q14[1], sizeof gain_q14[1]);
+    }
+}
+
+/* Confidences of the older keyframes as before the map was compared with them; wide holes stay bridged. */
+static void forget_marks(const t3r_runtime *rt, const t3r_view *views, uint32_t slot)
+{
+    for (uint32_t v = 0; v < rt->views; v++) {
+        size_t pixels = (size_t)views[v].width * views[v].height;
+        for (size_t i = 0; i < pixels && v != slot; i++) {
+            uint8_t confidence = views[v].confidence[i];
+            views[v].confidence[i] = confidence == T3R_CONFIDENCE_NONE ? T3R_CONFIDENCE_NONE
+                                     : t3r_is_bridged(confidence)      ? T3R_CONFIDENCE_BRIDGED
+                                     : t3r_is_measured(confidence)     ? T3R_CONFIDENCE_MEASURED
+                                                                       : T3R_CONFIDENCE_FILLED;
+        }
+    }
+}
+
+static t3r_status compare_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
+{
+    if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 0, 2)) {
+        return T3R_ERR_CANCELLED;
+    }
+    if (rt->config.bridge_radius > 0) {
+        t3r_bridge_lend(views, rt->views, slot, rt->frame.exponent);
+        t3r_bridge_view(&views[slot], rt->config.bridge_radius);
+        (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent, ~(1u << slot));
+    }
+    if (rt->config.flying) {
+        (void)t3r_mark_flying(views, rt->views, slot, rt->frame.exponent, false);
+    }
+    if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 1, 2)) {
+        return T3R_ERR_CANCELLED;
+    }
+    level_keyframe(rt, views, slot);
+    return T3R_OK;
+}
+
+/* --- the map from there ------------------------------------------------------------------------------------------- */
+
+/* Pixels whose surface the map shows count as covered. */
+static uint32_t mark_shown(const t3r_pointmap *keyframe, const uint32_t *drawn_q20)
+{
+    const t3r_view *view = keyframe->view;
+    size_t pixels = (size_t)view->width * view->height;
+    uint32_t shown = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        uint8_t *confidence = &view->confidence[i];
+        bool measured = *confidence == T3R_CONFIDENCE_MEASURED;
+        if (drawn_q20[i] == 0) {
+            continue;
+        }
+        if (*confidence == T3R_CONFIDENCE_BRIDGED) { /* whatever there is, was seen */
+            *confidence = T3R_CONFIDENCE_BRIDGED_COVERED;
+            shown++;
+        }
+        if (!measured && *confidence != T3R_CONFIDENCE_FILLED) {
+            continue;
+        }
+        int64_t z = t3r_depth_q20(keyframe->scale, view->depth[i]), drawn = drawn_q20[i];
+        if (16 * t3r_abs64(z - drawn) <= T3R_MIN(z, drawn)) {
+            *confidence = measured ? T3R_CONFIDENCE_COVERED : T3R_CONFIDENCE_FILLED_COVERED;
+            shown++;
+        }
+    }
+    return shown;
+}
+
+static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot, t3r_stream_report *report)
+{
+    t3r_pointmap keyframe = t3r_pointmap_of(&views[slot], rt->frame.exponent);
+    if (!t3r_progress(rt, T3R_STAGE_RASTER, 0, 1)) {
+        return T3R_ERR_CANCELLED;
+    }
+    t3r_map map = t3r_map_of(rt);
+    report->removed = t3r_map_see(&map, &keyframe, rt->keyframes, rt->config.half_life);
+    rt->gaussians = map.count;
+
+    t3r_projection projection;
+    const t3r_config *config = &rt->config;
+    t3r_status status = t3r_projection_make(&rt->camera[slot], &rt->frame, config->width, config->height, &projection);
+    if (status != T3R_OK) {
+        return status;
+    }
+    t3r_raster_room room = t3r_refine_room(rt);
+    t3r_binning bin = t3r_raster_list(rt, &projection, &room);
+    t3r_target target = {
+        .width = config->width,
+        .height = config->height,
+        .depth_q20 = t3r_buffer_at(rt, T3R_BUFFER_MAP_VIEW),
+        .depth_stride_bytes = config->width * 4,
+    };
+    uint32_t passes;
+    status = t3r_raster_tiles(rt, &bin, &target, &passes);
+    if (status == T3R_OK) {
+        report->shown = mark_shown(&keyframe, target.depth_q20);
+        t3r_hash_pointmap(rt, views, slot, slot + 1);
+    }
+    return status;
+}
+
+/* --- what is new -------------------------------------------------------------------------------------------------- */
+
+/* All points are one group: their keys are to mean the same in every keyframe. */
+static uint32_t label_points(const t3r_runtime *rt, const t3r_view *view)
+{
+    size_t pixels = (size_t)view->width * view->height;
+    t3r_cluster *all = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    uint32_t points = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        bool valid = view->confidence[i] != T3R_CONFIDENCE_NONE;
+        view->label[i] = valid ? 0 : T3R_NO_LABEL;
+        points += valid;
+    }
+    *all = (t3r_cluster){.points = points};
+    return points;
+}
+
+static t3r_budget_settings settings_of(const t3r_runtime *rt)
+{
+    const t3r_config *config = &rt->config;
+    bool clustered = config->allocation == T3R_ALLOCATE_DENSITY || config->allocation == T3R_ALLOCATE_PAPER;
+    return (t3r_budget_settings){
+        .allocation = clustered ? T3R_ALLOCATE_PIXEL : config->allocation,
+        .gamma_q8 = config->gamma_q8,
+        .clusters = 1,
+        .seed = config->seed,
+        .shift = rt->keyframes % T3R_MAX_VIEWS,
+        .pass_over_covered = true,
+    };
+}
+
+static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t slot, t3r_stream_report *report)
+{
+    const t3r_view *view = &views[slot];
+    if (!t3r_progress(rt, T3R_STAGE_WAVELET, 0, 1)) {
+        return T3R_ERR_CANCELLED;
+    }
+    t3r_view_texture(rt, view);
+    t3r_hash_wavelet(rt, views, slot, slot + 1);
+    report->points = label_points(rt, view);
+    t3r_blur_texture(view, 1);
+
+    t3r_budget_settings settings = settings_of(rt);
+    t3r_map map = t3r_map_of(rt);
+    t3r_budget_keys(view, 1, &settings);
+    t3r_map_cut cut = t3r_map_compete(&map, view, &settings, rt->config.gaussians);
+    settings.gaussians = cut.added;
+    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    t3r_allocate(view, 1, &settings, clusters);
+    t3r_hash_budget(rt, views, slot, slot + 1);
+    if (!t3r_progress(rt, T3R_STAGE_HEAD, 0, 1)) {
+        return T3R_ERR_CANCELLED;
+    }
+    report->crowded = map.count - cut.kept;
+    t3r_map_thin(&map, &cut);
+    uint32_t made = t3r_view_to_gaussians(rt, views, slot, &settings, map.gaussians + map.count);
+    t3r_pointmap keyframe = t3r_pointmap_of(view, rt->frame.exponent);
+    report->added = t3r_map_append(&map, made, &keyframe, &settings, clusters);
+    rt->gaussians = map.count;
+    t3r_hash_scene(rt, T3R_STAGE_HEAD);
+    return T3R_OK;
+}
+
+/* --- all of it ---------------------------------------------------------------------------------------------------- */
+
+/* The planes are the keyframe's; the views at hand include it. */
+static t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report)
+{
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(rt, views);
+    t3r_view *view = &views[slot];
+    if (!is_measured_anywhere(view)) {
+        return T3R_ERR_NO_DEPTH;
+    }
+    t3r_hash_image(rt, views, slot, slot + 1);
+    if (!t3r_progress(rt, T3R_STAGE_DEPTH, 0, 1)) {
+        return T3R_ERR_CANCELLED;
+    }
+    t3r_depth_fill(view, rt->config.fill_radius);
+    t3r_hash_depth(rt, views, slot, slot + 1);
+    if (rt->keyframes == 0) {
+        memcpy(rt->frame.origin_q32, rt->camera[slot].position_q32, sizeof rt->frame.origin_q32);
+        t3r_status status = t3r_scene_frame_choose(view, 1, &rt->frame.exponent, &rt->median_depth_q20);
+        if (status != T3R_OK) {
+            return status;
+        }
+    }
+    leave_far_keyframes(rt, views, slot);
+    t3r_views_of(rt, views); /* poses in the frame there is now */
+    forget_marks(rt, views, slot);
+    t3r_status status = compare_keyframes(rt, views, slot);
+    if (status == T3R_OK) {
+        status = see_map(rt, views, slot, report);
+    }
+    return status == T3R_OK ? add_points(rt, views, slot, report) : status;
+}
+
+t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_stream_report *report)
+{
+    const uint32_t slot = rt->next_slot, views = rt->views;
+    const t3r_camera replaced = rt->camera[slot];
+    const uint64_t replaced_unit_q40 = rt->depth_unit_q40[slot];
+    *report = (t3r_stream_report){0};
+    t3r_status status = develop(rt, slot, frame, camera);
+    if (status == T3R_OK) {
+        rt->views = T3R_MAX(views, slot + 1);
+        status = take(rt, slot, report);
+    }
+    if (status != T3R_OK) { /* the slot's planes are nobody's now */
+        t3r_view view[T3R_MAX_VIEWS];
+        t3r_views_of(rt, view);
+        memset(view[slot].confidence, T3R_CONFIDENCE_NONE, (size_t)view[slot].width * view[slot].height);
+        rt->views = views;
+        rt->camera[slot] = replaced;
+        rt->depth_unit_q40[slot] = replaced_unit_q40;
+        *report = (t3r_stream_report){0};
+        return status;
+    }
+    rt->next_slot = (slot + 1) % rt->config.views;
+    rt->keyframes += rt->keyframes < UINT32_MAX;
+    rt->has_scene = 1;
+    report->keyframes = rt->keyframes;
+    report->gaussians = rt->gaussians;
+    if (rt->config.refinements > 0) {
+        t3r_view all[T3R_MAX_VIEWS];
+        t3r_views_of(rt, all);
+        status = t3r_refine_map(rt, all, t3r_map_of(rt).records);
+        if (status == T3R_OK) {
+            t3r_hash_scene(rt, T3R_STAGE_REFINE);
+        }
+    }
+    return status;
+}

@@ -1,0 +1,217 @@
+#include "stream_map.h"
+
+#include "core/fixed.h"
+#include "pointmap/flying_pixels.h"
+#include "head/head.h"
+#include "core/state.h"
+
+#define FINER_Q8 256        /* log2: pixels on the surface so much narrower replace the Gaussian */
+#define AFAR_Q8 128         /* log2: pixels on the surface so much wider than its own have less to tell of it */
+#define WIDEN_STEP_Q10 64   /* log2 of density: smaller changes wait until they add up */
+#define WIDEN_MOST_Q10 8192 /* of one step */
+
+t3r_map t3r_map_of(const t3r_runtime *rt)
+{
+    return (t3r_map){t3r_buffer_at(rt, T3R_BUFFER_SCENE), t3r_buffer_at(rt, T3R_BUFFER_MAP_RECORDS), rt->gaussians};
+}
+
+/* log2 of z / (fx + fy), Q8 */
+static int32_t grain_of(const t3r_view *view, int32_t z_q20)
+{
+    int32_t log_z = t3r_log2_q16((uint32_t)T3R_MAX(z_q20, 1));
+    int32_t log_f = t3r_log2_q16((uint32_t)view->fx_q16 + (uint32_t)view->fy_q16);
+    return t3r_round_shift32(log_z - log_f, 8);
+}
+
+typedef enum look { UNSEEN, SEEN_AFAR, SEEN, CONTRADICTED, COARSE } look;
+
+static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t3r_pointmap *keyframe)
+{
+    const t3r_view *view = keyframe->view;
+    t3r_sight sight;
+    if (!t3r_sight_of(view, g->position_q20, &sight) || !t3r_is_measured(view->confidence[sight.pixel])) {
+        return UNSEEN;
+    }
+    int32_t there = t3r_depth_q20(keyframe->scale, view->depth[sight.pixel]);
+    if (16 * t3r_abs64((int64_t)there - sight.z_q20) <= T3R_MIN(there, sight.z_q20)) {
+        int32_t wider_q8 = grain_of(view, sight.z_q20) - record->grain_q8;
+        return wider_q8 < -FINER_Q8 ? COARSE : wider_q8 <= AFAR_Q8 ? SEEN : SEEN_AFAR;
+    }
+    return t3r_seen_through(keyframe, &sight, false) ? CONTRADICTED : UNSEEN;
+}
+
+static void move_to(t3r_map *map, uint32_t from, uint32_t to)
+{
+    map->gaussians[to] = map->gaussians[from];
+    map->records[to] = map->records[from];
+}
+
+/* An octave is spread over `half_life` keyframes: the part of the one at hand. */
+static uint32_t fade_q10(uint32_t keyframes, uint32_t half_life)
+{
+    if (half_life == 0) {
+        return 0;
+    }
+    uint32_t at = keyframes % half_life;
+    return ((at + 1) << 10) / half_life - (at << 10) / half_life;
+}
+
+uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life)
+{
+    const uint32_t fade = fade_q10(keyframes, half_life);
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < map->count; i++) {
+        t3r_map_record *record = &map->records[i];
+        look seen = look_at(&map->gaussians[i], record, keyframe);
+        if (seen == CONTRADICTED || seen == COARSE) {
+            continue;
+        }
+        record->idle = seen == SEEN ? 0 : (uint16_t)T3R_MIN(record->idle + 1, (int32_t)UINT16_MAX);
+        record->faded_q10 = seen != UNSEEN ? 0 : (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
+        move_to(map, i, kept++);
+    }
+    uint32_t left = map->count - kept;
+    map->count = kept;
+    return left;
+}
+
+static uint32_t key_of(const t3r_map_record *record)
+{
+    return T3R_MIN((uint32_t)record->key + record->faded_q10, (uint32_t)UINT16_MAX);
+}
+
+static bool competes(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
+{
+    return view->label[pixel] != T3R_NO_LABEL && !t3r_set_aside(view, pixel, settings);
+}
+
+static uint32_t point_key(const t3r_view *view, size_t pixel)
+{
+    return T3R_MAX((uint32_t)view->key[pixel], (uint32_t)T3R_MAP_KEY_LEAST);
+}
+
+typedef struct counts {
+    uint32_t gaussians, points;
+} counts;
+
+/* Those of a key below `limit` */
+static counts count_below(const t3r_map *map, const t3r_view *view, const t3r_budget_settings *settings, uint32_t limit)
+{
+    counts n = {0, 0};
+    for (uint32_t i = 0; i < map->count; i++) {
+        n.gaussians += key_of(&map->records[i]) < limit;
+    }
+    size_t pixels = (size_t)view->width * view->height;
+    for (size_t i = 0; i < pixels; i++) {
+        n.points += point_key(view, i) < limit && competes(view, i, settings);
+    }
+    return n;
+}
+
+t3r_map_cut t3r_map_compete(const t3r_map *map, const t3r_view *view, const t3r_budget_settings *settings,
+                            uint32_t most)
+{
+    /* The least threshold of which at least `most` are not above it, by bisection, as of any group of points */
+    uint32_t threshold = 0;
+    for (int bit = 15; bit >= 0; bit--) {
+        counts n = count_below(map, view, settings, threshold + (1u << bit));
+        threshold += n.gaussians + n.points < most ? 1u << bit : 0;
+    }
+    counts below = count_below(map, view, settings, threshold);
+    counts within = count_below(map, view, settings, threshold + 1);
+    uint32_t places = most - below.gaussians - below.points;
+    uint32_t points = T3R_MIN(within.points - below.points, places);
+    uint32_t ties = T3R_MIN(within.gaussians - below.gaussians, places - points);
+    return (t3r_map_cut){threshold, ties, below.points + points, below.gaussians + ties};
+}
+
+/* As wide as Gaussians 2^-density apart need to be. */
+static void widen(t3r_gaussian *g, int32_t thinned_q10)
+{
+    int64_t scale_q16 = t3r_exp2_q16(T3R_MIN(thinned_q10, WIDEN_MOST_Q10) * 32); /* 2^(thinned / 2), at most 2^4 */
+    int64_t entry[9];
+    for (int i = 0; i < 9; i++) {
+        entry[i] = g->factor[i] * scale_q16;
+    }
+    t3r_pack_factor(entry, 16 - g->factor_exponent, g);
+}
+
+void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut)
+{
+    uint32_t ties = 0, kept = 0;
+    for (uint32_t i = 0; i < map->count; i++) {
+        ties += key_of(&map->records[i]) == cut->threshold;
+    }
+    for (uint32_t i = 0; i < map->count; i++) {
+        t3r_map_record *record = &map->records[i];
+        uint32_t key = key_of(record);
+        bool stays = key < cut->threshold;
+        if (key == cut->threshold) {
+            stays = ties <= cut->ties;
+            ties--;
+        }
+        if (!stays) {
+            continue;
+        }
+        int32_t density_q10 = (int32_t)cut->threshold - T3R_KEY_ZERO + record->wanted_q10 - record->faded_q10;
+        density_q10 = t3r_clamp32(density_q10, T3R_LEAST_DENSITY_Q10, 0);
+        if (record->density_q10 - density_q10 >= WIDEN_STEP_Q10) {
+            widen(&map->gaussians[i], record->density_q10 - density_q10);
+            record->density_q10 = (int16_t)density_q10;
+        }
+        move_to(map, i, kept++);
+    }
+    map->count = kept;
+}
+
+static bool in_range(const int32_t position_q20[3])
+{
+    for (int i = 0; i < 3; i++) {
+        if (position_q20[i] <= -T3R_POSITION_MOST_Q20 || position_q20[i] >= T3R_POSITION_MOST_Q20) {
+            return false;
+        }
+    }
+    return true;
+}
+
+uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyframe, const t3r_budget_settings *settings,
+                        const t3r_cluster *clusters)
+{
+    const t3r_view *view = keyframe->view;
+    size_t pixel = 0;
+    uint32_t before = map->count;
+    for (uint32_t i = 0; i < count; i++, pixel++) {
+        while (!t3r_retained(view, pixel)) {
+            pixel++; /* the head made a Gaussian of each in this order */
+        }
+        if (!in_range(map->gaussians[before + i].position_q20)) {
+            continue;
+        }
+        map->gaussians[map->count] = map->gaussians[before + i];
+        map->records[map->count++] = (t3r_map_record){
+            .key = (uint16_t)point_key(view, pixel),
+            .wanted_q10 = (int16_t)T3R_MIN(t3r_log_wanted_q10(view->texture[pixel], settings), INT16_MAX),
+            .density_q10 = (int16_t)t3r_log_density_q10(view, pixel, settings, clusters),
+            .grain_q8 = (int16_t)grain_of(view, t3r_depth_q20(keyframe->scale, view->depth[pixel])),
+        };
+    }
+    return map->count - before;
+}
+
+void t3r_map_move(t3r_map *map, const int64_t by_q20[3])
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < map->count; i++) {
+        int32_t *position_q20 = map->gaussians[i].position_q20;
+        bool stays = true;
+        for (int k = 0; k < 3; k++) {
+            int64_t moved = position_q20[k] + by_q20[k];
+            stays = stays && t3r_abs64(moved) < T3R_POSITION_MOST_Q20;
+            position_q20[k] = (int32_t)t3r_clamp64(moved, -T3R_POSITION_MOST_Q20, T3R_POSITION_MOST_Q20);
+        }
+        if (stays) {
+            move_to(map, i, kept++);
+        }
+    }
+    map->count = kept;
+}

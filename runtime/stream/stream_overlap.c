@@ -1,0 +1,72 @@
+#include "stream_overlap.h"
+
+#include "core/camera.h"
+#include "core/fixed.h"
+#include "pointmap/reproject.h"
+#include "core/state.h"
+
+#define STEP 2 /* pixels */
+#define GRID 8 /* cells along each side of the picture */
+
+/* The cell of a pixel, as a bit. */
+static uint64_t cell_of(const t3r_view *view, size_t pixel)
+{
+    uint32_t x = (uint32_t)(pixel % view->width), y = (uint32_t)(pixel / view->width);
+    return UINT64_C(1) << (y * GRID / view->height * GRID + x * GRID / view->width);
+}
+
+static uint32_t count_bits(uint64_t bits)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < GRID * GRID; i++) {
+        count += (uint32_t)(bits >> i & 1);
+    }
+    return count;
+}
+
+t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
+                                   uint32_t *overlap_q8)
+{
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(rt, views);
+    const t3r_view *newest = &views[(rt->next_slot + rt->config.views - 1) % rt->config.views];
+    const t3r_pointmap map = t3r_pointmap_of(newest, rt->frame.exponent);
+    const t3r_camera resized = t3r_camera_resized(camera, width, height, newest->width, newest->height);
+    t3r_view there = {
+        .width = newest->width,
+        .height = newest->height,
+        .fx_q16 = resized.fx_q16,
+        .fy_q16 = resized.fy_q16,
+        .cx_q16 = resized.cx_q16,
+        .cy_q16 = resized.cy_q16,
+    };
+    t3r_status status = t3r_camera_check(&resized);
+    if (status == T3R_OK) {
+        status = t3r_pose_in_scene(camera, &rt->frame, &there.pose);
+    }
+    if (status != T3R_OK) {
+        return status;
+    }
+    uint32_t points = 0, shown = 0;
+    uint64_t own_cells = 0, cells = 0;
+    for (uint32_t y = 0; y < newest->height; y += STEP) {
+        for (uint32_t x = 0; x < newest->width; x += STEP) {
+            int32_t point[3];
+            t3r_sight sight;
+            size_t pixel = (size_t)y * newest->width + x;
+            if (newest->confidence[pixel] == T3R_CONFIDENCE_NONE || !t3r_point(&map, x, y, point)) {
+                continue;
+            }
+            points++;
+            own_cells |= cell_of(newest, pixel);
+            if (t3r_sight_of(&there, point, &sight)) {
+                shown++;
+                cells |= cell_of(&there, sight.pixel);
+            }
+        }
+    }
+    uint32_t of_points = points == 0 ? 0 : shown * 256 / points; /* below 2^22 x 2^8 */
+    uint32_t of_cells = points == 0 ? 0 : count_bits(cells) * 256 / count_bits(own_cells);
+    *overlap_q8 = T3R_MIN(of_points, of_cells);
+    return T3R_OK;
+}

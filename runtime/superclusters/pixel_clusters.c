@@ -1,0 +1,58 @@
+#include "pixel_clusters.h"
+
+#include "core/fixed.h"
+#include "pointmap/pointmap.h"
+#include "core/state.h"
+#include "superclusters.h"
+
+/* Pixels of all views, view after view, as points x, y, z over the median depth and r, g, b over 255. */
+typedef struct pixel_points {
+    const t3r_view *views;
+    t3r_pointmap maps[T3R_MAX_VIEWS];
+    uint32_t pixels;
+    int64_t inverse_median_q30; /* of the median depth in scene units */
+    int32_t colour_scale_q16;   /* 8-bit level to Q11 */
+} pixel_points;
+
+static bool pixel_features(const void *context, uint32_t index, int16_t feature_q11[T3R_DIMENSIONS])
+{
+    const pixel_points *points = context;
+    uint32_t v = index / points->pixels, pixel = index % points->pixels;
+    const t3r_view *view = &points->views[v];
+    int32_t point[3];
+    if (!t3r_point(&points->maps[v], pixel % view->width, pixel / view->width, point)) {
+        return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        /* |point| <= 2^30, the inverse <= 2^30 */
+        int64_t x = t3r_round_shift64(point[i] * points->inverse_median_q30, 39);
+        feature_q11[i] = (int16_t)t3r_clamp64(x, -T3R_FEATURE_MOST, T3R_FEATURE_MOST);
+        feature_q11[3 + i] = (int16_t)t3r_round_shift32(view->colour[i][pixel] * points->colour_scale_q16, 16);
+    }
+    return true;
+}
+
+static bool step_clusters(void *context, uint32_t done, uint32_t total)
+{
+    return t3r_progress(context, T3R_STAGE_SUPERCLUSTERS, done, total);
+}
+
+t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
+{
+    pixel_points points = {
+        .views = views,
+        .pixels = rt->config.width * rt->config.height,
+        .inverse_median_q30 = ((int64_t)1 << 50) / rt->median_depth_q20,
+        .colour_scale_q16 = (int32_t)((rt->config.colour_weight_q8 << 19) / 255),
+    };
+    for (uint32_t v = 0; v < rt->views; v++) {
+        points.maps[v] = t3r_pointmap_of(&views[v], rt->frame.exponent);
+    }
+    t3r_point_source source = {&points, points.pixels * rt->views, pixel_features};
+    t3r_cluster_settings settings = {rt->config.clusters, rt->config.cluster_batches, rt->config.seed};
+    t3r_cluster_progress progress = {rt, step_clusters};
+    uint32_t valid =
+        t3r_superclusters(&source, &settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
+                          t3r_buffer_at(rt, T3R_BUFFER_LABELS), t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_WORK), &progress);
+    return valid == T3R_CLUSTERS_CANCELLED ? T3R_ERR_CANCELLED : T3R_OK;
+}

@@ -1,0 +1,247 @@
+#include "superclusters.h"
+
+#include <string.h>
+
+#include "core/fixed.h"
+
+#define CENTRE_FRACTION 8 /* a centre has so many bits more than a feature, so that small steps are not lost */
+#define BLOCK 64u         /* points gathered at a time */
+#define WEIGHT_MOST 2048u /* a centre forgets what lies further back, so that late batches still move it */
+
+static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint32_t count)
+{
+    centres->count = count;
+    for (uint32_t k = 0; k < count; k++) {
+        int32_t norm = 0; /* at most 6 x 15000^2 < 2^31 */
+        for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+            int16_t c = (int16_t)t3r_round_shift32(clusters[k].centre_q19[d], CENTRE_FRACTION);
+            centres->feature_q11[d][k] = c;
+            norm += c * c;
+        }
+        centres->half_norm[k] = norm / 2;
+    }
+}
+
+/* --- seeding: k-means++ (Arthur and Vassilvitskii 2007), the best of a few draws a centre ------------------------ */
+
+/* Valid points spread evenly over the source, at most T3R_CLUSTER_SAMPLE; returns how many. */
+static uint32_t draw_sample(const t3r_point_source *source, t3r_cluster_work *work)
+{
+    uint32_t strata = T3R_MIN(source->points, T3R_CLUSTER_SAMPLE), count = 0;
+    for (uint32_t s = 0; s < strata; s++) {
+        uint32_t first = (uint32_t)((uint64_t)s * source->points / strata);
+        uint32_t end = (uint32_t)((uint64_t)(s + 1) * source->points / strata);
+        uint32_t jitter = t3r_mix32(s) % (end - first);
+        int16_t feature[T3R_DIMENSIONS];
+        for (uint32_t i = 0; i < end - first; i++) {
+            uint32_t index = first + (jitter + i) % (end - first);
+            if (source->features(source->context, index, feature)) {
+                for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+                    work->u.seeding.feature_q11[d][count] = feature[d];
+                }
+                count++;
+                break;
+            }
+        }
+    }
+    return count;
+}
+
+/* Squared distance of sample point i from c in Q20: at most 6 x 30000^2 / 4 < 2^31. */
+static inline uint32_t distance_of(const t3r_cluster_work *work, const int16_t c[T3R_DIMENSIONS], uint32_t i)
+{
+    uint32_t sum = 0;
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        int32_t e = work->u.seeding.feature_q11[d][i] - c[d];
+        sum += (uint32_t)(e * e) >> 2;
+    }
+    return sum;
+}
+
+static void sample_point(const t3r_cluster_work *work, uint32_t index, int16_t c[T3R_DIMENSIONS])
+{
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        c[d] = work->u.seeding.feature_q11[d][index];
+    }
+}
+
+/* Sum of the distances if the sample point became a centre. */
+static uint64_t potential_with(const t3r_cluster_work *work, uint32_t count, uint32_t index)
+{
+    int16_t c[T3R_DIMENSIONS];
+    sample_point(work, index, c);
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t distance = distance_of(work, c, i);
+        sum += T3R_MIN(distance, work->u.seeding.distance[i]);
+    }
+    return sum;
+}
+
+/* The sample point at a random place of the running sum of distances. */
+static uint32_t draw_far(const t3r_cluster_work *work, uint32_t count, uint64_t potential, uint32_t random)
+{
+    /* potential < 2^31 x 2^12, of which the place is a 2^-20 step */
+    uint64_t place = (potential >> 20) * (random >> 12) + (((potential & 0xfffff) * (random >> 12)) >> 20);
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i + 1 < count; i++) {
+        sum += work->u.seeding.distance[i];
+        if (sum > place) {
+            return i;
+        }
+    }
+    return count - 1;
+}
+
+static void seed(const t3r_cluster_settings *settings, uint32_t count, t3r_cluster *clusters, t3r_cluster_work *work)
+{
+    uint32_t random = t3r_mix32(settings->seed + 0x9e3779b9u);
+    uint32_t chosen = random % count;
+    uint64_t potential = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        work->u.seeding.distance[i] = UINT32_MAX;
+    }
+    for (uint32_t k = 0; k < settings->clusters; k++) {
+        if (k > 0) {
+            uint64_t best = UINT64_MAX;
+            for (uint32_t trial = 0; trial < T3R_CLUSTER_TRIALS; trial++) {
+                random = t3r_mix32(random + 0x9e3779b9u);
+                uint32_t candidate = draw_far(work, count, potential, random);
+                uint64_t with = potential_with(work, count, candidate);
+                if (with < best) {
+                    best = with;
+                    chosen = candidate;
+                }
+            }
+        }
+        int16_t c[T3R_DIMENSIONS];
+        sample_point(work, chosen, c);
+        for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+            clusters[k].centre_q19[d] = c[d] * (1 << CENTRE_FRACTION);
+        }
+        potential = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            uint32_t distance = distance_of(work, c, i);
+            work->u.seeding.distance[i] = T3R_MIN(distance, work->u.seeding.distance[i]);
+            potential += work->u.seeding.distance[i];
+        }
+    }
+}
+
+/* --- means ------------------------------------------------------------------------------------------------------ */
+
+static void clear_sums(t3r_cluster_work *work)
+{
+    memset(work->u.means.sum, 0, sizeof work->u.means.sum);
+    memset(work->u.means.points, 0, sizeof work->u.means.points);
+}
+
+static void add_point(t3r_cluster_work *work, uint16_t label, const int16_t feature[T3R_DIMENSIONS])
+{
+    work->u.means.points[label]++;
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        work->u.means.sum[label][d] += feature[d]; /* below 2^32 x 2^14 */
+    }
+}
+
+/* One mini-batch (Sculley 2010, with whole-batch means): points spread over the source, a different set each time. */
+static void run_batch(const t3r_point_source *source, uint32_t batch, uint32_t count, t3r_cluster *clusters,
+                      t3r_cluster_work *work)
+{
+    load_centres(&work->centres, clusters, count);
+    t3r_find_neighbours(&work->centres, &work->u.means.neighbours);
+    clear_sums(work);
+    uint32_t size = T3R_MIN(source->points, T3R_CLUSTER_BATCH);
+    uint16_t guess = 0;
+    for (uint32_t first = 0; first < size; first += BLOCK) {
+        int16_t feature[BLOCK][T3R_DIMENSIONS];
+        uint16_t label[BLOCK];
+        uint32_t valid = 0, end = T3R_MIN(first + BLOCK, size);
+        for (uint32_t s = first; s < end; s++) {
+            uint32_t low = (uint32_t)((uint64_t)s * source->points / size);
+            uint32_t high = (uint32_t)((uint64_t)(s + 1) * source->points / size);
+            uint32_t index = low + t3r_mix32(s * 1031u + batch) % (high - low);
+            valid += source->features(source->context, index, feature[valid]);
+        }
+        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess,
+                    label);
+        for (uint32_t i = 0; i < valid; i++) {
+            guess = label[i];
+            add_point(work, label[i], feature[i]);
+        }
+    }
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t points = work->u.means.points[k];
+        if (points == 0) {
+            continue;
+        }
+        int64_t before = work->u.means.weight[k], after = before + points;
+        for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+            int64_t sum = clusters[k].centre_q19[d] * before + (work->u.means.sum[k][d] * (1 << CENTRE_FRACTION));
+            clusters[k].centre_q19[d] = (int32_t)t3r_round_div64(sum, after);
+        }
+        work->u.means.weight[k] = T3R_MIN((uint32_t)after, WEIGHT_MOST);
+    }
+}
+
+/* Labels every point and moves each centre to the mean of its points. */
+static uint32_t assign(const t3r_point_source *source, uint32_t count, t3r_cluster *clusters, uint16_t *labels,
+                       t3r_cluster_work *work, const t3r_cluster_progress *progress, uint32_t done, uint32_t total)
+{
+    load_centres(&work->centres, clusters, count);
+    t3r_find_neighbours(&work->centres, &work->u.means.neighbours);
+    clear_sums(work);
+    uint32_t all_valid = 0;
+    uint16_t guess = 0;
+    for (uint32_t first = 0; first < source->points; first += BLOCK) {
+        if (first % (BLOCK * 64) == 0 && progress != NULL &&
+            !progress->step(progress->context, done + first / T3R_CLUSTER_BATCH, total)) {
+            return T3R_CLUSTERS_CANCELLED;
+        }
+        int16_t feature[BLOCK][T3R_DIMENSIONS];
+        uint32_t place[BLOCK];
+        uint16_t label[BLOCK];
+        uint32_t valid = 0, end = T3R_MIN(first + BLOCK, source->points);
+        for (uint32_t index = first; index < end; index++) {
+            labels[index] = T3R_NO_LABEL;
+            place[valid] = index;
+            valid += source->features(source->context, index, feature[valid]);
+        }
+        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess,
+                    label);
+        for (uint32_t i = 0; i < valid; i++) {
+            guess = label[i];
+            labels[place[i]] = label[i];
+            add_point(work, label[i], feature[i]);
+        }
+        all_valid += valid;
+    }
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t points = work->u.means.points[k];
+        clusters[k].points = points;
+        for (uint32_t d = 0; d < T3R_DIMENSIONS && points > 0; d++) {
+            clusters[k].centre_q19[d] =
+                (int32_t)t3r_round_div64(work->u.means.sum[k][d] * (1 << CENTRE_FRACTION), points);
+        }
+    }
+    return all_valid;
+}
+
+uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
+                           uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_progress *progress)
+{
+    memset(clusters, 0, settings->clusters * sizeof *clusters);
+    uint32_t total = settings->batches + source->points / T3R_CLUSTER_BATCH;
+    uint32_t sample = draw_sample(source, work);
+    if (sample > 0) {
+        seed(settings, sample, clusters, work);
+    }
+    memset(work->u.means.weight, 0, sizeof work->u.means.weight);
+    for (uint32_t batch = 0; batch < settings->batches; batch++) {
+        if (progress != NULL && !progress->step(progress->context, batch, total)) {
+            return T3R_CLUSTERS_CANCELLED;
+        }
+        run_batch(source, batch, settings->clusters, clusters, work);
+    }
+    return assign(source, settings->clusters, clusters, labels, work, progress, settings->batches, total);
+}

@@ -1,0 +1,71 @@
+/* SuperClusters: K-means on x, y, z, r, g, b (GaussianTrim3R 3.1.1, eq. 1) by bounded mini-batches and one
+ * assignment pass. The working memory does not depend on the number of points (SPEC.md, "SuperClusters"). */
+#ifndef T3R_SUPERCLUSTERS_H
+#define T3R_SUPERCLUSTERS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "kernels/nearest.h"
+#include "trim3r.h"
+#include "core/views.h"
+
+#define T3R_CLUSTER_SAMPLE 2560u /* points of the seeding subsample */
+#define T3R_CLUSTER_BATCH 4096u  /* points of a mini-batch */
+#define T3R_CLUSTER_TRIALS 4u    /* draws for a new centre, of which the best is taken */
+
+/* Where points come from: `index` below `points` to its six features, Q11 within +-T3R_FEATURE_MOST; false = the
+ * point is not valid and gets T3R_NO_LABEL. */
+typedef struct t3r_point_source {
+    const void *context;
+    uint32_t points;
+    bool (*features)(const void *context, uint32_t index, int16_t feature_q11[T3R_DIMENSIONS]);
+} t3r_point_source;
+
+/* A SuperCluster, and what the budget stage notes about it. */
+typedef struct t3r_cluster {
+    int32_t centre_q19[T3R_DIMENSIONS];
+    uint32_t points;     /* valid points with its label; 0 = empty */
+    uint32_t texture_q4; /* their mean texture energy (eq. 2) */
+    uint32_t aside;      /* of its points, those that this budget sets aside */
+    uint32_t quota;      /* points to be retained */
+    uint32_t threshold;  /* the largest key retained */
+    uint32_t ties;       /* points retained among those whose key is the threshold */
+    uint32_t order;      /* entry k: which cluster is k-th from the lowest texture */
+    int32_t density_q10; /* log2 of the share of points retained, for a texture power of 1 */
+} t3r_cluster;
+
+/* The K-means' working memory: the seeding's sample and the sums share their bytes. */
+typedef struct t3r_cluster_work {
+    t3r_centres centres;
+    union {
+        struct {
+            int16_t feature_q11[T3R_DIMENSIONS][T3R_CLUSTER_SAMPLE];
+            uint32_t distance[T3R_CLUSTER_SAMPLE]; /* squared, Q20 */
+        } seeding;
+        struct {
+            t3r_neighbours neighbours;
+            int64_t sum[T3R_MAX_CLUSTERS][T3R_DIMENSIONS];
+            uint32_t points[T3R_MAX_CLUSTERS];
+            uint32_t weight[T3R_MAX_CLUSTERS]; /* points behind a centre so far, held at a bound */
+        } means;
+    } u;
+} t3r_cluster_work;
+
+typedef struct t3r_cluster_settings {
+    uint32_t clusters, batches, seed;
+} t3r_cluster_settings;
+
+/* Calls back between batches and chunks of the assignment pass; false = stop. */
+typedef struct t3r_cluster_progress {
+    void *context;
+    bool (*step)(void *context, uint32_t done, uint32_t total);
+} t3r_cluster_progress;
+
+/* Clusters the source's points: clusters[0..K-1] and a label a point. Returns the number of valid points, or
+ * T3R_CLUSTERS_CANCELLED. */
+#define T3R_CLUSTERS_CANCELLED UINT32_MAX
+uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
+                           uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_progress *progress);
+
+#endif

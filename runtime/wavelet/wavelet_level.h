@@ -1,0 +1,105 @@
+/* What the files of the wavelet stage share: one level of a transform, how a line is lifted, and where its
+ * coefficients lie.
+ *
+ * db2 on a line of samples x[0] x[1] ... pairs a[n] = x[2 n - 1] with b[n] = x[2 n]:
+ *     d1[n]    = b[n] - sqrt(3) a[n]
+ *     s[n]     = a[n] + sqrt(3)/4 d1[n] - (2 - sqrt 3)/4 d1[n + 1]     low n, over x[2 n - 1 .. 2 n + 2]
+ *     d[n - 1] = d1[n] + s[n - 1]                                     high n - 1, over x[2 n - 3 .. 2 n]
+ * which is db2 without its last scaling, orthonormal = 1.93185 s and 0.51764 d ((sqrt 3 +- 1) / sqrt 2), each
+ * coefficient centred on the two samples 2 n, 2 n + 1 that it stands for. The ends of a line:
+ *     s[0] = x[0] - (2 - sqrt 3) x[1], what s is for a straight line;
+ *     behind the last pair its d1 is repeated;
+ *     an even length N leaves x[N - 1]: its d is the second difference x[N - 1] - 2 x[N - 2] + x[N - 3];
+ *     two samples alone are one pair: d1 = x[1] - sqrt(3) x[0], s = x[0] + ((sqrt 3 - 1)/2) d1, d = d1 + s.
+ * Lows keep the gain sqrt 3 - 1 for constants, highs 0, at the ends too. Periodic, x[N - 1] and x[0] are pair 0.
+ *
+ * Haar and CDF 5/3 take even samples for lows and odd ones for highs; kernels/wavelet_rows.h has their steps. */
+#ifndef T3R_WAVELET_LEVEL_H
+#define T3R_WAVELET_LEVEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/fixed.h"
+#include "trim3r.h"
+#include "wavelet.h"
+
+/* The rows of one level. They are the plane's first, or, where the levels before left theirs in place, the low
+ * rows of the last of these. */
+typedef struct t3r_level {
+    int16_t *plane;
+    size_t stride;          /* samples from row to row of the plane */
+    uint32_t width, height; /* of this level */
+    uint32_t in_place;      /* how many levels before it left their rows in place */
+    t3r_wavelet kind;
+    bool periodic;
+    int16_t *work;                /* t3r_wavelet_work_bytes() */
+    const uint8_t *const *colour; /* the image whose luma fills the plane; NULL: it is filled */
+} t3r_level;
+
+/* Length of one side after `levels` halvings that keep the odd sample. */
+static inline uint32_t t3r_halved(uint32_t side, uint32_t levels)
+{
+    return (side + (1u << levels) - 1) >> levels;
+}
+
+/* Level `index` (from 0) of a transform that starts from a filled plane and orders each level's rows. */
+static inline t3r_level t3r_level_of(int16_t *plane, uint32_t width, uint32_t height, uint32_t index, t3r_wavelet kind,
+                                     t3r_wavelet_border border, int16_t *work)
+{
+    t3r_level level = {
+        .plane = plane,
+        .stride = width,
+        .width = t3r_halved(width, index),
+        .height = t3r_halved(height, index),
+        .kind = kind,
+        .periodic = border == T3R_WAVELET_PERIODIC,
+        .work = work,
+    };
+    return level;
+}
+
+/* Where vertical lifting leaves low n and high n: the number of a row of the level. With db2, low n is where a[n]
+ * was and high n where b[n + 1] was; an even height's last row is its last high. */
+static inline uint32_t t3r_low_at(const t3r_level *level, uint32_t n)
+{
+    if (level->kind == T3R_WAVELET_DB2) {
+        return n == 0 ? 0 : 2 * n - 1;
+    }
+    return 2 * n;
+}
+
+static inline uint32_t t3r_high_at(const t3r_level *level, uint32_t n)
+{
+    return level->kind == T3R_WAVELET_DB2 ? T3R_MIN(2 * n + 2, level->height - 1) : 2 * n + 1;
+}
+
+/* Row n of the level: in the plane, t3r_low_at() once for each level in place. */
+static inline int16_t *t3r_level_row(const t3r_level *level, uint32_t n)
+{
+    if (level->kind == T3R_WAVELET_DB2 && n > 0) {
+        return level->plane + (((n - 1) << level->in_place) + 1) * level->stride;
+    }
+    return level->plane + (n << level->in_place) * level->stride;
+}
+
+static inline int16_t *t3r_low_row(const t3r_level *level, uint32_t n)
+{
+    return t3r_level_row(level, t3r_low_at(level, n));
+}
+
+static inline int16_t *t3r_high_row(const t3r_level *level, uint32_t n)
+{
+    return t3r_level_row(level, t3r_high_at(level, n));
+}
+
+/* Horizontal lifting of one row of the level, in place: its lows, then its highs. A row of one sample stays. */
+void t3r_wavelet_row_forward(const t3r_level *level, int16_t *row);
+void t3r_wavelet_row_inverse(const t3r_level *level, int16_t *row);
+
+/* One level, horizontal and vertical, each row staying where t3r_low_at() and t3r_high_at() say. */
+void t3r_wavelet_level_forward(const t3r_level *level);
+void t3r_wavelet_level_inverse(const t3r_level *level);
+
+#endif
