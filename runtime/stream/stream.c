@@ -353,7 +353,7 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     if (rt->config.refinements > 0) {
         t3r_view all[T3R_MAX_VIEWS];
         t3r_views_of(rt, all);
-        status = t3r_refine_map(rt, all, t3r_map_of(rt).records);
+        status = t3r_refine_scene(rt, all, t3r_map_of(rt).records);
         if (status == T3R_OK) {
             t3r_hash_scene(rt, T3R_STAGE_REFINE);
         }

@@ -104,13 +104,12 @@ static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint
                            .projection = &projection,
                            .scene = scene,
                            .splats = splats,
-                           .sums = sums,
-                           .first = first,
-                           .count = count,
+                           .slice = {sums, first, count},
                            .kept = kept_rows == 0 ? NULL : kept,
                            .kept_rows = kept_rows,
                            .gain_q14 = gain_q14};
-    t3r_refine_tile(&job, list, listed, x, y);
+    const t3r_refine_band band = {0}; /* all tiles are its own */
+    t3r_refine_tile(&job, &band, list, listed, x, y);
 }
 
 static void neither_room_nor_slices_show(void **state)
