@@ -14,7 +14,7 @@
 #include "pointmap/exposure.h"
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
-#include "head/head.h"
+#include "head/head_views.h"
 #include "superclusters/pixel_clusters.h"
 #include "pointmap/pointmap.h"
 #include "pointmap/redundancy.h"
@@ -248,58 +248,15 @@ static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_sett
     t3r_hash_budget(rt, views, 0, rt->views);
 }
 
-/* The colours of a view's Gaussians brought to the mean exposure. */
-static void level(t3r_gaussian *gaussians, uint32_t count, const uint16_t gain_q14[3])
-{
-    for (uint32_t i = 0; i < count; i++) {
-        for (int c = 0; c < 3; c++) {
-            gaussians[i].colour_q7[c] = t3r_level_q7(gaussians[i].colour_q7[c], gain_q14[c]);
-        }
-    }
-}
-
-static t3r_head_rows *const heads[T3R_HEAD_COUNT] = {
-    [T3R_HEAD_ANALYTIC] = t3r_head_analytic,
-    [T3R_HEAD_MOMENT] = t3r_head_moment,
-    [T3R_HEAD_NONE] = t3r_head_none,
-    [T3R_HEAD_LEARNED] = t3r_head_learned,
-};
-
-t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
-                                 const t3r_budget_settings *settings)
-{
-    return (t3r_head_input){
-        .map = t3r_pointmap_of(&views[view_index], rt->frame.exponent),
-        .view_index = view_index,
-        .settings = settings,
-        .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
-        .weights = rt->weights,
-        .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
-        .unadapted = !rt->config.adapt,
-    };
-}
-
-uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
-                               const t3r_budget_settings *settings, t3r_gaussian *out)
-{
-    t3r_head_input input = t3r_head_input_of(rt, views, view_index, settings);
-    uint32_t made = heads[rt->config.head](&input, 0, rt->config.height, out);
-    level(out, made, rt->gain_q14[view_index]);
-    return made;
-}
-
 static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
 {
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
     rt->gaussians = 0;
-    for (uint32_t v = 0; v < rt->views; v++) {
-        if (!t3r_progress(rt, T3R_STAGE_HEAD, v, rt->views)) {
-            return T3R_ERR_CANCELLED;
-        }
-        rt->gaussians += t3r_view_to_gaussians(rt, views, v, settings, scene + rt->gaussians);
+    t3r_status status = t3r_views_to_gaussians(rt, views, settings, scene, &rt->gaussians);
+    if (status == T3R_OK) {
+        t3r_hash_scene(rt, T3R_STAGE_HEAD);
     }
-    t3r_hash_scene(rt, T3R_STAGE_HEAD);
-    return T3R_OK;
+    return status;
 }
 
 static t3r_status refine(t3r_runtime *rt, const t3r_view *views)

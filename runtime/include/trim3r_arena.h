@@ -153,7 +153,7 @@
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_BUDGET,                           \
       T3R_STREAMS_(keep) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                                \
-    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_HEAD_WORK_(w, h, hc), T3R_AT_HEAD, T3R_AT_HEAD)                     \
+    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * (wk) * T3R_UP_(T3R_HEAD_WORK_(w, h, hc)), T3R_AT_HEAD, T3R_AT_HEAD)                     \
     X(p, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(keep) * T3R_PIXELS_(w, h) * 4, T3R_AT_REFINE,             \
       T3R_AT_REFINE)                                                                                                   \
     X(p, BORDER_SUMS, "sums across workers' borders",                                                                  \

@@ -16,6 +16,7 @@
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
 #include "image/image.h"
+#include "head/head_views.h"
 #include "pipeline.h"
 #include "refine/refine.h"
 #include "core/scene_frame.h"
