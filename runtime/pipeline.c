@@ -26,6 +26,31 @@
 #include "superclusters/superclusters.h"
 #include "wavelet/wavelet.h"
 
+/* --- views ------------------------------------------------------------------------------------------------------- */
+
+typedef struct views_job {
+    const t3r_runtime *rt;
+    t3r_view *views;
+    uint32_t first; /* view of the task of index 0 */
+} views_job;
+
+/* Steps that look at nothing but their own view: as many views at once as there are workers, steps first..first + views
+ * - 1 of `total` being reported before. */
+static t3r_status each_view(const t3r_runtime *rt, t3r_view *views, t3r_task *task, t3r_stage stage, uint32_t first,
+                            uint32_t total)
+{
+    const t3r_workers workers = t3r_workers_of(rt);
+    const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1;
+    for (uint32_t v = 0; v < rt->views; v += round) {
+        if (!t3r_progress(rt, stage, first + v, total)) {
+            return T3R_ERR_CANCELLED;
+        }
+        views_job job = {rt, views, v};
+        t3r_run_tasks(&workers, T3R_MIN(round, rt->views - v), task, &job);
+    }
+    return T3R_OK;
+}
+
 /* --- analysis --------------------------------------------------------------------------------------------------- */
 
 /* Doubtful stereo pixels also count as measured. */
@@ -40,19 +65,20 @@ static uint32_t count_measured(const t3r_runtime *rt, const t3r_view *views)
     return measured;
 }
 
+static void fill_view(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker;
+    const views_job *job = context;
+    t3r_depth_fill(&job->views[job->first + index], job->rt->config.fill_radius);
+}
+
 static t3r_status depth(t3r_runtime *rt, t3r_view *views)
 {
-    if (rt->config.depth == T3R_DEPTH_STEREO) {
-        t3r_status status = t3r_stereo_views(rt, views);
-        if (status != T3R_OK) {
-            return status;
-        }
-    }
-    for (uint32_t v = 0; v < rt->views && rt->config.depth == T3R_DEPTH_SENSOR; v++) { /* stereo fills its own */
-        if (!t3r_progress(rt, T3R_STAGE_DEPTH, v, rt->views)) {
-            return T3R_ERR_CANCELLED;
-        }
-        t3r_depth_fill(&views[v], rt->config.fill_radius);
+    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO; /* it fills its own holes */
+    t3r_status status =
+        stereo ? t3r_stereo_views(rt, views) : each_view(rt, views, fill_view, T3R_STAGE_DEPTH, 0, rt->views);
+    if (status != T3R_OK) {
+        return status;
     }
     rt->valid_points = count_measured(rt, views);
     t3r_hash_depth(rt, views, 0, rt->views);
@@ -80,9 +106,17 @@ static bool pointmap_step(t3r_runtime *rt, uint32_t step)
     return t3r_progress(rt, T3R_STAGE_POINTMAP, step, POINTMAP_STEPS(rt));
 }
 
+static void bridge_view(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker;
+    const views_job *job = context;
+    t3r_bridge_view(&job->views[job->first + index], job->rt->config.bridge_radius);
+}
+
 /* Wide holes, once it is known where the views stand. What stereo left without depth shows nothing. */
 static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
 {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     const uint32_t radius = rt->config.depth == T3R_DEPTH_STEREO ? 0 : rt->config.bridge_radius;
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
         if (!pointmap_step(rt, v)) {
@@ -90,17 +124,17 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
         }
         t3r_bridge_lend(views, rt->views, v, rt->frame.exponent);
     }
-    for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
-        if (!pointmap_step(rt, rt->views + v)) {
-            return T3R_ERR_CANCELLED;
+    if (radius > 0) {
+        t3r_status status = each_view(rt, views, bridge_view, T3R_STAGE_POINTMAP, rt->views, POINTMAP_STEPS(rt));
+        if (status != T3R_OK) {
+            return status;
         }
-        t3r_bridge_view(&views[v], radius);
     }
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
         if (!pointmap_step(rt, 2 * rt->views + v)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent, (1u << v) - 1);
+        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent, (1u << v) - 1, &work);
     }
     return T3R_OK;
 }
@@ -108,11 +142,12 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
 /* What the views say of each other: pixels that cannot be, colours of one exposure, surfaces seen twice. */
 static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
 {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     for (uint32_t v = 0; v < rt->views && rt->config.flying; v++) {
         if (!pointmap_step(rt, 3 * rt->views + v)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO);
+        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO, &work);
     }
     return T3R_OK;
 }
@@ -135,40 +170,52 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
 
 static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
 {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     for (uint32_t v = rt->views; v-- > 0 && rt->config.redundancy;) {
         if (!pointmap_step(rt, 6 * rt->views - v - 1)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent);
+        (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent, &work);
     }
     t3r_clear_witnesses(views, rt->views);
     t3r_hash_pointmap(rt, views, 0, rt->views);
     return T3R_OK;
 }
 
-void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
+/* Each worker has a plane and work of its own. */
+static void texture_of(const t3r_runtime *rt, const t3r_view *view, uint32_t worker)
 {
     const t3r_config *config = &rt->config;
-    int16_t *plane = t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK);
+    const size_t bytes = T3R_UP_(T3R_WAVELET_WORK_(config->width, config->height));
+    int16_t *plane = (int16_t *)(void *)((uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK) + worker * bytes);
     int16_t *work = plane + T3R_PIXELS_(config->width, config->height);
     t3r_wavelet_texture((const uint8_t *const *)view->colour, config->width, config->height, config->wavelet_levels,
                         config->wavelet, view->texture, plane, work);
 }
 
+void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
+{
+    texture_of(rt, view, 0);
+}
+
+static void view_texture(void *context, uint32_t index, uint32_t worker)
+{
+    const views_job *job = context;
+    texture_of(job->rt, &job->views[job->first + index], worker);
+}
+
 static t3r_status wavelet(t3r_runtime *rt, t3r_view *views)
 {
-    for (uint32_t v = 0; v < rt->views; v++) {
-        if (!t3r_progress(rt, T3R_STAGE_WAVELET, v, rt->views)) {
-            return T3R_ERR_CANCELLED;
-        }
-        t3r_view_texture(rt, &views[v]);
+    t3r_status status = each_view(rt, views, view_texture, T3R_STAGE_WAVELET, 0, rt->views);
+    if (status == T3R_OK) {
+        t3r_hash_wavelet(rt, views, 0, rt->views);
     }
-    t3r_hash_wavelet(rt, views, 0, rt->views);
-    return T3R_OK;
+    return status;
 }
 
 static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
 {
+    const t3r_workers workers = t3r_workers_of(rt);
     t3r_status status = t3r_cluster_pixels(rt, views);
     if (status != T3R_OK) {
         return status;
@@ -180,7 +227,7 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);
-    t3r_blur_texture(views, rt->views); /* means are of the texture as it is, densities of it blurred */
+    t3r_blur_texture(views, rt->views, &workers); /* means are of the texture as it is, densities of it blurred */
     return T3R_OK;
 }
 
@@ -244,7 +291,8 @@ static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_sett
     if (importance != NULL) {
         t3r_importance_keys(views, rt->views, importance);
     }
-    t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
+    const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK)};
+    t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS), &work);
     t3r_hash_budget(rt, views, 0, rt->views);
 }
 

@@ -35,7 +35,7 @@ static inline void t3r_run_tasks(const t3r_workers *workers, uint32_t count, t3r
 }
 
 /* The part of `total` items, in order and without gaps, that task `index` of `tasks` takes: begin..end - 1. Parts
- * differ by at most one item. total < 2^26, tasks <= T3R_MAX_WORKERS. */
+ * differ by at most one item. total < 2^26, tasks <= 2 T3R_MAX_WORKERS. */
 typedef struct t3r_share {
     uint32_t begin, end;
 } t3r_share;
@@ -44,5 +44,9 @@ static inline t3r_share t3r_share_of(uint32_t total, uint32_t index, uint32_t ta
 {
     return (t3r_share){(uint32_t)((uint64_t)total * index / tasks), (uint32_t)((uint64_t)total * (index + 1) / tasks)};
 }
+
+/* Tasks over the rows 0..rows - 1: task(context, begin, end, worker) takes begin..end - 1. */
+typedef void t3r_rows_task(void *context, uint32_t begin, uint32_t end, uint32_t worker);
+void t3r_run_rows(const t3r_workers *workers, uint32_t rows, t3r_rows_task *task, void *context);
 
 #endif

@@ -33,6 +33,7 @@
 #define T3R_SORT_BYTES 4096          /* four histograms of 256 counts */
 #define T3R_CLUSTER_BYTES 56         /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
+#define T3R_GROUP_COUNTS_BYTES 4096  /* what the budget counts by SuperCluster */
 #define T3R_CLUSTER_SUMS_BYTES 26624 /* sums of each worker but the first */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
  * heads nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
@@ -52,6 +53,7 @@
 #define T3R_HEAD_COLUMNS_(w) (((size_t)(w) + 15) / 16 * 16)
 #define T3R_HEAD_WORK_(w, h, hc)                                                                                       \
     T3R_MAX_(T3R_PIXELS_(w, h) * 2, (hc) > 0 ? T3R_HEAD_COLUMNS_(w) * (hc) + T3R_HEAD_KERNEL_BYTES : (size_t)0)
+#define T3R_WAVELET_WORK_(w, h) (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16)
 #define T3R_ANY_(v) ((v) > 0 ? (size_t)1 : (size_t)0)
 
 /* Refinement works in one buffer: splats, depth order, tile table and corrections of all Gaussians, then the sums of
@@ -137,10 +139,11 @@
     X(p, IMAGE_WORK, "undistortion and resize work",                                                                   \
       T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w)*24), T3R_AT_IMAGE, T3R_AT_IMAGE)  \
     X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \
+    X(p, POINTMAP_WORK, "comparison of views", T3R_ANY_(v) * T3R_PIXELS_(w, h) * 4, T3R_AT_POINTMAP, T3R_AT_POINTMAP)  \
     X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_WAVELET,                    \
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
-    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16),               \
-      T3R_AT_WAVELET, T3R_AT_WAVELET)                                                                                  \
+    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (wk)*T3R_UP_(T3R_WAVELET_WORK_(w, h)), T3R_AT_WAVELET,            \
+      T3R_AT_WAVELET)                                                                                                  \
     X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_SUPERCLUSTERS,          \
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * ((k) + 1) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                 \
@@ -153,7 +156,9 @@
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_BUDGET,                           \
       T3R_STREAMS_(keep) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                                \
-    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * (wk) * T3R_UP_(T3R_HEAD_WORK_(w, h, hc)), T3R_AT_HEAD, T3R_AT_HEAD)                     \
+    X(p, BUDGET_WORK, "counts by SuperCluster", T3R_ANY_(v) * (wk)*T3R_GROUP_COUNTS_BYTES, T3R_AT_BUDGET,              \
+      T3R_AT_BUDGET)                                                                                                   \
+    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * (wk)*T3R_UP_(T3R_HEAD_WORK_(w, h, hc)), T3R_AT_HEAD, T3R_AT_HEAD)       \
     X(p, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(keep) * T3R_PIXELS_(w, h) * 4, T3R_AT_REFINE,             \
       T3R_AT_REFINE)                                                                                                   \
     X(p, BORDER_SUMS, "sums across workers' borders",                                                                  \

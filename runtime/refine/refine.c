@@ -78,9 +78,14 @@ typedef struct view_job {
     const t3r_binning *bin;
     uint32_t begin; /* the first tile of the pass: its list starts at 0 */
     t3r_refine_band bands[T3R_MAX_WORKERS];
-    uint64_t error[T3R_MAX_WORKERS]; /* of each band */
-    uint32_t pixels[T3R_MAX_WORKERS];
 } view_job;
+
+/* A view whose error is measured: of each band. */
+typedef struct error_job {
+    view_job job;
+    uint64_t error[T3R_MAX_WORKERS];
+    uint32_t pixels[T3R_MAX_WORKERS];
+} error_job;
 
 static uint32_t list_begin(const view_job *job, uint32_t tile)
 {
@@ -94,26 +99,27 @@ static void accumulate_band(void *context, uint32_t index, uint32_t worker)
     const t3r_binning *bin = job->bin;
     const t3r_refine_band *band = &job->bands[index];
     t3r_refine_view view = *job->view;
+    view.bands = job->bands;
+    view.band = index;
     view.kept += (size_t)index * view.kept_rows;
     for (uint32_t tile = band->begin; tile < band->end; tile++) {
         const uint32_t from = list_begin(job, tile);
-        t3r_refine_tile(&view, band, bin->lists + from, bin->table[tile] - from, tile % bin->across,
-                        tile / bin->across);
+        t3r_refine_tile(&view, bin->lists + from, bin->table[tile] - from, tile % bin->across, tile / bin->across);
     }
 }
 
 static void measure_band(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
-    view_job *job = context;
+    error_job *to = context;
+    const view_job *job = &to->job;
     const t3r_binning *bin = job->bin;
-    const t3r_refine_band *band = &job->bands[index];
-    job->error[index] = 0;
-    job->pixels[index] = 0;
-    for (uint32_t tile = band->begin; tile < band->end; tile++) {
+    to->error[index] = 0;
+    to->pixels[index] = 0;
+    for (uint32_t tile = job->bands[index].begin; tile < job->bands[index].end; tile++) {
         const uint32_t from = list_begin(job, tile);
-        job->error[index] += t3r_refine_tile_error(job->view, bin->lists + from, bin->table[tile] - from,
-                                                   tile % bin->across, tile / bin->across, &job->pixels[index]);
+        to->error[index] += t3r_refine_tile_error(job->view, bin->lists + from, bin->table[tile] - from,
+                                                  tile % bin->across, tile / bin->across, &to->pixels[index]);
     }
 }
 
@@ -124,17 +130,18 @@ static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view 
     const t3r_workers workers = t3r_workers_of(rt);
     const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
     const t3r_refine_view view = {.view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
-    view_job job = {.view = &view, .bin = &bin};
+    error_job to = {.job = {.view = &view, .bin = &bin}};
+    view_job *job = &to.job;
     uint64_t error = 0;
-    while (job.begin < bin.tiles) {
-        uint32_t end = t3r_bin_pass(&bin, job.begin);
-        uint32_t bands = t3r_refine_bands(&bin, job.begin, end, &view.slice, &w->borders, job.bands);
-        t3r_run_tasks(&workers, bands, measure_band, &job);
+    while (job->begin < bin.tiles) {
+        uint32_t end = t3r_bin_pass(&bin, job->begin);
+        uint32_t bands = t3r_refine_bands(&bin, job->begin, end, &view.slice, &w->borders, job->bands);
+        t3r_run_tasks(&workers, bands, measure_band, &to);
         for (uint32_t b = 0; b < bands; b++) {
-            error += job.error[b];
-            *pixels += job.pixels[b];
+            error += to.error[b];
+            *pixels += to.pixels[b];
         }
-        job.begin = end;
+        job->begin = end;
     }
     return error;
 }
@@ -208,6 +215,8 @@ static void accumulate(const t3r_runtime *rt, const slice_job *slice, const t3r_
         .scene = slice->scene,
         .splats = w->room.splats,
         .slice = slice->slice,
+        .borders = &w->borders,
+        .across = bin.across,
         .kept = t3r_raster_spare(&w->room),
         .kept_rows = kept_rows / w->borders.bands,
         .gain_q14 = rt->gain_q14[v],
@@ -217,7 +226,7 @@ static void accumulate(const t3r_runtime *rt, const slice_job *slice, const t3r_
         uint32_t end = t3r_bin_pass(&bin, job.begin);
         uint32_t bands = t3r_refine_bands(&bin, job.begin, end, &view.slice, &w->borders, job.bands);
         t3r_run_tasks(&workers, bands, accumulate_band, &job);
-        t3r_refine_join(job.bands, bands, &view.slice);
+        t3r_refine_join(job.bands, bands, &w->borders, &view.slice);
         job.begin = end;
     }
 }

@@ -20,7 +20,7 @@ static void cut(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t c
     const uint64_t entries = bin->table[end - 1]; /* the end of the last list */
     uint32_t tile = begin;
     for (uint32_t b = 0; b < count; b++) {
-        bands[b] = (t3r_refine_band){.begin = tile, .own_from = b == 0 ? 0 : tile, .across = bin->across};
+        bands[b] = (t3r_refine_band){.begin = tile, .own_from = b == 0 ? 0 : tile};
         while (tile < end && (b + 1 == count || bin->table[tile] <= entries * (b + 1) / count)) {
             tile++;
         }
@@ -29,7 +29,8 @@ static void cut(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t c
 }
 
 /* The Gaussians of the slice that reach into the band from an earlier one; false when there is no room for them. */
-static bool find_borders(const t3r_binning *bin, const t3r_refine_slice *slice, uint32_t most, t3r_refine_band *band)
+static bool find_crossing(const t3r_binning *bin, const t3r_refine_slice *slice, uint32_t most, t3r_refine_band *band,
+                          uint32_t *index, t3r_refine_sums *sums)
 {
     for (uint32_t i = slice->first; i < slice->first + slice->count; i++) {
         const t3r_splat *splat = &bin->splats[i];
@@ -37,13 +38,12 @@ static bool find_borders(const t3r_binning *bin, const t3r_refine_slice *slice, 
             last_tile_of(splat, bin->across) < band->begin) {
             continue;
         }
-        if (band->borders == most) {
+        if (band->crossing == most) {
             return false;
         }
-        t3r_refine_sums *sums = &band->sums[band->borders];
-        memset(sums, 0, sizeof *sums);
-        sums->area = slice->sums[i - slice->first].area; /* the scale in which both are kept */
-        band->index[band->borders++] = i;
+        memset(&sums[band->crossing], 0, sizeof *sums);
+        sums[band->crossing].area = slice->sums[i - slice->first].area; /* the scale in which both are kept */
+        index[band->crossing++] = i;
     }
     return true;
 }
@@ -56,30 +56,32 @@ uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, 
         cut(bin, begin, end, count, bands);
         fits = true;
         for (uint32_t b = 1; b < count && fits; b++) {
-            bands[b].index = borders->index + (size_t)(b - 1) * borders->most;
-            bands[b].sums = borders->sums + (size_t)(b - 1) * borders->most;
-            fits = find_borders(bin, slice, borders->most, &bands[b]);
+            const size_t place = (size_t)(b - 1) * borders->most;
+            fits = find_crossing(bin, slice, borders->most, &bands[b], borders->index + place, borders->sums + place);
         }
     }
     return count;
 }
 
-t3r_refine_sums *t3r_refine_sums_in(const t3r_refine_band *band, const t3r_refine_slice *slice, const t3r_splat *splat,
-                                    uint32_t index)
+t3r_refine_sums *t3r_refine_sums_in(const t3r_refine_band *bands, uint32_t band, const t3r_refine_borders *borders,
+                                    const t3r_refine_slice *slice, const t3r_splat *splat, uint32_t index,
+                                    uint32_t across)
 {
-    if (first_tile_of(splat, band->across) >= band->own_from) {
+    if (first_tile_of(splat, across) >= bands[band].own_from) {
         return &slice->sums[index - slice->first];
     }
-    uint32_t low = 0, high = band->borders - 1; /* it is among them */
+    const size_t place = (size_t)(band - 1) * borders->most;
+    const uint32_t *crossing = borders->index + place;
+    uint32_t low = 0, high = bands[band].crossing - 1; /* it is among them */
     while (low < high) {
         uint32_t middle = (low + high) / 2;
-        if (band->index[middle] < index) {
+        if (crossing[middle] < index) {
             low = middle + 1;
         } else {
             high = middle;
         }
     }
-    return &band->sums[low];
+    return &borders->sums[place + low];
 }
 
 static void add(t3r_refine_sums *to, const t3r_refine_sums *from)
@@ -96,11 +98,13 @@ static void add(t3r_refine_sums *to, const t3r_refine_sums *from)
     }
 }
 
-void t3r_refine_join(const t3r_refine_band *bands, uint32_t count, const t3r_refine_slice *slice)
+void t3r_refine_join(const t3r_refine_band *bands, uint32_t count, const t3r_refine_borders *borders,
+                     const t3r_refine_slice *slice)
 {
     for (uint32_t b = 1; b < count; b++) {
-        for (uint32_t i = 0; i < bands[b].borders; i++) {
-            add(&slice->sums[bands[b].index[i] - slice->first], &bands[b].sums[i]);
+        const size_t place = (size_t)(b - 1) * borders->most;
+        for (uint32_t i = 0; i < bands[b].crossing; i++) {
+            add(&slice->sums[borders->index[place + i] - slice->first], &borders->sums[place + i]);
         }
     }
 }

@@ -16,16 +16,13 @@
 typedef struct t3r_refine_band {
     uint32_t begin, end; /* tiles */
     uint32_t own_from;   /* a Gaussian whose first tile is this one or later adds to its own sums */
-    uint32_t across;     /* tiles a row */
-    uint32_t borders;    /* Gaussians that reach in from an earlier band */
-    uint32_t *index;     /* their numbers in the scene, ascending */
-    t3r_refine_sums *sums;
+    uint32_t crossing;   /* Gaussians that reach in from an earlier band */
 } t3r_refine_band;
 
-/* Room for what crosses borders: each of `bands` - 1 bands holds at most `most` Gaussians. */
+/* Room for what crosses borders: every band but the first has `most` entries. */
 typedef struct t3r_refine_borders {
     uint32_t bands, most;
-    uint32_t *index;
+    uint32_t *index; /* of the Gaussians that cross, ascending in each band */
     t3r_refine_sums *sums;
 } t3r_refine_borders;
 
@@ -40,11 +37,13 @@ typedef struct t3r_refine_slice {
 uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, const t3r_refine_slice *slice,
                           const t3r_refine_borders *borders, t3r_refine_band bands[T3R_MAX_WORKERS]);
 
-/* The sums to which this band adds for Gaussian `index` of the slice. */
-t3r_refine_sums *t3r_refine_sums_in(const t3r_refine_band *band, const t3r_refine_slice *slice, const t3r_splat *splat,
-                                    uint32_t index);
+/* The sums to which band number `band` adds for Gaussian `index` of the slice; `across`: tiles a row. */
+t3r_refine_sums *t3r_refine_sums_in(const t3r_refine_band *bands, uint32_t band, const t3r_refine_borders *borders,
+                                    const t3r_refine_slice *slice, const t3r_splat *splat, uint32_t index,
+                                    uint32_t across);
 
 /* Adds the sums of all bands to the Gaussians' own. */
-void t3r_refine_join(const t3r_refine_band *bands, uint32_t count, const t3r_refine_slice *slice);
+void t3r_refine_join(const t3r_refine_band *bands, uint32_t count, const t3r_refine_borders *borders,
+                     const t3r_refine_slice *slice);
 
 #endif

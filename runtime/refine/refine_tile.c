@@ -130,12 +130,12 @@ static bool is_empty(const tile_weights *masked, uint32_t blocks, uint32_t row)
 }
 
 /* What a splat just blended, with these weights, is told. */
-static void scatter(const t3r_refine_view *job, const t3r_refine_band *band, const t3r_wanted *want,
-                    const t3r_tile *tile, const passage *p, const t3r_weights *weights)
+static void scatter(const t3r_refine_view *job, const t3r_wanted *want, const t3r_tile *tile, const passage *p,
+                    const t3r_weights *weights)
 {
     const t3r_splat *s = p->splat;
     const uint32_t index = (uint32_t)(s - job->splats), blocks = p->blocks.count;
-    t3r_refine_sums *to = t3r_refine_sums_in(band, &job->slice, s, index);
+    t3r_refine_sums *to = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
     __builtin_prefetch(to, 1); /* needed last, and seldom near the one before */
     __builtin_prefetch(to->curvature + 8, 1);
     tile_weights masked;
@@ -210,8 +210,7 @@ static uint32_t draw(const t3r_refine_view *job, const uint32_t *list, uint32_t 
     return used;
 }
 
-void t3r_refine_tile(const t3r_refine_view *job, const t3r_refine_band *band, const uint32_t *list, uint32_t count,
-                     uint32_t tile_x, uint32_t tile_y)
+void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y)
 {
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
     t3r_wanted want;
@@ -233,7 +232,7 @@ void t3r_refine_tile(const t3r_refine_view *job, const t3r_refine_band *band, co
         }
         /* unsigned: an index below the slice wraps and fails the test */
         if (list[i] - job->slice.first < job->slice.count) {
-            scatter(job, band, &want, &tile, &p, weights);
+            scatter(job, &want, &tile, &p, weights);
         }
     }
 }
