@@ -13,7 +13,7 @@ import sys
 from pages import FENCE, LINK, ROOT, all_pages, blocks_of, sentences_of, without_blocks
 
 WORDS, README_LINES = 35, 200
-ALSO_PLAIN = ["runtime/DESIGN.md", "docs/study/tuning.md"]  # documents elsewhere whose sentences are counted too
+ALSO_PLAIN = ["runtime/DESIGN.md", "runtime/SPEC.md", "docs/study/tuning.md"]  # sentences are counted there too
 COMMAND = re.compile(r"^\s*(?:\$ )?(?:trim3r [a-z]|tools/[a-z]|build/release/[a-z])")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
 NAME = re.compile(r"\b(?:t3r|T3R)_\w+")
