@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""shipped.py TRIM3R HEADS: the C arrays in HEADS are what tools/train/ship makes of the float heads beside them."""
+"""shipped.py TRIM3R HEADS: the C arrays in HEADS are what tools/study/train/ship makes of the float heads beside them."""
 import os
 import pathlib
 import re
@@ -39,7 +39,7 @@ with tempfile.TemporaryDirectory() as folder:
     run()
     for name in names:
         made, shipped = integers(tree / "quant" / "heads" / f"{name}.c"), integers(heads / f"{name}.c")
-        check(made == shipped, f"{name}.c is not what {name}.safetensors becomes: tools/train/ship")
+        check(made == shipped, f"{name}.c is not what {name}.safetensors becomes: tools/study/train/ship")
         check(made[:4] == list(b"T3RW"), f"{name}.c holds no weight file")
     other = tree / "other.safetensors"
     other.write_bytes((heads / "small.safetensors").read_bytes())
