@@ -293,8 +293,9 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
 
 /* --- refinement -------------------------------------------------------------------------------------------------- */
 
-/* What runtime/refine/refine.c does in integers (runtime/SPEC.md, "Refinement"), but for roundings, for the six equations,
- * which are solved exactly here, and for a splat's own axes: in one view any factor of its covariance will do. */
+/* What runtime/refine/refine.c does in integers (runtime/SPEC.md, "Refinement"), but for roundings, for the six
+ * equations, which are solved exactly here, and for a splat's own axes: in one view any factor of its covariance will
+ * do. */
 #define UNKNOWNS 6
 #define MOMENTS 15
 #define DILATION 0.3f
