@@ -258,9 +258,7 @@ static void level(t3r_gaussian *gaussians, uint32_t count, const uint16_t gain_q
     }
 }
 
-typedef uint32_t (*head_function)(const t3r_head_input *input, t3r_gaussian *out);
-
-static const head_function heads[T3R_HEAD_COUNT] = {
+static t3r_head_rows *const heads[T3R_HEAD_COUNT] = {
     [T3R_HEAD_ANALYTIC] = t3r_head_analytic,
     [T3R_HEAD_MOMENT] = t3r_head_moment,
     [T3R_HEAD_NONE] = t3r_head_none,
@@ -285,7 +283,7 @@ uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uin
                                const t3r_budget_settings *settings, t3r_gaussian *out)
 {
     t3r_head_input input = t3r_head_input_of(rt, views, view_index, settings);
-    uint32_t made = heads[rt->config.head](&input, out);
+    uint32_t made = heads[rt->config.head](&input, 0, rt->config.height, out);
     level(out, made, rt->gain_q14[view_index]);
     return made;
 }

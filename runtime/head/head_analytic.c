@@ -30,11 +30,11 @@ static void local_mean(const t3r_view *view, uint32_t u, uint32_t v, uint32_t ha
     }
 }
 
-static uint32_t discs(const t3r_head_input *input, bool adapt, t3r_gaussian *out)
+static uint32_t discs(const t3r_head_input *input, bool adapt, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
     uint32_t count = 0;
-    for (uint32_t v = 0; v < view->height; v++) {
+    for (uint32_t v = begin; v < end; v++) {
         for (uint32_t u = 0; u < view->width; u++) {
             size_t pixel = (size_t)v * view->width + u;
             if (!t3r_retained(view, pixel)) {
@@ -52,12 +52,12 @@ static uint32_t discs(const t3r_head_input *input, bool adapt, t3r_gaussian *out
     return count;
 }
 
-uint32_t t3r_head_analytic(const t3r_head_input *input, t3r_gaussian *out)
+uint32_t t3r_head_analytic(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
-    return discs(input, true, out);
+    return discs(input, true, begin, end, out);
 }
 
-uint32_t t3r_head_none(const t3r_head_input *input, t3r_gaussian *out)
+uint32_t t3r_head_none(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
-    return discs(input, false, out);
+    return discs(input, false, begin, end, out);
 }

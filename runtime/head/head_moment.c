@@ -140,14 +140,14 @@ static t3r_footprint footprint_of(const moments *m)
     return f;
 }
 
-uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out)
+uint32_t t3r_head_moment(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
     if (!input->unadapted) {
         assign_pixels(input);
     }
     uint32_t count = 0;
-    for (uint32_t v = 0; v < view->height; v++) {
+    for (uint32_t v = begin; v < end; v++) {
         for (uint32_t u = 0; u < view->width; u++) {
             size_t pixel = (size_t)v * view->width + u;
             if (!t3r_retained(view, pixel)) {
