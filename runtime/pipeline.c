@@ -28,13 +28,13 @@
 
 /* --- analysis --------------------------------------------------------------------------------------------------- */
 
-/* Stereo matched what it doubts, too. */
+/* Doubtful stereo pixels also count as measured. */
 static uint32_t count_measured(const t3r_runtime *rt, const t3r_view *views)
 {
     uint32_t pixels = rt->config.width * rt->config.height, measured = 0;
     for (uint32_t v = 0; v < rt->views; v++) {
         for (uint32_t i = 0; i < pixels; i++) {
-            measured += t3r_is_measured(views[v].confidence[i]);
+            measured += t3r_is_measured(views[v].validity[i]);
         }
     }
     return measured;
@@ -141,7 +141,7 @@ static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
         }
         (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent);
     }
-    t3r_forget_witnesses(views, rt->views);
+    t3r_clear_witnesses(views, rt->views);
     t3r_hash_pointmap(rt, views, 0, rt->views);
     return T3R_OK;
 }
@@ -189,9 +189,9 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
     if (rt->config.depth == T3R_DEPTH_STEREO) {
-        t3r_stereo_forget(views, rt->views);
+        t3r_stereo_clear(views, rt->views);
     }
-    t3r_forget_marks(views, rt->views); /* of an earlier analysis of the same planes */
+    t3r_reset_comparison(views, rt->views); /* of an earlier analysis of the same planes */
     t3r_hash_image(rt, views, 0, rt->views);
 
     t3r_status status = depth(rt, views);

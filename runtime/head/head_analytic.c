@@ -17,7 +17,7 @@ static void local_mean(const t3r_view *view, uint32_t u, uint32_t v, uint32_t ha
     for (uint32_t y = y0; y <= y1; y++) {
         for (uint32_t x = x0; x <= x1; x++) {
             size_t i = (size_t)y * view->width + x;
-            if (view->confidence[i] != T3R_CONFIDENCE_NONE && t3r_same_surface(depth, view->depth[i])) {
+            if (t3r_has_depth(view->validity[i]) && t3r_same_surface(depth, view->depth[i])) {
                 for (int c = 0; c < 3; c++) {
                     sum[c] += view->colour[c][i];
                 }

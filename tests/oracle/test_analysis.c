@@ -24,16 +24,16 @@ static void pointmap_case(const t3r_camera *camera, const t3r_scene_frame *frame
                           int dv)
 {
     static uint16_t depth[W * H];
-    static uint8_t confidence[W * H];
+    static uint8_t validity[W * H];
     for (int i = 0; i < W * H; i++) {
         depth[i] = (uint16_t)(base + du * (i % W) + dv * (i / W));
-        confidence[i] = T3R_CONFIDENCE_MEASURED;
+        validity[i] = T3R_MEASURED;
     }
     t3r_view view = {
         .width = W,
         .height = H,
         .depth = depth,
-        .confidence = confidence,
+        .validity = validity,
         .fx_q16 = camera->fx_q16,
         .fy_q16 = camera->fy_q16,
         .cx_q16 = camera->cx_q16,
@@ -77,7 +77,7 @@ static void pointmap_case(const t3r_camera *camera, const t3r_scene_frame *frame
         }
     }
     depth[5 * W + 7] = 0;
-    confidence[5 * W + 7] = T3R_CONFIDENCE_NONE;
+    validity[5 * W + 7] = T3R_NO_DEPTH;
     int32_t point[3], tangent[2][3];
     assert_false(t3r_point(&map, 7, 5, point));
     assert_false(t3r_tangents(&map, 7, 5, tangent[0], tangent[1]));
