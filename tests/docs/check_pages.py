@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""check_pages.py TRIM3R: what the README and docs/*.md say in words.
+"""check_pages.py TRIM3R: what the README, docs/*.md and the pages of quant and of the training say in words.
 
 Every command stands in a shell block that runs, or that says why it does not. Options, names of the interface and links
 exist. A sentence has at most 35 words, the README at most 200 lines.
@@ -13,7 +13,8 @@ import sys
 from pages import FENCE, LINK, ROOT, all_pages, blocks_of, sentences_of, without_blocks
 
 WORDS, README_LINES = 35, 200
-OTHERS = ["runtime/DESIGN.md", "runtime/SPEC.md", "docs/study/tuning.md"]  # read for links and sentences alone
+OTHERS = ["runtime/DESIGN.md", "runtime/SPEC.md", "docs/study/README.md", "docs/study/tuning.md",
+          "quant/heads/MODEL_CARD.md"]  # read for links and sentences alone
 COMMAND = re.compile(r"^\s*(?:\$ )?(?:trim3r [a-z]|tools/[a-z]|build/release/[a-z])")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
 NAME = re.compile(r"\b(?:t3r|T3R)_\w+")
