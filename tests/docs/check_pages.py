@@ -13,8 +13,7 @@ import sys
 from pages import FENCE, LINK, ROOT, all_pages, blocks_of, sentences_of, without_blocks
 
 WORDS, README_LINES = 35, 200
-OTHERS = ["runtime/DESIGN.md", "runtime/SPEC.md", "docs/study/README.md", "docs/study/tuning.md",
-          "quant/heads/MODEL_CARD.md"]  # read for links and sentences alone
+OTHERS = ["runtime/DESIGN.md", "runtime/SPEC.md", "quant/heads/MODEL_CARD.md"]  # and docs/study: links and sentences alone
 COMMAND = re.compile(r"^\s*(?:\$ )?(?:trim3r [a-z]|tools/[a-z]|build/release/[a-z])")
 COPIED = [ROOT / "README.md", ROOT / "docs" / "rivals.md"]  # tables with figures of docs/study/paper.md, by hand
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
@@ -27,9 +26,9 @@ def main():
     findings = []
     for page in all_pages():
         findings += check(page, page.read_text(), program)
-    for name in OTHERS:
-        text = (ROOT / name).read_text()
-        findings += [*links(ROOT / name, text), *sentences(name, text)]
+    for page in [*(ROOT / name for name in OTHERS), *sorted((ROOT / "docs" / "study").glob("*.md"))]:
+        text = page.read_text()
+        findings += [*links(page, text), *sentences(page.relative_to(ROOT), text)]
     for page in COPIED:
         findings += figures(page.name, page.read_text(), (ROOT / "docs" / "study" / "paper.md").read_text())
     lines = (ROOT / "README.md").read_text().count("\n")
