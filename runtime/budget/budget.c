@@ -373,7 +373,7 @@ bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians)
 
 /* The points that this budget defers: of each cluster, and all as a group of their own behind the last. */
 static void count_deferred(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                        t3r_cluster *clusters)
+                           t3r_cluster *clusters)
 {
     t3r_cluster *all = &clusters[settings->clusters];
     *all = (t3r_cluster){0};
