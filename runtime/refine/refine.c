@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/cut.h"
 #include "core/fixed.h"
 #include "refine_bands.h"
 #include "refine_tile.h"
@@ -21,22 +22,16 @@ static layout layout_of(const t3r_runtime *rt)
 {
     const t3r_config *c = &rt->config;
     size_t most = c->max_gaussians, least_lists = T3R_UP_(most * sizeof(uint32_t));
-    uint8_t *at = t3r_buffer_at(rt, T3R_BUFFER_REFINE_WORK), *end = at + rt->refine_bytes;
+    t3r_cut cut = t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_REFINE_WORK), rt->refine_bytes);
     layout w;
-    w.room.splats = (void *)at;
-    at += T3R_UP_(most * T3R_SPLAT_BYTES);
-    w.room.order = (void *)at;
-    at += T3R_UP_(most * T3R_ORDER_BYTES + T3R_SORT_BYTES);
-    w.room.table = (void *)at;
-    at += T3R_UP_(T3R_TILES_(c->width, c->height) * sizeof(uint32_t));
-    w.corrections = (void *)at;
-    at += T3R_UP_(most * T3R_CORRECTION_BYTES);
-    w.sums = (void *)at;
-    size_t rest = (size_t)(end - at) - least_lists;
-    w.slice = (uint32_t)T3R_MIN(rest / T3R_REFINE_SUMS_BYTES, most);
-    at += T3R_UP_((size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* the rest is a multiple of the alignment */
-    w.room.lists = (void *)at;
-    w.room.capacity = T3R_MIN((uint64_t)(size_t)(end - at) / sizeof(uint32_t), (uint64_t)UINT32_MAX);
+    w.room.splats = t3r_take(&cut, most * T3R_SPLAT_BYTES);
+    w.room.order = t3r_take(&cut, most * T3R_ORDER_BYTES + T3R_SORT_BYTES);
+    w.room.table = t3r_take(&cut, T3R_TILES_(c->width, c->height) * sizeof(uint32_t));
+    w.corrections = t3r_take(&cut, most * T3R_CORRECTION_BYTES);
+    w.slice = (uint32_t)T3R_MIN((t3r_cut_left(&cut) - least_lists) / T3R_REFINE_SUMS_BYTES, most);
+    w.sums = t3r_take(&cut, (size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* what is left is a multiple of the alignment */
+    w.room.capacity = T3R_MIN((uint64_t)t3r_cut_left(&cut) / sizeof(uint32_t), (uint64_t)UINT32_MAX);
+    w.room.lists = t3r_take(&cut, t3r_cut_left(&cut));
 
     const t3r_workers workers = t3r_workers_of(rt);
     w.borders.bands = t3r_is_parallel(&workers) ? workers.count : 1;
