@@ -28,7 +28,8 @@ def main():
         findings += check(page, page.read_text(), program)
     for page in [*(ROOT / name for name in OTHERS), *sorted((ROOT / "docs" / "study").glob("*.md"))]:
         text = page.read_text()
-        findings += [*links(page, text), *sentences(page.relative_to(ROOT), text)]
+        findings += [*links(page, text), *sentences(page.relative_to(ROOT), text),
+                     *markers(page.relative_to(ROOT), text)]
     for page in COPIED:
         findings += figures(page.name, page.read_text(), (ROOT / "docs" / "study" / "paper.md").read_text())
     lines = (ROOT / "README.md").read_text().count("\n")
@@ -48,7 +49,7 @@ def find_what_is_planted(program):
                "```sh not-run: slow\ntrim3r wrong a\n```": "no command trim3r wrong", "Say `--no-such`.": "--no-such",
                "See `t3r_no_such()`.": "t3r_no_such", "See [it](no/such.md).": "no/such.md",
                "See [it](README.md#no-such).": "no-such", " ".join(["word"] * 36) + ".": "36 words",
-               "```\ntools/demo\n```": "outside a shell block"}
+               "```\ntools/demo\n```": "outside a shell block", "a\n+ b": "like a list", "a\n2) b": "like a list"}
     for page, text in planted.items():
         found = check(ROOT / "planted.md", f"# Planted\n\n{page}\n", program)
         if len(found) != 1 or text not in found[0]:
@@ -87,7 +88,7 @@ def stands_in(wanted, row):
 def check(page, text, program):
     name = page.relative_to(ROOT)
     return [*commands(name, text), *options(name, text, program), *names(name, text), *links(page, text),
-            *sentences(name, text)]
+            *sentences(name, text), *markers(name, text)]
 
 
 def commands(name, text):
@@ -175,6 +176,16 @@ def links(page, text):
 def anchors_of(text):
     headings = re.findall(r"^#+ (.*)$", re.sub(FENCE, "", text), re.M)
     return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def markers(name, text):
+    """Lines inside a paragraph that begin like a list, a quotation or an underline, as wrapping may leave them."""
+    lines = without_blocks(text).split("\n")
+    for number, (above, line) in enumerate(zip(lines, lines[1:]), start=2):
+        in_list = re.match(r"\s*([-*]|\d+\.) |  ", above)
+        if re.match(r"([-+>=]+|\d+[.)]) ", line) and above.strip() and not above.startswith("#") and not (
+                in_list and re.match(r"(-|\d+\.) ", line)):
+            yield f"{name}:{number}: begins like a list: {line[:40]}"
 
 
 def sentences(name, text):
