@@ -30,6 +30,7 @@ def main():
         text = page.read_text()
         findings += [*links(page, text), *sentences(page.relative_to(ROOT), text),
                      *markers(page.relative_to(ROOT), text)]
+    findings += commands_missing(program, (ROOT / "docs" / "cli.md").read_text())
     for page in COPIED:
         findings += figures(page.name, page.read_text(), (ROOT / "docs" / "study" / "paper.md").read_text())
     lines = (ROOT / "README.md").read_text().count("\n")
@@ -59,6 +60,8 @@ def find_what_is_planted(program):
                         "| x | 27.88 | 27.73 | 27.69 | 0.4* |": 1, "| x | 27.88 / 0.831 | 27.73 / 0.830 | 27.68 / 0.833 |": 1}.items():
         if len(list(figures("planted.md", row, source))) != wanted:
             sys.exit(f"blind: figures of {row}")
+    if "docs/cli.md does not show trim3r replay" not in commands_missing(program, "trim3r room"):
+        sys.exit("blind: a command that cli.md leaves out")
     good = "# Good\n\n" + " ".join(["word"] * 34) + " [it](README.md#try-it).\n\n```sh\ntrim3r info room.mcap --json\n```\n"
     found = check(ROOT / "planted.md", good, program)
     if found:
@@ -116,6 +119,13 @@ def options(name, text, program):
             yield f"{name}: {match.group(0)} is an option of nothing"
 
 
+def commands_missing(program, text):
+    overview = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
+    for command in re.findall(r"^  ([a-z-]+) +[a-z]", overview, re.M):
+        if not re.search(rf"trim3r {command}\b", text):
+            yield f"docs/cli.md does not show trim3r {command}"
+
+
 def options_of(where, words, program):
     if words[:1] != ["trim3r"] or len(words) < 2 or words[1].startswith("-"):
         return
@@ -138,7 +148,7 @@ def options_in_help(program, command):
 def known_options(program):
     """Of all commands, and of the scripts."""
     overview = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
-    known = set().union(*(options_in_help(program, command) for command in re.findall(r"^  ([a-z-]+) ", overview, re.M)))
+    known = set().union(*(options_in_help(program, command) for command in re.findall(r"^  ([a-z-]+) +[a-z]", overview, re.M)))
     for folder in ("tools", "docs"):
         for path in (ROOT / folder).rglob("*"):
             if path.is_file() and (path.suffix == ".py" or (not path.suffix and path.stat().st_mode & 0o100)):
