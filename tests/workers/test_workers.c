@@ -143,7 +143,10 @@ static trace build(t3r_config config, const way *w)
 static void check_ways(const t3r_config *config)
 {
     static const way ways[] = {
-        {2, false, false}, {3, false, true}, {8, false, false}, {2, true, false}, {3, true, true}, {8, true, false},
+        {2, true, false}, {3, true, true},
+#ifndef __SANITIZE_THREAD__ /* which sees races of two threads as well, and takes its time */
+        {8, true, false}, {2, false, false}, {3, false, true}, {8, false, false},
+#endif
     };
     const trace alone = build(*config, &(way){1, false, false});
     assert_true(alone.count >= 8);
