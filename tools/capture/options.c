@@ -240,8 +240,9 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--source is missing (--list tells what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {
         argp_error(state, "neither -o REC.mcap nor --build SCENE.ply says what is to become of the frames");
-    } else if (o->scene != NULL && !path_is_ply(o->scene)) {
-        argp_error(state, "--build %s: scenes are written as .ply", o->scene);
+    } else if (o->scene != NULL && !scene_file_is_written(o->scene)) {
+        argp_error(state, "--build %s: scenes are written as %s", o->scene,
+                   scene_file_suffixes((char[SCENE_FILE_SUFFIXES_BYTES]){0}));
     } else if (o->scene == NULL && (o->every > 0 || budget || o->build.context_count > 0 || o->local)) {
         argp_error(state, "--every, --local, --context and budgets belong to --build");
     } else if (o->scene != NULL && o->build.method != METHOD_TRIM3R) {

@@ -218,9 +218,9 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     }
     close(file);
     scene_file scene;
-    int failed = scene_file_write_ply(path, &built->scene, 0, NULL, error, sizeof error);
+    int failed = scene_file_write(path, &built->scene, 0, NULL, error, sizeof error);
     if (failed == 0) {
-        failed = scene_file_read_ply(path, &scene, error, sizeof error);
+        failed = scene_file_read(path, &scene, error, sizeof error);
     }
     unlink(path);
     if (failed != 0) {

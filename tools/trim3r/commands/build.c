@@ -94,8 +94,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "REC.mcap is missing");
         } else if (o->output == NULL && o->colmap == NULL) {
             argp_error(state, "-o SCENE.ply is missing");
-        } else if (o->output != NULL && !path_is_ply(o->output)) {
-            argp_error(state, "-o %s: scenes are written as .ply", o->output);
+        } else if (o->output != NULL && !scene_file_is_written(o->output)) {
+            argp_error(state, "-o %s: scenes are written as %s", o->output,
+                       scene_file_suffixes((char[SCENE_FILE_SUFFIXES_BYTES]){0}));
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
             argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
         } else if (o->settings.points_of != NULL && method_ranks_for_head(o->settings.method)) {
@@ -273,7 +274,7 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
 {
     char note[64], error[ERROR_BYTES] = "";
     note_head(told, note, sizeof note);
-    if (o->output != NULL && scene_file_write_ply(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
+    if (o->output != NULL && scene_file_write(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told) : CLI_OK;
