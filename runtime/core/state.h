@@ -7,16 +7,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "assertion.h"
 #include "trim3r.h"
 #include "views.h"
+#include "workers.h"
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 
 /* Misuse of the API (null pointers, calls out of order, going on after an error) is refused with a status in every
- * build; a debug build may also stop at it: compile the runtime with T3R_ASSERT(condition) defined. */
-#ifndef T3R_ASSERT
-#define T3R_ASSERT(condition) ((void)0)
-#endif
+ * build; a debug build may also stop at it. */
 #define T3R_REFUSE_UNLESS(condition, status)                                                                           \
     do {                                                                                                               \
         T3R_ASSERT(condition);                                                                                         \
@@ -67,17 +66,9 @@ static inline bool t3r_progress(const t3r_runtime *rt, t3r_stage stage, uint32_t
     return rt->hooks.progress == NULL || rt->hooks.progress(rt->hooks.user, stage, done, total) == 0;
 }
 
-/* Runs the task over 0..count-1, through the hook when there is one. */
-static inline void t3r_parallel(const t3r_runtime *rt, uint32_t count, void (*task)(void *context, uint32_t index),
-                                void *context)
+static inline t3r_workers t3r_workers_of(const t3r_runtime *rt)
 {
-    if (rt->hooks.parallel_for != NULL && count > 1) {
-        rt->hooks.parallel_for(rt->hooks.user, count, task, context);
-        return;
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        task(context, i);
-    }
+    return (t3r_workers){&rt->hooks, rt->config.workers};
 }
 
 #endif
