@@ -119,11 +119,14 @@
 #define T3R_STEREO_PLANES_(width, height, disparities)                                                                 \
     (T3R_STEREO_SIDE_BYTES_(T3R_STEREO_LEFT_(width, height)) +                                                         \
      T3R_STEREO_SIDE_BYTES_(T3R_STEREO_RIGHT_(width, height, disparities)))
+/* What the matching takes, and at least a view's luma twice */
+#define T3R_STEREO_REST_BYTES_(width, height, disparities, paths)                                                      \
+    T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height), disparities,   \
+                                  paths),                                                                              \
+             2 * T3R_PIXELS_(width, height))
 #define T3R_STEREO_WORK_BYTES(width, height, disparities, paths)                                                       \
     (T3R_STEREO_PLANES_(width, height, disparities) +                                                                  \
-     T3R_UP_(T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height),       \
-                                           disparities, paths),                                                        \
-                      2 * T3R_PIXELS_(width, height))))
+     T3R_UP_(T3R_STEREO_REST_BYTES_(width, height, disparities, paths)))
 /* Depth and confidence of two views as one pair has them, where several pairs tell of a view */
 #define T3R_STEREO_PAIR_BYTES_(w, h) (2 * (T3R_UP_(T3R_PIXELS_(w, h) * 2) + T3R_UP_(T3R_PIXELS_(w, h))))
 #define T3R_STEREO_BYTES_(w, h, v, s)                                                                                  \
