@@ -50,8 +50,9 @@ def ranks():
 
 if __name__ == "__main__":
     print('/* Made by tools/blue_noise.py; do not edit. */\n#include "blue_noise.h"\n')
-    print("const uint16_t t3r_blue_noise[T3R_BLUE_NOISE_SIDE * T3R_BLUE_NOISE_SIDE] = {")
+    print("const uint8_t t3r_blue_noise_packed[T3R_BLUE_NOISE_BYTES] = {")
     flat = ranks()
-    for i in range(0, len(flat), 16):
-        print("    " + " ".join(f"{r}," for r in flat[i : i + 16]))
+    packed = [byte for a, b in zip(flat[::2], flat[1::2]) for byte in (a & 255, a >> 8 | (b & 15) << 4, b >> 4)]
+    for i in range(0, len(packed), 24):
+        print("    " + " ".join(f"{byte}," for byte in packed[i : i + 24]))
     print("};")

@@ -4,9 +4,18 @@
 
 #include <stdint.h>
 
-#define T3R_BLUE_NOISE_SIDE 64
+#define T3R_BLUE_NOISE_SIDE 64u
+/* 12 bits a rank: two in three bytes, which saves flash. */
+#define T3R_BLUE_NOISE_BYTES (T3R_BLUE_NOISE_SIDE * T3R_BLUE_NOISE_SIDE / 2 * 3)
 
-/* Ranks 0..4095, row-major, periodic. */
-extern const uint16_t t3r_blue_noise[T3R_BLUE_NOISE_SIDE * T3R_BLUE_NOISE_SIDE];
+extern const uint8_t t3r_blue_noise_packed[T3R_BLUE_NOISE_BYTES];
+
+/* The rank, 0..4095, at a row and a column below T3R_BLUE_NOISE_SIDE; the map is periodic. */
+static inline uint32_t t3r_blue_noise(uint32_t row, uint32_t column)
+{
+    const uint32_t place = row * T3R_BLUE_NOISE_SIDE + column;
+    const uint8_t *pair = t3r_blue_noise_packed + place / 2 * 3;
+    return place % 2 == 0 ? pair[0] | (pair[1] & 15u) << 8 : pair[1] >> 4 | (uint32_t)pair[2] << 4;
+}
 
 #endif

@@ -155,7 +155,7 @@ static uint32_t threshold_at(uint32_t view, uint32_t x, uint32_t y, const t3r_bu
         return noise >> 16;
     }
     uint32_t row = (y + 23 * view) % T3R_BLUE_NOISE_SIDE, column = (x + 46 * view) % T3R_BLUE_NOISE_SIDE;
-    return t3r_blue_noise[row * T3R_BLUE_NOISE_SIDE + column] * 16u + (noise >> 28);
+    return t3r_blue_noise(row, column) * 16u + (noise >> 28);
 }
 
 static uint16_t key_of(uint32_t threshold, int32_t wanted_q10)

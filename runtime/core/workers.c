@@ -4,6 +4,17 @@
 
 #define BANDS_A_WORKER 2 /* so that a worker that is done early takes more */
 
+void t3r_run_tasks(const t3r_workers *workers, uint32_t count, t3r_task *task, void *context)
+{
+    if (t3r_is_parallel(workers) && count > 1) {
+        workers->hooks->parallel_for(workers->hooks->user, count, task, context);
+        return;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        task(context, i, 0);
+    }
+}
+
 typedef struct rows_job {
     t3r_rows_task *task;
     void *context;

@@ -23,16 +23,7 @@ static inline bool t3r_is_parallel(const t3r_workers *workers)
 }
 
 /* Runs task(context, 0..count-1, worker) and returns when all are done. */
-static inline void t3r_run_tasks(const t3r_workers *workers, uint32_t count, t3r_task *task, void *context)
-{
-    if (t3r_is_parallel(workers) && count > 1) {
-        workers->hooks->parallel_for(workers->hooks->user, count, task, context);
-        return;
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        task(context, i, 0);
-    }
-}
+void t3r_run_tasks(const t3r_workers *workers, uint32_t count, t3r_task *task, void *context);
 
 /* The part of `total` items, in order and without gaps, that task `index` of `tasks` takes: begin..end - 1. Parts
  * differ by at most one item. total < 2^26, tasks <= 2 T3R_MAX_WORKERS. */
