@@ -176,7 +176,7 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
     t3r_hash_superclusters(rt, views, 0, rt->views);
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     t3r_cluster_texture(views, rt->views, clusters, rt->config.clusters);
-    if (rt->config.shuffle) {
+    if (rt->ablation.shuffle) {
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);
@@ -225,15 +225,15 @@ t3r_status t3r_analyse(t3r_runtime *rt)
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views)
 {
     const t3r_config *config = &rt->config;
-    uint32_t gaussians = T3R_MIN(config->gaussians, rt->valid_points); /* filled holes compete, but add no budget */
+    uint32_t gaussians = T3R_MIN(rt->build.gaussians, rt->valid_points); /* filled holes compete, but add no budget */
     return (t3r_budget_settings){
-        .allocation = config->allocation,
+        .allocation = rt->build.allocation,
         .gaussians = gaussians,
         .keep_percent = config->keep_percent,
         .gamma_q8 = config->gamma_q8,
         .clusters = config->clusters,
         .seed = config->seed,
-        .pass_over_covered = config->redundancy && config->allocation != T3R_ALLOCATE_GIVEN &&
+        .pass_over_covered = config->redundancy && rt->build.allocation != T3R_ALLOCATE_GIVEN &&
                              t3r_is_sparse(views, rt->views, gaussians),
     };
 }
@@ -263,7 +263,6 @@ typedef uint32_t (*head_function)(const t3r_head_input *input, t3r_gaussian *out
 static const head_function heads[T3R_HEAD_COUNT] = {
     [T3R_HEAD_ANALYTIC] = t3r_head_analytic,
     [T3R_HEAD_MOMENT] = t3r_head_moment,
-    [T3R_HEAD_NONE] = t3r_head_none,
     [T3R_HEAD_LEARNED] = t3r_head_learned,
 };
 
@@ -277,7 +276,7 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
         .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
         .weights = rt->weights,
         .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
-        .unadapted = !rt->config.adapt,
+        .unadapted = rt->ablation.unadapted != 0,
     };
 }
 
@@ -285,7 +284,7 @@ uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uin
                                const t3r_budget_settings *settings, t3r_gaussian *out)
 {
     t3r_head_input input = t3r_head_input_of(rt, views, view_index, settings);
-    uint32_t made = heads[rt->config.head](&input, out);
+    uint32_t made = heads[rt->build.head](&input, out);
     level(out, made, rt->gain_q14[view_index]);
     return made;
 }
@@ -317,11 +316,12 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
     return status;
 }
 
-t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_importance *importance)
+t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_build *build, const t3r_importance *importance)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
 
+    rt->build = *build;
     rt->has_scene = 0;
     if (!t3r_progress(rt, T3R_STAGE_BUDGET, 0, 1)) {
         return T3R_ERR_CANCELLED;

@@ -46,7 +46,6 @@ uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
 /* Each writes the view's retained points in raster order to `out` and returns their number. */
 uint32_t t3r_head_analytic(const t3r_head_input *input, t3r_gaussian *out);
 uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out);
-uint32_t t3r_head_none(const t3r_head_input *input, t3r_gaussian *out);
 uint32_t t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out);
 
 /* Bytes of work that a learned head needs for views of this width. */

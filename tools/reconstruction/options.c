@@ -39,10 +39,10 @@ enum {
 };
 
 /* The index of a name in a runtime's list of names. */
-#define CHOOSE(type, function)                                                                                         \
+#define CHOOSE(type, first, function)                                                                                  \
     static type choose_##type(struct argp_state *state, const char *option, const char *text)                          \
     {                                                                                                                  \
-        for (int i = 0; function((type)i) != NULL; i++) {                                                              \
+        for (int i = first; function((type)i) != NULL; i++) {                                                          \
             if (strcmp(text, function((type)i)) == 0) {                                                                \
                 return (type)i;                                                                                        \
             }                                                                                                          \
@@ -50,8 +50,8 @@ enum {
         argp_error(state, "--%s does not know '%s'", option, text);                                                    \
         return (type)0;                                                                                                \
     }
-CHOOSE(t3r_allocation, t3r_allocation_name)
-CHOOSE(t3r_wavelet, t3r_wavelet_name)
+CHOOSE(t3r_allocation, T3R_ALLOCATE_CONFIGURED + 1, t3r_allocation_name)
+CHOOSE(t3r_wavelet, 0, t3r_wavelet_name)
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},

@@ -45,7 +45,7 @@ typedef struct reconstruction_options {
     uint32_t clusters;
     uint32_t gamma_q8;
     uint32_t paper_keep_percent; /* N of the allocation `paper` */
-    uint32_t shuffle, adapt;     /* of t3r_config, for ablations */
+    t3r_ablation ablation;       /* what is taken away from the method */
     bool hide_mask;              /* the network is told that every pixel was retained: hidden_mask.h */
     t3r_depth depth;             /* where it comes from */
     const char *points_of;       /* a .ply whose Gaussians are the depth instead (scene_frames.h), and of which percents
@@ -56,7 +56,7 @@ typedef struct reconstruction_options {
     uint32_t seed;
     uint32_t refine;    /* passes of refinement */
     uint32_t half_life; /* of a stream */
-    bool keep_analysis; /* so that t3r_rebudget() and t3r_reallocate() work afterwards */
+    bool keep_analysis; /* so that t3r_rebuild() works afterwards */
     bool hash;          /* collect the stages' hashes */
     arena_choice arena;
     uint64_t arena_bytes; /* for ARENA_BYTES */
