@@ -28,13 +28,13 @@
 
 /* --- analysis --------------------------------------------------------------------------------------------------- */
 
-/* Stereo matched what it doubts, too. */
+/* Doubtful stereo pixels also count as measured. */
 static uint32_t count_measured(const t3r_runtime *rt, const t3r_view *views)
 {
     uint32_t pixels = rt->config.width * rt->config.height, measured = 0;
     for (uint32_t v = 0; v < rt->views; v++) {
         for (uint32_t i = 0; i < pixels; i++) {
-            measured += t3r_is_measured(views[v].confidence[i]);
+            measured += t3r_is_measured(views[v].validity[i]);
         }
     }
     return measured;
@@ -141,7 +141,7 @@ static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
         }
         (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent);
     }
-    t3r_forget_witnesses(views, rt->views);
+    t3r_clear_witnesses(views, rt->views);
     t3r_hash_pointmap(rt, views, 0, rt->views);
     return T3R_OK;
 }
@@ -189,9 +189,9 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
     if (rt->config.depth == T3R_DEPTH_STEREO) {
-        t3r_stereo_forget(views, rt->views);
+        t3r_stereo_clear(views, rt->views);
     }
-    t3r_forget_marks(views, rt->views); /* of an earlier analysis of the same planes */
+    t3r_reset_comparison(views, rt->views); /* of an earlier analysis of the same planes */
     t3r_hash_image(rt, views, 0, rt->views);
 
     t3r_status status = depth(rt, views);
@@ -258,9 +258,7 @@ static void level(t3r_gaussian *gaussians, uint32_t count, const uint16_t gain_q
     }
 }
 
-typedef uint32_t (*head_function)(const t3r_head_input *input, t3r_gaussian *out);
-
-static const head_function heads[T3R_HEAD_COUNT] = {
+static t3r_head_rows *const heads[T3R_HEAD_COUNT] = {
     [T3R_HEAD_ANALYTIC] = t3r_head_analytic,
     [T3R_HEAD_MOMENT] = t3r_head_moment,
     [T3R_HEAD_LEARNED] = t3r_head_learned,
@@ -284,7 +282,7 @@ uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uin
                                const t3r_budget_settings *settings, t3r_gaussian *out)
 {
     t3r_head_input input = t3r_head_input_of(rt, views, view_index, settings);
-    uint32_t made = heads[rt->build.head](&input, out);
+    uint32_t made = heads[rt->build.head](&input, 0, rt->config.height, out);
     level(out, made, rt->gain_q14[view_index]);
     return made;
 }

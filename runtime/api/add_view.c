@@ -11,7 +11,7 @@ static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
     t3r_views_of(rt, views);
     size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
     for (size_t i = 0; i < pixels; i++) {
-        if (views[index].confidence[i] == T3R_CONFIDENCE_MEASURED) {
+        if (t3r_is_reliable(views[index].validity[i])) {
             return true;
         }
     }

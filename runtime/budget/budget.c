@@ -153,7 +153,7 @@ void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_set
                 uint16_t key = key_of(threshold_at(settings->shift + v, x, y, settings),
                                       t3r_log_wanted_q10(views[v].texture[i], settings));
                 if (t3r_set_aside(&views[v], i, settings)) { /* among these the doubtful ones last */
-                    key = (uint16_t)((key >> 1) | (t3r_is_doubtful(views[v].confidence[i]) ? 0x8000u : 0));
+                    key = (uint16_t)((key >> 1) | (t3r_is_doubtful(views[v].validity[i]) ? 0x8000u : 0));
                 }
                 views[v].key[i] = key;
             }
@@ -364,8 +364,8 @@ bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians)
     for (uint32_t v = 0; v < count; v++) {
         size_t pixels = (size_t)views[v].width * views[v].height;
         for (size_t i = 0; i < pixels; i++) {
-            uint8_t confidence = views[v].confidence[i];
-            plain += confidence != T3R_CONFIDENCE_NONE && !t3r_is_doubtful(confidence) && !t3r_is_covered(confidence);
+            uint8_t validity = views[v].validity[i];
+            plain += t3r_has_depth(validity) && !t3r_is_doubtful(validity) && !t3r_is_covered(validity);
         }
     }
     return 3 * (uint64_t)gaussians <= 2 * plain;

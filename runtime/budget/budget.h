@@ -34,9 +34,9 @@ typedef struct t3r_budget_settings {
  * another view covers. Heads let the splats of other points not grow over them. None when importance is given. */
 static inline bool t3r_set_aside(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
-    uint8_t confidence = view->confidence[pixel];
+    uint8_t validity = view->validity[pixel];
     return settings->allocation != T3R_ALLOCATE_GIVEN &&
-           (t3r_is_doubtful(confidence) || (settings->pass_over_covered && t3r_is_covered(confidence)));
+           (t3r_is_doubtful(validity) || (settings->pass_over_covered && t3r_is_covered(validity)));
 }
 
 /* Whether Z is at most two thirds of the points that are neither doubtful nor covered by another view. */

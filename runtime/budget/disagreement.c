@@ -12,9 +12,9 @@ typedef struct difference {
     uint32_t pairs;
 } difference;
 
-static bool is_sure(uint8_t confidence)
+static bool is_sure(uint8_t validity)
 {
-    return t3r_is_measured(confidence) && !t3r_is_doubtful(confidence);
+    return t3r_is_measured(validity) && !t3r_is_doubtful(validity);
 }
 
 static uint32_t squares_q8(const t3r_view *from, size_t pixel, const uint16_t from_gain_q14[3], const t3r_view *to,
@@ -39,8 +39,8 @@ static void compare(const t3r_view *views, uint32_t v, uint32_t w, int32_t expon
         for (uint32_t x = 0; x < view->width; x++) {
             size_t pixel = (size_t)y * view->width + x;
             t3r_sight sight;
-            if (!is_sure(view->confidence[pixel]) || !t3r_reproject(&from, x, y, &to, &sight) ||
-                !is_sure(other->confidence[sight.pixel])) {
+            if (!is_sure(view->validity[pixel]) || !t3r_reproject(&from, x, y, &to, &sight) ||
+                !is_sure(other->validity[sight.pixel])) {
                 continue;
             }
             int32_t there_q20 = t3r_depth_q20(to.scale, other->depth[sight.pixel]);

@@ -73,7 +73,7 @@ t3r_status t3r_scene_frame_choose(const t3r_view *views, uint32_t count, int32_t
     for (uint32_t v = 0; v < count; v++) {
         uint32_t pixels = views[v].width * views[v].height;
         for (uint32_t i = 0; i < pixels; i++) {
-            if (views[v].confidence[i] == T3R_CONFIDENCE_MEASURED && views[v].depth[i] != 0) {
+            if (t3r_is_reliable(views[v].validity[i]) && views[v].depth[i] != 0) {
                 octaves[octave(views[v].depth_unit_q40, views[v].depth[i])]++;
                 total++;
             }
@@ -92,7 +92,7 @@ t3r_status t3r_scene_frame_choose(const t3r_view *views, uint32_t count, int32_t
         t3r_depth_scale scale = t3r_depth_scale_of(views[v].depth_unit_q40, *exponent);
         uint32_t pixels = views[v].width * views[v].height;
         for (uint32_t i = 0; i < pixels; i++) {
-            if (views[v].confidence[i] != T3R_CONFIDENCE_MEASURED) {
+            if (!t3r_is_reliable(views[v].validity[i])) {
                 continue;
             }
             int32_t depth = t3r_depth_q20(scale, views[v].depth[i]);

@@ -28,6 +28,14 @@ static uint64_t hash_frame(const t3r_runtime *rt)
     return t3r_hash_u32(hash, (uint32_t)rt->frame.exponent);
 }
 
+static uint64_t hash_confidence(const t3r_runtime *rt, const t3r_view *view, uint64_t hash)
+{
+    for (size_t i = 0; i < pixels_of(rt); i++) {
+        hash = t3r_hash_u8(hash, t3r_confidence_of(view->validity[i]));
+    }
+    return hash;
+}
+
 void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (silent(rt)) {
@@ -39,7 +47,7 @@ void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views, uint32_t first
             hash = t3r_hash_bytes(hash, views[v].colour[c], pixels_of(rt));
         }
         for (size_t i = 0; i < pixels_of(rt); i++) {
-            bool measured = views[v].confidence[i] == T3R_CONFIDENCE_MEASURED;
+            bool measured = t3r_is_reliable(views[v].validity[i]);
             hash = t3r_hash_u16(hash, measured ? views[v].depth[i] : 0);
         }
     }
@@ -54,7 +62,7 @@ void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views, uint32_t first
     uint64_t hash = T3R_HASH_START;
     for (uint32_t v = first; v < end; v++) {
         hash = t3r_hash_u16s(hash, views[v].depth, pixels_of(rt));
-        hash = t3r_hash_bytes(hash, views[v].confidence, pixels_of(rt));
+        hash = hash_confidence(rt, &views[v], hash);
     }
     tell(rt, T3R_STAGE_DEPTH, hash);
 }
@@ -82,7 +90,7 @@ void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views, uint32_t fi
         for (int c = 0; c < 3; c++) {
             hash = t3r_hash_u16(hash, rt->gain_q14[v][c]);
         }
-        hash = t3r_hash_bytes(hash, views[v].confidence, pixels_of(rt));
+        hash = hash_confidence(rt, &views[v], hash);
     }
     tell(rt, T3R_STAGE_POINTMAP, hash);
 }

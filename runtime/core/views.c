@@ -16,7 +16,7 @@ void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
             .height = rt->config.height,
             .colour = {colour, colour + pixels, colour + 2 * pixels},
             .depth = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_DEPTH) + pixels * v,
-            .confidence = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_CONFIDENCE) + pixels * v,
+            .validity = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_CONFIDENCE) + pixels * v,
             .texture = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_TEXTURE) + pixels * plane,
             .key = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_KEYS) + pixels * plane,
             .label = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * plane,
@@ -34,18 +34,33 @@ void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
     }
 }
 
-void t3r_forget_marks(const t3r_view *views, uint32_t count)
+uint8_t t3r_confidence_of(uint8_t validity)
+{
+    static const struct {
+        uint8_t unmarked, covered, doubtful;
+    } confidence[] = {
+        [T3R_NO_DEPTH] = {0, 0, 0},
+        [T3R_FILLED] = {128, 96, 32},
+        [T3R_BRIDGED] = {24, 16, 24}, /* none is doubtful */
+        [T3R_MEASURED] = {255, 192, 64},
+    };
+    t3r_depth_source source = t3r_depth_source_of(validity);
+    return t3r_is_doubtful(validity)  ? confidence[source].doubtful
+           : t3r_is_covered(validity) ? confidence[source].covered
+                                      : confidence[source].unmarked;
+}
+
+void t3r_reset_comparison(const t3r_view *views, uint32_t count)
 {
     for (uint32_t v = 0; v < count; v++) {
         size_t pixels = T3R_PIXELS_(views[v].width, views[v].height);
         for (size_t i = 0; i < pixels; i++) {
-            uint8_t confidence = views[v].confidence[i];
-            if (t3r_is_bridged(confidence)) {
-                views[v].confidence[i] = T3R_CONFIDENCE_NONE;
+            uint8_t *validity = &views[v].validity[i];
+            if (t3r_is_bridged(*validity)) {
+                *validity = T3R_NO_DEPTH;
                 views[v].depth[i] = 0;
-            } else if (confidence != T3R_CONFIDENCE_NONE) {
-                views[v].confidence[i] = t3r_is_measured(confidence) ? T3R_CONFIDENCE_MEASURED : T3R_CONFIDENCE_FILLED;
             }
+            *validity = t3r_unmarked(*validity);
         }
     }
 }

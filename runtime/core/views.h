@@ -7,40 +7,94 @@
 
 #include "trim3r.h"
 
-#define T3R_CONFIDENCE_MEASURED 255u
-#define T3R_CONFIDENCE_WITNESS 254u /* measured, and covers another view's pixel; only within stage pointmap */
-#define T3R_CONFIDENCE_COVERED 192u /* measured, but another view has the surface as finely */
-#define T3R_CONFIDENCE_FILLED 128u
-#define T3R_CONFIDENCE_FILLED_COVERED 96u
-#define T3R_CONFIDENCE_DOUBTFUL 64u /* measured, but contradicted: a flying pixel */
-#define T3R_CONFIDENCE_FILLED_DOUBTFUL 32u
-#define T3R_CONFIDENCE_BRIDGED 24u /* of a wide hole (bridge.h): no view measured it */
-#define T3R_CONFIDENCE_BRIDGED_COVERED 16u
-#define T3R_CONFIDENCE_LENT 8u /* measured by another view; only within stage pointmap */
-#define T3R_CONFIDENCE_NONE 0u
+/* Where a pixel's depth comes from: the two low bits of the validity plane. */
+typedef enum t3r_depth_source {
+    T3R_NO_DEPTH, /* all bits are 0 */
+    T3R_FILLED,   /* a small hole's, from the measured pixels around it (depth.h, stereo_fill.h) */
+    T3R_BRIDGED,  /* a wide hole's (bridge.h): made anew by every analysis */
+    T3R_MEASURED, /* the sensor's, or matched by stereo */
+    T3R_DEPTH_SOURCE_BITS = 3
+} t3r_depth_source;
 
-static inline bool t3r_is_covered(uint8_t confidence)
+/* What the comparison of views found out about a pixel with depth: the bits above. */
+enum t3r_mark {
+    T3R_MARK_COVERED = 4,  /* another view has the surface about as finely */
+    T3R_MARK_DOUBTFUL = 8, /* contradicted: a flying pixel */
+    T3R_MARK_WITNESS = 16, /* covers another view's pixel; only within stage pointmap */
+    T3R_MARK_LENT = 32     /* a bridged pixel whose depth another view measured; only within stage pointmap */
+};
+
+static inline t3r_depth_source t3r_depth_source_of(uint8_t validity)
 {
-    return confidence == T3R_CONFIDENCE_COVERED || confidence == T3R_CONFIDENCE_FILLED_COVERED ||
-           confidence == T3R_CONFIDENCE_BRIDGED_COVERED;
+    return (t3r_depth_source)(validity & T3R_DEPTH_SOURCE_BITS);
 }
 
-static inline bool t3r_is_doubtful(uint8_t confidence)
+static inline bool t3r_has_depth(uint8_t validity)
 {
-    return confidence == T3R_CONFIDENCE_DOUBTFUL || confidence == T3R_CONFIDENCE_FILLED_DOUBTFUL;
+    return t3r_depth_source_of(validity) != T3R_NO_DEPTH;
 }
 
-/* Whether it is a wide hole's, so that its depth is made anew by every analysis. */
-static inline bool t3r_is_bridged(uint8_t confidence)
+static inline bool t3r_is_filled(uint8_t validity)
 {
-    return confidence != T3R_CONFIDENCE_NONE && confidence <= T3R_CONFIDENCE_BRIDGED;
+    return t3r_depth_source_of(validity) == T3R_FILLED;
 }
 
-/* Whether the sensor gave the depth, whatever was thought of it since. */
-static inline bool t3r_is_measured(uint8_t confidence)
+static inline bool t3r_is_bridged(uint8_t validity)
 {
-    return confidence >= T3R_CONFIDENCE_COVERED || confidence == T3R_CONFIDENCE_DOUBTFUL;
+    return t3r_depth_source_of(validity) == T3R_BRIDGED;
 }
+
+/* Whether the sensor gave the depth, or stereo matched it, whatever the comparison of views found since. */
+static inline bool t3r_is_measured(uint8_t validity)
+{
+    return t3r_depth_source_of(validity) == T3R_MEASURED;
+}
+
+static inline bool t3r_is_covered(uint8_t validity)
+{
+    return (validity & T3R_MARK_COVERED) != 0;
+}
+
+static inline bool t3r_is_doubtful(uint8_t validity)
+{
+    return (validity & T3R_MARK_DOUBTFUL) != 0;
+}
+
+static inline bool t3r_is_lent(uint8_t validity)
+{
+    return (validity & T3R_MARK_LENT) != 0;
+}
+
+static inline bool t3r_is_marked(uint8_t validity)
+{
+    return (validity & ~T3R_DEPTH_SOURCE_BITS) != 0;
+}
+
+/* Measured, and nothing speaks against it. */
+static inline bool t3r_is_reliable(uint8_t validity)
+{
+    return t3r_is_measured(validity) && !t3r_is_marked(validity);
+}
+
+/* Measured or filled, and nothing speaks against it. */
+static inline bool t3r_is_known(uint8_t validity)
+{
+    return (t3r_is_measured(validity) || t3r_is_filled(validity)) && !t3r_is_marked(validity);
+}
+
+static inline uint8_t t3r_marked(uint8_t validity, enum t3r_mark mark)
+{
+    return (uint8_t)(validity | mark);
+}
+
+static inline uint8_t t3r_unmarked(uint8_t validity)
+{
+    return validity & T3R_DEPTH_SOURCE_BITS;
+}
+
+/* The number that leaves the runtime for it: a Gaussian's confidence, and the hashes of stages (SPEC.md,
+ * "Between views"). Marks that only stage pointmap knows do not count. */
+uint8_t t3r_confidence_of(uint8_t validity);
 
 /* A rigid pose in fixed point, expanded once from t3r_camera. */
 typedef struct t3r_pose {
@@ -51,13 +105,16 @@ typedef struct t3r_pose {
 /* The planes of one view, each width x height, rows without gaps. */
 typedef struct t3r_view {
     uint32_t width, height;
-    uint8_t *colour[3];  /* r, g, b */
-    uint16_t *depth;     /* steps of depth_unit; 0 = none */
-    uint8_t *confidence; /* T3R_CONFIDENCE_...: the validity plane */
-    uint16_t *texture;   /* energy_q4; blurred from budget on */
-    uint16_t *key;       /* budget only: the smaller, the earlier retained */
-    uint16_t *label;     /* SuperCluster, or T3R_NO_LABEL where there is no depth */
-    uint32_t *mask;      /* bit i of word i / 32: the pixel is retained */
+    uint8_t *colour[3]; /* r, g, b */
+    uint16_t *depth;    /* steps of depth_unit; 0 = none */
+    union {
+        uint8_t *validity;         /* a t3r_depth_source and marks */
+        uint8_t *match_confidence; /* the same bytes within stage stereo, until t3r_stereo_marks(): T3R_STEREO_... */
+    };
+    uint16_t *texture; /* energy_q4; blurred from budget on */
+    uint16_t *key;     /* budget only: the smaller, the earlier retained */
+    uint16_t *label;   /* SuperCluster, or T3R_NO_LABEL where there is no depth */
+    uint32_t *mask;    /* bit i of word i / 32: the pixel is retained */
     int32_t fx_q16, fy_q16, cx_q16, cy_q16;
     uint64_t depth_unit_q40;
     t3r_pose pose;
@@ -68,7 +125,7 @@ typedef struct t3r_view {
 /* The planes of every view there is room for, as the stages take them; poses only of those added. */
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS]);
 
-/* Confidences as they were before views were compared, measured, filled or none, and no depth in wide holes. */
-void t3r_forget_marks(const t3r_view *views, uint32_t count);
+/* Takes back what the comparison of views made: all marks, and the depth in wide holes. */
+void t3r_reset_comparison(const t3r_view *views, uint32_t count);
 
 #endif

@@ -5,11 +5,11 @@
 
 #include "core/fixed.h"
 
-void t3r_depth_confidence(t3r_view *view)
+void t3r_depth_validity(t3r_view *view)
 {
     size_t count = (size_t)view->width * view->height;
     for (size_t i = 0; i < count; i++) {
-        view->confidence[i] = view->depth[i] != 0 ? T3R_CONFIDENCE_MEASURED : T3R_CONFIDENCE_NONE;
+        view->validity[i] = view->depth[i] != 0 ? T3R_MEASURED : T3R_NO_DEPTH;
     }
 }
 
@@ -21,14 +21,14 @@ typedef struct bracket {
 } bracket;
 
 /* at: index of the pixel, step: to its next neighbour on the axis, back/ahead: pixels there are on either side. */
-static bracket find_bracket(const uint8_t *confidence, size_t at, size_t step, uint32_t back, uint32_t ahead,
+static bracket find_bracket(const uint8_t *validity, size_t at, size_t step, uint32_t back, uint32_t ahead,
                             uint32_t radius)
 {
     bracket none = {0};
     bracket found = {0};
 
     for (uint32_t i = 1; i <= T3R_MIN(radius, back) && found.before == 0; i++) {
-        if (confidence[at - i * step] == T3R_CONFIDENCE_MEASURED) {
+        if (t3r_is_reliable(validity[at - i * step])) {
             found.first = at - i * step;
             found.before = i;
         }
@@ -37,7 +37,7 @@ static bracket find_bracket(const uint8_t *confidence, size_t at, size_t step, u
         return none;
     }
     for (uint32_t i = 1; i <= T3R_MIN(radius, ahead) && found.after == 0; i++) {
-        if (confidence[at + i * step] == T3R_CONFIDENCE_MEASURED) {
+        if (t3r_is_reliable(validity[at + i * step])) {
             found.second = at + i * step;
             found.after = i;
         }
@@ -88,16 +88,16 @@ uint32_t t3r_depth_fill(t3r_view *view, uint32_t radius)
     for (uint32_t y = 0; y < height; y++) {
         for (uint32_t x = 0; x < width; x++) {
             size_t at = (size_t)y * width + x;
-            if (view->confidence[at] != T3R_CONFIDENCE_NONE) {
+            if (t3r_has_depth(view->validity[at])) {
                 continue;
             }
-            bracket across = find_bracket(view->confidence, at, 1, x, width - 1 - x, radius);
-            bracket along = find_bracket(view->confidence, at, width, y, height - 1 - y, radius);
+            bracket across = find_bracket(view->validity, at, 1, x, width - 1 - x, radius);
+            bracket along = find_bracket(view->validity, at, width, y, height - 1 - y, radius);
             bool vertical = along.gap != 0 && (across.gap == 0 || along.gap < across.gap);
             const bracket *between = vertical ? &along : &across;
             if (between->gap != 0) {
                 view->depth[at] = depth_between(view, at, between);
-                view->confidence[at] = T3R_CONFIDENCE_FILLED;
+                view->validity[at] = T3R_FILLED;
                 filled++;
             }
         }

@@ -14,13 +14,13 @@ static inline bool t3r_same_surface(uint16_t a, uint16_t b)
     return 16 * difference <= (a < b ? a : b);
 }
 
-/* Confidence from depth: T3R_CONFIDENCE_MEASURED where there is one, else T3R_CONFIDENCE_NONE. */
-void t3r_depth_confidence(t3r_view *view);
+/* Validity from depth: T3R_MEASURED where there is one, else T3R_NO_DEPTH. */
+void t3r_depth_validity(t3r_view *view);
 
 /* Fills pixels without depth that have measured ones within `radius` (0..8; 0 fills nothing) on both sides, in
- * their row or their column; they get T3R_CONFIDENCE_FILLED and never seed others. Returns how many. Two sides
+ * their row or their column; they become T3R_FILLED and never seed others. Returns how many. Two sides
  * that agree are interpolated; across an edge the side of the likelier colour is taken whole. Reads view->colour,
- * depth and confidence. At most 4 x radius steps a pixel. */
+ * depth and validity. At most 4 x radius steps a pixel. */
 uint32_t t3r_depth_fill(t3r_view *view, uint32_t radius);
 
 #endif

@@ -43,10 +43,11 @@ void t3r_pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gau
 /* Kept neighbours are this far apart about a retained pixel: pixels, Q12, at least 1; 1 when unadapted. */
 uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
 
-/* Each writes the view's retained points in raster order to `out` and returns their number. */
-uint32_t t3r_head_analytic(const t3r_head_input *input, t3r_gaussian *out);
-uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out);
-uint32_t t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out);
+/* Each writes the Gaussians of the retained points in the rows begin..end - 1, in raster order, to `out` and returns
+ * their number. The bands of a view together give what the whole view gives. `moment` sweeps over the whole view: its
+ * range must be 0..height. */
+typedef uint32_t t3r_head_rows(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out);
+t3r_head_rows t3r_head_analytic, t3r_head_moment, t3r_head_learned;
 
 /* Bytes of work that a learned head needs for views of this width. */
 size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width);

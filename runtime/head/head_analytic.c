@@ -17,7 +17,7 @@ static void local_mean(const t3r_view *view, uint32_t u, uint32_t v, uint32_t ha
     for (uint32_t y = y0; y <= y1; y++) {
         for (uint32_t x = x0; x <= x1; x++) {
             size_t i = (size_t)y * view->width + x;
-            if (view->confidence[i] != T3R_CONFIDENCE_NONE && t3r_same_surface(depth, view->depth[i])) {
+            if (t3r_has_depth(view->validity[i]) && t3r_same_surface(depth, view->depth[i])) {
                 for (int c = 0; c < 3; c++) {
                     sum[c] += view->colour[c][i];
                 }
@@ -30,11 +30,11 @@ static void local_mean(const t3r_view *view, uint32_t u, uint32_t v, uint32_t ha
     }
 }
 
-uint32_t t3r_head_analytic(const t3r_head_input *input, t3r_gaussian *out)
+uint32_t t3r_head_analytic(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
     uint32_t count = 0;
-    for (uint32_t v = 0; v < view->height; v++) {
+    for (uint32_t v = begin; v < end; v++) {
         for (uint32_t u = 0; u < view->width; u++) {
             size_t pixel = (size_t)v * view->width + u;
             if (!t3r_retained(view, pixel)) {

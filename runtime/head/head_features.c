@@ -40,7 +40,7 @@ void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, i
     if (view->label[i] == T3R_NO_LABEL || (!retained && t3r_set_aside(view, i, input->settings))) {
         return; /* what is set aside is not to be covered */
     }
-    features[4] = t3r_is_measured(view->confidence[i]) ? MEASURED : FILLED;
+    features[4] = t3r_is_measured(view->validity[i]) ? MEASURED : FILLED;
     const uint16_t *depth = view->depth + i;
     int32_t density_q10 = input->unadapted ? 0 : t3r_log_density_q10(view, i, input->settings, input->clusters);
     features[5] = held(t3r_round_shift32(density_q10, 6) + 64);

@@ -91,22 +91,22 @@ static uint32_t lift_row(const t3r_head_input *input, uint32_t y, const int16_t 
     return count;
 }
 
-uint32_t t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out)
+uint32_t t3r_head_learned(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
     uint8_t *behind = (uint8_t *)input->work + t3r_network_work_bytes(input->weights, view->width);
     int16_t(*outputs)[T3R_HEAD_OUTPUTS] = (int16_t(*)[T3R_HEAD_OUTPUTS])(void *)behind;
     t3r_network network;
-    t3r_network_begin(&network, input->weights, view->width, view->height, input->work);
+    t3r_network_begin(&network, input->weights, view->width, view->height, begin, input->work);
     uint32_t count = 0;
-    for (int32_t y = t3r_network_first(&network); y < (int32_t)view->height; y++) {
+    for (int32_t y = t3r_network_first(&network); y < (int32_t)end; y++) {
         while (t3r_network_wants_features(&network, y)) {
             uint32_t row;
             int8_t *features = t3r_network_feature_row(&network, &row);
             t3r_head_features(input, row, features);
         }
         t3r_network_step(&network, y);
-        if (y >= 0) {
+        if (y >= (int32_t)begin) {
             predict_row(input, &network, (uint32_t)y, outputs);
             count += lift_row(input, (uint32_t)y, (const int16_t(*)[T3R_HEAD_OUTPUTS])outputs, out + count);
         }

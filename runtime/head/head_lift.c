@@ -92,5 +92,5 @@ void t3r_lift(const t3r_pointmap *map, uint32_t view_index, uint32_t u, uint32_t
     }
     gaussian->opacity_q15 = footprint->opacity_q15;
     gaussian->view = (uint8_t)view_index;
-    gaussian->confidence = view->confidence[(size_t)v * view->width + u];
+    gaussian->confidence = t3r_confidence_of(view->validity[(size_t)v * view->width + u]);
 }

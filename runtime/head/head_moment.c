@@ -68,8 +68,7 @@ static void assign_pixels(const t3r_head_input *input)
         for (size_t n = 0; n < pixels; n++) {
             size_t i = down ? n : pixels - 1 - n;
             uint32_t x = (uint32_t)(i % view->width), y = (uint32_t)(i / view->width);
-            if (view->confidence[i] == T3R_CONFIDENCE_NONE || t3r_retained(view, i) ||
-                t3r_set_aside(view, i, input->settings)) {
+            if (!t3r_has_depth(view->validity[i]) || t3r_retained(view, i) || t3r_set_aside(view, i, input->settings)) {
                 continue;
             }
             int32_t s = down ? -1 : 1;
@@ -140,14 +139,14 @@ static t3r_footprint footprint_of(const moments *m)
     return f;
 }
 
-uint32_t t3r_head_moment(const t3r_head_input *input, t3r_gaussian *out)
+uint32_t t3r_head_moment(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
     if (!input->unadapted) {
         assign_pixels(input);
     }
     uint32_t count = 0;
-    for (uint32_t v = 0; v < view->height; v++) {
+    for (uint32_t v = begin; v < end; v++) {
         for (uint32_t u = 0; u < view->width; u++) {
             size_t pixel = (size_t)v * view->width + u;
             if (!t3r_retained(view, pixel)) {

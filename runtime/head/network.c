@@ -146,9 +146,29 @@ size_t t3r_network_work_bytes(const void *weights, uint32_t width)
     return bytes > SIZE_MAX ? SIZE_MAX : (size_t)bytes;
 }
 
-void t3r_network_begin(t3r_network *net, const void *weights, uint32_t width, uint32_t height, void *work)
+/* Each node starts at the first row that the band's points read, by way of all layers between, or a row above it. No
+ * row of the band reads what lies further up. */
+static void skip_rows(t3r_network *net)
+{
+    for (uint32_t n = 0; n <= net->planes; n++) {
+        net->nodes[n].made = net->begin >> net->nodes[n].level;
+    }
+    for (uint32_t n = net->planes; n > 0; n--) { /* every plane layer's readers are behind it */
+        const t3r_layer *layer = &net->layers[n - 1];
+        int32_t top = T3R_MAX((int32_t)(layer->stride * net->nodes[n].made) - padding(layer), 0);
+        for (uint32_t i = 0; i < sources_of(layer); i++) {
+            t3r_node *source = &net->nodes[layer->source[i]];
+            source->made = T3R_MIN(source->made, (uint32_t)top >> (source->level - grid_level(layer)));
+        }
+    }
+}
+
+void t3r_network_begin(t3r_network *net, const void *weights, uint32_t width, uint32_t height, uint32_t begin,
+                       void *work)
 {
     (void)lay_out(net, weights, width, height, work);
+    net->begin = begin;
+    skip_rows(net);
 }
 
 /* --- activations in and out --------------------------------------------------------------------------------------- */
@@ -383,13 +403,13 @@ static void make_row(t3r_network *net, uint32_t n)
 int32_t t3r_network_first(const t3r_network *net)
 {
     int32_t need[T3R_MAX_LAYERS + 1];
-    int32_t first = 0;
+    int32_t first = (int32_t)(net->begin / PERIOD * PERIOD);
     bool ahead = true;
-    while (ahead) { /* each layer looks at most 6 x 16 rows ahead of its reader: at most 24 x 6 turns */
+    while (ahead) { /* each layer looks at most 6 x 16 rows ahead of its reader and behind: at most 24 x 12 turns */
         rows_needed(net, first - 1, need);
         ahead = false;
         for (uint32_t n = 0; n <= net->planes; n++) {
-            ahead = ahead || need[n] > 0;
+            ahead = ahead || need[n] > (int32_t)net->nodes[n].made;
         }
         first -= ahead ? PERIOD : 0;
     }

@@ -1,13 +1,14 @@
-/* A learned head's layers, run row by row (SPEC.md, "Learned head: order").
+/* A learned head's layers, run row by row over an image or a band of its rows (SPEC.md, "Learned head: order").
  *
  * A plane layer keeps a ring of the rows that its readers still need, so activations take a few rows a layer, never a
  * plane. Point layers are evaluated at single pixels of the row just completed. All of it works on weights that
  * t3r_weights_check() passed.
  *
- *     for (y = t3r_network_first(net); y < height; y++) {
+ *     t3r_network_begin(net, weights, width, height, first row of the band, work);
+ *     for (y = t3r_network_first(net); y < end of the band; y++) {
  *         while (t3r_network_wants_features(net, y)) { fill t3r_network_feature_row(net, &row) }
  *         t3r_network_step(net, y);
- *         if (y >= 0) { t3r_network_points(net, y, ...) any number of times }
+ *         if (y >= first row of the band) { t3r_network_points(net, y, ...) any number of times }
  *     } */
 #ifndef T3R_NETWORK_H
 #define T3R_NETWORK_H
@@ -29,7 +30,7 @@ typedef struct t3r_node {
     int16_t zero;
     uint32_t width, height; /* of its level */
     uint32_t ring;          /* rows kept; row y lies at y mod ring; 0 = no plane layer reads it */
-    uint32_t made;          /* rows made so far, from the top */
+    uint32_t made;          /* the next row to be made; it starts at the first row that the band reads */
     size_t pitch;           /* bytes a row */
     uint8_t *rows;
 } t3r_node;
@@ -38,6 +39,7 @@ typedef struct t3r_network {
     const uint8_t *file;
     t3r_weights_header header;
     uint32_t width, height;
+    uint32_t begin;  /* first row of the band */
     uint32_t planes; /* layers before the first point layer */
     t3r_layer layers[T3R_MAX_LAYERS];
     t3r_node nodes[T3R_MAX_LAYERS + 1];
@@ -48,10 +50,13 @@ typedef struct t3r_network {
 /* Bytes of work for images of this width and any height; SIZE_MAX when that is more than can be counted. */
 size_t t3r_network_work_bytes(const void *weights, uint32_t width);
 
-/* Prepares a pass over one image. work: t3r_network_work_bytes() bytes, aligned to 16. */
-void t3r_network_begin(t3r_network *net, const void *weights, uint32_t width, uint32_t height, void *work);
+/* Prepares a pass over the rows of an image from row `begin` (below the height) on. Rows above it that its kernels read
+ * are made, too, so that a band has the bits of the whole image. work: t3r_network_work_bytes() bytes, aligned to 16.
+ */
+void t3r_network_begin(t3r_network *net, const void *weights, uint32_t width, uint32_t height, uint32_t begin,
+                       void *work);
 
-/* The first step, at most 0: above the image, so that rows at its top are made at the same pace as below. */
+/* The first step, at most `begin`: above the band, so that rows at its top are made at the same pace as below. */
 int32_t t3r_network_first(const t3r_network *net);
 
 /* Whether step y needs another row of features; which row that is, and where it goes: width x T3R_FEATURES. */

@@ -48,7 +48,7 @@ t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *fr
         t3r_undistort_colour(grid, width, height, (const uint8_t *const *)raw, view->colour);
         t3r_undistort_depth(grid, width, height, depth, view->depth);
     }
-    t3r_depth_confidence(view);
+    t3r_depth_validity(view);
     resized.distortion = T3R_DISTORTION_NONE;
     for (int i = 0; i < 5; i++) {
         resized.distortion_q24[i] = 0;

@@ -14,7 +14,7 @@
  *     a stream:      empty -- t3r_stream_keyframe() --> scene, and once more for each further keyframe
  *     from a file:   empty -- t3r_scene_begin() --> scene, and t3r_scene_append() for each Gaussian
  *
- * The shortest program; each call but the first returns a t3r_status, which a real one looks at:
+ * The shortest program. Calls return a t3r_status, which a real program looks at:
  *
  *     static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[T3R_ARENA_BYTES(256, 256, 2, 13107)];
  *     t3r_config config = t3r_default_config(256, 256, 2, 13107);

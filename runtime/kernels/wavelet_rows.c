@@ -1,4 +1,4 @@
-/* Wavelet rows in plain C. No sum leaves 16 bits for the ranges that wavelet.c proves. */
+/* Wavelet rows in plain C. No sum leaves 16 bits for the ranges that wavelet_level.h proves. */
 #include "wavelet_rows.h"
 
 #include "core/fixed.h"
@@ -11,26 +11,6 @@ void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t 
     }
     if (count % 2 != 0) {
         even[count / 2] = row[count - 1];
-    }
-}
-
-void t3r_row_join(int16_t *restrict row, const int16_t *restrict even, const int16_t *restrict odd, size_t count)
-{
-    for (size_t i = 0; i < count / 2; i++) {
-        row[2 * i] = even[i];
-        row[2 * i + 1] = odd[i];
-    }
-    if (count % 2 != 0) {
-        row[count - 1] = even[count / 2];
-    }
-}
-
-void t3r_row_swap(int16_t *restrict a, int16_t *restrict b, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        int16_t held = a[i];
-        a[i] = b[i];
-        b[i] = held;
     }
 }
 
@@ -51,25 +31,10 @@ void t3r_row_db2_predict(int16_t *restrict high, const int16_t *restrict low, si
     }
 }
 
-void t3r_row_db2_unpredict(int16_t *restrict high, const int16_t *restrict low, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        high[i] = (int16_t)(high[i] + 2 * low[i] - t3r_mulr_q15_small(low[i], T3R_DB2_PREDICT_Q15));
-    }
-}
-
 void t3r_row_db2_update(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         low[i] = (int16_t)(low[i] + t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_Q15) -
-                           t3r_mulr_q15_small(high_next[i], T3R_DB2_UPDATE_NEXT_Q15));
-    }
-}
-
-void t3r_row_db2_unupdate(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        low[i] = (int16_t)(low[i] - t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_Q15) +
                            t3r_mulr_q15_small(high_next[i], T3R_DB2_UPDATE_NEXT_Q15));
     }
 }
@@ -95,26 +60,11 @@ void t3r_row_db2_first(int16_t *restrict x0, const int16_t *restrict x1, size_t 
     }
 }
 
-void t3r_row_db2_unfirst(int16_t *restrict x0, const int16_t *restrict x1, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        x0[i] = (int16_t)(x0[i] + t3r_mulr_q15_small(x1[i], T3R_DB2_PREDICT_Q15));
-    }
-}
-
 void t3r_row_db2_last(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
                       size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         last[i] = (int16_t)(last[i] - 2 * before[i] + before_that[i]);
-    }
-}
-
-void t3r_row_db2_unlast(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
-                        size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        last[i] = (int16_t)(last[i] + 2 * before[i] - before_that[i]);
     }
 }
 
@@ -127,26 +77,10 @@ void t3r_row_db2_pair(int16_t *restrict low, int16_t *restrict high, size_t coun
     }
 }
 
-void t3r_row_db2_unpair(int16_t *restrict low, int16_t *restrict high, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        high[i] = (int16_t)(high[i] - low[i]);
-        low[i] = (int16_t)(low[i] - t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_PAIR_Q15));
-    }
-    t3r_row_db2_unpredict(high, low, count);
-}
-
 void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         even[i] = (int16_t)(even[i] + t3r_round_shift32(odd[i], 1));
-    }
-}
-
-void t3r_row_haar_unupdate(int16_t *restrict even, const int16_t *restrict odd, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        even[i] = (int16_t)(even[i] - t3r_round_shift32(odd[i], 1));
     }
 }
 
@@ -157,24 +91,10 @@ void t3r_row_cdf53_predict(int16_t *restrict odd, const int16_t *even, const int
     }
 }
 
-void t3r_row_cdf53_unpredict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        odd[i] = (int16_t)(odd[i] + t3r_round_shift32(even[i] + even_next[i], 1));
-    }
-}
-
 void t3r_row_cdf53_update(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         even[i] = (int16_t)(even[i] + t3r_round_shift32(odd_previous[i] + odd[i], 2));
-    }
-}
-
-void t3r_row_cdf53_unupdate(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        even[i] = (int16_t)(even[i] - t3r_round_shift32(odd_previous[i] + odd[i], 2));
     }
 }
 

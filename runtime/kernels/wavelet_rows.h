@@ -1,6 +1,5 @@
 /* The lifting steps of the wavelets over rows of int16, in the plain C that defines them. A row is a plane's row
- * (vertical lifting) or one half of a split row (horizontal lifting). Each step has its inverse, which adds what the
- * step took away, computed from the same samples. */
+ * (vertical lifting) or one half of a split row (horizontal lifting). */
 #ifndef T3R_WAVELET_ROWS_H
 #define T3R_WAVELET_ROWS_H
 
@@ -23,12 +22,8 @@ static inline int16_t t3r_mulr_q15_small(int16_t a, int16_t c)
     return (int16_t)(high + (low >> 15));
 }
 
-/* even[i] = row[2 i], odd[i] = row[2 i + 1], and back; an odd count leaves one more even */
+/* even[i] = row[2 i], odd[i] = row[2 i + 1]; an odd count leaves one more even */
 void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row, size_t count);
-void t3r_row_join(int16_t *restrict row, const int16_t *restrict even, const int16_t *restrict odd, size_t count);
-
-/* Exchanges two rows. */
-void t3r_row_swap(int16_t *restrict a, int16_t *restrict b, size_t count);
 
 /* (luma - 128) x 16 of count pixels */
 void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
@@ -36,34 +31,25 @@ void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_
 
 /* db2, 1: high -= sqrt(3) low, as 2 low - mulr(low, 2 - sqrt 3) */
 void t3r_row_db2_predict(int16_t *restrict high, const int16_t *restrict low, size_t count);
-void t3r_row_db2_unpredict(int16_t *restrict high, const int16_t *restrict low, size_t count);
 /* db2, 2: low += mulr(high, sqrt 3 / 4) - mulr(next high, (2 - sqrt 3) / 4) */
 void t3r_row_db2_update(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
-void t3r_row_db2_unupdate(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
 /* db2, 3: high += previous low */
 void t3r_row_add(int16_t *restrict high, const int16_t *restrict low, size_t count);
 void t3r_row_subtract(int16_t *restrict high, const int16_t *restrict low, size_t count);
 /* db2, the first sample, which has no partner: x0 -= mulr(x1, 2 - sqrt 3) */
 void t3r_row_db2_first(int16_t *restrict x0, const int16_t *restrict x1, size_t count);
-void t3r_row_db2_unfirst(int16_t *restrict x0, const int16_t *restrict x1, size_t count);
 /* db2, the last sample of an even length, which has none either: last += that before - 2 before */
 void t3r_row_db2_last(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
                       size_t count);
-void t3r_row_db2_unlast(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
-                        size_t count);
 /* db2, a line of two samples: step 1; low += mulr(high, (sqrt 3 - 1) / 2); high += low */
 void t3r_row_db2_pair(int16_t *restrict low, int16_t *restrict high, size_t count);
-void t3r_row_db2_unpair(int16_t *restrict low, int16_t *restrict high, size_t count);
 
 /* Haar: odd -= even (t3r_row_subtract); even += (odd + 1) >> 1 */
 void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count);
-void t3r_row_haar_unupdate(int16_t *restrict even, const int16_t *restrict odd, size_t count);
 
 /* CDF 5/3: odd -= (even + next even + 1) >> 1; even += (previous odd + odd + 2) >> 2 */
 void t3r_row_cdf53_predict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count);
-void t3r_row_cdf53_unpredict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count);
 void t3r_row_cdf53_update(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count);
-void t3r_row_cdf53_unupdate(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count);
 
 /* Texture of a level-1 row: |h| + |v| + mulr(|d|, d_gain), Q4; the sum is below 2^15 (wavelet_texture.c). */
 void t3r_row_texture_finest(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,

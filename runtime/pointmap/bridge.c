@@ -27,14 +27,15 @@ static uint16_t step_at(t3r_depth_scale scale, int32_t z_q20)
 /* Of several points that fall on a pixel the nearest stays. */
 static void lend(const t3r_view *to, const t3r_sight *sight, t3r_depth_scale scale)
 {
-    uint8_t *confidence = &to->confidence[sight->pixel];
-    if (*confidence != T3R_CONFIDENCE_NONE && *confidence != T3R_CONFIDENCE_LENT) {
+    uint8_t *validity = &to->validity[sight->pixel];
+    bool empty = !t3r_has_depth(*validity);
+    if (!empty && !t3r_is_lent(*validity)) {
         return;
     }
     uint16_t step = step_at(scale, sight->z_q20);
-    if (step != 0 && (*confidence == T3R_CONFIDENCE_NONE || step < to->depth[sight->pixel])) {
+    if (step != 0 && (empty || step < to->depth[sight->pixel])) {
         to->depth[sight->pixel] = step;
-        *confidence = T3R_CONFIDENCE_LENT;
+        *validity = t3r_marked(T3R_BRIDGED, T3R_MARK_LENT);
     }
 }
 
@@ -46,7 +47,7 @@ void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t 
         for (uint32_t y = 0; y < views[w].height && w != v; y++) {
             for (uint32_t x = 0; x < views[w].width; x++) {
                 t3r_sight sight;
-                if (views[w].confidence[(size_t)y * views[w].width + x] == T3R_CONFIDENCE_MEASURED &&
+                if (t3r_is_reliable(views[w].validity[(size_t)y * views[w].width + x]) &&
                     t3r_reproject(&from, x, y, &to, &sight)) {
                     lend(&views[v], &sight, to.scale);
                 }
@@ -58,11 +59,10 @@ void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t 
 /* --- between what is known ---------------------------------------------------------------------------------------- */
 
 /* Planes may hold anything: what is said to be known counts with a depth alone. */
-static bool is_known(const t3r_view *view, size_t pixel)
+static bool ends_hole(const t3r_view *view, size_t pixel)
 {
-    uint8_t confidence = view->confidence[pixel];
-    return view->depth[pixel] != 0 && (confidence == T3R_CONFIDENCE_MEASURED || confidence == T3R_CONFIDENCE_FILLED ||
-                                       confidence == T3R_CONFIDENCE_LENT);
+    uint8_t validity = view->validity[pixel];
+    return view->depth[pixel] != 0 && (t3r_is_known(validity) || t3r_is_lent(validity));
 }
 
 /* Steps to the first known pixel from (x, y) on, 1..radius, and its depth; 0 if there is none. */
@@ -77,7 +77,7 @@ static uint32_t look(const t3r_view *view, uint32_t x, uint32_t y, int32_t dx, i
             return 0;
         }
         size_t pixel = (size_t)v * view->width + (size_t)u;
-        if (is_known(view, pixel)) {
+        if (ends_hole(view, pixel)) {
             *depth = view->depth[pixel];
             return i;
         }
@@ -127,10 +127,10 @@ void t3r_bridge_view(const t3r_view *view, uint32_t radius)
     for (uint32_t y = 0; y < view->height && radius > 0; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
             size_t pixel = (size_t)y * view->width + x;
-            uint16_t depth = view->confidence[pixel] == T3R_CONFIDENCE_NONE ? depth_across(view, x, y, radius) : 0;
+            uint16_t depth = t3r_has_depth(view->validity[pixel]) ? 0 : depth_across(view, x, y, radius);
             if (depth != 0) {
                 view->depth[pixel] = depth;
-                view->confidence[pixel] = T3R_CONFIDENCE_BRIDGED;
+                view->validity[pixel] = T3R_BRIDGED;
             }
         }
     }
@@ -139,18 +139,18 @@ void t3r_bridge_view(const t3r_view *view, uint32_t radius)
 /* --- against the other views -------------------------------------------------------------------------------------- */
 
 /* What view `to` makes of a bridged or lent pixel that it sees there. */
-static uint8_t judge(uint8_t confidence, const t3r_pointmap *to, const t3r_sight *sight, bool settled)
+static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_sight *sight, bool settled)
 {
-    uint8_t there = to->view->confidence[sight->pixel];
-    bool known = there == T3R_CONFIDENCE_MEASURED || there == T3R_CONFIDENCE_FILLED;
-    if (!known && !(settled && there == T3R_CONFIDENCE_BRIDGED)) {
-        return confidence;
+    uint8_t there = to->view->validity[sight->pixel];
+    bool known = t3r_is_known(there), bridged = t3r_is_bridged(there) && !t3r_is_marked(there);
+    if (!known && !(settled && bridged)) {
+        return validity;
     }
     int64_t behind = (int64_t)sight->z_q20 - t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
     if (known && 16 * -behind > sight->z_q20) {
-        return T3R_CONFIDENCE_NONE;
+        return T3R_NO_DEPTH;
     }
-    return 16 * t3r_abs64(behind) <= sight->z_q20 ? T3R_CONFIDENCE_BRIDGED_COVERED : confidence;
+    return 16 * t3r_abs64(behind) <= sight->z_q20 ? t3r_marked(T3R_BRIDGED, T3R_MARK_COVERED) : validity;
 }
 
 uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled)
@@ -164,22 +164,22 @@ uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, in
     for (uint32_t y = 0; y < view->height; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
             size_t pixel = (size_t)y * view->width + x;
-            uint8_t confidence = view->confidence[pixel];
-            if (confidence != T3R_CONFIDENCE_BRIDGED && confidence != T3R_CONFIDENCE_LENT) {
+            uint8_t validity = view->validity[pixel];
+            if (!t3r_is_bridged(validity) || t3r_is_covered(validity)) {
                 continue;
             }
-            if (confidence == T3R_CONFIDENCE_LENT) {
-                confidence = T3R_CONFIDENCE_BRIDGED_COVERED;
+            if (t3r_is_lent(validity)) {
+                validity = t3r_marked(T3R_BRIDGED, T3R_MARK_COVERED);
             }
-            for (uint32_t w = 0; w < count && confidence != T3R_CONFIDENCE_NONE; w++) {
+            for (uint32_t w = 0; w < count && t3r_has_depth(validity); w++) {
                 t3r_sight sight;
                 if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight)) {
-                    confidence = judge(confidence, &maps[w], &sight, (settled >> w & 1) != 0);
+                    validity = judge(validity, &maps[w], &sight, (settled >> w & 1) != 0);
                 }
             }
-            view->confidence[pixel] = confidence;
-            view->depth[pixel] = confidence == T3R_CONFIDENCE_NONE ? 0 : view->depth[pixel];
-            bridged += confidence == T3R_CONFIDENCE_BRIDGED;
+            view->validity[pixel] = validity;
+            view->depth[pixel] = t3r_has_depth(validity) ? view->depth[pixel] : 0;
+            bridged += t3r_has_depth(validity) && !t3r_is_covered(validity);
         }
     }
     return bridged;

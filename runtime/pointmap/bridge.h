@@ -6,12 +6,11 @@
 
 #include "core/views.h"
 
-/* Gives depth to pixels of confidence NONE that have known ones within `radius` (0..255; 0 leaves
- * what other views lend) at both ends of their row, column or diagonals, known being what is measured, filled, or
- * measured by another view and seen from here. A pixel of an ordinary kind gets T3R_CONFIDENCE_BRIDGED; one whose
- * surface another view has T3R_CONFIDENCE_BRIDGED_COVERED; none where another view sees through it. Reads pose, depth
- * and confidence as t3r_depth_fill() leaves them, the frame's exponent; touches no pixel that has a depth. Returns how
- * many are BRIDGED.
+/* Gives depth to pixels without one that have known ones within `radius` (0..255; 0 leaves what other views lend) at
+ * both ends of their row, column or diagonals. Known is what is measured, filled, or measured by another view and seen
+ * from here. Such a pixel becomes T3R_BRIDGED, and T3R_MARK_COVERED too where another view has its surface; it gets
+ * nothing where another view sees through it. Reads pose, depth and validity as t3r_depth_fill() leaves them, and the
+ * frame's exponent; touches no pixel that has a depth. Returns how many are bridged and not covered.
  *
  * t3r_bridge_lend() for every view first, then t3r_bridge_view() for every view, then t3r_bridge_settle() for every
  * view: three steps, so that a caller may pause between any two views. `settled` has a bit set for each view whose

@@ -30,7 +30,7 @@ static bool well_exposed(const t3r_view *view, size_t pixel)
 
 static bool is_pair(const t3r_pointmap *from, size_t pixel, const t3r_pointmap *to, const t3r_sight *sight)
 {
-    if (to->view->confidence[sight->pixel] != T3R_CONFIDENCE_MEASURED) {
+    if (!t3r_is_reliable(to->view->validity[sight->pixel])) {
         return false;
     }
     int32_t there = t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
@@ -46,7 +46,7 @@ static void compare(const t3r_pointmap *from, const t3r_pointmap *to, const int3
         for (uint32_t x = 0; x < view->width; x += STEP) {
             size_t pixel = (size_t)y * view->width + x;
             t3r_sight sight;
-            if (view->confidence[pixel] != T3R_CONFIDENCE_MEASURED || !t3r_reproject(from, x, y, to, &sight) ||
+            if (!t3r_is_reliable(view->validity[pixel]) || !t3r_reproject(from, x, y, to, &sight) ||
                 !is_pair(from, pixel, to, &sight)) {
                 continue;
             }

@@ -8,7 +8,7 @@
 
 static bool lies_between(const t3r_view *view, size_t pixel, size_t before, size_t after)
 {
-    if (!t3r_is_measured(view->confidence[before]) || !t3r_is_measured(view->confidence[after])) {
+    if (!t3r_is_measured(view->validity[before]) || !t3r_is_measured(view->validity[after])) {
         return false;
     }
     uint16_t here = view->depth[pixel];
@@ -20,22 +20,22 @@ static bool lies_between(const t3r_view *view, size_t pixel, size_t before, size
 static bool between_surfaces(const t3r_view *view, uint32_t x, uint32_t y)
 {
     size_t pixel = (size_t)y * view->width + x;
-    return t3r_is_measured(view->confidence[pixel]) &&
+    return t3r_is_measured(view->validity[pixel]) &&
            ((x > 0 && x + 1 < view->width && lies_between(view, pixel, pixel - 1, pixel + 1)) ||
             (y > 0 && y + 1 < view->height && lies_between(view, pixel, pixel - view->width, pixel + view->width)));
 }
 
-/* Whose word counts: of measured pixels, or of all with depth. */
-static bool is_witness(uint8_t confidence, bool filled)
+/* Whether a pixel counts as evidence: measured ones do, with `filled` all with depth. */
+static bool counts(uint8_t validity, bool filled)
 {
-    return filled ? confidence != T3R_CONFIDENCE_NONE : t3r_is_measured(confidence);
+    return filled ? t3r_has_depth(validity) : t3r_is_measured(validity);
 }
 
 bool t3r_seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool filled)
 {
     const t3r_view *view = to->view;
     uint32_t u = (uint32_t)(sight->pixel % view->width), v = (uint32_t)(sight->pixel / view->width);
-    if (!is_witness(view->confidence[sight->pixel], filled) || u == 0 || v == 0 || u + 1 == view->width ||
+    if (!counts(view->validity[sight->pixel], filled) || u == 0 || v == 0 || u + 1 == view->width ||
         v + 1 == view->height) {
         return false;
     }
@@ -43,7 +43,7 @@ bool t3r_seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool fille
         for (uint32_t x = u - 1; x <= u + 1; x++) {
             size_t pixel = (size_t)y * view->width + x;
             int64_t behind = (int64_t)t3r_depth_q20(to->scale, view->depth[pixel]) - sight->z_q20;
-            if (is_witness(view->confidence[pixel], filled) && 16 * behind <= sight->z_q20) {
+            if (counts(view->validity[pixel], filled) && 16 * behind <= sight->z_q20) {
                 return false;
             }
         }
@@ -54,7 +54,7 @@ bool t3r_seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool fille
 static bool seen_through_by_any(const t3r_pointmap *maps, uint32_t count, uint32_t v, uint32_t x, uint32_t y,
                                 bool guessed)
 {
-    const bool filled = guessed && !t3r_is_measured(maps[v].view->confidence[(size_t)y * maps[v].view->width + x]);
+    const bool filled = guessed && !t3r_is_measured(maps[v].view->validity[(size_t)y * maps[v].view->width + x]);
     t3r_sight sight;
     for (uint32_t w = 0; w < count; w++) {
         if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight) && t3r_seen_through(&maps[w], &sight, filled)) {
@@ -74,10 +74,10 @@ uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int3
     }
     for (uint32_t y = 0; y < view->height; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
-            uint8_t *confidence = &view->confidence[(size_t)y * view->width + x];
-            if (!t3r_is_bridged(*confidence) &&
+            uint8_t *validity = &view->validity[(size_t)y * view->width + x];
+            if (!t3r_is_bridged(*validity) &&
                 (between_surfaces(view, x, y) || seen_through_by_any(maps, count, v, x, y, guessed))) {
-                *confidence = t3r_is_measured(*confidence) ? T3R_CONFIDENCE_DOUBTFUL : T3R_CONFIDENCE_FILLED_DOUBTFUL;
+                *validity = t3r_marked(*validity, T3R_MARK_DOUBTFUL);
                 marked++;
             }
         }

@@ -40,7 +40,7 @@ bool t3r_point(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t point_q2
 {
     const t3r_view *view = map->view;
     size_t pixel = (size_t)v * view->width + u;
-    if (view->confidence[pixel] == T3R_CONFIDENCE_NONE) {
+    if (!t3r_has_depth(view->validity[pixel])) {
         return false;
     }
     int64_t z = t3r_depth_q20(map->scale, view->depth[pixel]);
@@ -69,7 +69,7 @@ static int32_t slope_along(const t3r_pointmap *map, size_t pixel, uint32_t at, u
                 break;
             }
             size_t neighbour = side < 0 ? pixel - (size_t)t * stride : pixel + (size_t)t * stride;
-            if (view->confidence[neighbour] == T3R_CONFIDENCE_NONE ||
+            if (!t3r_has_depth(view->validity[neighbour]) ||
                 !t3r_same_surface(view->depth[pixel], view->depth[neighbour])) {
                 break;
             }
@@ -99,7 +99,7 @@ bool t3r_tangents(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t tange
 {
     const t3r_view *view = map->view;
     size_t pixel = (size_t)v * view->width + u;
-    if (view->confidence[pixel] == T3R_CONFIDENCE_NONE) {
+    if (!t3r_has_depth(view->validity[pixel])) {
         return false;
     }
     int32_t ray[2], slope[2];

@@ -25,8 +25,8 @@ static bool covers(const t3r_pointmap *from, uint32_t x, uint32_t y, const t3r_p
     if (!t3r_reproject(from, x, y, to, sight)) {
         return false;
     }
-    uint8_t confidence = to->view->confidence[sight->pixel];
-    if (confidence != T3R_CONFIDENCE_MEASURED && confidence != T3R_CONFIDENCE_WITNESS) {
+    uint8_t validity = to->view->validity[sight->pixel];
+    if (!t3r_is_measured(validity) || t3r_is_covered(validity) || t3r_is_doubtful(validity)) {
         return false;
     }
     int32_t there = t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
@@ -43,12 +43,12 @@ uint32_t t3r_mark_covered(const t3r_view *views, uint32_t count, uint32_t v, int
         t3r_pointmap to = t3r_pointmap_of(&views[w], exponent);
         for (uint32_t y = 0; y < view->height && w != v; y++) {
             for (uint32_t x = 0; x < view->width; x++) {
-                uint8_t *confidence = &view->confidence[(size_t)y * view->width + x];
-                bool measured = *confidence == T3R_CONFIDENCE_MEASURED;
+                uint8_t *validity = &view->validity[(size_t)y * view->width + x];
                 t3r_sight sight;
-                if ((measured || *confidence == T3R_CONFIDENCE_FILLED) && covers(&from, x, y, &to, w < v, &sight)) {
-                    *confidence = measured ? T3R_CONFIDENCE_COVERED : T3R_CONFIDENCE_FILLED_COVERED;
-                    views[w].confidence[sight.pixel] = T3R_CONFIDENCE_WITNESS;
+                if (t3r_is_known(*validity) && covers(&from, x, y, &to, w < v, &sight)) {
+                    uint8_t *witness = &views[w].validity[sight.pixel];
+                    *validity = t3r_marked(*validity, T3R_MARK_COVERED);
+                    *witness = t3r_marked(*witness, T3R_MARK_WITNESS);
                     marked++;
                 }
             }
@@ -57,14 +57,12 @@ uint32_t t3r_mark_covered(const t3r_view *views, uint32_t count, uint32_t v, int
     return marked;
 }
 
-void t3r_forget_witnesses(const t3r_view *views, uint32_t count)
+void t3r_clear_witnesses(const t3r_view *views, uint32_t count)
 {
     for (uint32_t v = 0; v < count; v++) {
         size_t pixels = (size_t)views[v].width * views[v].height;
         for (size_t i = 0; i < pixels; i++) {
-            if (views[v].confidence[i] == T3R_CONFIDENCE_WITNESS) {
-                views[v].confidence[i] = T3R_CONFIDENCE_MEASURED;
-            }
+            views[v].validity[i] &= (uint8_t)~T3R_MARK_WITNESS;
         }
     }
 }

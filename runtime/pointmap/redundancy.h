@@ -13,7 +13,7 @@
  * lost. To be called for the last view first. */
 uint32_t t3r_mark_covered(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent);
 
-/* Once all views are marked: forgets which pixels cover others. */
-void t3r_forget_witnesses(const t3r_view *views, uint32_t count);
+/* Once all views are marked: clears which pixels cover others. */
+void t3r_clear_witnesses(const t3r_view *views, uint32_t count);
 
 #endif

@@ -178,7 +178,7 @@ static void compare(const t3r_refine_view *job, uint32_t left, uint32_t top, t3r
     for (uint32_t j = 0; j < rows; j++) {
         size_t row = (size_t)(top + j) * view->width + left;
         for (uint32_t i = 0; i < columns; i++) {
-            want->counts[j][i] = view->confidence[row + i] != T3R_CONFIDENCE_NONE ? UINT16_MAX : 0;
+            want->counts[j][i] = t3r_has_depth(view->validity[row + i]) ? UINT16_MAX : 0;
             for (int c = 0; c < 3; c++) {
                 int32_t drawn_q7 = T3R_MIN((int32_t)want->drawn.colour_q7[c][j][i], 32640);
                 int32_t residual_q7 = t3r_level_q7(view->colour[c][row + i] * 128u, job->gain_q14[c]) - drawn_q7;

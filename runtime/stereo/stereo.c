@@ -252,10 +252,10 @@ void t3r_stereo_marks(const t3r_view *view, uint32_t least)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
     for (size_t i = 0; i < pixels; i++) {
-        const uint8_t c = view->confidence[i];
-        view->confidence[i] = (uint8_t)(view->depth[i] == 0     ? T3R_CONFIDENCE_NONE
-                                        : c >= least            ? T3R_CONFIDENCE_MEASURED
-                                        : c >= T3R_STEREO_LEAST ? T3R_CONFIDENCE_DOUBTFUL
-                                                                : T3R_CONFIDENCE_FILLED);
+        const uint8_t c = view->match_confidence[i];
+        view->validity[i] = view->depth[i] == 0     ? T3R_NO_DEPTH
+                            : c >= least            ? T3R_MEASURED
+                            : c >= T3R_STEREO_LEAST ? t3r_marked(T3R_MEASURED, T3R_MARK_DOUBTFUL)
+                                                    : T3R_FILLED;
     }
 }

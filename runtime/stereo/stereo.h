@@ -14,7 +14,7 @@
 #define T3R_STEREO_SAME 20u
 #define T3R_STEREO_STEP 120u
 #define T3R_STEREO_LEAST_STEP 30u
-/* Confidences of t3r_stereo_depth() */
+/* Match confidences of t3r_stereo_depth() */
 #define T3R_STEREO_NONE 0u   /* no depth */
 #define T3R_STEREO_FILLED 1u /* the surroundings' depth */
 #define T3R_STEREO_LEAST 2u  /* 2..255: matched, the more, the surer */
@@ -26,8 +26,8 @@ typedef struct t3r_stereo_settings {
     uint32_t fill;        /* 1 = holes get their surroundings' depth, T3R_STEREO_FILLED */
 } t3r_stereo_settings;
 
-/* Depth and confidence planes of two views of one size from their colours and checked, undistorted cameras. Both get
- * depths in steps of *depth_unit_q40 world units, 1..65535, 0 = none; confidences T3R_STEREO_... On anything but
+/* Depth and match confidence of two views of one size from their colours and checked, undistorted cameras. Both get
+ * depths in steps of *depth_unit_q40 world units, 1..65535, 0 = none; match confidences T3R_STEREO_... On anything but
  * T3R_PAIR_OK planes and unit are undefined. */
 t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
                           void *work, uint64_t *depth_unit_q40);
@@ -38,9 +38,8 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
 t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
                             void *work, uint32_t *promise);
 
-/* The plane's confidences as later stages know them: T3R_CONFIDENCE_MEASURED from `least` (2..255) on, below it
- * T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_FILLED where depth is the surroundings', T3R_CONFIDENCE_NONE where there is
- * none. */
+/* Turns the plane of match confidences into validity: T3R_MEASURED, below `least` (2..255) with T3R_MARK_DOUBTFUL;
+ * T3R_FILLED where depth is the surroundings'; T3R_NO_DEPTH where there is none. */
 void t3r_stereo_marks(const t3r_view *view, uint32_t least);
 
 #endif

@@ -159,14 +159,14 @@ void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3
             const size_t at = (size_t)v * view->width + u;
             sight s;
             view->depth[at] = 0;
-            view->confidence[at] = T3R_STEREO_NONE;
+            view->match_confidence[at] = T3R_STEREO_NONE;
             const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
             if (shown && see(planes, side, u, v, &s)) {
                 /* 2^22 x 2^25 x 2^6 */
                 int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
                 view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
                 const bool known = depth <= UINT16_MAX && s.disparity_q16 >= NO_PARALLAX_Q16;
-                view->confidence[at] = known ? s.confidence : T3R_STEREO_FILLED;
+                view->match_confidence[at] = known ? s.confidence : T3R_STEREO_FILLED;
             }
         }
     }

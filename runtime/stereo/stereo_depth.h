@@ -25,7 +25,7 @@ typedef struct t3r_stereo_planes {
  * T3R_PAIR_SCALE. */
 t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uint64_t *depth_unit_q40);
 
-/* Fills depth and confidence of a view; after t3r_stereo_unit(). */
+/* Fills depth and match confidence of a view; after t3r_stereo_unit(). */
 void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3r_view *view);
 
 #endif

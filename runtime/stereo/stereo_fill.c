@@ -209,7 +209,7 @@ static void finish(const filling *f)
             }
             if (shows(view, i)) {
                 view->depth[i] = extend(f, slopes, u, v);
-                view->confidence[i] = T3R_STEREO_FILLED;
+                view->match_confidence[i] = T3R_STEREO_FILLED;
             }
         }
     }

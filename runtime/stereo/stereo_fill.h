@@ -16,8 +16,8 @@
      T3R_PIXELS_(width, height) * 7)
 
 /* Every pixel of something that has no depth takes that of the pixel to which the way is the shortest, steps of luma
- * counting as length, along the plane that the depths about that pixel lie on; confidence T3R_STEREO_FILLED. In a view
- * without any depth nothing is filled. */
+ * counting as length, along the plane that the depths about that pixel lie on; match confidence T3R_STEREO_FILLED. In a
+ * view without any depth nothing is filled. */
 void t3r_stereo_fill(const t3r_view *view, void *work);
 
 #endif

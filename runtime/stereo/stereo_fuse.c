@@ -18,7 +18,7 @@ void t3r_stereo_fuse(const t3r_view *view, const t3r_view *found)
     const int64_t from = (int64_t)(found->depth_unit_q40 >> cut),
                   to = T3R_MAX((int64_t)(view->depth_unit_q40 >> cut), 1);
     for (size_t i = 0; i < pixels; i++) {
-        const int32_t old = view->confidence[i], added = found->confidence[i];
+        const int32_t old = view->match_confidence[i], added = found->match_confidence[i];
         const int64_t steps = t3r_round_div64((int64_t)found->depth[i] * from, to); /* below 2^16 x 2^45 */
         if (added == (int32_t)T3R_STEREO_NONE || steps < 1 || steps > UINT16_MAX ||
             (added == (int32_t)T3R_STEREO_FILLED && old >= added)) {
@@ -34,6 +34,6 @@ void t3r_stereo_fuse(const t3r_view *view, const t3r_view *found)
             confidence = T3R_MAX(t3r_abs32(old - added), LEAST);
         }
         view->depth[i] = (uint16_t)depth;
-        view->confidence[i] = (uint8_t)confidence;
+        view->match_confidence[i] = (uint8_t)confidence;
     }
 }

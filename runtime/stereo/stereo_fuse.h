@@ -4,8 +4,9 @@
 
 #include "core/views.h"
 
-/* Adds what one more pair found of a view to what there is: both have confidences T3R_STEREO_..., and depths in steps
- * of their own depth_unit_q40; the view keeps its unit. Of two that agree the mean, of two that do not the surer. */
+/* Adds what one more pair found of a view to what there is: both have match confidences T3R_STEREO_..., and depths in
+ * steps of their own depth_unit_q40; the view keeps its unit. Of two that agree the mean, of two that do not the surer.
+ */
 void t3r_stereo_fuse(const t3r_view *view, const t3r_view *found);
 
 #endif

@@ -18,12 +18,12 @@ typedef struct survey {
     uint8_t rank[T3R_MAX_VIEWS][T3R_MAX_VIEWS]; /* how many partners are to be preferred, for the one or the other */
 } survey;
 
-void t3r_stereo_forget(const t3r_view *views, uint32_t count)
+void t3r_stereo_clear(const t3r_view *views, uint32_t count)
 {
     for (uint32_t v = 0; v < count; v++) {
         const size_t pixels = T3R_PIXELS_(views[v].width, views[v].height);
         memset(views[v].depth, 0, pixels * sizeof *views[v].depth);
-        memset(views[v].confidence, T3R_CONFIDENCE_NONE, pixels);
+        memset(views[v].validity, T3R_NO_DEPTH, pixels);
     }
 }
 
@@ -95,7 +95,7 @@ static void divide_pair(const t3r_runtime *rt, t3r_view both[2])
     for (int side = 0; side < 2 && rt->views > 2; side++) {
         both[side].depth = (uint16_t *)(void *)at;
         at += T3R_UP_(T3R_PIXELS_(width, height) * 2);
-        both[side].confidence = at;
+        both[side].match_confidence = at;
         at += T3R_UP_(T3R_PIXELS_(width, height));
     }
 }

@@ -6,10 +6,10 @@
 #include "trim3r.h"
 #include "core/views.h"
 
-/* Clears the planes of depth and confidence: without a sensor they hold what an earlier analysis made. */
-void t3r_stereo_forget(const t3r_view *views, uint32_t count);
+/* Clears the planes of depth and validity: without a sensor they hold what an earlier analysis made. */
+void t3r_stereo_clear(const t3r_view *views, uint32_t count);
 
-/* Depth planes, depth units and confidences (as t3r_stereo_marks() has them) of all views of the runtime, and what each
+/* Depth planes, depth units and validity (as t3r_stereo_marks() has it) of all views of the runtime, and what each
  * came from. T3R_ERR_STEREO when no pair can be matched, T3R_ERR_CANCELLED. */
 t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views);
 

@@ -68,13 +68,13 @@ t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_frame *frame, const t3r_
     return status;
 }
 
-/* Keyframes at hand that the new origin leaves out of range tell nothing any more, from wherever it be. */
+/* Retained keyframes out of range of the new origin are ignored. */
 static void leave_far_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
 {
     for (uint32_t v = 0; v < rt->views; v++) {
         t3r_pose pose;
         if (t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK) {
-            memset(views[v].confidence, T3R_CONFIDENCE_NONE, (size_t)views[v].width * views[v].height);
+            memset(views[v].validity, T3R_NO_DEPTH, (size_t)views[v].width * views[v].height);
             rt->camera[v] = rt->camera[slot];
         }
     }
@@ -101,7 +101,7 @@ static bool is_measured_anywhere(const t3r_view *view)
 {
     size_t pixels = (size_t)view->width * view->height;
     for (size_t i = 0; i < pixels; i++) {
-        if (view->confidence[i] == T3R_CONFIDENCE_MEASURED) {
+        if (t3r_is_reliable(view->validity[i])) {
             return true;
         }
     }
@@ -129,17 +129,13 @@ static void level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_t slot
     }
 }
 
-/* Confidences of the older keyframes as before the map was compared with them; wide holes stay bridged. */
-static void forget_marks(const t3r_runtime *rt, const t3r_view *views, uint32_t slot)
+/* Wide holes stay bridged. */
+static void reset_older_marks(const t3r_runtime *rt, const t3r_view *views, uint32_t slot)
 {
     for (uint32_t v = 0; v < rt->views; v++) {
         size_t pixels = (size_t)views[v].width * views[v].height;
         for (size_t i = 0; i < pixels && v != slot; i++) {
-            uint8_t confidence = views[v].confidence[i];
-            views[v].confidence[i] = confidence == T3R_CONFIDENCE_NONE ? T3R_CONFIDENCE_NONE
-                                     : t3r_is_bridged(confidence)      ? T3R_CONFIDENCE_BRIDGED
-                                     : t3r_is_measured(confidence)     ? T3R_CONFIDENCE_MEASURED
-                                                                       : T3R_CONFIDENCE_FILLED;
+            views[v].validity[i] = t3r_unmarked(views[v].validity[i]);
         }
     }
 }
@@ -173,21 +169,14 @@ static uint32_t mark_shown(const t3r_pointmap *keyframe, const uint32_t *drawn_q
     size_t pixels = (size_t)view->width * view->height;
     uint32_t shown = 0;
     for (size_t i = 0; i < pixels; i++) {
-        uint8_t *confidence = &view->confidence[i];
-        bool measured = *confidence == T3R_CONFIDENCE_MEASURED;
-        if (drawn_q20[i] == 0) {
-            continue;
-        }
-        if (*confidence == T3R_CONFIDENCE_BRIDGED) { /* whatever there is, was seen */
-            *confidence = T3R_CONFIDENCE_BRIDGED_COVERED;
-            shown++;
-        }
-        if (!measured && *confidence != T3R_CONFIDENCE_FILLED) {
+        uint8_t *validity = &view->validity[i];
+        if (drawn_q20[i] == 0 || t3r_is_marked(*validity) || !t3r_has_depth(*validity)) {
             continue;
         }
         int64_t z = t3r_depth_q20(keyframe->scale, view->depth[i]), drawn = drawn_q20[i];
-        if (16 * t3r_abs64(z - drawn) <= T3R_MIN(z, drawn)) {
-            *confidence = measured ? T3R_CONFIDENCE_COVERED : T3R_CONFIDENCE_FILLED_COVERED;
+        /* whatever is seen in a wide hole is what is there */
+        if (t3r_is_bridged(*validity) || 16 * t3r_abs64(z - drawn) <= T3R_MIN(z, drawn)) {
+            *validity = t3r_marked(*validity, T3R_MARK_COVERED);
             shown++;
         }
     }
@@ -236,7 +225,7 @@ static uint32_t label_points(const t3r_runtime *rt, const t3r_view *view)
     t3r_cluster *all = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     uint32_t points = 0;
     for (size_t i = 0; i < pixels; i++) {
-        bool valid = view->confidence[i] != T3R_CONFIDENCE_NONE;
+        bool valid = t3r_has_depth(view->validity[i]);
         view->label[i] = valid ? 0 : T3R_NO_LABEL;
         points += valid;
     }
@@ -316,7 +305,7 @@ static t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report
     }
     leave_far_keyframes(rt, views, slot);
     t3r_views_of(rt, views); /* poses in the frame there is now */
-    forget_marks(rt, views, slot);
+    reset_older_marks(rt, views, slot);
     t3r_status status = compare_keyframes(rt, views, slot);
     if (status == T3R_OK) {
         status = see_map(rt, views, slot, report);
@@ -338,7 +327,7 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     if (status != T3R_OK) { /* the slot's planes are nobody's now */
         t3r_view view[T3R_MAX_VIEWS];
         t3r_views_of(rt, view);
-        memset(view[slot].confidence, T3R_CONFIDENCE_NONE, (size_t)view[slot].width * view[slot].height);
+        memset(view[slot].validity, T3R_NO_DEPTH, (size_t)view[slot].width * view[slot].height);
         rt->views = views;
         rt->camera[slot] = replaced;
         rt->depth_unit_q40[slot] = replaced_unit_q40;

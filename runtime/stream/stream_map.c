@@ -29,7 +29,7 @@ static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t
 {
     const t3r_view *view = keyframe->view;
     t3r_sight sight;
-    if (!t3r_sight_of(view, g->position_q20, &sight) || !t3r_is_measured(view->confidence[sight.pixel])) {
+    if (!t3r_sight_of(view, g->position_q20, &sight) || !t3r_is_measured(view->validity[sight.pixel])) {
         return UNSEEN;
     }
     int32_t there = t3r_depth_q20(keyframe->scale, view->depth[sight.pixel]);

@@ -54,7 +54,7 @@ t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *came
             int32_t point[3];
             t3r_sight sight;
             size_t pixel = (size_t)y * newest->width + x;
-            if (newest->confidence[pixel] == T3R_CONFIDENCE_NONE || !t3r_point(&map, x, y, point)) {
+            if (!t3r_has_depth(newest->validity[pixel]) || !t3r_point(&map, x, y, point)) {
                 continue;
             }
             points++;

@@ -37,12 +37,6 @@ static void store_halves(int16_t *row, halves x)
     memcpy(row + x.lows, x.high, x.highs * sizeof(int16_t));
 }
 
-static void load_halves(const int16_t *row, halves x)
-{
-    memcpy(x.low, row, x.lows * sizeof(int16_t));
-    memcpy(x.high, row + x.lows, x.highs * sizeof(int16_t));
-}
-
 /* ---- db2: low[n] holds a[n], then s[n]; high[n - 1] holds b[n], d1[n], then d[n - 1] -------------------- */
 
 static void forward_db2(int16_t *row, halves x)
@@ -66,56 +60,6 @@ static void forward_db2(int16_t *row, halves x)
     store_halves(row, x);
 }
 
-static void inverse_db2(int16_t *row, halves x)
-{
-    uint32_t width = x.lows + x.highs, pairs = (width - 1) / 2;
-    int16_t *last = &x.low[pairs + 1];
-
-    load_halves(row, x);
-    if (width % 2 == 0) {
-        *last = x.high[pairs];
-    }
-    t3r_row_subtract(x.high, x.low, pairs);
-    x.high[pairs] = x.high[pairs - 1];
-    t3r_row_db2_unupdate(x.low + 1, x.high, x.high + 1, pairs);
-    t3r_row_db2_unpredict(x.high, x.low + 1, pairs);
-    t3r_row_db2_unfirst(x.low, x.low + 1, 1);
-    if (width % 2 == 0) {
-        t3r_row_db2_unlast(last, &x.high[pairs - 1], &x.low[pairs], 1);
-    }
-    row[0] = x.low[0];
-    t3r_row_join(row + 1, x.low + 1, x.high, width - 1);
-}
-
-/* Even widths. Pair 0 stands before the first low, and as pair `pairs` behind the last. */
-static void forward_db2_periodic(int16_t *row, halves x)
-{
-    uint32_t width = x.lows + x.highs, pairs = width / 2;
-
-    t3r_row_split(x.low + 1, x.high, row + 1, width - 1);
-    x.low[0] = x.low[pairs];
-    x.high[pairs - 1] = row[0];
-    t3r_row_db2_predict(x.high, x.low + 1, pairs);
-    x.high[-1] = x.high[pairs - 1];
-    t3r_row_db2_update(x.low, x.high - 1, x.high, pairs);
-    t3r_row_add(x.high, x.low, pairs);
-    store_halves(row, x);
-}
-
-static void inverse_db2_periodic(int16_t *row, halves x)
-{
-    uint32_t width = x.lows + x.highs, pairs = width / 2;
-
-    load_halves(row, x);
-    t3r_row_subtract(x.high, x.low, pairs);
-    x.high[-1] = x.high[pairs - 1];
-    t3r_row_db2_unupdate(x.low, x.high - 1, x.high, pairs);
-    x.low[pairs] = x.low[0];
-    t3r_row_db2_unpredict(x.high, x.low + 1, pairs);
-    row[0] = x.high[pairs - 1];
-    t3r_row_join(row + 1, x.low + 1, x.high, width - 1);
-}
-
 /* ---- Haar and CDF 5/3: lows are the even samples, highs the odd ones ------------------------------------ */
 
 static void forward_haar(int16_t *row, halves x)
@@ -126,47 +70,29 @@ static void forward_haar(int16_t *row, halves x)
     store_halves(row, x);
 }
 
-static void inverse_haar(int16_t *row, halves x)
-{
-    load_halves(row, x);
-    t3r_row_haar_unupdate(x.low, x.high, x.highs);
-    t3r_row_add(x.high, x.low, x.highs);
-    t3r_row_join(row, x.low, x.high, x.lows + x.highs);
-}
-
 /* The odd samples on both sides of each even one. */
-static void repeat_odds(halves x, bool periodic)
+static void repeat_odds(halves x)
 {
-    x.high[-1] = periodic ? x.high[x.highs - 1] : x.high[0];
+    x.high[-1] = x.high[0];
     x.high[x.highs] = x.high[x.highs - 1];
 }
 
 /* The even sample behind the last odd one. */
-static void repeat_even(halves x, bool periodic)
+static void repeat_even(halves x)
 {
     if (x.lows == x.highs) {
-        x.low[x.highs] = periodic ? x.low[0] : x.low[x.highs - 1];
+        x.low[x.highs] = x.low[x.highs - 1];
     }
 }
 
-static void forward_cdf53(int16_t *row, halves x, bool periodic)
+static void forward_cdf53(int16_t *row, halves x)
 {
     t3r_row_split(x.low, x.high, row, x.lows + x.highs);
-    repeat_even(x, periodic);
+    repeat_even(x);
     t3r_row_cdf53_predict(x.high, x.low, x.low + 1, x.highs);
-    repeat_odds(x, periodic);
+    repeat_odds(x);
     t3r_row_cdf53_update(x.low, x.high - 1, x.high, x.lows);
     store_halves(row, x);
-}
-
-static void inverse_cdf53(int16_t *row, halves x, bool periodic)
-{
-    load_halves(row, x);
-    repeat_odds(x, periodic);
-    t3r_row_cdf53_unupdate(x.low, x.high - 1, x.high, x.lows);
-    repeat_even(x, periodic);
-    t3r_row_cdf53_unpredict(x.high, x.low, x.low + 1, x.highs);
-    t3r_row_join(row, x.low, x.high, x.lows + x.highs);
 }
 
 /* --------------------------------------------------------------------------------------------------------- */
@@ -181,32 +107,10 @@ void t3r_wavelet_row_forward(const t3r_level *level, int16_t *row)
     if (level->kind == T3R_WAVELET_HAAR) {
         forward_haar(row, x);
     } else if (level->kind == T3R_WAVELET_CDF53) {
-        forward_cdf53(row, x, level->periodic);
+        forward_cdf53(row, x);
     } else if (level->width == 2) {
         t3r_row_db2_pair(row, row + 1, 1);
-    } else if (level->periodic) {
-        forward_db2_periodic(row, x);
     } else {
         forward_db2(row, x);
-    }
-}
-
-void t3r_wavelet_row_inverse(const t3r_level *level, int16_t *row)
-{
-    halves x = halves_in(level->work, level->width);
-
-    if (level->width < 2) {
-        return;
-    }
-    if (level->kind == T3R_WAVELET_HAAR) {
-        inverse_haar(row, x);
-    } else if (level->kind == T3R_WAVELET_CDF53) {
-        inverse_cdf53(row, x, level->periodic);
-    } else if (level->width == 2) {
-        t3r_row_db2_unpair(row, row + 1, 1);
-    } else if (level->periodic) {
-        inverse_db2_periodic(row, x);
-    } else {
-        inverse_db2(row, x);
     }
 }

@@ -11,13 +11,28 @@
  *     behind the last pair its d1 is repeated;
  *     an even length N leaves x[N - 1]: its d is the second difference x[N - 1] - 2 x[N - 2] + x[N - 3];
  *     two samples alone are one pair: d1 = x[1] - sqrt(3) x[0], s = x[0] + ((sqrt 3 - 1)/2) d1, d = d1 + s.
- * Lows keep the gain sqrt 3 - 1 for constants, highs 0, at the ends too. Periodic, x[N - 1] and x[0] are pair 0.
+ * Lows keep the gain sqrt 3 - 1 for constants, highs 0, at the ends too.
  *
- * Haar and CDF 5/3 take even samples for lows and odd ones for highs; kernels/wavelet_rows.h has their steps. */
+ * Haar and CDF 5/3 take even samples for lows and odd ones for highs; kernels/wavelet_rows.h has their steps.
+ *
+ * Why 16 bits suffice. Input: -2048 <= x <= 2032. A coefficient is a linear function of the input; its size is at
+ * most 2048 times (2040 times, half the range, where the weights sum to 0, as they do with a high half in either
+ * direction) the product, over the two directions, of the sum of absolute weights along one. The largest such
+ * sums over all lengths, low half, high half and db2's d1:
+ *     level    db2 low   high    d1     5/3 low   high    Haar low   high
+ *       1       1.268   4.000  2.733     1.500   2.000       1        2
+ *       2       1.500   3.402  2.929     1.625   2.500       1        2
+ *       3       1.634   3.131  3.121     1.688   2.750       1        2
+ *       4       1.732   2.821  3.212     1.698   2.805       1        2
+ *       5       1.804   2.769  3.281     1.707   2.827       1        2
+ * The largest value stored is db2's first D, 4^2 x 2040 = 32,640. Roundings move it by less than 8: along a row d
+ * is off by at most 1.75 (three roundings of a half and 0.5 of d1's), four such weights and 1 more down the column.
+ * Everything else stays below 24,000 and is off by less than 100 after five levels. Sums inside one expression
+ * may pass 16 bits (o - 2 e); they wrap and the result is right (tests/unit/test_wavelet.c recomputes the table
+ * and drives every kind with the images that attain it). */
 #ifndef T3R_WAVELET_LEVEL_H
 #define T3R_WAVELET_LEVEL_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -33,7 +48,6 @@ typedef struct t3r_level {
     uint32_t width, height; /* of this level */
     uint32_t in_place;      /* how many levels before it left their rows in place */
     t3r_wavelet kind;
-    bool periodic;
     int16_t *work;                /* t3r_wavelet_work_bytes() */
     const uint8_t *const *colour; /* the image whose luma fills the plane; NULL: it is filled */
 } t3r_level;
@@ -44,9 +58,10 @@ static inline uint32_t t3r_halved(uint32_t side, uint32_t levels)
     return (side + (1u << levels) - 1) >> levels;
 }
 
-/* Level `index` (from 0) of a transform that starts from a filled plane and orders each level's rows. */
+/* Level `index` (from 0) of a transform that starts from a filled plane, when the levels before it brought their
+ * low rows to the top. */
 static inline t3r_level t3r_level_of(int16_t *plane, uint32_t width, uint32_t height, uint32_t index, t3r_wavelet kind,
-                                     t3r_wavelet_border border, int16_t *work)
+                                     int16_t *work)
 {
     t3r_level level = {
         .plane = plane,
@@ -54,7 +69,6 @@ static inline t3r_level t3r_level_of(int16_t *plane, uint32_t width, uint32_t he
         .width = t3r_halved(width, index),
         .height = t3r_halved(height, index),
         .kind = kind,
-        .periodic = border == T3R_WAVELET_PERIODIC,
         .work = work,
     };
     return level;
@@ -96,10 +110,8 @@ static inline int16_t *t3r_high_row(const t3r_level *level, uint32_t n)
 
 /* Horizontal lifting of one row of the level, in place: its lows, then its highs. A row of one sample stays. */
 void t3r_wavelet_row_forward(const t3r_level *level, int16_t *row);
-void t3r_wavelet_row_inverse(const t3r_level *level, int16_t *row);
 
 /* One level, horizontal and vertical, each row staying where t3r_low_at() and t3r_high_at() say. */
 void t3r_wavelet_level_forward(const t3r_level *level);
-void t3r_wavelet_level_inverse(const t3r_level *level);
 
 #endif

@@ -1,7 +1,7 @@
 /* Texture energy: a transform whose rows stay in place, then the absolute coefficients of all levels summed.
  *
- * 16 and 32 bits suffice, by the table in wavelet.c: |h| + |v| <= 2 x 10,430 on every level; 0.268 |d| <= 8,750 on
- * level 1, so their sum is below 2^15; |d| <= 23,620 on the others. */
+ * 16 and 32 bits suffice, by the table in wavelet_level.h: |h| + |v| <= 2 x 10,430 on every level; 0.268 |d| <= 8,750
+ * on level 1, so their sum is below 2^15; |d| <= 23,620 on the others. */
 #include "wavelet_level.h"
 
 #include <string.h>
@@ -77,9 +77,8 @@ static void texture_plane(const t3r_level *level, uint32_t levels, uint16_t *tex
     }
 }
 
-void t3r_wavelet_texture_border(const uint8_t *const colour[3], uint32_t width, uint32_t height, uint32_t levels,
-                                t3r_wavelet kind, t3r_wavelet_border border, uint16_t *texture_q4, int16_t *plane,
-                                int16_t *work)
+void t3r_wavelet_texture(const uint8_t *const colour[3], uint32_t width, uint32_t height, uint32_t levels,
+                         t3r_wavelet kind, uint16_t *texture_q4, int16_t *plane, int16_t *work)
 {
     t3r_level level[T3R_MAX_LEVELS];
 
@@ -88,16 +87,10 @@ void t3r_wavelet_texture_border(const uint8_t *const colour[3], uint32_t width, 
         return;
     }
     for (uint32_t l = 0; l < levels; l++) {
-        level[l] = t3r_level_of(plane, width, height, l, kind, border, work);
+        level[l] = t3r_level_of(plane, width, height, l, kind, work);
         level[l].in_place = l;
         level[l].colour = l == 0 ? colour : NULL;
         t3r_wavelet_level_forward(&level[l]);
     }
     texture_plane(level, levels, texture_q4, (uint16_t *)work);
-}
-
-void t3r_wavelet_texture(const uint8_t *const colour[3], uint32_t width, uint32_t height, uint32_t levels,
-                         t3r_wavelet kind, uint16_t *texture_q4, int16_t *plane, int16_t *work)
-{
-    t3r_wavelet_texture_border(colour, width, height, levels, kind, T3R_WAVELET_SYMMETRIC, texture_q4, plane, work);
 }

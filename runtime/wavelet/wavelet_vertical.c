@@ -57,61 +57,6 @@ static void forward_db2(const t3r_level *x)
     }
 }
 
-static void inverse_db2(const t3r_level *x)
-{
-    uint32_t pairs = (x->height - 1) / 2;
-
-    t3r_row_subtract(b_row(x, 1), a_row(x, 0), x->width);
-    for (uint32_t n = 1; n <= pairs; n++) {
-        if (n < pairs) {
-            t3r_row_subtract(b_row(x, n + 1), a_row(x, n), x->width);
-        }
-        t3r_row_db2_unupdate(a_row(x, n), b_row(x, n), b_row(x, T3R_MIN(n + 1, pairs)), x->width);
-        t3r_row_db2_unpredict(b_row(x, n), a_row(x, n), x->width);
-    }
-    if (x->height % 2 == 0) {
-        t3r_row_db2_unlast(t3r_level_row(x, x->height - 1), b_row(x, pairs), a_row(x, pairs), x->width);
-    }
-    t3r_row_db2_unfirst(a_row(x, 0), a_row(x, 1), x->width);
-}
-
-/* Even heights. Pair 0 is x[N - 1], x[0]: exchanged, they lie where its low and its high belong, as a[0] and as b
- * behind the last pair. */
-static void forward_db2_periodic(const t3r_level *x)
-{
-    uint32_t pairs = x->height / 2;
-
-    for (uint32_t y = 0; y < x->height; y++) {
-        make_row(x, y);
-    }
-    t3r_row_swap(a_row(x, 0), b_row(x, pairs), x->width);
-    for (uint32_t n = 1; n <= pairs; n++) {
-        t3r_row_db2_predict(b_row(x, n), a_row(x, n % pairs), x->width);
-    }
-    for (uint32_t n = 1; n <= pairs; n++) {
-        t3r_row_db2_update(a_row(x, n % pairs), b_row(x, n), b_row(x, n % pairs + 1), x->width);
-    }
-    for (uint32_t n = 1; n <= pairs; n++) {
-        t3r_row_add(b_row(x, n), a_row(x, n - 1), x->width);
-    }
-}
-
-static void inverse_db2_periodic(const t3r_level *x)
-{
-    uint32_t pairs = x->height / 2;
-
-    for (uint32_t n = 1; n <= pairs; n++) {
-        t3r_row_subtract(b_row(x, n), a_row(x, n - 1), x->width);
-    }
-    for (uint32_t n = 1; n <= pairs; n++) {
-        t3r_row_db2_unupdate(a_row(x, n % pairs), b_row(x, n), b_row(x, n % pairs + 1), x->width);
-    }
-    for (uint32_t n = 1; n <= pairs; n++) {
-        t3r_row_db2_unpredict(b_row(x, n), a_row(x, n % pairs), x->width);
-    }
-    t3r_row_swap(a_row(x, 0), b_row(x, pairs), x->width);
-}
-
 /* ---- Haar and CDF 5/3 ------------------------------------------------------------------------------------- */
 
 static void forward_haar(const t3r_level *x)
@@ -129,21 +74,13 @@ static void forward_haar(const t3r_level *x)
     }
 }
 
-static void inverse_haar(const t3r_level *x)
-{
-    for (uint32_t n = 0; n < x->height / 2; n++) {
-        t3r_row_haar_unupdate(t3r_low_row(x, n), t3r_high_row(x, n), x->width);
-        t3r_row_add(t3r_high_row(x, n), t3r_low_row(x, n), x->width);
-    }
-}
-
 /* The even row behind odd row n. */
 static const int16_t *even_behind(const t3r_level *x, uint32_t n)
 {
     if (2 * n + 2 < x->height) {
         return t3r_low_row(x, n + 1);
     }
-    return t3r_low_row(x, x->periodic ? 0 : n);
+    return t3r_low_row(x, n);
 }
 
 static void forward_cdf53(const t3r_level *x)
@@ -159,31 +96,13 @@ static void forward_cdf53(const t3r_level *x)
         t3r_row_cdf53_predict(t3r_high_row(x, n), t3r_low_row(x, n), even_behind(x, n), x->width);
         if (n > 0) {
             t3r_row_cdf53_update(t3r_low_row(x, n), t3r_high_row(x, n - 1), t3r_high_row(x, n), x->width);
-        } else if (!x->periodic) {
+        } else {
             t3r_row_cdf53_update(t3r_low_row(x, 0), t3r_high_row(x, 0), t3r_high_row(x, 0), x->width);
         }
-    }
-    if (x->periodic) {
-        t3r_row_cdf53_update(t3r_low_row(x, 0), t3r_high_row(x, pairs - 1), t3r_high_row(x, 0), x->width);
     }
     if (x->height % 2 != 0) {
         const int16_t *last = t3r_high_row(x, pairs - 1);
         t3r_row_cdf53_update(t3r_low_row(x, pairs), last, last, x->width);
-    }
-}
-
-static void inverse_cdf53(const t3r_level *x)
-{
-    uint32_t lows = (x->height + 1) / 2, highs = x->height / 2;
-
-    t3r_row_cdf53_unupdate(t3r_low_row(x, 0), t3r_high_row(x, x->periodic ? highs - 1 : 0), t3r_high_row(x, 0),
-                           x->width);
-    for (uint32_t n = 0; n < highs; n++) {
-        if (n + 1 < lows) {
-            const int16_t *next = t3r_high_row(x, T3R_MIN(n + 1, highs - 1));
-            t3r_row_cdf53_unupdate(t3r_low_row(x, n + 1), t3r_high_row(x, n), next, x->width);
-        }
-        t3r_row_cdf53_unpredict(t3r_high_row(x, n), t3r_low_row(x, n), even_behind(x, n), x->width);
     }
 }
 
@@ -201,29 +120,7 @@ void t3r_wavelet_level_forward(const t3r_level *x)
         make_row(x, 0);
         make_row(x, 1);
         t3r_row_db2_pair(t3r_level_row(x, 0), t3r_level_row(x, 1), x->width);
-    } else if (x->periodic) {
-        forward_db2_periodic(x);
     } else {
         forward_db2(x);
-    }
-}
-
-void t3r_wavelet_level_inverse(const t3r_level *x)
-{
-    if (x->height < 2) {
-        /* one row: only horizontal */
-    } else if (x->kind == T3R_WAVELET_HAAR) {
-        inverse_haar(x);
-    } else if (x->kind == T3R_WAVELET_CDF53) {
-        inverse_cdf53(x);
-    } else if (x->height == 2) {
-        t3r_row_db2_unpair(t3r_level_row(x, 0), t3r_level_row(x, 1), x->width);
-    } else if (x->periodic) {
-        inverse_db2_periodic(x);
-    } else {
-        inverse_db2(x);
-    }
-    for (uint32_t y = 0; y < x->height; y++) {
-        t3r_wavelet_row_inverse(x, t3r_level_row(x, y));
     }
 }

@@ -506,9 +506,9 @@ def test_bench():
     expect(1, "bench", "--runs", 1, "--points", write("odd.f32", b"\0" * 25), err="25 bytes")
     expect(1, "bench", "--runs", 1, "--points", write("nan.f32", struct.pack("<6f", *[float("nan")] * 6)), err="byte 0")
     corners = [[1000.0 + 3 * (i & 1), 2.0 * (i >> 1 & 1), -4.0 * (i >> 2 & 1), 0, 0.5, 1] for i in range(8)] * 50
-    clustering = ["bench", "--runs", 1, "--stages", "kmeans_ms,wavelet_ns_per_pixel", "--points"]
+    clustering = ["bench", "--runs", 1, "--stages", "kmeans_ms,texture_ns_per_pixel", "--points"]
     found = expect_json(*clustering, write("corners.f32", b"".join(struct.pack("<6f", *row) for row in corners)))
-    check("kmeans_ms" in found and "wavelet_ns_per_pixel" in found and "stereo_ms" not in found, "bench --stages")
+    check("kmeans_ms" in found and "texture_ns_per_pixel" in found and "stereo_ms" not in found, "bench --stages")
     check(found["kmeans_points"] == 400 and found["kmeans_msd"] < 1e-4,
           f"eight places need eight clusters: {found['kmeans_msd']}")
     # any scale: a power of two less changes the distances by just that
@@ -520,7 +520,7 @@ def test_bench():
         distance[scale] = found["kmeans_msd"] / scale ** 2
     check(0 < distance[1.0] < 0.5 and max(distance.values()) <= 1.0001 * min(distance.values()), f"scales: {distance}")
     found = expect_json("bench", "--runs", 1)
-    for key in ("raster_131k_ms", "raster_13k_ms", "refine_ms", "kmeans_ms", "wavelet_ns_per_pixel", "build_analytic_ms",
+    for key in ("raster_131k_ms", "raster_13k_ms", "refine_ms", "kmeans_ms", "texture_ns_per_pixel", "build_analytic_ms",
                 "build_small_ms", "stereo_ms", "stereo_8_paths_ms", "head_gmac_per_s"):
         check(found[key] > 0 and found[key + "_min"] <= found[key] <= found[key + "_max"], f"bench lacks {key}")
     matched = expect_json("bench", "--runs", 1, "--depth", "stereo", "--stages", "stereo_ms,build_analytic_ms,refine_ms")

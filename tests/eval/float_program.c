@@ -17,8 +17,7 @@
 static const double scale[T3R_HEAD_OUTPUTS] = {16384, 16384, 8192, 8192, 16384, 32768, 8192, 8192, 8192};
 static const float_plane *outputs; /* of the view in work */
 
-uint32_t __real_t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out);
-uint32_t __wrap_t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out);
+t3r_head_rows __real_t3r_head_learned, __wrap_t3r_head_learned;
 void __wrap_t3r_network_points(const t3r_network *net, uint32_t y, uint32_t count, const uint32_t *x,
                                const int8_t (*features)[T3R_FEATURES], int16_t (*out)[T3R_HEAD_OUTPUTS]);
 
@@ -49,7 +48,7 @@ static const float_head *the_head(void)
     return &head;
 }
 
-uint32_t __wrap_t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out)
+uint32_t __wrap_t3r_head_learned(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
     size_t pixels = (size_t)view->width * view->height, row = (size_t)view->width * T3R_FEATURES;
@@ -70,7 +69,7 @@ uint32_t __wrap_t3r_head_learned(const t3r_head_input *input, t3r_gaussian *out)
         give_up("out of memory");
     }
     outputs = &planes.planes[head->graph.count];
-    uint32_t count = __real_t3r_head_learned(input, out);
+    uint32_t count = __real_t3r_head_learned(input, begin, end, out);
     float_planes_free(&planes);
     free(retained);
     free(features);

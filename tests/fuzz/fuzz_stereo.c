@@ -77,7 +77,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
                               .height = height,
                               .colour = {at, at + pixels, at + 2 * pixels},
                               .depth = depth + pixels * (size_t)i,
-                              .confidence = at + 3 * pixels};
+                              .match_confidence = at + 3 * pixels};
     }
     uint64_t unit = 0;
     const t3r_pair pair = t3r_stereo_depth(&settings, h.cameras, views, work, &unit);
@@ -85,7 +85,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     for (size_t i = 0; i < 2 && pair == T3R_PAIR_OK; i++) {
         REQUIRE(unit >= 1 && unit < UINT64_C(1) << 47);
         for (size_t n = 0; n < pixels; n++) {
-            REQUIRE((views[i].depth[n] == 0) == (views[i].confidence[n] == T3R_STEREO_NONE));
+            REQUIRE((views[i].depth[n] == 0) == (views[i].match_confidence[n] == T3R_STEREO_NONE));
         }
     }
     free(work);

@@ -115,7 +115,7 @@ static int pair(uint32_t width, uint32_t height, const t3r_stereo_settings *sett
             get(views[i].colour[c], pixels);
         }
         views[i].depth = allocate(2 * pixels);
-        views[i].confidence = allocate(pixels);
+        views[i].match_confidence = allocate(pixels);
     }
     uint64_t unit = 0;
     t3r_rectification rect = {0};
@@ -128,7 +128,7 @@ static int pair(uint32_t width, uint32_t height, const t3r_stereo_settings *sett
            rect.width, rect.height, took, t3r_pair_text(found));
     for (int i = 0; i < 2 && found == T3R_PAIR_OK; i++) {
         fwrite(views[i].depth, 2, pixels, stdout);
-        fwrite(views[i].confidence, 1, pixels, stdout);
+        fwrite(views[i].match_confidence, 1, pixels, stdout);
     }
     return 0;
 }

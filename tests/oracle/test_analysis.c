@@ -14,7 +14,7 @@
 #include "oracle_analysis.h"
 #include "pointmap/pointmap.h"
 #include "superclusters/superclusters.h"
-#include "wavelet/wavelet.h"
+#include "wavelet_planes.h"
 
 /* ---- pointmap ------------------------------------------------------------------------------------ */
 
@@ -24,16 +24,16 @@ static void pointmap_case(const t3r_camera *camera, const t3r_scene_frame *frame
                           int dv)
 {
     static uint16_t depth[W * H];
-    static uint8_t confidence[W * H];
+    static uint8_t validity[W * H];
     for (int i = 0; i < W * H; i++) {
         depth[i] = (uint16_t)(base + du * (i % W) + dv * (i / W));
-        confidence[i] = T3R_CONFIDENCE_MEASURED;
+        validity[i] = T3R_MEASURED;
     }
     t3r_view view = {
         .width = W,
         .height = H,
         .depth = depth,
-        .confidence = confidence,
+        .validity = validity,
         .fx_q16 = camera->fx_q16,
         .fy_q16 = camera->fy_q16,
         .cx_q16 = camera->cx_q16,
@@ -77,7 +77,7 @@ static void pointmap_case(const t3r_camera *camera, const t3r_scene_frame *frame
         }
     }
     depth[5 * W + 7] = 0;
-    confidence[5 * W + 7] = T3R_CONFIDENCE_NONE;
+    validity[5 * W + 7] = T3R_NO_DEPTH;
     int32_t point[3], tangent[2][3];
     assert_false(t3r_point(&map, 7, 5, point));
     assert_false(t3r_tangents(&map, 7, 5, tangent[0], tangent[1]));
@@ -271,9 +271,8 @@ static void wavelet_case(texture_kind kind, uint32_t width, uint32_t height, uin
     size_t pixels = (size_t)width * height;
     uint8_t *planes = malloc(pixels * 3);
     uint16_t *texture = malloc(pixels * 2);
-    int16_t *plane = malloc(pixels * 2), *work = malloc(t3r_wavelet_work_bytes(width, height));
     double *exact = malloc(pixels * sizeof *exact);
-    assert_true(planes != NULL && texture != NULL && plane != NULL && work != NULL && exact != NULL);
+    assert_true(planes != NULL && texture != NULL && exact != NULL);
     for (size_t i = 0; i < pixels; i++) {
         for (uint32_t c = 0; c < 3; c++) {
             planes[c * pixels + i] = texture_sample(kind, (uint32_t)(i % width), (uint32_t)(i / width), c);
@@ -281,7 +280,7 @@ static void wavelet_case(texture_kind kind, uint32_t width, uint32_t height, uin
         exact[i] = (77 * planes[i] + 150 * planes[pixels + i] + 29 * planes[2 * pixels + i]) / 256.0;
     }
     const uint8_t *const colour[3] = {planes, planes + pixels, planes + 2 * pixels};
-    t3r_wavelet_texture_border(colour, width, height, levels, wavelet, T3R_WAVELET_PERIODIC, texture, plane, work);
+    wavelet_texture_wrapped(colour, width, height, levels, wavelet, texture);
     oracle_wavelet(exact, width, height, levels, wavelet);
     double want = oracle_wavelet_energy(exact, width, height, levels), got = 0;
     for (size_t i = 0; i < pixels; i++) {
@@ -297,8 +296,6 @@ static void wavelet_case(texture_kind kind, uint32_t width, uint32_t height, uin
     }
     free(planes);
     free(texture);
-    free(plane);
-    free(work);
     free(exact);
 }
 

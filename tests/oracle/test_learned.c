@@ -10,7 +10,9 @@
 #include <cmocka.h>
 
 #include "core/ablation.h"
+#include "core/state.h"
 #include "drawing.h"
+#include "pipeline.h"
 #include "weights_maker.h"
 
 enum { W = 45, H = 34, POINTS = W * H };
@@ -112,6 +114,57 @@ static void same_bits_everywhere(void **state)
         arena_free(&first);
         free(weights);
     }
+}
+
+/* A view made band by band, each in work of its own that holds anything, has the Gaussians of the view made at once. */
+static void bands_give_the_whole_view(void **state)
+{
+    (void)state;
+    static const struct {
+        const made_layer *layers;
+        const uint32_t *count;
+    } shapes[] = {{small_shape, &small_layers}, {base_shape, &base_layers}};
+    t3r_config config = learned_config(500);
+    config.head = T3R_HEAD_ANALYTIC;
+    arena memory = arena_of(&config, ARENA_AT_FULL);
+    t3r_runtime *rt = with_views(&memory, &config, 1);
+    t3r_scene scene;
+    t3r_view views[T3R_MAX_VIEWS];
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    t3r_views_of(rt, views);
+    const t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
+    t3r_head_input input = t3r_head_input_of(rt, views, 0, &settings);
+    t3r_gaussian *whole = malloc(POINTS * sizeof *whole), *bands = malloc(POINTS * sizeof *bands);
+    t3r_head_rows *const heads[] = {t3r_head_analytic, t3r_head_learned};
+    uint32_t random = 1;
+    for (uint32_t round = 0; round < 160; round++) {
+        const uint32_t bits = round / 2 % 4;
+        size_t bytes;
+        uint8_t *weights = make_weights(shapes[round % 2].layers, *shapes[round % 2].count, bits & 1 ? 16 : 8,
+                                        bits & 2 ? 16 : 8, round, &bytes);
+        const size_t work_bytes = t3r_head_learned_work_bytes(weights, W);
+        t3r_head_rows *head = heads[round < 8 ? round / 2 % 2 : 1];
+        input.unadapted = round % 3 == 1;
+        input.weights = weights;
+        input.work = aligned_alloc(16, (work_bytes + 15) / 16 * 16);
+        memset(input.work, 0x5a, work_bytes);
+        const uint32_t count = head(&input, 0, H, whole);
+        assert_true(count > 100);
+        uint32_t made = 0, end;
+        for (uint32_t begin = 0; begin < H; begin = end) {
+            random = random * 1664525 + 1013904223;
+            end = begin + 1 + (random >> 16) % (round % 8 == 0 ? 1 : H - begin);
+            memset(input.work, (int)round, work_bytes);
+            made += head(&input, begin, end, bands + made);
+        }
+        assert_int_equal(made, count);
+        assert_memory_equal(bands, whole, count * sizeof *whole);
+        free(input.work);
+        free(weights);
+    }
+    free(bands);
+    free(whole);
+    arena_free(&memory);
 }
 
 /* head_column_bytes: what t3r_head_column_bytes() tells is enough and not one too many, whatever the width. */
@@ -484,10 +537,11 @@ static void scaled_by_the_spacing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bits_everywhere),  cmocka_unit_test(binding),
-        cmocka_unit_test(colour_and_opacity),    cmocka_unit_test(footprints),
-        cmocka_unit_test(scaled_by_the_spacing), cmocka_unit_test(room_for_the_head),
-        cmocka_unit_test(unadapted_is_pruned),   cmocka_unit_test(hash_names_the_weights),
+        cmocka_unit_test(same_bits_everywhere),      cmocka_unit_test(binding),
+        cmocka_unit_test(colour_and_opacity),        cmocka_unit_test(footprints),
+        cmocka_unit_test(scaled_by_the_spacing),     cmocka_unit_test(room_for_the_head),
+        cmocka_unit_test(unadapted_is_pruned),       cmocka_unit_test(hash_names_the_weights),
+        cmocka_unit_test(bands_give_the_whole_view),
     };
     return cmocka_run_group_tests_name("learned", tests, NULL, NULL);
 }

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""readme.py example LIBRARY... | table PROGRAM [--update]: what the README shows is what happens.
+"""readme.py example LIBRARY... | table PROGRAM [--update]: what the documents show is what happens.
 
-example: its C program compiles without a warning, links with the runtime and the shipped heads alone and prints what the README says.
-table:   its arena table is what `trim3r plan --markdown` prints; --update writes it there.
+example: the README's C program compiles without a warning, links with the runtime and the shipped heads alone and prints
+         what the README says.
+table:   the arena table of docs/firmware.md is what `trim3r plan --markdown` prints; --update writes it there.
 """
 import re
 import sys
@@ -10,6 +11,7 @@ import sys
 import proof
 
 README = proof.ROOT / "README.md"
+FIRMWARE = proof.ROOT / "docs" / "firmware.md"
 PLAN = ["plan", "--size", "256x256", "--views", "2", "--gaussians", "13107", "--markdown"]
 STRICT = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"]
 
@@ -40,35 +42,37 @@ def check_example(text, libraries, folder):
 
 def table_in(text):
     return re.search(r"(<!-- arena:begin -->\n)(.*?)(<!-- arena:end -->)", text, flags=re.S) or proof.broken(
-        "README.md has no arena markers")
+        "docs/firmware.md has no arena markers")
 
 
 def check_table(text, printed):
     shown = table_in(text).group(2)
     if shown == printed:
         return []
-    return ["the README's arena table is not what the plan prints; tests/proofs/readme.py table PROGRAM --update", printed]
+    return ["the arena table of docs/firmware.md is not what the plan prints; tests/proofs/readme.py table PROGRAM --update",
+            printed]
 
 
 def main():
     what, *paths = [word for word in sys.argv[1:] if word != "--update"]
-    text = README.read_text()
     if what == "example":
+        text = README.read_text()
+        expected = example_of(text)[1]
         with proof.scratch() as folder:
             for wrong, offence in [(text.replace("#include", "#inclde", 1), "does not build"),
-                                   (text.replace("```text\n", "```text\n1 ", 1), "the README says")]:
+                                   (text.replace(expected, "1 " + expected), "the README says")]:
                 proof.must_find(check_example(wrong, paths, folder), offence, "the README's example")
             proof.verdict("the README's example builds, runs and prints what the README says",
                           check_example(text, paths, folder))
         return
-    printed = proof.run([paths[0], *PLAN], check=True).stdout
+    text, printed = FIRMWARE.read_text(), proof.run([paths[0], *PLAN], check=True).stdout
     if "--update" in sys.argv:
         found = table_in(text)
-        README.write_text(text[:found.start(2)] + printed + text[found.end(2):])
+        FIRMWARE.write_text(text[:found.start(2)] + printed + text[found.end(2):])
         return
     proof.must_find(check_table(text.replace("<!-- arena:end -->", "| state | 1 |\n<!-- arena:end -->"), printed),
-                    "is not what", "the README's arena table")
-    proof.verdict("the README's arena table is what the plan prints", check_table(text, printed))
+                    "is not what", "the arena table")
+    proof.verdict("the arena table of docs/firmware.md is what the plan prints", check_table(text, printed))
 
 
 if __name__ == "__main__":

@@ -318,7 +318,7 @@ static void test_features_of_a_pair(void **state)
         uint32_t covered = 0;
         for (int v = 0; v < PAIR; v++) {
             for (int i = 0; i < PAIR_PIXELS; i++) {
-                covered += t3r_is_covered(views[v].confidence[i]);
+                covered += t3r_is_covered(views[v].validity[i]);
             }
         }
         assert_true(covered > PAIR_PIXELS / 2);

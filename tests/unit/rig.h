@@ -14,7 +14,7 @@ enum { W = 64, H = 48, PIXELS = W * H, F = 64, VIEWS = 3 };
 typedef struct rig {
     uint8_t colour[VIEWS][3][PIXELS];
     uint16_t depth[VIEWS][PIXELS];
-    uint8_t confidence[VIEWS][PIXELS];
+    uint8_t validity[VIEWS][PIXELS];
     t3r_view view[VIEWS];
 } rig;
 
@@ -28,7 +28,7 @@ static inline void place_view_in_steps(rig *s, int v, double x, double z, double
         .height = H,
         .colour = {s->colour[v][0], s->colour[v][1], s->colour[v][2]},
         .depth = s->depth[v],
-        .confidence = s->confidence[v],
+        .validity = s->validity[v],
         .fx_q16 = F << 16,
         .fy_q16 = F << 16,
         .cx_q16 = (W / 2) << 16,
@@ -42,7 +42,7 @@ static inline void place_view_in_steps(rig *s, int v, double x, double z, double
     view->pose.position_q20[2] = (int32_t)lround(z * (1 << 20));
     for (int i = 0; i < PIXELS; i++) {
         s->depth[v][i] = (uint16_t)lround((plane - z) * (double)(UINT64_C(1) << 40) / (double)unit_q40);
-        s->confidence[v][i] = T3R_CONFIDENCE_MEASURED;
+        s->validity[v][i] = T3R_MEASURED;
     }
 }
 

@@ -10,7 +10,7 @@ enum { PAIR = 2 };
 static void forget(rig *s, int v, int pixel)
 {
     s->depth[v][pixel] = 0;
-    s->confidence[v][pixel] = T3R_CONFIDENCE_NONE;
+    s->validity[v][pixel] = T3R_NO_DEPTH;
 }
 
 static void disc(rig *s, int v, int x, int y, int radius)
@@ -38,11 +38,11 @@ static uint32_t bridge(rig *s, uint32_t views, uint32_t radius)
     return bridged;
 }
 
-static uint32_t of_kind(const rig *s, int v, uint8_t confidence)
+static uint32_t of_kind(const rig *s, int v, uint8_t validity)
 {
     uint32_t count = 0;
     for (int i = 0; i < PIXELS; i++) {
-        count += s->confidence[v][i] == confidence;
+        count += s->validity[v][i] == validity;
     }
     return count;
 }
@@ -62,7 +62,7 @@ static void planes_go_on(void **state)
         uint16_t truth[PIXELS];
         memcpy(truth, s->depth[0], sizeof truth);
         disc(s, 0, 30, 22, 12);
-        uint32_t holes = of_kind(s, 0, T3R_CONFIDENCE_NONE);
+        uint32_t holes = of_kind(s, 0, T3R_NO_DEPTH);
         assert_true(holes > 400);
         assert_int_equal(bridge(s, 1, 40), holes);
         for (int i = 0; i < PIXELS; i++) {
@@ -73,7 +73,7 @@ static void planes_go_on(void **state)
 }
 
 /* The definition once more, in double and from the planes as they were. */
-static double expected_depth(const uint16_t *depth, const uint8_t *confidence, int x, int y, int radius)
+static double expected_depth(const uint16_t *depth, const uint8_t *validity, int x, int y, int radius)
 {
     static const int axis[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
     double sum = 0, weights = 0, least = INFINITY, farther = 0;
@@ -84,7 +84,7 @@ static double expected_depth(const uint16_t *depth, const uint8_t *confidence, i
             for (int i = radius; i >= 1; i--) { /* from afar, so that the nearest is noted last */
                 int u = x + sign * i * axis[k][0], v = y + sign * i * axis[k][1];
                 bool inside = u >= 0 && v >= 0 && u < W && v < H;
-                if (inside && depth[v * W + u] != 0 && (confidence[v * W + u] == 255 || confidence[v * W + u] == 128)) {
+                if (inside && depth[v * W + u] != 0 && t3r_is_known(validity[v * W + u])) {
                     end[side] = depth[v * W + u];
                     away[side] = i;
                 }
@@ -122,20 +122,20 @@ static void as_defined(void **state)
             forget(s, 0, i);
             if (unit_between(&seed, 0, share) == 0) {
                 s->depth[0][i] = (uint16_t)(base + unit_between(&seed, 0, spread));
-                s->confidence[0][i] = unit_random(&seed) % 4 == 0 ? T3R_CONFIDENCE_FILLED : T3R_CONFIDENCE_MEASURED;
+                s->validity[0][i] = unit_random(&seed) % 4 == 0 ? T3R_FILLED : T3R_MEASURED;
             }
         }
         *before = *s;
         int radius = (int)unit_between(&seed, 0, 80);
         uint32_t told = bridge(s, 1, (uint32_t)radius);
         for (int i = 0; i < PIXELS; i++) {
-            if (before->confidence[0][i] != T3R_CONFIDENCE_NONE) {
-                assert_int_equal(s->confidence[0][i], before->confidence[0][i]);
+            if (before->validity[0][i] != T3R_NO_DEPTH) {
+                assert_int_equal(s->validity[0][i], before->validity[0][i]);
                 assert_int_equal(s->depth[0][i], before->depth[0][i]);
                 continue;
             }
-            double expected = expected_depth(before->depth[0], before->confidence[0], i % W, i / W, radius);
-            assert_int_equal(s->confidence[0][i], expected > 0 ? T3R_CONFIDENCE_BRIDGED : T3R_CONFIDENCE_NONE);
+            double expected = expected_depth(before->depth[0], before->validity[0], i % W, i / W, radius);
+            assert_int_equal(s->validity[0][i], expected > 0 ? T3R_BRIDGED : T3R_NO_DEPTH);
             assert_true(fabs(s->depth[0][i] - expected) <= 0.5 + 1e-4 * expected);
             told -= expected > 0;
             bridged += expected > 0;
@@ -156,7 +156,7 @@ static void edges(void **state)
         forget(s, 0, i);
         if (i / W == 20 && (i % W == 10 || i % W == 40)) {
             s->depth[0][i] = i % W == 10 ? 1000 : 3000;
-            s->confidence[0][i] = T3R_CONFIDENCE_MEASURED;
+            s->validity[0][i] = T3R_MEASURED;
         }
     }
     assert_int_equal(bridge(s, 1, 28), 27); /* the pixels next to either end are 29 from the other */
@@ -189,15 +189,15 @@ static void nothing_is_trusted(void **state)
     for (int turn = 0; turn < 20; turn++) {
         for (int v = 0; v < PAIR; v++) {
             for (int i = 0; i < PIXELS; i++) {
-                s->confidence[v][i] = unit_random(&seed) % 3 == 0 ? (uint8_t)unit_random(&seed)
-                                                                  : (uint8_t)(255 * (unit_random(&seed) & 1));
+                s->validity[v][i] = unit_random(&seed) % 3 == 0 ? (uint8_t)unit_random(&seed)
+                                                                : (uint8_t)(T3R_MEASURED * (unit_random(&seed) & 1));
                 s->depth[v][i] = unit_random(&seed) % 2 == 0 ? 0 : (uint16_t)unit_random(&seed);
             }
         }
         (void)bridge(s, PAIR, 9);
     }
     for (int i = 0; i < PIXELS; i++) {
-        s->confidence[0][i] = i % 5 == 0 ? T3R_CONFIDENCE_MEASURED : T3R_CONFIDENCE_NONE;
+        s->validity[0][i] = i % 5 == 0 ? T3R_MEASURED : T3R_NO_DEPTH;
         s->depth[0][i] = 0;
     }
     assert_int_equal(bridge(s, 1, 20), 0);
@@ -217,13 +217,13 @@ static void lent(void **state)
         place_view(s, 1, 0.25, 0, 2);
         uint16_t depth = s->depth[0][0];
         disc(s, 0, 40, 24, 15);
-        uint32_t holes = of_kind(s, 0, T3R_CONFIDENCE_NONE);
+        uint32_t holes = of_kind(s, 0, T3R_NO_DEPTH);
         assert_int_equal(bridge(s, PAIR, turn == 0 ? 0 : 30), 0);
-        assert_int_equal(of_kind(s, 0, T3R_CONFIDENCE_BRIDGED_COVERED), holes);
+        assert_int_equal(of_kind(s, 0, T3R_BRIDGED | T3R_MARK_COVERED), holes);
         for (int i = 0; i < PIXELS; i++) {
             assert_true(s->depth[0][i] == depth || (s->depth[0][i] == depth + 1 && turn != 0));
         }
-        assert_int_equal(of_kind(s, 1, T3R_CONFIDENCE_MEASURED), PIXELS);
+        assert_int_equal(of_kind(s, 1, T3R_MEASURED), PIXELS);
         free(s);
     }
 }
@@ -236,7 +236,7 @@ static void nearest_lent(void **state)
     forget(s, 0, 20 * W + 40); /* the plane's point from 8 pixels to the left, one at 1 from 16 */
     s->depth[1][20 * W + 24] = UNIT;
     t3r_bridge_lend(s->view, PAIR, 0, 0);
-    assert_int_equal(s->confidence[0][20 * W + 40], T3R_CONFIDENCE_LENT);
+    assert_int_equal(s->validity[0][20 * W + 40], T3R_BRIDGED | T3R_MARK_LENT);
     assert_int_equal(s->depth[0][20 * W + 40], UNIT);
     free(s);
 }
@@ -248,10 +248,10 @@ static void bridged_once(void **state)
     rig *s = pair_new();
     disc(s, 0, 40, 24, 10);
     disc(s, 1, 32, 24, 10); /* the same place */
-    uint32_t holes = of_kind(s, 0, T3R_CONFIDENCE_NONE);
+    uint32_t holes = of_kind(s, 0, T3R_NO_DEPTH);
     assert_int_equal(bridge(s, PAIR, 30), holes);
-    assert_int_equal(of_kind(s, 0, T3R_CONFIDENCE_BRIDGED), holes);
-    assert_int_equal(of_kind(s, 1, T3R_CONFIDENCE_BRIDGED_COVERED), holes);
+    assert_int_equal(of_kind(s, 0, T3R_BRIDGED), holes);
+    assert_int_equal(of_kind(s, 1, T3R_BRIDGED | T3R_MARK_COVERED), holes);
     for (int i = 0; i < PIXELS; i++) {
         assert_int_equal(s->depth[0][i], 2 * UNIT);
         assert_int_equal(s->depth[1][i], 2 * UNIT);
@@ -267,13 +267,13 @@ static void seen_through(void **state)
         rig *s = pair_new();
         int at = 24 * W + 45, there = at - (int)lround(0.25 * F * UNIT / steps);
         s->depth[0][at] = (uint16_t)steps;
-        s->confidence[0][at] = T3R_CONFIDENCE_BRIDGED;
+        s->validity[0][at] = T3R_BRIDGED;
         int behind = steps - s->depth[1][there];
         bool before = 16 * -behind > steps, same = 16 * abs(behind) <= steps;
         assert_int_equal(t3r_bridge_settle(s->view, PAIR, 0, 0, 0), !before && !same);
-        assert_int_equal(s->confidence[0][at], before ? T3R_CONFIDENCE_NONE
-                                               : same ? T3R_CONFIDENCE_BRIDGED_COVERED
-                                                      : T3R_CONFIDENCE_BRIDGED);
+        assert_int_equal(s->validity[0][at], before ? T3R_NO_DEPTH
+                                             : same ? T3R_BRIDGED | T3R_MARK_COVERED
+                                                    : T3R_BRIDGED);
         assert_int_equal(s->depth[0][at], before ? 0 : steps);
         free(s);
     }
@@ -288,12 +288,12 @@ static void settled_cover(void **state)
         int at[PAIR] = {24 * W + 45, 24 * W + 45 - (int)lround(0.25 * F)};
         for (int w = 0; w < PAIR; w++) {
             s->depth[w][at[w]] = UNIT;
-            s->confidence[w][at[w]] = T3R_CONFIDENCE_BRIDGED;
+            s->validity[w][at[w]] = T3R_BRIDGED;
         }
         assert_int_equal(t3r_bridge_settle(s->view, PAIR, v, 0, 0), 1);
         assert_int_equal(t3r_bridge_settle(s->view, PAIR, v, 0, 1u << (1 - v)), 0);
-        assert_int_equal(s->confidence[v][at[v]], T3R_CONFIDENCE_BRIDGED_COVERED);
-        assert_int_equal(s->confidence[1 - v][at[1 - v]], T3R_CONFIDENCE_BRIDGED);
+        assert_int_equal(s->validity[v][at[v]], T3R_BRIDGED | T3R_MARK_COVERED);
+        assert_int_equal(s->validity[1 - v][at[1 - v]], T3R_BRIDGED);
         free(s);
     }
 }
@@ -308,9 +308,9 @@ static void forgotten(void **state)
     disc(s, 1, 40, 20, 9);
     s->depth[1][5 * W + 5] = UNIT;
     memcpy(before->depth, s->depth, sizeof s->depth);
-    memcpy(before->confidence, s->confidence, sizeof s->confidence);
+    memcpy(before->validity, s->validity, sizeof s->validity);
     (void)bridge(s, PAIR, 30);
-    uint32_t bridged = of_kind(s, 0, T3R_CONFIDENCE_BRIDGED), covered = of_kind(s, 0, T3R_CONFIDENCE_BRIDGED_COVERED);
+    uint32_t bridged = of_kind(s, 0, T3R_BRIDGED), covered = of_kind(s, 0, T3R_BRIDGED | T3R_MARK_COVERED);
     assert_true(bridged > 0 && covered > 0);
     for (uint32_t v = PAIR; v-- > 0;) {
         (void)t3r_mark_flying(s->view, PAIR, v, 0, false);
@@ -318,13 +318,13 @@ static void forgotten(void **state)
     for (uint32_t v = PAIR; v-- > 0;) {
         (void)t3r_mark_covered(s->view, PAIR, v, 0);
     }
-    t3r_forget_witnesses(s->view, PAIR);
-    assert_int_equal(of_kind(s, 0, T3R_CONFIDENCE_BRIDGED), bridged);
-    assert_int_equal(of_kind(s, 0, T3R_CONFIDENCE_BRIDGED_COVERED), covered);
-    assert_int_equal(s->confidence[1][5 * W + 5], T3R_CONFIDENCE_DOUBTFUL);
-    t3r_forget_marks(s->view, PAIR);
+    t3r_clear_witnesses(s->view, PAIR);
+    assert_int_equal(of_kind(s, 0, T3R_BRIDGED), bridged);
+    assert_int_equal(of_kind(s, 0, T3R_BRIDGED | T3R_MARK_COVERED), covered);
+    assert_int_equal(s->validity[1][5 * W + 5], T3R_MEASURED | T3R_MARK_DOUBTFUL);
+    t3r_reset_comparison(s->view, PAIR);
     assert_memory_equal(s->depth, before->depth, sizeof s->depth);
-    assert_memory_equal(s->confidence, before->confidence, sizeof s->confidence);
+    assert_memory_equal(s->validity, before->validity, sizeof s->validity);
     free(before);
     free(s);
 }
@@ -395,7 +395,7 @@ static void budgets_hold(void **state)
                 assert_int_equal(scene.valid_points, measured);
                 assert_int_equal(scene.count, budgets[b] < measured ? budgets[b] : measured);
                 for (uint32_t i = 0; i < scene.count; i++) {
-                    bridged += out[i].confidence == T3R_CONFIDENCE_BRIDGED;
+                    bridged += out[i].confidence == t3r_confidence_of(T3R_BRIDGED);
                 }
                 assert_true(radius == 0 ? bridged == 0 : bridged > 0);
             }

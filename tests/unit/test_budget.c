@@ -13,7 +13,7 @@
 enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };
 
 static uint16_t texture[PIXELS], key[PIXELS], label[PIXELS];
-static uint8_t confidence[PIXELS];
+static uint8_t validity[PIXELS];
 static uint32_t mask[WORDS];
 
 static t3r_view made_up_view(t3r_cluster *clusters)
@@ -23,14 +23,14 @@ static t3r_view made_up_view(t3r_cluster *clusters)
         uint32_t noise = t3r_mix32(i);
         texture[i] = (uint16_t)(noise % 7 == 0 ? noise >> 18 : (i % SIDE) * 8);
         label[i] = i % 11 == 0 ? T3R_NO_LABEL : (uint16_t)((i / 64) % (CLUSTERS - 3)); /* three stay empty */
-        confidence[i] = label[i] == T3R_NO_LABEL ? T3R_CONFIDENCE_NONE : T3R_CONFIDENCE_MEASURED;
+        validity[i] = label[i] == T3R_NO_LABEL ? T3R_NO_DEPTH : T3R_MEASURED;
         if (label[i] != T3R_NO_LABEL) {
             clusters[label[i]].points++;
         }
     }
     return (t3r_view){.width = SIDE,
                       .height = SIDE,
-                      .confidence = confidence,
+                      .validity = validity,
                       .texture = texture,
                       .key = key,
                       .label = label,
@@ -165,9 +165,9 @@ static void set_aside_comes_last(void **state)
     for (uint32_t i = 0; i < PIXELS; i++) {
         if (label[i] != T3R_NO_LABEL) {
             uint32_t kind = label[i] == 3 ? 1 : t3r_mix32(i + 99) % 8; /* all of one cluster is covered */
-            confidence[i] = kind == 0  ? T3R_CONFIDENCE_DOUBTFUL
-                            : kind < 4 ? T3R_CONFIDENCE_COVERED
-                                       : T3R_CONFIDENCE_MEASURED;
+            validity[i] = kind == 0  ? T3R_MEASURED | T3R_MARK_DOUBTFUL
+                          : kind < 4 ? T3R_MEASURED | T3R_MARK_COVERED
+                                     : T3R_MEASURED;
             doubtful += kind == 0;
             covered += kind > 0 && kind < 4;
             plain += kind >= 4;
@@ -195,8 +195,8 @@ static void set_aside_comes_last(void **state)
                 assert_int_equal(retained_of(&view), z);
                 for (size_t i = 0; i < PIXELS; i++) {
                     if (t3r_retained(&view, i)) {
-                        passed += pass_over && t3r_is_covered(confidence[i]);
-                        flying += t3r_is_doubtful(confidence[i]);
+                        passed += pass_over && t3r_is_covered(validity[i]);
+                        flying += t3r_is_doubtful(validity[i]);
                         if (t3r_set_aside(&view, i, &settings)) {
                             assert_int_equal(t3r_log_density_q10(&view, i, &settings, clusters), 0);
                         }

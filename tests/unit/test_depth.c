@@ -8,7 +8,7 @@ enum { W = 24, H = 20 };
 typedef struct canvas {
     uint8_t colour[3][W * H];
     uint16_t depth[W * H];
-    uint8_t confidence[W * H];
+    uint8_t validity[W * H];
     t3r_view view;
 } canvas;
 
@@ -24,7 +24,7 @@ static canvas *canvas_new(uint16_t depth)
         c->view.colour[k] = c->colour[k];
     }
     c->view.depth = c->depth;
-    c->view.confidence = c->confidence;
+    c->view.validity = c->validity;
     return c;
 }
 
@@ -42,9 +42,9 @@ static void confidence(void **state)
     (void)state;
     canvas *c = canvas_new(9);
     hole(c, 3, 4, 5, 6);
-    t3r_depth_confidence(&c->view);
+    t3r_depth_validity(&c->view);
     for (int i = 0; i < W * H; i++) {
-        assert_int_equal(c->confidence[i], c->depth[i] != 0 ? 255 : 0);
+        assert_int_equal(c->validity[i], c->depth[i] != 0 ? T3R_MEASURED : T3R_NO_DEPTH);
     }
     free(c);
 }
@@ -58,11 +58,11 @@ static void interpolated(void **state)
         c->depth[5 * W + x] = (uint16_t)(1000 + 10 * x);
     }
     hole(c, 8, 5, 11, 6);
-    t3r_depth_confidence(&c->view);
+    t3r_depth_validity(&c->view);
     assert_int_equal(t3r_depth_fill(&c->view, 3), 3);
     for (int x = 8; x < 11; x++) {
         assert_int_equal(c->depth[5 * W + x], 1000 + 10 * x);
-        assert_int_equal(c->confidence[5 * W + x], T3R_CONFIDENCE_FILLED);
+        assert_int_equal(c->validity[5 * W + x], T3R_FILLED);
     }
     assert_int_equal(c->depth[4 * W + 9], 0);
     free(c);
@@ -76,7 +76,7 @@ static void reach(void **state)
         for (int size = 1; size <= 12; size++) {
             canvas *c = canvas_new(500);
             hole(c, 4, 4, 4 + size, 4 + size);
-            t3r_depth_confidence(&c->view);
+            t3r_depth_validity(&c->view);
             uint32_t expected = 0;
             for (int y = 0; y < size; y++) {
                 for (int x = 0; x < size; x++) {
@@ -102,7 +102,7 @@ static void border(void **state)
     hole(c, 0, 6, 1, 8);
     hole(c, W - 1, 0, W, 1);
     hole(c, 0, H - 1, 1, H);
-    t3r_depth_confidence(&c->view);
+    t3r_depth_validity(&c->view);
     assert_int_equal(t3r_depth_fill(&c->view, 8), 2);
     assert_int_equal(c->depth[6 * W], 500);
     assert_int_equal(c->depth[W - 1], 0);
@@ -120,7 +120,7 @@ static void edge(void **state)
         c->colour[1][5 * W + x] = x < 9 ? 40 : 200; /* the near object ends between 8 and 9 */
     }
     hole(c, 7, 5, 11, 6);
-    t3r_depth_confidence(&c->view);
+    t3r_depth_validity(&c->view);
     assert_int_equal(t3r_depth_fill(&c->view, 4), 4);
     for (int x = 7; x < 11; x++) {
         assert_int_equal(c->depth[5 * W + x], x < 9 ? 1000 : 2000);
@@ -133,7 +133,7 @@ static void edge(void **state)
         c->depth[5 * W + x] = x < 10 ? 1000 : 2000;
     }
     hole(c, 7, 5, 12, 6);
-    t3r_depth_confidence(&c->view);
+    t3r_depth_validity(&c->view);
     assert_int_equal(t3r_depth_fill(&c->view, 8), 5);
     for (int x = 7; x < 12; x++) {
         assert_int_equal(c->depth[5 * W + x], x <= 9 ? 1000 : 2000);
@@ -151,7 +151,7 @@ static void agreement(void **state)
         canvas *c = canvas_new(0);
         c->depth[5 * W + 5] = 1600;
         c->depth[5 * W + 7] = others[i];
-        t3r_depth_confidence(&c->view);
+        t3r_depth_validity(&c->view);
         assert_int_equal(t3r_depth_fill(&c->view, 1), 1);
         assert_int_equal(c->depth[5 * W + 6], between[i]);
         free(c);
@@ -167,7 +167,7 @@ static void nearer_pair(void **state)
     c->depth[4 * W + 6] = c->depth[6 * W + 6] = 3000;
     c->depth[12 * W + 5] = c->depth[12 * W + 7] = 1000;
     c->depth[11 * W + 6] = c->depth[13 * W + 6] = 3000;
-    t3r_depth_confidence(&c->view);
+    t3r_depth_validity(&c->view);
     t3r_depth_fill(&c->view, 2);
     assert_int_equal(c->depth[5 * W + 6], 3000);
     assert_int_equal(c->depth[12 * W + 6], 1000);
@@ -189,10 +189,10 @@ static void never_seeds(void **state)
             }
         }
         memcpy(before, c->depth, sizeof before);
-        t3r_depth_confidence(&c->view);
+        t3r_depth_validity(&c->view);
         uint32_t filled = t3r_depth_fill(&c->view, 3);
         for (int i = 0; i < W * H; i++) {
-            if (c->confidence[i] == T3R_CONFIDENCE_FILLED) {
+            if (c->validity[i] == T3R_FILLED) {
                 int low = 65536, high = 0;
                 for (int k = -3; k <= 3; k++) {
                     int x = i % W + k, y = i / W + k;

@@ -5,14 +5,14 @@
 
 enum { W = 23, H = 17, PIXELS = W * H, CLUSTERS = 3 };
 
-static uint8_t colour[3][PIXELS], confidence[PIXELS];
+static uint8_t colour[3][PIXELS], validity[PIXELS];
 static uint16_t depth[PIXELS], texture[PIXELS], label[PIXELS];
 static uint32_t mask[(PIXELS + 31) / 32];
 static t3r_view view = {.width = W,
                         .height = H,
                         .colour = {colour[0], colour[1], colour[2]},
                         .depth = depth,
-                        .confidence = confidence,
+                        .validity = validity,
                         .texture = texture,
                         .label = label,
                         .mask = mask};
@@ -27,8 +27,15 @@ static void fill_view(uint64_t seed)
         for (int c = 0; c < 3; c++) {
             colour[c][i] = (uint8_t)unit_random(&seed);
         }
-        static const uint8_t kinds[] = {255, 255, 255, 192, 128, 96, 64, 32};
-        confidence[i] = valid ? kinds[unit_between(&seed, 0, 7)] : 0;
+        static const uint8_t kinds[] = {T3R_MEASURED,
+                                        T3R_MEASURED,
+                                        T3R_MEASURED,
+                                        T3R_MEASURED | T3R_MARK_COVERED,
+                                        T3R_FILLED,
+                                        T3R_FILLED | T3R_MARK_COVERED,
+                                        T3R_MEASURED | T3R_MARK_DOUBTFUL,
+                                        T3R_FILLED | T3R_MARK_DOUBTFUL};
+        validity[i] = valid ? kinds[unit_between(&seed, 0, 7)] : 0;
         depth[i] = valid ? (uint16_t)(unit_between(&seed, 0, 5) > 0 ? 1500 + 9 * (i % W) + unit_between(&seed, -3, 3)
                                                                     : unit_between(&seed, 1, 65535))
                          : 0;
@@ -61,14 +68,14 @@ static void check_pixel(const t3r_head_input *input, uint32_t x, uint32_t y, con
     }
     bool retained = input->unadapted ? label[i] != T3R_NO_LABEL : (mask[i / 32] >> i % 32 & 1) != 0;
     assert_int_equal(f[3], retained ? 127 : 0);
-    bool doubtful = confidence[i] == 64 || confidence[i] == 32, covered = confidence[i] == 192 || confidence[i] == 96;
-    bool aside = doubtful || (covered && settings.pass_over_covered);
-    if (label[i] == T3R_NO_LABEL || (aside && f[3] == 0)) {
+    bool doubtful = (validity[i] & T3R_MARK_DOUBTFUL) != 0, covered = (validity[i] & T3R_MARK_COVERED) != 0;
+    bool deferred = doubtful || (covered && settings.pass_over_covered);
+    if (label[i] == T3R_NO_LABEL || (deferred && f[3] == 0)) {
         assert_int_equal(f[5], -70);
         assert_true(f[4] == 0 && f[6] == 0 && f[7] == 0 && f[8] == 0);
         return;
     }
-    assert_int_equal(f[4], confidence[i] == 255 || confidence[i] == 192 || confidence[i] == 64 ? 127 : 64);
+    assert_int_equal(f[4], (validity[i] & T3R_DEPTH_SOURCE_BITS) == T3R_MEASURED ? 127 : 64);
     double log_density = input->unadapted ? 0 : t3r_log_density_q10(&view, i, &settings, input->clusters) / 1024.0;
     assert_int_equal(f[5], held(floor(log_density * 16 + 64 + 0.5)));
     assert_true(fabs(f[6] - held((log2(texture[i] + 8.0) - 9.5) * 16)) < 0.51);

@@ -27,7 +27,7 @@ enum {
 };
 
 static uint16_t texture[VIEWS][PIXELS], key[VIEWS][PIXELS], label[VIEWS][PIXELS];
-static uint8_t confidence[VIEWS][PIXELS];
+static uint8_t validity[VIEWS][PIXELS];
 static uint32_t mask[VIEWS][WORDS];
 static uint16_t plane[VIEWS][(W + GAP) * H];
 
@@ -39,15 +39,16 @@ static uint16_t importance_at(uint32_t v, size_t i)
 /* Labels in columns, a cluster without points, holes; few levels of importance, so that there are ties. */
 static void make_up(t3r_view views[VIEWS], t3r_cluster clusters[CLUSTERS + 1], uint32_t levels)
 {
-    static const uint8_t known[] = {T3R_CONFIDENCE_MEASURED, T3R_CONFIDENCE_COVERED,  T3R_CONFIDENCE_FILLED,
-                                    T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_MEASURED, T3R_CONFIDENCE_FILLED_DOUBTFUL};
+    static const uint8_t known[] = {T3R_MEASURED, T3R_MEASURED | T3R_MARK_COVERED,
+                                    T3R_FILLED,   T3R_MEASURED | T3R_MARK_DOUBTFUL,
+                                    T3R_MEASURED, T3R_FILLED | T3R_MARK_DOUBTFUL};
     memset(clusters, 0, (CLUSTERS + 1) * sizeof *clusters);
     for (uint32_t v = 0; v < VIEWS; v++) {
         for (uint32_t i = 0; i < PIXELS; i++) {
             uint32_t noise = t3r_mix32(i * 2 + v), x = i % W, y = i / W;
             bool hole = noise % 13 == 0 || (x > 40 && y > 30) || (x < 20 && y == 9);
             label[v][i] = hole ? T3R_NO_LABEL : (uint16_t)(x / 8);
-            confidence[v][i] = hole ? T3R_CONFIDENCE_NONE : known[noise % 6];
+            validity[v][i] = hole ? T3R_NO_DEPTH : known[noise % 6];
             texture[v][i] = (uint16_t)noise;
             key[v][i] = (uint16_t)(noise >> 16);
             if (!hole) {
@@ -62,7 +63,7 @@ static void make_up(t3r_view views[VIEWS], t3r_cluster clusters[CLUSTERS + 1], u
         }
         views[v] = (t3r_view){.width = W,
                               .height = H,
-                              .confidence = confidence[v],
+                              .validity = validity[v],
                               .texture = texture[v],
                               .key = key[v],
                               .label = label[v],

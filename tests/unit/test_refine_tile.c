@@ -7,7 +7,7 @@
 
 enum { SIDE = 64, ACROSS = SIDE / T3R_TILE_SIDE, SPLATS = 150, MOMENTS = T3R_REFINE_MOMENTS_4 };
 
-static uint8_t colour[3][SIDE * SIDE], confidence[SIDE * SIDE];
+static uint8_t colour[3][SIDE * SIDE], validity[SIDE * SIDE];
 static t3r_view view;
 static t3r_gaussian scene[SPLATS];
 static t3r_splat splats[SPLATS];
@@ -65,10 +65,10 @@ static void make_scene(uint64_t seed)
         for (int c = 0; c < 3; c++) {
             colour[c][i] = (uint8_t)unit_random(&seed);
         }
-        confidence[i] = unit_random(&seed) % 10 == 0 ? T3R_CONFIDENCE_NONE : T3R_CONFIDENCE_MEASURED;
+        validity[i] = unit_random(&seed) % 10 == 0 ? T3R_NO_DEPTH : T3R_MEASURED;
     }
     view.width = view.height = SIDE;
-    view.confidence = confidence;
+    view.validity = validity;
     for (int c = 0; c < 3; c++) {
         view.colour[c] = colour[c];
     }
@@ -210,7 +210,7 @@ static pixel pixel_of(const t3r_tile *before, const t3r_tile *after, const t3r_t
     uint32_t x = left + i, y = top + j;
     pixel p = {
         .left = after->transmittance_q16[j][i] / 65536.0, .dx = x - s->x_q12 / 4096.0, .dy = y - s->y_q12 / 4096.0};
-    if (confidence[y * SIDE + x] != T3R_CONFIDENCE_NONE && x >= s->x0 && x <= s->x1) {
+    if (validity[y * SIDE + x] != T3R_NO_DEPTH && x >= s->x0 && x <= s->x1) {
         p.w = (before->transmittance_q16[j][i] - after->transmittance_q16[j][i]) / 65536.0;
     }
     for (int c = 0; c < 3; c++) {

@@ -55,7 +55,7 @@ static shot *shoot(double x, double y, double z, const double q[4], double gain,
         s->view.colour[c] = unit_array(PIXELS, 1);
     }
     s->view.depth = unit_array(PIXELS, 2);
-    s->view.confidence = unit_array(PIXELS, 1);
+    s->view.match_confidence = unit_array(PIXELS, 1);
     for (int i = 0; i < PIXELS; i++) {
         const double ray[3] = {(i % W - (W - 1) / 2.0) / 110, (i / W - (H - 1) / 2.0) / 110, 1};
         double d[3], value;
@@ -83,7 +83,7 @@ static void shot_free(shot *s)
         free(s->view.colour[c]);
     }
     free(s->view.depth);
-    free(s->view.confidence);
+    free(s->view.match_confidence);
     free(s);
 }
 
@@ -106,7 +106,7 @@ static void judge(const shot *s, uint64_t unit, double tolerance, double out[3])
     double matched = 0, wrong = 0, filled = 0;
     for (int i = 0; i < PIXELS; i++) {
         const double depth = s->view.depth[i] * (double)unit / 1099511627776.0;
-        const uint8_t confidence = s->view.confidence[i];
+        const uint8_t confidence = s->view.match_confidence[i];
         assert_int_equal(s->view.depth[i] == 0, confidence == T3R_STEREO_NONE);
         matched += confidence >= T3R_STEREO_LEAST;
         filled += confidence == T3R_STEREO_FILLED;
@@ -265,12 +265,12 @@ static void unfilled(void **state)
     int filled = 0;
     assert_int_equal(unit[0], unit[1]);
     for (int i = 0; i < PIXELS; i++) {
-        if (a[1]->view.confidence[i] >= T3R_STEREO_LEAST) {
-            assert_int_equal(a[0]->view.confidence[i], a[1]->view.confidence[i]);
+        if (a[1]->view.match_confidence[i] >= T3R_STEREO_LEAST) {
+            assert_int_equal(a[0]->view.match_confidence[i], a[1]->view.match_confidence[i]);
             assert_int_equal(a[0]->view.depth[i], a[1]->view.depth[i]);
-        } else if (a[0]->view.confidence[i] == T3R_STEREO_NONE) {
+        } else if (a[0]->view.match_confidence[i] == T3R_STEREO_NONE) {
             assert_int_equal(a[0]->view.depth[i], 0);
-            filled += a[1]->view.confidence[i] == T3R_STEREO_FILLED;
+            filled += a[1]->view.match_confidence[i] == T3R_STEREO_FILLED;
         }
     }
     assert_true(filled > 100);
@@ -285,9 +285,10 @@ static void marks(void **state)
     (void)state;
     uint16_t depth[6] = {0, 5, 5, 5, 5, 5};
     uint8_t confidence[6] = {T3R_STEREO_NONE, T3R_STEREO_FILLED, 2, 29, 30, 255};
-    const uint8_t expected[6] = {T3R_CONFIDENCE_NONE,     T3R_CONFIDENCE_FILLED,   T3R_CONFIDENCE_DOUBTFUL,
-                                 T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_MEASURED, T3R_CONFIDENCE_MEASURED};
-    const t3r_view view = {.width = 3, .height = 2, .depth = depth, .confidence = confidence};
+    const uint8_t expected[6] = {
+        T3R_NO_DEPTH, T3R_FILLED,  T3R_MEASURED | T3R_MARK_DOUBTFUL, T3R_MEASURED | T3R_MARK_DOUBTFUL,
+        T3R_MEASURED, T3R_MEASURED};
+    const t3r_view view = {.width = 3, .height = 2, .depth = depth, .match_confidence = confidence};
     t3r_stereo_marks(&view, 30);
     assert_memory_equal(confidence, expected, 6);
 }

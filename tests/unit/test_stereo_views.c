@@ -124,14 +124,14 @@ static verdict judge(const bench *b, const shots *s, uint32_t v)
     verdict found = {0};
     uint32_t wrong = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
-        const uint8_t confidence = views[v].confidence[i];
+        const uint8_t validity = views[v].validity[i];
         const double depth = views[v].depth[i] * ldexp((double)views[v].depth_unit_q40, -40);
         const double truth = s->depth[v][i] * ldexp((double)ROOM_DEPTH_UNIT_Q40, -40);
-        const int measured = confidence >= T3R_CONFIDENCE_COVERED;
+        const int measured = t3r_is_measured(validity) && !t3r_is_doubtful(validity);
         found.measured += (uint32_t)measured;
-        found.none += confidence == T3R_CONFIDENCE_NONE;
+        found.none += validity == T3R_NO_DEPTH;
         wrong += measured && fabs(depth / truth - 1) > 0.1;
-        assert_int_equal(confidence == T3R_CONFIDENCE_NONE, views[v].depth[i] == 0);
+        assert_int_equal(validity == T3R_NO_DEPTH, views[v].depth[i] == 0);
     }
     found.wrong = found.measured == 0 ? 0 : (double)wrong / found.measured;
     return found;
@@ -162,7 +162,7 @@ static void colours_alone(void **state)
     assert_true(scene.valid_points > PIXELS && scene.valid_points < 2 * PIXELS);
     /* what was doubted comes last */
     for (uint32_t i = 0; i < scene.count; i++) {
-        assert_true(scene.gaussians[i].confidence > T3R_CONFIDENCE_DOUBTFUL);
+        assert_true(scene.gaussians[i].confidence > t3r_confidence_of(T3R_MEASURED | T3R_MARK_DOUBTFUL));
     }
     /* again from the same planes, which now hold depth */
     assert_int_equal(reconstruct(&b, &scene), T3R_OK);
@@ -407,9 +407,9 @@ static void fused(void **state)
         new_confidence[i] = cases[i].new;
     }
     const t3r_view view = {
-        .width = COUNT, .height = 1, .depth = depth, .confidence = confidence, .depth_unit_q40 = 500};
+        .width = COUNT, .height = 1, .depth = depth, .match_confidence = confidence, .depth_unit_q40 = 500};
     const t3r_view found = {
-        .width = COUNT, .height = 1, .depth = new_depth, .confidence = new_confidence, .depth_unit_q40 = 1000};
+        .width = COUNT, .height = 1, .depth = new_depth, .match_confidence = new_confidence, .depth_unit_q40 = 1000};
     t3r_stereo_fuse(&view, &found);
     for (int i = 0; i < COUNT; i++) {
         assert_int_equal(depth[i], cases[i].depth);
@@ -426,8 +426,11 @@ static void filled(void **state)
     uint8_t colour[COUNT], confidence[COUNT] = {0}, before[COUNT];
     uint16_t depth[COUNT] = {0};
     void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 8 + 1, 8);
-    const t3r_view view = {
-        .width = WIDTH, .height = HEIGHT, .colour = {colour, colour, colour}, .depth = depth, .confidence = confidence};
+    const t3r_view view = {.width = WIDTH,
+                           .height = HEIGHT,
+                           .colour = {colour, colour, colour},
+                           .depth = depth,
+                           .match_confidence = confidence};
     for (int i = 0; i < COUNT; i++) {
         colour[i] = i % WIDTH < WIDTH / 2 ? 40 : 90;
     }
@@ -459,8 +462,11 @@ static void extended(void **state)
     uint16_t depth[COUNT];
     uint64_t noise = 3;
     void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 8 + 1, 8);
-    const t3r_view view = {
-        .width = WIDTH, .height = HEIGHT, .colour = {colour, colour, colour}, .depth = depth, .confidence = confidence};
+    const t3r_view view = {.width = WIDTH,
+                           .height = HEIGHT,
+                           .colour = {colour, colour, colour},
+                           .depth = depth,
+                           .match_confidence = confidence};
     memset(colour, 128, sizeof colour);
     for (int slant = -2; slant <= 2; slant++) {
         double most = 0;

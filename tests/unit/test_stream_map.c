@@ -11,7 +11,7 @@ typedef struct site {
     t3r_gaussian gaussians[MOST];
     t3r_map_record records[MOST];
     t3r_map map;
-    uint8_t confidence[PIXELS];
+    uint8_t validity[PIXELS];
     uint16_t texture[PIXELS], key[PIXELS], label[PIXELS];
     t3r_view view;
     t3r_budget_settings settings;
@@ -29,17 +29,17 @@ static void fill(site *s, uint64_t *seed, uint32_t key_range)
         s->records[i].faded_q10 = (uint16_t)(unit_between(seed, 0, 3) == 0 ? unit_between(seed, 0, 40000) : 0);
         s->records[i].wanted_q10 = (int16_t)unit_between(seed, 0, 8000);
     }
-    static const uint8_t confidences[] = {T3R_CONFIDENCE_MEASURED, T3R_CONFIDENCE_FILLED, T3R_CONFIDENCE_COVERED,
-                                          T3R_CONFIDENCE_DOUBTFUL, T3R_CONFIDENCE_NONE};
+    static const uint8_t validities[] = {T3R_MEASURED, T3R_FILLED, T3R_MEASURED | T3R_MARK_COVERED,
+                                         T3R_MEASURED | T3R_MARK_DOUBTFUL, T3R_NO_DEPTH};
     for (int i = 0; i < PIXELS; i++) {
-        s->confidence[i] = confidences[unit_between(seed, 0, 4)];
-        s->label[i] = s->confidence[i] == T3R_CONFIDENCE_NONE ? T3R_NO_LABEL : 0;
+        s->validity[i] = validities[unit_between(seed, 0, 4)];
+        s->label[i] = s->validity[i] == T3R_NO_DEPTH ? T3R_NO_LABEL : 0;
         s->key[i] =
             (uint16_t)(unit_between(seed, 0, 9) == 0 ? 3 : T3R_MAP_KEY_LEAST + unit_between(seed, 0, key_range));
     }
     s->view = (t3r_view){.width = WIDTH,
                          .height = HEIGHT,
-                         .confidence = s->confidence,
+                         .validity = s->validity,
                          .texture = s->texture,
                          .key = s->key,
                          .label = s->label};
@@ -76,7 +76,7 @@ static void compete_as_sorted(void **state)
             rivals[count++] = (rival){key_of(&s.records[i]), PIXELS + MOST - i, (int)i};
         }
         for (uint32_t i = 0; i < PIXELS; i++) {
-            if (s.confidence[i] == T3R_CONFIDENCE_MEASURED || s.confidence[i] == T3R_CONFIDENCE_FILLED) {
+            if (s.validity[i] == T3R_MEASURED || s.validity[i] == T3R_FILLED) {
                 rivals[count++] = (rival){T3R_MAX((uint32_t)s.key[i], (uint32_t)T3R_MAP_KEY_LEAST), i, -1};
             }
         }
@@ -147,7 +147,7 @@ static void fades_by_half_life(void **state)
     for (size_t h = 0; h < sizeof half_lives / sizeof *half_lives; h++) {
         uint64_t seed = 11;
         fill(&s, &seed, 100);
-        memset(s.confidence, T3R_CONFIDENCE_NONE, sizeof s.confidence); /* a keyframe that sees nothing */
+        memset(s.validity, T3R_NO_DEPTH, sizeof s.validity); /* a keyframe that sees nothing */
         s.map.count = 1;
         s.records[0].faded_q10 = 0;
         s.view.fx_q16 = s.view.fy_q16 = 30 << 16;

@@ -14,7 +14,7 @@ static uint32_t mark_covered(const rig *s, uint32_t views)
     for (uint32_t v = views; v-- > 0;) {
         marked += t3r_mark_covered(s->view, views, v, 0);
     }
-    t3r_forget_witnesses(s->view, views);
+    t3r_clear_witnesses(s->view, views);
     return marked;
 }
 
@@ -33,7 +33,7 @@ static void shifted_by_the_disparity(void **state)
 {
     (void)state;
     rig *s = pair_new();
-    s->confidence[1][5 * W + 5] = T3R_CONFIDENCE_NONE;
+    s->validity[1][5 * W + 5] = T3R_NO_DEPTH;
     t3r_pointmap zero = t3r_pointmap_of(&s->view[0], 0), one = t3r_pointmap_of(&s->view[1], 0);
     for (uint32_t y = 0; y < H; y++) {
         for (uint32_t x = 0; x < W; x++) {
@@ -106,18 +106,16 @@ static void between_two_surfaces(void **state)
     s->depth[0][9 * W + 40] = 2100; /* on the nearer one */
     uint16_t before[PIXELS];
     memcpy(before, s->depth[0], sizeof before);
-    s->confidence[0][7 * W + 20] = T3R_CONFIDENCE_FILLED;
+    s->validity[0][7 * W + 20] = T3R_FILLED;
     assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0, false), H - 1);
     for (int i = 0; i < PIXELS; i++) {
-        uint8_t wanted = i == 7 * W + 20 ? T3R_CONFIDENCE_FILLED
-                         : i % W == 20   ? T3R_CONFIDENCE_DOUBTFUL
-                                         : T3R_CONFIDENCE_MEASURED;
-        assert_int_equal(s->confidence[0][i], wanted);
+        uint8_t wanted = i == 7 * W + 20 ? T3R_FILLED : i % W == 20 ? T3R_MEASURED | T3R_MARK_DOUBTFUL : T3R_MEASURED;
+        assert_int_equal(s->validity[0][i], wanted);
     }
     assert_memory_equal(before, s->depth[0], sizeof before);
-    t3r_forget_marks(s->view, 1);
-    assert_int_equal(s->confidence[0][8 * W + 20], T3R_CONFIDENCE_MEASURED);
-    assert_int_equal(s->confidence[0][7 * W + 20], T3R_CONFIDENCE_FILLED);
+    t3r_reset_comparison(s->view, 1);
+    assert_int_equal(s->validity[0][8 * W + 20], T3R_MEASURED);
+    assert_int_equal(s->validity[0][7 * W + 20], T3R_FILLED);
     free(s);
 }
 
@@ -140,32 +138,32 @@ static void seen_through(void **state)
     rig *s = pair_new();
     /* at 1 the disparity is 16: a block of 6 x 6 in view 1 that view 0, 16 pixels to the right, does not see */
     block(s, 1, 20, 10, 26, 16, 1);
-    s->confidence[1][12 * W + 22] = T3R_CONFIDENCE_FILLED;
+    s->validity[1][12 * W + 22] = T3R_FILLED;
     assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0, false), 0);
     assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 36);
     for (int i = 0; i < PIXELS; i++) {
         bool flies = i % W >= 20 && i % W < 26 && i / W >= 10 && i / W < 16;
-        assert_int_equal(s->confidence[1][i], i == 12 * W + 22 ? T3R_CONFIDENCE_FILLED_DOUBTFUL
-                                              : flies          ? T3R_CONFIDENCE_DOUBTFUL
-                                                               : T3R_CONFIDENCE_MEASURED);
+        assert_int_equal(s->validity[1][i], i == 12 * W + 22 ? T3R_FILLED | T3R_MARK_DOUBTFUL
+                                            : flies          ? T3R_MEASURED | T3R_MARK_DOUBTFUL
+                                                             : T3R_MEASURED);
     }
     /* an object that both see is none, nor one seen a pixel off, nor what the other view has no depth for */
     for (int off = -1; off <= 1; off++) {
-        t3r_forget_marks(s->view, 2);
+        t3r_reset_comparison(s->view, 2);
         block(s, 0, 0, 0, W, H, 2);
         block(s, 0, 36 + off, 10, 42 + off, 16, 1);
         assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0, false) + t3r_mark_flying(s->view, 2, 1, 0, false), 0);
     }
     block(s, 0, 0, 0, W, H, 2);
-    memset(s->confidence[0], T3R_CONFIDENCE_NONE, PIXELS);
+    memset(s->validity[0], T3R_NO_DEPTH, PIXELS);
     assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 0);
     /* guesses bear witness against guesses, not against what was measured */
-    memset(s->confidence[0], T3R_CONFIDENCE_FILLED, PIXELS);
+    memset(s->validity[0], T3R_FILLED, PIXELS);
     assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 0);
-    t3r_forget_marks(s->view, 2);
-    s->confidence[1][12 * W + 22] = T3R_CONFIDENCE_FILLED;
+    t3r_reset_comparison(s->view, 2);
+    s->validity[1][12 * W + 22] = T3R_FILLED;
     assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, true), 1);
-    assert_int_equal(s->confidence[1][12 * W + 22], T3R_CONFIDENCE_FILLED_DOUBTFUL);
+    assert_int_equal(s->validity[1][12 * W + 22], T3R_FILLED | T3R_MARK_DOUBTFUL);
     free(s);
 }
 
@@ -176,19 +174,19 @@ static void the_earlier_of_two(void **state)
 {
     (void)state;
     rig *s = pair_new();
-    s->confidence[1][3 * W + 3] = T3R_CONFIDENCE_FILLED;
-    s->confidence[1][3 * W + 4] = T3R_CONFIDENCE_DOUBTFUL;
+    s->validity[1][3 * W + 3] = T3R_FILLED;
+    s->validity[1][3 * W + 4] = T3R_MEASURED | T3R_MARK_DOUBTFUL;
     assert_int_equal(mark_covered(s, 2), (W - 8) * H - 1);
     for (int i = 0; i < PIXELS; i++) {
-        assert_int_equal(s->confidence[0][i], T3R_CONFIDENCE_MEASURED);
-        assert_int_equal(s->confidence[1][i], i == 3 * W + 3   ? T3R_CONFIDENCE_FILLED_COVERED
-                                              : i == 3 * W + 4 ? T3R_CONFIDENCE_DOUBTFUL
-                                              : i % W < W - 8  ? T3R_CONFIDENCE_COVERED
-                                                               : T3R_CONFIDENCE_MEASURED);
+        assert_int_equal(s->validity[0][i], T3R_MEASURED);
+        assert_int_equal(s->validity[1][i], i == 3 * W + 3   ? T3R_FILLED | T3R_MARK_COVERED
+                                            : i == 3 * W + 4 ? T3R_MEASURED | T3R_MARK_DOUBTFUL
+                                            : i % W < W - 8  ? T3R_MEASURED | T3R_MARK_COVERED
+                                                             : T3R_MEASURED);
     }
-    t3r_forget_marks(s->view, 2);
-    assert_int_equal(s->confidence[1][3 * W + 3], T3R_CONFIDENCE_FILLED);
-    assert_int_equal(s->confidence[1][0], T3R_CONFIDENCE_MEASURED);
+    t3r_reset_comparison(s->view, 2);
+    assert_int_equal(s->validity[1][3 * W + 3], T3R_FILLED);
+    assert_int_equal(s->validity[1][0], T3R_MEASURED);
     free(s);
 }
 
@@ -207,8 +205,8 @@ static void the_nearer_of_two(void **state)
             uint32_t marked = mark_covered(s, 2);
             uint32_t inside = 0; /* of the farther view: its middle three quarters */
             for (int i = 0; i < PIXELS; i++) {
-                assert_int_equal(s->confidence[nearer][i], T3R_CONFIDENCE_MEASURED);
-                inside += s->confidence[1 - nearer][i] == T3R_CONFIDENCE_COVERED;
+                assert_int_equal(s->validity[nearer][i], T3R_MEASURED);
+                inside += s->validity[1 - nearer][i] == (T3R_MEASURED | T3R_MARK_COVERED);
             }
             assert_int_equal(marked, inside);
             assert_in_range(marked, PIXELS * 9 / 16 * 93 / 100, PIXELS * 9 / 16 * 107 / 100);
@@ -228,7 +226,7 @@ static void a_little_nearer_is_as_good(void **state)
         place_view(s, 1, 0, nearer[turn], 2);
         assert_true(mark_covered(s, 2) > PIXELS * 3 / 4);
         for (int i = 0; i < PIXELS; i++) {
-            assert_int_equal(s->confidence[turn][i], T3R_CONFIDENCE_MEASURED);
+            assert_int_equal(s->validity[turn][i], T3R_MEASURED);
         }
         free(s);
     }
@@ -240,7 +238,7 @@ static void other_surfaces_stay(void **state)
     rig *s = pair_new();
     block(s, 1, 20, 10, 26, 16, 1.9); /* 1/20 off */
     assert_int_equal(mark_covered(s, 2), (W - 8) * H - 36);
-    assert_int_equal(s->confidence[1][12 * W + 22], T3R_CONFIDENCE_MEASURED);
+    assert_int_equal(s->validity[1][12 * W + 22], T3R_MEASURED);
     free(s);
 }
 
@@ -257,9 +255,7 @@ static void no_surface_is_lost(void **state)
             for (int i = 0; i < PIXELS; i++) {
                 s->depth[v][i] = (uint16_t)((int64_t)s->depth[v][i] + unit_between(&seed, -150, 150));
                 int64_t kind = unit_between(&seed, 0, 9);
-                s->confidence[v][i] = kind == 0   ? T3R_CONFIDENCE_NONE
-                                      : kind == 1 ? T3R_CONFIDENCE_FILLED
-                                                  : T3R_CONFIDENCE_MEASURED;
+                s->validity[v][i] = kind == 0 ? T3R_NO_DEPTH : kind == 1 ? T3R_FILLED : T3R_MEASURED;
             }
         }
         all += mark_covered(s, VIEWS);
@@ -267,17 +263,16 @@ static void no_surface_is_lost(void **state)
             t3r_pointmap from = t3r_pointmap_of(&s->view[v], 0);
             for (uint32_t i = 0; i < PIXELS; i++) {
                 bool witnessed = false;
-                for (uint32_t w = 0; w < VIEWS && t3r_is_covered(s->confidence[v][i]); w++) {
+                for (uint32_t w = 0; w < VIEWS && t3r_is_covered(s->validity[v][i]); w++) {
                     t3r_pointmap to = t3r_pointmap_of(&s->view[w], 0);
                     t3r_sight sight;
                     if (w == v || !t3r_reproject(&from, i % W, i / W, &to, &sight)) {
                         continue;
                     }
                     double there = s->depth[w][sight.pixel] / (double)UNIT, here = sight.z_q20 / 1048576.0;
-                    witnessed |=
-                        s->confidence[w][sight.pixel] == T3R_CONFIDENCE_MEASURED && fabs(there - here) < 0.0313 * here;
+                    witnessed |= s->validity[w][sight.pixel] == T3R_MEASURED && fabs(there - here) < 0.0313 * here;
                 }
-                assert_int_equal(witnessed, t3r_is_covered(s->confidence[v][i]));
+                assert_int_equal(witnessed, t3r_is_covered(s->validity[v][i]));
             }
         }
         free(s);
@@ -542,9 +537,9 @@ static void colours_that_differ(void **state)
     assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs), 27 * 256);
 
     block(s, 1, 0, 0, W, H / 2, 1.9);
-    memset(s->confidence[1] + PIXELS / 2, T3R_CONFIDENCE_DOUBTFUL, 4 * W);
-    memset(s->confidence[1] + PIXELS / 2 + 4 * W, T3R_CONFIDENCE_FILLED, 3 * W);
-    memset(s->confidence[1] + PIXELS / 2 + 7 * W, T3R_CONFIDENCE_COVERED, 3 * W); /* measured all the same */
+    memset(s->validity[1] + PIXELS / 2, T3R_MEASURED | T3R_MARK_DOUBTFUL, 4 * W);
+    memset(s->validity[1] + PIXELS / 2 + 4 * W, T3R_FILLED, 3 * W);
+    memset(s->validity[1] + PIXELS / 2 + 7 * W, T3R_MEASURED | T3R_MARK_COVERED, 3 * W); /* measured all the same */
     assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs), 27 * 256);
     assert_int_equal(pairs, 2 * (W - 8) * (H / 2 - 7));
     free(s);

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "wavelet/wavelet.h"
+#include "wavelet_planes.h"
 
 int main(int argc, char **argv)
 {
@@ -14,19 +14,13 @@ int main(int argc, char **argv)
     size_t pixels = (size_t)width * height;
     uint8_t *colour = malloc(pixels * 3);
     uint16_t *texture = malloc(pixels * sizeof *texture);
-    int16_t *plane = malloc(pixels * sizeof *plane);
-    int16_t *work = malloc(t3r_wavelet_work_bytes(width, height));
     int done = 0;
-    if (colour != NULL && texture != NULL && plane != NULL && work != NULL &&
-        fread(colour, 1, pixels * 3, stdin) == pixels * 3) {
+    if (colour != NULL && texture != NULL && fread(colour, 1, pixels * 3, stdin) == pixels * 3) {
         const uint8_t *const planes[3] = {colour, colour + pixels, colour + 2 * pixels};
-        t3r_wavelet_texture_border(planes, width, height, levels, T3R_WAVELET_DB2, T3R_WAVELET_PERIODIC, texture, plane,
-                                   work);
+        wavelet_texture_wrapped(planes, width, height, levels, T3R_WAVELET_DB2, texture);
         done = fwrite(texture, sizeof *texture, pixels, stdout) == pixels;
     }
     free(colour);
     free(texture);
-    free(plane);
-    free(work);
     return done ? 0 : 1;
 }

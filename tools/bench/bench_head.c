@@ -14,7 +14,7 @@ bool bench_head_run(t3r_runtime *runtime)
     const t3r_budget_settings settings = t3r_budget_settings_of(runtime, views);
     for (uint32_t v = 0; v < runtime->views; v++) {
         const t3r_head_input input = t3r_head_input_of(runtime, views, v, &settings);
-        count += t3r_head_learned(&input, scene + count);
+        count += t3r_head_learned(&input, 0, input.map.view->height, scene + count);
     }
     return count == runtime->gaussians;
 }

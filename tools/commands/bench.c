@@ -364,19 +364,6 @@ static bool run_kmeans(workload *w)
     return bench_points_cluster(&w->points);
 }
 
-/* 8-bit planes in, coefficients out. */
-static bool run_wavelet(workload *w)
-{
-    size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
-    const uint8_t *r = w->wavelet_planes, *g = r + pixels, *b = g + pixels;
-    for (size_t i = 0; i < pixels; i++) {
-        int luma = (77 * r[i] + 150 * g[i] + 29 * b[i] + 128) >> 8;
-        w->wavelet_plane[i] = (int16_t)((luma - 128) * (1 << T3R_WAVELET_FRACTION));
-    }
-    t3r_wavelet_forward(w->wavelet_plane, WAVELET_WIDTH, WAVELET_HEIGHT, 2, T3R_WAVELET_DB2, w->wavelet_work);
-    return true;
-}
-
 static bool run_texture(workload *w)
 {
     size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
@@ -401,7 +388,6 @@ static const struct {
     {"stereo_ms", run_stereo, MILLISECONDS, MATCHED},
     {"stereo_8_paths_ms", run_stereo_8_paths, MILLISECONDS, MATCHED},
     {"kmeans_ms", run_kmeans, MILLISECONDS, NO_SCENE},
-    {"wavelet_ns_per_pixel", run_wavelet, NANOSECONDS_A_PIXEL, NO_SCENE},
     {"texture_ns_per_pixel", run_texture, NANOSECONDS_A_PIXEL, NO_SCENE},
     {"build_analytic_ms", run_build, MILLISECONDS, TRIMMED},
     {"build_small_ms", run_build_learned, MILLISECONDS, LEARNED},

@@ -22,7 +22,7 @@ typedef struct finetune_rates {
     double log_scale, rotation, logit, colour;
 } finetune_rates;
 
-/* Tuned on training scenes (README.md, "Rivals"): over budgets of 40, 10 and 5 %, random and efficientgs, each rate by
+/* Tuned on training scenes (docs/rivals.md): over budgets of 40, 10 and 5 %, random and efficientgs, each rate by
  * itself up and down. Steps that fall over the iterations were no better. */
 extern const finetune_rates finetune_rates_default;
 

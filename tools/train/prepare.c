@@ -205,7 +205,9 @@ int32_t prepare(const prepare_views *views, const prepare_settings *settings, in
             for (uint32_t y = 0; y < views->height; y++) {
                 t3r_head_features(&input, y, features + (pixels * v + (size_t)y * views->width) * T3R_FEATURES);
             }
-            memcpy(confidence + pixels * v, planes[v].confidence, pixels);
+            for (size_t i = 0; i < pixels; i++) {
+                confidence[pixels * v + i] = t3r_confidence_of(planes[v].validity[i]);
+            }
             counts[v] = note_points(p.rt, &input, points);
             points += counts[v];
         }

@@ -1,0 +1,139 @@
+"""Files that pages begin with, each made once for all of them, on built-in input."""
+import json
+import pathlib
+import shutil
+import struct
+import subprocess
+import zipfile
+import zlib
+
+import pages
+
+SIDE = 40, 30  # of made-up pictures
+ROOM = 64  # side of the room.mcap that most pages begin with
+
+
+class Given:
+    """Makes a file by its name when a page first asks for it, and copies it into the page's folder."""
+
+    def __init__(self, program, folder):
+        self.program, self.folder = program, pathlib.Path(folder)
+        self.folder.mkdir()
+
+    def put(self, name, target):
+        made = self.folder / name.rstrip("/")
+        if not made.exists():
+            MAKERS[name](self, made)
+        (shutil.copytree if made.is_dir() else shutil.copyfile)(made, target / made.name)
+
+    def run(self, *arguments):
+        subprocess.run([self.program, *map(str, arguments)], check=True, capture_output=True, cwd=self.folder)
+
+    def views(self):
+        """Three pictures of the room at 256x256 and a text with their poses, as COLMAP has them."""
+        start = self.folder / "views"
+        if not start.exists():
+            self.run("room", "--frames", 3, "-o", "large.mcap")
+            self.run("build", "large.mcap", "--context", "0,1,2", "--head", "none", "--refine", 0, "--gaussians", 9,
+                     "--colmap", start)
+        return start
+
+
+def recording(given, path):
+    given.run("room", "--size", f"{ROOM}x{ROOM}", "-o", path)
+
+
+def photos(given, path):
+    shutil.copytree(given.views() / "images", path)
+
+
+def photo(given, path):
+    shutil.copyfile(given.views() / "images" / "frame_000001.png", path)
+
+
+def posed(given, path):
+    """Three pictures with depth beside each other, as NeRFCapture writes them."""
+    path.mkdir()
+    frames = []
+    for i in range(3):
+        write_png(path / f"c{i}.png", 8, 3, lambda x, y: (x * 5 + i, y * 7, 90))
+        write_png(path / f"d{i}.png", 16, 1, lambda x, y: (1000 + x + y,))
+        pose = [[1, 0, 0, i / 10], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+        frames.append({"file_path": f"c{i}.png", "depth_path": f"d{i}.png", "transform_matrix": pose})
+    write_json(path / "transforms.json", {"fl_x": 35, "fl_y": 35, "cx": 20, "cy": 15, "w": SIDE[0], "h": SIDE[1],
+                                          "integer_depth_scale": 0.002, "frames": frames,
+                                          "trim3r_triplets": [{"context": [0, 2], "target": 1}]})
+
+
+def tum(given, path):
+    (path / "rgb").mkdir(parents=True)
+    (path / "depth").mkdir()
+    write_png(path / "rgb" / "1.png", 8, 3, lambda x, y: (x, y, 50))
+    write_png(path / "depth" / "1.png", 16, 1, lambda x, y: (5000,))
+    (path / "rgb.txt").write_text("1.00 rgb/1.png\n1.04 rgb/1.png\n")
+    (path / "depth.txt").write_text("1.00 depth/1.png\n1.04 depth/1.png\n")
+    (path / "groundtruth.txt").write_text("1.00 0 0 0 0 0 0 1\n1.05 0 0 1 0 0 0 1\n")
+
+
+def trajectory(given, path):
+    """A tracker beside the clock of the room's six frames."""
+    path.write_text("".join(f"{i / 30:.6f} {i / 50} 0 0 0 0 0 1\n" for i in range(9)))
+
+
+def importance(given, path):
+    path.mkdir()
+    for frame in range(2):
+        write_png(path / f"{frame}.png", 8, 1, lambda x, y: (x * 3,), (ROOM, ROOM))
+
+
+def head(given, path):
+    shutil.copyfile(pages.ROOT / "quant" / "heads" / "small.safetensors", path)
+
+
+def scene(given, path):
+    """Every point of the room's frames 0 and 2 with its own splat, as a network elsewhere might make them."""
+    recording(given, given.folder / "scene.mcap")
+    given.run("build", "scene.mcap", "--context", "0,2", "--keep", "100%", "--head", "none", "--refine", 0, "-o", path)
+
+
+def pointmaps(given, path):
+    """A slanted plane before the cameras of `photos`, as DUSt3R would save it."""
+    count, side, focal = 3, 64, 55.0
+    points, poses = [], []
+    for view in range(count):
+        for y in range(side):
+            for x in range(side):
+                z = 2 + x / side
+                points += [(x - 31.5) / focal * z + view / 10, (y - 31.5) / focal * z, z]
+        poses += [1, 0, 0, view / 10, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+    with zipfile.ZipFile(path, "w") as file:
+        file.writestr("pts3d.npy", npy((count, side, side, 3), points))
+        file.writestr("conf.npy", npy((count, side, side), [5] * (count * side * side)))
+        file.writestr("poses.npy", npy((count, 4, 4), poses))
+        file.writestr("focals.npy", npy((count,), [focal] * count))
+
+
+def npy(shape, values):
+    head = f"{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}".encode()
+    head += b" " * (-(len(head) + 11) % 64) + b"\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head + struct.pack(f"<{len(values)}f", *values)
+
+
+def write_png(path, bits, channels, value, side=SIDE):
+    raw = b"".join(b"\0" + b"".join(struct.pack(f">{channels}{'H' if bits == 16 else 'B'}", *value(x, y))
+                                    for x in range(side[0])) for y in range(side[1]))
+
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    header = struct.pack(">IIBBBBB", *side, bits, 2 if channels == 3 else 0, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
+
+
+def write_json(path, value):
+    path.write_text(json.dumps(value))
+
+
+MAKERS = {"room.mcap": recording, "photos/": photos, "photo.png": photo, "posed/": posed, "tum/": tum,
+          "tracker.txt": trajectory, "importance/": importance, "small.safetensors": head, "theirs.ply": scene,
+          "dust3r.npz": pointmaps}

@@ -1,0 +1,77 @@
+"""The pages and what stands in them: blocks, prose, links."""
+import pathlib
+import re
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```[ ]*$", re.M | re.S)
+LINK = re.compile(r"!?\[([^\]]*)\]\(([^)\s]+)\)")
+
+
+def all_pages():
+    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+class Block:
+    """A fenced block: its language, the reason why it does not run, the line on which it begins, what is expected of it."""
+
+    def __init__(self, text, match):
+        language, _, reason = match.group(1).partition("not-run")
+        self.language, self.body = language.strip(), match.group(2)
+        self.skipped, self.reason = "not-run" in match.group(1), reason.lstrip(":").strip()
+        self.line = text.count("\n", 0, match.start()) + 1
+        self.expected = None
+
+    @property
+    def is_shell(self):
+        return self.language == "sh"
+
+    @property
+    def runs(self):
+        return self.is_shell and not self.skipped
+
+
+def blocks_of(text):
+    """The fenced blocks; a text block that follows a shell block is what that one prints."""
+    blocks, end = [], 0
+    for match in FENCE.finditer(text):
+        block = Block(text, match)
+        if block.language == "text" and blocks and blocks[-1].runs and not text[end:match.start()].strip():
+            blocks[-1].expected = block.body
+        blocks.append(block)
+        end = match.end()
+    return blocks
+
+
+def given_in(text):
+    """Files that the page begins with: <!-- given: room.mcap posed/ -->."""
+    return [name for match in re.finditer(r"<!-- given: (.*?) -->", text) for name in match.group(1).split()]
+
+
+def without_blocks(text):
+    """The page with fenced blocks, comments and tables blanked, line for line."""
+    text = re.sub(FENCE, lambda match: "\n" * match.group(0).count("\n"), text)
+    text = re.sub(r"<!--.*?-->", lambda match: "\n" * match.group(0).count("\n"), text, flags=re.S)
+    return re.sub(r"^\|.*$", "", text, flags=re.M)
+
+
+def sentences_of(text):
+    """(line, words) of each sentence outside blocks, tables and headings."""
+    paragraph, first = [], 0
+    for number, line in enumerate(without_blocks(text).split("\n") + [""], start=1):
+        new = line.startswith(("#", "    ")) or not line.strip()
+        if new or re.match(r"\s*([-*]|\d+\.) ", line):
+            yield from split(" ".join(paragraph), first)
+            paragraph = []
+        if not new:
+            if not paragraph:
+                first = number
+            paragraph.append(re.sub(r"^\s*([-*]|\d+\.) ", "", line).strip())
+
+
+def split(paragraph, line):
+    plain = LINK.sub(r"\1", paragraph)
+    plain = re.sub(r"`[^`]*`", "code", plain)
+    for sentence in re.split(r"(?<=[.!?])[*)\"]*\s+", plain):
+        words = re.findall(r"[\w'.,%/+-]*\w[\w'.,%/+-]*", sentence)
+        if words:
+            yield line, words
