@@ -134,7 +134,7 @@ t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes);
 typedef struct t3r_capture_adapter {
     const char *name;
     bool available;
-    const char *says; /* what it reads, or why it is not there */
+    char says[256]; /* what it reads, or why it is not there */
 } t3r_capture_adapter;
 uint32_t t3r_capture_adapter_count(void);
 t3r_capture_adapter t3r_capture_adapter_of(uint32_t index);

@@ -72,11 +72,12 @@ uint32_t t3r_capture_adapter_count(void)
 
 t3r_capture_adapter t3r_capture_adapter_of(uint32_t index)
 {
-    static char why[256];
-    t3r_capture_adapter told = {adapters[index].name, adapters[index].there, adapters[index].says};
-    if (adapters[index].module != NULL && t3r_capture_module(adapters[index].module, why, sizeof why) == NULL) {
+    t3r_capture_adapter told = {.name = adapters[index].name, .available = adapters[index].there};
+    const char *module = adapters[index].module;
+    if (module != NULL && t3r_capture_module(module, told.says, sizeof told.says) == NULL) {
         told.available = false;
-        told.says = why;
+    } else {
+        snprintf(told.says, sizeof told.says, "%s", adapters[index].says);
     }
     return told;
 }

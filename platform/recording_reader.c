@@ -2,7 +2,6 @@
 #include "recording.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,19 +33,6 @@ static int fail(indexing *x, const char *record, t3r_mcap_place place, const cha
 {
     char text[T3R_MCAP_PLACE_BYTES];
     return t3r_reason(x->error, x->error_bytes, "%s at %s: %s", record, t3r_mcap_place_text(place, text), what);
-}
-
-void t3r_recording_remark(t3r_recording *recording, const char *format, ...)
-{
-    size_t used = strlen(recording->note);
-    if (used > 0 && used + 3 < sizeof recording->note) {
-        memcpy(recording->note + used, "; ", 3);
-        used += 2;
-    }
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(recording->note + used, sizeof recording->note - used, format, arguments);
-    va_end(arguments);
 }
 
 static char *printable(t3r_text text)

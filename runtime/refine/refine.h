@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "raster/raster_list.h"
-#include "stream/stream_map.h"
+#include "core/map_record.h"
 #include "core/views.h"
 
 /* Parameters of a Gaussian's appearance: log opacity; shift along its two surface axes; log scale and shear in them. */

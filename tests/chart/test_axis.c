@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "chart/axis.h"
+#include "study/chart/axis.h"
 
 /* Names may repeat where 15 digits end. */
 static void check(chart_measure measure, double least, double most, bool named)

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "chart/front.h"
+#include "study/chart/front.h"
 #include "core/fixed.h"
 
 enum { MOST = 40 };

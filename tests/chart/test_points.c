@@ -9,10 +9,10 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "chart/names.h"
-#include "chart/points.h"
-#include "chart/table.h"
-#include "chart/view.h"
+#include "study/chart/names.h"
+#include "study/chart/points.h"
+#include "study/chart/table.h"
+#include "study/chart/view.h"
 
 #define HEADING "scene,context,target,method,head,bits,refine,keep,psnr,build_ms\n"
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "scratch.h"
-#include "scene/viewpoint.h"
+#include "import/viewpoint.h"
 
 #define ONE_Q30 (1 << 30)
 

@@ -82,9 +82,9 @@ def on_a_cluster(folder):
 
 def finds_its_program(folder):
     """That of the checkout it lies in, else the PATH's, else an error that says what to do."""
-    os.makedirs(f"{folder}/checkout/tools/fleet")
-    shutil.copy(snakefile, f"{folder}/checkout/tools/fleet")
-    dry = ("-s", "checkout/tools/fleet/Snakefile", "-d", "fresh", "-c", "1", "-n", "-p", "--config",
+    os.makedirs(f"{folder}/checkout/tools/study/fleet")
+    shutil.copy(snakefile, f"{folder}/checkout/tools/study/fleet")
+    dry = ("-s", "checkout/tools/study/fleet/Snakefile", "-d", "fresh", "-c", "1", "-n", "-p", "--config",
            "recordings=../recordings")
     tools = os.path.dirname(shutil.which("snakemake"))
     path = ":".join(p for p in ("/usr/bin", "/bin", tools) if shutil.which("trim3r", path=p) is None)

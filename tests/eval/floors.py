@@ -2,7 +2,7 @@
 """floors.py TRIM3R TRIM3R_FLOAT SHARED_DATA: what the shipped heads reach on real scenes of the test split at 256x256,
 held to what is promised of them and to what was measured.
 
-A scene, a handful of cases, for each claim: two minutes instead of the two hours of tools/results."""
+A scene, a handful of cases, for each claim: two minutes instead of the two hours of tools/study/scripts/results."""
 import csv
 import json
 import os

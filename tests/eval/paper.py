@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""paper.py TRIM3R TOOLS/PAPER DATA: `tools/paper --quick` on the recorded scenes: every part has its table, cells are the
+"""paper.py TRIM3R TOOLS/PAPER DATA: `tools/study/scripts/paper --quick` on the recorded scenes: every part has its table, cells are the
 means of eval's rows, what was measured is not measured again, and a run cut off goes on."""
 import csv
 import glob
@@ -107,7 +107,7 @@ def check_masks(found, retrained):
 
 
 def check_trained_heads(folder, call, cache, heads):
-    """A folder as tools/train/retrain leaves it: a head for the points of eagles, one of one kind of scenes."""
+    """A folder as tools/study/train/retrain leaves it: a head for the points of eagles, one of one kind of scenes."""
     os.mkdir(f"{folder}/heads")
     for name, kind, mask in (("eagles", "all", "eagles"), ("rooms", "rooms", "trim3r")):
         run(trim3r, "quantize", f"{heads}/nano.safetensors", "--name", name, "-o", f"{folder}/heads/{name}.t3w")
@@ -144,8 +144,8 @@ with tempfile.TemporaryDirectory() as folder:
     check_others(cache, found)
     check_masks(found, ())
     check("No head was retrained" in first.stdout, "and that says so")
-    with open(f"{out}/PAPER.md", encoding="utf-8") as file:
-        check(tables(file.read()) == found, "PAPER.md is what was printed")
+    with open(f"{out}/paper.md", encoding="utf-8") as file:
+        check(tables(file.read()) == found, "paper.md is what was printed")
     for picture in ("paper.svg", "paper-scales.svg"):
         xml.dom.minidom.parse(f"{out}/{picture}")
 
@@ -164,14 +164,14 @@ with tempfile.TemporaryDirectory() as folder:
 
     # heads of other scenes
     head = f"{folder}/mine.t3w"
-    heads = os.path.join(os.path.dirname(paper), "..", "quant", "heads")
+    heads = os.path.join(os.path.dirname(paper), "..", "..", "..", "quant", "heads")
     run(trim3r, "quantize", f"{heads}/nano.safetensors", "--name", "mine", "-o", head)
     rows = tables(run(*call, "transfer", "--head-of", f"indoor={head}").stdout)["Other kinds of scenes"][0]
     check([(s, k) for s, k, _ in filled(rows)] ==
           [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "indoor")], "heads")
     tells(list(filled(rows))[1][2][1], rows_of(cache, "hololens_b.head.mine.t3w.*.csv")[1][1])
 
-    for words, *wrong in (("heads of tools/train/retrain", "transfer"), ("no part is called", "speed"),
+    for words, *wrong in (("heads of tools/study/train/retrain", "transfer"), ("no part is called", "speed"),
                           ("--write takes all parts", "views", "--write"),
                           ("is not KIND=FILE.t3w", "--head-of", "indoor"),
                           ("is not KIND=FILE.t3w", "--head-of", "indoor=absent.t3w"),

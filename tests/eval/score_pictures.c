@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "evaluation/metrics.h"
+#include "pictures/metrics.h"
 #include "pictures/picture.h"
 
 static int read_picture(const char *path, uint32_t channels, picture *p)

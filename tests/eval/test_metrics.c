@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "evaluation/metrics.h"
-#include "evaluation/metrics_filter.h"
+#include "pictures/metrics.h"
+#include "pictures/metrics_filter.h"
 
 #define SIDE 48u
 #define PIXELS (SIDE * SIDE)

@@ -12,8 +12,8 @@
 #include <cmocka.h>
 
 #include "cli/csv.h"
-#include "evaluation/table.h"
-#include "cli/html_page.h"
+#include "study/evaluation/table.h"
+#include "pictures/html_page.h"
 
 static evaluation_row make_row(const char *scene, const char *method, double keep, double psnr, double holes)
 {

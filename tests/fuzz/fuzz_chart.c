@@ -6,13 +6,13 @@
 
 #include <cjson/cJSON.h>
 
-#include "chart/names.h"
-#include "chart/page.h"
-#include "chart/pictures.h"
-#include "chart/points.h"
-#include "chart/svg.h"
-#include "chart/table.h"
-#include "chart/view.h"
+#include "study/chart/names.h"
+#include "study/chart/page.h"
+#include "study/chart/pictures.h"
+#include "study/chart/points.h"
+#include "study/chart/svg.h"
+#include "study/chart/table.h"
+#include "study/chart/view.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "import/frame.h"
+#include "import/posed_folder.h"
 #include "pictures/picture.h"
 #include "scratch.h"
 

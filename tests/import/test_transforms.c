@@ -10,7 +10,8 @@
 
 #include <cmocka.h>
 
-#include "import/posed_folder.h"
+#include "import/transforms_json.h"
+#include "posing/quaternion.h"
 
 #define IDENTITY "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
 #define FRAME(more) "{\"file_path\":\"a.png\",\"transform_matrix\":" IDENTITY more "}"
@@ -113,7 +114,7 @@ static void test_every_rotation_survives(void **state)
                 m[r * 3 + c] = column[r] * 1.0003;
             }
         }
-        assert_null(posed_quaternion(m, back));
+        assert_null(quaternion_of(m, back));
         double dot = q[0] * back[0] + q[1] * back[1] + q[2] * back[2] + q[3] * back[3];
         assert_true(fabs(fabs(dot) - 1) < 1e-12);
     }

@@ -153,12 +153,12 @@ static void by_an_importance(void **state)
     site s = site_of(VIEWS * PIXELS, VIEWS);
     t3r_scene scene;
     assert_int_equal(t3r_reconstruct(s.rt, &request, &scene), T3R_OK);
-    const uint32_t chosen = scene.count;print_message("chosen %u\n", chosen);
+    const uint32_t chosen = scene.count;
     static t3r_gaussian kept[VIEWS * PIXELS];
     memcpy(kept, scene.gaussians, chosen * sizeof *kept);
     assert_true(chosen > 20 && chosen < VIEWS * PIXELS);
     assert_int_equal(t3r_rebuild(s.rt, &half_db, &scene), T3R_OK); /* by texture, other trials and another choice */
-print_message("%u\n", scene.count);    assert_true(scene.count != chosen);
+    assert_true(scene.count != chosen);
     request.max_loss_q8 = 0;
     request.gaussians = chosen;
     assert_int_equal(t3r_rebuild(s.rt, &request, &scene), T3R_OK);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""pose_free.py TOOLS: where tools/pose_free.py puts the target's camera among estimated ones."""
+"""pose_free.py SCRIPTS: where tools/study/scripts/pose_free.py puts the target's camera among estimated ones."""
 import os
 import sys
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""shipped.py TRIM3R HEADS: the C arrays in HEADS are what tools/train/ship makes of the float heads beside them."""
+"""shipped.py TRIM3R HEADS: the C arrays in HEADS are what tools/study/train/ship makes of the float heads beside them."""
 import os
 import pathlib
 import re
@@ -8,7 +8,7 @@ import sys
 import tempfile
 
 trim3r, heads = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
-ship = heads.parent.parent / "tools" / "train" / "ship"
+ship = heads.parent.parent / "tools" / "study" / "train" / "ship"
 
 
 def integers(path):
@@ -23,23 +23,23 @@ def check(condition, what):
 with tempfile.TemporaryDirectory() as folder:
     # a tree of its own, so that nothing of the repository is written
     tree = pathlib.Path(folder)
-    (tree / "tools" / "train").mkdir(parents=True)
+    (tree / "tools" / "study" / "train").mkdir(parents=True)
     (tree / "quant" / "heads").mkdir(parents=True)
-    (tree / "tools" / "train" / "ship").write_bytes(ship.read_bytes())
+    (tree / "tools" / "study" / "train" / "ship").write_bytes(ship.read_bytes())
     names = sorted(path.stem for path in heads.glob("*.safetensors"))
     check(names == ["base", "nano", "small"], f"float heads: {names}")
     for name in names:
         (tree / "quant" / "heads" / f"{name}.safetensors").write_bytes((heads / f"{name}.safetensors").read_bytes())
 
     def run(*arguments, expected=0):
-        done = subprocess.run(["bash", tree / "tools" / "train" / "ship", *arguments], capture_output=True, text=True,
+        done = subprocess.run(["bash", tree / "tools" / "study" / "train" / "ship", *arguments], capture_output=True, text=True,
                               env={**os.environ, "TRIM3R": trim3r})
         check(done.returncode == expected, f"ship {arguments}: status {done.returncode}: {done.stdout}{done.stderr}")
 
     run()
     for name in names:
         made, shipped = integers(tree / "quant" / "heads" / f"{name}.c"), integers(heads / f"{name}.c")
-        check(made == shipped, f"{name}.c is not what {name}.safetensors becomes: tools/train/ship")
+        check(made == shipped, f"{name}.c is not what {name}.safetensors becomes: tools/study/train/ship")
         check(made[:4] == list(b"T3RW"), f"{name}.c holds no weight file")
     other = tree / "other.safetensors"
     other.write_bytes((heads / "small.safetensors").read_bytes())

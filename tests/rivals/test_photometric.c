@@ -1,5 +1,5 @@
 /* The loss of fine-tuning against its definition, the slow way, and its derivatives against differences. */
-#include "rivals/photometric.h"
+#include "study/rivals/photometric.h"
 #include "splat_scenes.h"
 
 enum { WIDTH = 19, HEIGHT = 14, VALUES = WIDTH * HEIGHT * 3 };

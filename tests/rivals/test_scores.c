@@ -1,8 +1,8 @@
 /* The published scores on scenes where the answer is known, or can be had the slow way. */
 #include <stdio.h>
 
-#include "rivals/rival.h"
-#include "rivals/score.h"
+#include "study/rivals/rival.h"
+#include "study/rivals/score.h"
 #include "splat_scenes.h"
 
 enum { SIDE = 33 };

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""answer.py TOOLS: every script that measures, and the demo, tells how it is used, and refuses what it does not know before
+"""answer.py TOOLS DOCS: every script that measures, and the demo, tells how it is used, and refuses what it does not know before
 it does anything; pages begin as their scripts would write them."""
 import os
 import re
@@ -7,7 +7,8 @@ import sys
 
 from common import check, done, need_opencv, run
 
-tools = sys.argv[1]
+tools, docs = sys.argv[1:3]
+scripts = os.path.join(tools, "study", "scripts")
 SCRIPTS = ("auto", "live", "paper", "poses", "results", "speed", "stability", "stereo_results", "stream")
 WRONG = {  # beside an unknown option
     "live": [["--runs", "few"]],
@@ -21,19 +22,19 @@ WRONG = {  # beside an unknown option
 
 need_opencv()
 for name in SCRIPTS:
-    script = os.path.join(tools, name)
+    script = os.path.join(scripts, name)
     text = run(script, "--help").stdout
-    check(text.startswith("usage: " + name) and f"tools/{name}" in text, f"{name} --help has a usage and examples")
+    check(text.startswith("usage: " + name) and f"tools/study/scripts/{name}" in text, f"{name} --help has a usage and examples")
     for wrong in [["--no-such-option"], *WRONG.get(name, [])]:
         check("error: " in run(script, *wrong, expect=2).stderr, f"{name} {wrong} is refused with a reason")
 demo = os.path.join(tools, "demo")
 check("tools/demo" in run(demo, "--help").stdout, "demo --help")
 check("tools/demo" in run(demo, "--no-such-option", expect=2).stderr, "the demo takes no options")
 
-for name, page in {"auto": "AUTO.md", "stream": "STREAM.md"}.items():
-    with open(os.path.join(tools, name), encoding="utf-8") as file:
+for name, page in {"auto": "auto.md", "stream": "stream.md"}.items():
+    with open(os.path.join(scripts, name), encoding="utf-8") as file:
         head = re.search(r'^HEAD = """(.*?)"""$', file.read(), flags=re.M | re.S).group(1)
-    with open(os.path.join(tools, page), encoding="utf-8") as file:
+    with open(os.path.join(docs, "study", page), encoding="utf-8") as file:
         begins = re.escape(head + "\n| scene |").replace("EPOCH", r"\d+")
-        check(re.match(begins, file.read()), f"{page} does not begin as tools/{name} --write makes it")
+        check(re.match(begins, file.read()), f"{page} does not begin as tools/study/scripts/{name} --write makes it")
 done()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""measured_figures.py TOOLS: what the scripts that measure share: tables, means, blocks of a file, triplets, and files that
+"""measured_figures.py SCRIPTS: what the scripts that measure share: tables, means, blocks of a file, triplets, and files that
 are made once for each program and command."""
 import contextlib
 import io

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "stress/measure.h"
-#include "stress/scene.h"
+#include "study/stress/measure.h"
+#include "study/stress/scene.h"
 
 enum { SIDE = 48, METHODS = 3 };
 

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "stress/perturbation.h"
-#include "stress/random.h"
+#include "study/stress/perturbation.h"
+#include "study/stress/random.h"
 
 enum { WIDTH = 48, HEIGHT = 40, PIXELS = WIDTH * HEIGHT };
 

@@ -11,11 +11,11 @@
 #include <cmocka.h>
 
 #include "plane.h"
-#include "stress/promise.h"
-#include "stress/random.h"
-#include "stress/report.h"
-#include "stress/stability.h"
-#include "stress/verdict.h"
+#include "study/stress/promise.h"
+#include "study/stress/random.h"
+#include "study/stress/report.h"
+#include "study/stress/stability.h"
+#include "study/stress/verdict.h"
 
 /* ---- a scene ----------------------------------------------------------------------------------------------------- */
 

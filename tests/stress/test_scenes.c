@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "stress/scene.h"
+#include "study/stress/scene.h"
 
 enum { WIDTH = 72, HEIGHT = 60 };
 

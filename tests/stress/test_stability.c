@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "plane.h"
-#include "stress/stability.h"
-#include "stress/table.h"
+#include "study/stress/stability.h"
+#include "study/stress/table.h"
 
 static int open_plane(void **state)
 {

@@ -16,7 +16,7 @@ except ImportError as missing:
     print(f"SKIPPED: {missing}")
     sys.exit(77)
 
-TOOLS, BUILD = sys.argv[1:3] if len(sys.argv) > 2 else ("tools/train", None)
+TOOLS, BUILD = sys.argv[1:3] if len(sys.argv) > 2 else ("tools/study/train", None)
 sys.path.insert(0, TOOLS)
 sys.dont_write_bytecode = True
 import procedural  # noqa: E402

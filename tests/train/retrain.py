@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/train/retrain in its smallest: heads come with how they were trained, a run cut off goes on, what is there stays.
+"""tools/study/train/retrain in its smallest: heads come with how they were trained, a run cut off goes on, what is there stays.
 
     retrain.py TRAIN_FOLDER BUILD_FOLDER TRIM3R"""
 import glob
@@ -21,7 +21,7 @@ import cv2  # noqa: E402
 import head_net  # noqa: E402
 import numpy as np  # noqa: E402
 
-HEADS = os.path.join(TRAIN, "..", "..", "quant", "heads")
+HEADS = os.path.join(TRAIN, "..", "..", "..", "quant", "heads")
 
 
 class Retrain(unittest.TestCase):

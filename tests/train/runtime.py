@@ -29,7 +29,7 @@ import native  # noqa: E402
 import splatting  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-HEADS = os.path.join(TRAIN, "..", "..", "quant", "heads")
+HEADS = os.path.join(TRAIN, "..", "..", "..", "quant", "heads")
 SCALES = np.array([2.0**14, 2.0**14, 2.0**13, 2.0**13, 2.0**14, 2.0**15, 2.0**13, 2.0**13, 2.0**13])
 SIDE, KEPT, PICTURES, PASSES = 128, 0.1, 3, 4
 APART_MOST = 0.05  # dB; measured 0.02

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "reconstruction/reconstruction_error.h"
 #include "pixel_layout.h"
 
 /* Of all rows without padding. */

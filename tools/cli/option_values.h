@@ -4,10 +4,8 @@
 #define TRIM3R_TOOLS_OPTION_VALUES_H
 
 #include <argp.h>
-#include <stdbool.h>
 #include <stdint.h>
 
-#include "reconstruction/method.h"
 #include "trim3r.h"
 
 /* A whole number in [low, high]. */
@@ -20,17 +18,7 @@ void option_percents(struct argp_state *state, const char *option, const char *t
                      uint32_t *count);
 /* 1 to T3R_MAX_VIEWS frame indices with commas between. */
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
-/* A head's name, or a path that ends as weight files do. */
-const char *option_head(struct argp_state *state, const char *option, const char *text);
-/* A source of depth by its name. */
-t3r_depth option_depth(struct argp_state *state, const char *option, const char *text);
-/* One to METHOD_COUNT different methods with commas between. */
-void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
-                    uint32_t *count);
 /* The next free one of `count` places for arguments that are no options. */
 void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count);
-
-/* Whether a path ends as scene files do. */
-bool path_is_ply(const char *path);
 
 #endif

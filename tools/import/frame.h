@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "pictures/picture.h"
-#include "import/posed_folder.h"
+#include "import/posed_frame.h"
 #include "recording.h"
 
 /* A rectangle of whole pixels. */

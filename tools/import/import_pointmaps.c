@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "import/frame.h"
+#include "posing/quaternion.h"
 #include "posing/resection.h"
 #include "reason.h"
 
@@ -56,7 +57,7 @@ static int maps_of(const pointmap_source *source, uint32_t index, pointmaps *own
 static motion pose_of(const posed_frame *frame)
 {
     motion m;
-    posed_matrix(frame->rotation, m.r);
+    quaternion_matrix(frame->rotation, m.r);
     memcpy(m.t, frame->position, sizeof m.t);
     return m;
 }
@@ -65,7 +66,7 @@ static int set_pose(posed_frame *frame, const motion *pose)
 {
     memcpy(frame->position, pose->t, sizeof frame->position);
     frame->posed = true;
-    return posed_quaternion(pose->r, frame->rotation) == NULL ? 0 : -1;
+    return quaternion_of(pose->r, frame->rotation) == NULL ? 0 : -1;
 }
 
 static int ascending(const void *a, const void *b)

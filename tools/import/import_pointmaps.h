@@ -4,7 +4,7 @@
 
 #include "pictures/picture.h"
 #include "import/pointmaps.h"
-#include "import/posed_folder.h"
+#include "import/posed_frame.h"
 
 typedef struct pointmap_options {
     const char *file;        /* one .npz for all frames, in their order; NULL: each frame's pointmap_path */

@@ -1,6 +1,6 @@
 /* A folder of pictures and nothing else. */
 #define _GNU_SOURCE /* versionsort() */
-#include "import/posed_folder.h"
+#include "import/picture_folder.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -7,7 +7,8 @@
 #include "file_bytes.h"
 #include "import/npy.h"
 #include "import/npz.h"
-#include "import/posed_folder.h"
+#include "import/posed_frame.h"
+#include "posing/quaternion.h"
 #include "reason.h"
 #include "trim3r.h"
 
@@ -185,7 +186,7 @@ static int take_poses(const stack *s, bool inverse, pointmaps *out, char *error,
                 return fail(s, "the last row is not 0 0 0 1", error, error_bytes);
             }
         }
-        const char *wrong = posed_quaternion(m.r, quaternion);
+        const char *wrong = quaternion_of(m.r, quaternion);
         if (wrong != NULL) {
             return fail(s, wrong, error, error_bytes);
         }

@@ -4,88 +4,12 @@
 #ifndef TRIM3R_TOOLS_POSED_FOLDER_H
 #define TRIM3R_TOOLS_POSED_FOLDER_H
 
-#include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
-#include "recording.h"
-
-#define POSED_FOLDER_MAX_FRAMES 100000u
-
-/* What a folder says of a camera; a number that it does not give is NAN. Pixels, with the principal point measured
- * from the corner of the top-left pixel, whose centre is thus at (0.5, 0.5). */
-typedef struct posed_intrinsics {
-    double width, height;           /* of the picture */
-    double grid_width, grid_height; /* of the pixels that fx ... cy are measured in; 0 = the picture's */
-    double fx, fy, cx, cy;
-    double angle_x, angle_y; /* full field of view in radians, the fallback for fx and fy */
-    t3r_distortion distortion;
-    double coefficients[5]; /* in the order of t3r_distortion */
-} posed_intrinsics;
-
-typedef struct posed_frame {
-    char *image;                 /* path, relative to the folder as the folder spells it */
-    char *depth;                 /* likewise; NULL = none */
-    char *pointmap, *confidence; /* likewise: depth made elsewhere (pointmaps.h) */
-    bool posed;                  /* false: position 0, rotation none */
-    posed_intrinsics intrinsics;
-    double position[3]; /* camera centre, world units */
-    double rotation[4]; /* unit quaternion w x y z; camera (x right, y down, z forward) to world */
-} posed_frame;
-
-typedef struct posed_folder {
-    const char *kind; /* "transforms.json", "TUM RGB-D" or "pictures" */
-    posed_frame *frames;
-    uint32_t frame_count;
-    t3r_triplet *triplets;
-    uint32_t triplet_count;
-    double depth_unit; /* world units a step; 0.001 where no frame has depth and none is given */
-    bool depth_unit_given;
-    uint32_t skipped; /* pictures left out because no pose is near them in time */
-} posed_folder;
-
-typedef struct posed_folder_options {
-    const double *intrinsics;  /* fx fy cx cy [k1 k2 p1 p2 k3], cx and cy from the top-left pixel's centre: of folders
-                                  that do not hold them */
-    uint32_t intrinsics_count; /* 0, 4 or 9 */
-    bool without_poses;        /* frames may lack a pose, and a folder may hold pictures alone */
-    bool without_intrinsics;   /* they may lack these as well: NAN then */
-} posed_folder_options;
+#include "import/posed_frame.h"
 
 /* Reads DIR's lists. 0, or -1 with "file: frame: field: what" in error[]. posed_folder_close() in either case. */
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                       size_t error_bytes);
-void posed_folder_close(posed_folder *folder);
-
-/* The frame's camera for a picture of width x height pixels, fit for the recorder: sizes agree, gaps filled (focal
- * length from the field of view, principal point in the middle), numbers finite. Pixel (0, 0) is the centre of the
- * top-left pixel from here on. 0, or -1 with "field: what" in error[]. */
-int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height, t3r_recorded_camera *camera,
-                       char *error, size_t error_bytes);
-
-/* The text of a transforms.json, without touching any other file; options may be NULL. posed_folder_close() in either
- * case. */
-int transforms_json_parse(const char *text, size_t bytes, const posed_folder_options *options, posed_folder *out,
-                          char *error, size_t error_bytes);
-
-/* A folder of pictures (.png, .jpg, .jpeg), in the order of their names, numbers in them by value. */
-int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
-                        size_t error_bytes);
-
-/* The three lists of a TUM RGB-D folder. */
-int tum_rgbd_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
-                  size_t error_bytes);
-
-/* Shared by the readers ------------------------------------------------------------------------------------------ */
-
-/* Unit quaternion w x y z to a row-major matrix. */
-void posed_matrix(const double quaternion[4], double matrix[9]);
-/* Of fx fy cx cy [k1 k2 p1 p2 k3]. */
-posed_intrinsics posed_intrinsics_of(const double numbers[9]);
-/* DIR/NAME, or NAME when absolute, on the heap; NULL when out of memory. */
-char *posed_path(const char *directory, const char *name);
-/* A camera-to-world rotation (row-major, camera axes x right, y down, z forward) to a unit quaternion: entries finite,
- * orthonormal within 1e-3, determinant +1. NULL, or what is wrong with it. */
-const char *posed_quaternion(const double matrix[9], double quaternion[4]);
 
 #endif

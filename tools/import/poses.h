@@ -2,7 +2,7 @@
 #ifndef TRIM3R_TOOLS_IMPORT_POSES_H
 #define TRIM3R_TOOLS_IMPORT_POSES_H
 
-#include "import/posed_folder.h"
+#include "import/posed_frame.h"
 #include "posing/estimate.h"
 
 /* Estimates the poses of all frames, from pictures of their own size, and puts them into the folder as the numbers that

@@ -1,6 +1,7 @@
 /* transforms.json: camera-to-world matrices with OpenGL axes (x right, y up, z backward). Intrinsics stand in a frame
  * or, for all frames, at the top; a frame's own win. */
-#include "import/posed_folder.h"
+#include "import/transforms_json.h"
+#include "posing/quaternion.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -242,7 +243,7 @@ static int read_pose(reader *r, posed_frame *out)
             return fail(r, "transform_matrix", "a position is 2^31 or more");
         }
     }
-    const char *wrong = posed_quaternion(rotation, out->rotation);
+    const char *wrong = quaternion_of(rotation, out->rotation);
     return wrong == NULL ? 0 : fail(r, "transform_matrix", wrong);
 }
 

@@ -1,7 +1,7 @@
 /* TUM RGB-D folders: rgb.txt, depth.txt (optional) and groundtruth.txt, whose lines begin with a time in seconds.
  * Depth is the nearest in time within 20 ms; poses are interpolated between neighbours at most 100 ms apart, else
  * the nearest within 20 ms is taken, else the picture is left out. */
-#include "import/posed_folder.h"
+#include "import/tum_rgbd.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 
 #include "core/camera.h"
 #include "cli/cli.h"
-#include "import/posed_folder.h"
+#include "posing/quaternion.h"
 #include "posing/relative.h"
 #include "reason.h"
 
@@ -287,7 +287,7 @@ int pose_store(const motion *pose, const t3r_camera *first, t3r_camera *camera)
         base.t[i] = 0;
     }
     motion world = motion_after(&base, pose);
-    if (posed_quaternion(world.r, quaternion) != NULL) {
+    if (quaternion_of(world.r, quaternion) != NULL) {
         return -1;
     }
     for (int i = 0; i < 3; i++) {

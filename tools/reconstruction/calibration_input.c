@@ -4,7 +4,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "evaluation/evaluation.h"
+#include "reconstruction/reconstruction_error.h"
+#include "import/planar_recording.h"
 #include "reconstruction/reconstruction.h"
 #include "recording.h"
 
@@ -73,7 +74,7 @@ static int add_recording(calibration *c, const char *path)
 static int add_image(calibration *c, char *path, uint32_t width, uint32_t height)
 {
     uint8_t *bytes;
-    t3r_recording *recording = evaluation_planar_recording(path, width, height, &bytes);
+    t3r_recording *recording = planar_recording(path, width, height, &bytes);
     if (recording == NULL) {
         return CLI_BAD_INPUT;
     }

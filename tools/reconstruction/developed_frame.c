@@ -4,13 +4,14 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "reconstruction/reconstruction.h"
+#include "reconstruction/reconstruction_error.h"
+#include "cli/recorded_frame.h"
 
 int developed_frame(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
                     uint8_t *rgb, t3r_camera *camera)
 {
     t3r_capture_frame frame;
-    int code = reconstruction_frame(recording, path, index, &frame);
+    int code = recorded_frame_read(recording, path, index, &frame);
     if (code != CLI_OK) {
         return code;
     }

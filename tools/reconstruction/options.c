@@ -6,6 +6,7 @@
 
 #include "cli/cli.h"
 #include "cli/option_values.h"
+#include "reconstruction/option_names.h"
 
 enum {
     KEY_GAUSSIANS = 256,

@@ -8,6 +8,8 @@
 
 #include "core/camera.h"
 #include "cli/cli.h"
+#include "reconstruction/reconstruction_error.h"
+#include "cli/recorded_frame.h"
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "reconstruction/importance_pictures.h"
@@ -63,20 +65,6 @@ uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent)
 {
     double points = floor(valid_points * keep_percent / 100 + 0.5);
     return points < 1 ? 1 : (uint32_t)points;
-}
-
-int reconstruction_error(t3r_status status, const char *what, const t3r_config *config, size_t arena_bytes)
-{
-    if (status == T3R_ERR_CONFIG && config != NULL && t3r_config_error(config) != NULL) {
-        return cli_error(CLI_BAD_USAGE, "%s: %s", what, t3r_config_error(config));
-    }
-    t3r_plan_info plan;
-    if (status == T3R_ERR_ARENA && config != NULL && t3r_plan(config, &plan) == T3R_OK) {
-        return cli_error(CLI_BUDGET_TOO_SMALL,
-                         "the arena of %zu bytes is too small: %zu are needed at least, %zu for full speed (--arena)",
-                         arena_bytes, plan.min_bytes, plan.bytes);
-    }
-    return cli_error(CLI_BAD_INPUT, "%s: %s", what, t3r_error_text(status));
 }
 
 /* ---- hooks ------------------------------------------------------------------------------------------------ */
@@ -174,25 +162,6 @@ void reconstruction_close(reconstruction *r)
 }
 
 /* ---- from a recording --------------------------------------------------------------------------------------- */
-
-int reconstruction_frame(const t3r_recording *recording, const char *path, uint32_t index, t3r_capture_frame *frame)
-{
-    uint32_t count = t3r_recording_frame_count(recording);
-    if (index >= count) {
-        return cli_error(CLI_BAD_INPUT,
-                         "%s: there is no frame %" PRIu32 ": the recording holds %" PRIu32 " (0 is the first)", path,
-                         index, count);
-    }
-    char error[512] = "";
-    if (t3r_recording_frame(recording, index, frame, error, sizeof error) != T3R_CAPTURE_FRAME) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, index, error);
-    }
-    if (!frame->has_pose || !frame->has_intrinsics) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no %s", path, index,
-                         frame->has_pose ? "camera_info" : "pose");
-    }
-    return CLI_OK;
-}
 
 static int frame_error(const char *path, uint32_t frame, t3r_status status)
 {
@@ -320,7 +289,7 @@ static int choose_context(reconstruction *r, const t3r_recording *recording, con
                 return cli_error(CLI_BAD_USAGE, "--context names frame %" PRIu32 " twice", r->context[v]);
             }
         }
-        int code = reconstruction_frame(recording, path, r->context[v], &frames[v]);
+        int code = recorded_frame_read(recording, path, r->context[v], &frames[v]);
         if (code != CLI_OK) {
             return code;
         }

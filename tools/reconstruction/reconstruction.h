@@ -155,14 +155,8 @@ uint64_t reconstruction_hash(const reconstruction *r);
 /* Forgets the hashes collected so far (before another render, say). */
 void reconstruction_clear_hashes(reconstruction *r);
 
-/* Frame `index` of a recording with its pose and intrinsics; CLI_BAD_INPUT with a message otherwise. */
-int reconstruction_frame(const t3r_recording *recording, const char *path, uint32_t index, t3r_capture_frame *frame);
-
 /* The camera for the same view on another pixel grid, its distortion dropped: targets are pinhole. Integers only. */
 t3r_camera reconstruction_camera(const t3r_camera *camera, uint32_t from_width, uint32_t from_height, uint32_t width,
                                  uint32_t height);
-
-/* Says what `status` means for this arena and configuration; returns the exit status that belongs to it. */
-int reconstruction_error(t3r_status status, const char *what, const t3r_config *config, size_t arena_bytes);
 
 #endif

@@ -9,9 +9,11 @@
 #include <sys/stat.h>
 
 #include "cli/cli.h"
+#include "reconstruction/reconstruction_error.h"
+#include "cli/recorded_frame.h"
 #include "core/hash.h"
 #include "cli/json_output.h"
-#include "evaluation/metrics.h"
+#include "pictures/metrics.h"
 #include "pictures/picture.h"
 
 #define TEXT_BYTES 4096
@@ -92,7 +94,7 @@ static int draw_held(stream_run *s, uint32_t frame, const char *when, double *ps
 {
     const uint32_t width = s->r.config.width, height = s->r.config.height;
     t3r_capture_frame captured;
-    int code = reconstruction_frame(s->recording, s->path, frame, &captured);
+    int code = recorded_frame_read(s->recording, s->path, frame, &captured);
     if (code != CLI_OK) {
         return code;
     }
@@ -143,7 +145,7 @@ static int draw_live(stream_run *s, uint32_t now)
 static int take_keyframe(stream_run *s, uint32_t frame)
 {
     t3r_capture_frame captured;
-    int code = reconstruction_frame(s->recording, s->path, frame, &captured);
+    int code = recorded_frame_read(s->recording, s->path, frame, &captured);
     if (code != CLI_OK) {
         return code;
     }
@@ -170,7 +172,7 @@ static int is_keyframe(const stream_run *s, uint32_t frame, bool *wanted)
         return CLI_OK;
     }
     t3r_capture_frame captured;
-    int code = reconstruction_frame(s->recording, s->path, frame, &captured);
+    int code = recorded_frame_read(s->recording, s->path, frame, &captured);
     if (code != CLI_OK) {
         return code;
     }

@@ -450,3 +450,9 @@ void scene_file_free(scene_file *scene)
     free(scene->gaussians);
     *scene = (scene_file){0};
 }
+
+bool path_is_ply(const char *path)
+{
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".ply") == 0;
+}

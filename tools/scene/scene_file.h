@@ -2,10 +2,14 @@
 #ifndef TRIM3R_TOOLS_SCENE_FILE_H
 #define TRIM3R_TOOLS_SCENE_FILE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "trim3r.h"
+
+/* Whether a path ends as scene files do. */
+bool path_is_ply(const char *path);
 
 /* A scene outside any arena. */
 typedef struct scene_file {

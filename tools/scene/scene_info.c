@@ -8,10 +8,10 @@
 
 #include "core/camera.h"
 #include "cli/cli.h"
+#include "cli/recorded_frame.h"
 #include "cli/json_output.h"
-#include "reconstruction/reconstruction.h"
 #include "recording.h"
-#include "pictures/scale_picture.h"
+#include "scene/scale_picture.h"
 #include "scene/scene_file.h"
 #include "cli/whole_file.h"
 
@@ -97,7 +97,7 @@ static int measure_pixels(const scene_info_request *request, const scene_file *s
     }
     double *depths = malloc(((size_t)scene->count + 1) * sizeof *depths);
     int code = depths == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                              : reconstruction_frame(recording, request->recording, request->view, &frame);
+                              : recorded_frame_read(recording, request->recording, request->view, &frame);
     if (code == CLI_OK) {
         uint32_t seen = depths_seen(scene, &frame, depths);
         qsort(depths, seen, sizeof *depths, ascending);

@@ -1,0 +1,7 @@
+/* The other one. */
+int even(unsigned n);
+int odd(unsigned n);
+int odd(unsigned n)
+{
+    return n == 0 ? 0 : even(n - 1);
+}

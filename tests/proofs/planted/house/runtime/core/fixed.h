@@ -1,0 +1,1 @@
+/* Included by what stands above: no offence. */

@@ -1,0 +1,1 @@
+#include "study/rivals/rival.h"

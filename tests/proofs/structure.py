@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""structure.py [LIBRARY...]: the picture of the house holds. Every area includes only what stands below it, and no two
+source files of a library call each other, be it through others.
+
+MAY is the whole picture: what each area may include. An area that is not in it is a finding, so a new one is entered
+here with its arrows.
+"""
+import pathlib
+import re
+import sys
+
+import proof
+
+# Rooms of the runtime from the foundation up: each may include those before it.
+ROOMS = ("include", "core", "kernels", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
+         "raster", "head", "refine", "stage_hash", "pipeline", "choice", "stream", "layout", "api")
+# Files that know the rooms beside or above their own: they stand at the front door, whatever folder they are in.
+FRONT_DOOR = {
+    "core/arena": "layout", "core/plan": "layout",  # sizes of what every room keeps in the arena
+    "core/stage_hash": "stage_hash",  # the outputs of every room
+    "budget/budget_choice": "choice",  # builds trial scenes, so it calls the pipeline
+}
+MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, room in enumerate(ROOMS)}
+RUNTIME = set(MAY)
+MAY["quant"] = RUNTIME
+MAY["platform"] = RUNTIME
+
+
+def tool(name, *uses, base=("platform",)):
+    """An area of tools/: what it uses directly, and what those may use."""
+    MAY["tools/" + name] = RUNTIME | set(base)
+    for used in uses:
+        MAY["tools/" + name] |= {"tools/" + used} | MAY["tools/" + used]
+
+
+tool("cli")
+tool("room")
+tool("pictures", "cli")
+tool("posing", "cli")
+tool("import", "pictures", "posing")
+tool("scene", "pictures")
+tool("reconstruction", "import", "scene", base=("platform", "quant"))
+tool("capture", "reconstruction")
+tool("study/bench")
+tool("study/chart", "pictures")
+tool("study/rivals", "reconstruction")
+tool("study/evaluation", "study/rivals")
+tool("study/stress", "study/evaluation")
+tool("study/train", "study/rivals")
+tool("trim3r", "capture", "room", "study/bench", "study/chart", "study/stress")
+tool("examples", base=("platform", "quant"))
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
+SYMBOL = re.compile(r"^.*\[([^\]]+)\]: (\S+) (\w)")
+
+
+def area_of(path):
+    """The area of a source file, by its path from the root of the tree."""
+    folder, stem = path.parent.as_posix(), path.with_suffix("").as_posix()
+    if folder.startswith("runtime"):
+        inside = stem.removeprefix("runtime/")
+        return "runtime/" + FRONT_DOOR.get(inside, inside.split("/")[0])
+    if folder.startswith("tools/study"):
+        return "/".join(folder.split("/")[:3])
+    if folder.startswith("tools"):
+        return "/".join(folder.split("/")[:2])
+    return folder.split("/")[0]
+
+
+def resolve(root, path, name):
+    """The file of the tree that an #include names, by the include paths that its area is built with."""
+    for base in (path.parent, pathlib.Path("runtime/include"), pathlib.Path("runtime"), pathlib.Path("quant"),
+                 pathlib.Path("quant/heads"), pathlib.Path("platform"), pathlib.Path("tools")):
+        if (root / base / name).is_file():
+            return pathlib.Path((root / base / name).resolve().relative_to(root.resolve()))
+    return None
+
+
+def sources(root):
+    for part in ("runtime", "quant", "platform", "tools"):
+        for path in sorted((root / part).rglob("*")):
+            if path.suffix in (".c", ".h", ".cpp"):
+                yield path.relative_to(root)
+
+
+def check_includes(root):
+    """Arrows that the picture does not have."""
+    findings = []
+    for path in sources(root):
+        area = area_of(path)
+        if area not in MAY:
+            findings.append(f"{path}: its area {area} is not in the picture")
+            continue
+        for name in INCLUDE.findall((root / path).read_text()):
+            target = resolve(root, path, name)
+            if target is not None and area_of(target) not in MAY[area] | {area}:
+                findings.append(f"{path} includes {target}: {area} may not use {area_of(target)}")
+    return findings
+
+
+def circles(arrows):
+    """The sets of nodes that reach each other (Tarjan)."""
+    index, low, stack, found = {}, {}, [], []
+
+    def visit(node):
+        index[node] = low[node] = len(index)
+        stack.append(node)
+        for after in sorted(arrows.get(node, ())):
+            if after not in index:
+                visit(after)
+                low[node] = min(low[node], low[after])
+            elif after in stack:
+                low[node] = min(low[node], index[after])
+        if low[node] == index[node]:
+            circle = []
+            while not circle or circle[-1] != node:
+                circle.append(stack.pop())
+            if len(circle) > 1:
+                found.append(sorted(circle))
+
+    for node in sorted(arrows):
+        if node not in index:
+            visit(node)
+    return found
+
+
+def check_picture(may):
+    """The picture itself has no circle."""
+    return [f"the picture has a circle: {', '.join(circle)}" for circle in circles(may)]
+
+
+def check_calls(libraries):
+    """Source files that call each other, or use each other's data: the linker sees it, whatever headers are named."""
+    findings = []
+    for library in libraries:
+        defines, needs = {}, {}
+        for line in proof.run(["nm", "--print-file-name", "--extern-only", "--format=posix", library],
+                              check=True).stdout.splitlines():
+            found = SYMBOL.match(line)
+            if found is None:
+                continue
+            member, symbol, kind = found.groups()
+            if kind in "Uvw":
+                needs.setdefault(member, set()).add(symbol)
+            else:
+                defines[symbol] = member
+        arrows = {member: {defines[s] for s in symbols if defines.get(s, member) != member}
+                  for member, symbols in needs.items()}
+        findings += [f"{pathlib.Path(library).name}: call each other: {', '.join(circle)}"
+                     for circle in circles(arrows)]
+    return findings
+
+
+def planted_findings():
+    """The offenders: a small house in planted/house, and two files that call each other."""
+    house = proof.PLANTED / "house"
+    findings = check_includes(house)
+    for offence in ("runtime/core/outward.c includes platform/replay.h",
+                    "runtime/core/upward.c includes runtime/stream/stream.h",
+                    "tools/cli/back.c includes tools/scene/scene.h",
+                    "tools/scene/study.c includes tools/study/rivals/rival.h",
+                    "tools/attic/new.c: its area tools/attic is not in the picture"):
+        proof.must_find(findings, offence, "house")
+    if len(findings) != 5:
+        proof.broken("the planted house has five offences, no more", findings)
+    proof.must_find(check_picture({"a": {"b"}, "b": {"c"}, "c": {"a"}}), "a, b, c", "a picture of three")
+    with proof.scratch() as folder:
+        objects = proof.compile_each(proof.TARGETS["x86_64"], sorted((house / "calls").glob("*.c")), folder)
+        library = folder / "calls.a"
+        proof.run(["ar", "rcs", library, *objects], check=True)
+        proof.must_find(check_calls([library]), "call each other", "house/calls")
+
+
+def main():
+    planted_findings()
+    libraries = sys.argv[1:]
+    proof.verdict("no area includes what stands above it; no two files of a library call each other",
+                  check_picture(MAY) + check_includes(proof.ROOT) + check_calls(libraries))
+
+
+if __name__ == "__main__":
+    main()

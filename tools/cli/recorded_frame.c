@@ -1,0 +1,24 @@
+#include "cli/recorded_frame.h"
+
+#include <inttypes.h>
+
+#include "cli/cli.h"
+
+int recorded_frame_read(const t3r_recording *recording, const char *path, uint32_t index, t3r_capture_frame *frame)
+{
+    uint32_t count = t3r_recording_frame_count(recording);
+    if (index >= count) {
+        return cli_error(CLI_BAD_INPUT,
+                         "%s: there is no frame %" PRIu32 ": the recording holds %" PRIu32 " (0 is the first)", path,
+                         index, count);
+    }
+    char error[512] = "";
+    if (t3r_recording_frame(recording, index, frame, error, sizeof error) != T3R_CAPTURE_FRAME) {
+        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, index, error);
+    }
+    if (!frame->has_pose || !frame->has_intrinsics) {
+        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " has no %s", path, index,
+                         frame->has_pose ? "camera_info" : "pose");
+    }
+    return CLI_OK;
+}

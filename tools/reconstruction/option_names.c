@@ -1,0 +1,54 @@
+#include "reconstruction/option_names.h"
+
+#include <string.h>
+
+#include "reconstruction/chosen_head.h"
+
+const char *option_head(struct argp_state *state, const char *option, const char *text)
+{
+    if (!chosen_head_is_one(text)) {
+        argp_error(state, "--%s does not know '%s'; there are " CHOSEN_HEAD_NAMES, option, text);
+    }
+    return text;
+}
+
+t3r_depth option_depth(struct argp_state *state, const char *option, const char *text)
+{
+    int depth = 0;
+    while (depth < T3R_DEPTH_COUNT && strcmp(text, t3r_depth_name((t3r_depth)depth)) != 0) {
+        depth++;
+    }
+    if (depth == T3R_DEPTH_COUNT) {
+        argp_error(state, "--%s does not know '%s'; there are sensor, stereo", option, text);
+    }
+    return (t3r_depth)depth;
+}
+
+static void add_method(struct argp_state *state, const char *option, const char *name, size_t length,
+                       method_id methods[METHOD_COUNT], uint32_t *count)
+{
+    method_id m = method_named(name, length);
+    if (m == METHOD_COUNT) {
+        argp_error(state, "--%s: '%.*s' is not a method; there are %s", option, (int)length, name, METHOD_NAMES);
+    }
+    for (uint32_t i = 0; i < *count; i++) {
+        if (methods[i] == m) {
+            argp_error(state, "--%s names %s twice", option, method_name(m));
+        }
+    }
+    methods[(*count)++] = m;
+}
+
+void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
+                    uint32_t *count)
+{
+    *count = 0;
+    for (;;) {
+        size_t length = strcspn(text, ",");
+        add_method(state, option, text, length, methods, count);
+        if (text[length] == '\0') {
+            return;
+        }
+        text += length + 1;
+    }
+}

@@ -1,0 +1,18 @@
+/* Values of options that name a head, a source of depth or methods, as cli/option_values.h reads the others. */
+#ifndef TRIM3R_TOOLS_OPTION_NAMES_H
+#define TRIM3R_TOOLS_OPTION_NAMES_H
+
+#include <argp.h>
+#include <stdint.h>
+
+#include "reconstruction/method.h"
+#include "trim3r.h"
+
+/* A head's name, or a path that ends as weight files do. */
+const char *option_head(struct argp_state *state, const char *option, const char *text);
+/* A source of depth by its name. */
+t3r_depth option_depth(struct argp_state *state, const char *option, const char *text);
+/* One to METHOD_COUNT different methods with commas between. */
+void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
+                    uint32_t *count);
+#endif

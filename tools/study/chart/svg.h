@@ -1,0 +1,18 @@
+/* Charts as one SVG picture: a panel each, the legend below, settings where a pointer rests. */
+#ifndef TRIM3R_TOOLS_CHART_SVG_H
+#define TRIM3R_TOOLS_CHART_SVG_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+#include "study/chart/names.h"
+#include "study/chart/view.h"
+
+typedef enum chart_ground { CHART_GROUND_READER, CHART_GROUND_LIGHT, CHART_GROUND_DARK } chart_ground;
+
+/* `count` views of one quality and one choice of scenes, each with something shown. CHART_GROUND_READER follows the
+ * reader's light or dark setting. What `out` makes of it is the caller's to ask. */
+void chart_svg_write(FILE *out, const chart_points *points, const chart_names *names, const chart_view *views,
+                     uint32_t count, chart_ground ground);
+
+#endif

@@ -1,0 +1,95 @@
+/* Tables of `trim3r eval`, of this version or an older one, as rows of settings and measures. */
+#ifndef TRIM3R_TOOLS_CHART_TABLE_H
+#define TRIM3R_TOOLS_CHART_TABLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "study/chart/texts.h"
+
+#define CHART_FILE_BYTES_MOST (256u << 20)
+#define CHART_SETTING_BYTES_MOST 160u
+#define CHART_ROWS_MOST 500000u /* of all tables together */
+
+/* What tells one way of building a scene from another. */
+typedef enum chart_setting {
+    CHART_METHOD,
+    CHART_HEAD,
+    CHART_BITS,
+    CHART_REFINE,
+    CHART_ALLOCATE,
+    CHART_DEPTH,
+    CHART_WAVELET,
+    CHART_LEVELS,
+    CHART_CLUSTERS,
+    CHART_ELSE, /* settings without a column of their own */
+    CHART_ABLATION,
+    CHART_KEEP,
+    CHART_SETTINGS
+} chart_setting;
+
+typedef enum chart_measure {
+    CHART_PSNR,
+    CHART_SSIM,
+    CHART_PERCEPTUAL,
+    CHART_PLANAR_PSNR,
+    CHART_QUALITIES,
+    CHART_BUILD_MS = CHART_QUALITIES,
+    CHART_RENDER_MS,
+    CHART_ARENA_BYTES,
+    CHART_SCENE_BYTES,
+    CHART_COSTS_END,
+    CHART_GAUSSIANS = CHART_COSTS_END, /* told, no axis */
+    CHART_MEASURES
+} chart_measure;
+
+typedef struct chart_setting_about {
+    const char *column;
+    const char *before, *behind; /* of the value, where a person reads it: "K 300", "8 bits" */
+} chart_setting_about;
+
+typedef enum chart_unit { CHART_PLAIN, CHART_DECIBELS, CHART_MILLISECONDS, CHART_BYTES } chart_unit;
+
+typedef struct chart_measure_about {
+    const char *column, *title;
+    chart_unit unit;
+    int decimals;       /* to tell a value in */
+    int less_is_better; /* of all costs, and of perceptual */
+} chart_measure_about;
+
+extern const chart_setting_about chart_settings[CHART_SETTINGS];
+extern const chart_measure_about chart_measures[CHART_MEASURES];
+
+typedef struct chart_row {
+    uint32_t setting[CHART_SETTINGS]; /* numbers in `texts`; "" where a table does not tell */
+    uint32_t scene_case;              /* number in `cases` */
+    uint32_t picture;                 /* number in `texts` */
+    uint32_t file;                    /* which of the tables */
+    double value[CHART_MEASURES];     /* NaN = not given */
+} chart_row;
+
+typedef struct chart_case {
+    uint32_t scene;           /* number in `scenes` */
+    uint32_t context, target; /* numbers in `texts` */
+} chart_case;
+
+typedef struct chart_table {
+    chart_texts texts, scenes, case_keys;
+    chart_case *cases; /* case_keys.count of them */
+    uint32_t case_room;
+    chart_row *rows;
+    uint32_t row_count, row_room;
+    uint32_t file_count;
+    int has_pictures; /* a table names pictures */
+} chart_table;        /* all zeros: empty */
+
+/* Adds a file's rows: 0, or -1 with "path:line: why" in error[]. A column that a table lacks is empty in all of its
+ * rows; columns of other names are passed over. Refused are tables without a quality or without a cost, rows of another
+ * number of cells than the heading, numbers that are none or not finite, costs below 0, settings of more than
+ * CHART_SETTING_BYTES_MOST bytes, and paths of pictures that are absolute or have a part "..". */
+int chart_table_read(chart_table *table, const char *path, char *error, size_t error_bytes);
+int chart_table_parse(chart_table *table, const char *name, const char *text, size_t bytes, char *error,
+                      size_t error_bytes);
+void chart_table_free(chart_table *table);
+
+#endif

@@ -1,0 +1,76 @@
+#include "study/chart/texts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define FIRST_SLOTS 64u
+
+/* FNV-1a. Whoever makes its values collide makes a chart slow, no more: tables are bounded. */
+static uint32_t hash_of(const char *text)
+{
+    uint32_t hash = 2166136261u;
+    for (const char *p = text; *p != '\0'; p++) {
+        hash = (hash ^ (unsigned char)*p) * 16777619u;
+    }
+    return hash;
+}
+
+/* Where the text is, or where it would be. */
+static uint32_t *find(const chart_texts *texts, const char *text)
+{
+    uint32_t mask = texts->slots - 1, i = hash_of(text) & mask;
+    while (texts->slot[i] != 0 && strcmp(texts->text[texts->slot[i] - 1], text) != 0) {
+        i = (i + 1) & mask;
+    }
+    return &texts->slot[i];
+}
+
+static int grow(chart_texts *texts)
+{
+    uint32_t slots = texts->slots == 0 ? FIRST_SLOTS : texts->slots * 2;
+    uint32_t *slot = calloc(slots, sizeof *slot);
+    char **text = realloc(texts->text, slots / 2 * sizeof *text);
+    if (text != NULL) {
+        texts->text = text;
+    }
+    if (slot == NULL || text == NULL) {
+        free(slot);
+        return -1;
+    }
+    free(texts->slot);
+    texts->slot = slot;
+    texts->slots = slots;
+    texts->room = slots / 2;
+    for (uint32_t i = 0; i < texts->count; i++) {
+        *find(texts, texts->text[i]) = i + 1;
+    }
+    return 0;
+}
+
+int chart_texts_number(chart_texts *texts, const char *text, uint32_t *number)
+{
+    if (texts->count == texts->room && grow(texts) != 0) {
+        return -1;
+    }
+    uint32_t *slot = find(texts, text);
+    if (*slot == 0) {
+        char *own = strdup(text);
+        if (own == NULL) {
+            return -1;
+        }
+        texts->text[texts->count++] = own;
+        *slot = texts->count;
+    }
+    *number = *slot - 1;
+    return 0;
+}
+
+void chart_texts_free(chart_texts *texts)
+{
+    for (uint32_t i = 0; i < texts->count; i++) {
+        free(texts->text[i]);
+    }
+    free(texts->text);
+    free(texts->slot);
+    *texts = (chart_texts){0};
+}

@@ -1,0 +1,343 @@
+#include "study/evaluation/evaluation.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "reconstruction/reconstruction_error.h"
+#include "cli/recorded_frame.h"
+#include "reconstruction/developed_frame.h"
+#include "pictures/metrics.h"
+#include "study/rivals/rival.h"
+#include "scene/scene_file.h"
+
+/* alpha_q15 is one minus transmittance; 32767 is the runtime's one */
+#define ALPHA_ONE 32767u
+#define MASK_TRANSMITTANCE 0.3
+#define HOLE_TRANSMITTANCE 0.5
+
+static double transmittance(uint16_t alpha_q15)
+{
+    return (double)(ALPHA_ONE - (alpha_q15 > ALPHA_ONE ? ALPHA_ONE : alpha_q15)) / ALPHA_ONE;
+}
+
+int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,
+                    uint16_t *alpha)
+{
+    t3r_target target = {
+        .width = views->width,
+        .height = views->height,
+        .rgb = rgb,
+        .rgb_stride_bytes = views->width * 3,
+        .alpha_q15 = alpha,
+        .alpha_stride_bytes = views->width * 2,
+    };
+    t3r_status status = t3r_render(r->runtime, camera, &target);
+    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "render", &r->config, r->arena_bytes);
+}
+
+/* ---- what the rows of a case share -------------------------------------------------------------------------- */
+
+void evaluation_views_free(evaluation_views *views)
+{
+    free(views->target.rgb);
+    free(views->target.mask);
+    for (uint32_t v = 0; v < views->context_count; v++) {
+        free(views->context[v].rgb);
+        free(views->context[v].mask);
+    }
+    if (views->rivals != NULL) {
+        rival_source_close(views->rivals);
+        free(views->rivals);
+    }
+    *views = (evaluation_views){0};
+}
+
+/* Frame `index` as the image stage gives it, and where the unpruned scene in `r` covers it. */
+static int make_picture(evaluation_picture *picture, const evaluation_views *views, const evaluation_case *what,
+                        uint32_t index, reconstruction *r, uint16_t *alpha)
+{
+    size_t pixels = (size_t)views->width * views->height;
+    picture->rgb = malloc(pixels * 3);
+    picture->mask = malloc(pixels);
+    if (picture->rgb == NULL || picture->mask == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    int code = developed_frame(what->recording, what->path, index, views->width, views->height, picture->rgb,
+                               &picture->camera);
+    if (code != CLI_OK || what->planar) {
+        memset(picture->mask, 255, pixels);
+        return code;
+    }
+    code = evaluation_draw(r, &picture->camera, views, NULL, alpha);
+    for (size_t i = 0; i < pixels && code == CLI_OK; i++) {
+        picture->mask[i] = transmittance(alpha[i]) < MASK_TRANSMITTANCE ? 255 : 0;
+    }
+    return code;
+}
+
+static int make_pictures(evaluation_views *views, const evaluation_case *what, reconstruction *r)
+{
+    uint16_t *alpha = malloc((size_t)views->width * views->height * sizeof *alpha);
+    if (alpha == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    int code = make_picture(&views->target, views, what, what->target, r, alpha);
+    for (uint32_t v = 0; v < what->context_count && code == CLI_OK; v++) {
+        views->context_count = v + 1;
+        code = make_picture(&views->context[v], views, what, what->context[v], r, alpha);
+    }
+    free(alpha);
+    return code;
+}
+
+/* Whether every context frame has a depth of its own. */
+static int have_depth(const evaluation_case *what, bool *all)
+{
+    *all = true;
+    for (uint32_t v = 0; v < what->context_count; v++) {
+        t3r_capture_frame frame;
+        int code = recorded_frame_read(what->recording, what->path, what->context[v], &frame);
+        if (code != CLI_OK) {
+            return code;
+        }
+        *all = *all && frame.frame.depth != NULL;
+    }
+    return CLI_OK;
+}
+
+int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings)
+{
+    /* all points of the raw depth, the plain analytic head, whatever is to be compared; the sensor's where all have it
+     */
+    reconstruction_options options = *settings;
+    bool sensed;
+    int looked = have_depth(what, &sensed);
+    if (looked != CLI_OK) {
+        return looked;
+    }
+    options.depth = sensed ? T3R_DEPTH_SENSOR : settings->depth;
+    options.points_of = sensed ? NULL : settings->points_of;
+    options.gaussians = 0;
+    options.keep_percent = 100;
+    options.automatic = false;
+    options.fill_radius = options.bridge_radius = 0;
+    options.head = "analytic";
+    options.allocation = T3R_ALLOCATE_UNIFORM;
+    options.flying = options.redundancy = options.exposure = 0;
+    options.keep_analysis = false;
+    options.refine = 0;
+    options.hash = false;
+    options.arena = ARENA_FULL;
+    options.context_count = what->context_count;
+    memcpy(options.context, what->context, sizeof options.context);
+
+    *views = (evaluation_views){.rivals = calloc(1, sizeof(rival_source))};
+    if (views->rivals == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    reconstruction r;
+    int code = reconstruction_build(&r, what->recording, what->path, &options);
+    if (code != CLI_OK) {
+        evaluation_views_free(views);
+        return code;
+    }
+    views->width = r.config.width;
+    views->height = r.config.height;
+    code = make_pictures(views, what, &r);
+    reconstruction_close(&r);
+    if (code != CLI_OK) {
+        evaluation_views_free(views);
+    }
+    return code;
+}
+
+/* ---- a row -------------------------------------------------------------------------------------------------- */
+
+static double share_of_holes(const uint16_t *alpha, const uint8_t *mask, size_t pixels)
+{
+    size_t holes = 0, count = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        if (mask[i] != 0) {
+            count++;
+            holes += transmittance(alpha[i]) > HOLE_TRANSMITTANCE;
+        }
+    }
+    return count == 0 ? NAN : (double)holes / (double)count;
+}
+
+/* Draws the target and the context views from the scene in `r`, and scores them. */
+static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *alpha, const evaluation_views *views,
+                 bool planar, reconstruction *r)
+{
+    uint32_t w = views->width, h = views->height;
+    const evaluation_picture *target = &views->target;
+    double start = cli_now();
+    int code = evaluation_draw(r, &target->camera, views, render, alpha);
+    row->value[EVALUATION_RENDER_MS] = (cli_now() - start) * 1000;
+    if (code != CLI_OK) {
+        return code;
+    }
+    row->value[EVALUATION_SSIM] = metric_ssim(target->rgb, render, target->mask, w, h);
+    row->value[EVALUATION_SHARP] = metric_sharp(target->rgb, render, target->mask, w, h);
+    row->value[EVALUATION_PERCEPTUAL] = metric_flip(target->rgb, render, target->mask, w, h);
+    row->value[EVALUATION_HOLES] = share_of_holes(alpha, target->mask, (size_t)w * h);
+    row->value[EVALUATION_PSNR_ALL] = metric_psnr(target->rgb, render, NULL, w, h);
+    if (planar) {
+        row->value[EVALUATION_PLANAR_PSNR] = row->value[EVALUATION_PSNR_ALL];
+        return CLI_OK;
+    }
+    row->value[EVALUATION_PSNR] = metric_psnr(target->rgb, render, target->mask, w, h);
+    double sum = 0;
+    for (uint32_t v = 0; v < views->context_count; v++) {
+        code = evaluation_draw(r, &views->context[v].camera, views, rgb, alpha);
+        if (code != CLI_OK) {
+            return code;
+        }
+        sum += metric_psnr(views->context[v].rgb, rgb, views->context[v].mask, w, h);
+    }
+    row->value[EVALUATION_CONTEXT_PSNR] = views->context_count == 0 ? NAN : sum / views->context_count;
+    return CLI_OK;
+}
+
+/* The scene of `built` by way of a file: *loaded holds what was read back. */
+static int through_file(reconstruction *loaded, const reconstruction *built, const evaluation_views *views,
+                        const reconstruction_options *options)
+{
+    const char *folder = getenv("TMPDIR");
+    char path[4096], error[512] = "";
+    int length =
+        snprintf(path, sizeof path, "%s/trim3r-eval-XXXXXX.ply", folder != NULL && *folder != '\0' ? folder : P_tmpdir);
+    int file = length > 0 && (size_t)length < sizeof path ? mkstemps(path, 4) : -1;
+    if (file < 0) {
+        return cli_error(CLI_BAD_INPUT, "no temporary file can be made in TMPDIR");
+    }
+    close(file);
+    scene_file scene;
+    int failed = scene_file_write_ply(path, &built->scene, 0, NULL, error, sizeof error);
+    if (failed == 0) {
+        failed = scene_file_read_ply(path, &scene, error, sizeof error);
+    }
+    unlink(path);
+    if (failed != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    int code = reconstruction_load(loaded, &scene, views->width, views->height, options);
+    scene_file_free(&scene);
+    return code;
+}
+
+void evaluation_name_case(evaluation_row *row, const evaluation_case *what)
+{
+    size_t length = 0;
+    snprintf(row->scene, sizeof row->scene, "%s", what->scene);
+    for (uint32_t v = 0; v < what->context_count && length < sizeof row->context && !what->planar; v++) {
+        length += (size_t)snprintf(row->context + length, sizeof row->context - length, "%s%" PRIu32, v == 0 ? "" : ",",
+                                   what->context[v]);
+    }
+    if (!what->planar) {
+        snprintf(row->target, sizeof row->target, "%" PRIu32, what->target);
+    }
+}
+
+int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method_id m, double keep,
+                        const reconstruction_options *settings)
+{
+    *row = (evaluation_row){0};
+    for (int i = 0; i < EVALUATION_VALUE_COUNT; i++) {
+        row->value[i] = NAN;
+    }
+    evaluation_name_case(row, what);
+    row->method = method_name(m);
+    row->allocate = row->wavelet = "";
+    bool ours = method_kind_of(m) == METHOD_TRIM3R;
+    bool built = ours || settings->points_of == NULL; /* no rival's scene out of a file */
+    if (built) {
+        snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->refine);
+        row->wavelet = t3r_wavelet_name(settings->wavelet);
+        snprintf(row->levels, sizeof row->levels, "%" PRIu32, settings->wavelet_levels);
+    }
+    if (ours) {
+        row->allocate = t3r_allocation_name(settings->allocation);
+        snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, settings->clusters);
+    }
+    row->depth = what->planar ? "plane" : settings->points_of != NULL ? "scene" : t3r_depth_name(settings->depth);
+    row->ablation = "";
+    evaluation_settings_rest(settings, row->settings);
+    row->value[EVALUATION_KEEP] = keep;
+    if (!built) {
+        return CLI_OK;
+    }
+    chosen_head head;
+    int code = chosen_head_open(&head, settings->head);
+    if (code == CLI_OK) {
+        snprintf(row->head, sizeof row->head, "%s", head.name);
+        snprintf(row->bits, sizeof row->bits, "%s", head.bits);
+        chosen_head_close(&head);
+    }
+    return code;
+}
+
+int evaluation_score(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
+                     reconstruction *r)
+{
+    size_t pixels = (size_t)views->width * views->height;
+    uint8_t *rgb = malloc(pixels * 3);
+    uint16_t *alpha = malloc(pixels * sizeof *alpha);
+    int code = rgb == NULL || alpha == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
+                                            : score(row, render, rgb, alpha, views, what->planar, r);
+    free(alpha);
+    free(rgb);
+    return code;
+}
+
+int evaluation_build(reconstruction *built, reconstruction_account *told, const evaluation_views *views,
+                     const evaluation_case *what, method_id m, const reconstruction_options *options)
+{
+    if (m != METHOD_TRIM3R) {
+        return rival_build(views->rivals, what->recording, what->path, m, options, built, told);
+    }
+    int code = reconstruction_build(built, what->recording, what->path, options);
+    if (code == CLI_OK) {
+        *told = reconstruction_told(built);
+    }
+    return code;
+}
+
+int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
+                       method_id m, double keep, bool from_file, const reconstruction_options *settings)
+{
+    reconstruction_options options = *settings;
+    options.gaussians = 0;
+    options.keep_percent = keep;
+    options.hash = false; /* timed without */
+    options.context_count = what->context_count;
+    memcpy(options.context, what->context, sizeof options.context);
+
+    reconstruction built, loaded = {0};
+    reconstruction_account told;
+    int code = evaluation_name_row(row, what, m, keep, settings);
+    if (code == CLI_OK) {
+        code = evaluation_build(&built, &told, views, what, m, &options);
+    }
+    if (code != CLI_OK) {
+        return code;
+    }
+    row->value[EVALUATION_GAUSSIANS] = built.scene.count;
+    row->value[EVALUATION_BUILD_MS] = told.seconds * 1000;
+    row->value[EVALUATION_ARENA_BYTES] = (double)told.arena_bytes;
+    row->value[EVALUATION_SCENE_BYTES] = (double)built.scene.count * T3R_GAUSSIAN_BYTES;
+    if (from_file) {
+        code = through_file(&loaded, &built, views, &options);
+    }
+    if (code == CLI_OK) {
+        code = evaluation_score(row, render, views, what, from_file ? &loaded : &built);
+    }
+    reconstruction_close(&loaded);
+    reconstruction_close(&built);
+    return code;
+}

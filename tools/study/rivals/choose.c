@@ -1,0 +1,70 @@
+#include "study/rivals/choose.h"
+
+#include <stdlib.h>
+
+#include "budget/budget.h"
+#include "core/views.h"
+
+typedef struct ranked {
+    double score;
+    uint32_t index;
+} ranked;
+
+static int by_score(const void *a, const void *b)
+{
+    const ranked *x = a, *y = b;
+    if (x->score != y->score) {
+        return x->score > y->score ? -1 : 1;
+    }
+    return (x->index > y->index) - (x->index < y->index);
+}
+
+bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept)
+{
+    ranked *all = malloc(((size_t)of + 1) * sizeof *all);
+    bool *stays = calloc((size_t)of + 1, sizeof *stays);
+    bool done = all != NULL && stays != NULL;
+    for (uint32_t i = 0; i < of && done; i++) {
+        all[i] = (ranked){score[i], i};
+    }
+    if (done) {
+        qsort(all, of, sizeof *all, by_score);
+    }
+    for (uint32_t n = 0; n < count && done; n++) {
+        stays[all[n].index] = true;
+    }
+    for (uint32_t i = 0, n = 0; i < of && done; i++) {
+        if (stays[i]) {
+            kept[n++] = i;
+        }
+    }
+    free(all);
+    free(stays);
+    return done;
+}
+
+bool rival_planes(const t3r_runtime *rt, const t3r_scene *scene, uint32_t views, const uint32_t *kept, uint32_t count,
+                  uint16_t *const planes[])
+{
+    t3r_view view[T3R_MAX_VIEWS];
+    t3r_views_of(rt, view);
+    uint32_t gaussian = 0, next = 0;
+    for (uint32_t v = 0; v < views; v++) {
+        const size_t pixels = (size_t)view[v].width * view[v].height;
+        for (size_t i = 0; i < pixels; i++) {
+            planes[v][i] = 0;
+            if (!t3r_retained(&view[v], i)) {
+                continue;
+            }
+            if (gaussian >= scene->count || scene->gaussians[gaussian].view != v) {
+                return false;
+            }
+            if (kept == NULL || (next < count && kept[next] == gaussian)) {
+                planes[v][i] = UINT16_MAX;
+                next++;
+            }
+            gaussian++;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,33 @@
+/* Per-scene fine-tuning: Adam on all parameters of a fixed number of Gaussians, the context views its only examples.
+ *
+ * As 3D Gaussian Splatting trains (Kerbl et al. 2023, section 5), less its densification, and all context views in
+ * every iteration. */
+#ifndef TRIM3R_TOOLS_RIVALS_FINETUNE_H
+#define TRIM3R_TOOLS_RIVALS_FINETUNE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "study/rivals/splat_view.h"
+
+/* What a view should look like. */
+typedef struct finetune_target {
+    splat_camera camera;
+    const uint8_t *rgb; /* width x height x 3 */
+} finetune_target;
+
+/* Steps of Adam, a parameter. */
+typedef struct finetune_rates {
+    double position; /* scene units: the median depth is between one and two */
+    double log_scale, rotation, logit, colour;
+} finetune_rates;
+
+/* Tuned on training scenes (docs/rivals.md): over budgets of 40, 10 and 5 %, random and efficientgs, each rate by
+ * itself up and down. Steps that fall over the iterations were no better. */
+extern const finetune_rates finetune_rates_default;
+
+/* Changes the model in place; false without memory, the model then as some iteration left it. */
+bool finetune(splat_model *model, const finetune_target *targets, uint32_t target_count, uint32_t iterations,
+              const finetune_rates *rates);
+
+#endif

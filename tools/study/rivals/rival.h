@@ -1,0 +1,44 @@
+/* Scenes that the rivals make: the unpruned scene of a head, pruned by a published score to an exact count, as it is,
+ * fine-tuned on the context views, or as the choice of points of which our head makes new Gaussians. Floats, on the
+ * host: nothing here is covered by "same bits". */
+#ifndef TRIM3R_TOOLS_RIVALS_RIVAL_H
+#define TRIM3R_TOOLS_RIVALS_RIVAL_H
+
+#include "reconstruction/method.h"
+#include "reconstruction/reconstruction.h"
+#include "study/rivals/choose.h"
+#include "study/rivals/finetune.h"
+#include "study/rivals/splat_view.h"
+
+/* What the scenes of one context have in common; made when it is first asked for, so that many budgets and methods
+ * share it. All zero: nothing is open. */
+typedef struct rival_source {
+    bool opened, built;
+    const t3r_recording *recording;
+    const char *path;
+    reconstruction_options options; /* context and working size resolved once `opened` */
+    uint8_t *rgb[T3R_MAX_VIEWS];    /* the context views as the image stage gives them */
+    t3r_camera camera[T3R_MAX_VIEWS];
+    reconstruction whole; /* the unpruned scene, that of the file `points_of` where there is one; from here on once
+                             `built` */
+    splat_model model;    /* the same */
+    splat_view views[T3R_MAX_VIEWS];
+    uint32_t view_count;
+    double project_seconds;
+    double *score[METHOD_KIND_COUNT]; /* NULL until asked for */
+    double score_seconds[METHOD_KIND_COUNT];
+} rival_source;
+
+/* The scene of a method other than plain trim3r at the budget of `options`, in an arena that only renders, or with
+ * +head in that of its build: *made, to be closed. *told says of it what reconstruction_told() says of a build: the
+ * arena is that of the runtime's part, the largest, the time all of it, the unpruned scene, scoring and fine-tuning
+ * included; of a scene from a file, which cannot be traced to points for a rival's +head, the points are its
+ * Gaussians, the head "". Of `options` context, settings and recording must not change as long as the source is open.
+ * An exit status of cli.h.
+ */
+int rival_build(rival_source *source, const t3r_recording *recording, const char *path, method_id m,
+                const reconstruction_options *options, reconstruction *made, reconstruction_account *told);
+
+void rival_source_close(rival_source *source);
+
+#endif

@@ -1,0 +1,35 @@
+/* What published methods think a Gaussian is worth, from a scene and the context views that it was made of. One file a
+ * method, each from its paper's definition; none reads the pictures, only what the scene draws.
+ *
+ * `views` are open and projected with `model`. score[model->count]: the higher, the sooner it is kept; never NaN.
+ * False without memory. */
+#ifndef TRIM3R_TOOLS_RIVALS_SCORE_H
+#define TRIM3R_TOOLS_RIVALS_SCORE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "reconstruction/method.h"
+#include "study/rivals/splat_view.h"
+
+/* LightGaussian's exponent of the volume, as its authors released it. */
+#define LIGHTGAUSSIAN_BETA 0.1
+/* How many Gaussians of a pixel EfficientGS calls dominant, as its authors released it. */
+#define EFFICIENTGS_MOST 1u
+
+/* That of the rival `kind`; of METHOD_TRIM3R, which ranks no Gaussians, score_random(). The seed is of random alone. */
+bool score_of(method_kind kind, const splat_model *model, const splat_view *views, uint32_t view_count, uint32_t seed,
+              double *score);
+
+bool score_random(const splat_model *model, uint32_t seed, double *score);
+bool score_eagles(const splat_model *model, const splat_view *views, uint32_t view_count, double *score);
+bool score_lightgaussian(const splat_model *model, const splat_view *views, uint32_t view_count, double *score);
+bool score_pup(const splat_model *model, const splat_view *views, uint32_t view_count, double *score);
+bool score_efficientgs(const splat_model *model, const splat_view *views, uint32_t view_count, double *score);
+
+/* Of a symmetric, positive semi-definite 6 x 6 matrix in double: the logarithm of its determinant, with pivots (of the
+ * matrix scaled to a unit diagonal) held above 2^-24, where the sums of floats that it came from end; -HUGE_VAL where a
+ * diagonal entry is 0. */
+double score_pup_log_determinant(double matrix[6][6]);
+
+#endif

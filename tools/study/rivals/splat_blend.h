@@ -1,0 +1,50 @@
+/* A splat over one row of a tile: the innermost step of drawing, walking and differentiating, in loops of a fixed
+ * length over all columns, so that the compiler keeps them in vectors. */
+#ifndef TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
+#define TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
+
+#include "study/rivals/splat_view.h"
+
+/* exp(-q) for q in 0..16, within 2e-5 of itself up to q = 6, where alpha matters: a sixteenth of q by its series. */
+static inline float splat_decay(float q)
+{
+    float t = q * (-1.0f / 16);
+    float e = 1 + t * (1 + t * (1.0f / 2 + t * (1.0f / 6 + t * (1.0f / 24 + t * (1.0f / 120 + t * (1.0f / 720))))));
+    e *= e;
+    e *= e;
+    e *= e;
+    return e * e;
+}
+
+/* alpha of columns left .. left + 7 at dy below the centre, 0 where it is below `least` or the pixel is closed;
+ * dx gets their distances from the centre. One decision a loop: more, and compilers branch. */
+static inline void splat_alphas(const splat *s, float least, float left, float dy,
+                                const float transmittance[SPLAT_TILE], float alpha[SPLAT_TILE], float dx[SPLAT_TILE])
+{
+    float rest = 0.5f * s->c * dy * dy, slope = s->b * dy, half = 0.5f * s->a, opacity = s->opacity;
+    float q[SPLAT_TILE];
+    for (int i = 0; i < SPLAT_TILE; i++) {
+        dx[i] = left + (float)i - s->x;
+        float whole = (half * dx[i] + slope) * dx[i] + rest;
+        q[i] = whole < 16.0f ? whole : 16.0f;
+    }
+    for (int i = 0; i < SPLAT_TILE; i++) {
+        float a = opacity * splat_decay(q[i]);
+        alpha[i] = a < SPLAT_ALPHA_MOST ? a : SPLAT_ALPHA_MOST;
+    }
+    for (int i = 0; i < SPLAT_TILE; i++) {
+        alpha[i] = alpha[i] < least ? 0.0f : alpha[i];
+    }
+    for (int i = 0; i < SPLAT_TILE; i++) {
+        alpha[i] = transmittance[i] < SPLAT_CLOSED ? 0.0f : alpha[i];
+    }
+}
+
+/* The rows of the tile that begins at pixel row `top` that the splat may reach. */
+static inline void splat_rows(const splat *s, int32_t top, int32_t *first, int32_t *last)
+{
+    *first = s->top > top ? s->top - top : 0;
+    *last = s->bottom < top + SPLAT_TILE - 1 ? s->bottom - top : SPLAT_TILE - 1;
+}
+
+#endif

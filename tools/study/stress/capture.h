@@ -1,0 +1,42 @@
+/* The frames of one case in memory, to be perturbed: the context views, then the target, as the image stage gives them
+ * (RGB and Z16 of the working size, pinhole cameras). Recorded again, they give the scene that the recording itself
+ * gives. */
+#ifndef TRIM3R_TOOLS_STRESS_CAPTURE_H
+#define TRIM3R_TOOLS_STRESS_CAPTURE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "study/evaluation/evaluation.h"
+#include "recording.h"
+
+typedef struct stress_view {
+    uint8_t *rgb;    /* width x height x 3 */
+    uint16_t *depth; /* width x height steps; 0 = none */
+    t3r_recorded_camera camera;
+} stress_view;
+
+typedef struct stress_capture {
+    uint32_t width, height;
+    uint32_t views;   /* context views; the target is view[views] */
+    bool colour_only; /* recorded without depth: planes of it are zero */
+    double depth_unit;
+    stress_view view[T3R_MAX_VIEWS + 1];
+} stress_capture;
+
+/* False without memory; stress_capture_free() is due in any case. Planes are zero, cameras all zero. */
+bool stress_capture_open(stress_capture *capture, uint32_t width, uint32_t height, uint32_t views, double depth_unit);
+/* Through the image stage; the working size is that of `settings`, else the first context frame's. An exit status of
+ * cli.h; stress_capture_free() is due in any case. */
+int stress_capture_read(stress_capture *capture, const evaluation_case *what, const reconstruction_options *settings);
+/* False without memory; stress_capture_free() is due in any case. */
+bool stress_capture_copy(stress_capture *copy, const stress_capture *capture);
+void stress_capture_free(stress_capture *capture);
+
+/* Context pixels with a depth. */
+uint32_t stress_capture_valid(const stress_capture *capture);
+
+/* Frame i is view i. *bytes (free()) must outlive the recording. NULL after a message. */
+t3r_recording *stress_capture_recording(const stress_capture *capture, uint8_t **bytes);
+
+#endif

@@ -1,0 +1,16 @@
+/* Measures the methods on one case under one perturbation. */
+#ifndef TRIM3R_TOOLS_STRESS_MEASURE_H
+#define TRIM3R_TOOLS_STRESS_MEASURE_H
+
+#include "study/stress/run.h"
+
+/* Fills `rows` (stress_row_count()), but for what takes another cell to tell, and `renders`, as many pictures. `p` may
+ * be NULL. Losses are against all points of the same frames until stress_relate(). An exit status of cli.h: a refusal
+ * is a result. */
+int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, const stress_contest *contest,
+                   const perturbation *p, uint32_t grade);
+
+/* Fills losses and ratios of `rows` against the unperturbed ones, and breaks rows of trim3r whose arena is another. */
+void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t count);
+
+#endif

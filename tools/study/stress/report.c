@@ -1,0 +1,125 @@
+#include "study/stress/report.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "cli/json_output.h"
+#include "study/stress/table.h"
+#include "study/stress/verdict.h"
+
+#define ERROR_BYTES 512
+#define WORTH_TELLING 2.0 /* seconds of work before an estimate is drawn */
+
+int stress_report_open(stress_report *report, const stress_outputs *to, const stress_contest *contest, uint32_t cells)
+{
+    char error[ERROR_BYTES] = "";
+    *report = (stress_report){
+        .to = *to, .contest = contest, .row_total = cells * stress_row_count(contest), .started = cli_now()};
+    report->rows = calloc(report->row_total, sizeof *report->rows);
+    if (report->rows == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    if (to->page != NULL && whole_file_begin(&report->page_file, to->page, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    if (to->csv != NULL) {
+        report->csv.file = fopen(to->csv, "w");
+        if (report->csv.file == NULL) {
+            return cli_error(CLI_BAD_INPUT, "%s: %s", to->csv, strerror(errno));
+        }
+        stress_csv_header(&report->csv);
+    }
+    return CLI_OK;
+}
+
+/* Cells take about as long as each other. */
+static void show_progress(const stress_report *report)
+{
+    double spent = cli_now() - report->started;
+    if (!isatty(STDERR_FILENO) || spent < WORTH_TELLING) {
+        return;
+    }
+    double left = spent * (report->row_total - report->row_count) / report->row_count;
+    fprintf(stderr, "\r%-40s\r%u of %u rows, %.0f:%02.0f min left", "", (unsigned)report->row_count,
+            (unsigned)report->row_total, (double)(long)(left / 60), (double)((long)left % 60));
+    fflush(stderr);
+}
+
+int stress_report_cell(stress_report *report, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,
+                       const stress_case *c, const perturbation *p)
+{
+    uint32_t count = stress_row_count(report->contest);
+    memcpy(report->rows + report->row_count, rows, count * sizeof *rows);
+    report->row_count += count;
+    for (uint32_t i = 0; i < count && report->csv.file != NULL; i++) {
+        stress_csv_row(&report->csv, &rows[i]);
+    }
+    show_progress(report);
+    if (report->to.page != NULL && !stress_album_offer(&report->album, rows, renders, plain, c, report->contest, p)) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    return CLI_OK;
+}
+
+static void print_json(const stress_report *report)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON *rows = cJSON_AddArrayToObject(object, "rows");
+    for (uint32_t i = 0; i < report->row_count; i++) {
+        cJSON_AddItemToArray(rows, stress_json(&report->rows[i]));
+    }
+    json_add_integer(object, "broken", stress_broken(report->rows, report->row_count));
+    json_print(object);
+}
+
+static int write_page(stress_report *report)
+{
+    char error[ERROR_BYTES] = "";
+    if (stress_album_write(&report->album, report->to.worst, report->rows, report->row_count, report->contest,
+                           report->page_file.stream) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s: out of memory for the page", report->to.page);
+    }
+    return whole_file_commit(&report->page_file, NULL, error, sizeof error) != 0 ? cli_error(CLI_BAD_INPUT, "%s", error)
+                                                                                 : CLI_OK;
+}
+
+static int finish(stress_report *report)
+{
+    if (report->to.json) {
+        print_json(report);
+    } else {
+        stress_print_tables(stdout, report->rows, report->row_count, report->contest);
+        stress_print_verdict(stdout, report->rows, report->row_count, report->contest);
+    }
+    int code = report->to.page != NULL ? write_page(report) : CLI_OK;
+    uint32_t broken = stress_broken(report->rows, report->row_count);
+    if (code == CLI_OK && broken > 0) {
+        code = cli_error(CLI_BAD_INPUT, "%u rows break a promise", (unsigned)broken);
+    }
+    return code;
+}
+
+int stress_report_close(stress_report *report, int code)
+{
+    if (isatty(STDERR_FILENO)) {
+        fputs("\r\033[K", stderr);
+    }
+    if (code == CLI_OK) {
+        code = finish(report);
+    }
+    if (report->csv.file != NULL) {
+        bool failed = ferror(report->csv.file) != 0;
+        failed |= fclose(report->csv.file) != 0;
+        if (failed && code == CLI_OK) {
+            code = cli_error(CLI_BAD_INPUT, "%s: %s", report->to.csv, strerror(errno));
+        }
+    }
+    whole_file_abandon(&report->page_file);
+    stress_album_free(&report->album);
+    free(report->rows);
+    return code;
+}

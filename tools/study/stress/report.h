@@ -1,0 +1,37 @@
+/* Where the rows of a stress test go: the terminal or one JSON object, a CSV file, a page of worst cases. */
+#ifndef TRIM3R_TOOLS_STRESS_REPORT_H
+#define TRIM3R_TOOLS_STRESS_REPORT_H
+
+#include "cli/csv.h"
+#include "study/stress/measure.h"
+#include "study/stress/page.h"
+#include "cli/whole_file.h"
+
+typedef struct stress_outputs {
+    const char *csv, *page; /* paths; NULL = none */
+    bool json;
+    uint32_t worst; /* cells on the page */
+} stress_outputs;
+
+typedef struct stress_report {
+    stress_outputs to;
+    const stress_contest *contest;
+    csv_table csv;
+    whole_file page_file;
+    stress_album album;
+    stress_row *rows; /* room for all */
+    uint32_t row_count, row_total;
+    double started;
+} stress_report;
+
+/* These report on stderr and return an exit status of cli.h. Opening opens all that can be, so that a bad path is told
+ * before the work; stress_report_close() is due in any case. */
+int stress_report_open(stress_report *report, const stress_outputs *to, const stress_contest *contest, uint32_t cells);
+/* The rows of a cell, with pictures as stress_album_offer() takes them. */
+int stress_report_cell(stress_report *report, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,
+                       const stress_case *c, const perturbation *p);
+/* Tables, verdict, JSON and page when `code` is CLI_OK. `code`, or what went wrong here; CLI_BAD_INPUT where a promise
+ * is broken. */
+int stress_report_close(stress_report *report, int code);
+
+#endif

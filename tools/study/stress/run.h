@@ -1,0 +1,58 @@
+/* What competes in a stress test, and one capture of a case made ready to be built from. */
+#ifndef TRIM3R_TOOLS_STRESS_RUN_H
+#define TRIM3R_TOOLS_STRESS_RUN_H
+
+#include "study/evaluation/evaluation.h"
+#include "study/stress/capture.h"
+#include "study/stress/perturbation.h"
+#include "study/stress/row.h"
+
+#define STRESS_KEEPS_MOST 16u
+
+/* Who competes, and how often a still scene is captured. */
+typedef struct stress_contest {
+    reconstruction_options settings;
+    method_id methods[METHOD_COUNT];
+    uint32_t method_count;
+    double keep[STRESS_KEEPS_MOST];
+    uint32_t keep_count;
+    uint32_t captures; /* noisy ones; 0 = no flicker, no stability */
+    uint32_t seed;
+} stress_contest;
+
+/* A row of a cell is [budget][method]. */
+static inline uint32_t stress_row_count(const stress_contest *contest)
+{
+    return contest->keep_count * contest->method_count;
+}
+
+typedef struct stress_case {
+    const char *name, *context, *target; /* for the tables */
+    stress_capture base;
+    evaluation_views views; /* of the unperturbed frames: target, masks */
+    uint32_t budget[STRESS_KEEPS_MOST];
+} stress_case;
+
+/* From `base`, which is filled already and stays the caller's to free. An exit status of cli.h. */
+int stress_case_open(stress_case *c, const stress_contest *contest);
+void stress_case_close(stress_case *c);
+
+/* One capture of a case, perturbed, recorded anew, ready to be built from. */
+typedef struct stress_run {
+    stress_capture capture;
+    uint8_t *bytes;
+    t3r_recording *recording;
+    evaluation_case what;
+    evaluation_views views; /* target and masks are the case's; rivals of its own */
+} stress_run;
+
+/* Capture 0 is what is scored; later ones carry the noise of a still scene as well. `p` may be NULL. CLI_OK, or with a
+ * message an exit status of cli.h; stress_run_close() is due in any case. */
+int stress_run_open(stress_run *run, const stress_case *c, const stress_contest *contest, const perturbation *p,
+                    double strength, uint32_t capture);
+void stress_run_close(stress_run *run);
+/* The settings of a build of the run at the budget of `keep` (an index; keep_count = all points). */
+reconstruction_options stress_run_options(const stress_run *run, const stress_case *c, const stress_contest *contest,
+                                          uint32_t keep);
+
+#endif

@@ -1,0 +1,40 @@
+/* Scenes that pruning finds hard, drawn on the spot: two context views 0.3 m apart and the target between them, through
+ * a 60 degree lens, with exact depth in millimetres and exact poses. Lengths in metres; nothing here draws on chance
+ * but through stress/random.h. */
+#ifndef TRIM3R_TOOLS_STRESS_SCENE_H
+#define TRIM3R_TOOLS_STRESS_SCENE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "study/stress/capture.h"
+#include "study/stress/perturbation.h"
+
+#define STRESS_SCENE_SIDE 256u /* unless --working says otherwise */
+
+/* What a ray from (x, y, 0) through direction (dx, dy, 1) meets. */
+typedef struct stress_hit {
+    double depth;  /* along z, as a depth sensor tells it */
+    double rgb[3]; /* 0..255 */
+} stress_hit;
+
+/* `pixel`: the size of a pixel one metre away, in metres; `strength`: the scene's own. */
+typedef stress_hit stress_trace(double x, double y, double dx, double dy, double pixel, double strength);
+
+typedef struct stress_scene {
+    const char *name, *unit;
+    double strength[STRESS_GRADES]; /* rising in difficulty */
+    const char *about;              /* for --help */
+    stress_trace *trace;
+} stress_scene;
+
+/* Stable order; NULL past the last. */
+const stress_scene *stress_scene_at(uint32_t index);
+/* False without memory; stress_capture_free() is due in any case. */
+bool stress_scene_draw(stress_capture *capture, const stress_scene *scene, double strength, uint32_t width,
+                       uint32_t height);
+
+/* scene_surface.c: the scenes' surfaces. */
+stress_trace stress_plane, stress_wall, stress_bars, stress_foliage, stress_mirror;
+
+#endif

@@ -1,0 +1,25 @@
+/* The rows of a stress test as tables: CSV, JSON, terminal. */
+#ifndef TRIM3R_TOOLS_STRESS_TABLE_H
+#define TRIM3R_TOOLS_STRESS_TABLE_H
+
+#include <cjson/cJSON.h>
+
+#include "cli/csv.h"
+#include "study/stress/measure.h"
+
+void stress_csv_header(csv_table *table);
+void stress_csv_row(csv_table *table, const stress_row *row);
+/* An object of all columns, null where one does not apply; NULL without memory. */
+cJSON *stress_json(const stress_row *row);
+
+/* The mean over the cases of what is like `like` in perturbation, strength, method and budget; NaN where none was
+ * measured. `refused` (may be NULL): how many of them were. */
+double stress_mean(const stress_row *rows, uint32_t count, const stress_row *like, stress_value value,
+                   uint32_t *refused);
+
+/* A table a budget and measure: a line a perturbation and strength, a column a method. */
+void stress_print_tables(FILE *out, const stress_row *rows, uint32_t count, const stress_contest *contest);
+/* "0.5 stops", "4 px", "10^3", "" */
+void stress_strength(const stress_row *row, char *text, size_t bytes);
+
+#endif

@@ -1,0 +1,65 @@
+"""C behind the training: compiled when first asked for, into $TRIM3R_BUILD, else into ~/.cache/trim3r."""
+import ctypes
+import glob
+import hashlib
+import os
+import subprocess
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+RUNTIME = os.path.join(HERE, "..", "..", "..", "runtime")
+HEADS = os.path.join(HERE, "..", "..", "..", "quant", "heads")
+
+
+def build(name, sources, flags, headers=(), folder=None):
+    """The path of the shared library made of `sources`; compiled only where sources, flags or machine changed."""
+    folder = folder or os.environ.get("TRIM3R_BUILD") or os.path.expanduser("~/.cache/trim3r")
+    command = [os.environ.get("CC", "cc"), *flags, "-shared", "-fPIC"]
+    digest = hashlib.sha256(" ".join(command + [os.uname().nodename]).encode())
+    for path in (*sources, *headers):
+        with open(path, "rb") as file:
+            digest.update(file.read())
+    library = os.path.join(folder, f"{name}-{digest.hexdigest()[:16]}.so")
+    if not os.path.exists(library):
+        os.makedirs(folder, exist_ok=True)
+        handle, fresh = tempfile.mkstemp(suffix=".so", dir=folder)  # several trainers may build at once
+        os.close(handle)
+        try:
+            subprocess.run([*command, "-o", fresh, *sources, "-lm"], check=True)
+            os.replace(fresh, library)
+        finally:
+            if os.path.exists(fresh):
+                os.unlink(fresh)
+    return library
+
+
+def splatter(*more):
+    """splat.c: the differentiable splatter and the refinement. more: compiler flags."""
+    flags = ("-std=gnu11", "-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-fopenmp", *more)
+    library = ctypes.CDLL(build("splat", [os.path.join(HERE, "splat.c")], flags))
+    pointer, number = ctypes.c_void_p, ctypes.c_int32
+    library.splat_forward.argtypes = [number] * 3 + [pointer] * 4
+    library.splat_backward.argtypes = [number] * 3 + [pointer] * 6
+    library.splat_refine.argtypes = [number] * 3 + [pointer] * 7
+    return library
+
+
+def preparer():
+    """prepare.c, the runtime that it calls, and what rivals rank with."""
+
+    def here(*pattern):
+        return sorted(glob.glob(os.path.join(HERE, "..", "..", "..", *pattern)))
+
+    rivals = [path for part in ("gaussian_shape", "splat_camera") for path in here("tools", "scene", part + ".c")]
+    rivals += [path for part in ("choose", "score*", "splat_*") for path in here("tools", "study", "rivals", part + ".c")]
+    sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals
+    sources += here("quant", "heads", "small.c") + here("runtime", "*.c") + here("runtime", "*", "*.c")
+    headers = here("runtime", "*.h") + here("runtime", "*", "*.h") + here("tools", "study", "rivals", "*.h")
+    headers += here("tools", "scene", "*.h") + here("tools", "reconstruction", "method.h")
+    headers += here("tools", "study", "train", "prepare_rival.h")
+    includes = (RUNTIME, os.path.join(RUNTIME, "include"), os.path.join(HERE, "..", ".."), HEADS)
+    flags = ("-std=c11", "-O3", "-march=native", "-ffp-contract=off", *("-I" + folder for folder in includes))
+    library = ctypes.CDLL(build("prepare", sources, flags, headers))
+    library.prepare.restype = ctypes.c_int32
+    library.prepare.argtypes = [ctypes.c_void_p] * 6
+    return library

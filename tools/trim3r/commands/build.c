@@ -1,0 +1,347 @@
+/* trim3r build: frames of a recording to a scene file, or to the start of an outside optimiser. */
+#include "trim3r/commands/commands.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/cli.h"
+#include "scene/scene_file.h"
+#include "scene/colmap_folder.h"
+#include "reconstruction/developed_frame.h"
+#include "cli/json_output.h"
+#include "cli/option_values.h"
+#include "import/poses_output.h"
+#include "reconstruction/reconstruction.h"
+#include "import/recording_poses.h"
+#include "study/rivals/rival.h"
+
+#define ERROR_BYTES 512
+
+typedef struct build_options {
+    const char *recording;
+    const char *output; /* NULL = no scene file */
+    const char *colmap; /* NULL = no COLMAP model */
+    int flags;          /* SCENE_FILE_... */
+    poses_source poses;
+    bool json;
+    reconstruction_options settings;
+} build_options;
+
+enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_POSES, KEY_JSON };
+
+static const struct argp_option options[] = {
+    {"output", 'o', "SCENE.ply", 0, "where the scene goes (needed, or --colmap)", 0},
+    {"colmap", KEY_COLMAP, "DIR", 0,
+     "write the start of an outside optimiser into this folder, new or empty: the context views and the means and "
+     "colours of the Gaussians as a COLMAP model in text",
+     0},
+    {"prune", KEY_PRUNE, "SCENE.ply", 0,
+     "prune this scene, made elsewhere, instead of building one: the recording gives its views, --context those it was "
+     "made of; percents are of its Gaussians",
+     0},
+    {"poses", KEY_POSES, "SOURCE", 0,
+     "of the context views: given (default), those of the recording; estimate, from corners that they share, with "
+     "depth "
+     "where two of them have it; estimate-colour, likewise from colour alone",
+     0},
+    {"local", KEY_LOCAL, NULL, 0,
+     "write positions from the first context camera's centre instead of the world's origin", 0},
+    {"comments", KEY_COMMENTS, NULL, 0,
+     "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {0},
+};
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    build_options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->settings;
+        state->child_inputs[1] = &o->settings;
+        return 0;
+    case 'o':
+        o->output = arg;
+        return 0;
+    case KEY_COLMAP:
+        o->colmap = arg;
+        return 0;
+    case KEY_PRUNE:
+        o->settings.points_of = arg;
+        return 0;
+    case KEY_LOCAL:
+        o->flags |= SCENE_FILE_LOCAL;
+        return 0;
+    case KEY_COMMENTS:
+        o->flags |= SCENE_FILE_COMMENTS;
+        return 0;
+    case KEY_POSES:
+        if (!poses_named(arg, &o->poses)) {
+            argp_error(state, "--poses does not know '%s'; there are %s", arg, POSES_NAMES);
+        }
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        option_argument(state, arg, (const char **[]){&o->recording}, 1);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->recording == NULL) {
+            argp_error(state, "REC.mcap is missing");
+        } else if (o->output == NULL && o->colmap == NULL) {
+            argp_error(state, "-o SCENE.ply is missing");
+        } else if (o->output != NULL && !path_is_ply(o->output)) {
+            argp_error(state, "-o %s: scenes are written as .ply", o->output);
+        } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
+            argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
+        } else if (o->settings.points_of != NULL && method_ranks_for_head(o->settings.method)) {
+            argp_error(state,
+                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not told");
+        }
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {
+    {&reconstruction_budget_argp, 0, NULL, 0}, {&reconstruction_settings_argp, 0, NULL, 0}, {0}};
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "REC.mcap",
+    .doc =
+        "Makes exactly Z Gaussians of a recording's context frames, or with --auto as few as it needs."
+        "\vExamples:\n"
+        "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+        "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
+        "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
+        "  trim3r build room.mcap --auto --max-loss 0.5 -o scene.ply\n"
+        "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
+        "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
+        "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
+        "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% -o less.ply\n"
+        "  trim3r build room.mcap --keep 10% --colmap start\n"
+        "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n\n"
+        "The scene stands in the recording's world frame unless --local is given.\n\n"
+        "--prune: the means of the file's Gaussians, in the same world and of opacity 0.05 and more, seen from each "
+        "context view are its depth; trim3r makes new Gaussians of points among them, the rivals keep some of the "
+        "file's as they are. The recording's own depth is not looked at.\n\n"
+        "--poses estimate: the first context view keeps the pose that the recording has, or is the origin; each other "
+        "one "
+        "is joined to the best of those before. With depth in both views lengths are those of the depth, from colour "
+        "the "
+        "distance of the first two cameras is 1, unless some depth tells. Frames too unlike, a camera that only "
+        "turned, "
+        "and corners on one plane are refused. `trim3r import --poses estimate` keeps the poses in the recording.\n\n"
+        "--colmap: DIR/images/ are the context views at the working size, undistorted; DIR/sparse/0/ holds "
+        "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
+        "look for them; InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that it "
+        "came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise where the "
+        "head and refinement put them.",
+    .children = children,
+};
+
+/* Frames that stereo could match with no other. */
+static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *told,
+                          const reconstruction *r)
+{
+    cJSON *list = o->settings.depth == T3R_DEPTH_STEREO ? cJSON_AddArrayToObject(root, "unmatched") : NULL;
+    for (uint32_t v = 0; v < told->context_count && list != NULL; v++) {
+        if (t3r_stereo_pair(r->runtime, v, NULL) != T3R_PAIR_OK) {
+            cJSON_AddItemToArray(list, cJSON_CreateNumber(told->context[v]));
+        }
+    }
+}
+
+static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r,
+                       const t3r_recording *recording, const pose_account *accounts)
+{
+    bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
+    cJSON *root = cJSON_CreateObject();
+    if (o->output != NULL) {
+        cJSON_AddStringToObject(root, "scene", o->output);
+    }
+    if (o->colmap != NULL) {
+        cJSON_AddStringToObject(root, "colmap", o->colmap);
+    }
+    cJSON_AddStringToObject(root, "method", method_name(o->settings.method));
+    json_add_integer(root, "gaussians", r->scene.count);
+    json_add_integer(root, "requested", told->requested);
+    if (o->settings.automatic) {
+        cJSON_AddNumberToObject(root, "max_loss", o->settings.max_loss);
+    }
+    json_add_integer(root, "valid_points", told->valid_points);
+    json_add_integers(root, "context", told->context, told->context_count);
+    if (o->settings.points_of == NULL) {
+        cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.depth));
+        add_unmatched(root, o, told, r);
+    }
+    cJSON_AddNumberToObject(root, "width", told->width);
+    cJSON_AddNumberToObject(root, "height", told->height);
+    if (!rival) {
+        cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.allocation));
+    }
+    if (o->settings.points_of != NULL) {
+        cJSON_AddStringToObject(root, "pruned", o->settings.points_of);
+    }
+    if (told->head[0] != '\0') {
+        cJSON_AddStringToObject(root, "head", told->head);
+    }
+    if (told->bits[0] != '\0') {
+        cJSON_AddStringToObject(root, "head_bits", told->bits);
+        cJSON_AddStringToObject(root, "head_crc", told->crc);
+    }
+    json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
+    cJSON_AddNumberToObject(root, "build_ms", told->seconds * 1e3);
+    cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
+    if (o->poses != POSES_GIVEN) {
+        poses_add_json(root, recording, told->context, told->context_count, accounts);
+    }
+    /* where float32 positions lose the world's origin: --local and this */
+    cJSON *origin = cJSON_AddArrayToObject(root, "origin");
+    for (int i = 0; i < 3; i++) {
+        cJSON_AddItemToArray(origin, cJSON_CreateNumber((double)r->scene.frame.origin_q32[i] / 4294967296.0));
+    }
+    cJSON_AddNumberToObject(root, "exponent", r->scene.frame.exponent);
+    if (o->settings.method == METHOD_TRIM3R) { /* floats promise no bits */
+        json_add_hash(root, "hash", reconstruction_hash(r));
+    }
+    json_print(root);
+}
+
+/* "head small crc 1a2b3c4d"; "pruned" of a scene made elsewhere */
+static void note_head(const reconstruction_account *told, char *text, size_t bytes)
+{
+    int length = snprintf(text, bytes, told->head[0] != '\0' ? "head %s" : "pruned%s", told->head);
+    if (told->crc[0] != '\0') {
+        snprintf(text + length, bytes - (size_t)length, " crc %s", told->crc);
+    }
+}
+
+static int build(const build_options *o, const t3r_recording *recording, reconstruction *r,
+                 reconstruction_account *told)
+{
+    if (o->settings.method != METHOD_TRIM3R) {
+        rival_source source = {0};
+        int code = rival_build(&source, recording, o->recording, o->settings.method, &o->settings, r, told);
+        rival_source_close(&source);
+        return code;
+    }
+    int code = reconstruction_build(r, recording, o->recording, &o->settings);
+    if (code == CLI_OK) {
+        *told = reconstruction_told(r);
+    }
+    return code;
+}
+
+static int write_colmap(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
+                        const reconstruction_account *told)
+{
+    colmap_view views[T3R_MAX_VIEWS] = {0};
+    char error[ERROR_BYTES] = "";
+    int code = CLI_OK;
+    for (uint32_t v = 0; v < told->context_count && code == CLI_OK; v++) {
+        views[v] = (colmap_view){.frame = told->context[v], .width = told->width, .height = told->height};
+        views[v].rgb = malloc((size_t)told->width * told->height * 3);
+        code = views[v].rgb == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
+                                    : developed_frame(recording, o->recording, told->context[v], told->width,
+                                                      told->height, views[v].rgb, &views[v].camera);
+    }
+    colmap_model model = {.views = views,
+                          .view_count = told->context_count,
+                          .scene = scene,
+                          .local = (o->flags & SCENE_FILE_LOCAL) != 0,
+                          .sourced =
+                              o->settings.points_of == NULL || method_kind_of(o->settings.method) == METHOD_TRIM3R};
+    if (code == CLI_OK && colmap_folder_write(o->colmap, &model, error, sizeof error) != 0) {
+        code = cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    for (uint32_t v = 0; v < told->context_count; v++) {
+        free(views[v].rgb);
+    }
+    return code;
+}
+
+static int write_all(const build_options *o, const t3r_recording *recording, const reconstruction *r,
+                     const reconstruction_account *told)
+{
+    char note[64], error[ERROR_BYTES] = "";
+    note_head(told, note, sizeof note);
+    if (o->output != NULL && scene_file_write_ply(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told) : CLI_OK;
+}
+
+static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r,
+                       const pose_account *accounts)
+{
+    if (o->poses != POSES_GIVEN) {
+        poses_print(told->context, told->context_count, accounts);
+    }
+    printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n",
+           o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
+           told->seconds * 1e3);
+    if (told->requested > r->scene.count && !o->settings.automatic) {
+        printf("%" PRIu32 " were asked for; all valid points are used\n", told->requested);
+    }
+    for (uint32_t v = 0; v < told->context_count; v++) {
+        uint32_t partner;
+        t3r_pair pair = t3r_stereo_pair(r->runtime, v, &partner);
+        if (pair != T3R_PAIR_OK) {
+            printf("frame %" PRIu32 " has no depth; with frame %" PRIu32 ": %s\n", told->context[v],
+                   told->context[partner], t3r_pair_text(pair));
+        }
+    }
+}
+
+/* Spells out the default, the first two frames. */
+static void name_context(reconstruction_options *settings, const t3r_recording *recording)
+{
+    if (settings->context_count == 0) {
+        settings->context_count = t3r_recording_frame_count(recording) < 2 ? 1 : 2;
+        settings->context[0] = 0;
+        settings->context[1] = 1;
+    }
+}
+
+int command_build(int argc, char **argv)
+{
+    build_options o = {0};
+    reconstruction_defaults(&o.settings);
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+
+    char error[ERROR_BYTES] = "";
+    t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
+    if (recording == NULL) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    int code = CLI_OK;
+    if (o.colmap != NULL && colmap_folder_begin(o.colmap, error, sizeof error) != 0) {
+        code = cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    pose_account accounts[T3R_MAX_VIEWS];
+    if (code == CLI_OK && o.poses != POSES_GIVEN) {
+        name_context(&o.settings, recording);
+        code = recording_estimate_poses(recording, o.recording, o.settings.context, o.settings.context_count, o.poses,
+                                        accounts);
+    }
+    reconstruction r;
+    reconstruction_account told;
+    code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
+    if (code == CLI_OK) {
+        code = write_all(&o, recording, &r, &told);
+        if (code == CLI_OK && o.json) {
+            print_json(&o, &told, &r, recording, accounts);
+        } else if (code == CLI_OK) {
+            print_text(&o, &told, &r, accounts);
+        }
+        reconstruction_close(&r);
+    }
+    t3r_recording_close(recording);
+    return code;
+}

@@ -1,0 +1,475 @@
+/* trim3r eval: scores of rendered views against recorded ones. */
+#include "trim3r/commands/commands.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "study/evaluation/ablation.h"
+#include "cli/cli.h"
+#include "reconstruction/chosen_head.h"
+#include "study/evaluation/settings.h"
+#include "study/evaluation/work.h"
+#include "cli/option_values.h"
+#include "reconstruction/option_names.h"
+#include "cli/process_pool.h"
+#include "reconstruction/reconstruction.h"
+#include "reconstruction/scene_frames.h"
+
+#define MOST_KEEPS 64u
+#define ABLATE_KEEPS "60,40,20,10,5"
+
+typedef struct options {
+    reconstruction_options settings;
+    char **inputs; /* recordings, or the images of --planar */
+    uint32_t input_count;
+    bool planar, has_target, from_file;
+    uint32_t width, height; /* --size */
+    uint32_t target;
+    double keep[MOST_KEEPS];
+    uint32_t keep_count;
+    method_id methods[METHOD_COUNT];
+    uint32_t method_count;
+    char *heads[EVALUATION_HEADS_MOST]; /* --heads; parts of one heap string */
+    uint32_t head_count;
+    bool ablate;
+    uint32_t ablations[ABLATIONS_MOST]; /* those named; none = all that apply */
+    uint32_t ablation_count;
+    uint32_t processes;
+    evaluation_outputs to;
+} options;
+
+enum {
+    KEY_CONTEXT = 0x200,
+    KEY_TARGET,
+    KEY_VIEWS,
+    KEY_KEEP,
+    KEY_METHODS,
+    KEY_PRUNE,
+    KEY_ITERATIONS,
+    KEY_HEADS,
+    KEY_MASK_HEAD,
+    KEY_ABLATE,
+    KEY_PLANAR,
+    KEY_SIZE,
+    KEY_CSV,
+    KEY_IMAGES,
+    KEY_HTML,
+    KEY_FROM_FILE,
+    KEY_JSON,
+    KEY_JOBS,
+    KEY_RESUME
+};
+
+/* ---- arguments ---------------------------------------------------------------------------------------------- */
+
+static void parse_heads(struct argp_state *state, options *o, const char *text)
+{
+    char *rest = NULL, *own = strdup(text);
+    if (own == NULL) {
+        argp_failure(state, CLI_BAD_INPUT, 0, "out of memory");
+        return;
+    }
+    o->head_count = 0;
+    for (char *part = own; part != NULL; part = rest) {
+        rest = strchr(part, ',');
+        if (rest != NULL) {
+            *rest++ = '\0';
+        }
+        if (o->head_count == EVALUATION_HEADS_MOST) {
+            argp_error(state, "--heads takes at most %u heads", EVALUATION_HEADS_MOST);
+        }
+        (void)option_head(state, "heads", part);
+        o->heads[o->head_count++] = part;
+    }
+}
+
+static void add_ablation(struct argp_state *state, options *o, const char *name, size_t length)
+{
+    uint32_t found = 0;
+    for (const char *known; (known = ablation_name(found)) != NULL; found++) {
+        if (strlen(known) == length && strncmp(name, known, length) == 0) {
+            break;
+        }
+    }
+    if (ablation_name(found) == NULL) {
+        argp_error(state, "--ablate does not know '%.*s'; --help lists what can be ablated", (int)length, name);
+    }
+    for (uint32_t i = 0; i < o->ablation_count; i++) {
+        if (o->ablations[i] == found) {
+            argp_error(state, "--ablate names %s twice", ablation_name(found));
+        }
+    }
+    o->ablations[o->ablation_count++] = found;
+}
+
+static void parse_ablations(struct argp_state *state, options *o, const char *text)
+{
+    o->ablate = true;
+    o->ablation_count = 0;
+    while (text != NULL) {
+        size_t length = strcspn(text, ",");
+        add_ablation(state, o, text, length);
+        text = text[length] == '\0' ? NULL : text + length + 1;
+    }
+}
+
+static void check_prune(struct argp_state *state, const options *o)
+{
+    if (o->planar || o->settings.context_views > 2) {
+        argp_error(state, "--prune takes the views that its scene was made of: it excludes --planar and --views");
+    }
+    for (uint32_t m = 0; m < o->method_count; m++) {
+        if (method_ranks_for_head(o->methods[m])) {
+            argp_error(state,
+                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not told");
+        }
+    }
+}
+
+static void check_options(struct argp_state *state, options *o)
+{
+    if (o->input_count == 0) {
+        argp_error(state, o->planar ? "IMAGE... is missing" : "REC.mcap is missing");
+    }
+    uint32_t pair[2];
+    if (evaluation_name_parts(o->inputs, o->input_count, pair) == 0) {
+        argp_error(state, "%s and %s would have the same name", o->inputs[pair[0]], o->inputs[pair[1]]);
+    }
+    if (o->planar && (o->has_target || o->settings.context_count > 0)) {
+        argp_error(state, "--planar takes images, not --context and --target");
+    }
+    if (o->planar && o->settings.context_views > 2) {
+        argp_error(state, "--views belongs to a recording, not to --planar");
+    }
+    if (o->settings.context_views > 2 && o->settings.context_count > o->settings.context_views) {
+        argp_error(state, "--context names more frames than --views");
+    }
+    if (o->planar && o->settings.depth != T3R_DEPTH_SENSOR) {
+        argp_error(state, "--depth belongs to a recording, not to --planar");
+    }
+    if (!o->planar && o->width != 0) {
+        argp_error(state, "--size belongs to --planar; --working sets the size of a recording's views");
+    }
+    if (o->planar && o->settings.width != 0) {
+        argp_error(state, "--working belongs to a recording; --size sets the size of --planar");
+    }
+    if (o->has_target != (o->settings.context_count > 0)) {
+        argp_error(state,
+                   "--context and --target belong together; without both, all triplets of the recording are taken");
+    }
+    if (o->to.resume && (o->to.csv == NULL || o->to.page != NULL || o->from_file)) {
+        argp_error(state, "--resume needs --csv, and excludes --html, whose pictures are not kept, and --from-file");
+    }
+    if (o->ablate && (o->method_count > 0 || o->head_count > 0)) {
+        argp_error(state, "--ablate is of the method trim3r with one --head: it excludes --methods and --heads");
+    }
+    if (o->ablate && o->keep_count == 0) {
+        (void)cli_parse_list_percent(ABLATE_KEEPS, o->keep, MOST_KEEPS, &o->keep_count);
+    }
+    if (o->keep_count == 0 && o->settings.automatic) {
+        o->keep[o->keep_count++] = 100;
+    }
+    if (o->keep_count == 0) {
+        argp_error(state, "--keep is missing, or --auto");
+    }
+    if (o->method_count == 0) {
+        o->methods[o->method_count++] = METHOD_TRIM3R;
+    }
+    if (o->head_count > 0 && o->settings.head != NULL) {
+        argp_error(state, "--head and --heads exclude each other");
+    }
+    if (o->settings.head == NULL) {
+        o->settings.head = CHOSEN_HEAD_DEFAULT;
+    }
+    for (uint32_t m = 0; m < o->method_count && o->settings.mask_head != NULL; m++) {
+        if (!method_ranks_for_head(o->methods[m])) {
+            argp_error(state, "--mask-head belongs to rivals with +head, not to %s", method_name(o->methods[m]));
+        }
+    }
+    if (o->planar && o->width == 0) {
+        o->width = o->height = 256;
+    }
+    if (o->settings.points_of != NULL) {
+        check_prune(state, o);
+    }
+}
+
+static error_t parse_option(int key, char *arg, struct argp_state *state)
+{
+    options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->settings;
+        return 0;
+    case KEY_CONTEXT:
+        option_frames(state, "context", arg, o->settings.context, &o->settings.context_count);
+        return 0;
+    case KEY_TARGET:
+        o->target = option_number(state, "target", arg, 0, UINT32_MAX);
+        o->has_target = true;
+        return 0;
+    case KEY_VIEWS:
+        o->settings.context_views = option_number(state, "views", arg, 2, T3R_MAX_VIEWS);
+        return 0;
+    case KEY_KEEP:
+        option_percents(state, "keep", arg, o->keep, MOST_KEEPS, &o->keep_count);
+        return 0;
+    case KEY_METHODS:
+        option_methods(state, "methods", arg, o->methods, &o->method_count);
+        return 0;
+    case KEY_PRUNE:
+        o->settings.points_of = arg;
+        return 0;
+    case KEY_ITERATIONS:
+        o->settings.finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
+        return 0;
+    case KEY_HEADS:
+        parse_heads(state, o, arg);
+        return 0;
+    case KEY_MASK_HEAD:
+        o->settings.mask_head = option_head(state, "mask-head", arg);
+        return 0;
+    case KEY_ABLATE:
+        parse_ablations(state, o, arg);
+        return 0;
+    case KEY_PLANAR:
+        o->planar = true;
+        return 0;
+    case KEY_SIZE:
+        option_size(state, "size", arg, T3R_MIN_SIDE, &o->width, &o->height);
+        return 0;
+    case KEY_CSV:
+        o->to.csv = arg;
+        return 0;
+    case KEY_IMAGES:
+        o->to.images = arg;
+        return 0;
+    case KEY_HTML:
+        o->to.page = arg;
+        return 0;
+    case KEY_FROM_FILE:
+        o->from_file = true;
+        return 0;
+    case KEY_JSON:
+        o->to.json = true;
+        return 0;
+    case KEY_RESUME:
+        o->to.resume = true;
+        return 0;
+    case KEY_JOBS:
+        o->processes = strcmp(arg, "all") == 0 ? process_pool_processors()
+                                               : option_number(state, "jobs", arg, 1, PROCESS_POOL_MOST);
+        return 0;
+    case ARGP_KEY_ARGS:
+        o->inputs = state->argv + state->next;
+        o->input_count = (uint32_t)(state->argc - state->next);
+        return 0;
+    case ARGP_KEY_END:
+        check_options(state, o);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option argp_options[] = {
+    {NULL, 0, NULL, 0, "What is compared:", 1},
+    {"context", KEY_CONTEXT, "A,B,...", 0,
+     "frames that the scene is made of, one named twice counting once (all triplets that the recording carries)", 0},
+    {"target", KEY_TARGET, "T", 0, "the frame to be met; it is never shown to the method", 0},
+    {"views", KEY_VIEWS, "N", 0,
+     "fill every context up to N frames, 2..16 (2: the triplet's own, or --context), with those nearest to the target",
+     0},
+    {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each; with --auto the most (100)", 0},
+    {"methods", KEY_METHODS, "M,M,...", 0,
+     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
+     "+head: their points for our head",
+     0},
+    {"prune", KEY_PRUNE, "SCENE.ply", 0,
+     "prune this scene, made elsewhere of the views of --context: percents are of its Gaussians; trim3r makes new ones "
+     "of points among their means, the rivals keep some; the mask is of its means where a view has no depth",
+     0},
+    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
+    {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
+    {"mask-head", KEY_MASK_HEAD, "HEAD", 0,
+     "of rivals with +head: the head whose unpruned scene they rank (--head's); so --head can be one retrained for "
+     "their points",
+     0},
+    {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
+     "what each part is worth: rows with one part taken away each (all), at 60, 40, 20, 10 and 5 % unless --keep says "
+     "otherwise, and one table at the end",
+     0},
+    {"planar", KEY_PLANAR, NULL, 0,
+     "the arguments are images: each is one view on a plane of constant depth, drawn again from the same camera", 0},
+    {"size", KEY_SIZE, "WxH", 0, "to which --planar crops and averages images (256x256)", 0},
+    {"from-file", KEY_FROM_FILE, NULL, 0, "write each scene as .ply, read it back and draw that", 0},
+    {NULL, 0, NULL, 0, "What is written:", 2},
+    {"csv", KEY_CSV, "FILE", 0, "the rows, as they are made", 0},
+    {"images", KEY_IMAGES, "DIR", 0,
+     "DIR/<target>/<method>_<keep>.png (with --heads <head>, with --ablate <ablation>; settings that are not the "
+     "default come before <keep>, as in trim3r_refine-0_10.png), target.png, mask.png, context_a.png, ...; the column "
+     "picture names each",
+     0},
+    {"html", KEY_HTML, "PAGE.html", 0, "one page with the pictures side by side; it needs no other file", 0},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, means over the cases, refused cases", 0},
+    {NULL, 0, NULL, 0, "How the work is done:", 3},
+    {"jobs", KEY_JOBS, "N", 0,
+     "processes that share the cases, 1..256, or all: one a processor (1); times are then those of a busy machine", 0},
+    {"resume", KEY_RESUME, NULL, 0,
+     "rows that stand in --csv already are not made again; those that do not are added to it; a table that is older "
+     "than the program or a recording is refused",
+     0},
+    {0},
+};
+
+static const struct argp_child children[] = {{&reconstruction_settings_argp, 0, NULL, 0}, {0}};
+
+static const struct argp parser = {
+    .options = argp_options,
+    .parser = parse_option,
+    .args_doc = "REC.mcap...\n--planar IMAGE...",
+    .doc =
+        "Score views of a reconstruction against recorded ones.\v"
+        "A row is one scene, context, target, method, head and budget; bits: of a network's weights (and of its "
+        "activations, where they differ). psnr (dB), ssim, sharp (mean gradient over the "
+        "target's) and perceptual (FLIP at 67 pixels a degree, 0 = none) count the pixels of the mask: those that all "
+        "points of the raw depth, drawn with the plain analytic head, leave a transmittance below 0.3. holes: share "
+        "of the mask left above 0.5. psnr_all: all pixels over black. context_psnr: mean over the context views, each "
+        "on its own mask. build_ms: recorded frames to scene; render_ms: the target view; scene_bytes: the Gaussians "
+        "as the arena holds them, 44 bytes each; picture: the render's name within --images. planar_psnr: all pixels "
+        "of "
+        "--planar, where ssim, sharp, holes and perceptual count all pixels too. Cells that do not apply are empty. "
+        "Several cases end in lines of means (decibels are averaged as decibels), which the CSV leaves out; several "
+        "recordings get a folder each in --images.\n\n"
+        "--views N: the triplet's own frames, or those of --context, come first, then the recording's other frames "
+        "with depth (but for --depth stereo), pose and intrinsics by their distance from the target's camera: the root "
+        "of the squares of the "
+        "centres' distance over the median depth of the first frame, and of the distance between the directions of "
+        "view as unit vectors; of equal ones the lower index, the target never. The column context names them, the "
+        "column settings tells views-N; the mask is that of all N. A recording with too few frames is refused.\n\n"
+        "The rivals keep, of the scene that --head and --refine make of all points, the Gaussians that their papers' "
+        "scores rank highest over the context views, and draw them unchanged: random; eagles (influence, the sum of "
+        "blending weights); lightgaussian (hits x opacity x volume); pup (second-order sensitivity to place and "
+        "scale); efficientgs (dominant in most pixels). +finetune: N iterations of Adam on the context views follow, "
+        "on all parameters of what was kept. +head: --head makes new Gaussians of the points that those kept came "
+        "from, "
+        "refined as trim3r's are; trim3r+head makes them of our own points, so that both have their spacing counted. "
+        "build_ms counts the unpruned scene, scoring and fine-tuning.\n\n"
+        "--ablate: each row changes one thing of the settings given, --refine among them, and names it in the column "
+        "ablation. full: nothing. no-adaptation: the head is told that nothing was pruned; its splats at 100 % are "
+        "pruned and, but for --refine, left as they are. no-mask: the network is told so, but its splats still grow "
+        "with the distance of kept neighbours. random, uniform, paper, pixel: --allocate. random-clusters: "
+        "SuperClusters exchange their textures at random; paper-random-clusters: so with --allocate paper. k-5, k-25,"
+        " k-50, k-100, k-200, k-300, k-400: --clusters. n-5, n-10, n-15, n-20: --allocate paper with that "
+        "--keep-percent. no-refinement: --refine 0. no-flying, no-redundancy, no-exposure: that switch off. Left out "
+        "are no-mask of heads without weights, no-adaptation of the head none, and the last three of --planar. The "
+        "table is Markdown, PSNR (dB) / SSIM, means over the cases of a recording; of several recordings the mean, "
+        "each counting once.\n\n"
+        "Of several cases those refused (without depth or stereo match) are left out, and told on stderr and by "
+        "--json; --resume tries them again. Where none is left the exit status is 1.\n\n"
+        "Examples:\n"
+        "  trim3r eval room.mcap --keep 100,20,10\n"
+        "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images dir\n"
+        "  trim3r eval room.mcap --keep 20,5 --views 4\n"
+        "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune,pup+head\n"
+        "  trim3r eval room.mcap --keep 10,5 --heads analytic,small,my.t3w\n"
+        "  trim3r eval room.mcap --ablate=full,no-mask,no-adaptation --keep 10,5 --refine 0\n"
+        "  trim3r eval room.mcap --prune s.ply --context 0,2 --target 1 --methods trim3r,pup --keep 20\n"
+        "  trim3r eval *.mcap --keep 100,40,10 --methods trim3r,eagles --jobs all --csv all.csv --resume\n"
+        "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
+    .children = children,
+};
+
+/* ---- work ------------------------------------------------------------------------------------------------------- */
+
+static int open_cases(const options *o, evaluation_cases *cases)
+{
+    if (o->planar) {
+        return evaluation_cases_of_images(cases, o->inputs, o->input_count, o->width, o->height);
+    }
+    return evaluation_cases_of_recordings(cases, o->inputs, o->input_count, &o->settings, o->target);
+}
+
+static int choose_contestants(const options *o, evaluation_contestants *chosen)
+{
+    if (o->ablate) {
+        return evaluation_contestants_ablations(chosen, o->ablations, o->ablation_count, o->planar, &o->settings);
+    }
+    return evaluation_contestants_methods(chosen, o->methods, o->method_count, o->heads, o->head_count, &o->settings);
+}
+
+/* Opens the scene to be pruned: a bad one is told before the work. */
+static int look_at_scene(const char *path, const evaluation_cases *cases)
+{
+    if (cases->count > 1) {
+        return cli_error(CLI_BAD_USAGE, "--prune: the scene belongs to one context; name it, of one recording, by "
+                                        "--context and --target");
+    }
+    scene_file scene;
+    int code = scene_to_prune(path, &scene);
+    if (code == CLI_OK) {
+        scene_file_free(&scene);
+    }
+    return code;
+}
+
+static int report_all(const options *o, const evaluation_work *work)
+{
+    evaluation_outputs to = o->to;
+    to.planar = o->planar;
+    to.ablate = o->ablate;
+    to.folder_each = !o->planar && o->input_count > 1;
+    int code = evaluation_settings_suffix(&o->settings, o->head_count == 0, to.suffix);
+    if (code != CLI_OK) {
+        return code;
+    }
+    evaluation_report report;
+    code = evaluation_report_open(&report, &to, work->cases->count, evaluation_work_rows_each(work));
+    code = code == CLI_OK ? evaluation_work_do(work, &report) : code;
+    return evaluation_report_close(&report, code);
+}
+
+static int evaluate(const options *o)
+{
+    evaluation_contestants contestants;
+    evaluation_cases cases = {0};
+    evaluation_resume resume = {0};
+    int code = choose_contestants(o, &contestants);
+    code = code == CLI_OK ? open_cases(o, &cases) : code;
+    if (code == CLI_OK && o->settings.points_of != NULL) {
+        code = look_at_scene(o->settings.points_of, &cases);
+    }
+    if (code == CLI_OK && o->to.resume) {
+        code = evaluation_resume_open(&resume, o->to.csv, o->inputs, o->input_count, o->settings.points_of,
+                                      o->to.images != NULL);
+    }
+    if (code == CLI_OK) {
+        evaluation_work work = {
+            .cases = &cases,
+            .contestants = &contestants,
+            .settings = &o->settings,
+            .keep = o->keep,
+            .keep_count = o->keep_count,
+            .from_file = o->from_file,
+            .processes = o->processes,
+            .resume = &resume,
+        };
+        code = report_all(o, &work);
+    }
+    evaluation_resume_close(&resume);
+    evaluation_cases_close(&cases);
+    return code;
+}
+
+int command_eval(int argc, char **argv)
+{
+    options o = {.processes = 1};
+    reconstruction_defaults(&o.settings);
+    o.settings.head = NULL; /* until one is named */
+    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    int code = evaluate(&o);
+    free(o.heads[0]);
+    return code;
+}

@@ -1,0 +1,487 @@
+/* trim3r import: a posed folder to a recording. */
+#include "trim3r/commands/commands.h"
+
+#include <argp.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/cli.h"
+#include "import/frame.h"
+#include "import/import_pointmaps.h"
+#include "import/poses.h"
+#include "cli/json_output.h"
+#include "cli/option_values.h"
+#include "import/posed_folder.h"
+#include "import/posed_recording.h"
+#include "import/poses_output.h"
+#include "reason.h"
+#include "recording.h"
+#include "import/recording_poses.h"
+#include "trim3r.h"
+#include "cli/whole_file.h"
+
+#define ERROR_BYTES 1024
+
+typedef struct options {
+    const char *directory;
+    const char *output;
+    uint32_t width, height; /* 0 = as the pictures are */
+    double intrinsics[9];
+    uint32_t intrinsics_count;
+    poses_source poses;
+    pointmap_options pointmaps;
+    bool json;
+} options;
+
+/* What is written: the folder's frames with what is made of them. */
+typedef struct material {
+    posed_folder folder;
+    pointmap_source pointmaps;
+    pose_account *accounts; /* a frame, when poses were estimated from pictures; else NULL */
+} material;
+
+typedef struct totals {
+    uint32_t width, height; /* of every frame */
+    uint32_t depth_frames;
+    uint64_t bytes;
+} totals;
+
+enum { KEY_INTRINSICS = 0x100, KEY_POSES, KEY_POINTMAPS, KEY_CONFIDENCE, KEY_UNIT, KEY_JSON };
+
+static int parse_numbers(const char *text, double *numbers, uint32_t most, uint32_t *count)
+{
+    *count = 0;
+    for (;;) {
+        char *end;
+        double value = strtod(text, &end);
+        if (end == text || *count == most || !(value > -1e6 && value < 1e6)) {
+            return -1;
+        }
+        numbers[(*count)++] = value;
+        if (*end == '\0') {
+            return 0;
+        }
+        if (*end != ',') {
+            return -1;
+        }
+        text = end + 1;
+    }
+}
+
+static double parse_number(struct argp_state *state, const char *option, const char *text, double low, double high)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end != '\0' || !(value >= low && value <= high)) {
+        argp_error(state, "--%s takes a number from %g to %g, not '%s'", option, low, high, text);
+    }
+    return value;
+}
+
+static void check_options(struct argp_state *state, const options *o)
+{
+    if (o->directory == NULL) {
+        argp_error(state, "DIR is missing");
+    }
+    if (o->output == NULL) {
+        argp_error(state, "-o REC.mcap is missing");
+    }
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    options *o = state->input;
+    switch (key) {
+    case 's':
+        option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
+        return 0;
+    case KEY_INTRINSICS:
+        if (parse_numbers(argument, o->intrinsics, 9, &o->intrinsics_count) != 0 ||
+            (o->intrinsics_count != 4 && o->intrinsics_count != 9) || !(o->intrinsics[0] > 0) ||
+            !(o->intrinsics[1] > 0)) {
+            argp_error(state, "--intrinsics %s: not fx,fy,cx,cy[,k1,k2,p1,p2,k3]", argument);
+        }
+        return 0;
+    case KEY_POSES:
+        if (!poses_named(argument, &o->poses)) {
+            argp_error(state, "--poses does not know '%s'; there are %s", argument, POSES_NAMES);
+        }
+        return 0;
+    case KEY_POINTMAPS:
+        o->pointmaps.file = argument;
+        return 0;
+    case KEY_CONFIDENCE:
+        o->pointmaps.confidence_least = parse_number(state, "min-confidence", argument, -1e30, 1e30);
+        return 0;
+    case KEY_UNIT:
+        o->pointmaps.depth_unit = parse_number(state, "depth-unit", argument, 0x1p-39, 0x1p6);
+        return 0;
+    case 'o':
+        o->output = argument;
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        option_argument(state, argument, (const char **[]){&o->directory}, 1);
+        return 0;
+    case ARGP_KEY_END:
+        check_options(state, o);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option argp_options[] = {
+    {"output", 'o', "REC.mcap", 0, "The recording to write; it appears when it is whole", 0},
+    {"size", 's', "WxH", 0,
+     "Crop every picture to the largest centred part of that aspect, then resize: colour by area average, depth by the "
+     "pixel at the centre of each box",
+     0},
+    {"intrinsics", KEY_INTRINSICS, "LIST", 0,
+     "Of TUM RGB-D and of pictures alone: the colour camera as fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being "
+     "the "
+     "centre of the top-left pixel; known for folders with freiburg1, freiburg2 or freiburg3 in their name",
+     0},
+    {"poses", KEY_POSES, "SOURCE", 0,
+     "given (default), those of the folder; estimate, from corners that frames share, with depth where two of them "
+     "have "
+     "it, or from pointmaps, of all frames then; estimate-colour, from colour alone, without pointmaps",
+     0},
+    {"pointmaps", KEY_POINTMAPS, "FILE.npz", 0, "Depth of all frames, one pointmap each, in the frames' order", 0},
+    {"min-confidence", KEY_CONFIDENCE, "C", 0, "Points of pointmaps with less become no depth (all are kept)", 0},
+    {"depth-unit", KEY_UNIT, "U", 0,
+     "Length of a step of depths from pointmaps (integer_depth_scale of the folder, else a power of two so that the "
+     "median "
+     "has 4096 to 8192 steps)",
+     0},
+    {"json", KEY_JSON, NULL, 0, "One JSON object on stdout", 0},
+    {0},
+};
+
+static const struct argp parser = {
+    .options = argp_options,
+    .parser = parse_option,
+    .args_doc = "DIR",
+    .doc = "Turn a posed folder into a recording.\v"
+           "DIR holds transforms.json (instant-ngp, NeRFCapture, nerfstudio: camera_model OPENCV or OPENCV_FISHEYE, "
+           "depth_path with integer_depth_scale, trim3r_triplets) or rgb.txt, groundtruth.txt and optionally depth.txt "
+           "(TUM RGB-D; pictures without a pose are left out); with --poses estimate or --pointmaps also pictures "
+           "alone, in "
+           "the order of their names. Frames get stamps 1/30 s apart.\n\n"
+           "A pointmap, as DUSt3R, MASt3R and VGGT make them, is float32 pts3d (or world_points, points, pointmap), "
+           "H x W x 3, of a frame in the first frame's camera, x right, y down, z forward: pointmap_path of a frame, a "
+           ".npz "
+           "or .npy, or N of them in the file of --pointmaps. A .npz may hold conf (or world_points_conf), H x W (a "
+           ".npy has "
+           "confidence_path beside it), and what the points were made with, which then wins over the folder: poses, "
+           "camera to the points' frame, 4x4, or extrinsic, the inverse, 3x4; intrinsics, 3x3, or focals, in pixels of "
+           "the "
+           "map. Missing poses are taken from the points. What is not a finite number is refused, and poses of which "
+           "some are in the folder's world, others in that of the points.\n\n"
+           "Estimated poses are rounded into the recording: what is made of it later is the same everywhere. With them "
+           "DIR may "
+           "also be a recording, which is then written once more.\n\n"
+           "Examples:\n"
+           "  trim3r import scene --size 256x256 -o scene.mcap\n"
+           "  trim3r import rgbd_dataset_freiburg1_desk -o desk.mcap\n"
+           "  trim3r import desk --intrinsics 525,525,319.5,239.5 -o desk.mcap\n"
+           "  trim3r import photos --intrinsics 900,900,640,480 --poses estimate -o p.mcap\n"
+           "  trim3r import photos --pointmaps dust3r.npz --min-confidence 3 -o p.mcap",
+};
+
+/* The folder's own name: what the recording says it was made from. */
+static char *source_name(const char *directory, const char *kind)
+{
+    char *full = realpath(directory, NULL);
+    const char *slash = full == NULL ? NULL : strrchr(full, '/');
+    const char *base = slash != NULL && slash[1] != '\0' ? slash + 1 : directory;
+    size_t bytes = strlen(base) + strlen(kind) + 16;
+    char *name = malloc(bytes);
+    if (name != NULL) {
+        snprintf(name, bytes, "%s (%s)", base, kind);
+    }
+    free(full);
+    return name;
+}
+
+static int write_frame(t3r_recorder *recorder, const options *o, const material *m, uint32_t index, totals *t,
+                       char *error)
+{
+    const posed_frame *frame = &m->folder.frames[index];
+    picture depth = {0};
+    char reason[ERROR_BYTES];
+    import_buffers buffers;
+    t3r_recorded_frame recorded;
+    if (m->pointmaps.count > 0 && pointmap_source_depth(&m->pointmaps, index, &depth, error, ERROR_BYTES) != 0) {
+        return -1;
+    }
+    int status =
+        import_frame(o->directory, frame, &depth, o->width, o->height, &buffers, &recorded, reason, sizeof reason);
+    if (status != 0) {
+        t3r_reason(error, ERROR_BYTES, "%s: frame %u: %.700s", o->directory, index, reason);
+    } else if (index > 0 && (recorded.width != t->width || recorded.height != t->height)) {
+        status = t3r_reason(error, ERROR_BYTES, "%s: frame %u: %s: %ux%u pixels, but frame 0 has %ux%u; give --size",
+                            o->directory, index, frame->image, recorded.width, recorded.height, t->width, t->height);
+    } else {
+        recorded.stamp_ns = (int64_t)index * 1000000000 / 30;
+        t->width = recorded.width;
+        t->height = recorded.height;
+        t->depth_frames += recorded.depth != NULL;
+        if (t3r_recorder_frame(recorder, &recorded) != 0) {
+            status = t3r_reason(error, ERROR_BYTES, "%s: frame %u cannot be written", o->output, index);
+        }
+    }
+    import_buffers_free(&buffers);
+    return status;
+}
+
+static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, const material *m, const char *source,
+                        totals *t, char *error)
+{
+    const posed_folder *folder = &m->folder;
+    t3r_recording_header header = {.camera = "camera",
+                                   .source = source,
+                                   .clock = "synthetic",
+                                   .depth_unit = folder->depth_unit,
+                                   .triplets = folder->triplets,
+                                   .triplet_count = folder->triplet_count};
+    if (t3r_recorder_begin(recorder, t3r_file_sink(stream), &header) != 0) {
+        return t3r_reason(error, ERROR_BYTES, "%s: cannot be written", o->output);
+    }
+    for (uint32_t i = 0; i < folder->frame_count; i++) {
+        cli_progress("importing", i, folder->frame_count);
+        if (write_frame(recorder, o, m, i, t, error) != 0) {
+            return -1;
+        }
+    }
+    if (t3r_recorder_end(recorder) != 0) {
+        return t3r_reason(error, ERROR_BYTES, "%s: cannot be written", o->output);
+    }
+    return 0;
+}
+
+static int write_recording(const options *o, const material *m, totals *t, char *error)
+{
+    whole_file file;
+    char *source = source_name(o->directory, m->folder.kind);
+    t3r_recorder *recorder = malloc(t3r_recorder_bytes());
+    int status = -1;
+    if (source == NULL || recorder == NULL) {
+        t3r_reason(error, ERROR_BYTES, "out of memory");
+    } else if (whole_file_begin(&file, o->output, error, ERROR_BYTES) == 0) {
+        status = write_frames(recorder, file.stream, o, m, source, t, error);
+        if (status == 0) {
+            status = whole_file_commit(&file, &t->bytes, error, ERROR_BYTES);
+        } else {
+            whole_file_abandon(&file);
+        }
+    }
+    free(recorder);
+    free(source);
+    return status;
+}
+
+static void print_json(const material *m, const totals *t)
+{
+    const posed_folder *folder = &m->folder;
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddNumberToObject(json, "frames", folder->frame_count);
+    cJSON_AddNumberToObject(json, "depth_frames", t->depth_frames);
+    cJSON_AddNumberToObject(json, "triplets", folder->triplet_count);
+    cJSON_AddNumberToObject(json, "width", t->width);
+    cJSON_AddNumberToObject(json, "height", t->height);
+    json_add_integer(json, "bytes", (int64_t)t->bytes);
+    cJSON_AddNumberToObject(json, "skipped", folder->skipped);
+    if (m->pointmaps.count > 0) {
+        cJSON_AddNumberToObject(json, "pointmaps", m->pointmaps.count);
+        cJSON_AddNumberToObject(json, "depth_unit", folder->depth_unit);
+        cJSON_AddNumberToObject(json, "resection_pixels", m->pointmaps.worst_px);
+    }
+    cJSON *poses = m->accounts != NULL ? cJSON_AddArrayToObject(json, "poses") : NULL;
+    for (uint32_t i = 0; poses != NULL && i < folder->frame_count; i++) {
+        cJSON_AddItemToArray(poses, pose_account_json(NULL, i, m->accounts));
+    }
+    json_print(json);
+}
+
+static void print_text(const options *o, const material *m, const totals *t)
+{
+    const posed_folder *folder = &m->folder;
+    printf("%s: %u frames of %ux%u (%u with depth), %u triplets, %llu bytes\n", o->output, folder->frame_count,
+           t->width, t->height, t->depth_frames, folder->triplet_count, (unsigned long long)t->bytes);
+    if (folder->skipped > 0) {
+        printf("left out: %u pictures without a pose near in time\n", folder->skipped);
+    }
+    if (m->pointmaps.count > 0) {
+        printf("pointmaps: %u, depth in steps of %g", m->pointmaps.count, folder->depth_unit);
+        if (m->pointmaps.worst_px > 0) {
+            printf("; poses from points, %.2f pixels off", m->pointmaps.worst_px);
+        }
+        putchar('\n');
+    }
+    if (m->accounts != NULL) {
+        poses_print(NULL, folder->frame_count, m->accounts);
+    }
+}
+
+/* Whether options that only pointmaps heed are given: the one to name, else NULL. */
+static const char *pointmap_option(const pointmap_options *o)
+{
+    return o->confidence_least != -HUGE_VAL ? "--min-confidence" : o->depth_unit != 0 ? "--depth-unit" : NULL;
+}
+
+/* The folder's lists, then what options make of them: pointmaps, poses. */
+static int prepare(const options *o, material *m, char *error)
+{
+    bool estimate = o->poses != POSES_GIVEN;
+    posed_folder_options how = {.intrinsics = o->intrinsics,
+                                .intrinsics_count = o->intrinsics_count,
+                                .without_poses = estimate || o->pointmaps.file != NULL,
+                                .without_intrinsics = o->pointmaps.file != NULL};
+    if (posed_folder_open(o->directory, &how, &m->folder, error, ERROR_BYTES) != 0) {
+        return -1;
+    }
+    bool maps = o->pointmaps.file != NULL;
+    for (uint32_t i = 0; i < m->folder.frame_count; i++) {
+        maps = maps || m->folder.frames[i].pointmap != NULL;
+    }
+    if (maps && o->poses == POSES_ESTIMATE_COLOUR) {
+        return t3r_reason(error, ERROR_BYTES,
+                          "%s: --poses estimate-colour does not go with pointmaps; estimate takes poses from them",
+                          o->directory);
+    }
+    if (maps) {
+        pointmap_options points = o->pointmaps;
+        points.resect = estimate;
+        return pointmap_source_open(&m->pointmaps, o->directory, &points, &m->folder, error, ERROR_BYTES);
+    }
+    if (pointmap_option(&o->pointmaps) != NULL) {
+        return t3r_reason(error, ERROR_BYTES, "%s: %s is for pointmaps, but no frame has one", o->directory,
+                          pointmap_option(&o->pointmaps));
+    }
+    if (!estimate) {
+        return 0;
+    }
+    char reason[ERROR_BYTES - 300];
+    m->accounts = calloc(m->folder.frame_count, sizeof *m->accounts);
+    if (m->accounts == NULL) {
+        return t3r_reason(error, ERROR_BYTES, "out of memory");
+    }
+    if (import_estimate_poses(o->directory, &m->folder, o->poses, m->accounts, reason, sizeof reason) != 0) {
+        return t3r_reason(error, ERROR_BYTES, "%s: %s", o->directory, reason);
+    }
+    return 0;
+}
+
+/* ---- a recording once more -------------------------------------------------------------------------------------- */
+
+static int write_posed(const options *o, const t3r_recording *recording, totals *t)
+{
+    whole_file file;
+    char error[ERROR_BYTES] = "", reason[ERROR_BYTES / 2] = "", *source = source_name(o->directory, "recording");
+    int status = -1;
+    if (source == NULL) {
+        t3r_reason(error, sizeof error, "out of memory");
+    } else if (whole_file_begin(&file, o->output, error, sizeof error) == 0) {
+        status = posed_recording_write(recording, source, file.stream, reason, sizeof reason);
+        if (status == 0) {
+            status = whole_file_commit(&file, &t->bytes, error, sizeof error);
+        } else {
+            whole_file_abandon(&file);
+            t3r_reason(error, sizeof error, "%.400s: %s", o->output, reason);
+        }
+    }
+    cli_progress_end();
+    free(source);
+    return status == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
+static int estimate_all(t3r_recording *recording, const options *o, uint32_t count, pose_account *accounts)
+{
+    uint32_t *frames = malloc((count + 1) * sizeof *frames);
+    if (frames == NULL || accounts == NULL || count == 0) {
+        free(frames);
+        return cli_error(CLI_BAD_INPUT, "%s: %s", o->directory, count == 0 ? "no frames" : "out of memory");
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        frames[i] = i;
+    }
+    int code = recording_estimate_poses(recording, o->directory, frames, count, o->poses, accounts);
+    free(frames);
+    return code;
+}
+
+static int import_recording(const options *o)
+{
+    char error[ERROR_BYTES] = "";
+    if (o->poses == POSES_GIVEN || o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL ||
+        pointmap_option(&o->pointmaps) != NULL) {
+        return cli_error(CLI_BAD_USAGE, "%s is a recording: --poses estimate is all that import does to one",
+                         o->directory);
+    }
+    t3r_recording *recording = t3r_recording_open(o->directory, error, sizeof error);
+    if (recording == NULL) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    uint32_t count = t3r_recording_frame_count(recording);
+    pose_account *accounts = calloc(count + 1, sizeof *accounts);
+    totals t = {0};
+    int code = estimate_all(recording, o, count, accounts);
+    code = code == CLI_OK ? write_posed(o, recording, &t) : code;
+    if (code == CLI_OK && o->json) {
+        cJSON *json = cJSON_CreateObject();
+        cJSON_AddNumberToObject(json, "frames", count);
+        json_add_integer(json, "bytes", (int64_t)t.bytes);
+        cJSON *poses = cJSON_AddArrayToObject(json, "poses");
+        for (uint32_t i = 0; i < count; i++) {
+            cJSON_AddItemToArray(poses, pose_account_json(NULL, i, accounts));
+        }
+        json_print(json);
+    } else if (code == CLI_OK) {
+        printf("%s: %u frames, %llu bytes\n", o->output, count, (unsigned long long)t.bytes);
+        poses_print(NULL, count, accounts);
+    }
+    free(accounts);
+    t3r_recording_close(recording);
+    return code;
+}
+
+static bool is_file(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
+int command_import(int argc, char **argv)
+{
+    options o = {0};
+    o.pointmaps.confidence_least = -HUGE_VAL;
+    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    if (is_file(o.directory)) {
+        return import_recording(&o);
+    }
+    material m = {0};
+    totals t = {0};
+    char error[ERROR_BYTES] = "";
+    int status = prepare(&o, &m, error);
+    if (status == 0) {
+        status = write_recording(&o, &m, &t, error);
+    }
+    cli_progress_end();
+    if (status != 0) {
+        status = cli_error(CLI_BAD_INPUT, "%s", error);
+    } else if (o.json) {
+        print_json(&m, &t);
+    } else {
+        print_text(&o, &m, &t);
+    }
+    free(m.accounts);
+    pointmap_source_close(&m.pointmaps);
+    posed_folder_close(&m.folder);
+    return status;
+}

@@ -1,0 +1,218 @@
+/* trim3r plan: what an arena holds, before anything runs. */
+#include "trim3r/commands/commands.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "reconstruction/reconstruction_error.h"
+#include "cli/json_output.h"
+#include "cli/option_values.h"
+#include "reconstruction/option_names.h"
+#include "pictures/plan_picture.h"
+#include "reconstruction/reconstruction.h"
+#include "cli/whole_file.h"
+
+typedef struct plan_options {
+    uint32_t width, height, views, gaussians, clusters, render_width, render_height, refine;
+    t3r_depth depth;
+    bool has_clusters, keep_analysis, json, markdown;
+    const char *svg, *head;
+} plan_options;
+
+enum {
+    KEY_SIZE = 0x1000,
+    KEY_VIEWS,
+    KEY_GAUSSIANS,
+    KEY_CLUSTERS,
+    KEY_RENDER,
+    KEY_REFINE,
+    KEY_HEAD,
+    KEY_DEPTH,
+    KEY_KEEP,
+    KEY_SVG,
+    KEY_MARKDOWN,
+    KEY_JSON
+};
+
+static const struct argp_option options[] = {
+    {"size", KEY_SIZE, "WxH", 0, "working size of the context views (needed)", 0},
+    {"views", KEY_VIEWS, "N", 0, "context views, 0..16; 0 = an arena that only renders (2)", 0},
+    {"gaussians", KEY_GAUSSIANS, "Z", 0, "the budget (needed)", 0},
+    {"clusters", KEY_CLUSTERS, "K", 0, "SuperClusters, 1..512 (300)", 0},
+    {"head", KEY_HEAD, "HEAD", 0, "nano, small (default), base, FILE.t3w, analytic, moment or none", 0},
+    {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
+    {"refine", KEY_REFINE, "N", 0, "refinement passes, 0..16 (4)", 0},
+    {"depth", KEY_DEPTH, "SOURCE", 0, "sensor (default) or stereo", 0},
+    {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
+    {"svg", KEY_SVG, "FILE", 0, "the arena as a picture: stages across, bytes upwards", 0},
+    {"markdown", KEY_MARKDOWN, NULL, 0, "the table in Markdown", 0},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {0},
+};
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    plan_options *o = state->input;
+    switch (key) {
+    case KEY_SIZE:
+        option_size(state, "size", arg, T3R_MIN_SIDE, &o->width, &o->height);
+        return 0;
+    case KEY_VIEWS:
+        o->views = option_number(state, "views", arg, 0, T3R_MAX_VIEWS);
+        return 0;
+    case KEY_GAUSSIANS:
+        o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
+        return 0;
+    case KEY_CLUSTERS:
+        o->clusters = option_number(state, "clusters", arg, 1, T3R_MAX_CLUSTERS);
+        o->has_clusters = true;
+        return 0;
+    case KEY_RENDER:
+        option_size(state, "render", arg, 1, &o->render_width, &o->render_height);
+        return 0;
+    case KEY_REFINE:
+        o->refine = option_number(state, "refine", arg, 0, T3R_MAX_REFINEMENTS);
+        return 0;
+    case KEY_HEAD:
+        o->head = option_head(state, "head", arg);
+        return 0;
+    case KEY_DEPTH:
+        o->depth = option_depth(state, "depth", arg);
+        return 0;
+    case KEY_KEEP:
+        o->keep_analysis = true;
+        return 0;
+    case KEY_SVG:
+        o->svg = arg;
+        return 0;
+    case KEY_MARKDOWN:
+        o->markdown = true;
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        option_argument(state, arg, NULL, 0);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->width == 0 || o->gaussians == 0) {
+            argp_error(state, "%s is missing", o->width == 0 ? "--size WxH" : "--gaussians Z");
+        } else if (o->json && o->markdown) {
+            argp_error(state, "--json and --markdown exclude each other");
+        }
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .doc = "Prints the arena's buffers, and the least and the full bytes."
+           "\vExamples:\n"
+           "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
+           "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
+           "  trim3r plan --size 256x256 --gaussians 13107 --json",
+};
+
+static void print_json(const t3r_config *config, const t3r_plan_info *plan)
+{
+    cJSON *root = cJSON_CreateObject();
+    json_add_integer(root, "width", config->width);
+    json_add_integer(root, "height", config->height);
+    json_add_integer(root, "views", config->views);
+    json_add_integer(root, "gaussians", config->gaussians);
+    json_add_integer(root, "clusters", config->clusters);
+    cJSON_AddStringToObject(root, "depth", t3r_depth_name(config->depth));
+    json_add_integer(root, "head_column_bytes", config->head_column_bytes);
+    json_add_integer(root, "min_bytes", (int64_t)plan->min_bytes);
+    json_add_integer(root, "arena_bytes", (int64_t)plan->bytes);
+    cJSON *buffers = cJSON_AddArrayToObject(root, "buffers");
+    for (uint32_t i = 0; i < plan->buffer_count; i++) {
+        const t3r_plan_buffer *b = &plan->buffers[i];
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, "name", b->name);
+        json_add_integer(item, "offset", (int64_t)b->offset);
+        json_add_integer(item, "bytes", (int64_t)b->bytes);
+        cJSON_AddStringToObject(item, "first", t3r_stage_name(b->first));
+        cJSON_AddStringToObject(item, "last", t3r_stage_name(b->last));
+        cJSON_AddItemToArray(buffers, item);
+    }
+    json_print(root);
+}
+
+static void print_table(const t3r_plan_info *plan, bool markdown)
+{
+    const char *head = markdown ? "| %s | %s | %s | %s | %s |\n" : "%-30s %12s %12s  %-13s  %s\n";
+    printf(head, "buffer", "bytes", "offset", "first stage", "last stage");
+    if (markdown) {
+        puts("|---|---:|---:|---|---|");
+    }
+    for (uint32_t i = 0; i < plan->buffer_count; i++) {
+        const t3r_plan_buffer *b = &plan->buffers[i];
+        if (b->bytes == 0) {
+            continue;
+        }
+        printf(markdown ? "| %s | %zu | %zu | %s | %s |\n" : "%-30s %12zu %12zu  %-13s  %s\n", b->name, b->bytes,
+               b->offset, t3r_stage_name(b->first), t3r_stage_name(b->last));
+    }
+    const char *total = markdown ? "| **%s** | **%zu** | | | |\n" : "%-30s %12zu\n";
+    printf(total, "arena, at least", plan->min_bytes);
+    printf(total, "arena, full speed", plan->bytes);
+}
+
+static int write_svg(const char *path, const t3r_plan_info *plan)
+{
+    whole_file file;
+    char error[512] = "";
+    if (whole_file_begin(&file, path, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    plan_picture_write(file.stream, plan);
+    return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
+int command_plan(int argc, char **argv)
+{
+    plan_options o = {.views = 2,
+                      .head = CHOSEN_HEAD_DEFAULT,
+                      .refine = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1).refinements};
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+
+    t3r_config config = t3r_default_config(o.width, o.height, o.views, o.gaussians);
+    chosen_head head;
+    int code = chosen_head_open(&head, o.head);
+    if (code != CLI_OK) {
+        return code;
+    }
+    chosen_head_configure(&head, &config);
+    chosen_head_close(&head);
+    config.keep_analysis = o.keep_analysis;
+    config.depth = o.depth;
+    config.refinements = o.refine;
+    if (o.has_clusters) {
+        config.clusters = o.clusters;
+    }
+    if (o.render_width != 0) {
+        config.render_width = o.render_width;
+        config.render_height = o.render_height;
+    }
+    t3r_plan_info plan;
+    t3r_status status = t3r_plan(&config, &plan);
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "settings", &config, 0);
+    }
+    if (o.svg != NULL && (code = write_svg(o.svg, &plan)) != CLI_OK) {
+        return code;
+    }
+    if (o.json) {
+        print_json(&config, &plan);
+    } else {
+        print_table(&plan, o.markdown);
+    }
+    return CLI_OK;
+}

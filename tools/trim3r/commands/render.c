@@ -1,0 +1,381 @@
+/* trim3r render: a scene file seen from somewhere. */
+#include "trim3r/commands/commands.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "reconstruction/reconstruction_error.h"
+#include "cli/recorded_frame.h"
+#include "core/hash.h"
+#include "cli/json_output.h"
+#include "cli/option_values.h"
+#include "pictures/picture.h"
+#include "reconstruction/reconstruction.h"
+#include "import/viewpoint.h"
+
+#define ERROR_BYTES 512
+#define MAX_PATH_BYTES 4096
+
+typedef struct render_options {
+    const char *scene, *recording;
+    const char *pose, *trajectory;
+    const char *output, *depth, *alpha;
+    bool has_view, has_size, has_fov, json;
+    uint32_t view;
+    uint32_t width, height;
+    double fov_degrees;
+    double depth_unit; /* world units a step of the depth picture */
+    reconstruction_options settings;
+} render_options;
+
+enum {
+    KEY_VIEW = 0x1000,
+    KEY_POSE,
+    KEY_TRAJECTORY,
+    KEY_SIZE,
+    KEY_FOV,
+    KEY_DEPTH,
+    KEY_DEPTH_UNIT,
+    KEY_ALPHA,
+    KEY_ARENA,
+    KEY_THREADS,
+    KEY_JSON
+};
+
+static const struct argp_option options[] = {
+    {NULL, 0, NULL, 0, "Viewpoint:", 1},
+    {"view", KEY_VIEW, "N", 0, "the camera of frame N of REC.mcap", 0},
+    {"pose", KEY_POSE, "FILE", 0, "a camera as JSON (below)", 0},
+    {"trajectory", KEY_TRAJECTORY, "FILE", 0,
+     "TUM poses, one picture each, numbered; the lens is that of --view, --pose or --fov", 0},
+    {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view, with --size, for a trajectory", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along", 0},
+    {NULL, 0, NULL, 0, "Pictures:", 2},
+    {"output", 'o', "view.png", 0, "where the picture goes (needed)", 0},
+    {"depth", KEY_DEPTH, "d.png", 0, "16-bit depth along z, 0 = none", 0},
+    {"depth-unit", KEY_DEPTH_UNIT, "U", 0, "world units a step of the depth picture (0.001)", 0},
+    {"alpha", KEY_ALPHA, "a.png", 0, "16-bit coverage, 65535 = opaque", 0},
+    {NULL, 0, NULL, 0, "What must not change a bit:", 3},
+    {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
+    {"threads", KEY_THREADS, "N", 0, "1..64 (1)", 0},
+    {NULL, 0, NULL, 0, "Other:", 4},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {0},
+};
+
+static double parse_positive(struct argp_state *state, const char *option, const char *text, double most)
+{
+    char *end;
+    size_t length = strspn(text, "0123456789.eE-");
+    double value = strtod(text, &end);
+    if (length == 0 || end != text + length || *end != '\0' || !(value > 0 && value < most)) {
+        argp_error(state, "--%s takes a number above 0 and below %g, not '%s'", option, most, text);
+    }
+    return value;
+}
+
+static void check_options(struct argp_state *state, const render_options *o)
+{
+    int lenses = o->has_view + (o->pose != NULL) + o->has_fov;
+    if (o->scene == NULL) {
+        argp_error(state, "SCENE is missing");
+    } else if (o->output == NULL) {
+        argp_error(state, "-o view.png is missing");
+    } else if (o->has_view != (o->recording != NULL)) {
+        argp_error(state, "REC.mcap and --view N go together");
+    } else if (lenses != 1) {
+        argp_error(state, "%s: give one of REC.mcap --view N, --pose FILE, --fov DEGREES",
+                   lenses == 0 ? "no viewpoint" : "more than one viewpoint");
+    } else if (o->has_fov && (o->trajectory == NULL || !o->has_size)) {
+        argp_error(state, "--fov goes with --trajectory and --size");
+    }
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    render_options *o = state->input;
+    switch (key) {
+    case KEY_VIEW:
+        o->view = option_number(state, "view", arg, 0, UINT32_MAX);
+        o->has_view = true;
+        return 0;
+    case KEY_POSE:
+        o->pose = arg;
+        return 0;
+    case KEY_TRAJECTORY:
+        o->trajectory = arg;
+        return 0;
+    case KEY_FOV:
+        o->fov_degrees = parse_positive(state, "fov", arg, 180);
+        o->has_fov = true;
+        return 0;
+    case KEY_SIZE:
+        option_size(state, "size", arg, 1, &o->width, &o->height);
+        o->has_size = true;
+        return 0;
+    case 'o':
+        o->output = arg;
+        return 0;
+    case KEY_DEPTH:
+        o->depth = arg;
+        return 0;
+    case KEY_DEPTH_UNIT:
+        o->depth_unit = parse_positive(state, "depth-unit", arg, 1e6);
+        return 0;
+    case KEY_ALPHA:
+        o->alpha = arg;
+        return 0;
+    case KEY_ARENA:
+        reconstruction_parse_arena(state, arg, &o->settings);
+        return 0;
+    case KEY_THREADS:
+        o->settings.threads = option_number(state, "threads", arg, 1, T3R_MAX_THREADS);
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        option_argument(state, arg, (const char **[]){&o->scene, &o->recording}, 2);
+        return 0;
+    case ARGP_KEY_END:
+        check_options(state, o);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "SCENE.ply [REC.mcap]",
+    .doc = "Draws a scene."
+           "\vExamples:\n"
+           "  trim3r render scene.ply room.mcap --view 1 -o view.png\n"
+           "  trim3r render scene.ply --pose pose.json --depth depth.png -o view.png\n"
+           "  trim3r render scene.ply --trajectory t.txt --fov 60 --size 640x480 -o v.png\n\n"
+           "A pose file holds the fields of one frame of transforms.json, or is a transforms.json:\n"
+           "  {\"fl_x\": 220, \"fl_y\": 220, \"cx\": 128, \"cy\": 128, \"w\": 256, \"h\": 256,\n"
+           "   \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}\n"
+           "transform_matrix: camera to world, x right, y up, z backward; cx, cy from the picture's corner; "
+           "fl_y, cx and cy may be left out. Several poses give view_0000.png, view_0001.png ...\n"
+           "A trajectory has lines `stamp tx ty tz qx qy qz qw`: camera to world, x right, y down, z forward.",
+};
+
+/* ---- viewpoints ------------------------------------------------------------------------------------------------ */
+
+static int view_of_recording(const render_options *o, viewpoint_list *views)
+{
+    char error[ERROR_BYTES] = "";
+    t3r_recording *recording = t3r_recording_open(o->recording, error, sizeof error);
+    if (recording == NULL) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    t3r_capture_frame frame;
+    int code = recorded_frame_read(recording, o->recording, o->view, &frame);
+    if (code == CLI_OK) {
+        views->items = calloc(1, sizeof *views->items);
+        if (views->items == NULL) {
+            code = cli_error(CLI_BAD_INPUT, "out of memory");
+        } else {
+            uint32_t width = frame.frame.width, height = frame.frame.height;
+            views->items[0] =
+                (viewpoint){reconstruction_camera(&frame.camera, width, height, width, height), width, height};
+            views->count = 1;
+        }
+    }
+    t3r_recording_close(recording);
+    return code;
+}
+
+static int choose_viewpoints(const render_options *o, viewpoint_list *views)
+{
+    char error[ERROR_BYTES] = "";
+    int code = CLI_OK;
+    *views = (viewpoint_list){0};
+    if (o->recording != NULL) {
+        code = view_of_recording(o, views);
+    } else if (o->pose != NULL) {
+        code = viewpoint_read_pose(o->pose, views, error, sizeof error) == 0 ? CLI_OK
+                                                                             : cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    if (code != CLI_OK) {
+        return code;
+    }
+    if (o->trajectory != NULL) {
+        viewpoint lens;
+        viewpoint_list path;
+        if (o->has_fov) {
+            if (viewpoint_from_angle(o->fov_degrees, o->width, o->height, &lens) != 0) {
+                return cli_error(CLI_BAD_USAGE, "--fov %g at this --size: the focal length must be 8..16384 pixels",
+                                 o->fov_degrees);
+            }
+        } else {
+            lens = views->items[0];
+        }
+        viewpoint_list_free(views);
+        if (viewpoint_read_trajectory(o->trajectory, &lens, &path, error, sizeof error) != 0) {
+            return cli_error(CLI_BAD_INPUT, "%s", error);
+        }
+        *views = path;
+    }
+    for (uint32_t i = 0; o->has_size && i < views->count; i++) {
+        viewpoint *v = &views->items[i];
+        v->camera = reconstruction_camera(&v->camera, v->width, v->height, o->width, o->height);
+        v->width = o->width;
+        v->height = o->height;
+    }
+    return CLI_OK;
+}
+
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+/* "dir/view.png" with index 7 of several: "dir/view_0007.png" */
+static int numbered_path(const char *path, uint32_t index, uint32_t count, char out[MAX_PATH_BYTES])
+{
+    const char *slash = strrchr(path, '/');
+    const char *dot = strrchr(path, '.');
+    size_t stem = dot != NULL && (slash == NULL || dot > slash) ? (size_t)(dot - path) : strlen(path);
+    int length = count == 1
+                     ? snprintf(out, MAX_PATH_BYTES, "%s", path)
+                     : snprintf(out, MAX_PATH_BYTES, "%.*s_%04" PRIu32 "%s", (int)stem, path, index, path + stem);
+    return length >= 0 && length < MAX_PATH_BYTES ? 0 : -1;
+}
+
+static int write_picture(const char *path, uint32_t index, uint32_t count, const picture *p)
+{
+    char name[MAX_PATH_BYTES], error[ERROR_BYTES] = "";
+    if (numbered_path(path, index, count, name) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s: the path is too long", path);
+    }
+    return picture_write_png(name, p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
+/* Scene units in Q20 to steps of the depth picture; what does not fit 16 bits becomes 65535. */
+static void convert_depth(const uint32_t *depth_q20, size_t count, double unit, int exponent, uint16_t *out)
+{
+    double steps = ldexp(1.0, exponent - 20) / unit;
+    for (size_t i = 0; i < count; i++) {
+        double value = nearbyint(depth_q20[i] * steps);
+        out[i] = depth_q20[i] == 0 ? 0 : value < 1 ? 1 : value > 65535 ? 65535 : (uint16_t)value;
+    }
+}
+
+typedef struct planes {
+    uint8_t *rgb;
+    uint32_t *depth_q20;
+    uint16_t *alpha_q15;
+    uint16_t *grey;
+} planes;
+
+static int render_one(const render_options *o, reconstruction *r, const viewpoint *view, uint32_t index, uint32_t count,
+                      const planes *p, uint64_t *hash)
+{
+    size_t pixels = (size_t)view->width * view->height;
+    t3r_target target = {
+        .width = view->width,
+        .height = view->height,
+        .rgb = p->rgb,
+        .rgb_stride_bytes = view->width * 3,
+        .depth_q20 = o->depth != NULL ? p->depth_q20 : NULL,
+        .depth_stride_bytes = view->width * 4,
+        .alpha_q15 = o->alpha != NULL ? p->alpha_q15 : NULL,
+        .alpha_stride_bytes = view->width * 2,
+    };
+    t3r_status status = t3r_render(r->runtime, &view->camera, &target);
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "viewpoint", &r->config, r->arena_bytes);
+    }
+    *hash = t3r_hash_bytes(*hash, p->rgb, pixels * 3);
+    int code = write_picture(o->output, index, count, &(picture){view->width, view->height, 3, 8, p->rgb});
+    picture grey = {view->width, view->height, 1, 16, p->grey};
+    if (code == CLI_OK && o->depth != NULL) {
+        convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
+        code = write_picture(o->depth, index, count, &grey);
+    }
+    if (code == CLI_OK && o->alpha != NULL) {
+        for (size_t i = 0; i < pixels; i++) {
+            p->grey[i] = (uint16_t)(((uint32_t)p->alpha_q15[i] * 65535 + 16383) / 32767);
+        }
+        code = write_picture(o->alpha, index, count, &grey);
+    }
+    return code;
+}
+
+static int render_all(const render_options *o, const scene_file *scene, const viewpoint_list *views)
+{
+    uint32_t width = 1, height = 1;
+    size_t pixels = 1;
+    for (uint32_t i = 0; i < views->count; i++) {
+        const viewpoint *v = &views->items[i];
+        width = v->width > width ? v->width : width;
+        height = v->height > height ? v->height : height;
+        size_t area = (size_t)v->width * v->height;
+        pixels = area > pixels ? area : pixels;
+    }
+    reconstruction r;
+    int code = reconstruction_load(&r, scene, width, height, &o->settings);
+    if (code != CLI_OK) {
+        return code;
+    }
+    planes p = {malloc(pixels * 3), malloc(pixels * 4), malloc(pixels * 2), malloc(pixels * 2)};
+    uint64_t hash = T3R_HASH_START;
+    double start = cli_now();
+    if (p.rgb == NULL || p.depth_q20 == NULL || p.alpha_q15 == NULL || p.grey == NULL) {
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    for (uint32_t i = 0; i < views->count && code == CLI_OK; i++) {
+        code = render_one(o, &r, &views->items[i], i, views->count, &p, &hash);
+    }
+    double milliseconds = (cli_now() - start) * 1e3 / views->count;
+    cli_progress_end();
+    if (code == CLI_OK && o->json) {
+        cJSON *root = cJSON_CreateObject();
+        cJSON_AddStringToObject(root, "view", o->output);
+        json_add_integer(root, "views", views->count);
+        json_add_integer(root, "width", views->items[0].width);
+        json_add_integer(root, "height", views->items[0].height);
+        json_add_integer(root, "gaussians", scene->count);
+        json_add_integer(root, "arena_bytes", (int64_t)r.arena_bytes);
+        json_add_integer(root, "passes", t3r_render_passes(r.runtime));
+        cJSON_AddNumberToObject(root, "render_ms", milliseconds);
+        json_add_hash(root, "hash", hash);
+        json_print(root);
+    } else if (code == CLI_OK) {
+        printf("%s: %" PRIu32 " view%s of %" PRIu32 " Gaussians, %" PRIu32 " pass%s, %.1f ms each\n", o->output,
+               views->count, views->count == 1 ? "" : "s", scene->count, t3r_render_passes(r.runtime),
+               t3r_render_passes(r.runtime) == 1 ? "" : "es", milliseconds);
+    }
+    free(p.grey);
+    free(p.alpha_q15);
+    free(p.depth_q20);
+    free(p.rgb);
+    reconstruction_close(&r);
+    return code;
+}
+
+int command_render(int argc, char **argv)
+{
+    render_options o = {.depth_unit = 0.001};
+    reconstruction_defaults(&o.settings);
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+
+    char error[ERROR_BYTES] = "";
+    viewpoint_list views;
+    scene_file scene = {0};
+    int code = choose_viewpoints(&o, &views);
+    if (code == CLI_OK && scene_file_read_ply(o.scene, &scene, error, sizeof error) != 0) {
+        code = cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    if (code == CLI_OK) {
+        code = render_all(&o, &scene, &views);
+    }
+    scene_file_free(&scene);
+    viewpoint_list_free(&views);
+    return code;
+}

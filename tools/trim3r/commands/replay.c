@@ -1,0 +1,340 @@
+/* trim3r replay: the hash of every stage, against an earlier run's. */
+#include "trim3r/commands/commands.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "reconstruction/reconstruction_error.h"
+#include "cli/recorded_frame.h"
+#include "core/hash.h"
+#include "cli/json_output.h"
+#include "cli/option_values.h"
+#include "reconstruction/reconstruction.h"
+#include "reconstruction/replay_expectation.h"
+#include "reconstruction/replay_stream.h"
+
+#define ERROR_BYTES 512
+
+typedef struct replay_options {
+    const char *recording;
+    const char *expect;
+    bool json;
+    replay_stream_options stream;
+    bool streams, has_half_life;
+    reconstruction_options settings;
+} replay_options;
+
+typedef struct replayed_view {
+    uint32_t frame;
+    uint32_t width, height;
+    uint8_t *rgb;
+    uint64_t *tiles; /* a hash for each 16x16 tile, row-major */
+    uint32_t tile_columns, tile_count;
+    uint64_t hash; /* of the whole run */
+} replayed_view;
+
+enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_HALF_LIFE, KEY_OVERLAP, KEY_IMAGES };
+
+static const struct argp_option options[] = {
+    {"expect", KEY_EXPECT, "HASH|FILE", 0,
+     "the final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
+    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout, fit for --expect", 0},
+    {NULL, 0, NULL, 0, "A map that follows the camera:", 5},
+    {"stream", KEY_STREAM, NULL, 0,
+     "all frames in turn: keyframes go into one map of at most --gaussians, the frames between them are drawn and "
+     "compared",
+     0},
+    {"every", KEY_EVERY, "N", 0, "every Nth frame is a keyframe, 1..1000 (3)", 0},
+    {"overlap", KEY_OVERLAP, "P%", 0,
+     "a frame between is a keyframe too when it has less than that in common with the last one, 1..100", 0},
+    {"at-hand", KEY_AT_HAND, "K", 0, "keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
+    {"half-life", KEY_HALF_LIFE, "K", 0,
+     "keyframes that halve the density of what they do not see, 0..1024; 0 = nothing fades (32)", 0},
+    {"images", KEY_IMAGES, "DIR", 0,
+     "write the held-back frames, where they have a depth, and their views: DIR/frame_<frame>.png, mask_, live_, "
+     "final_",
+     0},
+    {0},
+};
+
+static void check_stream(struct argp_state *state, const replay_options *o)
+{
+    if (!o->streams && (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || o->has_half_life ||
+                        o->stream.images != NULL)) {
+        argp_error(state, "--every, --overlap, --at-hand, --half-life and --images belong to --stream");
+    }
+    if (o->streams && (o->settings.context_count > 0 || o->settings.automatic ||
+                       o->settings.depth == T3R_DEPTH_STEREO || o->settings.allocation == T3R_ALLOCATE_GIVEN)) {
+        argp_error(state, "--stream takes no --context, --auto, --allocate given or --depth stereo");
+    }
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    replay_options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->settings;
+        state->child_inputs[1] = &o->settings;
+        return 0;
+    case KEY_EXPECT:
+        o->expect = arg;
+        return 0;
+    case KEY_JSON:
+        o->json = o->stream.json = true;
+        return 0;
+    case KEY_STREAM:
+        o->streams = true;
+        return 0;
+    case KEY_EVERY:
+        o->stream.every = option_number(state, "every", arg, 1, 1000);
+        return 0;
+    case KEY_OVERLAP: {
+        double percent;
+        uint32_t count;
+        option_percents(state, "overlap", arg, &percent, 1, &count);
+        o->stream.overlap_q8 = (uint32_t)(percent * 2.56 + 0.5);
+        return 0;
+    }
+    case KEY_AT_HAND:
+        o->stream.at_hand = option_number(state, "at-hand", arg, 1, T3R_MAX_VIEWS);
+        return 0;
+    case KEY_HALF_LIFE:
+        o->settings.half_life = option_number(state, "half-life", arg, 0, 1024);
+        o->has_half_life = true;
+        return 0;
+    case KEY_IMAGES:
+        o->stream.images = arg;
+        return 0;
+    case ARGP_KEY_ARG:
+        option_argument(state, arg, (const char **[]){&o->recording}, 1);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->recording == NULL) {
+            argp_error(state, "REC.mcap is missing");
+        }
+        if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
+            o->settings.keep_percent = 10;
+        }
+        check_stream(state, o);
+        if (o->settings.method != METHOD_TRIM3R) {
+            argp_error(state, "--method %s is made in floats, which promise no bits; trim3r alone is replayed",
+                       method_name(o->settings.method));
+        }
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {
+    {&reconstruction_budget_argp, 0, NULL, 0}, {&reconstruction_settings_argp, 0, NULL, 0}, {0}};
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "REC.mcap",
+    .doc =
+        "Builds (10 % kept unless told otherwise), draws the first frame that is not a context view, and prints the "
+        "hash "
+        "of every stage and of the whole. With --stream, all frames of the recording in turn: percents kept are then "
+        "of "
+        "the first two keyframes' points."
+        "\vExamples:\n"
+        "  trim3r replay room.mcap\n"
+        "  trim3r replay room.mcap --json > golden.json\n"
+        "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n"
+        "  trim3r replay walk.mcap --stream --every 3 --gaussians 10000\n\n"
+        "With a file to compare with, the first stage that differs is named, and for the raster the first 16x16 tile.",
+    .children = children,
+};
+
+/* ---- the run ---------------------------------------------------------------------------------------------------- */
+
+/* The first place that differs, as text; "" when none does. */
+static void find_difference(const expectation *e, const reconstruction *r, const replayed_view *view, char *text,
+                            size_t text_bytes)
+{
+    t3r_stage stage = expectation_missed(e, r, view->hash, text, text_bytes);
+    for (uint32_t i = 0; stage == T3R_STAGE_RASTER && i < e->tile_count && i < view->tile_count; i++) {
+        if (e->tiles[i] != view->tiles[i]) {
+            snprintf(text, text_bytes, "stage %s, tile %" PRIu32 " (pixels from %" PRIu32 ", %" PRIu32 ")",
+                     t3r_stage_name(stage), i, i % view->tile_columns * T3R_TILE_SIDE,
+                     i / view->tile_columns * T3R_TILE_SIDE);
+            break;
+        }
+    }
+}
+
+static void hash_tiles(replayed_view *view)
+{
+    for (uint32_t tile = 0; tile < view->tile_count; tile++) {
+        uint32_t left = tile % view->tile_columns * T3R_TILE_SIDE, top = tile / view->tile_columns * T3R_TILE_SIDE;
+        uint32_t right = left + T3R_TILE_SIDE < view->width ? left + T3R_TILE_SIDE : view->width;
+        uint32_t bottom = top + T3R_TILE_SIDE < view->height ? top + T3R_TILE_SIDE : view->height;
+        uint64_t hash = T3R_HASH_START;
+        for (uint32_t y = top; y < bottom; y++) {
+            hash = t3r_hash_bytes(hash, view->rgb + ((size_t)y * view->width + left) * 3, (size_t)(right - left) * 3);
+        }
+        view->tiles[tile] = hash;
+    }
+}
+
+static uint32_t choose_target(const t3r_recording *recording, const reconstruction *r)
+{
+    for (uint32_t frame = 0; frame < t3r_recording_frame_count(recording); frame++) {
+        bool context = false;
+        for (uint32_t v = 0; v < r->context_count; v++) {
+            context = context || r->context[v] == frame;
+        }
+        if (!context) {
+            return frame;
+        }
+    }
+    return r->context[0];
+}
+
+static int draw_target(const t3r_recording *recording, const char *path, reconstruction *r, replayed_view *view)
+{
+    t3r_capture_frame frame;
+    view->frame = choose_target(recording, r);
+    int code = recorded_frame_read(recording, path, view->frame, &frame);
+    if (code != CLI_OK) {
+        return code;
+    }
+    view->width = r->config.render_width;
+    view->height = r->config.render_height;
+    view->tile_columns = (view->width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE;
+    view->tile_count = (uint32_t)T3R_TILES_(view->width, view->height);
+    view->rgb = malloc((size_t)view->width * view->height * 3);
+    view->tiles = calloc(view->tile_count, sizeof *view->tiles);
+    if (view->rgb == NULL || view->tiles == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    t3r_camera camera =
+        reconstruction_camera(&frame.camera, frame.frame.width, frame.frame.height, view->width, view->height);
+    t3r_target target = {
+        .width = view->width, .height = view->height, .rgb = view->rgb, .rgb_stride_bytes = view->width * 3};
+    t3r_status status = t3r_render(r->runtime, &camera, &target);
+    cli_progress_end();
+    if (status != T3R_OK) {
+        return reconstruction_error(status, path, &r->config, r->arena_bytes);
+    }
+    hash_tiles(view);
+    view->hash = t3r_hash_bytes(reconstruction_hash(r), view->rgb, (size_t)view->width * view->height * 3);
+    return CLI_OK;
+}
+
+static void print_json(const replay_options *o, const reconstruction *r, const replayed_view *view,
+                       const expectation *e, const char *difference)
+{
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "recording", o->recording);
+    cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
+    json_add_integers(root, "context", r->context, r->context_count);
+    json_add_integer(root, "target", view->frame);
+    json_add_integer(root, "width", view->width);
+    json_add_integer(root, "height", view->height);
+    json_add_integer(root, "gaussians", r->scene.count);
+    json_add_integer(root, "valid_points", r->valid_points);
+    cJSON_AddStringToObject(root, "head", r->head.name);
+    if (r->head.weights != NULL) {
+        cJSON_AddStringToObject(root, "head_crc", r->head.crc);
+    }
+    json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
+    cJSON *stages = cJSON_AddObjectToObject(root, "stages");
+    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
+        if (r->stage_hashed[stage]) {
+            json_add_hash(stages, t3r_stage_name((t3r_stage)stage), r->stage_hash[stage]);
+        }
+    }
+    cJSON *tiles = cJSON_AddArrayToObject(root, "tiles");
+    for (uint32_t i = 0; i < view->tile_count; i++) {
+        char text[HASH_TEXT_BYTES];
+        hash_text(view->tiles[i], text);
+        cJSON_AddItemToArray(tiles, cJSON_CreateString(text));
+    }
+    json_add_hash(root, "hash", view->hash);
+    expectation_add(root, e, difference);
+    json_print(root);
+}
+
+static void print_text(const replay_options *o, const reconstruction *r, const replayed_view *view)
+{
+    char text[HASH_TEXT_BYTES];
+    printf("%s: context", o->recording);
+    for (uint32_t v = 0; v < r->context_count; v++) {
+        printf("%s%" PRIu32, v == 0 ? " " : ",", r->context[v]);
+    }
+    printf(", view %" PRIu32 ", %" PRIu32 " Gaussians, head %s, arena %zu bytes\n", view->frame, r->scene.count,
+           r->head.name, r->arena_bytes);
+    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
+        if (r->stage_hashed[stage]) {
+            hash_text(r->stage_hash[stage], text);
+            printf("%-14s %s\n", t3r_stage_name((t3r_stage)stage), text);
+        }
+    }
+    hash_text(view->hash, text);
+    printf("%-14s %s\n", "final", text);
+}
+
+static int replay(const replay_options *o, const t3r_recording *recording, const expectation *e)
+{
+    reconstruction r;
+    int code = reconstruction_build(&r, recording, o->recording, &o->settings);
+    if (code != CLI_OK) {
+        return code;
+    }
+    replayed_view view = {0};
+    code = draw_target(recording, o->recording, &r, &view);
+    if (code == CLI_OK) {
+        char difference[128];
+        find_difference(e, &r, &view, difference, sizeof difference);
+        if (o->json) {
+            print_json(o, &r, &view, e, difference);
+        } else {
+            print_text(o, &r, &view);
+        }
+        code = expectation_verdict(e, o->recording, view.hash, difference, o->json);
+    }
+    free(view.tiles);
+    free(view.rgb);
+    reconstruction_close(&r);
+    return code;
+}
+
+static void warn_of_epoch(const replay_options *o, const t3r_recording *recording)
+{
+    uint32_t epoch = t3r_recording_bits_epoch(recording);
+    if (epoch != 0 && epoch != T3R_BITS_EPOCH) {
+        fprintf(stderr, "trim3r replay: %s is of bits epoch %" PRIu32 ", this is %d: hashes of then do not hold\n",
+                o->recording, epoch, T3R_BITS_EPOCH);
+    }
+}
+
+int command_replay(int argc, char **argv)
+{
+    replay_options o = {0};
+    reconstruction_defaults(&o.settings);
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+
+    expectation e;
+    int code = expectation_read(&e, o.expect);
+    if (code == CLI_OK) {
+        char error[ERROR_BYTES] = "";
+        t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
+        if (recording == NULL) {
+            code = cli_error(CLI_BAD_INPUT, "%s", error);
+        } else {
+            warn_of_epoch(&o, recording);
+            code = o.streams ? replay_stream(&o.stream, recording, o.recording, &o.settings, &e)
+                             : replay(&o, recording, &e);
+            t3r_recording_close(recording);
+        }
+    }
+    expectation_free(&e);
+    return code;
+}

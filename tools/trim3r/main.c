@@ -1,0 +1,89 @@
+/* trim3r: finds the command and hands over. */
+#include <argp.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "trim3r/commands/commands.h"
+#include "trim3r.h"
+
+static const struct {
+    const char *name;
+    int (*run)(int argc, char **argv);
+    const char *summary;
+} commands[] = {
+    {"import", command_import, "a folder of posed pictures to a recording"},
+    {"capture", command_capture, "a camera, live, to a recording or straight to Gaussians"},
+    {"room", command_room, "the built-in room as a recording"},
+    {"info", command_info, "what recordings and scenes hold: frames, clocks; Gaussians, scales"},
+    {"build", command_build, "frames of a recording to exactly Z Gaussians, as a .ply"},
+    {"render", command_render, "a scene seen from a frame of a recording, a pose file or a trajectory"},
+    {"eval", command_eval, "scores of rendered views against recorded ones"},
+    {"chart", command_chart, "scores against time and bytes: a picture, a report"},
+    {"stress", command_stress, "what noise, dropouts, wrong poses and hard scenes do to each method"},
+    {"replay", command_replay, "the hash of every stage, and whether it is the expected one"},
+    {"diff", command_diff, "what differs between two scenes or two views"},
+    {"plan", command_plan, "the arena's buffers, its bytes and the operation counts, before anything runs"},
+    {"bench", command_bench, "the speed of each stage on this machine"},
+    {"quantize", command_quantize, "a trained head to integers: a weight file or a C source"},
+    {"head-info", command_head_info, "what a head consists of: layers, multiply-accumulates, bytes"},
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static void print_help(FILE *out)
+{
+    fputs("Usage: trim3r COMMAND [OPTION...]\n"
+          "A few camera frames to a budgeted set of 3-D Gaussians, and views of it, in integers.\n\n",
+          out);
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        fprintf(out, "  %-9s %s\n", commands[i].name, commands[i].summary);
+    }
+    fputs("\nThe way of the data:\n"
+          "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
+          "                        REC.mcap > eval > scores > chart > report.html;  REC.mcap > replay > hashes\n\n"
+          "  trim3r room -o room.mcap\n"
+          "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+          "  trim3r render scene.ply room.mcap --view 1 -o view.png\n\n"
+          "trim3r COMMAND --help tells a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
+          "3 budget too small. With --json a command prints one JSON object on stdout.\n",
+          out);
+}
+
+static int run(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_help(stderr);
+        return CLI_BAD_USAGE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+        print_help(stdout);
+        return CLI_OK;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        printf("trim3r %s, bits epoch %d\n", T3R_VERSION, T3R_BITS_EPOCH);
+        return CLI_OK;
+    }
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        if (strcmp(argv[1], commands[i].name) == 0) {
+            /* argp names the program by argv[0] in its messages */
+            static char name[32];
+            snprintf(name, sizeof name, "trim3r %s", commands[i].name);
+            argv[1] = name;
+            cli_set_command(commands[i].name);
+            return commands[i].run(argc - 1, argv + 1);
+        }
+    }
+    return cli_error(CLI_BAD_USAGE, "there is no command '%s'; trim3r --help lists them", argv[1]);
+}
+
+int main(int argc, char **argv)
+{
+    argp_err_exit_status = CLI_BAD_USAGE;
+    int code = run(argc, argv);
+    /* a result that could not be printed is not a success */
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code == CLI_OK) {
+        code = cli_error(CLI_BAD_INPUT, "standard output: %s", strerror(errno));
+    }
+    return code;
+}
