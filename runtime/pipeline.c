@@ -12,6 +12,7 @@
 #include "budget/budget.h"
 #include "depth/depth.h"
 #include "pointmap/exposure.h"
+#include "core/cut.h"
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
 #include "head/head.h"
@@ -149,8 +150,10 @@ static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
 void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
 {
     const t3r_config *config = &rt->config;
-    int16_t *plane = t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK);
-    int16_t *work = plane + T3R_PIXELS_(config->width, config->height);
+    t3r_cut cut =
+        t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK), T3R_WAVELET_WORK_BYTES_(config->width, config->height));
+    int16_t *plane = t3r_take(&cut, T3R_PIXELS_(config->width, config->height) * sizeof *plane);
+    int16_t *work = t3r_take(&cut, T3R_WAVELET_ROW_BYTES(config->width));
     t3r_wavelet_texture((const uint8_t *const *)view->colour, config->width, config->height, config->wavelet_levels,
                         config->wavelet, view->texture, plane, work);
 }

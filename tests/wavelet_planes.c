@@ -38,7 +38,7 @@ static void order_rows(const t3r_level *level)
 
 void wavelet_forward(int16_t *plane, uint32_t width, uint32_t height, uint32_t levels, t3r_wavelet kind)
 {
-    int16_t *work = allocated(t3r_wavelet_work_bytes(width, height));
+    int16_t *work = allocated(T3R_WAVELET_ROW_BYTES(width));
 
     for (uint32_t l = 0; l < levels; l++) {
         t3r_level level = t3r_level_of(plane, width, height, l, kind, work);
@@ -165,7 +165,7 @@ void wavelet_texture_wrapped(const uint8_t *const colour[3], uint32_t width, uin
     uint32_t around = 8u << levels, wide = width + 2 * around, high = height + 2 * around;
     size_t pixels = (size_t)wide * high;
     uint8_t *repeated = allocated(3 * pixels);
-    int16_t *plane = allocated(pixels * sizeof *plane), *work = allocated(t3r_wavelet_work_bytes(wide, high));
+    int16_t *plane = allocated(pixels * sizeof *plane), *work = allocated(T3R_WAVELET_ROW_BYTES(wide));
     uint16_t *texture = allocated(pixels * sizeof *texture);
     const uint8_t *const planes[3] = {repeated, repeated + pixels, repeated + 2 * pixels};
 

@@ -152,7 +152,7 @@ void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_set
                 size_t i = (size_t)y * views[v].width + x;
                 uint16_t key = key_of(threshold_at(settings->shift + v, x, y, settings),
                                       t3r_log_wanted_q10(views[v].texture[i], settings));
-                if (t3r_set_aside(&views[v], i, settings)) { /* among these the doubtful ones last */
+                if (t3r_is_deferred(&views[v], i, settings)) { /* among these the doubtful ones last */
                     key = (uint16_t)((key >> 1) | (t3r_is_doubtful(views[v].validity[i]) ? 0x8000u : 0));
                 }
                 views[v].key[i] = key;
@@ -166,7 +166,7 @@ void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_set
 /* Those of a cluster's points that are there to be retained. */
 static inline uint32_t open_points(const t3r_cluster *cluster)
 {
-    return cluster->points - T3R_MIN(cluster->aside, cluster->points);
+    return cluster->points - T3R_MIN(cluster->deferred, cluster->points);
 }
 
 /* Shares `budget` among the clusters in proportion to weight[k]; cumulative rounding makes the sum exact and each
@@ -254,14 +254,14 @@ static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_bud
 #define NO_GROUP UINT32_MAX
 
 /* The group whose quota a pixel falls under: its SuperCluster, or cluster 0 standing for all points; the one behind the
- * last SuperCluster for points set aside, and none without depth. */
+ * last SuperCluster for deferred points, and none without depth. */
 static inline uint32_t group_of(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
     uint32_t label = view->label[pixel];
     if (label == T3R_NO_LABEL) {
         return NO_GROUP;
     }
-    if (t3r_set_aside(view, pixel, settings)) {
+    if (t3r_is_deferred(view, pixel, settings)) {
         return settings->clusters;
     }
     return by_cluster(settings->allocation) ? label : 0;
@@ -371,21 +371,21 @@ bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians)
     return 3 * (uint64_t)gaussians <= 2 * plain;
 }
 
-/* The points that this budget sets aside: of each cluster, and all as a group of their own behind the last. */
-static void count_aside(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                        t3r_cluster *clusters)
+/* The points that this budget defers: of each cluster, and all as a group of their own behind the last. */
+static void count_deferred(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                           t3r_cluster *clusters)
 {
     t3r_cluster *all = &clusters[settings->clusters];
     *all = (t3r_cluster){0};
     for (uint32_t k = 0; k < settings->clusters; k++) {
-        clusters[k].aside = 0;
+        clusters[k].deferred = 0;
     }
     for (uint32_t v = 0; v < count; v++) {
         size_t pixels = (size_t)views[v].width * views[v].height;
         for (size_t i = 0; i < pixels; i++) {
             uint32_t label = views[v].label[i];
-            if (label != T3R_NO_LABEL && t3r_set_aside(&views[v], i, settings)) {
-                clusters[label].aside++;
+            if (label != T3R_NO_LABEL && t3r_is_deferred(&views[v], i, settings)) {
+                clusters[label].deferred++;
                 all->points++;
             }
         }
@@ -394,7 +394,7 @@ static void count_aside(const t3r_view *views, uint32_t count, const t3r_budget_
 
 void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
 {
-    count_aside(views, count, settings, clusters);
+    count_deferred(views, count, settings, clusters);
     uint64_t valid = 0;
     for (uint32_t k = 0; k < settings->clusters; k++) {
         valid += open_points(&clusters[k]);
@@ -408,8 +408,8 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     } else {
         clusters[0].quota = (uint32_t)budget;
     }
-    t3r_cluster *aside = &clusters[settings->clusters];
-    aside->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, aside->points);
+    t3r_cluster *deferred = &clusters[settings->clusters];
+    deferred->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, deferred->points);
     const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
     if (!given) {
         t3r_budget_keys(views, count, settings);

@@ -16,8 +16,6 @@
 
 /* Keys are logarithms in Q10 above this zero: where the key of a point of blue noise 1 and wanted density 1 stands. */
 #define T3R_KEY_ZERO (50 << 10)
-/* No density is told to be below 0.003: log2(197 / 65536). */
-#define T3R_LEAST_DENSITY_Q10 (-8579)
 
 typedef struct t3r_budget_settings {
     t3r_allocation allocation;
@@ -32,7 +30,7 @@ typedef struct t3r_budget_settings {
 
 /* Whether a point is retained only once all others are: the doubtful ones, and with pass_over_covered those that
  * another view covers. Heads let the splats of other points not grow over them. None when importance is given. */
-static inline bool t3r_set_aside(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
+static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
     uint8_t validity = view->validity[pixel];
     return settings->allocation != T3R_ALLOCATE_GIVEN &&
@@ -55,7 +53,7 @@ void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t
 void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
 
 /* The keys of all pixels, of which t3r_allocate() retains the smallest; log2 of the density that a texture asks for, up
- * to a constant, Q10: key = T3R_KEY_ZERO + log2 of the threshold - wanted but for sure and set aside points. */
+ * to a constant, Q10: key = T3R_KEY_ZERO + log2 of the threshold - wanted but for sure and deferred points. */
 void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings);
 int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings);
 
@@ -67,10 +65,5 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
  * 2^(-density / 2) pixels apart. */
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
                             const t3r_cluster *clusters);
-
-static inline bool t3r_retained(const t3r_view *view, size_t pixel)
-{
-    return (view->mask[pixel / 32] >> (pixel % 32) & 1) != 0;
-}
 
 #endif

@@ -1,6 +1,5 @@
 #include "importance.h"
 
-#include "budget.h"
 #include "core/fixed.h"
 
 #define HALF 4 /* of the window in which retained points are counted: 9 x 9 pixels */

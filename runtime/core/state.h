@@ -7,17 +7,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "core/ablation.h"
+#include "ablation.h"
+#include "assertion.h"
 #include "trim3r.h"
 #include "views.h"
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 
 /* Misuse of the API (null pointers, calls out of order, going on after an error) is refused with a status in every
- * build; a debug build may also stop at it: compile the runtime with T3R_ASSERT(condition) defined. */
-#ifndef T3R_ASSERT
-#define T3R_ASSERT(condition) ((void)0)
-#endif
+ * build; a debug build may also stop at it. */
 #define T3R_REFUSE_UNLESS(condition, status)                                                                           \
     do {                                                                                                               \
         T3R_ASSERT(condition);                                                                                         \

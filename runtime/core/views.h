@@ -3,6 +3,7 @@
 #define T3R_VIEWS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "trim3r.h"
@@ -121,6 +122,11 @@ typedef struct t3r_view {
 } t3r_view;
 
 #define T3R_NO_LABEL UINT16_MAX
+
+static inline bool t3r_retained(const t3r_view *view, size_t pixel)
+{
+    return (view->mask[pixel / 32] >> (pixel % 32) & 1) != 0;
+}
 
 /* The planes of every view there is room for, as the stages take them; poses only of those added. */
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS]);

@@ -37,8 +37,8 @@ void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, i
     features[4] = 0;
     features[5] = LOG_DENSITY_NONE;
     features[6] = features[7] = features[8] = 0;
-    if (view->label[i] == T3R_NO_LABEL || (!retained && t3r_set_aside(view, i, input->settings))) {
-        return; /* what is set aside is not to be covered */
+    if (view->label[i] == T3R_NO_LABEL || (!retained && t3r_is_deferred(view, i, input->settings))) {
+        return; /* a deferred point is not to be covered */
     }
     features[4] = t3r_is_measured(view->validity[i]) ? MEASURED : FILLED;
     const uint16_t *depth = view->depth + i;

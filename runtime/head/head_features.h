@@ -8,8 +8,8 @@
  *   7, 8  gradient of depth along x and y over depth, central difference, x 4064, held within +-127: 16 is a surface
  *         at 45 degrees seen with f = 256 px; 0 where a neighbour has no depth
  *
- * Channels 4..8 are 0, -70, 0, 0, 0 where a pixel has no depth, and where it was set aside (budget.h) and not retained.
- * Unadapted (head.h), every pixel with a depth counts as retained at density 1, and none as set aside.
+ * Channels 4..8 are 0, -70, 0, 0, 0 where a pixel has no depth, and where it was deferred (budget.h) and not retained.
+ * Unadapted (head.h), every pixel with a depth counts as retained at density 1, and none as deferred.
  * Channels lie together: row[x][channel]. */
 #ifndef T3R_HEAD_FEATURES_H
 #define T3R_HEAD_FEATURES_H

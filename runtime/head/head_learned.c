@@ -1,4 +1,5 @@
 /* A network's outputs at the retained pixels to footprints (SPEC.md, "Learned head"). */
+#include "core/cut.h"
 #include "core/fixed.h"
 #include "head.h"
 #include "head_features.h"
@@ -9,10 +10,16 @@
 #define OPACITY_MOST_Q15 32440 /* 0.99 */
 #define COLOUR_MOST_Q7 (255 << 7)
 
+/* The work: the network's, then the outputs of a row. */
+static size_t outputs_bytes(uint32_t width)
+{
+    return (size_t)width * T3R_HEAD_OUTPUTS * sizeof(int16_t);
+}
+
 size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width)
 {
-    size_t network = t3r_network_work_bytes(weights, width), row = (size_t)width * T3R_HEAD_OUTPUTS * sizeof(int16_t);
-    return network > SIZE_MAX - row ? SIZE_MAX : network + row;
+    size_t network = t3r_network_work_bytes(weights, width), row = T3R_UP_(outputs_bytes(width));
+    return network > SIZE_MAX - T3R_ARENA_ALIGN - row ? SIZE_MAX : T3R_UP_(network) + row;
 }
 
 /* x in units of 2^-shift spacings, to pixels: |x| < 2^20 and spacing < 2^17 */
@@ -94,10 +101,11 @@ static uint32_t lift_row(const t3r_head_input *input, uint32_t y, const int16_t 
 uint32_t t3r_head_learned(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
-    uint8_t *behind = (uint8_t *)input->work + t3r_network_work_bytes(input->weights, view->width);
-    int16_t(*outputs)[T3R_HEAD_OUTPUTS] = (int16_t(*)[T3R_HEAD_OUTPUTS])(void *)behind;
+    t3r_cut cut = t3r_cut_of(input->work, t3r_head_learned_work_bytes(input->weights, view->width));
+    void *network_work = t3r_take(&cut, t3r_network_work_bytes(input->weights, view->width));
+    int16_t(*outputs)[T3R_HEAD_OUTPUTS] = t3r_take(&cut, outputs_bytes(view->width));
     t3r_network network;
-    t3r_network_begin(&network, input->weights, view->width, view->height, begin, input->work);
+    t3r_network_begin(&network, input->weights, view->width, view->height, begin, network_work);
     uint32_t count = 0;
     for (int32_t y = t3r_network_first(&network); y < (int32_t)end; y++) {
         while (t3r_network_wants_features(&network, y)) {

@@ -68,7 +68,8 @@ static void assign_pixels(const t3r_head_input *input)
         for (size_t n = 0; n < pixels; n++) {
             size_t i = down ? n : pixels - 1 - n;
             uint32_t x = (uint32_t)(i % view->width), y = (uint32_t)(i / view->width);
-            if (!t3r_has_depth(view->validity[i]) || t3r_retained(view, i) || t3r_set_aside(view, i, input->settings)) {
+            if (!t3r_has_depth(view->validity[i]) || t3r_retained(view, i) ||
+                t3r_is_deferred(view, i, input->settings)) {
                 continue;
             }
             int32_t s = down ? -1 : 1;

@@ -55,6 +55,11 @@
 #define T3R_HEAD_COLUMNS_(w) (((size_t)(w) + 15) / 16 * 16)
 #define T3R_HEAD_WORK_(w, h, hc)                                                                                       \
     T3R_MAX_(T3R_PIXELS_(w, h) * 2, (hc) > 0 ? T3R_HEAD_COLUMNS_(w) * (hc) + T3R_HEAD_KERNEL_BYTES : (size_t)0)
+/* What lifting needs beside its plane: a row's halves, each with T3R_WAVELET_PAD samples before and behind and rounded
+ * up to so many. The texture rows of all levels, width + 5 samples, take less. */
+#define T3R_WAVELET_PAD 8u /* samples: 16 bytes, so that halves stay aligned */
+#define T3R_WAVELET_ROW_BYTES(width) (((size_t)(width) + 5 * T3R_WAVELET_PAD) * 2)
+#define T3R_WAVELET_WORK_BYTES_(w, h) (T3R_UP_(T3R_PIXELS_(w, h) * 2) + T3R_UP_(T3R_WAVELET_ROW_BYTES(w)))
 #define T3R_ANY_(v) ((v) > 0 ? (size_t)1 : (size_t)0)
 
 /* Refinement works in one buffer: splats, depth order, tile table and corrections of all Gaussians, then the sums of
@@ -91,21 +96,31 @@
 #define T3R_MATCH_WORK_BYTES(width, height, disparities, paths)                                                        \
     T3R_MAX_(T3R_MATCH_PATH_BYTES_(width, height, disparities, paths),                                                 \
              (size_t)4 * T3R_MATCH_LEAST_REGION(width, height) + T3R_MATCH_RIGHT(width, disparities) * (height))
+/* X(type, part, count): what the paths take, rows of T3R_MATCH_ROWS(height) being one block. */
+#define T3R_MATCH_PARTS_(X, width, height, disparities, paths)                                                         \
+    X(int16_t, sums, (size_t)(width) * (disparities)*T3R_MATCH_ROWS(height))                                           \
+    X(int16_t, winners, T3R_MATCH_RIGHT(width, disparities) * 2)                                                       \
+    X(uint8_t, cost, (size_t)(width) * (disparities)*T3R_MATCH_ROWS(height))                                           \
+    X(uint8_t, states,                                                                                                 \
+      (T3R_MATCH_BLOCKS(height) + 4) * T3R_MATCH_STATES(paths) * T3R_PATH_STATE_BYTES(width, disparities))             \
+    X(uint8_t, bits, (size_t)(width)*T3R_CENSUS_BYTES)                                                                 \
+    X(uint8_t, bits_right, T3R_MATCH_RIGHT(width, disparities) * T3R_CENSUS_BYTES)                                     \
+    X(uint8_t, straight, T3R_MATCH_RIGHT(width, disparities) * T3R_CENSUS_BYTES)                                       \
+    X(uint8_t, least, T3R_MATCH_RIGHT(width, disparities))
+#define T3R_PART_BYTES_(type, part, count) +T3R_UP_((count) * sizeof(type))
 #define T3R_MATCH_PATH_BYTES_(width, height, disparities, paths)                                                       \
-    (T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height) * 2) +                                             \
-     T3R_UP_((size_t)(width) * (disparities)*T3R_MATCH_ROWS(height)) +                                                 \
-     T3R_UP_((T3R_MATCH_BLOCKS(height) + 4) * T3R_MATCH_STATES(paths) * T3R_PATH_STATE_BYTES(width, disparities)) +    \
-     T3R_UP_((size_t)(width)*T3R_CENSUS_BYTES) +                                                                       \
-     T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * (2 * T3R_CENSUS_BYTES + 1)) +                                       \
-     T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * 4))
+    ((size_t)0 T3R_MATCH_PARTS_(T3R_PART_BYTES_, width, height, disparities, paths))
 /* Bytes of a pair's work, aligned to 64: two planes' luma, disparities and confidences, and the matching. */
 #define T3R_STEREO_LEFT_(width, height) (T3R_RECTIFIED_SIDE(width, height) * T3R_RECTIFIED_SIDE(width, height))
 #define T3R_STEREO_RIGHT_(width, height, disparities)                                                                  \
     (T3R_RECTIFIED_SIDE(width, height) * (T3R_RECTIFIED_SIDE(width, height) + (disparities)))
+/* Luma, confidences and disparities of one side of so many pixels */
+#define T3R_STEREO_SIDE_BYTES_(pixels) (2 * T3R_UP_(pixels) + T3R_UP_((pixels)*2))
 #define T3R_STEREO_PLANES_(width, height, disparities)                                                                 \
-    (T3R_UP_(T3R_STEREO_LEFT_(width, height)) + T3R_UP_(T3R_STEREO_RIGHT_(width, height, disparities)))
+    (T3R_STEREO_SIDE_BYTES_(T3R_STEREO_LEFT_(width, height)) +                                                         \
+     T3R_STEREO_SIDE_BYTES_(T3R_STEREO_RIGHT_(width, height, disparities)))
 #define T3R_STEREO_WORK_BYTES(width, height, disparities, paths)                                                       \
-    (4 * T3R_STEREO_PLANES_(width, height, disparities) +                                                              \
+    (T3R_STEREO_PLANES_(width, height, disparities) +                                                                  \
      T3R_UP_(T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height),       \
                                            disparities, paths),                                                        \
                       2 * T3R_PIXELS_(width, height))))
@@ -140,8 +155,7 @@
     X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \
     X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_WAVELET,                    \
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
-    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 2 + ((size_t)(w) + (h)) * 16),               \
-      T3R_AT_WAVELET, T3R_AT_WAVELET)                                                                                  \
+    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * T3R_WAVELET_WORK_BYTES_(w, h), T3R_AT_WAVELET, T3R_AT_WAVELET)    \
     X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_SUPERCLUSTERS,          \
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * ((k) + 1) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                 \

@@ -3,48 +3,8 @@
 
 #include "core/fixed.h"
 #include "match_clean.h"
+#include "match_layout.h"
 #include "match_winner.h"
-
-/* Where things lie in the work. */
-typedef struct workspace {
-    int16_t *sums;       /* a block's */
-    uint8_t *cost;       /* a block's */
-    uint8_t *states;     /* one a block: before its first row */
-    uint8_t *down[2];    /* the row before, this row */
-    uint8_t *up[2];      /* likewise, from below */
-    uint8_t *bits;       /* census of a left row */
-    uint8_t *bits_right; /* and of a right row, by falling column */
-    uint8_t *straight;   /* the same by rising column */
-    uint8_t *least;      /* of the cost against each right pixel, by falling column */
-    int16_t *winners;
-    size_t state_bytes;
-} workspace;
-
-static workspace divide(const t3r_match *match)
-{
-    const size_t width = match->width, count = match->disparities, right = T3R_MATCH_RIGHT(width, count);
-    const size_t rows = T3R_MATCH_ROWS(match->height), states = T3R_MATCH_BLOCKS(match->height);
-    uint8_t *at = match->work;
-    workspace w = {.state_bytes = T3R_MATCH_STATES(match->paths) * T3R_PATH_STATE_BYTES(width, count)};
-    w.sums = (int16_t *)(void *)at;
-    at += T3R_UP_(width * count * rows * 2);
-    w.winners = (int16_t *)(void *)at;
-    at += T3R_UP_(right * 4);
-    w.cost = at;
-    at += T3R_UP_(width * count * rows);
-    w.states = at;
-    w.down[0] = at + states * w.state_bytes;
-    w.down[1] = w.down[0] + w.state_bytes;
-    w.up[0] = w.down[1] + w.state_bytes;
-    w.up[1] = w.up[0] + w.state_bytes;
-    at += T3R_UP_((states + 4) * w.state_bytes);
-    w.bits = at;
-    at += T3R_UP_(width * T3R_CENSUS_BYTES);
-    w.bits_right = at;
-    w.straight = at + right * T3R_CENSUS_BYTES;
-    w.least = w.straight + right * T3R_CENSUS_BYTES;
-    return w;
-}
 
 static void census(const uint8_t *luma, uint32_t width, uint32_t height, uint32_t y, uint8_t *bits)
 {
@@ -56,7 +16,7 @@ static void census(const uint8_t *luma, uint32_t width, uint32_t height, uint32_
     t3r_census_row(rows, width, width, bits);
 }
 
-static void cost_row(const t3r_match *match, const workspace *w, uint32_t y, uint8_t *cost)
+static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t y, uint8_t *cost)
 {
     const uint32_t width = match->width, count = match->disparities;
     const uint32_t right = (uint32_t)T3R_MATCH_RIGHT(width, count);
@@ -80,7 +40,7 @@ static void cost_row(const t3r_match *match, const workspace *w, uint32_t y, uin
             t3r_census_cost(own, w->bits_right + (width - 1 - x), right, w->least + (width - 1 - x), count, to);
         } else {
             for (uint32_t k = 0; k < count; k++) {
-                to[k] = 0; /* paths pass through a pixel that says nothing */
+                to[k] = 0; /* paths pass through a pixel without luma */
             }
         }
     }
@@ -105,8 +65,9 @@ void t3r_match_pair(const t3r_match *match)
     const uint32_t width = match->width, height = match->height, count = match->disparities;
     const uint32_t rows = T3R_MATCH_ROWS(height), blocks = (uint32_t)T3R_MATCH_BLOCKS(height);
     const bool diagonals = match->paths == 8;
-    const t3r_path_costs costs = t3r_path_costs_of(match->same, match->step, match->least_step);
-    workspace w = divide(match);
+    const t3r_path_costs costs = t3r_path_costs_of(match->p1, match->p2, match->p2_min);
+    t3r_cut cut = t3r_cut_of(match->work, T3R_MATCH_PATH_BYTES_(width, height, count, match->paths));
+    t3r_match_layout w = t3r_match_lay_out(match, &cut);
     t3r_path_row row = {.width = width, .disparities = count, .costs = &costs};
 
     for (uint32_t path = 0; path < T3R_MATCH_STATES(match->paths); path++) {
@@ -115,7 +76,7 @@ void t3r_match_pair(const t3r_match *match)
             t3r_path_begin(w.up[i] + path * T3R_PATH_STATE_BYTES(width, count), width, count, costs.guard);
         }
     }
-    for (uint32_t y = 0; y + rows < height + rows; y++) {
+    for (uint32_t y = 0; y < height; y++) {
         if (y % rows == 0) {
             copy(w.states + y / rows * w.state_bytes, w.down[0], w.state_bytes);
         }

@@ -4,6 +4,7 @@
 #include "core/fixed.h"
 #include "match_clean.h"
 #include "stereo_depth.h"
+#include "stereo_planes.h"
 
 /* The first look is at a quarter of the size. */
 #define QUARTER 4
@@ -20,36 +21,30 @@
 
 /* A pair of planes and what belongs to it; the right one is `disparities` - 1 columns wider. */
 typedef struct planes {
-    uint8_t *luma[2], *confidence[2];
-    uint16_t *disparity[2];
+    t3r_stereo_side side[2];
+    size_t pixels[2]; /* there is room for so many */
     uint8_t *work;
 } planes;
 
-static planes divide(const t3r_stereo_settings *settings, uint32_t width, uint32_t height, uint8_t *at)
+static planes divide(const t3r_stereo_settings *settings, uint32_t width, uint32_t height, void *work)
 {
-    const size_t size[2] = {T3R_UP_(T3R_STEREO_LEFT_(width, height)),
-                            T3R_UP_(T3R_STEREO_RIGHT_(width, height, settings->disparities))};
-    planes p;
+    planes p = {.pixels = {T3R_STEREO_LEFT_(width, height), T3R_STEREO_RIGHT_(width, height, settings->disparities)}};
+    t3r_cut cut = t3r_cut_of(work, T3R_STEREO_WORK_BYTES(width, height, settings->disparities, settings->paths));
     for (int side = 0; side < 2; side++) {
-        p.luma[side] = at;
-        p.confidence[side] = at + size[side];
-        p.disparity[side] = (uint16_t *)(void *)(at + 2 * size[side]);
-        at += 4 * size[side];
+        p.side[side] = t3r_take_side(&cut, p.pixels[side]);
     }
-    p.work = at;
+    p.work = t3r_take(&cut, t3r_cut_left(&cut));
     return p;
 }
 
-/* A quarter of the size: room for it is where disparities and confidences of the full size will be. */
+/* A quarter of the size, where confidences and disparities of the full size will be. */
 static planes divide_quarter(const planes *full, uint32_t width, uint32_t height, uint32_t disparities)
 {
-    const size_t size[2] = {T3R_UP_((size_t)width * height), T3R_UP_(T3R_MATCH_RIGHT(width, disparities) * height)};
-    planes p = {.work = full->work};
+    planes p = {.pixels = {(size_t)width * height, T3R_MATCH_RIGHT(width, disparities) * height}, .work = full->work};
     for (int side = 0; side < 2; side++) {
-        uint8_t *at = full->confidence[side];
-        p.luma[side] = at;
-        p.confidence[side] = at + size[side];
-        p.disparity[side] = (uint16_t *)(void *)(at + 2 * size[side]);
+        const size_t room = T3R_STEREO_SIDE_BYTES_(full->pixels[side]) - T3R_UP_(full->pixels[side]);
+        t3r_cut cut = t3r_cut_of(full->side[side].confidence, room);
+        p.side[side] = t3r_take_side(&cut, p.pixels[side]);
     }
     return p;
 }
@@ -62,12 +57,12 @@ static t3r_match match_of(const planes *p, const t3r_stereo_settings *settings, 
         .height = height,
         .disparities = disparities,
         .paths = settings->paths,
-        .same = T3R_STEREO_SAME,
-        .step = T3R_STEREO_STEP,
-        .least_step = T3R_STEREO_LEAST_STEP,
-        .luma = {p->luma[0], p->luma[1]},
-        .disparity = {p->disparity[0], p->disparity[1]},
-        .confidence = {p->confidence[0], p->confidence[1]},
+        .p1 = T3R_STEREO_P1,
+        .p2 = T3R_STEREO_P2,
+        .p2_min = T3R_STEREO_P2_MIN,
+        .luma = {p->side[0].luma, p->side[1].luma},
+        .disparity = {p->side[0].disparity, p->side[1].disparity},
+        .confidence = {p->side[0].confidence, p->side[1].confidence},
         .work = p->work,
     };
 }
@@ -109,16 +104,16 @@ static uint32_t lanes(uint32_t disparities)
     return (disparities + T3R_PATH_LANES - 1) / T3R_PATH_LANES * T3R_PATH_LANES;
 }
 
-/* What a first look finds: disparities from `first`, at most as many as the settings have, and what to hope for. */
+/* What a first look finds: disparities from `first`, at most as many as the settings have, and the match score. */
 typedef struct look {
     int32_t first;
     uint32_t disparities;
-    uint32_t promise; /* t3r_stereo_promise() */
+    uint32_t match_score; /* t3r_stereo_match_score() */
 } look;
 
 /* Each trusted pixel as far as its distance would be known, d / (d + HALF_KNOWN) of a disparity of d pixels, in 256ths.
  */
-static uint32_t promise_of(const uint32_t *histogram, uint32_t count, int32_t base)
+static uint32_t match_score_of(const uint32_t *histogram, uint32_t count, int32_t base)
 {
     uint64_t sum = 0;
     for (uint32_t k = 0; k < count; k++) {
@@ -141,14 +136,14 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
     for (uint32_t side = 0; side < 2; side++) {
         const uint32_t columns = side == 0 ? width : (uint32_t)T3R_MATCH_RIGHT(width, count);
         const int32_t begin = begin_q16(rect, side, base, QUARTER * (count - 1) + 1);
-        uint8_t *luma = full->work, *rows = full->luma[side];
+        uint8_t *luma = full->work, *rows = full->side[side].luma;
         luma_of(&views[side], luma);
         for (uint32_t y = 0; y < height; y++) {
             for (uint32_t i = 0; i < QUARTER; i++) {
                 t3r_rectified_row(rect, side, luma, begin, QUARTER * y + i, QUARTER * columns,
                                   rows + (size_t)i * QUARTER * columns);
             }
-            quarter_row(rows, columns, p.luma[side] + (size_t)y * columns);
+            quarter_row(rows, columns, p.side[side].luma + (size_t)y * columns);
         }
     }
     const t3r_match match = match_of(&p, settings, width, height, count);
@@ -158,13 +153,13 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
 
     uint32_t histogram[T3R_PATH_MOST] = {0}, trusted = 0, shown = 0;
     for (size_t i = 0; i < (size_t)width * height; i++) {
-        shown += p.luma[0][i] != 0;
-        if (p.confidence[0][i] != 0) {
-            histogram[T3R_MIN(p.disparity[0][i] >> T3R_DISPARITY_BITS, (int)count - 1)]++;
+        shown += p.side[0].luma[i] != 0;
+        if (p.side[0].confidence[i] != 0) {
+            histogram[T3R_MIN(p.side[0].disparity[i] >> T3R_DISPARITY_BITS, (int)count - 1)]++;
             trusted++;
         }
     }
-    found->promise = promise_of(histogram, count, base);
+    found->match_score = match_score_of(histogram, count, base);
     if (trusted < 64 || trusted < shown / LEAST_SHARE) {
         return T3R_PAIR_OVERLAP;
     }
@@ -196,18 +191,18 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
     return T3R_PAIR_OK;
 }
 
-t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
-                            void *work, uint32_t *promise)
+t3r_pair t3r_stereo_match_score(const t3r_stereo_settings *settings, const t3r_camera cameras[2],
+                                const t3r_view views[2], void *work, uint32_t *score)
 {
     const uint32_t width = views[0].width, height = views[0].height;
     const planes full = divide(settings, width, height, work);
     t3r_rectification rect;
-    look found = {.promise = 0};
+    look found = {.match_score = 0};
     t3r_pair pair = t3r_rectify(&cameras[0], &cameras[1], width, height, settings->disparities, &rect);
     if (pair == T3R_PAIR_OK) {
         pair = first_look(settings, &rect, views, &full, &found);
     }
-    *promise = found.promise;
+    *score = found.match_score;
     return pair;
 }
 
@@ -217,7 +212,7 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
     const uint32_t width = views[0].width, height = views[0].height;
     const planes full = divide(settings, width, height, work);
     t3r_rectification rect;
-    look seen = {.promise = 0};
+    look seen = {.match_score = 0};
     t3r_pair pair = t3r_rectify(&cameras[0], &cameras[1], width, height, settings->disparities, &rect);
     if (pair == T3R_PAIR_OK) {
         pair = first_look(settings, &rect, views, &full, &seen);
@@ -232,12 +227,12 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
         const uint32_t columns = side == 0 ? rect.width : (uint32_t)T3R_MATCH_RIGHT(rect.width, found.disparities);
         found.begin_q16[side] = begin_q16(&rect, side, found.first, found.disparities);
         found.columns[side] = columns;
-        found.disparity[side] = full.disparity[side];
-        found.confidence[side] = full.confidence[side];
+        found.disparity[side] = full.side[side].disparity;
+        found.confidence[side] = full.side[side].confidence;
         luma_of(&views[side], full.work);
         for (uint32_t y = 0; y < rect.height; y++) {
             t3r_rectified_row(&rect, side, full.work, found.begin_q16[side], y, columns,
-                              full.luma[side] + (size_t)y * columns);
+                              full.side[side].luma + (size_t)y * columns);
         }
     }
     t3r_match_all(&match, settings->fill != 0);

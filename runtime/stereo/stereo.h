@@ -10,10 +10,10 @@
 #include "rectify.h"
 #include "core/views.h"
 
-/* Penalties of the aggregation: P1, P2, least P2 (DESIGN.md) */
-#define T3R_STEREO_SAME 20u
-#define T3R_STEREO_STEP 120u
-#define T3R_STEREO_LEAST_STEP 30u
+/* Penalties of the aggregation: P1; P2 where luma does not change, and its least (DESIGN.md) */
+#define T3R_STEREO_P1 20u
+#define T3R_STEREO_P2 120u
+#define T3R_STEREO_P2_MIN 30u
 /* Match confidences of t3r_stereo_depth() */
 #define T3R_STEREO_NONE 0u   /* no depth */
 #define T3R_STEREO_FILLED 1u /* the surroundings' depth */
@@ -32,11 +32,11 @@ typedef struct t3r_stereo_settings {
 t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
                           void *work, uint64_t *depth_unit_q40);
 
-/* What to hope for of a pair, to compare it with others of the same size: how many pixels a first look trusts, each as
- * far as its distance would be known. Reasons for refusal that show only later are not seen. *promise is set whatever
- * is returned; same work. */
-t3r_pair t3r_stereo_promise(const t3r_stereo_settings *settings, const t3r_camera cameras[2], const t3r_view views[2],
-                            void *work, uint32_t *promise);
+/* The match score of a pair, to compare it with others of the same size: how many pixels a first look at a quarter of
+ * the size trusts, each weighted by how well its distance would be known. A pair can still be refused later. *score is
+ * set whatever is returned; same work. */
+t3r_pair t3r_stereo_match_score(const t3r_stereo_settings *settings, const t3r_camera cameras[2],
+                                const t3r_view views[2], void *work, uint32_t *score);
 
 /* Turns the plane of match confidences into validity: T3R_MEASURED, below `least` (2..255) with T3R_MARK_DOUBTFUL;
  * T3R_FILLED where depth is the surroundings'; T3R_NO_DEPTH where there is none. */

@@ -19,12 +19,12 @@
 /* Less than half a pixel from where infinity is, a place is not known. */
 #define NO_PARALLAX_Q16 32768
 
-/* What a view's pixel sees: distance along z in baselines = numerator / denominator. */
-typedef struct sight {
+/* How far a view's pixel is: along z, in baselines = numerator / denominator. */
+typedef struct distance {
     int64_t numerator_q24, denominator_q30; /* both positive */
     int32_t disparity_q16;                  /* pixels from where infinity is */
     uint8_t confidence;                     /* T3R_STEREO_... */
-} sight;
+} distance;
 
 /* Disparity k in Q7 at a place of a plane and how far it can be trusted: between four pixels where they are of one kind
  * and one surface, else the nearest pixel's. False: none. */
@@ -67,7 +67,7 @@ static bool look_up(const t3r_stereo_planes *planes, uint32_t side, const int32_
     return true;
 }
 
-static bool see(const t3r_stereo_planes *planes, uint32_t side, uint32_t u, uint32_t v, sight *s)
+static bool see(const t3r_stereo_planes *planes, uint32_t side, uint32_t u, uint32_t v, distance *s)
 {
     int32_t place[2], across_q24, k_q7;
     if (!t3r_rectified_place(planes->rect, side, (int32_t)(u << 16), (int32_t)(v << 16), place, &across_q24) ||
@@ -99,7 +99,7 @@ t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uin
     for (uint32_t side = 0; side < 2; side++) {
         for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
             for (uint32_t u = 0; u < views[side].width; u += SAMPLING) {
-                sight s;
+                distance s;
                 sampled++;
                 if (!see(planes, side, u, v, &s) || s.confidence < T3R_STEREO_SURE) {
                     continue;
@@ -157,7 +157,7 @@ void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3
     for (uint32_t v = 0; v < view->height; v++) {
         for (uint32_t u = 0; u < view->width; u++) {
             const size_t at = (size_t)v * view->width + u;
-            sight s;
+            distance s;
             view->depth[at] = 0;
             view->match_confidence[at] = T3R_STEREO_NONE;
             const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/cut.h"
 #include "core/fixed.h"
 #include "stereo.h"
 
@@ -218,13 +219,14 @@ static void finish(const filling *f)
 void t3r_stereo_fill(const t3r_view *view, void *work)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
-    filling f = {.view = view, .sums = work};
+    t3r_cut cut = t3r_cut_of(work, T3R_STEREO_FILL_BYTES(view->width, view->height));
+    filling f = {.view = view, .sums = t3r_take(&cut, T3R_STEREO_FILL_CELLS_BYTES)};
     f.cell = (T3R_MAX(view->width, view->height) + CELLS - 1) / CELLS;
     f.columns = (view->width + f.cell - 1) / f.cell;
     f.rows = (view->height + f.cell - 1) / f.cell;
-    f.source = (uint32_t *)(void *)(f.sums + CELLS * CELLS);
-    f.cost = (uint16_t *)(void *)(f.source + pixels);
-    f.luma = (uint8_t *)(f.cost + pixels);
+    f.source = t3r_take(&cut, pixels * sizeof *f.source);
+    f.cost = t3r_take(&cut, pixels * sizeof *f.cost);
+    f.luma = t3r_take(&cut, pixels);
     begin(&f);
     sum_cells(&f);
     for (uint32_t sweep = 0; sweep < SWEEPS; sweep++) {

@@ -11,9 +11,10 @@
 #define T3R_STEREO_FILL_SUMS_BYTES 72 /* of a cell; stereo_fill.c asserts it */
 
 /* Bytes of work, aligned to 64: sums of cells; planes of sources, costs and luma. Less than what matching takes. */
+#define T3R_STEREO_FILL_CELLS_BYTES ((size_t)T3R_STEREO_FILL_CELLS * T3R_STEREO_FILL_CELLS * T3R_STEREO_FILL_SUMS_BYTES)
 #define T3R_STEREO_FILL_BYTES(width, height)                                                                           \
-    ((size_t)T3R_STEREO_FILL_CELLS * T3R_STEREO_FILL_CELLS * T3R_STEREO_FILL_SUMS_BYTES +                              \
-     T3R_PIXELS_(width, height) * 7)
+    (T3R_UP_(T3R_STEREO_FILL_CELLS_BYTES) + T3R_UP_(T3R_PIXELS_(width, height) * 4) +                                  \
+     T3R_UP_(T3R_PIXELS_(width, height) * 2) + T3R_UP_(T3R_PIXELS_(width, height)))
 
 /* Every pixel of something that has no depth takes that of the pixel to which the way is the shortest, steps of luma
  * counting as length, along the plane that the depths about that pixel lie on; match confidence T3R_STEREO_FILLED. In a

@@ -2,18 +2,19 @@
 
 #include <string.h>
 
+#include "core/cut.h"
 #include "core/fixed.h"
 #include "core/state.h"
 #include "stereo.h"
 #include "stereo_fill.h"
 #include "stereo_fuse.h"
 
-/* Each view is matched with so many others, those with the most to hope for. */
+/* Each view is matched with so many others, those of the highest match score. */
 #define PARTNERS 2u
 
 /* Every pair as a first look has it, symmetric. */
 typedef struct survey {
-    uint32_t promise[T3R_MAX_VIEWS][T3R_MAX_VIEWS];
+    uint32_t match_score[T3R_MAX_VIEWS][T3R_MAX_VIEWS];
     uint8_t pair[T3R_MAX_VIEWS][T3R_MAX_VIEWS]; /* t3r_pair */
     uint8_t rank[T3R_MAX_VIEWS][T3R_MAX_VIEWS]; /* how many partners are to be preferred, for the one or the other */
 } survey;
@@ -47,23 +48,23 @@ static t3r_status look_at_all(const t3r_runtime *rt, const t3r_view *views, surv
             }
             const t3r_camera cameras[2] = {rt->camera[a], rt->camera[b]};
             const t3r_view both[2] = {views[a], views[b]};
-            found->pair[a][b] = (uint8_t)t3r_stereo_promise(
-                &settings, cameras, both, t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK), &found->promise[a][b]);
+            found->pair[a][b] = (uint8_t)t3r_stereo_match_score(
+                &settings, cameras, both, t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK), &found->match_score[a][b]);
             found->pair[b][a] = found->pair[a][b];
-            found->promise[b][a] = found->promise[a][b];
+            found->match_score[b][a] = found->match_score[a][b];
         }
     }
     return T3R_OK;
 }
 
-/* Whether a is to be preferred to b as a partner of v: not refused, more promise, earlier. */
+/* Whether a is to be preferred to b as a partner of v: not refused, a higher match score, earlier. */
 static bool precedes(const survey *s, uint32_t v, uint32_t a, uint32_t b)
 {
     const bool refused = s->pair[v][a] != T3R_PAIR_OK, other_refused = s->pair[v][b] != T3R_PAIR_OK;
     if (refused != other_refused) {
         return other_refused;
     }
-    return s->promise[v][a] != s->promise[v][b] ? s->promise[v][a] > s->promise[v][b] : a < b;
+    return s->match_score[v][a] != s->match_score[v][b] ? s->match_score[v][a] > s->match_score[v][b] : a < b;
 }
 
 /* How many others are to be preferred to `a` as partners of v. */
@@ -86,17 +87,17 @@ static void rank_all(const t3r_runtime *rt, survey *s)
     }
 }
 
-/* Where one pair leaves its depths when several tell of a view. */
+/* Where one pair leaves its depths when several pairs contribute to a view: behind the pair's work. */
 static void divide_pair(const t3r_runtime *rt, t3r_view both[2])
 {
     const uint32_t width = rt->config.width, height = rt->config.height;
-    uint8_t *at = t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK);
-    at += T3R_STEREO_WORK_BYTES(width, height, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS);
+    const size_t pixels = T3R_PIXELS_(width, height);
+    t3r_cut cut =
+        t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK), T3R_STEREO_BYTES_(width, height, rt->config.views, 1));
+    (void)t3r_take(&cut, T3R_STEREO_WORK_BYTES(width, height, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS));
     for (int side = 0; side < 2 && rt->views > 2; side++) {
-        both[side].depth = (uint16_t *)(void *)at;
-        at += T3R_UP_(T3R_PIXELS_(width, height) * 2);
-        both[side].match_confidence = at;
-        at += T3R_UP_(T3R_PIXELS_(width, height));
+        both[side].depth = t3r_take(&cut, pixels * sizeof *both[side].depth);
+        both[side].match_confidence = t3r_take(&cut, pixels);
     }
 }
 

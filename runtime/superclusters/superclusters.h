@@ -22,12 +22,15 @@ typedef struct t3r_point_source {
     bool (*features)(const void *context, uint32_t index, int16_t feature_q11[T3R_DIMENSIONS]);
 } t3r_point_source;
 
+/* The least density that is noted, 0.003: log2(197 / 65536). */
+#define T3R_LEAST_DENSITY_Q10 (-8579)
+
 /* A SuperCluster, and what the budget stage notes about it. */
 typedef struct t3r_cluster {
     int32_t centre_q19[T3R_DIMENSIONS];
     uint32_t points;     /* valid points with its label; 0 = empty */
     uint32_t texture_q4; /* their mean texture energy (eq. 2) */
-    uint32_t aside;      /* of its points, those that this budget sets aside */
+    uint32_t deferred;   /* of its points, those that this budget retains last */
     uint32_t quota;      /* points to be retained */
     uint32_t threshold;  /* the largest key retained */
     uint32_t ties;       /* points retained among those whose key is the threshold */

@@ -6,7 +6,7 @@
 
 #include "kernels/wavelet_rows.h"
 
-#define PAD 8u /* room for a repeated neighbour, kept at 16 bytes so that rows stay aligned */
+#define PAD T3R_WAVELET_PAD
 
 /* A split row, with room for a sample before and two behind each half. */
 typedef struct halves {
@@ -22,13 +22,6 @@ static halves halves_in(int16_t *work, uint32_t width)
     x.low = work + PAD;
     x.high = x.low + (x.lows + PAD - 1) / PAD * PAD + 2 * PAD;
     return x;
-}
-
-size_t t3r_wavelet_work_bytes(uint32_t width, uint32_t height)
-{
-    (void)height; /* all that the stage holds aside lies along a row */
-    /* the halves with their pads, lows rounded up; or, fewer, a row, or the texture rows of all levels: width + 5 */
-    return ((size_t)width + 5 * PAD) * sizeof(int16_t);
 }
 
 static void store_halves(int16_t *row, halves x)

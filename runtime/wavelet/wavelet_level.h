@@ -48,7 +48,7 @@ typedef struct t3r_level {
     uint32_t width, height; /* of this level */
     uint32_t in_place;      /* how many levels before it left their rows in place */
     t3r_wavelet kind;
-    int16_t *work;                /* t3r_wavelet_work_bytes() */
+    int16_t *work;                /* T3R_WAVELET_ROW_BYTES(width) of the first level */
     const uint8_t *const *colour; /* the image whose luma fills the plane; NULL: it is filled */
 } t3r_level;
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""check_pages.py TRIM3R: what the README and docs/*.md say in words.
+"""check_pages.py TRIM3R: what the README, docs/*.md and the pages of quant and of the training say in words.
 
 Every command stands in a shell block that runs, or that says why it does not. Options, names of the interface and links
 exist. A sentence has at most 35 words, the README at most 200 lines.
@@ -13,8 +13,9 @@ import sys
 from pages import FENCE, LINK, ROOT, all_pages, blocks_of, sentences_of, without_blocks
 
 WORDS, README_LINES = 35, 200
-OTHERS = ["runtime/DESIGN.md", "runtime/SPEC.md", "docs/study/tuning.md"]  # read for links and sentences alone
+OTHERS = ["runtime/DESIGN.md", "runtime/SPEC.md", "quant/heads/MODEL_CARD.md"]  # and docs/study: links and sentences alone
 COMMAND = re.compile(r"^\s*(?:\$ )?(?:trim3r [a-z]|tools/[a-z]|build/release/[a-z])")
+COPIED = [ROOT / "README.md", ROOT / "docs" / "rivals.md"]  # tables with figures of docs/study/paper.md, by hand
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
 NAME = re.compile(r"\b(?:t3r|T3R)_\w+")
 
@@ -25,9 +26,11 @@ def main():
     findings = []
     for page in all_pages():
         findings += check(page, page.read_text(), program)
-    for name in OTHERS:
-        text = (ROOT / name).read_text()
-        findings += [*links(ROOT / name, text), *sentences(name, text)]
+    for page in [*(ROOT / name for name in OTHERS), *sorted((ROOT / "docs" / "study").glob("*.md"))]:
+        text = page.read_text()
+        findings += [*links(page, text), *sentences(page.relative_to(ROOT), text)]
+    for page in COPIED:
+        findings += figures(page.name, page.read_text(), (ROOT / "docs" / "study" / "paper.md").read_text())
     lines = (ROOT / "README.md").read_text().count("\n")
     if lines > README_LINES:
         findings.append(f"README.md has {lines} lines, at most {README_LINES} were wanted")
@@ -50,10 +53,35 @@ def find_what_is_planted(program):
         found = check(ROOT / "planted.md", f"# Planted\n\n{page}\n", program)
         if len(found) != 1 or text not in found[0]:
             sys.exit(f"blind: '{text}' planted in a page was not found alone: {found}")
+    source = "| a | 27.88 / 0.831 / 0.1 | 27.73 / 0.830 / 0.2 | 27.68 / 0.834 / 0.3 |\n"
+    for row, wanted in {"| x | 27.88 | 27.73 | 27.68 | 0.4* |": 0, "| x | 27.88 / 0.831 | 27.73 / 0.830 | 27.68 / 0.834 |": 0,
+                        "| x | 27.88 | 27.73 | 27.69 | 0.4* |": 1, "| x | 27.88 / 0.831 | 27.73 / 0.830 | 27.68 / 0.833 |": 1}.items():
+        if len(list(figures("planted.md", row, source))) != wanted:
+            sys.exit(f"blind: figures of {row}")
     good = "# Good\n\n" + " ".join(["word"] * 34) + " [it](README.md#try-it).\n\n```sh\ntrim3r info room.mcap --json\n```\n"
     found = check(ROOT / "planted.md", good, program)
     if found:
         sys.exit(f"sees offences where there are none: {found}")
+
+
+def figures(name, text, source):
+    """Figures in a copied table stand side by side in a row of its source; PSNR alone, or PSNR / SSIM."""
+    rows = [values(line, 2) for line in source.splitlines() if line.startswith("|")]
+    for line in text.splitlines():
+        wanted = values(line, 2) or values(line, 1)
+        if line.startswith("|") and len(wanted) > 2 and not any(stands_in(wanted, row) for row in rows):
+            yield f"{name}: not a row of docs/study/paper.md: {line}"
+
+
+def values(line, count):
+    """The first numbers of each cell that begins with `count` decimal fractions: one, or two with a slash between."""
+    number = r"(\d+\.\d{2,3})"
+    return [match[:count] for match in re.findall(r"\| *" + number + (" / " + number if count == 2 else r"()(?= *\|)"), line)]
+
+
+def stands_in(wanted, row):
+    row = [cell[:len(wanted[0])] for cell in row]
+    return any(row[at:at + len(wanted)] == wanted for at in range(len(row) - len(wanted) + 1))
 
 
 def check(page, text, program):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""run_pages.py TRIM3R [PAGE...]: the shell blocks of the README and of docs/*.md run, and print what the pages say.
+"""run_pages.py TRIM3R [PAGE...]: the shell blocks of the pages (pages.py) run, and print what the pages say.
 
 The blocks of a page run in order in an empty folder that holds what the page names as given. A text block right after a
 shell block is its output, line by line; `...` stands for anything within a line, and alone in a line for any lines.

@@ -154,7 +154,7 @@ static void largest_counts_do_not_overflow(void **state)
 }
 
 /* Covered and doubtful points: none until all others are retained, the doubtful last of all; Z stays exact. */
-static void set_aside_comes_last(void **state)
+static void deferred_comes_last(void **state)
 {
     (void)state;
     t3r_cluster clusters[CLUSTERS + 1];
@@ -197,7 +197,7 @@ static void set_aside_comes_last(void **state)
                     if (t3r_retained(&view, i)) {
                         passed += pass_over && t3r_is_covered(validity[i]);
                         flying += t3r_is_doubtful(validity[i]);
-                        if (t3r_set_aside(&view, i, &settings)) {
+                        if (t3r_is_deferred(&view, i, &settings)) {
                             assert_int_equal(t3r_log_density_q10(&view, i, &settings, clusters), 0);
                         }
                     }
@@ -267,7 +267,7 @@ int main(void)
         cmocka_unit_test(sets_are_nested),
         cmocka_unit_test(paper_takes_the_lowest_textures_first),
         cmocka_unit_test(largest_counts_do_not_overflow),
-        cmocka_unit_test(set_aside_comes_last),
+        cmocka_unit_test(deferred_comes_last),
         cmocka_unit_test(textures_are_shuffled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -133,7 +133,7 @@ static void the_highest_are_retained(void **state)
             }
             for (uint32_t n = 0; n < POINTS; n++) {
                 assert_int_equal(t3r_retained(&views[n / PIXELS], n % PIXELS), expected[n]);
-                assert_false(t3r_set_aside(&views[n / PIXELS], n % PIXELS, &settings));
+                assert_false(t3r_is_deferred(&views[n / PIXELS], n % PIXELS, &settings));
             }
         }
     }

@@ -88,9 +88,9 @@ static pair pair_new(uint32_t width, uint32_t height, uint32_t disparities, uint
                     .height = height,
                     .disparities = disparities,
                     .paths = paths,
-                    .same = 12,
-                    .step = 60,
-                    .least_step = 15}};
+                    .p1 = 12,
+                    .p2 = 60,
+                    .p2_min = 15}};
     p.pixels[0] = (size_t)width * height;
     p.pixels[1] = T3R_MATCH_RIGHT(width, disparities) * height;
     for (int i = 0; i < 2; i++) {
@@ -134,16 +134,16 @@ static void naive_sums(const t3r_match *m, int *sums)
                 for (int k = 0; k < count; k++) {
                     least = path[before + k] < least ? path[before + k] : least;
                 }
-                p2 = (int)m->step * 8 / (8 + abs(m->luma[0][y * width + x] - m->luma[0][v * width + u]));
-                p2 = p2 < (int)m->least_step ? (int)m->least_step : p2;
+                p2 = (int)m->p2 * 8 / (8 + abs(m->luma[0][y * width + x] - m->luma[0][v * width + u]));
+                p2 = p2 < (int)m->p2_min ? (int)m->p2_min : p2;
             }
             for (int k = 0; k < count; k++) {
                 int best = 0;
                 if (least < 1 << 30) {
                     best = path[before + k];
                     for (int side = -1; side <= 1; side += 2) {
-                        if (k + side >= 0 && k + side < count && path[before + k + side] + (int)m->same < best) {
-                            best = path[before + k + side] + (int)m->same;
+                        if (k + side >= 0 && k + side < count && path[before + k + side] + (int)m->p1 < best) {
+                            best = path[before + k + side] + (int)m->p1;
                         }
                     }
                     best = best - least < p2 ? best - least : p2;

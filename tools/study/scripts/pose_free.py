@@ -20,16 +20,14 @@ WAYS = {  # of a depth: the poses that it is tried with, and the estimator's sou
 ABOUT = """## Novel views from colour alone
 
 The paper's setting: two pictures, their intrinsics, no poses, no depth. Context views' poses estimated from colour (from
-pictures as they are), depth by stereo, 256x256, the default head; the scenes and triplets of [stereo.md](stereo.md). Nothing
-given reaches the program but the target's pose, which has to be told in the estimated frame, where the first camera is the
-origin and the second is 1 away: given and estimated context cameras are laid over each other, the midpoints on each other,
-turned by the mean of what turns either camera, and scaled by the ratio of the distances (with depth not scaled: lengths are
-the sensor's). So errors of the given poses and of the estimated ones both count. `the target's too`: its pose is estimated
+pictures as they are), depth by stereo, 256x256, the default head; the scenes and triplets of [stereo.md](stereo.md). Nothing given reaches the program but the target's pose. It must be converted to the estimated frame, where the first camera is
+the origin and the second is 1 away. For that the midpoints of the given and the estimated context cameras are laid on each other.
+They are turned by the mean of what turns either camera, and scaled by the ratio of the distances. With depth they are not
+scaled: lengths are the sensor's. So errors of the given poses and of the estimated ones both count. `the target's too`: its pose is estimated
 with the others, from its own picture, and nothing given is used.
 
-PSNR of the target, 100 % and 10 % kept, on the sensor's mask where both context views have a sensor's depth, otherwise on
-what the depths by stereo of given or of estimated poses cover, uncovered pixels being black; means over what was posed and
-matched. The change is against given poses and the same depth, on the same triplets. What was refused is listed below.
+PSNR of the target, 100 % and 10 % kept, means over what was posed and matched. The mask is the sensor's where both context views have a
+sensor's depth. Otherwise it is what the depths by stereo of given or of estimated poses cover, uncovered pixels being black. The change is against given poses and the same depth, on the same triplets. What was refused is listed below.
 """
 
 

@@ -263,7 +263,7 @@ static bool allocate(workload *w)
     w->wavelet_rgb = malloc(pixels * 3);
     w->wavelet_planes = malloc(pixels * 3);
     w->wavelet_plane = malloc(pixels * sizeof *w->wavelet_plane);
-    w->wavelet_work = malloc(t3r_wavelet_work_bytes(WAVELET_WIDTH, WAVELET_HEIGHT));
+    w->wavelet_work = malloc(T3R_WAVELET_ROW_BYTES(WAVELET_WIDTH));
     w->texture = malloc(pixels * sizeof *w->texture);
     if (posix_memalign(&w->stereo_work, T3R_ARENA_ALIGN, bench_stereo_bytes(SIDE, SIDE, MORE_PATHS)) != 0) {
         w->stereo_work = NULL;

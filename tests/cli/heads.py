@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+"""heads.py TRIM3R: `--head`: each gives another scene and is named; weights that are refused say why."""
+import sys
+
+from program import check, expect, expect_json, in_scratch, room, weight_file, write
+
+
+def heads():
+    recording = room()
+    expect(0, "room", "--size", "32x32", "-o", "tiny.mcap")
+    whole = weight_file("mine.t3w")
+    weight_file("wide.t3w", "16")
+    base = ["build", recording, "--working", "64x64", "--gaussians", 500, "-o", "head.ply"]
+    hashes = {}
+    for head in ("analytic", "moment", "none", "nano", "small", "base", "mine.t3w", "wide.t3w"):
+        found = expect_json(*base, "--head", head, "--comments")
+        hashes[head] = found["hash"]
+        name = head.split(".")[0]
+        check(found["head"] == name, f"--head {head}: build names {found['head']}")
+        comment = f"comment trim3r head {name}"
+        if "head_crc" in found:
+            comment += f" crc {found['head_crc']}"
+            check(found["head_bits"] == ("16" if head == "wide.t3w" else "8"), f"--head {head}: bits")
+        check((comment + "\n").encode() in open("head.ply", "rb").read(), f"--head {head}: not in the comments")
+        check(("head_crc" in found) == (head not in ("analytic", "moment", "none")), f"--head {head}: CRC")
+    check(len(set(hashes.values())) == len(hashes), f"heads give the same scene: {hashes}")
+    crc = expect_json(*base, "--head", "mine.t3w")["head_crc"]
+    check(crc == expect_json("head-info", "mine.t3w")["crc"] == whole[15:11:-1].hex(), "the CRC")
+    # the closed forms never see weights, networks the same bits however many bytes and threads there are
+    check(len({expect_json(*base, "--head", "wide.t3w", "--arena", arena, "--threads", threads)["hash"]
+               for arena, threads in (("min", 1), ("full", 3))}) == 1, "arena or threads change a learned scene")
+    # weights that are refused say why
+    for name, content, why in [("cut.t3w", whole[:-4], "not as long as it says"), ("foreign.t3w", b"RIFF" + whole[4:], "not a weight file"),
+                               ("empty.t3w", b"", "not a weight file"), ("bit.t3w", whole[:-1] + bytes([whole[-1] ^ 1]), "CRC"),
+                               ("epoch.t3w", whole[:6] + b"\xff\xff" + whole[8:], "epoch")]:
+        write(name, content)
+        for command in (base, ["replay", recording], ["plan", "--size", "64x64", "--gaussians", 5], ["bench", "--runs", 1]):
+            expect(1, *command, "--head", name, err=name)
+        expect(1, *base, "--head", name, err=why)
+    expect(1, *base, "--head", "absent.t3w", err="absent.t3w")
+
+
+sys.exit(in_scratch(heads))

@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""plan.py TRIM3R: what `trim3r plan` refuses and tells."""
+import sys
+import xml.dom.minidom
+
+from program import check, expect, expect_full, expect_json, in_scratch, room, weight_file
+
+
+def plan():
+    room("32x32", "tiny.mcap")
+    weight_file("wide.t3w", "16")
+    expect(2, "plan", err="--size")
+    expect(2, "plan", "--size", "256x256", err="--gaussians")
+    expect(2, "plan", "--size", "4x4", "--gaussians", 5, err="--size")
+    expect(2, "plan", "--size", "256", "--gaussians", 5, err="--size")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 0, err="--gaussians")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--views", 17, err="--views")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--clusters", 513, err="--clusters")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--json", "--markdown", err="exclude")
+    expect(2, "plan", "more", err="too many")
+    expect(1, "plan", "--size", "256x256", "--gaussians", 5, "--svg", "missing/a.svg", err="missing/a.svg")
+    expect_full("full.svg", "plan", "--size", "256x256", "--gaussians", 5, "--svg", "full.svg")
+    expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--render", "0x9", err="--render")
+    base = ["plan", "--size", "256x256", "--views", 2, "--gaussians", 13107]
+    found = expect_json(*base, "--svg", "arena.svg")
+    check(found["min_bytes"] <= found["arena_bytes"], "plan --json lacks its keys")
+    for buffer in found["buffers"]:
+        check(buffer["offset"] + buffer["bytes"] <= found["arena_bytes"], f"{buffer['name']} leaves the arena")
+    xml.dom.minidom.parse("arena.svg")
+    table = expect(0, *base, "--markdown", out="|---|")
+    check(all((f"| {b['name']} | {b['bytes']} |" in table) == (b['bytes'] > 0) for b in found["buffers"]),
+          "the Markdown table is to have all buffers that have bytes")
+    check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
+    # a head needs what plan says: one with wider activations more, and a closed form nothing
+    small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
+    check(small["arena_bytes"] == analytic["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
+    check(wide["head_column_bytes"] > small["head_column_bytes"], "16-bit activations need no more")
+    expect(2, *base, "--head", "big", err="--head")
+
+
+sys.exit(in_scratch(plan))
