@@ -62,6 +62,7 @@ extern "C" {
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536u
 #define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
+#define T3R_MAX_WORKERS 16u
 
 typedef enum t3r_status {
     T3R_OK = 0,
@@ -236,6 +237,9 @@ typedef struct t3r_config {
     uint32_t stream;
     /* The keyframes after which what a stream no longer sees counts half as dense, 0..1024; 0 = nothing fades. [32] */
     uint32_t half_life;
+    /* The tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS: each has a part of the arena for
+     * itself. The number never changes a bit. [1] */
+    uint32_t workers;
     /* The seed, any number, of the K-means, of T3R_ALLOCATE_RANDOM and of ties in blue noise. [1] */
     uint32_t seed;
 } t3r_config;
@@ -306,8 +310,11 @@ typedef struct t3r_hooks {
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
     /* When set, every stage of t3r_reconstruct(), t3r_rebuild() and t3r_render() is hashed (SPEC, "Hash"). */
     void (*stage_hash)(void *user, t3r_stage stage, uint64_t hash);
-    /* Runs task(context, 0..count-1) in any order, on any threads, and returns when all are done. */
-    void (*parallel_for)(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context);
+    /* Runs task(context, index, worker) for each index in 0..count-1, in any order, on any threads, and returns when
+     * all are done. `worker` is below t3r_config.workers, and no two tasks that run at the same time have the same one:
+     * it is the number of the thread. The runtime never calls the hook from within a task. */
+    void (*parallel_for)(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                         void *context);
 } t3r_hooks;
 
 /* One line of the plan: a buffer of the arena. */

@@ -135,7 +135,7 @@ static void scatter(const t3r_refine_view *job, const t3r_wanted *want, const t3
 {
     const t3r_splat *s = p->splat;
     const uint32_t index = (uint32_t)(s - job->splats), blocks = p->blocks.count;
-    t3r_refine_sums *to = &job->sums[index - job->first];
+    t3r_refine_sums *to = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
     __builtin_prefetch(to, 1); /* needed last, and seldom near the one before */
     __builtin_prefetch(to->curvature + 8, 1);
     tile_weights masked;
@@ -230,7 +230,8 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
         } else {
             blend(&p, &tile, again.rows);
         }
-        if (list[i] - job->first < job->count) { /* wraps below the slice */
+        /* unsigned: an index below the slice wraps and fails the test */
+        if (list[i] - job->slice.first < job->slice.count) {
             scatter(job, &want, &tile, &p, weights);
         }
     }

@@ -12,6 +12,7 @@
 #include "core/ablation.h"
 #include "core/state.h"
 #include "drawing.h"
+#include "head/head_views.h"
 #include "pipeline.h"
 #include "weights_maker.h"
 

@@ -1,6 +1,8 @@
 #include "cli/option_values.h"
 
 #include <inttypes.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "cli/cli.h"
 #include "trim3r.h"
@@ -12,6 +14,15 @@ uint32_t option_number(struct argp_state *state, const char *option, const char 
         argp_error(state, "--%s takes a whole number %" PRIu32 "..%" PRIu32 ", not '%s'", option, low, high, text);
     }
     return value;
+}
+
+uint32_t option_threads(struct argp_state *state, const char *option, const char *text)
+{
+    if (strcmp(text, "all") == 0) {
+        const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+        return processors < 1 ? 1 : processors > (long)T3R_MAX_WORKERS ? T3R_MAX_WORKERS : (uint32_t)processors;
+    }
+    return option_number(state, option, text, 1, T3R_MAX_WORKERS);
 }
 
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
