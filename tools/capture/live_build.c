@@ -78,8 +78,8 @@ static int open_build(live_build *build, uint32_t views, const t3r_capture_frame
         return code;
     }
     r->context_count = views;
-    r->config.width = build->options.width != 0 ? build->options.width : like->frame.width;
-    r->config.height = build->options.height != 0 ? build->options.height : like->frame.height;
+    r->config.width = build->options.config.width != 0 ? build->options.config.width : like->frame.width;
+    r->config.height = build->options.config.height != 0 ? build->options.config.height : like->frame.height;
     code = open_arena(build);
     if (code != CLI_OK) {
         return code;

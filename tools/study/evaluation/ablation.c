@@ -84,33 +84,33 @@ void ablation_apply(uint32_t ablation, reconstruction_options *settings)
         settings->hide_mask = true;
         break;
     case SHUFFLED_PAPER:
-        settings->allocation = T3R_ALLOCATE_PAPER;
+        settings->config.allocation = T3R_ALLOCATE_PAPER;
         settings->ablation.shuffle = 1;
         break;
     case SHUFFLED:
         settings->ablation.shuffle = 1;
         break;
     case ALLOCATION:
-        settings->allocation = (t3r_allocation)value;
+        settings->config.allocation = (t3r_allocation)value;
         break;
     case CLUSTERS:
-        settings->clusters = value;
+        settings->config.clusters = value;
         break;
     case PAPER_PERCENT:
-        settings->allocation = T3R_ALLOCATE_PAPER;
-        settings->paper_keep_percent = value;
+        settings->config.allocation = T3R_ALLOCATE_PAPER;
+        settings->config.keep_percent = value;
         break;
     case UNREFINED:
-        settings->refine = 0;
+        settings->config.refinements = 0;
         break;
     case FLYING_OFF:
-        settings->flying = 0;
+        settings->config.flying = 0;
         break;
     case REDUNDANCY_OFF:
-        settings->redundancy = 0;
+        settings->config.redundancy = 0;
         break;
     case EXPOSURE_OFF:
-        settings->exposure = 0;
+        settings->config.exposure = 0;
         break;
     }
 }
