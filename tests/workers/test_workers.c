@@ -132,7 +132,7 @@ static trace build(t3r_config config, const way *w)
             assert_int_equal(t3r_add_view(rt, &frames[v].frame, &frames[v].camera), T3R_OK);
         }
         t3r_scene scene;
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     }
     draw(rt);
     t3r_threads_stop(h.pool);
