@@ -260,6 +260,7 @@ static void a_recording_replays_what_was_live(void **state)
         reconstruction_defaults(&build);
         build.keep_percent = 10;
         build.config.refinements = 1;
+        build.config.clusters = 60; /* quicker */
         build.context_count = 2;
         build.context[1] = 3;
         capture_plan plan = {.source = "test",
