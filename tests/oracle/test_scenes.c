@@ -97,7 +97,7 @@ static void check_build(const t3r_recording *recording, const char *scene, t3r_t
         assert_int_equal(t3r_add_view(rt, &frame.frame, &frame.camera), T3R_OK);
     }
     t3r_scene built;
-    assert_int_equal(t3r_reconstruct(rt, &built), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &built), T3R_OK);
     assert_int_equal(built.count, budget);
     oracle_gaussian *exact = calloc(built.count, sizeof *exact);
     assert_non_null(exact);

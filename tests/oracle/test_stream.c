@@ -421,8 +421,8 @@ static void refused(void **state)
     assert_int_equal(t3r_stream_overlap(NULL, &camera, W, H, &overlap_q8), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_stream_overlap(s.rt, &camera, 1, H, &overlap_q8), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_add_view(s.rt, &frame, &camera), T3R_ERR_STATE);
-    assert_int_equal(t3r_reconstruct(s.rt, &scene), T3R_ERR_STATE);
-    assert_int_equal(t3r_rebudget(s.rt, 10, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(s.rt, NULL, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_rebuild(s.rt, &(t3r_request){.gaussians = 10}, &scene), T3R_ERR_STATE);
     assert_int_equal(t3r_scene_begin(s.rt, &plain), T3R_ERR_STATE);
     assert_int_equal(t3r_get_scene(s.rt, &scene), T3R_ERR_STATE);
     assert_int_equal(take(&s, &p, &report), T3R_OK);

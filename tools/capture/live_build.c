@@ -204,8 +204,8 @@ static int start_runtime(live_build *build)
         t3r_hooks hooks = reconstruction_hooks(r, &build->options);
         status = t3r_set_hooks(r->runtime, &hooks);
     }
-    if (status == T3R_OK && r->head.weights != NULL) {
-        status = t3r_bind_head(r->runtime, r->head.weights, r->head.bytes);
+    if (status == T3R_OK) {
+        status = chosen_head_bind(&r->head, r->runtime, build->options.ablation);
     }
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "arena", &r->config, r->arena_bytes);
 }

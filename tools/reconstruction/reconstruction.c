@@ -198,7 +198,7 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
         code = status == T3R_OK ? CLI_OK : frame_error(path, r->context[v], status);
     }
     if (code == CLI_OK) {
-        status = t3r_reconstruct(counted.runtime, &counted.scene);
+        status = t3r_reconstruct(counted.runtime, NULL, &counted.scene);
         code = status == T3R_OK ? CLI_OK : build_error(&counted, status, path);
     }
     if (code == CLI_OK) {
@@ -320,21 +320,20 @@ int reconstruction_count(reconstruction_points *points, const t3r_recording *rec
     return code == CLI_OK ? count_points(&r, frames, path, options->config.depth, points) : code;
 }
 
-static int bind_head(reconstruction *r)
+static int bind_head(reconstruction *r, const reconstruction_options *options)
 {
-    t3r_status status = r->head.weights == NULL ? T3R_OK : t3r_bind_head(r->runtime, r->head.weights, r->head.bytes);
+    t3r_status status = chosen_head_bind(&r->head, r->runtime, options->ablation);
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
 }
 
 t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
 {
-    if (planes != NULL) {
-        return t3r_reconstruct_given(r->runtime, planes, r->config.width * 2, &r->scene);
-    }
-    if (options->automatic) {
-        return t3r_reconstruct_within(r->runtime, (uint32_t)(options->max_loss * 256 + 0.5), &r->scene);
-    }
-    return t3r_reconstruct(r->runtime, &r->scene);
+    const t3r_request request = {
+        .max_loss_q8 = options->automatic ? (uint32_t)(options->max_loss * 256 + 0.5) : 0,
+        .importance = planes,
+        .importance_stride_bytes = r->config.width * 2,
+    };
+    return t3r_reconstruct(r->runtime, &request, &r->scene);
 }
 
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options)
@@ -397,7 +396,7 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
     }
 
     code = open_arena(r, options);
-    return code == CLI_OK ? bind_head(r) : code;
+    return code == CLI_OK ? bind_head(r, options) : code;
 }
 
 /* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */

@@ -40,6 +40,7 @@ typedef struct reconstruction_options {
     const uint16_t *const *importance_planes; /* one a context view at the working size, rows without gaps */
     const char *head;                         /* a text that chosen_head_is_one() */
     const char *mask_head; /* likewise, of a rival with +head: whose unpruned scene it ranks; NULL = `head` */
+    t3r_ablation ablation; /* what is taken away from the method */
     bool hide_mask;        /* the network is told that every pixel was retained: hidden_mask.h */
     const char *points_of; /* a .ply whose Gaussians are the depth instead (scene_frames.h), and of which percents
                               are; NULL = none */

@@ -29,8 +29,8 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
 #define SETTINGS                                                                                                       \
     SETTING("refine", "N", refinements, NUMBER, 0, T3R_MAX_REFINEMENTS, NULL,                                          \
             "refinement passes on the context views", true, "refine")                                                  \
-    SETTING("allocate", "MODE", allocation, NAME, 0, UINT32_MAX, allocation_name, "how the budget is spread", true,    \
-            NULL)                                                                                                      \
+    SETTING("allocate", "MODE", allocation, NAME, T3R_ALLOCATE_CONFIGURED + 1, UINT32_MAX, allocation_name,            \
+            "how the budget is spread", true, NULL)                                                                    \
     SETTING("depth", "SOURCE", depth, NAME, 0, UINT32_MAX, depth_name,                                                 \
             "where depth comes from; stereo makes it of the colours of two and more posed frames, whether they have "  \
             "depth or not",                                                                                            \

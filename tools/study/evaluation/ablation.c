@@ -55,13 +55,13 @@ const char *ablation_name(uint32_t ablation)
     return ablation < ABLATIONS ? ablations[ablation].name : NULL;
 }
 
-bool ablation_applies(uint32_t ablation, t3r_head head, bool planar)
+bool ablation_applies(uint32_t ablation, const chosen_head *head, bool planar)
 {
     switch (ablations[ablation].what) {
     case HIDDEN_MASK:
-        return head == T3R_HEAD_LEARNED;
+        return head->weights != NULL;
     case UNADAPTED:
-        return head != T3R_HEAD_NONE;
+        return !head->unadapted;
     case FLYING_OFF:
     case REDUNDANCY_OFF:
     case EXPOSURE_OFF:
@@ -78,17 +78,17 @@ void ablation_apply(uint32_t ablation, reconstruction_options *settings)
     case NOTHING:
         break;
     case UNADAPTED:
-        settings->config.adapt = 0;
+        settings->ablation.unadapted = 1;
         break;
     case HIDDEN_MASK:
         settings->hide_mask = true;
         break;
     case SHUFFLED_PAPER:
         settings->config.allocation = T3R_ALLOCATE_PAPER;
-        settings->config.shuffle = 1;
+        settings->ablation.shuffle = 1;
         break;
     case SHUFFLED:
-        settings->config.shuffle = 1;
+        settings->ablation.shuffle = 1;
         break;
     case ALLOCATION:
         settings->config.allocation = (t3r_allocation)value;
