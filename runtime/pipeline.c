@@ -154,8 +154,8 @@ void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
         t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK), T3R_WAVELET_WORK_BYTES_(config->width, config->height));
     int16_t *plane = t3r_take(&cut, T3R_PIXELS_(config->width, config->height) * sizeof *plane);
     int16_t *work = t3r_take(&cut, T3R_WAVELET_ROW_BYTES(config->width));
-    t3r_wavelet_texture((const uint8_t *const *)view->colour, config->width, config->height, config->wavelet_levels,
-                        config->wavelet, view->texture, plane, work);
+    t3r_wavelet_texture(&rt->kernels, (const uint8_t *const *)view->colour, config->width, config->height,
+                        config->wavelet_levels, config->wavelet, view->texture, plane, work);
 }
 
 static t3r_status wavelet(t3r_runtime *rt, t3r_view *views)
@@ -183,7 +183,7 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);
-    t3r_blur_texture(views, rt->views); /* means are of the texture as it is, densities of it blurred */
+    t3r_blur_texture(&rt->kernels, views, rt->views); /* means are of the texture as it is, densities of it blurred */
     return T3R_OK;
 }
 
@@ -272,6 +272,7 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
                                  const t3r_budget_settings *settings)
 {
     return (t3r_head_input){
+        .kernels = &rt->kernels,
         .map = t3r_pointmap_of(&views[view_index], rt->frame.exponent),
         .view_index = view_index,
         .settings = settings,

@@ -14,30 +14,21 @@
 /* --- texture ---------------------------------------------------------------------------------------------------- */
 
 /* The 5-box twice: weights 1 2 3 4 5 4 3 2 1 of 25; variance 4 px^2. Beyond the border the edge repeats. */
-static uint16_t blur_at(const uint16_t *line, size_t stride, uint32_t at, uint32_t length)
-{
-    uint32_t sum = 12; /* half of 25: one rounding. 25 x 65535 fits. */
-    for (int32_t tap = -4; tap <= 4; tap++) {
-        int32_t place = t3r_clamp32((int32_t)at + tap, 0, (int32_t)length - 1);
-        sum += (uint32_t)(5 - t3r_abs32(tap)) * line[(size_t)place * stride];
-    }
-    return (uint16_t)(sum / 25);
-}
-
-void t3r_blur_texture(const t3r_view *views, uint32_t count)
+void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count)
 {
     for (uint32_t v = 0; v < count; v++) {
         const t3r_view *view = &views[v];
+        const size_t width = view->width;
         for (uint32_t y = 0; y < view->height; y++) {
-            const uint16_t *row = view->texture + (size_t)y * view->width;
-            for (uint32_t x = 0; x < view->width; x++) {
-                view->key[(size_t)y * view->width + x] = blur_at(row, 1, x, view->width);
-            }
+            kernels->blur_row(view->texture + y * width, view->width, view->key + y * width);
         }
         for (uint32_t y = 0; y < view->height; y++) {
-            for (uint32_t x = 0; x < view->width; x++) {
-                view->texture[(size_t)y * view->width + x] = blur_at(view->key + x, view->width, y, view->height);
+            const uint16_t *rows[T3R_BLUR_TAPS];
+            for (int32_t tap = 0; tap < T3R_BLUR_TAPS; tap++) {
+                int32_t row = t3r_clamp32((int32_t)y + tap - T3R_BLUR_REACH, 0, (int32_t)view->height - 1);
+                rows[tap] = view->key + (size_t)row * width;
             }
+            kernels->blur_column(rows, view->width, view->texture + y * width);
         }
     }
 }

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "kernels/kernels.h"
 #include "superclusters/superclusters.h"
 #include "trim3r.h"
 #include "core/views.h"
@@ -41,7 +42,7 @@ static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r
 bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 
 /* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */
-void t3r_blur_texture(const t3r_view *views, uint32_t count);
+void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count);
 
 /* Mean texture of every cluster (eq. 2), from the texture planes before they are blurred. */
 void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);

@@ -11,7 +11,7 @@
 static uint64_t learned_operations(const t3r_config *c)
 {
     const uint64_t views = c->stream ? 1 : c->views;
-    const uint64_t block = T3R_DOT_PIXELS << T3R_MAX_LEVEL;
+    const uint64_t block = T3R_BLOCK_PIXELS << T3R_MAX_LEVEL;
     uint64_t across = (c->width + block - 1) / block, down = (c->height + block - 1) / block;
     return 3 * T3R_MAX_HEAD_MACS * across * down * block * block * views +
            ((uint64_t)c->width * c->height * views + c->max_gaussians) * 2 * T3R_FEATURES;

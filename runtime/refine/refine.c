@@ -69,7 +69,8 @@ static uint64_t error_of(const t3r_runtime *rt, const workshop *w, const t3r_vie
                          const t3r_projection *projection, uint32_t *pixels)
 {
     t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
-    t3r_refine_view job = {.view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
+    t3r_refine_view job = {
+        .kernels = &rt->kernels, .view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
     uint64_t error = 0;
     for (uint32_t begin = 0; begin < bin.tiles;) {
         uint32_t end = t3r_bin_pass(&bin, begin);
@@ -94,6 +95,7 @@ static void measure(const t3r_runtime *rt, const workshop *w, const t3r_view *vi
         }
     }
     t3r_refine_view job = {
+        .kernels = &rt->kernels,
         .view = &views[v],
         .projection = projection,
         .scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE),
@@ -102,7 +104,7 @@ static void measure(const t3r_runtime *rt, const workshop *w, const t3r_view *vi
         .first = first,
         .count = count,
         .kept = t3r_raster_spare(&w->room),
-        .kept_rows = (uint32_t)((size_t)rt->config.max_gaussians * T3R_RASTER_SPARE_BYTES / sizeof(t3r_weights)),
+        .kept_rows = (uint32_t)((size_t)rt->config.max_gaussians * T3R_RASTER_SPARE_BYTES / sizeof(t3r_blend_weights)),
         .gain_q14 = rt->gain_q14[v],
     };
     for (uint32_t begin = 0; begin < bin.tiles;) {
@@ -138,9 +140,7 @@ t3r_status t3r_refine_map(t3r_runtime *rt, const t3r_view *views, const t3r_map_
                 }
                 measure(rt, &w, views, v, &projection, first, count);
             }
-            for (uint32_t i = 0; i < count; i++) {
-                w.corrections[first + i] = t3r_refine_solve(&w.sums[i], &w.corrections[first + i]);
-            }
+            rt->kernels.solve(w.sums, count, w.corrections + first);
         }
         for (uint32_t i = 0; i < rt->gaussians; i++) {
             if (records == NULL || records[i].idle < rt->config.views) {

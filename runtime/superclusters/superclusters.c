@@ -145,11 +145,11 @@ static void add_point(t3r_cluster_work *work, uint16_t label, const int16_t feat
 }
 
 /* One mini-batch (Sculley 2010, with whole-batch means): points spread over the source, a different set each time. */
-static void run_batch(const t3r_point_source *source, uint32_t batch, uint32_t count, t3r_cluster *clusters,
-                      t3r_cluster_work *work)
+static void run_batch(const t3r_kernels *kernels, const t3r_point_source *source, uint32_t batch, uint32_t count,
+                      t3r_cluster *clusters, t3r_cluster_work *work)
 {
     load_centres(&work->centres, clusters, count);
-    t3r_find_neighbours(&work->centres, &work->u.means.neighbours);
+    kernels->nearest_begin(&work->centres, &work->u.means.neighbours);
     clear_sums(work);
     uint32_t size = T3R_MIN(source->points, T3R_CLUSTER_BATCH);
     uint16_t guess = 0;
@@ -163,8 +163,8 @@ static void run_batch(const t3r_point_source *source, uint32_t batch, uint32_t c
             uint32_t index = low + t3r_mix32(s * 1031u + batch) % (high - low);
             valid += source->features(source->context, index, feature[valid]);
         }
-        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess,
-                    label);
+        kernels->nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature,
+                         guess, label);
         for (uint32_t i = 0; i < valid; i++) {
             guess = label[i];
             add_point(work, label[i], feature[i]);
@@ -185,11 +185,12 @@ static void run_batch(const t3r_point_source *source, uint32_t batch, uint32_t c
 }
 
 /* Labels every point and moves each centre to the mean of its points. */
-static uint32_t assign(const t3r_point_source *source, uint32_t count, t3r_cluster *clusters, uint16_t *labels,
-                       t3r_cluster_work *work, const t3r_cluster_progress *progress, uint32_t done, uint32_t total)
+static uint32_t assign(const t3r_kernels *kernels, const t3r_point_source *source, uint32_t count,
+                       t3r_cluster *clusters, uint16_t *labels, t3r_cluster_work *work,
+                       const t3r_cluster_progress *progress, uint32_t done, uint32_t total)
 {
     load_centres(&work->centres, clusters, count);
-    t3r_find_neighbours(&work->centres, &work->u.means.neighbours);
+    kernels->nearest_begin(&work->centres, &work->u.means.neighbours);
     clear_sums(work);
     uint32_t all_valid = 0;
     uint16_t guess = 0;
@@ -207,8 +208,8 @@ static uint32_t assign(const t3r_point_source *source, uint32_t count, t3r_clust
             place[valid] = index;
             valid += source->features(source->context, index, feature[valid]);
         }
-        t3r_nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, guess,
-                    label);
+        kernels->nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature,
+                         guess, label);
         for (uint32_t i = 0; i < valid; i++) {
             guess = label[i];
             labels[place[i]] = label[i];
@@ -241,7 +242,8 @@ uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_set
         if (progress != NULL && !progress->step(progress->context, batch, total)) {
             return T3R_CLUSTERS_CANCELLED;
         }
-        run_batch(source, batch, settings->clusters, clusters, work);
+        run_batch(settings->kernels, source, batch, settings->clusters, clusters, work);
     }
-    return assign(source, settings->clusters, clusters, labels, work, progress, settings->batches, total);
+    return assign(settings->kernels, source, settings->clusters, clusters, labels, work, progress, settings->batches,
+                  total);
 }

@@ -369,8 +369,8 @@ static bool run_texture(workload *w)
 {
     size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
     const uint8_t *colour[3] = {w->wavelet_planes, w->wavelet_planes + pixels, w->wavelet_planes + 2 * pixels};
-    t3r_wavelet_texture(colour, WAVELET_WIDTH, WAVELET_HEIGHT, 2, T3R_WAVELET_DB2, w->texture, w->wavelet_plane,
-                        w->wavelet_work);
+    t3r_wavelet_texture(&t3r_kernels_c, colour, WAVELET_WIDTH, WAVELET_HEIGHT, 2, T3R_WAVELET_DB2, w->texture,
+                        w->wavelet_plane, w->wavelet_work);
     return true;
 }
 
