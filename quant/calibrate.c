@@ -5,6 +5,7 @@
 
 #include "budget/budget.h"
 #include "head/head_features.h"
+#include "head/head_views.h"
 #include "pipeline.h"
 #include "core/state.h"
 

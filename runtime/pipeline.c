@@ -15,7 +15,7 @@
 #include "core/cut.h"
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
-#include "head/head.h"
+#include "head/head_views.h"
 #include "superclusters/pixel_clusters.h"
 #include "pointmap/pointmap.h"
 #include "pointmap/redundancy.h"
@@ -26,6 +26,31 @@
 #include "stereo/stereo_views.h"
 #include "superclusters/superclusters.h"
 #include "wavelet/wavelet.h"
+
+/* --- views ------------------------------------------------------------------------------------------------------- */
+
+typedef struct views_job {
+    const t3r_runtime *rt;
+    t3r_view *views;
+    uint32_t first; /* view of the task of index 0 */
+} views_job;
+
+/* Steps that look at nothing but their own view: as many views at once as there are workers, steps first..first + views
+ * - 1 of `total` being reported before. */
+static t3r_status each_view(const t3r_runtime *rt, t3r_view *views, t3r_task *task, t3r_stage stage, uint32_t first,
+                            uint32_t total)
+{
+    const t3r_workers workers = t3r_workers_of(rt);
+    const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1;
+    for (uint32_t v = 0; v < rt->views; v += round) {
+        if (!t3r_progress(rt, stage, first + v, total)) {
+            return T3R_ERR_CANCELLED;
+        }
+        views_job job = {rt, views, v};
+        t3r_run_tasks(&workers, T3R_MIN(round, rt->views - v), task, &job);
+    }
+    return T3R_OK;
+}
 
 /* --- analysis --------------------------------------------------------------------------------------------------- */
 
@@ -41,19 +66,20 @@ static uint32_t count_measured(const t3r_runtime *rt, const t3r_view *views)
     return measured;
 }
 
+static void fill_view(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker;
+    const views_job *job = context;
+    t3r_depth_fill(&job->views[job->first + index], job->rt->config.fill_radius);
+}
+
 static t3r_status depth(t3r_runtime *rt, t3r_view *views)
 {
-    if (rt->config.depth == T3R_DEPTH_STEREO) {
-        t3r_status status = t3r_stereo_views(rt, views);
-        if (status != T3R_OK) {
-            return status;
-        }
-    }
-    for (uint32_t v = 0; v < rt->views && rt->config.depth == T3R_DEPTH_SENSOR; v++) { /* stereo fills its own */
-        if (!t3r_progress(rt, T3R_STAGE_DEPTH, v, rt->views)) {
-            return T3R_ERR_CANCELLED;
-        }
-        t3r_depth_fill(&views[v], rt->config.fill_radius);
+    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO; /* it fills its own holes */
+    t3r_status status =
+        stereo ? t3r_stereo_views(rt, views) : each_view(rt, views, fill_view, T3R_STAGE_DEPTH, 0, rt->views);
+    if (status != T3R_OK) {
+        return status;
     }
     rt->valid_points = count_measured(rt, views);
     t3r_hash_depth(rt, views, 0, rt->views);
@@ -81,9 +107,17 @@ static bool pointmap_step(t3r_runtime *rt, uint32_t step)
     return t3r_progress(rt, T3R_STAGE_POINTMAP, step, POINTMAP_STEPS(rt));
 }
 
+static void bridge_view(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker;
+    const views_job *job = context;
+    t3r_bridge_view(&job->views[job->first + index], job->rt->config.bridge_radius);
+}
+
 /* Wide holes, once it is known where the views stand. What stereo left without depth shows nothing. */
 static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
 {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     const uint32_t radius = rt->config.depth == T3R_DEPTH_STEREO ? 0 : rt->config.bridge_radius;
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
         if (!pointmap_step(rt, v)) {
@@ -91,17 +125,17 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
         }
         t3r_bridge_lend(views, rt->views, v, rt->frame.exponent);
     }
-    for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
-        if (!pointmap_step(rt, rt->views + v)) {
-            return T3R_ERR_CANCELLED;
+    if (radius > 0) {
+        t3r_status status = each_view(rt, views, bridge_view, T3R_STAGE_POINTMAP, rt->views, POINTMAP_STEPS(rt));
+        if (status != T3R_OK) {
+            return status;
         }
-        t3r_bridge_view(&views[v], radius);
     }
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
         if (!pointmap_step(rt, 2 * rt->views + v)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent, (1u << v) - 1);
+        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent, (1u << v) - 1, &work);
     }
     return T3R_OK;
 }
@@ -109,11 +143,12 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
 /* What the views say of each other: pixels that cannot be, colours of one exposure, surfaces seen twice. */
 static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
 {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     for (uint32_t v = 0; v < rt->views && rt->config.flying; v++) {
         if (!pointmap_step(rt, 3 * rt->views + v)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO);
+        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO, &work);
     }
     return T3R_OK;
 }
@@ -136,42 +171,53 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
 
 static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
 {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     for (uint32_t v = rt->views; v-- > 0 && rt->config.redundancy;) {
         if (!pointmap_step(rt, 6 * rt->views - v - 1)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent);
+        (void)t3r_mark_covered(views, rt->views, v, rt->frame.exponent, &work);
     }
     t3r_clear_witnesses(views, rt->views);
     t3r_hash_pointmap(rt, views, 0, rt->views);
     return T3R_OK;
 }
 
-void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
+/* Each worker has a plane and work of its own. */
+static void texture_of(const t3r_runtime *rt, const t3r_view *view, uint32_t worker)
 {
     const t3r_config *config = &rt->config;
-    t3r_cut cut =
-        t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK), T3R_WAVELET_WORK_BYTES_(config->width, config->height));
+    const size_t bytes = T3R_WAVELET_WORK_BYTES_(config->width, config->height);
+    t3r_cut cut = t3r_cut_of((uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK) + worker * bytes, bytes);
     int16_t *plane = t3r_take(&cut, T3R_PIXELS_(config->width, config->height) * sizeof *plane);
     int16_t *work = t3r_take(&cut, T3R_WAVELET_ROW_BYTES(config->width));
     t3r_wavelet_texture(&rt->kernels, (const uint8_t *const *)view->colour, config->width, config->height,
                         config->wavelet_levels, config->wavelet, view->texture, plane, work);
 }
 
+void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
+{
+    texture_of(rt, view, 0);
+}
+
+static void view_texture(void *context, uint32_t index, uint32_t worker)
+{
+    const views_job *job = context;
+    texture_of(job->rt, &job->views[job->first + index], worker);
+}
+
 static t3r_status wavelet(t3r_runtime *rt, t3r_view *views)
 {
-    for (uint32_t v = 0; v < rt->views; v++) {
-        if (!t3r_progress(rt, T3R_STAGE_WAVELET, v, rt->views)) {
-            return T3R_ERR_CANCELLED;
-        }
-        t3r_view_texture(rt, &views[v]);
+    t3r_status status = each_view(rt, views, view_texture, T3R_STAGE_WAVELET, 0, rt->views);
+    if (status == T3R_OK) {
+        t3r_hash_wavelet(rt, views, 0, rt->views);
     }
-    t3r_hash_wavelet(rt, views, 0, rt->views);
-    return T3R_OK;
+    return status;
 }
 
 static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
 {
+    const t3r_workers workers = t3r_workers_of(rt);
     t3r_status status = t3r_cluster_pixels(rt, views);
     if (status != T3R_OK) {
         return status;
@@ -183,7 +229,8 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);
-    t3r_blur_texture(&rt->kernels, views, rt->views); /* means are of the texture as it is, densities of it blurred */
+    t3r_blur_texture(&rt->kernels, views, rt->views,
+                     &workers); /* means are of the texture as it is, densities of it blurred */
     return T3R_OK;
 }
 
@@ -247,63 +294,20 @@ static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_sett
     if (importance != NULL) {
         t3r_importance_keys(views, rt->views, importance);
     }
-    t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
+    const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK)};
+    t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS), &work);
     t3r_hash_budget(rt, views, 0, rt->views);
-}
-
-/* The colours of a view's Gaussians brought to the mean exposure. */
-static void level(t3r_gaussian *gaussians, uint32_t count, const uint16_t gain_q14[3])
-{
-    for (uint32_t i = 0; i < count; i++) {
-        for (int c = 0; c < 3; c++) {
-            gaussians[i].colour_q7[c] = t3r_level_q7(gaussians[i].colour_q7[c], gain_q14[c]);
-        }
-    }
-}
-
-static t3r_head_rows *const heads[T3R_HEAD_COUNT] = {
-    [T3R_HEAD_ANALYTIC] = t3r_head_analytic,
-    [T3R_HEAD_MOMENT] = t3r_head_moment,
-    [T3R_HEAD_NONE] = t3r_head_none,
-    [T3R_HEAD_LEARNED] = t3r_head_learned,
-};
-
-t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
-                                 const t3r_budget_settings *settings)
-{
-    return (t3r_head_input){
-        .kernels = &rt->kernels,
-        .map = t3r_pointmap_of(&views[view_index], rt->frame.exponent),
-        .view_index = view_index,
-        .settings = settings,
-        .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
-        .weights = rt->weights,
-        .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
-        .unadapted = !rt->config.adapt,
-    };
-}
-
-uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
-                               const t3r_budget_settings *settings, t3r_gaussian *out)
-{
-    t3r_head_input input = t3r_head_input_of(rt, views, view_index, settings);
-    uint32_t made = heads[rt->config.head](&input, 0, rt->config.height, out);
-    level(out, made, rt->gain_q14[view_index]);
-    return made;
 }
 
 static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
 {
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
     rt->gaussians = 0;
-    for (uint32_t v = 0; v < rt->views; v++) {
-        if (!t3r_progress(rt, T3R_STAGE_HEAD, v, rt->views)) {
-            return T3R_ERR_CANCELLED;
-        }
-        rt->gaussians += t3r_view_to_gaussians(rt, views, v, settings, scene + rt->gaussians);
+    t3r_status status = t3r_views_to_gaussians(rt, views, settings, scene, &rt->gaussians);
+    if (status == T3R_OK) {
+        t3r_hash_scene(rt, T3R_STAGE_HEAD);
     }
-    t3r_hash_scene(rt, T3R_STAGE_HEAD);
-    return T3R_OK;
+    return status;
 }
 
 static t3r_status refine(t3r_runtime *rt, const t3r_view *views)

@@ -2,7 +2,7 @@
 #ifndef T3R_PIPELINE_H
 #define T3R_PIPELINE_H
 
-#include "head/head.h"
+#include "budget/budget.h"
 #include "budget/importance.h"
 #include "trim3r.h"
 #include "core/views.h"
@@ -12,17 +12,11 @@ t3r_status t3r_analyse(t3r_runtime *rt);
 /* Budget and head: the scene. `importance` is that of the allocation `given`, NULL for the others. */
 t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_importance *importance);
 
-/* What t3r_build_scene() allocates by and shows a head, for whoever looks on from outside: of an analysed runtime, its
- * planes by t3r_views_of(). An input holds the pointers it is given, and the bound weights and the arena's work. */
+/* What t3r_build_scene() allocates by, for whoever looks on from outside: of an analysed runtime, its planes by
+ * t3r_views_of(). */
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views);
-t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
-                                 const t3r_budget_settings *settings);
 
-/* Steps of a single view, for streams: its texture plane, not blurred yet; and its retained points by the head,
- * levelled.
- */
+/* The texture plane of a single view, not blurred yet: for streams. */
 void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view);
-uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
-                               const t3r_budget_settings *settings, t3r_gaussian *out);
 
 #endif

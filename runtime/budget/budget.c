@@ -13,23 +13,50 @@
 
 /* --- texture ---------------------------------------------------------------------------------------------------- */
 
+/* A step over the rows of one view, and whatever it needs. */
+typedef struct rows_of_view {
+    const t3r_kernels *kernels; /* of the blur */
+    const t3r_view *view;
+    uint32_t number; /* of the view */
+    const t3r_budget_settings *settings;
+    t3r_cluster *clusters;
+    t3r_group_counts *counts; /* of each worker */
+    uint32_t step;
+} rows_of_view;
+
 /* The 5-box twice: weights 1 2 3 4 5 4 3 2 1 of 25; variance 4 px^2. Beyond the border the edge repeats. */
-void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count)
+static void blur_across(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const rows_of_view *job = context;
+    const t3r_view *view = job->view;
+    for (uint32_t y = begin; y < end; y++) {
+        const size_t at = (size_t)y * view->width;
+        job->kernels->blur_row(view->texture + at, view->width, view->key + at);
+    }
+}
+
+static void blur_down(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const rows_of_view *job = context;
+    const t3r_view *view = job->view;
+    for (uint32_t y = begin; y < end; y++) {
+        const uint16_t *rows[T3R_BLUR_TAPS];
+        for (int32_t tap = 0; tap < T3R_BLUR_TAPS; tap++) {
+            int32_t row = t3r_clamp32((int32_t)y + tap - T3R_BLUR_REACH, 0, (int32_t)view->height - 1);
+            rows[tap] = view->key + (size_t)row * view->width;
+        }
+        job->kernels->blur_column(rows, view->width, view->texture + (size_t)y * view->width);
+    }
+}
+
+void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count, const t3r_workers *workers)
 {
     for (uint32_t v = 0; v < count; v++) {
-        const t3r_view *view = &views[v];
-        const size_t width = view->width;
-        for (uint32_t y = 0; y < view->height; y++) {
-            kernels->blur_row(view->texture + y * width, view->width, view->key + y * width);
-        }
-        for (uint32_t y = 0; y < view->height; y++) {
-            const uint16_t *rows[T3R_BLUR_TAPS];
-            for (int32_t tap = 0; tap < T3R_BLUR_TAPS; tap++) {
-                int32_t row = t3r_clamp32((int32_t)y + tap - T3R_BLUR_REACH, 0, (int32_t)view->height - 1);
-                rows[tap] = view->key + (size_t)row * width;
-            }
-            kernels->blur_column(rows, view->width, view->texture + y * width);
-        }
+        rows_of_view job = {.kernels = kernels, .view = &views[v]};
+        t3r_run_rows(workers, views[v].height, blur_across, &job);
+        t3r_run_rows(workers, views[v].height, blur_down, &job);
     }
 }
 
@@ -135,20 +162,31 @@ static uint16_t key_of(uint32_t threshold, int32_t wanted_q10)
     return (uint16_t)t3r_clamp32(T3R_KEY_ZERO + log_threshold_q10 - wanted_q10, 16, UINT16_MAX);
 }
 
-void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings)
+static void key_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const rows_of_view *job = context;
+    const t3r_view *view = job->view;
+    const t3r_budget_settings *settings = job->settings;
+    for (uint32_t y = begin; y < end; y++) {
+        for (uint32_t x = 0; x < view->width; x++) {
+            size_t i = (size_t)y * view->width + x;
+            uint16_t key = key_of(threshold_at(settings->shift + job->number, x, y, settings),
+                                  t3r_log_wanted_q10(view->texture[i], settings));
+            if (t3r_is_deferred(view, i, settings)) { /* among these the doubtful ones last */
+                key = (uint16_t)((key >> 1) | (t3r_is_doubtful(view->validity[i]) ? 0x8000u : 0));
+            }
+            view->key[i] = key;
+        }
+    }
+}
+
+void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                     const t3r_workers *workers)
 {
     for (uint32_t v = 0; v < count; v++) {
-        for (uint32_t y = 0; y < views[v].height; y++) {
-            for (uint32_t x = 0; x < views[v].width; x++) {
-                size_t i = (size_t)y * views[v].width + x;
-                uint16_t key = key_of(threshold_at(settings->shift + v, x, y, settings),
-                                      t3r_log_wanted_q10(views[v].texture[i], settings));
-                if (t3r_is_deferred(&views[v], i, settings)) { /* among these the doubtful ones last */
-                    key = (uint16_t)((key >> 1) | (t3r_is_doubtful(views[v].validity[i]) ? 0x8000u : 0));
-                }
-                views[v].key[i] = key;
-            }
-        }
+        rows_of_view job = {.view = &views[v], .number = v, .settings = settings};
+        t3r_run_rows(workers, views[v].height, key_rows, &job);
     }
 }
 
@@ -258,34 +296,55 @@ static inline uint32_t group_of(const t3r_view *view, size_t pixel, const t3r_bu
     return by_cluster(settings->allocation) ? label : 0;
 }
 
+/* Runs a step that counts by group over all views, from 0, into the counts of worker 0. */
+static void count_groups(const t3r_view *views, uint32_t count, rows_of_view *job, const t3r_workers *workers,
+                         t3r_rows_task *rows)
+{
+    for (uint32_t w = 0; w < workers->count; w++) {
+        memset(&job->counts[w], 0, sizeof job->counts[w]);
+    }
+    for (uint32_t v = 0; v < count; v++) {
+        job->view = &views[v];
+        t3r_run_rows(workers, views[v].height, rows, job);
+    }
+}
+
+/* Points with a key below threshold + step of their group */
+static void count_below(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    const rows_of_view *job = context;
+    const t3r_view *view = job->view;
+    uint32_t *below = job->counts[worker].of.below;
+    for (size_t i = (size_t)begin * view->width; i < (size_t)end * view->width; i++) {
+        uint32_t g = group_of(view, i, job->settings);
+        if (g != NO_GROUP) {
+            below[g] += view->key[i] < job->clusters[g].threshold + job->step;
+        }
+    }
+}
+
 /* Finds each group's threshold, the least key of which at least `quota` points are not above it, by bisection over
  * the 16 bits of all groups at once; then how many points at the threshold itself are wanted. */
 static void find_thresholds(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                            t3r_cluster *clusters)
+                            t3r_cluster *clusters, const t3r_budget_work *work)
 {
     uint32_t groups = settings->clusters + 1;
-    uint32_t below[T3R_MAX_CLUSTERS + 1];
+    rows_of_view job = {.settings = settings, .clusters = clusters, .counts = work->counts};
     for (uint32_t g = 0; g < groups; g++) {
         clusters[g].threshold = 0;
     }
-    for (int bit = 15; bit >= -1; bit--) {
-        /* Points with a key below threshold + 2^bit; in the last round below the threshold itself */
-        memset(below, 0, sizeof below);
-        uint32_t step = bit >= 0 ? 1u << bit : 0;
-        for (uint32_t v = 0; v < count; v++) {
-            size_t pixels = (size_t)views[v].width * views[v].height;
-            for (size_t i = 0; i < pixels; i++) {
-                uint32_t g = group_of(&views[v], i, settings);
-                if (g != NO_GROUP) {
-                    below[g] += views[v].key[i] < clusters[g].threshold + step;
-                }
-            }
-        }
+    for (int bit = 15; bit >= -1; bit--) { /* in the last round the points below the threshold itself */
+        job.step = bit >= 0 ? 1u << bit : 0;
+        count_groups(views, count, &job, &work->workers, count_below);
         for (uint32_t g = 0; g < groups; g++) {
-            if (bit >= 0 && below[g] < clusters[g].quota) {
-                clusters[g].threshold += step;
+            uint32_t below = 0;
+            for (uint32_t w = 0; w < work->workers.count; w++) {
+                below += work->counts[w].of.below[g];
+            }
+            if (bit >= 0 && below < clusters[g].quota) {
+                clusters[g].threshold += job.step;
             } else if (bit < 0) {
-                clusters[g].ties = clusters[g].quota - below[g];
+                clusters[g].ties = clusters[g].quota - below;
             }
         }
     }
@@ -298,36 +357,46 @@ static int32_t local_density_q10(int32_t density_q10, int32_t wanted_q10)
     return t3r_clamp32(density_q10 + wanted_q10, T3R_LEAST_DENSITY_Q10, 0);
 }
 
+static void expect_points(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    const rows_of_view *job = context;
+    const t3r_view *view = job->view;
+    uint64_t *expected_q16 = job->counts[worker].of.expected_q16;
+    for (size_t i = (size_t)begin * view->width; i < (size_t)end * view->width; i++) {
+        uint32_t g = group_of(view, i, job->settings);
+        if (g < job->settings->clusters) {
+            int32_t wanted = t3r_log_wanted_q10(view->texture[i], job->settings);
+            expected_q16[g] += t3r_exp2_q16(local_density_q10(job->clusters[g].density_q10, wanted) * 64);
+        }
+    }
+}
+
 /* The density of each group for which its pixels' shares sum to its quota. The threshold alone, the key of one point,
  * is a noisy measure of it in small groups; two rounds of proportional correction from there settle it. */
 static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                               t3r_cluster *clusters)
+                               t3r_cluster *clusters, const t3r_budget_work *work)
 {
+    rows_of_view job = {.settings = settings, .clusters = clusters, .counts = work->counts};
     for (uint32_t g = 0; g < settings->clusters; g++) {
         clusters[g].density_q10 = (int32_t)clusters[g].threshold - T3R_KEY_ZERO;
     }
     for (int round = 0; round < 2; round++) {
-        uint64_t expected_q16[T3R_MAX_CLUSTERS] = {0};
-        for (uint32_t v = 0; v < count; v++) {
-            size_t pixels = (size_t)views[v].width * views[v].height;
-            for (size_t i = 0; i < pixels; i++) {
-                uint32_t g = group_of(&views[v], i, settings);
-                if (g < settings->clusters) {
-                    int32_t wanted = t3r_log_wanted_q10(views[v].texture[i], settings);
-                    expected_q16[g] += t3r_exp2_q16(local_density_q10(clusters[g].density_q10, wanted) * 64);
-                }
-            }
-        }
+        count_groups(views, count, &job, &work->workers, expect_points);
         for (uint32_t g = 0; g < settings->clusters; g++) {
-            if (clusters[g].quota > 0 && expected_q16[g] > 0) {
+            uint64_t expected_q16 = 0;
+            for (uint32_t w = 0; w < work->workers.count; w++) {
+                expected_q16 += work->counts[w].of.expected_q16[g];
+            }
+            if (clusters[g].quota > 0 && expected_q16 > 0) {
                 int32_t log_ratio_q16 =
-                    t3r_log2_wide_q16((uint64_t)clusters[g].quota << 16) - t3r_log2_wide_q16(expected_q16[g]);
+                    t3r_log2_wide_q16((uint64_t)clusters[g].quota << 16) - t3r_log2_wide_q16(expected_q16);
                 clusters[g].density_q10 += t3r_round_shift32(log_ratio_q16, 6);
             }
         }
     }
 }
 
+/* Ties go to the first points in the order of views and rows: one after the other. */
 static void set_masks(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
 {
     for (uint32_t v = 0; v < count; v++) {
@@ -383,7 +452,8 @@ static void count_deferred(const t3r_view *views, uint32_t count, const t3r_budg
     }
 }
 
-void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
+void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters,
+                  const t3r_budget_work *work)
 {
     count_deferred(views, count, settings, clusters);
     uint64_t valid = 0;
@@ -403,11 +473,11 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     deferred->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, deferred->points);
     const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
     if (!given) {
-        t3r_budget_keys(views, count, settings);
+        t3r_budget_keys(views, count, settings, &work->workers);
     }
-    find_thresholds(views, count, settings, clusters);
+    find_thresholds(views, count, settings, clusters, work);
     if (!given) {
-        estimate_densities(views, count, settings, clusters);
+        estimate_densities(views, count, settings, clusters, work);
     }
     set_masks(views, count, settings, clusters);
     if (given) {

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/workers.h"
 #include "kernels/kernels.h"
 #include "superclusters/superclusters.h"
 #include "trim3r.h"
@@ -29,6 +30,19 @@ typedef struct t3r_budget_settings {
     bool pass_over_covered; /* the budget is so small that points of surfaces seen twice are wanted once */
 } t3r_budget_settings;
 
+/* Counts of each group of points, one such record a worker. */
+typedef struct t3r_group_counts {
+    union {
+        uint32_t below[T3R_MAX_CLUSTERS + 1];    /* points whose key is below a bound */
+        uint64_t expected_q16[T3R_MAX_CLUSTERS]; /* points expected by the densities */
+    } of;
+} t3r_group_counts;
+
+typedef struct t3r_budget_work {
+    t3r_workers workers;
+    t3r_group_counts *counts; /* of each worker */
+} t3r_budget_work;
+
 /* Whether a point is retained only once all others are: the doubtful ones, and with pass_over_covered those that
  * another view covers. Heads let the splats of other points not grow over them. None when importance is given. */
 static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
@@ -42,7 +56,7 @@ static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r
 bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 
 /* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */
-void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count);
+void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count, const t3r_workers *workers);
 
 /* Mean texture of every cluster (eq. 2), from the texture planes before they are blurred. */
 void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);
@@ -55,12 +69,14 @@ void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
 
 /* The keys of all pixels, of which t3r_allocate() retains the smallest; log2 of the density that a texture asks for, up
  * to a constant, Q10: key = T3R_KEY_ZERO + log2 of the threshold - wanted but for sure and deferred points. */
-void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings);
+void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
+                     const t3r_workers *workers);
 int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings);
 
 /* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. For `given` the key planes hold the keys already
  * (importance.h). */
-void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters);
+void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters,
+                  const t3r_budget_work *work);
 
 /* Log2 of the density of retained points about a pixel under the allocation made last, Q10, at most 0: they are
  * 2^(-density / 2) pixels apart. */

@@ -1,5 +1,6 @@
 #include "arena.h"
 
+#include "budget/budget.h"
 #include "fixed.h"
 #include "raster/raster_splat.h"
 #include "refine/refine.h"
@@ -11,6 +12,8 @@ _Static_assert(sizeof(t3r_gaussian) == T3R_GAUSSIAN_BYTES, "trim3r_arena.h knows
 _Static_assert(sizeof(t3r_splat) == T3R_SPLAT_BYTES, "trim3r_arena.h knows the splat's size");
 _Static_assert(sizeof(t3r_cluster) == T3R_CLUSTER_BYTES, "trim3r_arena.h knows the SuperCluster's size");
 _Static_assert(sizeof(t3r_cluster_work) <= T3R_CLUSTER_WORK_BYTES, "trim3r_arena.h knows the K-means' work");
+_Static_assert(sizeof(t3r_cluster_sums) == T3R_CLUSTER_SUMS_BYTES, "trim3r_arena.h knows the K-means' sums");
+_Static_assert(sizeof(t3r_group_counts) == T3R_GROUP_COUNTS_BYTES, "trim3r_arena.h knows the budget's counts");
 _Static_assert(sizeof(t3r_refine_sums) == T3R_REFINE_SUMS_BYTES, "trim3r_arena.h knows refinement's sums");
 _Static_assert(sizeof(t3r_map_record) == T3R_MAP_RECORD_BYTES, "trim3r_arena.h knows the map record's size");
 _Static_assert(sizeof(t3r_correction) == T3R_CORRECTION_BYTES, "trim3r_arena.h knows the correction's size");
@@ -29,7 +32,7 @@ static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
 {
     const uint32_t keep = c->stream != 0 ? T3R_KEEP_MAP : c->keep_analysis;
     T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,
-                c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO)
+                c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO, c->workers)
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)
@@ -94,7 +97,7 @@ t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout 
 
 const char *t3r_buffer_name(enum t3r_buffer buffer)
 {
-    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
+    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
     return names[buffer];
 }
 

@@ -35,6 +35,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .keep_analysis = 0,
         .stream = 0,
         .half_life = 32,
+        .workers = 1,
         .seed = 1,
     };
 }
@@ -81,6 +82,7 @@ const char *t3r_config_error(const t3r_config *c)
         {"keep_analysis must be 0 or 1", c->keep_analysis, 0, 1},
         {"stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo},
         {"half_life must be 0..1024", c->half_life, 0, 1024},
+        {"workers must be 1..16", c->workers, 1, T3R_MAX_WORKERS},
     };
     for (size_t i = 0; i < sizeof range / sizeof range[0]; i++) {
         if (range[i].value < range[i].low || range[i].value > range[i].high) {

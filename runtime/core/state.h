@@ -11,6 +11,7 @@
 #include "kernels/kernels.h"
 #include "trim3r.h"
 #include "views.h"
+#include "workers.h"
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 
@@ -67,17 +68,9 @@ static inline bool t3r_progress(const t3r_runtime *rt, t3r_stage stage, uint32_t
     return rt->hooks.progress == NULL || rt->hooks.progress(rt->hooks.user, stage, done, total) == 0;
 }
 
-/* Runs the task over 0..count-1, through the hook when there is one. */
-static inline void t3r_parallel(const t3r_runtime *rt, uint32_t count, void (*task)(void *context, uint32_t index),
-                                void *context)
+static inline t3r_workers t3r_workers_of(const t3r_runtime *rt)
 {
-    if (rt->hooks.parallel_for != NULL && count > 1) {
-        rt->hooks.parallel_for(rt->hooks.user, count, task, context);
-        return;
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        task(context, i);
-    }
+    return (t3r_workers){&rt->hooks, rt->config.workers};
 }
 
 #endif

@@ -36,6 +36,7 @@ extern "C" {
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536u
 #define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
+#define T3R_MAX_WORKERS 16u
 
 typedef enum t3r_status {
     T3R_OK = 0,
@@ -177,7 +178,9 @@ typedef struct t3r_config {
                                    depth of a sensor */
     uint32_t half_life;         /* of a stream: keyframes that halve the density of what they do not see, 0..1024;
                                    0 = nothing fades */
-    uint32_t seed;              /* of the K-means, of the allocation `random`, and of blue-noise ties */
+    uint32_t workers; /* tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS: each has a part
+                         of the arena for itself. Never changes a bit. */
+    uint32_t seed;    /* of the K-means, of the allocation `random`, and of blue-noise ties */
 } t3r_config;
 
 /* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */
@@ -226,8 +229,11 @@ typedef struct t3r_hooks {
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
     /* When set, every stage of t3r_reconstruct(), t3r_rebudget() and t3r_render() is hashed (SPEC, "Hash"). */
     void (*stage_hash)(void *user, t3r_stage stage, uint64_t hash);
-    /* Runs task(context, 0..count-1) in any order, on any threads, and returns when all are done. */
-    void (*parallel_for)(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context);
+    /* Runs task(context, index, worker) for each index in 0..count-1, in any order, on any threads, and returns when
+     * all are done. `worker` is below t3r_config.workers, and no two tasks that run at the same time have the same one:
+     * it is the number of the thread. The runtime never calls the hook from within a task. */
+    void (*parallel_for)(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                         void *context);
 } t3r_hooks;
 
 /* One line of the plan: a buffer of the arena. */

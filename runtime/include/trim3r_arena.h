@@ -33,6 +33,8 @@
 #define T3R_SORT_BYTES 4096          /* four histograms of 256 counts */
 #define T3R_CLUSTER_BYTES 56         /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
+#define T3R_GROUP_COUNTS_BYTES 4096  /* what the budget counts by SuperCluster */
+#define T3R_CLUSTER_SUMS_BYTES 26624 /* sums of each worker but the first */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
  * heads nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
 #define T3R_HEAD_COLUMN_BYTES 704
@@ -64,6 +66,8 @@
     (T3R_UP_((size_t)(z)*T3R_SPLAT_BYTES) + T3R_UP_((size_t)(z)*T3R_ORDER_BYTES + T3R_SORT_BYTES) +                    \
      T3R_UP_(T3R_TILES_(w, h) * 4) + T3R_UP_((size_t)(z)*T3R_CORRECTION_BYTES))
 #define T3R_REFINE_LEAST_SUMS_(z) (((size_t)(z) + 7) / 8)
+/* Gaussians that may reach into one worker's tiles from those of another: where there are more, fewer workers draw. */
+#define T3R_REFINE_BORDER_(z) (((size_t)(z) + 3) / 4)
 #define T3R_REFINE_BYTES_(w, h, v, z, n)                                                                               \
     (T3R_ANY_(v) * T3R_ANY_(n) *                                                                                       \
      (T3R_REFINE_FIXED_BYTES_(w, h, z) + T3R_UP_(T3R_REFINE_LEAST_SUMS_(z) * T3R_REFINE_SUMS_BYTES) +                  \
@@ -115,11 +119,14 @@
 #define T3R_STEREO_PLANES_(width, height, disparities)                                                                 \
     (T3R_STEREO_SIDE_BYTES_(T3R_STEREO_LEFT_(width, height)) +                                                         \
      T3R_STEREO_SIDE_BYTES_(T3R_STEREO_RIGHT_(width, height, disparities)))
+/* What the matching takes, and at least a view's luma twice */
+#define T3R_STEREO_REST_BYTES_(width, height, disparities, paths)                                                      \
+    T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height), disparities,   \
+                                  paths),                                                                              \
+             2 * T3R_PIXELS_(width, height))
 #define T3R_STEREO_WORK_BYTES(width, height, disparities, paths)                                                       \
     (T3R_STEREO_PLANES_(width, height, disparities) +                                                                  \
-     T3R_UP_(T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height),       \
-                                           disparities, paths),                                                        \
-                      2 * T3R_PIXELS_(width, height))))
+     T3R_UP_(T3R_STEREO_REST_BYTES_(width, height, disparities, paths)))
 /* Depth and confidence of two views as one pair has them, where several pairs tell of a view */
 #define T3R_STEREO_PAIR_BYTES_(w, h) (2 * (T3R_UP_(T3R_PIXELS_(w, h) * 2) + T3R_UP_(T3R_PIXELS_(w, h))))
 #define T3R_STEREO_BYTES_(w, h, v, s)                                                                                  \
@@ -130,16 +137,16 @@
 /* X(p, NAME, text, bytes, first, last); p is handed through.
  * w x h working size, v views, z Gaussians, k clusters, rw x rh largest target, hc the learned head's bytes a column;
  * keep: the analysis outlives the build, or T3R_KEEP_MAP: a stream, whose map and keyframes outlive everything, one
- * keyframe being analysed at a time; n refinements; s: depth is made by stereo. Buffers come in the order of their
- * first stage; `scene` and nothing else is laid from the arena's end, so that lifetimes nest and the sum over the live
- * buffers of a stage is what that stage needs. `tile lists` and `refinement work` grow: more bytes than their minimum
- * save passes. */
+ * keyframe being analysed at a time; n refinements; s: depth is made by stereo; wk workers. Buffers come in the order
+ * of their first stage; `scene` and nothing else is laid from the arena's end, so that lifetimes nest and the sum over
+ * the live buffers of a stage is what that stage needs. `tile lists` and `refinement work` grow: more bytes than their
+ * minimum save passes. */
 #define T3R_KEEP_MAP 2
 #define T3R_STREAMS_(keep) ((keep) == T3R_KEEP_MAP)
 #define T3R_LAST_(keep, stage) ((keep) ? T3R_AT_RASTER : (stage))
 #define T3R_LAST_ANALYSIS_(keep, stage) ((keep) && !T3R_STREAMS_(keep) ? T3R_AT_RASTER : (stage))
 #define T3R_ANALYSED_(v, keep) (T3R_STREAMS_(keep) ? T3R_ANY_(v) : (size_t)(v))
-#define T3R_BUFFERS(X, p, w, h, v, z, k, rw, rh, hc, keep, n, s)                                                       \
+#define T3R_BUFFERS(X, p, w, h, v, z, k, rw, rh, hc, keep, n, s, wk)                                                   \
     X(p, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                               \
     X(p, MAP_RECORDS, "map records", T3R_STREAMS_(keep) * (size_t)(z)*T3R_MAP_RECORD_BYTES, T3R_AT_IMAGE,              \
       T3R_AT_RASTER)                                                                                                   \
@@ -149,22 +156,32 @@
     X(p, IMAGE_WORK, "undistortion and resize work",                                                                   \
       T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w)*24), T3R_AT_IMAGE, T3R_AT_IMAGE)  \
     X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \
+    X(p, POINTMAP_WORK, "comparison of views", T3R_ANY_(v) * T3R_PIXELS_(w, h) * 4, T3R_AT_POINTMAP, T3R_AT_POINTMAP)  \
     X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_WAVELET,                    \
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
-    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * T3R_WAVELET_WORK_BYTES_(w, h), T3R_AT_WAVELET, T3R_AT_WAVELET)    \
+    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (wk)*T3R_WAVELET_WORK_BYTES_(w, h), T3R_AT_WAVELET,               \
+      T3R_AT_WAVELET)                                                                                                  \
     X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_SUPERCLUSTERS,          \
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * ((k) + 1) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                 \
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, CLUSTER_WORK, "K-means work", T3R_ANY_(v) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS,                     \
       T3R_AT_SUPERCLUSTERS)                                                                                            \
+    X(p, CLUSTER_SUMS, "workers' K-means sums", T3R_ANY_(v) * ((wk)-1) * T3R_CLUSTER_SUMS_BYTES, T3R_AT_SUPERCLUSTERS, \
+      T3R_AT_SUPERCLUSTERS)                                                                                            \
     X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * T3R_ANALYSED_(v, keep) * 4, T3R_AT_BUDGET,                     \
       T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
     X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_BUDGET,                           \
       T3R_STREAMS_(keep) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                                \
-    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * T3R_HEAD_WORK_(w, h, hc), T3R_AT_HEAD, T3R_AT_HEAD)                     \
+    X(p, BUDGET_WORK, "counts by SuperCluster", T3R_ANY_(v) * (wk)*T3R_GROUP_COUNTS_BYTES, T3R_AT_BUDGET,              \
+      T3R_AT_BUDGET)                                                                                                   \
+    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * (wk)*T3R_UP_(T3R_HEAD_WORK_(w, h, hc)), T3R_AT_HEAD, T3R_AT_HEAD)       \
     X(p, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(keep) * T3R_PIXELS_(w, h) * 4, T3R_AT_REFINE,             \
       T3R_AT_REFINE)                                                                                                   \
+    X(p, BORDER_SUMS, "sums across workers' borders",                                                                  \
+      T3R_ANY_(v) * T3R_ANY_((n) + T3R_STREAMS_(keep)) * ((wk)-1) * T3R_REFINE_BORDER_(z) *                            \
+          (T3R_REFINE_SUMS_BYTES + 4),                                                                                 \
+      T3R_AT_REFINE, T3R_AT_REFINE)                                                                                    \
     X(p, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep)), T3R_AT_REFINE,       \
       T3R_AT_REFINE)                                                                                                   \
     X(p, SPLATS, "projected splats", (size_t)(z)*T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)                        \
@@ -174,7 +191,7 @@
     X(p, SCENE, "scene", (size_t)(z)*T3R_GAUSSIAN_BYTES, T3R_STREAMS_(keep) ? T3R_AT_IMAGE : T3R_AT_HEAD, T3R_AT_RASTER)
 
 #define T3R_NAME_(p, NAME, text, bytes, first, last) T3R_BUFFER_##NAME,
-enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0) T3R_BUFFER_COUNT };
+enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1) T3R_BUFFER_COUNT };
 
 /* Tile-list bytes with which a pass takes a whole view, unless most splats are many tiles wide: an entry for four tiles
  * a Gaussian and one a pixel. */
@@ -182,23 +199,23 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0) T3R
 
 #define T3R_LIVE_(stage, NAME, text, bytes, first, last)                                                               \
     +((first) <= (stage) && (stage) <= (last) ? T3R_UP_(bytes) : (size_t)0)
-#define T3R_STAGE_BYTES_(stage, w, h, v, z, k, rw, rh, hc, keep, n, s)                                                 \
-    (0 T3R_BUFFERS(T3R_LIVE_, stage, w, h, v, z, k, rw, rh, hc, keep, n, s))
+#define T3R_STAGE_BYTES_(stage, w, h, v, z, k, rw, rh, hc, keep, n, s, wk)                                             \
+    (0 T3R_BUFFERS(T3R_LIVE_, stage, w, h, v, z, k, rw, rh, hc, keep, n, s, wk))
 /* Every argument is written out 2^depth times, so the tree is kept flat. */
 #define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
-#define T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, more_refine, more_raster)                           \
-    T3R_MAX_(T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, w, h, v, z, k, rw, rh, hc, keep, n, s),                          \
-                       T3R_STAGE_BYTES_(T3R_AT_DEPTH, w, h, v, z, k, rw, rh, hc, keep, n, s),                          \
-                       T3R_STAGE_BYTES_(T3R_AT_WAVELET, w, h, v, z, k, rw, rh, hc, keep, n, s),                        \
-                       T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, w, h, v, z, k, rw, rh, hc, keep, n, s)),                 \
-             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, w, h, v, z, k, rw, rh, hc, keep, n, s),                         \
-                       T3R_STAGE_BYTES_(T3R_AT_HEAD, w, h, v, z, k, rw, rh, hc, keep, n, s),                           \
-                       T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s) + (more_refine),         \
-                       T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s) + (more_raster)))
-#define T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s)                                                          \
-    T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, 0, 0)
-#define T3R_FULL_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s)                                                         \
-    T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s,                                                         \
+#define T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk, more_refine, more_raster)                       \
+    T3R_MAX_(T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                      \
+                       T3R_STAGE_BYTES_(T3R_AT_DEPTH, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                      \
+                       T3R_STAGE_BYTES_(T3R_AT_WAVELET, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                    \
+                       T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, w, h, v, z, k, rw, rh, hc, keep, n, s, wk)),             \
+             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                     \
+                       T3R_STAGE_BYTES_(T3R_AT_HEAD, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                       \
+                       T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s, wk) + (more_refine),     \
+                       T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s, wk) + (more_raster)))
+#define T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk)                                                      \
+    T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk, 0, 0)
+#define T3R_FULL_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk)                                                     \
+    T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk,                                                     \
                         T3R_UP_(T3R_REFINE_FULL_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))) -                        \
                             T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))),                          \
                         T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)) - T3R_UP_((size_t)(z)*4))
@@ -206,19 +223,19 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0) T3R
 /* For the default configuration (300 SuperClusters, four refinements, targets of the working size, analysis not kept):
  * the smallest arena that works, and the one with which a view takes one pass (views of wide splats may take more). */
 #define T3R_ARENA_MIN_BYTES(width, height, views, gaussians)                                                           \
-    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 0)
+    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 0, 1)
 #define T3R_ARENA_BYTES(width, height, views, gaussians)                                                               \
-    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 0)
+    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 0, 1)
 /* The same with depth by stereo (t3r_config.depth). */
 #define T3R_STEREO_ARENA_MIN_BYTES(width, height, views, gaussians)                                                    \
-    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1)
+    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1, 1)
 #define T3R_STEREO_ARENA_BYTES(width, height, views, gaussians)                                                        \
-    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1)
+    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1, 1)
 
 /* Likewise of a stream (t3r_config.stream) with `views` keyframes at hand, otherwise of the default configuration. */
 #define T3R_STREAM_MIN_BYTES(width, height, views, gaussians)                                                          \
-    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, T3R_KEEP_MAP, 4, 0)
+    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, T3R_KEEP_MAP, 4, 0, 1)
 #define T3R_STREAM_BYTES(width, height, views, gaussians)                                                              \
-    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, T3R_KEEP_MAP, 4, 0)
+    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, T3R_KEEP_MAP, 4, 0, 1)
 
 #endif

@@ -153,15 +153,18 @@ static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_sight *
     return 16 * t3r_abs64(behind) <= sight->z_q20 ? t3r_marked(T3R_BRIDGED, T3R_MARK_COVERED) : validity;
 }
 
-uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled)
-{
-    const t3r_view *view = &views[v];
+typedef struct settle_job {
     t3r_pointmap maps[T3R_MAX_VIEWS];
-    uint32_t bridged = 0;
-    for (uint32_t w = 0; w < count; w++) {
-        maps[w] = t3r_pointmap_of(&views[w], exponent);
-    }
-    for (uint32_t y = 0; y < view->height; y++) {
+    uint32_t count, v, settled;
+    uint32_t bridged[T3R_MAX_WORKERS]; /* by each worker */
+} settle_job;
+
+/* Of the own view a pixel reads and writes itself alone. */
+static void settle_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    settle_job *job = context;
+    const t3r_view *view = job->maps[job->v].view;
+    for (uint32_t y = begin; y < end; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
             size_t pixel = (size_t)y * view->width + x;
             uint8_t validity = view->validity[pixel];
@@ -171,16 +174,30 @@ uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, in
             if (t3r_is_lent(validity)) {
                 validity = t3r_marked(T3R_BRIDGED, T3R_MARK_COVERED);
             }
-            for (uint32_t w = 0; w < count && t3r_has_depth(validity); w++) {
+            for (uint32_t w = 0; w < job->count && t3r_has_depth(validity); w++) {
                 t3r_sight sight;
-                if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight)) {
-                    validity = judge(validity, &maps[w], &sight, (settled >> w & 1) != 0);
+                if (w != job->v && t3r_reproject(&job->maps[job->v], x, y, &job->maps[w], &sight)) {
+                    validity = judge(validity, &job->maps[w], &sight, (job->settled >> w & 1) != 0);
                 }
             }
             view->validity[pixel] = validity;
             view->depth[pixel] = t3r_has_depth(validity) ? view->depth[pixel] : 0;
-            bridged += t3r_has_depth(validity) && !t3r_is_covered(validity);
+            job->bridged[worker] += t3r_has_depth(validity) && !t3r_is_covered(validity);
         }
+    }
+}
+
+uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled,
+                           const t3r_pointmap_work *work)
+{
+    settle_job job = {.count = count, .v = v, .settled = settled};
+    for (uint32_t w = 0; w < count; w++) {
+        job.maps[w] = t3r_pointmap_of(&views[w], exponent);
+    }
+    t3r_run_rows(&work->workers, views[v].height, settle_rows, &job);
+    uint32_t bridged = 0;
+    for (uint32_t w = 0; w < work->workers.count; w++) {
+        bridged += job.bridged[w];
     }
     return bridged;
 }

@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "core/views.h"
+#include "pointmap_work.h"
 
 /* Gives depth to pixels without one that have known ones within `radius` (0..255; 0 leaves what other views lend) at
  * both ends of their row, column or diagonals. Known is what is measured, filled, or measured by another view and seen
@@ -18,6 +19,7 @@
  * 8 x radius. */
 void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent);
 void t3r_bridge_view(const t3r_view *view, uint32_t radius);
-uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled);
+uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled,
+                           const t3r_pointmap_work *work);
 
 #endif

@@ -64,23 +64,42 @@ static bool seen_through_by_any(const t3r_pointmap *maps, uint32_t count, uint32
     return false;
 }
 
-uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed)
-{
+typedef struct flying_job {
     t3r_pointmap maps[T3R_MAX_VIEWS];
-    const t3r_view *view = &views[v];
-    uint32_t marked = 0;
-    for (uint32_t w = 0; w < count; w++) {
-        maps[w] = t3r_pointmap_of(&views[w], exponent);
-    }
-    for (uint32_t y = 0; y < view->height; y++) {
+    uint32_t count, v;
+    bool guessed;
+    uint8_t *is_flying; /* of each pixel */
+} flying_job;
+
+/* Neighbours' validity is read here, so nothing is marked before all pixels are found. */
+static void find_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const flying_job *job = context;
+    const t3r_view *view = job->maps[job->v].view;
+    for (uint32_t y = begin; y < end; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
-            uint8_t *validity = &view->validity[(size_t)y * view->width + x];
-            if (!t3r_is_bridged(*validity) &&
-                (between_surfaces(view, x, y) || seen_through_by_any(maps, count, v, x, y, guessed))) {
-                *validity = t3r_marked(*validity, T3R_MARK_DOUBTFUL);
-                marked++;
-            }
+            const size_t pixel = (size_t)y * view->width + x;
+            job->is_flying[pixel] = !t3r_is_bridged(view->validity[pixel]) &&
+                                    (between_surfaces(view, x, y) ||
+                                     seen_through_by_any(job->maps, job->count, job->v, x, y, job->guessed));
         }
+    }
+}
+
+uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed,
+                         const t3r_pointmap_work *work)
+{
+    const t3r_view *view = &views[v];
+    flying_job job = {.count = count, .v = v, .guessed = guessed, .is_flying = (uint8_t *)work->pixels};
+    for (uint32_t w = 0; w < count; w++) {
+        job.maps[w] = t3r_pointmap_of(&views[w], exponent);
+    }
+    t3r_run_rows(&work->workers, view->height, find_rows, &job);
+    uint32_t marked = 0;
+    for (size_t i = 0; i < (size_t)view->width * view->height; i++) {
+        view->validity[i] |= job.is_flying[i] != 0 ? T3R_MARK_DOUBTFUL : 0;
+        marked += job.is_flying[i];
     }
     return marked;
 }

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "pointmap_work.h"
 #include "reproject.h"
 #include "core/views.h"
 
@@ -16,7 +17,8 @@
  *   deeper by more than 1/16. A pixel of misregistration at an edge is forgiven so. Where filled depths are guesses
  *   (`guessed`), those of the other view bear witness too, against filled ones.
  * Depths stay. What is marked does not depend on the order of the views. */
-uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed);
+uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed,
+                         const t3r_pointmap_work *work);
 
 /* Whether `to` measured the pixel that the sight falls on, and everything measured about it is deeper by more than
  * 1/16; with `filled`, every depth counts as measured. */

@@ -34,24 +34,50 @@ static bool covers(const t3r_pointmap *from, uint32_t x, uint32_t y, const t3r_p
     return same_surface_q20(sight->z_q20, there) && fine_enough(from->view, z, to->view, sight->z_q20, earlier);
 }
 
-uint32_t t3r_mark_covered(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent)
+typedef struct covered_job {
+    t3r_pointmap maps[T3R_MAX_VIEWS];
+    uint32_t count, v;
+    uint32_t *witness; /* of each pixel the one that covers it: view x pixels of a view + pixel + 1, or 0 */
+} covered_job;
+
+/* Marks what is covered. The witnesses lie in other views, where another task may mark the same byte: later. */
+static void mark_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
-    const t3r_view *view = &views[v];
-    t3r_pointmap from = t3r_pointmap_of(view, exponent);
-    uint32_t marked = 0;
-    for (uint32_t w = 0; w < count; w++) {
-        t3r_pointmap to = t3r_pointmap_of(&views[w], exponent);
-        for (uint32_t y = 0; y < view->height && w != v; y++) {
-            for (uint32_t x = 0; x < view->width; x++) {
-                uint8_t *validity = &view->validity[(size_t)y * view->width + x];
+    (void)worker;
+    const covered_job *job = context;
+    const t3r_view *view = job->maps[job->v].view;
+    const uint32_t pixels = view->width * view->height;
+    for (uint32_t y = begin; y < end; y++) {
+        for (uint32_t x = 0; x < view->width; x++) {
+            const size_t pixel = (size_t)y * view->width + x;
+            job->witness[pixel] = 0;
+            for (uint32_t w = 0; w < job->count && job->witness[pixel] == 0; w++) {
                 t3r_sight sight;
-                if (t3r_is_known(*validity) && covers(&from, x, y, &to, w < v, &sight)) {
-                    uint8_t *witness = &views[w].validity[sight.pixel];
-                    *validity = t3r_marked(*validity, T3R_MARK_COVERED);
-                    *witness = t3r_marked(*witness, T3R_MARK_WITNESS);
-                    marked++;
+                if (w != job->v && t3r_is_known(view->validity[pixel]) &&
+                    covers(&job->maps[job->v], x, y, &job->maps[w], w < job->v, &sight)) {
+                    view->validity[pixel] = t3r_marked(view->validity[pixel], T3R_MARK_COVERED);
+                    job->witness[pixel] = w * pixels + (uint32_t)sight.pixel + 1; /* at most 2^4 x 2^24 */
                 }
             }
+        }
+    }
+}
+
+uint32_t t3r_mark_covered(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent,
+                          const t3r_pointmap_work *work)
+{
+    const uint32_t pixels = views[v].width * views[v].height;
+    covered_job job = {.count = count, .v = v, .witness = work->pixels};
+    for (uint32_t w = 0; w < count; w++) {
+        job.maps[w] = t3r_pointmap_of(&views[w], exponent);
+    }
+    t3r_run_rows(&work->workers, views[v].height, mark_rows, &job);
+    uint32_t marked = 0;
+    for (uint32_t i = 0; i < pixels; i++) {
+        if (job.witness[i] != 0) {
+            uint8_t *witness = &views[(job.witness[i] - 1) / pixels].validity[(job.witness[i] - 1) % pixels];
+            *witness = t3r_marked(*witness, T3R_MARK_WITNESS);
+            marked++;
         }
     }
     return marked;

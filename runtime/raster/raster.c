@@ -18,8 +18,9 @@ typedef struct tile_job {
 /* Tiles drawn between two looks at the progress hook. */
 #define DRAW_CHUNK 64u
 
-static void draw_job(void *context, uint32_t index)
+static void draw_job(void *context, uint32_t index, uint32_t worker)
 {
+    (void)worker;
     const tile_job *job = context;
     const t3r_binning *bin = job->bin;
     uint32_t tile = job->first + index;
@@ -62,6 +63,7 @@ static uint64_t hash_target(const t3r_target *target)
 
 t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const t3r_target *target, uint32_t *passes)
 {
+    const t3r_workers workers = t3r_workers_of(rt);
     *passes = 0;
     for (uint32_t first = 0; first < bin->tiles; ++*passes) {
         uint32_t end = t3r_bin_pass(bin, first);
@@ -70,7 +72,7 @@ t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const
                 return T3R_ERR_CANCELLED;
             }
             tile_job job = {bin, target, first, tile};
-            t3r_parallel(rt, T3R_MIN(end - tile, DRAW_CHUNK), draw_job, &job);
+            t3r_run_tasks(&workers, T3R_MIN(end - tile, DRAW_CHUNK), draw_job, &job);
         }
         first = end;
     }

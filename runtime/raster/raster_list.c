@@ -3,7 +3,7 @@
 #include "core/fixed.h"
 #include "core/state.h"
 
-#define PROJECT_CHUNK 4096u
+#define PROJECT_CHUNK 512u
 
 typedef struct project_job {
     const t3r_kernels *kernels;
@@ -13,8 +13,9 @@ typedef struct project_job {
     t3r_splat *splats;
 } project_job;
 
-static void project_chunk(void *context, uint32_t index)
+static void project_chunk(void *context, uint32_t index, uint32_t worker)
 {
+    (void)worker;
     const project_job *job = context;
     uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
     job->kernels->project(job->projection, job->gaussians + first, end - first, job->splats + first);
@@ -28,7 +29,8 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
     uint32_t *indices[2] = {keys[1] + most, keys[1] + 2 * (size_t)most};
 
     project_job projecting = {&rt->kernels, projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, room->splats};
-    t3r_parallel(rt, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
+    const t3r_workers workers = t3r_workers_of(rt);
+    t3r_run_tasks(&workers, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
     uint32_t visible = 0;
     for (uint32_t i = 0; i < count; i++) {
         keys[0][visible] = (uint32_t)room->splats[i].z_q20;

@@ -2,45 +2,48 @@
 
 #include <string.h>
 
+#include "core/cut.h"
 #include "core/fixed.h"
+#include "refine_bands.h"
 #include "refine_tile.h"
 #include "core/state.h"
 
 /* The refinement work, cut up. The first four parts and the least lists always fit; sums take what they can use of the
  * rest, lists what is left. */
-typedef struct workshop {
+typedef struct layout {
     t3r_raster_room room;
     t3r_correction *corrections; /* of all Gaussians: the pass before's, as far as this one's are not there yet */
     t3r_refine_sums *sums;
     uint32_t slice; /* Gaussians whose sums fit */
-} workshop;
+    t3r_refine_borders borders;
+} layout;
 
-static workshop workshop_of(const t3r_runtime *rt)
+static layout layout_of(const t3r_runtime *rt)
 {
     const t3r_config *c = &rt->config;
     size_t most = c->max_gaussians, least_lists = T3R_UP_(most * sizeof(uint32_t));
-    uint8_t *at = t3r_buffer_at(rt, T3R_BUFFER_REFINE_WORK), *end = at + rt->refine_bytes;
-    workshop w;
-    w.room.splats = (void *)at;
-    at += T3R_UP_(most * T3R_SPLAT_BYTES);
-    w.room.order = (void *)at;
-    at += T3R_UP_(most * T3R_ORDER_BYTES + T3R_SORT_BYTES);
-    w.room.table = (void *)at;
-    at += T3R_UP_(T3R_TILES_(c->width, c->height) * sizeof(uint32_t));
-    w.corrections = (void *)at;
-    at += T3R_UP_(most * T3R_CORRECTION_BYTES);
-    w.sums = (void *)at;
-    size_t rest = (size_t)(end - at) - least_lists;
-    w.slice = (uint32_t)T3R_MIN(rest / T3R_REFINE_SUMS_BYTES, most);
-    at += T3R_UP_((size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* the rest is a multiple of the alignment */
-    w.room.lists = (void *)at;
-    w.room.capacity = T3R_MIN((uint64_t)(size_t)(end - at) / sizeof(uint32_t), (uint64_t)UINT32_MAX);
+    t3r_cut cut = t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_REFINE_WORK), rt->refine_bytes);
+    layout w;
+    w.room.splats = t3r_take(&cut, most * T3R_SPLAT_BYTES);
+    w.room.order = t3r_take(&cut, most * T3R_ORDER_BYTES + T3R_SORT_BYTES);
+    w.room.table = t3r_take(&cut, T3R_TILES_(c->width, c->height) * sizeof(uint32_t));
+    w.corrections = t3r_take(&cut, most * T3R_CORRECTION_BYTES);
+    w.slice = (uint32_t)T3R_MIN((t3r_cut_left(&cut) - least_lists) / T3R_REFINE_SUMS_BYTES, most);
+    w.sums = t3r_take(&cut, (size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* what is left is a multiple of the alignment */
+    w.room.capacity = T3R_MIN((uint64_t)t3r_cut_left(&cut) / sizeof(uint32_t), (uint64_t)UINT32_MAX);
+    w.room.lists = t3r_take(&cut, t3r_cut_left(&cut));
+
+    const t3r_workers workers = t3r_workers_of(rt);
+    w.borders.bands = t3r_is_parallel(&workers) ? workers.count : 1;
+    w.borders.most = (uint32_t)T3R_REFINE_BORDER_(most);
+    w.borders.sums = t3r_buffer_at(rt, T3R_BUFFER_BORDER_SUMS);
+    w.borders.index = (void *)(w.borders.sums + (size_t)(c->workers - 1) * w.borders.most);
     return w;
 }
 
 t3r_raster_room t3r_refine_room(const t3r_runtime *rt)
 {
-    return workshop_of(rt).room;
+    return layout_of(rt).room;
 }
 
 /* Before a view adds to a Gaussian's sums they are brought to the scale that its box asks for. */
@@ -64,101 +67,219 @@ static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
     }
 }
 
-/* One view drawn from the scene, no Gaussian being told. */
-static uint64_t error_of(const t3r_runtime *rt, const workshop *w, const t3r_view *views, uint32_t v,
+/* One view on its way: what all its bands share. */
+typedef struct view_job {
+    const t3r_refine_view *view;
+    const t3r_binning *bin;
+    uint32_t begin; /* the first tile of the pass: its list starts at 0 */
+    t3r_refine_band bands[T3R_MAX_WORKERS];
+} view_job;
+
+/* A view whose error is measured: of each band. */
+typedef struct error_job {
+    view_job job;
+    uint64_t error[T3R_MAX_WORKERS];
+    uint32_t pixels[T3R_MAX_WORKERS];
+} error_job;
+
+static uint32_t list_begin(const view_job *job, uint32_t tile)
+{
+    return tile == job->begin ? 0 : job->bin->table[tile - 1];
+}
+
+static void accumulate_band(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker; /* a band has room of its own, and there are no more bands than workers */
+    const view_job *job = context;
+    const t3r_binning *bin = job->bin;
+    const t3r_refine_band *band = &job->bands[index];
+    t3r_refine_view view = *job->view;
+    view.bands = job->bands;
+    view.band = index;
+    view.kept += (size_t)index * view.kept_rows;
+    for (uint32_t tile = band->begin; tile < band->end; tile++) {
+        const uint32_t from = list_begin(job, tile);
+        t3r_refine_tile(&view, bin->lists + from, bin->table[tile] - from, tile % bin->across, tile / bin->across);
+    }
+}
+
+static void measure_band(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker;
+    error_job *to = context;
+    const view_job *job = &to->job;
+    const t3r_binning *bin = job->bin;
+    to->error[index] = 0;
+    to->pixels[index] = 0;
+    for (uint32_t tile = job->bands[index].begin; tile < job->bands[index].end; tile++) {
+        const uint32_t from = list_begin(job, tile);
+        to->error[index] += t3r_refine_tile_error(job->view, bin->lists + from, bin->table[tile] - from,
+                                                  tile % bin->across, tile / bin->across, &to->pixels[index]);
+    }
+}
+
+/* One view drawn from the scene; no Gaussian's sums change. */
+static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view *views, uint32_t v,
                          const t3r_projection *projection, uint32_t *pixels)
 {
-    t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
-    t3r_refine_view job = {
+    const t3r_workers workers = t3r_workers_of(rt);
+    const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
+    const t3r_refine_view view = {
         .kernels = &rt->kernels, .view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
+    error_job to = {.job = {.view = &view, .bin = &bin}};
+    view_job *job = &to.job;
     uint64_t error = 0;
-    for (uint32_t begin = 0; begin < bin.tiles;) {
-        uint32_t end = t3r_bin_pass(&bin, begin);
-        for (uint32_t tile = begin; tile < end; tile++) {
-            uint32_t from = tile == begin ? 0 : bin.table[tile - 1];
-            error += t3r_refine_tile_error(&job, bin.lists + from, bin.table[tile] - from, tile % bin.across,
-                                           tile / bin.across, pixels);
+    while (job->begin < bin.tiles) {
+        uint32_t end = t3r_bin_pass(&bin, job->begin);
+        uint32_t bands = t3r_refine_bands(&bin, job->begin, end, &view.slice, &w->borders, job->bands);
+        t3r_run_tasks(&workers, bands, measure_band, &to);
+        for (uint32_t b = 0; b < bands; b++) {
+            error += to.error[b];
+            *pixels += to.pixels[b];
         }
-        begin = end;
+        job->begin = end;
     }
     return error;
 }
 
-/* Tiles after each other: neighbours add to the same sums. */
-static void measure(const t3r_runtime *rt, const workshop *w, const t3r_view *views, uint32_t v,
-                    const t3r_projection *projection, uint32_t first, uint32_t count)
+/* Gaussians a task widens, solves or applies. */
+#define CHUNK 512u
+
+static uint32_t chunks_of(uint32_t count)
 {
-    t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
-    for (uint32_t i = 0; i < count; i++) {
-        if (w->room.splats[first + i].z_q20 != 0) {
-            widen(&w->sums[i], &w->room.splats[first + i]);
+    return (count + CHUNK - 1) / CHUNK;
+}
+
+typedef struct slice_job {
+    const t3r_kernels *kernels;
+    const layout *work;
+    t3r_refine_slice slice;
+    t3r_gaussian *scene;
+    const t3r_map_record *records; /* NULL: all Gaussians change */
+    uint32_t idle_most;
+} slice_job;
+
+static void widen_chunk(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker;
+    const slice_job *job = context;
+    const uint32_t end = T3R_MIN((index + 1) * CHUNK, job->slice.count);
+    for (uint32_t i = index * CHUNK; i < end; i++) {
+        const t3r_splat *splat = &job->work->room.splats[job->slice.first + i];
+        if (splat->z_q20 != 0) {
+            widen(&job->slice.sums[i], splat);
         }
-    }
-    t3r_refine_view job = {
-        .kernels = &rt->kernels,
-        .view = &views[v],
-        .projection = projection,
-        .scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE),
-        .splats = w->room.splats,
-        .sums = w->sums,
-        .first = first,
-        .count = count,
-        .kept = t3r_raster_spare(&w->room),
-        .kept_rows = (uint32_t)((size_t)rt->config.max_gaussians * T3R_RASTER_SPARE_BYTES / sizeof(t3r_blend_weights)),
-        .gain_q14 = rt->gain_q14[v],
-    };
-    for (uint32_t begin = 0; begin < bin.tiles;) {
-        uint32_t end = t3r_bin_pass(&bin, begin);
-        for (uint32_t tile = begin; tile < end; tile++) {
-            uint32_t from = tile == begin ? 0 : bin.table[tile - 1];
-            t3r_refine_tile(&job, bin.lists + from, bin.table[tile] - from, tile % bin.across, tile / bin.across);
-        }
-        begin = end;
     }
 }
 
-t3r_status t3r_refine_map(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records)
+static void solve_chunk(void *context, uint32_t index, uint32_t worker)
 {
-    workshop w = workshop_of(rt);
-    t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
-    uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice, done = 0;
-    uint32_t total = rt->config.refinements * slices * rt->views;
+    (void)worker;
+    const slice_job *job = context;
+    t3r_correction *corrections = job->work->corrections + job->slice.first;
+    const uint32_t begin = index * CHUNK, count = T3R_MIN(CHUNK, job->slice.count - begin);
+    job->kernels->solve(job->slice.sums + begin, count, corrections + begin);
+}
+
+/* Here the slice is the whole scene. */
+static void apply_chunk(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker;
+    const slice_job *job = context;
+    const uint32_t end = T3R_MIN((index + 1) * CHUNK, job->slice.count);
+    for (uint32_t i = index * CHUNK; i < end; i++) {
+        if (job->records == NULL || job->records[i].idle < job->idle_most) {
+            t3r_refine_apply(&job->work->corrections[i], &job->scene[i]);
+        }
+    }
+}
+
+/* What one view adds to the sums of the slice. */
+static void accumulate(const t3r_runtime *rt, const slice_job *slice, const t3r_view *views, uint32_t v,
+                       const t3r_projection *projection)
+{
+    const t3r_workers workers = t3r_workers_of(rt);
+    const layout *w = slice->work;
+    const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
+    t3r_run_tasks(&workers, chunks_of(slice->slice.count), widen_chunk, (void *)(uintptr_t)slice);
+    const uint32_t kept_rows =
+        (uint32_t)((size_t)rt->config.max_gaussians * T3R_RASTER_SPARE_BYTES / sizeof(t3r_blend_weights));
+    const t3r_refine_view view = {
+        .kernels = &rt->kernels,
+        .view = &views[v],
+        .projection = projection,
+        .scene = slice->scene,
+        .splats = w->room.splats,
+        .slice = slice->slice,
+        .borders = &w->borders,
+        .across = bin.across,
+        .kept = t3r_raster_spare(&w->room),
+        .kept_rows = kept_rows / w->borders.bands,
+        .gain_q14 = rt->gain_q14[v],
+    };
+    view_job job = {.view = &view, .bin = &bin};
+    while (job.begin < bin.tiles) {
+        uint32_t end = t3r_bin_pass(&bin, job.begin);
+        uint32_t bands = t3r_refine_bands(&bin, job.begin, end, &view.slice, &w->borders, job.bands);
+        t3r_run_tasks(&workers, bands, accumulate_band, &job);
+        t3r_refine_join(job.bands, bands, &w->borders, &view.slice);
+        job.begin = end;
+    }
+}
+
+/* The sums of a slice over all views. */
+static t3r_status accumulate_views(const t3r_runtime *rt, const slice_job *slice, const t3r_view *views, uint32_t *done,
+                                   uint32_t total)
+{
+    memset(slice->slice.sums, 0, (size_t)slice->slice.count * sizeof *slice->slice.sums);
+    for (uint32_t v = 0; v < rt->views; v++) {
+        if (!t3r_progress(rt, T3R_STAGE_REFINE, (*done)++, total)) {
+            return T3R_ERR_CANCELLED;
+        }
+        t3r_projection projection;
+        t3r_status status =
+            t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width, rt->config.height, &projection);
+        if (status != T3R_OK) {
+            return status;
+        }
+        accumulate(rt, slice, views, v, &projection);
+    }
+    return T3R_OK;
+}
+
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records)
+{
+    const layout w = layout_of(rt);
+    const t3r_workers workers = t3r_workers_of(rt);
+    slice_job job = {&rt->kernels, &w, {w.sums, 0, 0}, t3r_buffer_at(rt, T3R_BUFFER_SCENE), records, rt->config.views};
+    const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
+    uint32_t total = rt->config.refinements * slices * rt->views, done = 0;
     memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);
     for (uint32_t pass = 0; pass < rt->config.refinements; pass++) {
         for (uint32_t first = 0; first < rt->gaussians; first += w.slice) {
-            uint32_t count = T3R_MIN(w.slice, rt->gaussians - first);
-            memset(w.sums, 0, (size_t)count * sizeof *w.sums);
-            for (uint32_t v = 0; v < rt->views; v++) {
-                if (!t3r_progress(rt, T3R_STAGE_REFINE, done++, total)) {
-                    return T3R_ERR_CANCELLED;
-                }
-                t3r_projection projection;
-                t3r_status status =
-                    t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width, rt->config.height, &projection);
-                if (status != T3R_OK) {
-                    return status;
-                }
-                measure(rt, &w, views, v, &projection, first, count);
+            job.slice.first = first;
+            job.slice.count = T3R_MIN(w.slice, rt->gaussians - first);
+            t3r_status status = accumulate_views(rt, &job, views, &done, total);
+            if (status != T3R_OK) {
+                return status;
             }
-            rt->kernels.solve(w.sums, count, w.corrections + first);
+            t3r_run_tasks(&workers, chunks_of(job.slice.count), solve_chunk, &job);
         }
-        for (uint32_t i = 0; i < rt->gaussians; i++) {
-            if (records == NULL || records[i].idle < rt->config.views) {
-                t3r_refine_apply(&w.corrections[i], &scene[i]);
-            }
-        }
+        job.slice.first = 0;
+        job.slice.count = rt->gaussians;
+        t3r_run_tasks(&workers, chunks_of(rt->gaussians), apply_chunk, &job);
     }
     return T3R_OK;
 }
 
 t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
 {
-    return t3r_refine_map(rt, views, NULL);
+    return t3r_refine_scene(rt, views, NULL);
 }
 
 t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *error_q8)
 {
-    workshop w = workshop_of(rt);
+    const layout w = layout_of(rt);
     uint64_t error = 0; /* below 3 x 2^24 x 2^28 */
     uint32_t pixels = 0;
     for (uint32_t v = 0; v < rt->views; v++) {

@@ -18,7 +18,7 @@ t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views);
 
 /* The same of a map: Gaussians of which none of the keyframes at hand has as much to tell as their own had stay as they
  * are. records: one a Gaussian; NULL: all change. */
-t3r_status t3r_refine_map(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records);
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records);
 
 /* The room in which refinement draws a view of the working size: whoever draws one before can use it. */
 t3r_raster_room t3r_refine_room(const t3r_runtime *rt);

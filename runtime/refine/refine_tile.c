@@ -53,7 +53,7 @@ static void scatter(const t3r_refine_view *job, const t3r_wanted *want, const t3
                     const t3r_tile_splat *splat, uint32_t left, uint32_t top, const t3r_blend_weights *weights)
 {
     const uint32_t index = (uint32_t)(s - job->splats);
-    t3r_refine_sums *to = &job->sums[index - job->first];
+    t3r_refine_sums *to = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
     __builtin_prefetch(to, 1); /* needed last, and seldom near the one before */
     __builtin_prefetch(to->curvature + 8, 1);
     t3r_tile_sums sums;
@@ -135,7 +135,8 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
             t3r_splat_in_tile(s, left, top, &splat);
             job->kernels->blend(&tile, &splat, again);
         }
-        if (list[i] - job->first < job->count) { /* unsigned: an index below first wraps and fails the test */
+        /* unsigned: an index below the slice wraps and fails the test */
+        if (list[i] - job->slice.first < job->slice.count) {
             scatter(job, &want, &tile, s, &splat, left, top, weights);
         }
     }

@@ -33,7 +33,7 @@ static planes divide(const t3r_stereo_settings *settings, uint32_t width, uint32
     for (int side = 0; side < 2; side++) {
         p.side[side] = t3r_take_side(&cut, p.pixels[side]);
     }
-    p.work = t3r_take(&cut, t3r_cut_left(&cut));
+    p.work = t3r_take(&cut, T3R_STEREO_REST_BYTES_(width, height, settings->disparities, settings->paths));
     return p;
 }
 

@@ -16,6 +16,7 @@
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
 #include "image/image.h"
+#include "head/head_views.h"
 #include "pipeline.h"
 #include "refine/refine.h"
 #include "core/scene_frame.h"
@@ -142,16 +143,17 @@ static void reset_older_marks(const t3r_runtime *rt, const t3r_view *views, uint
 
 static t3r_status compare_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
 {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 0, 2)) {
         return T3R_ERR_CANCELLED;
     }
     if (rt->config.bridge_radius > 0) {
         t3r_bridge_lend(views, rt->views, slot, rt->frame.exponent);
         t3r_bridge_view(&views[slot], rt->config.bridge_radius);
-        (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent, ~(1u << slot));
+        (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent, ~(1u << slot), &work);
     }
     if (rt->config.flying) {
-        (void)t3r_mark_flying(views, rt->views, slot, rt->frame.exponent, false);
+        (void)t3r_mark_flying(views, rt->views, slot, rt->frame.exponent, false, &work);
     }
     if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 1, 2)) {
         return T3R_ERR_CANCELLED;
@@ -250,21 +252,22 @@ static t3r_budget_settings settings_of(const t3r_runtime *rt)
 static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t slot, t3r_stream_report *report)
 {
     const t3r_view *view = &views[slot];
+    const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK)};
     if (!t3r_progress(rt, T3R_STAGE_WAVELET, 0, 1)) {
         return T3R_ERR_CANCELLED;
     }
     t3r_view_texture(rt, view);
     t3r_hash_wavelet(rt, views, slot, slot + 1);
     report->points = label_points(rt, view);
-    t3r_blur_texture(&rt->kernels, view, 1);
+    t3r_blur_texture(&rt->kernels, view, 1, &work.workers);
 
     t3r_budget_settings settings = settings_of(rt);
     t3r_map map = t3r_map_of(rt);
-    t3r_budget_keys(view, 1, &settings);
+    t3r_budget_keys(view, 1, &settings, &work.workers);
     t3r_map_cut cut = t3r_map_compete(&map, view, &settings, rt->config.gaussians);
     settings.gaussians = cut.added;
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
-    t3r_allocate(view, 1, &settings, clusters);
+    t3r_allocate(view, 1, &settings, clusters, &work);
     t3r_hash_budget(rt, views, slot, slot + 1);
     if (!t3r_progress(rt, T3R_STAGE_HEAD, 0, 1)) {
         return T3R_ERR_CANCELLED;
@@ -342,7 +345,7 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     if (rt->config.refinements > 0) {
         t3r_view all[T3R_MAX_VIEWS];
         t3r_views_of(rt, all);
-        status = t3r_refine_map(rt, all, t3r_map_of(rt).records);
+        status = t3r_refine_scene(rt, all, t3r_map_of(rt).records);
         if (status == T3R_OK) {
             t3r_hash_scene(rt, T3R_STAGE_REFINE);
         }

@@ -50,9 +50,14 @@ t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
     }
     t3r_point_source source = {&points, points.pixels * rt->views, pixel_features};
     t3r_cluster_settings settings = {&rt->kernels, rt->config.clusters, rt->config.cluster_batches, rt->config.seed};
-    t3r_cluster_progress progress = {rt, step_clusters};
+    const t3r_cluster_host host = {
+        .workers = t3r_workers_of(rt),
+        .sums = t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_SUMS),
+        .context = rt,
+        .step = step_clusters,
+    };
     uint32_t valid =
         t3r_superclusters(&source, &settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
-                          t3r_buffer_at(rt, T3R_BUFFER_LABELS), t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_WORK), &progress);
+                          t3r_buffer_at(rt, T3R_BUFFER_LABELS), t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_WORK), &host);
     return valid == T3R_CLUSTERS_CANCELLED ? T3R_ERR_CANCELLED : T3R_OK;
 }

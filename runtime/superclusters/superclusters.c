@@ -6,6 +6,7 @@
 
 #define CENTRE_FRACTION 8 /* a centre has so many bits more than a feature, so that small steps are not lost */
 #define BLOCK 64u         /* points gathered at a time */
+#define TASK_POINTS 512u  /* points a task labels */
 #define WEIGHT_MOST 2048u /* a centre forgets what lies further back, so that late batches still move it */
 
 static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint32_t count)
@@ -130,106 +131,183 @@ static void seed(const t3r_cluster_settings *settings, uint32_t count, t3r_clust
 
 /* --- means ------------------------------------------------------------------------------------------------------ */
 
-static void clear_sums(t3r_cluster_work *work)
+static bool step(const t3r_cluster_host *host, uint32_t done, uint32_t total)
 {
-    memset(work->u.means.sum, 0, sizeof work->u.means.sum);
-    memset(work->u.means.points, 0, sizeof work->u.means.points);
+    return host->step == NULL || host->step(host->context, done, total);
 }
 
-static void add_point(t3r_cluster_work *work, uint16_t label, const int16_t feature[T3R_DIMENSIONS])
+/* A run over points that workers share: each adds to sums of its own, and these are added up in the end. */
+typedef struct means_job {
+    const t3r_kernels *kernels;
+    const t3r_point_source *source;
+    const t3r_cluster_host *host;
+    t3r_cluster_work *work;
+    uint32_t count; /* of the centres */
+    uint32_t first; /* block of the task of index 0 */
+    uint32_t batch; /* of run_batch() */
+    uint16_t *labels;
+    uint32_t points; /* of the run */
+} means_job;
+
+static t3r_cluster_sums *sums_of(const means_job *job, uint32_t worker)
 {
-    work->u.means.points[label]++;
-    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-        work->u.means.sum[label][d] += feature[d]; /* below 2^32 x 2^14 */
+    return worker == 0 ? &job->work->u.means.sums : &job->host->sums[worker - 1];
+}
+
+static void clear_sums(const means_job *job)
+{
+    for (uint32_t w = 0; w < job->host->workers.count; w++) {
+        memset(sums_of(job, w), 0, sizeof(t3r_cluster_sums));
     }
+}
+
+static void join_sums(const means_job *job)
+{
+    t3r_cluster_sums *to = sums_of(job, 0);
+    for (uint32_t w = 1; w < job->host->workers.count; w++) {
+        const t3r_cluster_sums *from = sums_of(job, w);
+        for (uint32_t k = 0; k < job->count; k++) {
+            to->points[k] += from->points[k];
+            for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+                to->sum[k][d] += from->sum[k][d];
+            }
+        }
+    }
+}
+
+static void add_point(t3r_cluster_sums *sums, uint16_t label, const int16_t feature[T3R_DIMENSIONS])
+{
+    sums->points[label]++;
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        sums->sum[label][d] += feature[d]; /* below 2^32 x 2^14 */
+    }
+}
+
+/* Labels of `valid` gathered points, which are added to the worker's sums. A label does not depend on the guess. */
+static void label_block(const means_job *job, uint32_t worker, uint32_t valid, const int16_t feature[][T3R_DIMENSIONS],
+                        uint16_t *guess, uint16_t *label)
+{
+    job->kernels->nearest(&job->work->centres, &job->work->u.means.neighbours, valid, feature, *guess, label);
+    for (uint32_t i = 0; i < valid; i++) {
+        *guess = label[i];
+        add_point(sums_of(job, worker), label[i], feature[i]);
+    }
+}
+
+/* The points that a task takes: TASK_POINTS from its own place on. */
+static t3r_share points_of(const means_job *job, uint32_t index)
+{
+    const uint32_t begin = (job->first + index) * TASK_POINTS;
+    return (t3r_share){begin, T3R_MIN(begin + TASK_POINTS, job->points)};
+}
+
+static uint32_t tasks_of(uint32_t points)
+{
+    return (points + TASK_POINTS - 1) / TASK_POINTS;
+}
+
+static void batch_task(void *context, uint32_t index, uint32_t worker)
+{
+    const means_job *job = context;
+    const t3r_point_source *source = job->source;
+    const t3r_share points = points_of(job, index);
+    uint16_t guess = 0;
+    for (uint32_t first = points.begin; first < points.end; first += BLOCK) {
+        int16_t feature[BLOCK][T3R_DIMENSIONS];
+        uint16_t label[BLOCK];
+        uint32_t valid = 0, end = T3R_MIN(first + BLOCK, points.end);
+        for (uint32_t s = first; s < end; s++) {
+            uint32_t low = (uint32_t)((uint64_t)s * source->points / job->points);
+            uint32_t high = (uint32_t)((uint64_t)(s + 1) * source->points / job->points);
+            uint32_t place = low + t3r_mix32(s * 1031u + job->batch) % (high - low);
+            valid += source->features(source->context, place, feature[valid]);
+        }
+        label_block(job, worker, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, &guess, label);
+    }
+}
+
+static void begin_means(means_job *job, const t3r_cluster *clusters)
+{
+    load_centres(&job->work->centres, clusters, job->count);
+    job->kernels->nearest_begin(&job->work->centres, &job->work->u.means.neighbours);
+    clear_sums(job);
 }
 
 /* One mini-batch (Sculley 2010, with whole-batch means): points spread over the source, a different set each time. */
-static void run_batch(const t3r_kernels *kernels, const t3r_point_source *source, uint32_t batch, uint32_t count,
-                      t3r_cluster *clusters, t3r_cluster_work *work)
+static void run_batch(means_job *job, uint32_t batch, t3r_cluster *clusters)
 {
-    load_centres(&work->centres, clusters, count);
-    kernels->nearest_begin(&work->centres, &work->u.means.neighbours);
-    clear_sums(work);
-    uint32_t size = T3R_MIN(source->points, T3R_CLUSTER_BATCH);
-    uint16_t guess = 0;
-    for (uint32_t first = 0; first < size; first += BLOCK) {
-        int16_t feature[BLOCK][T3R_DIMENSIONS];
-        uint16_t label[BLOCK];
-        uint32_t valid = 0, end = T3R_MIN(first + BLOCK, size);
-        for (uint32_t s = first; s < end; s++) {
-            uint32_t low = (uint32_t)((uint64_t)s * source->points / size);
-            uint32_t high = (uint32_t)((uint64_t)(s + 1) * source->points / size);
-            uint32_t index = low + t3r_mix32(s * 1031u + batch) % (high - low);
-            valid += source->features(source->context, index, feature[valid]);
-        }
-        kernels->nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature,
-                         guess, label);
-        for (uint32_t i = 0; i < valid; i++) {
-            guess = label[i];
-            add_point(work, label[i], feature[i]);
-        }
-    }
-    for (uint32_t k = 0; k < count; k++) {
-        uint32_t points = work->u.means.points[k];
+    job->batch = batch;
+    job->points = T3R_MIN(job->source->points, T3R_CLUSTER_BATCH);
+    begin_means(job, clusters);
+    t3r_run_tasks(&job->host->workers, tasks_of(job->points), batch_task, job);
+    join_sums(job);
+    const t3r_cluster_sums *sums = sums_of(job, 0);
+    for (uint32_t k = 0; k < job->count; k++) {
+        uint32_t points = sums->points[k];
         if (points == 0) {
             continue;
         }
-        int64_t before = work->u.means.weight[k], after = before + points;
+        uint32_t *weight = &job->work->u.means.weight[k];
+        int64_t before = *weight, after = before + points;
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-            int64_t sum = clusters[k].centre_q19[d] * before + (work->u.means.sum[k][d] * (1 << CENTRE_FRACTION));
+            int64_t sum = clusters[k].centre_q19[d] * before + (sums->sum[k][d] * (1 << CENTRE_FRACTION));
             clusters[k].centre_q19[d] = (int32_t)t3r_round_div64(sum, after);
         }
-        work->u.means.weight[k] = T3R_MIN((uint32_t)after, WEIGHT_MOST);
+        *weight = T3R_MIN((uint32_t)after, WEIGHT_MOST);
+    }
+}
+
+static void assign_task(void *context, uint32_t index, uint32_t worker)
+{
+    const means_job *job = context;
+    const t3r_point_source *source = job->source;
+    const t3r_share points = points_of(job, index);
+    uint16_t guess = 0;
+    for (uint32_t first = points.begin; first < points.end; first += BLOCK) {
+        int16_t feature[BLOCK][T3R_DIMENSIONS];
+        uint32_t place[BLOCK];
+        uint16_t label[BLOCK];
+        uint32_t valid = 0, end = T3R_MIN(first + BLOCK, points.end);
+        for (uint32_t i = first; i < end; i++) {
+            job->labels[i] = T3R_NO_LABEL;
+            place[valid] = i;
+            valid += source->features(source->context, i, feature[valid]);
+        }
+        label_block(job, worker, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, &guess, label);
+        for (uint32_t i = 0; i < valid; i++) {
+            job->labels[place[i]] = label[i];
+        }
     }
 }
 
 /* Labels every point and moves each centre to the mean of its points. */
-static uint32_t assign(const t3r_kernels *kernels, const t3r_point_source *source, uint32_t count,
-                       t3r_cluster *clusters, uint16_t *labels, t3r_cluster_work *work,
-                       const t3r_cluster_progress *progress, uint32_t done, uint32_t total)
+static uint32_t assign(means_job *job, t3r_cluster *clusters, uint32_t done, uint32_t total)
 {
-    load_centres(&work->centres, clusters, count);
-    kernels->nearest_begin(&work->centres, &work->u.means.neighbours);
-    clear_sums(work);
-    uint32_t all_valid = 0;
-    uint16_t guess = 0;
-    for (uint32_t first = 0; first < source->points; first += BLOCK) {
-        if (first % (BLOCK * 64) == 0 && progress != NULL &&
-            !progress->step(progress->context, done + first / T3R_CLUSTER_BATCH, total)) {
+    job->points = job->source->points;
+    begin_means(job, clusters);
+    const uint32_t tasks = tasks_of(job->points), chunk = T3R_CLUSTER_BATCH / TASK_POINTS;
+    for (job->first = 0; job->first < tasks; job->first += chunk) {
+        if (!step(job->host, done + job->first / chunk, total)) {
             return T3R_CLUSTERS_CANCELLED;
         }
-        int16_t feature[BLOCK][T3R_DIMENSIONS];
-        uint32_t place[BLOCK];
-        uint16_t label[BLOCK];
-        uint32_t valid = 0, end = T3R_MIN(first + BLOCK, source->points);
-        for (uint32_t index = first; index < end; index++) {
-            labels[index] = T3R_NO_LABEL;
-            place[valid] = index;
-            valid += source->features(source->context, index, feature[valid]);
-        }
-        kernels->nearest(&work->centres, &work->u.means.neighbours, valid, (const int16_t(*)[T3R_DIMENSIONS])feature,
-                         guess, label);
-        for (uint32_t i = 0; i < valid; i++) {
-            guess = label[i];
-            labels[place[i]] = label[i];
-            add_point(work, label[i], feature[i]);
-        }
-        all_valid += valid;
+        t3r_run_tasks(&job->host->workers, T3R_MIN(tasks - job->first, chunk), assign_task, job);
     }
-    for (uint32_t k = 0; k < count; k++) {
-        uint32_t points = work->u.means.points[k];
+    join_sums(job);
+    const t3r_cluster_sums *sums = sums_of(job, 0);
+    uint32_t all_valid = 0;
+    for (uint32_t k = 0; k < job->count; k++) {
+        uint32_t points = sums->points[k];
+        all_valid += points;
         clusters[k].points = points;
         for (uint32_t d = 0; d < T3R_DIMENSIONS && points > 0; d++) {
-            clusters[k].centre_q19[d] =
-                (int32_t)t3r_round_div64(work->u.means.sum[k][d] * (1 << CENTRE_FRACTION), points);
+            clusters[k].centre_q19[d] = (int32_t)t3r_round_div64(sums->sum[k][d] * (1 << CENTRE_FRACTION), points);
         }
     }
     return all_valid;
 }
 
 uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
-                           uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_progress *progress)
+                           uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_host *host)
 {
     memset(clusters, 0, settings->clusters * sizeof *clusters);
     uint32_t total = settings->batches + source->points / T3R_CLUSTER_BATCH;
@@ -238,12 +316,17 @@ uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_set
         seed(settings, sample, clusters, work);
     }
     memset(work->u.means.weight, 0, sizeof work->u.means.weight);
+    means_job job = {.kernels = settings->kernels,
+                     .source = source,
+                     .host = host,
+                     .work = work,
+                     .count = settings->clusters,
+                     .labels = labels};
     for (uint32_t batch = 0; batch < settings->batches; batch++) {
-        if (progress != NULL && !progress->step(progress->context, batch, total)) {
+        if (!step(host, batch, total)) {
             return T3R_CLUSTERS_CANCELLED;
         }
-        run_batch(settings->kernels, source, batch, settings->clusters, clusters, work);
+        run_batch(&job, batch, clusters);
     }
-    return assign(settings->kernels, source, settings->clusters, clusters, labels, work, progress, settings->batches,
-                  total);
+    return assign(&job, clusters, settings->batches, total);
 }

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "kernels/kernels.h"
+#include "core/workers.h"
 #include "trim3r.h"
 #include "core/views.h"
 
@@ -38,6 +39,12 @@ typedef struct t3r_cluster {
     int32_t density_q10; /* log2 of the share of points retained, for a texture power of 1 */
 } t3r_cluster;
 
+/* Sums over the points of each SuperCluster. */
+typedef struct t3r_cluster_sums {
+    int64_t sum[T3R_MAX_CLUSTERS][T3R_DIMENSIONS];
+    uint32_t points[T3R_MAX_CLUSTERS];
+} t3r_cluster_sums;
+
 /* The K-means' working memory: the seeding's sample and the sums share their bytes. */
 typedef struct t3r_cluster_work {
     t3r_centres centres;
@@ -48,8 +55,7 @@ typedef struct t3r_cluster_work {
         } seeding;
         struct {
             t3r_neighbours neighbours;
-            int64_t sum[T3R_MAX_CLUSTERS][T3R_DIMENSIONS];
-            uint32_t points[T3R_MAX_CLUSTERS];
+            t3r_cluster_sums sums;             /* of worker 0, in the end of all */
             uint32_t weight[T3R_MAX_CLUSTERS]; /* points behind a centre so far, held at a bound */
         } means;
     } u;
@@ -60,16 +66,18 @@ typedef struct t3r_cluster_settings {
     uint32_t clusters, batches, seed;
 } t3r_cluster_settings;
 
-/* Calls back between batches and chunks of the assignment pass; false = stop. */
-typedef struct t3r_cluster_progress {
+/* Who runs the K-means: its workers, and a step that is called between batches and chunks of the assignment pass. */
+typedef struct t3r_cluster_host {
+    t3r_workers workers;
+    t3r_cluster_sums *sums; /* one each of workers 1 and up; NULL with one worker */
     void *context;
-    bool (*step)(void *context, uint32_t done, uint32_t total);
-} t3r_cluster_progress;
+    bool (*step)(void *context, uint32_t done, uint32_t total); /* false = stop; NULL: nobody asks */
+} t3r_cluster_host;
 
 /* Clusters the source's points: clusters[0..K-1] and a label a point. Returns the number of valid points, or
  * T3R_CLUSTERS_CANCELLED. */
 #define T3R_CLUSTERS_CANCELLED UINT32_MAX
 uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
-                           uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_progress *progress);
+                           uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_host *host);
 
 #endif

@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <cmocka.h>
 
+#include <stdatomic.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -12,13 +14,18 @@
 #define MOST 3000u
 
 typedef struct job {
+    uint32_t threads;
+    atomic_bool busy[T3R_MAX_THREADS];
     uint8_t visits[MOST];
 } job;
 
-static void visit(void *context, uint32_t index)
+static void visit(void *context, uint32_t index, uint32_t worker)
 {
     job *j = context;
-    j->visits[index]++; /* each index belongs to one thread */
+    assert_true(worker < j->threads);
+    assert_false(atomic_exchange(&j->busy[worker], true)); /* a worker does one task at a time */
+    j->visits[index]++;                                    /* each index belongs to one thread */
+    atomic_store(&j->busy[worker], false);
 }
 
 static void visits_every_index_once(void **state)
@@ -33,6 +40,7 @@ static void visits_every_index_once(void **state)
             for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
                 job j;
                 memset(&j, 0, sizeof j);
+                j.threads = threads[t];
                 t3r_threads_run(pool, counts[c], visit, &j);
                 for (uint32_t i = 0; i < MOST; i++) {
                     assert_int_equal(j.visits[i], i < counts[c] ? 1 : 0);

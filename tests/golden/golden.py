@@ -19,7 +19,8 @@ ROOT = HERE.parent.parent
 STAGES = HERE / "stages.txt"
 ROOM = HERE / "room.json"
 WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--moved"],
-        ["--arena", "min", "--tasks", "reverse", "--moved"]]
+        ["--tasks", "reverse", "--workers", "3"],
+        ["--arena", "min", "--tasks", "reverse", "--workers", "8", "--moved"]]
 REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"]]
 DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", ROOT / "quant" / "heads" / "small.c",
                   *sorted((ROOT / "tools" / "room").glob("*.c"))]

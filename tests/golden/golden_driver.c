@@ -2,8 +2,8 @@
  * "configuration stage hash". It uses the runtime, the room and a shipped head alone, so that it builds wherever
  * they do.
  *
- * What must not matter can be varied: --arena min|full|ten, --tasks plain|reverse, --moved (the arena is copied
- * to another place and attached again between any two calls). */
+ * What must not matter can be varied: --arena min|full|ten, --tasks plain|reverse, --workers 1..8 of those tasks,
+ * --moved (the arena is copied to another place and attached again between any two calls). */
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -66,11 +66,12 @@ typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
 typedef struct variation {
     arena_size arena;
     bool reverse_tasks;
+    uint32_t workers;
     bool moved;
 } variation;
 
 /* Ten times what the largest configuration asks for; two, so that one can move to the other. */
-enum { ARENA_ROOM = 10 * T3R_FULL_BYTES_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, T3R_HEAD_COLUMN_BYTES, 1, 4, 1) };
+enum { ARENA_ROOM = 10 * T3R_FULL_BYTES_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, T3R_HEAD_COLUMN_BYTES, 1, 4, 1, 1) };
 static _Alignas(T3R_ARENA_ALIGN) uint8_t arenas[2][ARENA_ROOM];
 
 /* ---- the frames ---------------------------------------------------------------------------------------- */
@@ -190,11 +191,13 @@ static void on_stage_hash(void *user, t3r_stage stage, uint64_t hash)
     print_hash(user, t3r_stage_name(stage), hash);
 }
 
-static void run_in_reverse(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context)
+/* The last task first, workers in turn: nobody may lean on one worker doing everything, or on the order. */
+static void run_in_reverse(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                           void *context)
 {
-    (void)user;
+    const run *r = user;
     while (count-- > 0) {
-        task(context, count);
+        task(context, count, (count + 1) % r->ways.workers);
     }
 }
 
@@ -238,6 +241,7 @@ static t3r_status begin_run(run *r, bool stream)
     config.head = c->head;
     config.depth = c->depth;
     config.keep_analysis = 1;
+    config.workers = r->ways.workers;
     if (c->bits != 0) {
         r->weights = r->made = make_weights(small_shape, small_layers, c->bits, c->bits, 1, &r->weights_bytes);
     } else if (c->head == T3R_HEAD_LEARNED) {
@@ -407,19 +411,22 @@ static int run_stream(variation ways)
 
 static int usage(void)
 {
-    fputs("golden_driver [--arena min|full|ten] [--tasks plain|reverse] [--moved]\n", stderr);
+    fputs("golden_driver [--arena min|full|ten] [--tasks plain|reverse] [--workers N] [--moved]\n", stderr);
     return 2;
 }
 
 int main(int argc, char **argv)
 {
-    variation ways = {ARENA_FULL, false, false};
+    variation ways = {ARENA_FULL, .workers = 1};
     for (int i = 1; i < argc; i++) {
         const char *value = i + 1 < argc ? argv[i + 1] : "";
         if (strcmp(argv[i], "--moved") == 0) {
             ways.moved = true;
         } else if (strcmp(argv[i], "--tasks") == 0 && (strcmp(value, "plain") == 0 || strcmp(value, "reverse") == 0)) {
             ways.reverse_tasks = strcmp(value, "reverse") == 0;
+            i++;
+        } else if (strcmp(argv[i], "--workers") == 0 && strlen(value) == 1 && value[0] >= '1' && value[0] <= '8') {
+            ways.workers = (uint32_t)(value[0] - '0');
             i++;
         } else if (strcmp(argv[i], "--arena") == 0 && strcmp(value, "min") == 0) {
             ways.arena = ARENA_MIN;

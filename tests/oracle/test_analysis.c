@@ -162,7 +162,8 @@ static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
     uint16_t *labels = calloc(c->count, sizeof *labels);
     t3r_cluster_work *work = calloc(1, sizeof *work);
     assert_true(clusters != NULL && labels != NULL && work != NULL);
-    uint32_t valid = t3r_superclusters(&source, &settings, clusters, labels, work, NULL);
+    const t3r_cluster_host alone = {.workers = {NULL, 1}};
+    uint32_t valid = t3r_superclusters(&source, &settings, clusters, labels, work, &alone);
     double *centres = calloc(k, ORACLE_DIMENSIONS * sizeof *centres);
     uint32_t *sizes = calloc(k, sizeof *sizes), *kept_labels = calloc(c->count, sizeof *kept_labels), kept = 0;
     double *kept_points = calloc(c->count, ORACLE_DIMENSIONS * sizeof *kept_points);

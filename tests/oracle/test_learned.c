@@ -11,6 +11,7 @@
 
 #include "core/state.h"
 #include "drawing.h"
+#include "head/head_views.h"
 #include "pipeline.h"
 #include "weights_maker.h"
 

@@ -86,11 +86,12 @@ static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
     return ++s->calls == s->cancel_at;
 }
 
-static void in_reverse(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context)
+static void in_reverse(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                       void *context)
 {
     (void)user;
     while (count-- > 0) {
-        task(context, count);
+        task(context, count, 0);
     }
 }
 

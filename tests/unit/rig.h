@@ -2,6 +2,7 @@
 #ifndef T3R_TESTS_UNIT_RIG_H
 #define T3R_TESTS_UNIT_RIG_H
 
+#include "pointmap/pointmap_work.h"
 #include "unit.h"
 #include "core/views.h"
 
@@ -50,6 +51,10 @@ static inline void place_view(rig *s, int v, double x, double z, double plane)
 {
     place_view_in_steps(s, v, x, z, plane, UNIT_Q40);
 }
+
+/* Views compared by one worker. */
+static uint32_t compared[PIXELS];
+static const t3r_pointmap_work alone = {{NULL, 1}, compared};
 
 /* Two cameras 8 pixels of disparity apart on a plane at 2. */
 static inline rig *pair_new(void)

@@ -33,7 +33,7 @@ static uint32_t bridge(rig *s, uint32_t views, uint32_t radius)
         t3r_bridge_view(&s->view[v], radius);
     }
     for (uint32_t v = 0; v < views; v++) {
-        bridged += t3r_bridge_settle(s->view, views, v, 0, (1u << v) - 1);
+        bridged += t3r_bridge_settle(s->view, views, v, 0, (1u << v) - 1, &alone);
     }
     return bridged;
 }
@@ -270,7 +270,7 @@ static void seen_through(void **state)
         s->validity[0][at] = T3R_BRIDGED;
         int behind = steps - s->depth[1][there];
         bool before = 16 * -behind > steps, same = 16 * abs(behind) <= steps;
-        assert_int_equal(t3r_bridge_settle(s->view, PAIR, 0, 0, 0), !before && !same);
+        assert_int_equal(t3r_bridge_settle(s->view, PAIR, 0, 0, 0, &alone), !before && !same);
         assert_int_equal(s->validity[0][at], before ? T3R_NO_DEPTH
                                              : same ? T3R_BRIDGED | T3R_MARK_COVERED
                                                     : T3R_BRIDGED);
@@ -290,8 +290,8 @@ static void settled_cover(void **state)
             s->depth[w][at[w]] = UNIT;
             s->validity[w][at[w]] = T3R_BRIDGED;
         }
-        assert_int_equal(t3r_bridge_settle(s->view, PAIR, v, 0, 0), 1);
-        assert_int_equal(t3r_bridge_settle(s->view, PAIR, v, 0, 1u << (1 - v)), 0);
+        assert_int_equal(t3r_bridge_settle(s->view, PAIR, v, 0, 0, &alone), 1);
+        assert_int_equal(t3r_bridge_settle(s->view, PAIR, v, 0, 1u << (1 - v), &alone), 0);
         assert_int_equal(s->validity[v][at[v]], T3R_BRIDGED | T3R_MARK_COVERED);
         assert_int_equal(s->validity[1 - v][at[1 - v]], T3R_BRIDGED);
         free(s);
@@ -313,10 +313,10 @@ static void forgotten(void **state)
     uint32_t bridged = of_kind(s, 0, T3R_BRIDGED), covered = of_kind(s, 0, T3R_BRIDGED | T3R_MARK_COVERED);
     assert_true(bridged > 0 && covered > 0);
     for (uint32_t v = PAIR; v-- > 0;) {
-        (void)t3r_mark_flying(s->view, PAIR, v, 0, false);
+        (void)t3r_mark_flying(s->view, PAIR, v, 0, false, &alone);
     }
     for (uint32_t v = PAIR; v-- > 0;) {
-        (void)t3r_mark_covered(s->view, PAIR, v, 0);
+        (void)t3r_mark_covered(s->view, PAIR, v, 0, &alone);
     }
     t3r_clear_witnesses(s->view, PAIR);
     assert_int_equal(of_kind(s, 0, T3R_BRIDGED), bridged);

@@ -12,6 +12,10 @@
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };
 
+/* One worker. */
+static t3r_group_counts counts;
+static const t3r_budget_work alone = {{NULL, 1}, &counts};
+
 static uint16_t texture[PIXELS], key[PIXELS], label[PIXELS];
 static uint8_t validity[PIXELS];
 static uint32_t mask[WORDS];
@@ -74,7 +78,7 @@ static void every_mode_meets_every_budget(void **state)
         const uint32_t budgets[] = {1, 2, 39, 40, 41, 500, valid / 2, valid - 1, valid, valid + 1, 1u << 24};
         for (size_t b = 0; b < sizeof budgets / sizeof budgets[0]; b++) {
             t3r_budget_settings settings = settings_of((t3r_allocation)mode, budgets[b]);
-            t3r_allocate(&view, 1, &settings, clusters);
+            t3r_allocate(&view, 1, &settings, clusters, &alone);
             assert_int_equal(retained_of(&view), budgets[b] < valid ? budgets[b] : valid);
         }
     }
@@ -90,7 +94,7 @@ static void sets_are_nested(void **state)
         uint32_t before[WORDS] = {0};
         for (uint32_t budget = 10; budget < PIXELS; budget += 371) {
             t3r_budget_settings settings = settings_of(flat[m], budget);
-            t3r_allocate(&view, 1, &settings, clusters);
+            t3r_allocate(&view, 1, &settings, clusters, &alone);
             for (size_t w = 0; w < WORDS; w++) {
                 assert_int_equal(before[w] & ~mask[w], 0);
                 before[w] = mask[w];
@@ -113,7 +117,7 @@ static void paper_takes_the_lowest_textures_first(void **state)
         assert_true(k == 0 || clusters[clusters[k - 1].order].texture_q4 <= clusters[clusters[k].order].texture_q4);
     }
     t3r_budget_settings settings = settings_of(T3R_ALLOCATE_PAPER, valid * 6 / 10);
-    t3r_allocate(&view, 1, &settings, clusters);
+    t3r_allocate(&view, 1, &settings, clusters, &alone);
     int stage = 0; /* 0: at N %, 1: the cut one, 2: whole */
     for (uint32_t k = 0; k < CLUSTERS; k++) {
         const t3r_cluster *c = &clusters[clusters[k].order];
@@ -144,7 +148,7 @@ static void largest_counts_do_not_overflow(void **state)
             clusters[k].points = (1u << 28) / shared;
         }
         t3r_budget_settings settings = settings_of(T3R_ALLOCATE_DENSITY, 1000);
-        t3r_allocate(&view, 1, &settings, clusters);
+        t3r_allocate(&view, 1, &settings, clusters, &alone);
         uint64_t sum = 0;
         for (uint32_t k = 0; k < CLUSTERS; k++) {
             sum += clusters[k].quota;
@@ -190,7 +194,7 @@ static void deferred_comes_last(void **state)
             for (size_t b = 0; b < sizeof budgets / sizeof budgets[0]; b++) {
                 t3r_budget_settings settings = settings_of((t3r_allocation)mode, budgets[b]);
                 settings.pass_over_covered = pass_over;
-                t3r_allocate(&view, 1, &settings, clusters);
+                t3r_allocate(&view, 1, &settings, clusters, &alone);
                 uint32_t z = T3R_MIN(budgets[b], plain + covered + doubtful), passed = 0, flying = 0;
                 assert_int_equal(retained_of(&view), z);
                 for (size_t i = 0; i < PIXELS; i++) {
@@ -243,7 +247,7 @@ static void textures_are_shuffled(void **state)
             assert_true(clusters[clusters[k - 1].order].texture_q4 <= clusters[clusters[k].order].texture_q4);
         }
         t3r_budget_settings settings = settings_of(seed % 2 ? T3R_ALLOCATE_DENSITY : T3R_ALLOCATE_PAPER, 1000);
-        t3r_allocate(&view, 1, &settings, clusters);
+        t3r_allocate(&view, 1, &settings, clusters, &alone);
         assert_int_equal(retained_of(&view), 1000);
         t3r_cluster sorted[CLUSTERS], expected[CLUSTERS];
         memcpy(sorted, clusters, sizeof sorted);

@@ -26,6 +26,10 @@ enum {
     GAP = 5
 };
 
+/* One worker. */
+static t3r_group_counts counts;
+static const t3r_budget_work alone = {{NULL, 1}, &counts};
+
 static uint16_t texture[VIEWS][PIXELS], key[VIEWS][PIXELS], label[VIEWS][PIXELS];
 static uint8_t validity[VIEWS][PIXELS];
 static uint32_t mask[VIEWS][WORDS];
@@ -125,7 +129,7 @@ static void the_highest_are_retained(void **state)
         for (size_t b = 0; b < sizeof budgets / sizeof *budgets; b++) {
             t3r_budget_settings settings = settings_of(budgets[b]);
             t3r_importance_keys(views, VIEWS, &importance);
-            t3r_allocate(views, VIEWS, &settings, clusters);
+            t3r_allocate(views, VIEWS, &settings, clusters, &alone);
             static uint8_t expected[POINTS];
             memset(expected, 0, sizeof expected);
             for (uint32_t n = 0; n < T3R_MIN(budgets[b], valid); n++) {
@@ -174,7 +178,7 @@ static void density_is_counted(void **state)
     for (uint32_t budget = 3; budget < POINTS; budget *= 3) {
         t3r_budget_settings settings = settings_of(budget);
         t3r_importance_keys(views, VIEWS, &importance);
-        t3r_allocate(views, VIEWS, &settings, clusters);
+        t3r_allocate(views, VIEWS, &settings, clusters, &alone);
         uint32_t retained[CLUSTERS] = {0}, points[CLUSTERS] = {0};
         for (uint32_t n = 0; n < POINTS; n++) {
             uint16_t k = label[n / PIXELS][n % PIXELS];

@@ -33,11 +33,12 @@ static int count_refine(void *user, t3r_stage stage, uint32_t done, uint32_t tot
     return stage == T3R_STAGE_REFINE && ++c->calls == c->cancel_at;
 }
 
-static void reversed(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context)
+static void reversed(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                     void *context)
 {
     (void)user;
     while (count > 0) {
-        task(context, --count);
+        task(context, --count, 0);
     }
 }
 

@@ -96,6 +96,9 @@ static void clear_sums(t3r_refine_sums *sums, uint32_t first, uint32_t count)
     }
 }
 
+/* One band: every Gaussian adds to its own sums. */
+static const t3r_refine_band all_tiles = {0};
+
 static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint32_t kept_rows, t3r_refine_sums *sums)
 {
     uint32_t list[SPLATS], listed = list_tile(x, y, list);
@@ -105,9 +108,8 @@ static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint
                            .projection = &projection,
                            .scene = scene,
                            .splats = splats,
-                           .sums = sums,
-                           .first = first,
-                           .count = count,
+                           .slice = {sums, first, count},
+                           .bands = &all_tiles,
                            .kept = kept_rows == 0 ? NULL : kept,
                            .kept_rows = kept_rows,
                            .gain_q14 = gain_q14};

@@ -12,7 +12,7 @@ static uint32_t mark_covered(const rig *s, uint32_t views)
 {
     uint32_t marked = 0;
     for (uint32_t v = views; v-- > 0;) {
-        marked += t3r_mark_covered(s->view, views, v, 0);
+        marked += t3r_mark_covered(s->view, views, v, 0, &alone);
     }
     t3r_clear_witnesses(s->view, views);
     return marked;
@@ -107,7 +107,7 @@ static void between_two_surfaces(void **state)
     uint16_t before[PIXELS];
     memcpy(before, s->depth[0], sizeof before);
     s->validity[0][7 * W + 20] = T3R_FILLED;
-    assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0, false), H - 1);
+    assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0, false, &alone), H - 1);
     for (int i = 0; i < PIXELS; i++) {
         uint8_t wanted = i == 7 * W + 20 ? T3R_FILLED : i % W == 20 ? T3R_MEASURED | T3R_MARK_DOUBTFUL : T3R_MEASURED;
         assert_int_equal(s->validity[0][i], wanted);
@@ -128,7 +128,7 @@ static void slanted_surfaces_stay(void **state)
     for (int x = 0; x < W; x++, depth *= 1.06) {
         block(s, 0, x, 0, x + 1, H, depth);
     }
-    assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0, false), 0);
+    assert_int_equal(t3r_mark_flying(s->view, 1, 0, 0, false, &alone), 0);
     free(s);
 }
 
@@ -139,8 +139,8 @@ static void seen_through(void **state)
     /* at 1 the disparity is 16: a block of 6 x 6 in view 1 that view 0, 16 pixels to the right, does not see */
     block(s, 1, 20, 10, 26, 16, 1);
     s->validity[1][12 * W + 22] = T3R_FILLED;
-    assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0, false), 0);
-    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 36);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0, false, &alone), 0);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false, &alone), 36);
     for (int i = 0; i < PIXELS; i++) {
         bool flies = i % W >= 20 && i % W < 26 && i / W >= 10 && i / W < 16;
         assert_int_equal(s->validity[1][i], i == 12 * W + 22 ? T3R_FILLED | T3R_MARK_DOUBTFUL
@@ -152,17 +152,18 @@ static void seen_through(void **state)
         t3r_reset_comparison(s->view, 2);
         block(s, 0, 0, 0, W, H, 2);
         block(s, 0, 36 + off, 10, 42 + off, 16, 1);
-        assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0, false) + t3r_mark_flying(s->view, 2, 1, 0, false), 0);
+        assert_int_equal(
+            t3r_mark_flying(s->view, 2, 0, 0, false, &alone) + t3r_mark_flying(s->view, 2, 1, 0, false, &alone), 0);
     }
     block(s, 0, 0, 0, W, H, 2);
     memset(s->validity[0], T3R_NO_DEPTH, PIXELS);
-    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 0);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false, &alone), 0);
     /* guesses bear witness against guesses, not against what was measured */
     memset(s->validity[0], T3R_FILLED, PIXELS);
-    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false), 0);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false, &alone), 0);
     t3r_reset_comparison(s->view, 2);
     s->validity[1][12 * W + 22] = T3R_FILLED;
-    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, true), 1);
+    assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, true, &alone), 1);
     assert_int_equal(s->validity[1][12 * W + 22], T3R_FILLED | T3R_MARK_DOUBTFUL);
     free(s);
 }
@@ -332,16 +333,16 @@ static void unlinked_views_stay(void **state)
     paint(s, 0, 0, one);
     paint(s, 1, 8, dark);
     paint(s, 2, 0, dark);
-    uint16_t with[3][3], without[2][3], alone[3][3];
+    uint16_t with[3][3], without[2][3], by_itself[3][3];
     t3r_exposure_gains(s->view, 3, 0, with);
     t3r_exposure_gains(s->view, 2, 0, without);
     assert_memory_equal(with, without, sizeof without);
     place_view(s, 1, 0, 0, 8);
-    t3r_exposure_gains(s->view, 3, 0, alone);
+    t3r_exposure_gains(s->view, 3, 0, by_itself);
     for (int c = 0; c < 3; c++) {
         assert_int_equal(with[2][c], T3R_GAIN_ONE_Q14);
         for (int v = 0; v < 3; v++) {
-            assert_int_equal(alone[v][c], T3R_GAIN_ONE_Q14);
+            assert_int_equal(by_itself[v][c], T3R_GAIN_ONE_Q14);
         }
     }
     free(s);

@@ -45,6 +45,7 @@ static int open_arena(live_build *build)
     t3r_plan_info plan;
     reconstruction_configure(r, &build->options);
     r->config.gaussians = r->config.max_gaussians = most_gaussians(build);
+    r->config.workers = build->options.threads;
     t3r_status status = t3r_plan(&r->config, &plan);
     if (status != T3R_OK) {
         return reconstruction_error(status, "settings", &r->config, 0);

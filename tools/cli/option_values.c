@@ -1,6 +1,8 @@
 #include "cli/option_values.h"
 
 #include <inttypes.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "cli/cli.h"
 #include "cpu.h"
@@ -22,6 +24,15 @@ uint32_t option_cpu_mask(struct argp_state *state, const char *text)
         argp_error(state, "--cpu-mask takes all, none, names as avx2,vnni or a number, not '%s'", text);
     }
     return t3r_cpu_features() & mask;
+}
+
+uint32_t option_threads(struct argp_state *state, const char *option, const char *text)
+{
+    if (strcmp(text, "all") == 0) {
+        const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+        return processors < 1 ? 1 : processors > (long)T3R_MAX_WORKERS ? T3R_MAX_WORKERS : (uint32_t)processors;
+    }
+    return option_number(state, option, text, 1, T3R_MAX_WORKERS);
 }
 
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,

@@ -10,6 +10,8 @@
 
 /* A whole number in [low, high]. */
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
+/* 1..T3R_MAX_WORKERS threads, or "all": as many as there are processors. */
+uint32_t option_threads(struct argp_state *state, const char *option, const char *text);
 /* "WxH", each side in [low, T3R_MAX_SIDE]. */
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
                  uint32_t *height);

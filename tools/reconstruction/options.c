@@ -91,7 +91,7 @@ static const struct argp_option settings[] = {
     {"refine", KEY_REFINE, "N", 0, "refinement passes on the context views, 0..16 (4)", 0},
     {NULL, 0, NULL, 0, "What must not change a bit:", 30},
     {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
-    {"threads", KEY_THREADS, "N", 0, "1..64 (1)", 0},
+    {"threads", KEY_THREADS, "N|all", 0, "1..16, or `all` processors (1)", 0},
     {"cpu-mask", KEY_CPU_MASK, "MASK", 0,
      "of the processor's vector extensions use these alone: all (default), none, names as avx2,vnni, or a number", 0},
     {0},
@@ -231,7 +231,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         reconstruction_parse_arena(state, arg, o);
         return 0;
     case KEY_THREADS:
-        o->threads = option_number(state, "threads", arg, 1, T3R_MAX_THREADS);
+        o->threads = option_threads(state, "threads", arg);
         return 0;
     case KEY_CPU_MASK:
         o->cpu = option_cpu_mask(state, arg);

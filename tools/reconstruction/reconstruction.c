@@ -87,7 +87,8 @@ static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
     r->stage_hashed[stage] = true;
 }
 
-static void run_parallel(void *user, uint32_t count, void (*task)(void *context, uint32_t index), void *context)
+static void run_parallel(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                         void *context)
 {
     reconstruction *r = user;
     t3r_threads_run(r->threads, count, task, context);
@@ -125,6 +126,7 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
 static int open_arena(reconstruction *r, const reconstruction_options *options)
 {
     t3r_plan_info plan;
+    r->config.workers = options->threads;
     t3r_status status = t3r_plan(&r->config, &plan);
     if (status != T3R_OK) {
         return reconstruction_error(status, "settings", &r->config, 0);

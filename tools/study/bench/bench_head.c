@@ -1,6 +1,7 @@
 #include "study/bench/bench_head.h"
 
 #include "head/head.h"
+#include "head/head_views.h"
 #include "pipeline.h"
 #include "core/state.h"
 #include "head/weights.h"

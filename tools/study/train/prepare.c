@@ -7,6 +7,7 @@
 #include "core/fixed.h"
 #include "head/head.h"
 #include "head/head_features.h"
+#include "head/head_views.h"
 #include "pipeline.h"
 #include "prepare_rival.h"
 #include "core/state.h"

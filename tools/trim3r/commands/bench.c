@@ -51,7 +51,8 @@ static const struct argp_option options[] = {
      "of the scenes that are built and drawn: sensor (default), or stereo, made of the colours", 0},
     {"stages", KEY_STAGES, "LIST", 0, "time these rows alone, as kmeans_ms,stereo_ms (all)", 0},
     {"runs", KEY_RUNS, "N", 0, "timed runs of each stage, 1..101 (7)", 0},
-    {"threads", KEY_THREADS, "N", 0, "1..64 (1); with more than one, elapsed time instead of processor time", 0},
+    {"threads", KEY_THREADS, "N|all", 0,
+     "1..16, or `all` processors (1); with more than one, elapsed time instead of processor time", 0},
     {"cpu-mask", KEY_CPU_MASK, "MASK", 0, "vector extensions to use: all (default), none, names as avx2,vnni, a number",
      0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
@@ -78,7 +79,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->runs = option_number(state, "runs", arg, 1, MAX_RUNS);
         return 0;
     case KEY_THREADS:
-        o->threads = option_number(state, "threads", arg, 1, T3R_MAX_THREADS);
+        o->threads = option_threads(state, "threads", arg);
         return 0;
     case KEY_CPU_MASK:
         o->cpu = option_cpu_mask(state, arg);
@@ -198,6 +199,7 @@ static t3r_status open_scene(workload *w, scene_kind kind)
         chosen_head_configure(head, &config);
     }
     t3r_plan_info plan;
+    config.workers = w->threads != NULL ? t3r_threads_count(w->threads) : 1;
     t3r_status status = t3r_plan(&config, &plan);
     if (status != T3R_OK || posix_memalign(&s->arena, T3R_ARENA_ALIGN, plan.bytes) != 0) {
         s->arena = NULL;

@@ -63,7 +63,7 @@ static const struct argp_option options[] = {
     {"alpha", KEY_ALPHA, "a.png", 0, "16-bit coverage, 65535 = opaque", 0},
     {NULL, 0, NULL, 0, "What must not change a bit:", 3},
     {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
-    {"threads", KEY_THREADS, "N", 0, "1..64 (1)", 0},
+    {"threads", KEY_THREADS, "N|all", 0, "1..16, or `all` processors (1)", 0},
     {"cpu-mask", KEY_CPU_MASK, "MASK", 0, "vector extensions to use: all (default), none, names as avx2,vnni, a number",
      0},
     {NULL, 0, NULL, 0, "Other:", 4},
@@ -137,7 +137,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         reconstruction_parse_arena(state, arg, &o->settings);
         return 0;
     case KEY_THREADS:
-        o->settings.threads = option_number(state, "threads", arg, 1, T3R_MAX_THREADS);
+        o->settings.threads = option_threads(state, "threads", arg);
         return 0;
     case KEY_CPU_MASK:
         o->settings.cpu = option_cpu_mask(state, arg);

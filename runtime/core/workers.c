@@ -1,0 +1,25 @@
+#include "workers.h"
+
+#include "fixed.h"
+
+#define BANDS_A_WORKER 2 /* so that a worker that is done early takes more */
+
+typedef struct rows_job {
+    t3r_rows_task *task;
+    void *context;
+    uint32_t rows, bands;
+} rows_job;
+
+static void run_band(void *context, uint32_t index, uint32_t worker)
+{
+    const rows_job *job = context;
+    const t3r_share rows = t3r_share_of(job->rows, index, job->bands);
+    job->task(job->context, rows.begin, rows.end, worker);
+}
+
+void t3r_run_rows(const t3r_workers *workers, uint32_t rows, t3r_rows_task *task, void *context)
+{
+    const uint32_t bands = t3r_is_parallel(workers) ? workers->count * BANDS_A_WORKER : 1;
+    rows_job job = {task, context, rows, T3R_MAX(T3R_MIN(bands, rows), 1u)};
+    t3r_run_tasks(workers, job.bands, run_band, &job);
+}

@@ -1,0 +1,52 @@
+/* Work that may run on several threads at once: numbered tasks, handed to the caller's hook.
+ *
+ * A task writes to places that no other task of the same call reads or writes, or to those of its worker. So neither
+ * the order of tasks nor the number of workers shows in the result. */
+#ifndef T3R_WORKERS_H
+#define T3R_WORKERS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "trim3r.h"
+
+typedef void t3r_task(void *context, uint32_t index, uint32_t worker);
+
+typedef struct t3r_workers {
+    const t3r_hooks *hooks; /* NULL, or without parallel_for: one task after the other, by worker 0 */
+    uint32_t count;         /* 1..T3R_MAX_WORKERS */
+} t3r_workers;
+
+static inline bool t3r_is_parallel(const t3r_workers *workers)
+{
+    return workers->count > 1 && workers->hooks != NULL && workers->hooks->parallel_for != NULL;
+}
+
+/* Runs task(context, 0..count-1, worker) and returns when all are done. */
+static inline void t3r_run_tasks(const t3r_workers *workers, uint32_t count, t3r_task *task, void *context)
+{
+    if (t3r_is_parallel(workers) && count > 1) {
+        workers->hooks->parallel_for(workers->hooks->user, count, task, context);
+        return;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        task(context, i, 0);
+    }
+}
+
+/* The part of `total` items, in order and without gaps, that task `index` of `tasks` takes: begin..end - 1. Parts
+ * differ by at most one item. total < 2^26, tasks <= 2 T3R_MAX_WORKERS. */
+typedef struct t3r_share {
+    uint32_t begin, end;
+} t3r_share;
+
+static inline t3r_share t3r_share_of(uint32_t total, uint32_t index, uint32_t tasks)
+{
+    return (t3r_share){(uint32_t)((uint64_t)total * index / tasks), (uint32_t)((uint64_t)total * (index + 1) / tasks)};
+}
+
+/* Tasks over the rows 0..rows - 1: task(context, begin, end, worker) takes begin..end - 1. */
+typedef void t3r_rows_task(void *context, uint32_t begin, uint32_t end, uint32_t worker);
+void t3r_run_rows(const t3r_workers *workers, uint32_t rows, t3r_rows_task *task, void *context);
+
+#endif

@@ -1,0 +1,17 @@
+/* What the comparison of views works with. */
+#ifndef T3R_POINTMAP_WORK_H
+#define T3R_POINTMAP_WORK_H
+
+#include "core/state.h"
+
+typedef struct t3r_pointmap_work {
+    t3r_workers workers;
+    uint32_t *pixels; /* one a pixel of a view */
+} t3r_pointmap_work;
+
+static inline t3r_pointmap_work t3r_pointmap_work_of(const t3r_runtime *rt)
+{
+    return (t3r_pointmap_work){t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_POINTMAP_WORK)};
+}
+
+#endif

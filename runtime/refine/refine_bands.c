@@ -1,0 +1,110 @@
+#include "refine_bands.h"
+
+#include <string.h>
+
+#include "core/fixed.h"
+
+static uint32_t first_tile_of(const t3r_splat *splat, uint32_t across)
+{
+    return splat->y0 / T3R_TILE_SIDE * across + splat->x0 / T3R_TILE_SIDE;
+}
+
+static uint32_t last_tile_of(const t3r_splat *splat, uint32_t across)
+{
+    return splat->y1 / T3R_TILE_SIDE * across + splat->x1 / T3R_TILE_SIDE;
+}
+
+/* Bands of about as many list entries each; a band may be empty. */
+static void cut(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t count, t3r_refine_band *bands)
+{
+    const uint64_t entries = bin->table[end - 1]; /* the end of the last list */
+    uint32_t tile = begin;
+    for (uint32_t b = 0; b < count; b++) {
+        bands[b] = (t3r_refine_band){.begin = tile, .own_from = b == 0 ? 0 : tile};
+        while (tile < end && (b + 1 == count || bin->table[tile] <= entries * (b + 1) / count)) {
+            tile++;
+        }
+        bands[b].end = tile;
+    }
+}
+
+/* The Gaussians of the slice that reach into the band from an earlier one; false when there is no room for them. */
+static bool find_crossing(const t3r_binning *bin, const t3r_refine_slice *slice, uint32_t most, t3r_refine_band *band,
+                          uint32_t *index, t3r_refine_sums *sums)
+{
+    for (uint32_t i = slice->first; i < slice->first + slice->count; i++) {
+        const t3r_splat *splat = &bin->splats[i];
+        if (splat->z_q20 == 0 || first_tile_of(splat, bin->across) >= band->own_from ||
+            last_tile_of(splat, bin->across) < band->begin) {
+            continue;
+        }
+        if (band->crossing == most) {
+            return false;
+        }
+        memset(&sums[band->crossing], 0, sizeof *sums);
+        sums[band->crossing].area = slice->sums[i - slice->first].area; /* the scale in which both are kept */
+        index[band->crossing++] = i;
+    }
+    return true;
+}
+
+uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, const t3r_refine_slice *slice,
+                          const t3r_refine_borders *borders, t3r_refine_band bands[T3R_MAX_WORKERS])
+{
+    uint32_t count = T3R_MIN(borders->bands, end - begin);
+    for (bool fits = false; !fits; count = fits ? count : count / 2) { /* a single band has no border */
+        cut(bin, begin, end, count, bands);
+        fits = true;
+        for (uint32_t b = 1; b < count && fits; b++) {
+            const size_t place = (size_t)(b - 1) * borders->most;
+            fits = find_crossing(bin, slice, borders->most, &bands[b], borders->index + place, borders->sums + place);
+        }
+    }
+    return count;
+}
+
+t3r_refine_sums *t3r_refine_sums_in(const t3r_refine_band *bands, uint32_t band, const t3r_refine_borders *borders,
+                                    const t3r_refine_slice *slice, const t3r_splat *splat, uint32_t index,
+                                    uint32_t across)
+{
+    if (first_tile_of(splat, across) >= bands[band].own_from) {
+        return &slice->sums[index - slice->first];
+    }
+    const size_t place = (size_t)(band - 1) * borders->most;
+    const uint32_t *crossing = borders->index + place;
+    uint32_t low = 0, high = bands[band].crossing - 1; /* it is among them */
+    while (low < high) {
+        uint32_t middle = (low + high) / 2;
+        if (crossing[middle] < index) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return &borders->sums[place + low];
+}
+
+static void add(t3r_refine_sums *to, const t3r_refine_sums *from)
+{
+    for (int c = 0; c < 3; c++) {
+        to->colour[c] += from->colour[c];
+    }
+    to->weight += from->weight;
+    for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
+        to->gradient[k] += from->gradient[k];
+    }
+    for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
+        to->curvature[k] += from->curvature[k];
+    }
+}
+
+void t3r_refine_join(const t3r_refine_band *bands, uint32_t count, const t3r_refine_borders *borders,
+                     const t3r_refine_slice *slice)
+{
+    for (uint32_t b = 1; b < count; b++) {
+        const size_t place = (size_t)(b - 1) * borders->most;
+        for (uint32_t i = 0; i < bands[b].crossing; i++) {
+            add(&slice->sums[borders->index[place + i] - slice->first], &borders->sums[place + i]);
+        }
+    }
+}
