@@ -163,10 +163,11 @@ static void sum_powers(const pixel_terms *from, uint32_t first, uint32_t last, t
 }
 
 void t3r_scatter_columns(const t3r_wanted *want, const t3r_tile *tile, const uint16_t colour_q7[3], uint32_t column,
-                         uint32_t first, uint32_t last, const t3r_blend_weights *weights, uint32_t scale,
+                         uint32_t first, uint32_t last, t3r_blend_weights *weights, uint32_t scale,
                          t3r_scatter_sums *sums)
 {
-    int16_t weight_q15[T3R_TILE_SIDE][T3R_LANES]; /* signed, and in memory: compilers then multiply 16 bits */
+    /* in place: signed, and in memory, as compilers then multiply 16 bits */
+    int16_t(*weight_q15)[T3R_LANES] = (int16_t(*)[T3R_LANES])(void *)weights;
     const uint16_t factor = (uint16_t)(1u << scale);
     for (uint32_t j = first; j <= last; j++) {
         for (int32_t i = 0; i < T3R_LANES; i++) {

@@ -23,9 +23,9 @@ uint16_t t3r_mask_weights(const t3r_wanted *want, const uint16_t inside[T3R_LANE
                           uint32_t last, const t3r_blend_weights *weights, t3r_blend_weights *restrict masked);
 
 /* The sums of weights[first..last], below 2^(16 - scale), of a splat of that colour. `tile` is as it is after the
- * splat. */
+ * splat. The weights are scaled in place. */
 void t3r_scatter_columns(const t3r_wanted *want, const t3r_tile *tile, const uint16_t colour_q7[3], uint32_t column,
-                         uint32_t first, uint32_t last, const t3r_blend_weights *weights, uint32_t scale,
+                         uint32_t first, uint32_t last, t3r_blend_weights *weights, uint32_t scale,
                          t3r_scatter_sums *sums);
 
 /* Adds eight columns that follow those already summed: at most two times. */

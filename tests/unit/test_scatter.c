@@ -161,7 +161,9 @@ static void sums_what_double_sums(void **state)
             scale++;
         }
         t3r_scatter_sums sums;
-        t3r_scatter_columns(&want, &tile, lane.colour_q7, 4, first, last, weights, scale, &sums);
+        t3r_blend_weights scaled[SIDE];
+        memcpy(scaled, weights, sizeof scaled);
+        t3r_scatter_columns(&want, &tile, lane.colour_q7, 4, first, last, scaled, scale, &sums);
         double factor = 1 << scale;
         for (uint32_t i = 0; i < T3R_LANES; i++) {
             double gg[5] = {0}, gg_off[5] = {0}, gr[3] = {0}, gr_off[3] = {0}, wr[3] = {0}, w_all = 0;
@@ -210,7 +212,6 @@ static void the_most_there_can_be_fits(void **state)
     static t3r_wanted want;
     t3r_blend_weights weights[SIDE];
     const uint16_t white[3] = {32640, 32640, 32640};
-    memset(weights, 0xff, sizeof weights);
     for (int sign = -1; sign <= 1; sign += 2) {
         for (uint32_t c = 0; c < 3; c++) {
             for (uint32_t j = 0; j < SIDE; j++) {
@@ -220,6 +221,7 @@ static void the_most_there_can_be_fits(void **state)
             }
         }
         t3r_scatter_sums sums;
+        memset(weights, 0xff, sizeof weights);
         t3r_scatter_columns(&want, &tile, white, 0, 0, SIDE - 1, weights, 0, &sums);
         const int64_t g = ((int64_t)32767 * 32640 + 32768) >> 16, square = (3 * g * g + 512) >> 10;
         const int64_t product = (sign * 3 * g * 4080 + 64) >> 7;
