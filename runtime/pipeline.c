@@ -225,7 +225,7 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
     t3r_hash_superclusters(rt, views, 0, rt->views);
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     t3r_cluster_texture(views, rt->views, clusters, rt->config.clusters);
-    if (rt->config.shuffle) {
+    if (rt->ablation.shuffle) {
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);
@@ -275,15 +275,15 @@ t3r_status t3r_analyse(t3r_runtime *rt)
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views)
 {
     const t3r_config *config = &rt->config;
-    uint32_t gaussians = T3R_MIN(config->gaussians, rt->valid_points); /* filled holes compete, but add no budget */
+    uint32_t gaussians = T3R_MIN(rt->build.gaussians, rt->valid_points); /* filled holes compete, but add no budget */
     return (t3r_budget_settings){
-        .allocation = config->allocation,
+        .allocation = rt->build.allocation,
         .gaussians = gaussians,
         .keep_percent = config->keep_percent,
         .gamma_q8 = config->gamma_q8,
         .clusters = config->clusters,
         .seed = config->seed,
-        .pass_over_covered = config->redundancy && config->allocation != T3R_ALLOCATE_GIVEN &&
+        .pass_over_covered = config->redundancy && rt->build.allocation != T3R_ALLOCATE_GIVEN &&
                              t3r_is_sparse(views, rt->views, gaussians),
     };
 }
@@ -323,11 +323,12 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
     return status;
 }
 
-t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_importance *importance)
+t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_build *build, const t3r_importance *importance)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
 
+    rt->build = *build;
     rt->has_scene = 0;
     if (!t3r_progress(rt, T3R_STAGE_BUDGET, 0, 1)) {
         return T3R_ERR_CANCELLED;

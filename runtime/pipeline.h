@@ -4,15 +4,17 @@
 
 #include "budget/budget.h"
 #include "budget/importance.h"
+#include "core/state.h"
+#include "head/head.h"
 #include "trim3r.h"
 #include "core/views.h"
 
 /* Depth, pointmap, wavelet, superclusters: all that does not depend on the budget. */
 t3r_status t3r_analyse(t3r_runtime *rt);
-/* Budget and head: the scene. `importance` is that of the allocation `given`, NULL for the others. */
-t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_importance *importance);
+/* Budget, head and refinement: the scene. `importance` is that of the allocation `given`, NULL for the others. */
+t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_build *build, const t3r_importance *importance);
 
-/* What t3r_build_scene() allocates by, for whoever looks on from outside: of an analysed runtime, its planes by
+/* What the last t3r_build_scene() allocated by, for whoever looks on from outside: of an analysed runtime, its planes by
  * t3r_views_of(). */
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views);
 

@@ -38,36 +38,38 @@ uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_
     return (uint32_t)T3R_MIN(T3R_MAX(wanted, least), (uint64_t)most);
 }
 
-/* The error of a scene of that many Gaussians. */
-static t3r_status try_budget(t3r_runtime *rt, const t3r_view *views, uint32_t gaussians, uint32_t *error_q8)
+/* The error of a trial scene. */
+static t3r_status try_build(t3r_runtime *rt, const t3r_view *views, const t3r_build *trial,
+                            const t3r_importance *importance, uint32_t *error_q8)
 {
-    rt->config.gaussians = gaussians;
-    t3r_status status = t3r_build_scene(rt, NULL);
+    t3r_status status = t3r_build_scene(rt, trial, importance);
     return status == T3R_OK ? t3r_refine_error(rt, views, error_q8) : status;
 }
 
-t3r_status t3r_choose_budget(t3r_runtime *rt, uint32_t max_loss_q8, uint32_t *gaussians)
+t3r_status t3r_choose_budget(t3r_runtime *rt, uint32_t max_loss_q8, t3r_build *build, const t3r_importance *importance)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
-    const uint32_t most = T3R_MIN(rt->config.gaussians, rt->valid_points);
+    const uint32_t most = T3R_MIN(build->gaussians, rt->valid_points);
     t3r_budget_evidence evidence = {
         .points = rt->valid_points,
         .trial = T3R_MIN(T3R_MAX(rt->valid_points / TRIAL_PART, 1u), most / 2),
     };
     if (evidence.trial == 0) {
-        *gaussians = most;
+        build->gaussians = most;
         return T3R_OK;
     }
     uint32_t pairs;
     evidence.disagreement_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, &pairs);
     evidence.disagreement_q8 = pairs < PAIRS_LEAST ? 0 : evidence.disagreement_q8;
     for (uint32_t i = 0; i < 2; i++) {
-        t3r_status status = try_budget(rt, views, evidence.trial << i, &evidence.error_q8[i]);
+        t3r_build trial = *build;
+        trial.gaussians = evidence.trial << i;
+        t3r_status status = try_build(rt, views, &trial, importance, &evidence.error_q8[i]);
         if (status != T3R_OK) {
             return status;
         }
     }
-    *gaussians = t3r_predict_budget(&evidence, most, max_loss_q8);
+    build->gaussians = t3r_predict_budget(&evidence, most, max_loss_q8);
     return T3R_OK;
 }

@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "budget/importance.h"
+#include "core/state.h"
 #include "trim3r.h"
 
 /* What the prediction goes by. */
@@ -19,8 +21,8 @@ typedef struct t3r_budget_evidence {
  * points, 1..most. */
 uint32_t t3r_predict_budget(const t3r_budget_evidence *evidence, uint32_t most, uint32_t max_loss_q8);
 
-/* The same for the analysed views, `most` being the budget of the configuration. Makes two trial scenes in the arena of
- * at most 1/50 of the points; the configuration's budget afterwards is undefined. T3R_ERR_CANCELLED. */
-t3r_status t3r_choose_budget(t3r_runtime *rt, uint32_t max_loss_q8, uint32_t *gaussians);
+/* Lowers build->gaussians to the same for the analysed views. Makes two trial scenes in the arena, each of at most 1/50
+ * of the points; `importance` is that of the allocation `given`, else NULL. T3R_ERR_CANCELLED: `build` is as before. */
+t3r_status t3r_choose_budget(t3r_runtime *rt, uint32_t max_loss_q8, t3r_build *build, const t3r_importance *importance);
 
 #endif

@@ -2,7 +2,7 @@
 
 #include "core/fixed.h"
 
-#define HALF 4 /* of the window in which retained points are counted: 9 x 9, T3R_SHARE_STEPS */
+#define HALF 4 /* of the window in which retained points are counted: 9 x 9 pixels */
 /* A window is believed while it holds up to half an octave more than its SuperCluster, and not at all from twice that
  * on: points in a clump have to cover what is about the clump. */
 #define TRUSTED_Q10 1024

@@ -9,9 +9,6 @@
 #include "superclusters/superclusters.h"
 #include "core/views.h"
 
-/* Most that t3r_log_share_q10() takes: a row of its window is nine labels and two words. */
-#define T3R_SHARE_STEPS (9 * (9 + 2))
-
 /* One plane a context view, each width x height, as the caller lends it for a call. */
 typedef struct t3r_importance {
     const uint16_t *const *planes;

@@ -1,9 +1,99 @@
 /* Names and sentences, as the command line and the tables spell them. */
 #include "trim3r.h"
 
+/* A table is exactly as long as its enumeration. */
+#define EVERY_NAME(names, count)                                                                                       \
+    _Static_assert(sizeof(names) / sizeof *(names) == (count), "as many names as enumerators")
+
 static const char *pick(const char *const *names, uint32_t count, uint32_t index)
 {
     return index < count ? names[index] : NULL;
+}
+
+const char *t3r_stage_name(t3r_stage stage)
+{
+    static const char *const names[] = {
+        [T3R_STAGE_IMAGE] = "image",
+        [T3R_STAGE_DEPTH] = "depth",
+        [T3R_STAGE_POINTMAP] = "pointmap",
+        [T3R_STAGE_WAVELET] = "wavelet",
+        [T3R_STAGE_SUPERCLUSTERS] = "superclusters",
+        [T3R_STAGE_BUDGET] = "budget",
+        [T3R_STAGE_HEAD] = "head",
+        [T3R_STAGE_REFINE] = "refine",
+        [T3R_STAGE_RASTER] = "raster",
+    };
+    EVERY_NAME(names, T3R_STAGE_COUNT);
+    return pick(names, T3R_STAGE_COUNT, (uint32_t)stage);
+}
+
+const char *t3r_allocation_name(t3r_allocation allocation)
+{
+    static const char *const names[] = {
+        [T3R_ALLOCATE_CONFIGURED] = NULL, [T3R_ALLOCATE_DENSITY] = "density", [T3R_ALLOCATE_PAPER] = "paper",
+        [T3R_ALLOCATE_PIXEL] = "pixel",   [T3R_ALLOCATE_UNIFORM] = "uniform", [T3R_ALLOCATE_RANDOM] = "random",
+        [T3R_ALLOCATE_GIVEN] = "given",
+    };
+    EVERY_NAME(names, T3R_ALLOCATE_COUNT);
+    return pick(names, T3R_ALLOCATE_COUNT, (uint32_t)allocation);
+}
+
+const char *t3r_head_name(t3r_head head)
+{
+    static const char *const names[] = {
+        [T3R_HEAD_CONFIGURED] = NULL,
+        [T3R_HEAD_ANALYTIC] = "analytic",
+        [T3R_HEAD_MOMENT] = "moment",
+        [T3R_HEAD_LEARNED] = "learned",
+    };
+    EVERY_NAME(names, T3R_HEAD_COUNT);
+    return pick(names, T3R_HEAD_COUNT, (uint32_t)head);
+}
+
+const char *t3r_depth_name(t3r_depth depth)
+{
+    static const char *const names[] = {
+        [T3R_DEPTH_SENSOR] = "sensor",
+        [T3R_DEPTH_STEREO] = "stereo",
+    };
+    EVERY_NAME(names, T3R_DEPTH_COUNT);
+    return pick(names, T3R_DEPTH_COUNT, (uint32_t)depth);
+}
+
+const char *t3r_wavelet_name(t3r_wavelet wavelet)
+{
+    static const char *const names[] = {
+        [T3R_WAVELET_DB2] = "db2",
+        [T3R_WAVELET_HAAR] = "haar",
+        [T3R_WAVELET_CDF53] = "cdf53",
+    };
+    EVERY_NAME(names, T3R_WAVELET_COUNT);
+    return pick(names, T3R_WAVELET_COUNT, (uint32_t)wavelet);
+}
+
+const char *t3r_pixel_format_name(t3r_pixel_format format)
+{
+    static const char *const names[] = {
+        [T3R_PIXEL_RGB24] = "rgb24", [T3R_PIXEL_BGR24] = "bgr24", [T3R_PIXEL_GREY] = "grey",
+        [T3R_PIXEL_YUYV] = "yuyv",   [T3R_PIXEL_UYVY] = "uyvy",   [T3R_PIXEL_NV12] = "nv12",
+    };
+    EVERY_NAME(names, T3R_PIXEL_FORMAT_COUNT);
+    return pick(names, T3R_PIXEL_FORMAT_COUNT, (uint32_t)format);
+}
+
+const char *t3r_pair_text(t3r_pair pair)
+{
+    static const char *const names[] = {
+        [T3R_PAIR_OK] = "the views can be matched",
+        [T3R_PAIR_NO_BASELINE] = "no baseline: both views are from one place and one direction",
+        [T3R_PAIR_ROTATION] = "pure rotation: both views are from one place",
+        [T3R_PAIR_OVERLAP] = "too little overlap: hardly anything is in both views",
+        [T3R_PAIR_PARALLAX] = "too little parallax: what is in both views hardly moves between them",
+        [T3R_PAIR_SCALE] = "the distance between the views is too large or too small for a depth unit",
+    };
+    EVERY_NAME(names, T3R_PAIR_COUNT);
+    const char *text = pick(names, T3R_PAIR_COUNT, (uint32_t)pair);
+    return text != NULL ? text : "unknown";
 }
 
 const char *t3r_error_text(t3r_status status)
@@ -39,53 +129,7 @@ const char *t3r_error_text(t3r_status status)
     return "unknown status";
 }
 
-const char *t3r_pair_text(t3r_pair pair)
+const char *t3r_version(void)
 {
-    static const char *const texts[T3R_PAIR_COUNT] = {
-        [T3R_PAIR_OK] = "the views can be matched",
-        [T3R_PAIR_NO_BASELINE] = "no baseline: both views are from one place and one direction",
-        [T3R_PAIR_ROTATION] = "pure rotation: both views are from one place",
-        [T3R_PAIR_OVERLAP] = "too little overlap: hardly anything is in both views",
-        [T3R_PAIR_PARALLAX] = "too little parallax: what is in both views hardly moves between them",
-        [T3R_PAIR_SCALE] = "the distance between the views is too large or too small for a depth unit",
-    };
-    const char *text = pick(texts, T3R_PAIR_COUNT, (uint32_t)pair);
-    return text != NULL ? text : "unknown";
-}
-
-const char *t3r_stage_name(t3r_stage stage)
-{
-    static const char *const names[] = {"image",  "depth", "pointmap", "wavelet", "superclusters",
-                                        "budget", "head",  "refine",   "raster"};
-    return pick(names, T3R_STAGE_COUNT, (uint32_t)stage);
-}
-
-const char *t3r_allocation_name(t3r_allocation allocation)
-{
-    static const char *const names[] = {"density", "paper", "pixel", "uniform", "random", "given"};
-    return pick(names, T3R_ALLOCATE_COUNT, (uint32_t)allocation);
-}
-
-const char *t3r_head_name(t3r_head head)
-{
-    static const char *const names[] = {"analytic", "moment", "none", "learned"};
-    return pick(names, T3R_HEAD_COUNT, (uint32_t)head);
-}
-
-const char *t3r_depth_name(t3r_depth depth)
-{
-    static const char *const names[] = {"sensor", "stereo"};
-    return pick(names, T3R_DEPTH_COUNT, (uint32_t)depth);
-}
-
-const char *t3r_wavelet_name(t3r_wavelet wavelet)
-{
-    static const char *const names[] = {"db2", "haar", "cdf53"};
-    return pick(names, T3R_WAVELET_COUNT, (uint32_t)wavelet);
-}
-
-const char *t3r_pixel_format_name(t3r_pixel_format format)
-{
-    static const char *const names[] = {"rgb24", "bgr24", "grey", "yuyv", "uyvy", "nv12"};
-    return pick(names, T3R_PIXEL_FORMAT_COUNT, (uint32_t)format);
+    return T3R_VERSION;
 }

@@ -146,7 +146,7 @@ void t3r_hash_scene(const t3r_runtime *rt, t3r_stage stage)
         return;
     }
     uint64_t hash = t3r_hash_u32(hash_frame(rt), rt->gaussians);
-    if (rt->config.head == T3R_HEAD_LEARNED) {
+    if (rt->build.head == T3R_HEAD_LEARNED) {
         hash = t3r_hash_u32(hash, rt->head_crc);
     }
     const t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);

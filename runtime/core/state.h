@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "ablation.h"
 #include "assertion.h"
 #include "kernels/kernels.h"
 #include "trim3r.h"
@@ -25,12 +26,26 @@
         }                                                                                                              \
     } while (0)
 
+/* What a scene is made by: the configuration's values, or those of the request. */
+typedef struct t3r_build {
+    uint32_t gaussians; /* 1..max_gaussians */
+    t3r_allocation allocation;
+    t3r_head head;
+} t3r_build;
+
+static inline t3r_build t3r_build_of(const t3r_config *config)
+{
+    return (t3r_build){config->gaussians, config->allocation, config->head};
+}
+
 struct t3r_runtime {
     uint32_t magic;
     uint32_t bits_epoch;
     uint64_t arena_bytes;
     uint64_t layout_hash;
-    t3r_config config;
+    t3r_config config; /* as t3r_init() got it */
+    t3r_ablation ablation;
+    t3r_build build; /* of the scene, or of the last attempt at one */
     uint64_t offset[T3R_BUFFER_COUNT];
     uint64_t list_capacity;           /* entries of the tile lists */
     uint64_t refine_bytes;            /* of the refinement work */

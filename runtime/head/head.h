@@ -49,7 +49,7 @@ uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
  * their number. The bands of a view together give what the whole view gives. `moment` sweeps over the whole view: its
  * range must be 0..height. */
 typedef uint32_t t3r_head_rows(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out);
-t3r_head_rows t3r_head_analytic, t3r_head_moment, t3r_head_none, t3r_head_learned;
+t3r_head_rows t3r_head_analytic, t3r_head_moment, t3r_head_learned;
 
 /* Bytes of work that a learned head needs for views of this width. */
 size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width);

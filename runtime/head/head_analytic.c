@@ -1,5 +1,5 @@
 /* A head without weights: a disc on the surface, sigma 0.6 of the spacing of its kept neighbours, coloured by the mean
- * of the pixels it stands for; and `none`, the unpruned pixel's own disc whatever the spacing. */
+ * of the pixels it stands for. */
 #include "depth/depth.h"
 #include "core/fixed.h"
 #include "head.h"
@@ -30,7 +30,7 @@ static void local_mean(const t3r_view *view, uint32_t u, uint32_t v, uint32_t ha
     }
 }
 
-static uint32_t discs(const t3r_head_input *input, bool adapt, uint32_t begin, uint32_t end, t3r_gaussian *out)
+uint32_t t3r_head_analytic(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
     uint32_t count = 0;
@@ -40,24 +40,14 @@ static uint32_t discs(const t3r_head_input *input, bool adapt, uint32_t begin, u
             if (!t3r_retained(view, pixel)) {
                 continue;
             }
-            uint32_t spacing = adapt ? t3r_spacing_q12(input, pixel) : 1 << 12; /* below 20 px */
+            uint32_t spacing = t3r_spacing_q12(input, pixel); /* below 20 px */
             uint32_t square = (uint32_t)(((uint64_t)spacing * spacing) >> 12);
             t3r_footprint footprint = {.opacity_q15 = T3R_HEAD_OPACITY_Q15};
             footprint.xx_q12 = footprint.yy_q12 = (int32_t)(((uint64_t)square * SIGMA_SQUARE_Q12 + 2048) >> 12);
             uint32_t half = T3R_MIN(spacing >> 13, (uint32_t)WINDOW_MOST);
-            local_mean(view, u, v, adapt ? half : 0, footprint.colour_q7);
+            local_mean(view, u, v, half, footprint.colour_q7);
             t3r_lift(&input->map, input->view_index, u, v, &footprint, &out[count++]);
         }
     }
     return count;
-}
-
-uint32_t t3r_head_analytic(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
-{
-    return discs(input, true, begin, end, out);
-}
-
-uint32_t t3r_head_none(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
-{
-    return discs(input, false, begin, end, out);
 }

@@ -6,7 +6,6 @@
 static t3r_head_rows *const heads[T3R_HEAD_COUNT] = {
     [T3R_HEAD_ANALYTIC] = t3r_head_analytic,
     [T3R_HEAD_MOMENT] = t3r_head_moment,
-    [T3R_HEAD_NONE] = t3r_head_none,
     [T3R_HEAD_LEARNED] = t3r_head_learned,
 };
 
@@ -34,7 +33,7 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
         .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
         .weights = rt->weights,
         .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
-        .unadapted = !rt->config.adapt,
+        .unadapted = rt->ablation.unadapted != 0,
     };
 }
 
@@ -62,7 +61,7 @@ static void make_band(void *context, uint32_t index, uint32_t worker)
     const band *b = &job->bands[index];
     t3r_head_input input = t3r_head_input_of(rt, job->views, b->view, job->settings);
     input.work = work_of(rt, worker);
-    level(b->out, heads[rt->config.head](&input, b->begin, b->end, b->out), rt->gain_q14[b->view]);
+    level(b->out, heads[rt->build.head](&input, b->begin, b->end, b->out), rt->gain_q14[b->view]);
 }
 
 static uint32_t count_retained(const t3r_view *view, uint32_t begin, uint32_t end)
@@ -77,7 +76,7 @@ static uint32_t count_retained(const t3r_view *view, uint32_t begin, uint32_t en
 /* Bands of a view: with fewer views than workers, so many that all have work. */
 static uint32_t bands_a_view(const t3r_runtime *rt, const t3r_workers *workers, uint32_t views)
 {
-    if (!t3r_is_parallel(workers) || rt->config.head == T3R_HEAD_MOMENT) { /* its sweeps take whole views */
+    if (!t3r_is_parallel(workers) || rt->build.head == T3R_HEAD_MOMENT) { /* its sweeps take whole views */
         return 1;
     }
     return T3R_MIN((workers->count + views - 1) / views, rt->config.height);

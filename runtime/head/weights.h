@@ -66,7 +66,7 @@
 #define T3R_MAX_CHANNELS 128 /* of a layer's inputs, and of its outputs */
 #define T3R_MAX_KERNEL 6
 #define T3R_MAX_WEIGHTS_BYTES (1u << 24)
-#define T3R_MAX_HEAD_MACS 65536u /* multiply-accumulates a pixel at 100 % kept; the plan counts on it */
+#define T3R_MAX_HEAD_MACS 65536u /* multiply-accumulates a pixel at 100 % kept */
 #define T3R_SOURCE_FEATURES 0
 #define T3R_SOURCE_NONE 255
 

@@ -1,13 +1,33 @@
 /* trim3r: a few posed camera frames to a budgeted set of 3-D Gaussians, and views of it, in integers.
  *
- * The whole interface of the runtime. No heap, no floating point, no operating system, no writable
- * globals; the caller supplies one arena and everything lives in it. The same frames, settings and
- * weights give the same bits on every processor. Field names carry their fixed-point format: depth_q20
- * has 20 fraction bits. Each rounding is written down in runtime/SPEC.md.
+ * This is the whole interface of the runtime. It has no heap, no floating point, no operating system and no writable
+ * globals: the caller supplies one arena, and everything lives in it. The same frames, settings and weights give the
+ * same bits on every processor. The life of a runtime:
  *
- * Conventions: pixel (0, 0) is the centre of the top-left pixel; cameras look along +z, x right, y down;
- * poses are camera-to-world. "World units" are those of the poses and of the depth (metres where the
- * source has metres); "scene units" are world units times a power of two (t3r_scene_frame).
+ *     t3r_plan()      how many bytes             t3r_attach()   an arena that was copied, as it was left
+ *         |
+ *     t3r_init() --> empty -- t3r_add_view() --> views -- t3r_reconstruct() --> scene -- t3r_render() --> a picture
+ *                      ^                         |   ^                          | ^ |
+ *                      |                         +---+ t3r_add_view()           | +-+ t3r_rebuild(), t3r_render()
+ *                      +---------------------- t3r_reset() ---------------------+
+ *
+ *     a stream:      empty -- t3r_stream_keyframe() --> scene, and once more for each further keyframe
+ *     from a file:   empty -- t3r_scene_begin() --> scene, and t3r_scene_append() for each Gaussian
+ *
+ * The shortest program. Calls return a t3r_status, which a real program looks at:
+ *
+ *     static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[T3R_ARENA_BYTES(256, 256, 2, 13107)];
+ *     t3r_config config = t3r_default_config(256, 256, 2, 13107);
+ *     t3r_init(&rt, arena, sizeof arena, &config);
+ *     t3r_add_view(rt, &frames[0], &cameras[0]);
+ *     t3r_add_view(rt, &frames[1], &cameras[1]);
+ *     t3r_reconstruct(rt, NULL, &scene);
+ *     t3r_render(rt, &eye, &target);
+ *
+ * Conventions: pixel (0, 0) is the centre of the top-left pixel. Cameras look along +z, with x to the right and y down.
+ * Poses are camera-to-world. "World units" are those of the poses and of the depth (metres where the source has
+ * metres); "scene units" are world units times a power of two (t3r_scene_frame). Names of fields carry their
+ * fixed-point format: depth_q20 has 20 fraction bits. Each rounding is written down in runtime/SPEC.md.
  *
  * Copyright 2026 the trim3r developers. Licensed under the Apache License, Version 2.0. */
 #ifndef TRIM3R_H
@@ -22,7 +42,13 @@
 extern "C" {
 #endif
 
-#define T3R_VERSION "0.1.0"
+/* The version of this header; t3r_version() is that of the library. */
+#define T3R_VERSION_MAJOR 0
+#define T3R_VERSION_MINOR 1
+#define T3R_VERSION_PATCH 0
+#define T3R_VERSION T3R_TEXT_(T3R_VERSION_MAJOR) "." T3R_TEXT_(T3R_VERSION_MINOR) "." T3R_TEXT_(T3R_VERSION_PATCH)
+#define T3R_TEXT_(number) T3R_QUOTE_(number)
+#define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
 #define T3R_BITS_EPOCH 6
 
@@ -111,20 +137,21 @@ typedef enum t3r_wavelet { T3R_WAVELET_DB2, T3R_WAVELET_HAAR, T3R_WAVELET_CDF53,
 
 /* How the budget Z is spread over the valid points (runtime/SPEC.md, "Budget"). */
 typedef enum t3r_allocation {
-    T3R_ALLOCATE_DENSITY, /* over SuperClusters by |SC| x Texture(SC)^gamma, inside one by texture density */
-    T3R_ALLOCATE_PAPER,   /* GaussianTrim3R eq. 2: lowest texture first, each keeps N % */
-    T3R_ALLOCATE_PIXEL,   /* texture density without clusters */
-    T3R_ALLOCATE_UNIFORM, /* blue noise alone */
-    T3R_ALLOCATE_RANDOM,  /* white noise of the seed */
-    T3R_ALLOCATE_GIVEN,   /* by an importance of each pixel: t3r_reconstruct_given(), t3r_rebudget_given() */
+    T3R_ALLOCATE_CONFIGURED, /* in a request: as the configuration says; in a configuration: refused */
+    T3R_ALLOCATE_DENSITY,    /* over SuperClusters by |SC| x Texture(SC)^gamma, inside one by texture density */
+    T3R_ALLOCATE_PAPER,      /* GaussianTrim3R eq. 2: lowest texture first, each keeps N % */
+    T3R_ALLOCATE_PIXEL,      /* texture density without clusters */
+    T3R_ALLOCATE_UNIFORM,    /* blue noise alone */
+    T3R_ALLOCATE_RANDOM,     /* white noise of the seed */
+    T3R_ALLOCATE_GIVEN,      /* by an importance of each pixel, which comes with the request */
     T3R_ALLOCATE_COUNT
 } t3r_allocation;
 
 typedef enum t3r_head {
-    T3R_HEAD_ANALYTIC, /* a disc on the surface, as wide as its kept neighbours are apart */
-    T3R_HEAD_MOMENT,   /* moments of the pruned pixels that lie nearest in position and colour */
-    T3R_HEAD_NONE,     /* the unpruned pixel's own splat: `analytic` with adapt 0 (the baseline `random`) */
-    T3R_HEAD_LEARNED,  /* a network sees image, mask and density: t3r_bind_head() */
+    T3R_HEAD_CONFIGURED, /* in a request: as the configuration says; in a configuration: refused */
+    T3R_HEAD_ANALYTIC,   /* a disc on the surface, as wide as its kept neighbours are apart */
+    T3R_HEAD_MOMENT,     /* moments of the pruned pixels that lie nearest in position and colour */
+    T3R_HEAD_LEARNED,    /* a network sees image, mask and density: t3r_bind_head() */
     T3R_HEAD_COUNT
 } t3r_head;
 
@@ -146,42 +173,96 @@ typedef enum t3r_pair {
     T3R_PAIR_COUNT
 } t3r_pair;
 
-/* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). */
+/* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). They hold for the life of
+ * the runtime: no later call changes them. What the default is stands in [brackets]. */
 typedef struct t3r_config {
-    uint32_t width, height; /* working size of the context views, T3R_MIN_SIDE..T3R_MAX_SIDE */
-    uint32_t views;         /* most context views, 0..T3R_MAX_VIEWS; 0 = an arena that only renders */
-    uint32_t max_gaussians; /* hard cap on the scene, 1..T3R_MAX_GAUSSIANS */
-    uint32_t gaussians;     /* the budget Z, 1..max_gaussians */
-    uint32_t render_width;  /* largest target, 1..T3R_MAX_SIDE */
-    uint32_t render_height;
+    /* The working size: every view is resized to so many pixels, T3R_MIN_SIDE..T3R_MAX_SIDE each, and at least
+     * T3R_STEREO_LEAST_SIDE with depth by stereo. */
+    uint32_t width, height;
+    /* The most context views that the arena has room for, 0..T3R_MAX_VIEWS; of a stream, the newest keyframes that it
+     * refines on. 0 = an arena that only renders scenes from files. */
+    uint32_t views;
+    /* The most Gaussians that the arena has room for, 1..T3R_MAX_GAUSSIANS. */
+    uint32_t max_gaussians;
+    /* The budget: a scene has as many Gaussians, or as many as there are valid points where these are fewer;
+     * 1..max_gaussians. [max_gaussians] */
+    uint32_t gaussians;
+    /* The largest target that t3r_render() may draw, in pixels, 1..T3R_MAX_SIDE each. [the working size] */
+    uint32_t render_width, render_height;
+    /* The wavelet that texture is measured with. [T3R_WAVELET_DB2] */
     t3r_wavelet wavelet;
-    uint32_t wavelet_levels;   /* 1..T3R_MAX_LEVELS */
-    uint32_t clusters;         /* K, 1..T3R_MAX_CLUSTERS */
-    uint32_t cluster_batches;  /* mini-batches before the assignment pass, 0..1024 */
-    uint32_t colour_weight_q8; /* weight of r, g, b against x, y, z in the K-means metric, 0..1024; 256 = 1 */
+    /* The levels of the wavelet transform that texture is summed over, 1..T3R_MAX_LEVELS. [2] */
+    uint32_t wavelet_levels;
+    /* The number of SuperClusters, K in GaussianTrim3R, 1..T3R_MAX_CLUSTERS. [T3R_DEFAULT_CLUSTERS] */
+    uint32_t clusters;
+    /* The mini-batches of the K-means before every point is assigned, 0..1024; 0 = the seeds are the centres. [24] */
+    uint32_t cluster_batches;
+    /* The weight of r, g, b against x, y, z in the metric of the K-means, 0..1024, in 1/256; 0 = position alone.
+     * [256] */
+    uint32_t colour_weight_q8;
+    /* How the budget is spread over the valid points. [T3R_ALLOCATE_DENSITY] */
     t3r_allocation allocation;
-    uint32_t keep_percent; /* N of the allocation `paper`, 0..100 */
-    uint32_t gamma_q8;     /* exponent of texture, 0..512; 256 = 1 */
-    uint32_t shuffle;      /* 1 = SuperClusters exchange their textures at random: how much the ranking is worth */
+    /* The percentage of its points that a trimmed SuperCluster keeps with T3R_ALLOCATE_PAPER, 0..100; 0 = none. [10] */
+    uint32_t keep_percent;
+    /* The exponent of texture in densities, 0..512, in 1/256; 0 = texture does not count. [179, which is 0.7] */
+    uint32_t gamma_q8;
+    /* What makes Gaussians of retained points. [T3R_HEAD_ANALYTIC] */
     t3r_head head;
-    uint32_t adapt;             /* 0 = the head is told that nothing was pruned: how much adapting is worth */
-    uint32_t head_column_bytes; /* work of a learned head, 0..65,536 a column: t3r_head_column_bytes() */
-    uint32_t refinements;       /* passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS */
-    t3r_depth depth;            /* by stereo, width and height must be 32 and more */
-    uint32_t fill_radius;       /* depth holes bracketed within this many pixels are filled, 0..8; 0 = none */
-    uint32_t bridge_radius;     /* wider ones of a sensor bracketed within so many are bridged, 0..255; 0 = none */
-    uint32_t flying;            /* 1 = points between surfaces, or in front of what another view measured, come last */
-    uint32_t redundancy;        /* 1 = small budgets pass over points that another view covers */
-    uint32_t exposure;          /* 1 = colours of all views are brought to their mean exposure */
-    uint32_t keep_analysis;     /* 1 = planes outlive the build, so that t3r_rebudget() works */
-    uint32_t stream;            /* 1 = a map of at most `gaussians` follows a camera: t3r_stream_keyframe() alone, by
-                                   depth of a sensor */
-    uint32_t half_life;         /* of a stream: keyframes that halve the density of what they do not see, 0..1024;
-                                   0 = nothing fades */
-    uint32_t workers; /* tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS: each has a part
-                         of the arena for itself. Never changes a bit. */
-    uint32_t seed;    /* of the K-means, of the allocation `random`, and of blue-noise ties */
+    /* The working memory of a learned head in bytes a column of the view, 0..T3R_MAX_HEAD_COLUMN_BYTES:
+     * t3r_head_column_bytes() tells what a head needs. 0 = two bytes a pixel of the view must do.
+     * [T3R_HEAD_COLUMN_BYTES, enough for nano, small and base with 8-bit activations] */
+    uint32_t head_column_bytes;
+    /* The passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS] */
+    uint32_t refinements;
+    /* Where depth comes from. [T3R_DEPTH_SENSOR] */
+    t3r_depth depth;
+    /* Holes in a sensor's depth are filled where measurements bracket them within so many pixels, 0..8; 0 = no hole
+     * is. [4] */
+    uint32_t fill_radius;
+    /* Wider holes of a sensor are bridged where measurements bracket them within so many pixels, 0..255; 0 = no hole
+     * is. [64] */
+    uint32_t bridge_radius;
+    /* 1 = points between surfaces, or in front of what another view measured, are retained last; 0 = like others. [1]
+     */
+    uint32_t flying;
+    /* 1 = small budgets pass over points that another view covers; 0 = every view competes for itself. [1] */
+    uint32_t redundancy;
+    /* 1 = the colours of all views are brought to their mean exposure; 0 = they stay as they are. [1] */
+    uint32_t exposure;
+    /* 1 = the analysis outlives the build, so that t3r_rebuild() and a bounded loss work; 0 = its memory is used again.
+     * [0] */
+    uint32_t keep_analysis;
+    /* 1 = a map of at most `gaussians` follows a camera with a depth sensor, by t3r_stream_keyframe() alone; 0 = scenes
+     * are built of all views at once. Must be 0 without views and with depth by stereo. [0] */
+    uint32_t stream;
+    /* The keyframes after which what a stream no longer sees counts half as dense, 0..1024; 0 = nothing fades. [32] */
+    uint32_t half_life;
+    /* The tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS: each has a part of the arena for
+     * itself. The number never changes a bit. [1] */
+    uint32_t workers;
+    /* The seed, any number, of the K-means, of T3R_ALLOCATE_RANDOM and of ties in blue noise. [1] */
+    uint32_t seed;
 } t3r_config;
+
+/* What one build shall be. A field that is 0 asks for what the configuration says, so that {0} is the same as NULL. A
+ * request holds for its call alone: the next one begins from the configuration again. */
+typedef struct t3r_request {
+    /* The budget of this scene, 1..max_gaussians; 0 = the configuration's. */
+    uint32_t gaussians;
+    /* The most that the scene may lose against one of all points, 1..T3R_MAX_LOSS_Q8, in 1/256 dB of PSNR: of at most
+     * the budget, as few Gaussians are made as are predicted to stay below it. 0 = the budget is used up. */
+    uint32_t max_loss_q8;
+    /* How the budget is spread. T3R_ALLOCATE_CONFIGURED (0) = as the configuration says, or by the importance when
+     * there is one, with which no other allocation than T3R_ALLOCATE_GIVEN goes together. */
+    t3r_allocation allocation;
+    /* What makes Gaussians of the points. T3R_HEAD_CONFIGURED (0) = what the configuration says. */
+    t3r_head head;
+    /* An importance of each pixel, 0..65535: importance[v] is a plane of the working size for context view v, aligned
+     * for its type and read during the call only. NULL = none. */
+    const uint16_t *const *importance;
+    /* The bytes from row to row of every importance plane: even, at least 2 x width. Not looked at without planes. */
+    uint32_t importance_stride_bytes;
+} t3r_request;
 
 /* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */
 typedef struct t3r_scene_frame {
@@ -227,7 +308,7 @@ typedef struct t3r_hooks {
     void *user;
     /* Called between bounded pieces of long work (a view, a batch, 64 tiles); a return other than 0 cancels it. */
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
-    /* When set, every stage of t3r_reconstruct(), t3r_rebudget() and t3r_render() is hashed (SPEC, "Hash"). */
+    /* When set, every stage of t3r_reconstruct(), t3r_rebuild() and t3r_render() is hashed (SPEC, "Hash"). */
     void (*stage_hash)(void *user, t3r_stage stage, uint64_t hash);
     /* Runs task(context, index, worker) for each index in 0..count-1, in any order, on any threads, and returns when
      * all are done. `worker` is below t3r_config.workers, and no two tasks that run at the same time have the same one:
@@ -248,7 +329,6 @@ typedef struct t3r_plan_info {
     size_t bytes;     /* a view takes one pass, unless most of its splats are many tiles wide */
     uint32_t buffer_count;
     t3r_plan_buffer buffers[T3R_BUFFER_COUNT]; /* as laid out in an arena of `bytes` */
-    uint64_t operations[T3R_STAGE_COUNT];      /* upper bound of inner-loop steps, a stage */
 } t3r_plan_info;
 
 typedef struct t3r_runtime t3r_runtime;
@@ -258,6 +338,12 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
 
 /* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does. */
 t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan);
+
+/* The inverse: lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, everything
+ * else as it is, and the budget `gaussians` along with it. It never raises them: begin with the most that you could
+ * use, which is width x height x views. T3R_ERR_ARENA when not even one Gaussian fits, T3R_ERR_CONFIG as t3r_plan():
+ * then the configuration is as before. Takes 24 plans. */
+t3r_status t3r_plan_within(size_t bytes, t3r_config *config);
 
 /* The first field of the configuration that is out of range, as text; NULL when all are in range. */
 const char *t3r_config_error(const t3r_config *config);
@@ -315,49 +401,34 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
 /* Forgets views, analysis and scene; keeps the configuration. Needed before t3r_add_view() once there is a scene. */
 t3r_status t3r_reset(t3r_runtime *rt);
 
-/* From the views added so far to exactly min(gaussians, valid points) Gaussians. T3R_ERR_CAMERA when a view stands more
- * than 1,024 scene units from the first; T3R_ERR_STATE: no views (of stereo, fewer than two), the learned head without
- * weights, or the allocation `given`, whose importance comes with t3r_reconstruct_given(); T3R_ERR_STEREO: no two views
- * can be matched, t3r_stereo_pair() says why, the views stay; T3R_ERR_CANCELLED: no scene then, the views stay. */
-t3r_status t3r_reconstruct(t3r_runtime *rt, t3r_scene *scene);
+/* Analyses the views added so far and builds a scene of them, as the request says (NULL: as the configuration says). It
+ * has exactly the budget, or all valid points where they are fewer.
+ *
+ * With an importance, those points with depth are retained that have the highest; of equal ones the first in the order
+ * of views and rows. Doubtful points and surfaces seen twice then count as any others. Heads see the share of points
+ * retained about each pixel.
+ *
+ * With a bounded loss, as few Gaussians are made as the bound is predicted to allow, at least 1/400 of the points. The
+ * prediction is for views between the context's (SPEC.md, "Budget within a loss"). It goes by what two trial scenes, of
+ * 1/100 and 1/50 of the points, miss in the context views, and by how far these disagree among themselves. That takes
+ * the time of two builds and more, and the trials' stages are hashed too.
+ *
+ * T3R_ERR_ARGUMENT: a field of the request is out of its range. T3R_ERR_STATE: there are no views (by stereo, fewer
+ * than two); the learned head has no weights; the allocation is `given` and no importance came; or a bounded loss
+ * without keep_analysis and refinements. After these two everything is as it was. T3R_ERR_CAMERA: a view stands more
+ * than 1,024 scene units from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() says why.
+ * T3R_ERR_CANCELLED. After these three there is no scene, and the views stay. */
+t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
+
+/* Builds another scene of the views analysed last, without analysing them again. Needs keep_analysis; otherwise as
+ * t3r_reconstruct(). T3R_ERR_STATE also when there is no analysis. T3R_ERR_CANCELLED: there is no scene, and the
+ * analysis stays. */
+t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
 
 /* What the analysis found for context view `view` with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO: T3R_PAIR_OK, and
  * the view that most of its depth came from; or why the pair with the most to hope for was refused. Such a view has no
  * depth and adds no points. *partner is `view` where there is none: by sensor, out of range, before an analysis. */
 t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner);
-
-/* Another budget for the pair analysed last, without analysing again; needs keep_analysis. A later t3r_reconstruct()
- * goes on with it. T3R_ERR_CANCELLED: no scene then, the settings are as before, the analysis stays. */
-t3r_status t3r_rebudget(t3r_runtime *rt, uint32_t gaussians, t3r_scene *scene);
-
-/* Another allocation and head as well as budget, likewise. T3R_ERR_STATE: no analysis was kept, or the learned head
- * without weights, or the allocation `given`. */
-t3r_status t3r_reallocate(t3r_runtime *rt, uint32_t gaussians, t3r_allocation allocation, t3r_head head,
-                          t3r_scene *scene);
-
-/* The same two by an importance that the caller gives: of all points with depth exactly min(gaussians, valid points) of
- * the highest importance are retained, of equal ones the first in the order of views and rows; doubtful points and
- * surfaces seen twice count as any others. importance[v] is the plane of context view v at the working size, 0..65535 a
- * pixel, aligned for its type, rows `stride_bytes` apart (even, at least 2 x width); the planes are read during the
- * call only. Heads are told the share of points retained about each pixel. The configuration's allocation becomes
- * T3R_ALLOCATE_GIVEN: without importance t3r_reconstruct(), t3r_rebudget() and t3r_reallocate() refuse it with
- * T3R_ERR_STATE, another allocation comes with t3r_reallocate(). Otherwise as t3r_reconstruct() and t3r_rebudget(),
- * also when cancelled; on any error the settings are as before. */
-t3r_status t3r_reconstruct_given(t3r_runtime *rt, const uint16_t *const importance[], uint32_t stride_bytes,
-                                 t3r_scene *scene);
-t3r_status t3r_rebudget_given(t3r_runtime *rt, uint32_t gaussians, const uint16_t *const importance[],
-                              uint32_t stride_bytes, t3r_scene *scene);
-
-/* No more than a scene needs: of at most the configuration's Gaussians (`most`) so few that the loss, in PSNR of views
- * between the context's, against a scene of all points is predicted to stay below max_loss_q8 (dB, Q8,
- * 1..T3R_MAX_LOSS_Q8; 128 = 0.5 dB). Predicted from what two trial scenes, of 1/100 and 1/50 of the points, miss in the
- * context views and from how far these disagree among themselves (SPEC.md, "Budget within a loss"); single views are
- * measured by what they miss alone. It takes the time of two builds and more, hashes the trials' stages too, and needs
- * keep_analysis and refinements: T3R_ERR_STATE without. At least 1/400 of the points are kept. The configuration's
- * budget becomes the one chosen. Otherwise as t3r_reconstruct() and t3r_rebudget(); on any error the settings are as
- * before. */
-t3r_status t3r_reconstruct_within(t3r_runtime *rt, uint32_t max_loss_q8, t3r_scene *scene);
-t3r_status t3r_rebudget_within(t3r_runtime *rt, uint32_t most, uint32_t max_loss_q8, t3r_scene *scene);
 
 /* What a keyframe did to the map of a stream. */
 typedef struct t3r_stream_report {
@@ -418,9 +489,13 @@ uint32_t t3r_render_passes(const t3r_runtime *rt);
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted);
 
+/* The version of the library, "major.minor.patch". */
+const char *t3r_version(void);
+
 /* A short English sentence for a status; never NULL. */
 const char *t3r_error_text(t3r_status status);
-/* Stable lower-case names, as the command line and the tables spell them; NULL when out of range. */
+/* Stable lower-case names, as the command line and the tables spell them; NULL when out of range, and of what is as
+ * configured. */
 const char *t3r_stage_name(t3r_stage stage);
 const char *t3r_allocation_name(t3r_allocation allocation);
 const char *t3r_head_name(t3r_head head);

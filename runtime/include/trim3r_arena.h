@@ -22,6 +22,10 @@
 #define T3R_AT_RASTER 8
 #define T3R_AT_COUNT 9
 
+/* Defaults of t3r_default_config() that an arena's bytes depend on. */
+#define T3R_DEFAULT_CLUSTERS 300
+#define T3R_DEFAULT_REFINEMENTS 4
+
 #define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
 #define T3R_MAX_(a, b) ((a) > (b) ? (a) : (b))
 
@@ -220,22 +224,28 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1) 
                             T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))),                          \
                         T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)) - T3R_UP_((size_t)(z)*4))
 
-/* For the default configuration (300 SuperClusters, four refinements, targets of the working size, analysis not kept):
+/* For the default configuration (targets of the working size, analysis not kept):
  * the smallest arena that works, and the one with which a view takes one pass (views of wide splats may take more). */
 #define T3R_ARENA_MIN_BYTES(width, height, views, gaussians)                                                           \
-    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 0, 1)
+    T3R_MIN_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, 0,     \
+                   T3R_DEFAULT_REFINEMENTS, 0, 1)
 #define T3R_ARENA_BYTES(width, height, views, gaussians)                                                               \
-    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 0, 1)
+    T3R_FULL_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, 0,    \
+                    T3R_DEFAULT_REFINEMENTS, 0, 1)
 /* The same with depth by stereo (t3r_config.depth). */
 #define T3R_STEREO_ARENA_MIN_BYTES(width, height, views, gaussians)                                                    \
-    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1, 1)
+    T3R_MIN_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, 0,     \
+                   T3R_DEFAULT_REFINEMENTS, 1, 1)
 #define T3R_STEREO_ARENA_BYTES(width, height, views, gaussians)                                                        \
-    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, 0, 4, 1, 1)
+    T3R_FULL_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, 0,    \
+                    T3R_DEFAULT_REFINEMENTS, 1, 1)
 
 /* Likewise of a stream (t3r_config.stream) with `views` keyframes at hand, otherwise of the default configuration. */
 #define T3R_STREAM_MIN_BYTES(width, height, views, gaussians)                                                          \
-    T3R_MIN_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, T3R_KEEP_MAP, 4, 0, 1)
+    T3R_MIN_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES,        \
+                   T3R_KEEP_MAP, T3R_DEFAULT_REFINEMENTS, 0, 1)
 #define T3R_STREAM_BYTES(width, height, views, gaussians)                                                              \
-    T3R_FULL_BYTES_(width, height, views, gaussians, 300, width, height, T3R_HEAD_COLUMN_BYTES, T3R_KEEP_MAP, 4, 0, 1)
+    T3R_FULL_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES,       \
+                    T3R_KEEP_MAP, T3R_DEFAULT_REFINEMENTS, 0, 1)
 
 #endif

@@ -23,7 +23,7 @@ def plan():
     expect(2, "plan", "--size", "256x256", "--gaussians", 5, "--render", "0x9", err="--render")
     base = ["plan", "--size", "256x256", "--views", 2, "--gaussians", 13107]
     found = expect_json(*base, "--svg", "arena.svg")
-    check(found["min_bytes"] <= found["arena_bytes"] and len(found["operations"]) == 9, "plan --json lacks its keys")
+    check(found["min_bytes"] <= found["arena_bytes"], "plan --json lacks its keys")
     for buffer in found["buffers"]:
         check(buffer["offset"] + buffer["bytes"] <= found["arena_bytes"], f"{buffer['name']} leaves the arena")
     xml.dom.minidom.parse("arena.svg")
@@ -35,8 +35,6 @@ def plan():
     small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
     check(small["arena_bytes"] == analytic["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
     check(wide["head_column_bytes"] > small["head_column_bytes"], "16-bit activations need no more")
-    check(small["operations"]["head"] > analytic["operations"]["head"], "steps of heads")
-    check(small["operations"] == found["operations"], "small is the default")
     expect(2, *base, "--head", "big", err="--head")
 
 

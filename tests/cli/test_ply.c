@@ -24,7 +24,7 @@ static const char *path; /* in a folder of the test's own */
 static int make_path(void **state)
 {
     int failed = scratch_setup(state);
-    path = failed ? NULL : scratch_path(*state, "file");
+    path = failed ? NULL : scratch_path(*state, "file.ply");
     return failed;
 }
 
@@ -108,8 +108,8 @@ static void round_trip(int flags, const double shift[3], int same_frame)
     scene_file back;
     char error[256] = "";
     make_scene(&scene, gaussians);
-    assert_int_equal(scene_file_write_ply(path, &scene, flags, NULL, error, sizeof error), 0);
-    if (scene_file_read_ply(path, &back, error, sizeof error) != 0) {
+    assert_int_equal(scene_file_write(path, &scene, flags, NULL, error, sizeof error), 0);
+    if (scene_file_read(path, &back, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
     assert_int_equal(back.count, COUNT);
@@ -194,7 +194,7 @@ static int parse(const uint8_t *bytes, size_t count, char *error, size_t error_b
     memcpy(copy, bytes, count);
     scene_file scene;
     error[0] = '\0';
-    int result = scene_file_parse_ply(copy, count, &scene, error, error_bytes);
+    int result = scene_file_parse(copy, count, &scene, error, error_bytes);
     assert_int_equal(result != 0, error[0] != '\0');
     if (result != 0) {
         assert_null(scene.gaussians);
@@ -212,15 +212,17 @@ static void writes_the_expected_header(void **state)
     t3r_scene scene = {.gaussians = &g, .count = 1};
     char error[256] = "";
     uint8_t bytes[1024];
-    assert_int_equal(scene_file_write_ply(path, &scene, 0, NULL, error, sizeof error), 0);
+    assert_int_equal(scene_file_write(path, &scene, 0, NULL, error, sizeof error), 0);
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
     size_t count = fread(bytes, 1, sizeof bytes, file);
     fclose(file);
     assert_int_equal(count, strlen(header) + 4 * ROW_FLOATS);
     assert_memory_equal(bytes, header, strlen(header));
-    assert_int_equal(scene_file_write_ply("/nonexistent/scene.ply", &scene, 0, NULL, error, sizeof error), -1);
+    assert_int_equal(scene_file_write("/nonexistent/scene.ply", &scene, 0, NULL, error, sizeof error), -1);
     assert_non_null(strstr(error, "/nonexistent/scene.ply"));
+    assert_int_equal(scene_file_write("scene.obj", &scene, 0, NULL, error, sizeof error), -1);
+    assert_non_null(strstr(error, "scene.obj: scenes are written as .ply"));
 }
 
 static void refuses_every_cut(void **state)
@@ -353,7 +355,7 @@ static void reads_foreign_layouts(void **state)
     at += put_row(bytes + at, (float[]){2, 3, 10, -10, 0}, 5);
     scene_file scene;
     char error[256] = "";
-    if (scene_file_parse_ply(bytes, at, &scene, error, sizeof error) != 0) {
+    if (scene_file_parse(bytes, at, &scene, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
     assert_int_equal(scene.count, 1);
@@ -390,7 +392,7 @@ static void fits_outliers(void **state)
         }
         scene_file scene;
         char error[256] = "";
-        int result = scene_file_parse_ply(bytes, at, &scene, error, sizeof error);
+        int result = scene_file_parse(bytes, at, &scene, error, sizeof error);
         if (result != 0) {
             /* the mean moves along with the outlier, so the others seem a hundredth of its distance away */
             fail_msg("an outlier at 2^%d: %s", power, error);

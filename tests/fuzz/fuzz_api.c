@@ -1,11 +1,13 @@
 /* Bytes to a sequence of calls of the C interface: wild settings, frames, cameras, Gaussians and targets, in any
  * order, in arenas of any size, with copies and cancellations in between. Whatever comes, every call answers with a
  * documented status, stays inside the memory it was given, and a copied arena draws the same picture. */
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/ablation.h"
 #include "trim3r.h"
 #include "weights_maker.h"
 
@@ -86,8 +88,8 @@ static t3r_config take_config(input *in)
     c.clusters = 1 + below(in, 32);
     c.cluster_batches = below(in, 3);
     c.keep_analysis = flags & 1;
-    c.allocation = (t3r_allocation)((flags >> 1) % T3R_ALLOCATE_COUNT);
-    c.head = (t3r_head)((flags >> 3) % T3R_HEAD_COUNT);
+    c.allocation = (t3r_allocation)(1 + (flags >> 1) % (T3R_ALLOCATE_COUNT - 1));
+    c.head = (t3r_head)(1 + (flags >> 3) % (T3R_HEAD_COUNT - 1));
     c.wavelet = (t3r_wavelet)((flags >> 5) % T3R_WAVELET_COUNT);
     c.wavelet_levels = 1 + below(in, T3R_MAX_LEVELS);
     c.refinements = below(in, 3);
@@ -100,8 +102,6 @@ static t3r_config take_config(input *in)
     c.flying = flags >> 7;
     c.redundancy = c.seed & 1;
     c.exposure = c.seed >> 1 & 1;
-    c.adapt = c.seed >> 3 & 1;
-    c.shuffle = c.seed >> 4 & 1;
     c.depth = c.seed & 32 && c.width >= T3R_STEREO_LEAST_SIDE && c.height >= T3R_STEREO_LEAST_SIDE ? T3R_DEPTH_STEREO
                                                                                                    : T3R_DEPTH_SENSOR;
     c.stream = c.seed >> 6 == 3 && c.views > 0 && c.depth == T3R_DEPTH_SENSOR;
@@ -117,6 +117,10 @@ static void wild_config(input *in, t3r_config c)
     t3r_plan_info plan;
     t3r_status status = t3r_plan(&c, &plan);
     REQUIRE(status == (t3r_config_error(&c) == NULL ? T3R_OK : T3R_ERR_CONFIG));
+    t3r_config most = c;
+    const size_t bytes = take32(in);
+    REQUIRE(t3r_plan_within(bytes, &most) != T3R_OK || (t3r_plan(&most, &plan) == T3R_OK && plan.min_bytes <= bytes));
+    status = t3r_plan(&c, &plan);
     t3r_runtime *rt;
     uint8_t nothing[1];
     REQUIRE(t3r_init(&rt, nothing, 0, &c) != T3R_OK);
@@ -260,7 +264,6 @@ typedef struct session {
     uint8_t *arena;
     size_t arena_bytes;
     t3r_runtime *rt;
-    uint32_t budget; /* of the next reconstruction: settings stay as t3r_rebudget() left them */
     uint32_t calls_until_cancelled;
 } session;
 
@@ -416,12 +419,12 @@ static void call_move(session *s)
     REQUIRE(t3r_attach(&rt, s->arena, s->arena_bytes / 2) != T3R_OK && rt == NULL);
 }
 
-/* Planes of exactly the bytes that may be read, for the views that there may be; some missing, some strides wrong. */
-static t3r_status call_given(session *s, input *in, uint32_t budget, int rebudget, t3r_scene *scene)
+/* Planes of exactly the bytes that may be read, for the views that there may be; some missing, some strides wrong.
+ * False when they are to be refused whatever views there are. */
+static bool take_importance(const session *s, input *in, uint16_t *planes[T3R_MAX_VIEWS], t3r_request *request)
 {
     const uint32_t width = s->config.width, height = s->config.height, kind = below(in, 16);
     const uint32_t stride = kind == 1 ? 2 * width - 1 : kind == 2 ? 2 * width + 1 : 2 * (width + below(in, 3));
-    uint16_t *planes[T3R_MAX_VIEWS] = {NULL};
     for (uint32_t v = 0; v < s->config.views; v++) {
         uint32_t seed = take8(in);
         const size_t bytes = (size_t)stride * (height - 1) + 2 * (size_t)width;
@@ -430,47 +433,28 @@ static t3r_status call_given(session *s, input *in, uint32_t budget, int rebudge
             planes[v][i] = (uint16_t)(i * (seed | 1) * 641 >> (seed & 7));
         }
     }
-    const uint16_t *const *given = kind == 4 ? NULL : (const uint16_t *const *)planes;
-    t3r_status status = rebudget ? t3r_rebudget_given(s->rt, budget, given, stride, scene)
-                                 : t3r_reconstruct_given(s->rt, given, stride, scene);
-    REQUIRE(status != T3R_OK || (kind != 1 && kind != 2 && kind != 4));
+    request->importance = (const uint16_t *const *)planes;
+    request->importance_stride_bytes = stride;
+    return kind != 1 && kind != 2;
+}
+
+enum { BUDGET = 1, LOSS = 2, ALLOCATION = 4, HEAD = 8, IMPORTANCE = 16 }; /* what a request asks for */
+
+/* First or again, by a request of any parts. */
+static void call_build(session *s, input *in, uint32_t parts)
+{
+    uint16_t *planes[T3R_MAX_VIEWS] = {NULL};
+    t3r_request request = {.gaussians = parts & BUDGET ? below(in, MOST_GAUSSIANS + 20) : 0,
+                           .max_loss_q8 = parts & LOSS ? below(in, T3R_MAX_LOSS_Q8 + 10) : 0,
+                           .allocation = (t3r_allocation)(parts & ALLOCATION ? below(in, T3R_ALLOCATE_COUNT + 1) : 0),
+                           .head = (t3r_head)(parts & HEAD ? below(in, T3R_HEAD_COUNT + 1) : 0)};
+    const bool sound = !(parts & IMPORTANCE) || take_importance(s, in, planes, &request);
+    t3r_scene scene;
+    t3r_status status = take8(in) & 1 ? t3r_rebuild(s->rt, &request, &scene) : t3r_reconstruct(s->rt, &request, &scene);
+    check_scene(s, status, &scene, request.gaussians != 0 ? request.gaussians : s->config.gaussians);
+    REQUIRE(status != T3R_OK || sound);
     for (uint32_t v = 0; v < s->config.views; v++) {
         free(planes[v]);
-    }
-    return status;
-}
-
-/* At most the budget, and from then on that. */
-static void call_within(session *s, input *in)
-{
-    t3r_scene scene;
-    uint32_t most = below(in, MOST_GAUSSIANS + 20), loss_q8 = below(in, T3R_MAX_LOSS_Q8 + 10), again = below(in, 2);
-    t3r_status status =
-        again ? t3r_rebudget_within(s->rt, most, loss_q8, &scene) : t3r_reconstruct_within(s->rt, loss_q8, &scene);
-    check_scene(s, status, &scene, again ? most : s->budget);
-    if (status == T3R_OK) {
-        s->budget = scene.count;
-    }
-}
-
-enum { REBUDGET, REALLOCATE, REBUDGET_GIVEN };
-
-static void call_reallocate(session *s, input *in, int take)
-{
-    t3r_scene scene;
-    uint32_t budget = below(in, MOST_GAUSSIANS + 20);
-    t3r_status status;
-    if (take == REBUDGET) {
-        status = t3r_rebudget(s->rt, budget, &scene);
-    } else if (take == REBUDGET_GIVEN) {
-        status = call_given(s, in, budget, 1, &scene);
-    } else {
-        uint32_t allocation = below(in, T3R_ALLOCATE_COUNT + 1), head = below(in, T3R_HEAD_COUNT + 1);
-        status = t3r_reallocate(s->rt, budget, (t3r_allocation)allocation, (t3r_head)head, &scene);
-    }
-    check_scene(s, status, &scene, budget);
-    if (status == T3R_OK || status == T3R_ERR_CANCELLED) {
-        s->budget = budget;
     }
 }
 
@@ -481,7 +465,7 @@ static void call_all(session *s, input *in)
         call_add_view(s, in);
     }
     t3r_scene scene;
-    check_scene(s, t3r_reconstruct(s->rt, &scene), &scene, s->budget);
+    check_scene(s, t3r_reconstruct(s->rt, NULL, &scene), &scene, s->config.gaussians);
     call_render(s, in);
 }
 
@@ -508,13 +492,13 @@ static void call(session *s, input *in)
         call_stream(s, in);
         break;
     case 17:
-        call_within(s, in);
+        call_build(s, in, LOSS | (take8(in) & (BUDGET | IMPORTANCE)));
         break;
     case 16:
-        check_scene(s, call_given(s, in, 0, 0, &scene), &scene, s->budget);
+        call_build(s, in, IMPORTANCE);
         break;
     case 15:
-        call_reallocate(s, in, REBUDGET_GIVEN);
+        call_build(s, in, take8(in));
         break;
     case 14:
         call_bind(s, in);
@@ -524,13 +508,13 @@ static void call(session *s, input *in)
         call_add_view(s, in);
         break;
     case 2:
-        check_scene(s, t3r_reconstruct(s->rt, &scene), &scene, s->budget);
+        check_scene(s, t3r_reconstruct(s->rt, NULL, &scene), &scene, s->config.gaussians);
         break;
     case 3:
-        call_reallocate(s, in, REBUDGET);
+        call_build(s, in, BUDGET);
         break;
     case 4:
-        call_reallocate(s, in, REALLOCATE);
+        call_build(s, in, BUDGET | ALLOCATION | HEAD);
         break;
     case 5:
         call_scene(s, in);
@@ -573,7 +557,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     input in = {bytes, count};
     session s = {.config = take_config(&in)};
     wild_config(&in, s.config);
-    s.budget = s.config.gaussians;
     t3r_plan_info plan;
     REQUIRE(t3r_plan(&s.config, &plan) == T3R_OK);
     if (plan.bytes > MOST_ARENA) {
@@ -586,6 +569,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     t3r_status status = t3r_init(&s.rt, s.arena, s.arena_bytes, &s.config);
     REQUIRE(status == (s.arena_bytes < plan.min_bytes ? T3R_ERR_ARENA : T3R_OK));
     REQUIRE((s.rt != NULL) == (status == T3R_OK));
+    if (status == T3R_OK) {
+        const t3r_ablation ablation = {.shuffle = s.config.seed >> 4 & 1, .unadapted = ~s.config.seed >> 3 & 1};
+        REQUIRE(t3r_set_ablation(s.rt, &ablation) == T3R_OK);
+    }
     if (status == T3R_OK && s.config.head == T3R_HEAD_LEARNED) {
         call_bind(&s, &in);
     }

@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[T3R_ARENA_MIN_BYTES(T3R_MIN_SIDE, T3R_MIN_SIDE, 0, MOST)];
     scene_file scene;
     char error[256] = "";
-    if (scene_file_parse_ply(data, size, &scene, error, sizeof error) != 0) {
+    if (scene_file_parse(data, size, &scene, error, sizeof error) != 0) {
         if (error[0] == '\0' || scene.gaussians != NULL) {
             abort();
         }

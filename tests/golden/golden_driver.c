@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/ablation.h"
 #include "core/hash.h"
 #include "room/room.h"
 #include "trim3r.h"
@@ -32,33 +33,34 @@ typedef struct configuration {
     bool holes;
     uint32_t bits; /* of a learned head's weights, made up here, and activations; 0 = the shipped one, or no learned */
     t3r_depth depth;
+    bool unadapted; /* splats stay as small as pixels */
 } configuration;
 
 static const configuration configurations[] = {
     {"default", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR},
+     T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR, false},
     {"small", 128, 96, 61, 45, T3R_PIXEL_GREY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 3, 17, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_MOMENT, 700, true, 0, T3R_DEPTH_SENSOR},
+     T3R_HEAD_MOMENT, 700, true, 0, T3R_DEPTH_SENSOR, false},
     {"haar_paper", 128, 96, 64, 48, T3R_PIXEL_YUYV, T3R_DISTORTION_NONE, T3R_WAVELET_HAAR, 1, 32, T3R_ALLOCATE_PAPER,
-     T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR},
+     T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR, false},
     {"cdf53_pixel", 128, 96, 64, 48, T3R_PIXEL_NV12, T3R_DISTORTION_RADTAN, T3R_WAVELET_CDF53, 4, 300,
-     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0, T3R_DEPTH_SENSOR},
+     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0, T3R_DEPTH_SENSOR, false},
     {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_UNIFORM,
-     T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR},
+     T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR, false},
     {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_RANDOM,
-     T3R_HEAD_NONE, 600, false, 0, T3R_DEPTH_SENSOR},
+     T3R_HEAD_ANALYTIC, 600, false, 0, T3R_DEPTH_SENSOR, true},
     {"everything", 96, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR},
+     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR, false},
     {"learned", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false},
     {"learned_wide", 128, 96, 64, 48, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16, T3R_DEPTH_SENSOR},
+     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16, T3R_DEPTH_SENSOR, false},
     {"shipped", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR},
+     T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR, false},
     {"given", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_GIVEN,
-     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false},
     {"stereo", 128, 96, 96, 83, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO},
+     T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO, false},
 };
 
 typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
@@ -265,7 +267,8 @@ static t3r_status begin_run(run *r, bool stream)
     memset(arenas[0], r->ways.arena == ARENA_MIN ? 0xff : 0, r->arena_bytes);
     r->here = 0;
     r->step = "init";
-    return t3r_init(&r->rt, arenas[0], r->arena_bytes, &config);
+    status = t3r_init(&r->rt, arenas[0], r->arena_bytes, &config);
+    return status == T3R_OK ? t3r_set_ablation(r->rt, &(t3r_ablation){.unadapted = c->unadapted}) : status;
 }
 
 /* Frame `index` of the room as the configuration's camera takes it. */
@@ -295,15 +298,16 @@ static t3r_status build(run *r, uint32_t rebudgeted, t3r_scene *scene)
     static uint16_t plane[(MOST_WIDTH + GAP) * MOST_HEIGHT];
     const uint16_t *const lent[CONTEXT_VIEWS] = {plane, plane};
     const uint32_t stride = r->configuration->width + GAP;
-    if (r->configuration->allocation != T3R_ALLOCATE_GIVEN) {
-        return rebudgeted != 0 ? t3r_rebudget(r->rt, rebudgeted, scene) : t3r_reconstruct(r->rt, scene);
+    t3r_request request = {.gaussians = rebudgeted};
+    if (r->configuration->allocation == T3R_ALLOCATE_GIVEN) {
+        request.importance = lent;
+        request.importance_stride_bytes = stride * 2;
     }
     for (uint32_t i = 0; i < stride * r->configuration->height; i++) {
         uint32_t x = i % stride, y = i / stride;
         plane[i] = (uint16_t)((x / 7 * 31 + y / 5 * 17) % 50 * 1000 + x * y % 40);
     }
-    return rebudgeted != 0 ? t3r_rebudget_given(r->rt, rebudgeted, lent, stride * 2, scene)
-                           : t3r_reconstruct_given(r->rt, lent, stride * 2, scene);
+    return rebudgeted != 0 ? t3r_rebuild(r->rt, &request, scene) : t3r_reconstruct(r->rt, &request, scene);
 }
 
 /* Draws the view between the context views and prints what the caller sees of it. */

@@ -212,9 +212,9 @@ static void kmeans(void **state)
     assert_true(sizeof(t3r_cluster_work) < 65536);
     cloud c = cloud_of(20000, 40, 0.9, 0.02, 1);
     kmeans_case("well apart", &c, 40, 3); /* a missed blob of 40 costs more than its share */
-    c = cloud_of(20000, 0, 1, 0, 2);
+    c = cloud_of(10000, 0, 1, 0, 2);
     kmeans_case("uniform", &c, 100, 1.1);
-    c = cloud_of(30000, 60, 0.9, 0.15, 3);
+    c = cloud_of(15000, 60, 0.9, 0.15, 3);
     c.hole_every = 3;
     kmeans_case("overlapping, a third invalid", &c, 300, 1.1);
     c = cloud_of(5000, 1, 0.1, 0, 4);

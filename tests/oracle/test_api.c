@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -129,25 +130,19 @@ static void null_pointers(void **state)
     REFUSED(&b, t3r_add_view(b.rt, NULL, &camera), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_add_view(b.rt, &frame, NULL), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_reset(NULL), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reconstruct(NULL, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reconstruct(b.rt, NULL), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget(NULL, 1, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget(b.rt, 1, NULL), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reallocate(NULL, 1, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reallocate(b.rt, 1, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_plan_within(b.memory.count, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reconstruct(NULL, NULL, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_reconstruct(b.rt, NULL, NULL), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebuild(NULL, NULL, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&b, t3r_rebuild(b.rt, NULL, NULL), T3R_ERR_ARGUMENT);
     static const uint16_t plane[POINTS];
-    const uint16_t *const planes[] = {plane, plane}, *const second_missing[] = {plane, NULL};
-    REFUSED(&b, t3r_reconstruct_given(NULL, planes, W * 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reconstruct_given(b.rt, NULL, W * 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reconstruct_given(b.rt, planes, W * 2, NULL), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget_given(NULL, 1, planes, W * 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget_given(b.rt, 1, NULL, W * 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget_given(b.rt, 1, planes, W * 2, NULL), T3R_ERR_ARGUMENT);
+    const uint16_t *const second_missing[] = {plane, NULL};
+    const t3r_request half = {.importance = second_missing, .importance_stride_bytes = W * 2};
     bench two = bench_of(good_config());
     assert_int_equal(t3r_add_view(two.rt, &frame, &camera), T3R_OK);
     assert_int_equal(t3r_add_view(two.rt, &frame, &camera), T3R_OK);
-    REFUSED(&two, t3r_reconstruct_given(two.rt, second_missing, W * 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&two, t3r_rebudget_given(two.rt, 1, second_missing, W * 2, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&two, t3r_reconstruct(two.rt, &half, &scene), T3R_ERR_ARGUMENT);
+    REFUSED(&two, t3r_rebuild(two.rt, &half, &scene), T3R_ERR_ARGUMENT);
     bench_free(&two);
     REFUSED(&b, t3r_get_scene(NULL, &scene), T3R_ERR_ARGUMENT);
     REFUSED(&b, t3r_get_scene(b.rt, NULL), T3R_ERR_ARGUMENT);
@@ -190,12 +185,10 @@ static void config_ranges(void **state)
         RANGE(clusters, 1, T3R_MAX_CLUSTERS),
         RANGE(cluster_batches, 0, 1024),
         RANGE(colour_weight_q8, 0, 1024),
-        RANGE(allocation, 0, T3R_ALLOCATE_COUNT - 1),
+        RANGE(allocation, 1, T3R_ALLOCATE_COUNT - 1),
         RANGE(keep_percent, 0, 100),
         RANGE(gamma_q8, 0, 512),
-        RANGE(shuffle, 0, 1),
-        RANGE(head, 0, T3R_HEAD_COUNT - 1),
-        RANGE(adapt, 0, 1),
+        RANGE(head, 1, T3R_HEAD_COUNT - 1),
         RANGE(head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES),
         RANGE(refinements, 0, 16),
         RANGE(fill_radius, 0, 8),
@@ -473,13 +466,15 @@ static void calls_out_of_order(void **state)
     t3r_gaussian g = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
     t3r_scene scene;
     bench b = bench_of(good_config());
-    REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
-    REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
-    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_STATE);
     static const uint16_t plane[POINTS];
     const uint16_t *const planes[] = {plane, plane};
-    REFUSED(&b, t3r_reconstruct_given(b.rt, planes, W * 2, &scene), T3R_ERR_STATE);
-    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, W * 2, &scene), T3R_ERR_STATE);
+    const t3r_request ten = {.gaussians = 10};
+    const t3r_request ten_given = {.gaussians = 10, .importance = planes, .importance_stride_bytes = W * 2};
+    REFUSED(&b, t3r_reconstruct(b.rt, NULL, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_reconstruct(b.rt, &ten_given, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebuild(b.rt, NULL, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebuild(b.rt, &ten, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebuild(b.rt, &ten_given, &scene), T3R_ERR_STATE);
     REFUSED(&b, t3r_get_scene(b.rt, &scene), T3R_ERR_STATE);
     REFUSED(&b, t3r_scene_append(b.rt, &g), T3R_ERR_STATE);
     REFUSED(&b, t3r_render(b.rt, &camera, &target), T3R_ERR_STATE);
@@ -493,17 +488,17 @@ static void calls_out_of_order(void **state)
     t3r_frame empty = frame;
     empty.depth = holes;
     t3r_status status = t3r_add_view(b.rt, &empty, &camera);
-    assert_int_equal(status == T3R_OK ? t3r_reconstruct(b.rt, &scene) : status, T3R_ERR_NO_DEPTH);
+    assert_int_equal(status == T3R_OK ? t3r_reconstruct(b.rt, NULL, &scene) : status, T3R_ERR_NO_DEPTH);
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
-    REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_reconstruct(b.rt, NULL, &scene), T3R_ERR_STATE);
     assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
-    assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(b.rt, NULL, &scene), T3R_OK);
     assert_int_equal(scene.count, b.config.gaussians);
     assert_int_equal(scene.valid_points, POINTS);
     /* the analysis was not kept */
-    REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
-    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_STATE);
-    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, W * 2, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebuild(b.rt, NULL, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebuild(b.rt, &ten, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_rebuild(b.rt, &ten_given, &scene), T3R_ERR_STATE);
     assert_int_equal(t3r_render(b.rt, &camera, &target), T3R_OK);
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
     REFUSED(&b, t3r_get_scene(b.rt, &scene), T3R_ERR_STATE);
@@ -513,28 +508,39 @@ static void calls_out_of_order(void **state)
     keep.keep_analysis = 1;
     b = bench_of(keep);
     assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
-    REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
-    assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
-    REFUSED(&b, t3r_rebudget(b.rt, 0, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget(b.rt, keep.max_gaussians + 1, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_COUNT, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_COUNT, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reallocate(b.rt, 0, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_ARGUMENT);
-    /* importance: its budget, rows too short, odd, planes out of step; without it `given` is refused */
+    REFUSED(&b, t3r_rebuild(b.rt, NULL, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(b.rt, NULL, &scene), T3R_OK);
     const uint16_t *const odd[] = {(const uint16_t *)(const void *)((const uint8_t *)plane + 1)};
-    REFUSED(&b, t3r_rebudget_given(b.rt, 0, planes, W * 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget_given(b.rt, keep.max_gaussians + 1, planes, W * 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, W * 2 - 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, W * 2 + 1, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget_given(b.rt, 10, planes, 0, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_rebudget_given(b.rt, 10, odd, W * 2, &scene), T3R_ERR_ARGUMENT);
-    REFUSED(&b, t3r_reallocate(b.rt, 10, T3R_ALLOCATE_GIVEN, T3R_HEAD_ANALYTIC, &scene), T3R_ERR_STATE);
-    assert_int_equal(t3r_rebudget_given(b.rt, 10, planes, W * 2, &scene), T3R_OK);
-    REFUSED(&b, t3r_rebudget(b.rt, 10, &scene), T3R_ERR_STATE);
-    REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
-    assert_int_equal(t3r_reallocate(b.rt, 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_OK);
+    const t3r_request bad[] = {
+        {.gaussians = keep.max_gaussians + 1},
+        {.max_loss_q8 = T3R_MAX_LOSS_Q8 + 1},
+        {.allocation = T3R_ALLOCATE_COUNT},
+        {.head = T3R_HEAD_COUNT},
+        /* importance: its budget, rows too short, odd, planes out of step, another allocation */
+        {.gaussians = keep.max_gaussians + 1, .importance = planes, .importance_stride_bytes = W * 2},
+        {.importance = planes, .importance_stride_bytes = W * 2 - 2},
+        {.importance = planes, .importance_stride_bytes = W * 2 + 1},
+        {.importance = planes, .importance_stride_bytes = 0},
+        {.importance = odd, .importance_stride_bytes = W * 2},
+        {.allocation = T3R_ALLOCATE_PIXEL, .importance = planes, .importance_stride_bytes = W * 2},
+        {.allocation = T3R_ALLOCATE_COUNT, .importance = planes, .importance_stride_bytes = W * 2},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        REFUSED(&b, t3r_rebuild(b.rt, &bad[i], &scene), T3R_ERR_ARGUMENT);
+        REFUSED(&b, t3r_reconstruct(b.rt, &bad[i], &scene), T3R_ERR_ARGUMENT);
+    }
+    /* without importance `given` is refused, and without weights the learned head */
+    const t3r_request unserved[] = {{.allocation = T3R_ALLOCATE_GIVEN}, {.head = T3R_HEAD_LEARNED}};
+    for (size_t i = 0; i < sizeof unserved / sizeof unserved[0]; i++) {
+        REFUSED(&b, t3r_rebuild(b.rt, &unserved[i], &scene), T3R_ERR_STATE);
+        REFUSED(&b, t3r_reconstruct(b.rt, &unserved[i], &scene), T3R_ERR_STATE);
+    }
+    assert_int_equal(t3r_rebuild(b.rt, &ten_given, &scene), T3R_OK);
+    assert_int_equal(scene.count, 10);
+    assert_int_equal(t3r_rebuild(b.rt, NULL, &scene), T3R_OK); /* a request holds for its call alone */
+    assert_int_equal(scene.count, keep.gaussians);
     for (uint32_t z = 1; z <= keep.max_gaussians; z += 33) {
-        assert_int_equal(t3r_rebudget(b.rt, z, &scene), T3R_OK);
+        assert_int_equal(t3r_rebuild(b.rt, &(t3r_request){.gaussians = z}, &scene), T3R_OK);
         assert_int_equal(scene.count, z);
     }
     bench_free(&b);
@@ -543,7 +549,7 @@ static void calls_out_of_order(void **state)
     t3r_config render_only = render_config(5, W, H);
     b = bench_of(render_only);
     REFUSED(&b, t3r_add_view(b.rt, &frame, &camera), T3R_ERR_STATE);
-    REFUSED(&b, t3r_reconstruct(b.rt, &scene), T3R_ERR_STATE);
+    REFUSED(&b, t3r_reconstruct(b.rt, NULL, &scene), T3R_ERR_STATE);
     bench_free(&b);
 }
 
@@ -565,9 +571,10 @@ static void budgets(void **state)
         importance[i] = (uint16_t)(i * 7919 % 1000);
     }
     const uint16_t *const planes[] = {importance};
-    for (int allocation = 0; allocation < T3R_ALLOCATE_COUNT; allocation++) {
+    for (int allocation = 1; allocation < T3R_ALLOCATE_COUNT; allocation++) {
         const bool given = allocation == T3R_ALLOCATE_GIVEN;
-        for (int head = 0; head < T3R_HEAD_COUNT; head++) {
+        /* heads take the points that are kept: each with one mode, each mode with one head */
+        for (int head = 1; head < (allocation == T3R_ALLOCATE_DENSITY ? (int)T3R_HEAD_COUNT : 2); head++) {
             const uint32_t wanted[] = {1, 2, measured / 20, measured / 2, measured - 1, measured, measured + 1, POINTS};
             t3r_config config = good_config();
             config.max_gaussians = config.gaussians = POINTS;
@@ -578,13 +585,12 @@ static void budgets(void **state)
             t3r_scene scene;
             assert_int_equal(t3r_bind_head(b.rt, weights, weights_bytes), T3R_OK);
             assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
-            assert_int_equal(given ? t3r_reconstruct_given(b.rt, planes, W * 2, &scene) : t3r_reconstruct(b.rt, &scene),
-                             T3R_OK);
+            t3r_request request = {.importance = given ? planes : NULL, .importance_stride_bytes = W * 2};
+            assert_int_equal(t3r_reconstruct(b.rt, &request, &scene), T3R_OK);
             assert_int_equal(scene.valid_points, measured);
             for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
-                assert_int_equal(given ? t3r_rebudget_given(b.rt, wanted[i], planes, W * 2, &scene)
-                                       : t3r_rebudget(b.rt, wanted[i], &scene),
-                                 T3R_OK);
+                request.gaussians = wanted[i];
+                assert_int_equal(t3r_rebuild(b.rt, &request, &scene), T3R_OK);
                 uint32_t expected = wanted[i] < measured ? wanted[i] : measured;
                 if (scene.count != expected) {
                     fail_msg("%s, %s: %u Gaussians for a budget of %u with %u valid points",
@@ -615,7 +621,7 @@ static void planes_lent_away(void **state)
             bench b = bench_of(config);
             t3r_scene scene;
             assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
-            assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+            assert_int_equal(t3r_reconstruct(b.rt, NULL, &scene), T3R_OK);
             assert_int_equal(scene.count, 200);
             memcpy(expected, scene.gaussians, sizeof expected);
             if (between & 1) {
@@ -628,13 +634,13 @@ static void planes_lent_away(void **state)
                 }
             }
             for (int again = 0; again < 2; again++) {
-                t3r_status status =
-                    again == 0 && keep ? t3r_rebudget(b.rt, 200, &scene) : t3r_reconstruct(b.rt, &scene);
+                t3r_status status = again == 0 && keep ? t3r_rebuild(b.rt, &(t3r_request){.gaussians = 200}, &scene)
+                                                       : t3r_reconstruct(b.rt, NULL, &scene);
                 assert_true(status == T3R_OK || status == T3R_ERR_STATE);
                 if (status == T3R_OK && memcmp(scene.gaussians, expected, sizeof expected) != 0) {
                     fail_msg("keep_analysis %u, in between %s%s: %s gives another scene", keep,
                              between & 1 ? "a render " : "", between & 2 ? "a scene from outside" : "",
-                             again == 0 && keep ? "t3r_rebudget()" : "t3r_reconstruct()");
+                             again == 0 && keep ? "t3r_rebuild()" : "t3r_reconstruct()");
                 }
             }
             /* a view that comes now is refused, or leaves the scene as it is */
@@ -668,7 +674,7 @@ static void cancelling(void **state)
     bench b = bench_of(good_config());
     t3r_scene scene;
     assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
-    assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(b.rt, NULL, &scene), T3R_OK);
     t3r_gaussian *expected = malloc(scene.count * sizeof *expected);
     assert_non_null(expected);
     const uint32_t count = scene.count;
@@ -682,7 +688,7 @@ static void cancelling(void **state)
         assert_int_equal(t3r_reset(b.rt), T3R_OK);
         assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
         f = (fuse){0, at};
-        t3r_status status = t3r_reconstruct(b.rt, &scene);
+        t3r_status status = t3r_reconstruct(b.rt, NULL, &scene);
         if (status == T3R_OK) {
             assert_true(f.calls <= at); /* past its last call */
             break;
@@ -694,7 +700,7 @@ static void cancelling(void **state)
         assert_int_equal(t3r_set_hooks(b.rt, NULL), T3R_OK);
         assert_int_equal(t3r_reset(b.rt), T3R_OK);
         assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
-        assert_int_equal(t3r_reconstruct(b.rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(b.rt, NULL, &scene), T3R_OK);
         assert_int_equal(scene.count, count);
         assert_memory_equal(scene.gaussians, expected, count * sizeof *expected);
     }
@@ -744,6 +750,10 @@ static const char *depth_name(int i)
 static void texts(void **state)
 {
     (void)state;
+    char version[32];
+    snprintf(version, sizeof version, "%d.%d.%d", T3R_VERSION_MAJOR, T3R_VERSION_MINOR, T3R_VERSION_PATCH);
+    assert_string_equal(t3r_version(), version);
+    assert_string_equal(T3R_VERSION, version);
     for (int status = -100; status <= 100; status++) {
         const char *text = t3r_error_text((t3r_status)status);
         assert_non_null(text);
@@ -754,10 +764,14 @@ static void texts(void **state)
     }
     static const struct {
         const char *(*name)(int);
-        int count;
+        int first, count;
     } tables[] = {
-        {stage_name, T3R_STAGE_COUNT},     {allocation_name, T3R_ALLOCATE_COUNT},       {head_name, T3R_HEAD_COUNT},
-        {wavelet_name, T3R_WAVELET_COUNT}, {pixel_format_name, T3R_PIXEL_FORMAT_COUNT}, {depth_name, T3R_DEPTH_COUNT},
+        {stage_name, 0, T3R_STAGE_COUNT},
+        {allocation_name, T3R_ALLOCATE_CONFIGURED + 1, T3R_ALLOCATE_COUNT},
+        {head_name, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT},
+        {wavelet_name, 0, T3R_WAVELET_COUNT},
+        {pixel_format_name, 0, T3R_PIXEL_FORMAT_COUNT},
+        {depth_name, 0, T3R_DEPTH_COUNT},
     };
     for (int pair = -2; pair <= T3R_PAIR_COUNT; pair++) {
         assert_non_null(t3r_pair_text((t3r_pair)pair));
@@ -766,12 +780,12 @@ static void texts(void **state)
         }
     }
     for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
-        assert_null(tables[i].name(-1));
+        assert_null(tables[i].name(tables[i].first - 1));
         assert_null(tables[i].name(tables[i].count));
         assert_null(tables[i].name(1 << 30));
-        for (int k = 0; k < tables[i].count; k++) {
+        for (int k = tables[i].first; k < tables[i].count; k++) {
             assert_non_null(tables[i].name(k));
-            for (int other = 0; other < k; other++) {
+            for (int other = tables[i].first; other < k; other++) {
                 assert_string_not_equal(tables[i].name(k), tables[i].name(other));
             }
         }

@@ -123,6 +123,68 @@ static void plan_equals_macros(void **state)
 }
 
 /* The settings that no macro knows of must not need more. */
+/* The most Gaussians that fit, and not one more; never more than were asked for. */
+static void plan_within_is_the_inverse(void **state)
+{
+    (void)state;
+    dice d = {11};
+    uint32_t cut = 0, refused = 0;
+    for (int i = 0; i < 20000; i++) {
+        t3r_config c = random_config(&d, T3R_MAX_SIDE, T3R_MAX_GAUSSIANS), fitted = c;
+        c.stream = c.views > 0 && c.depth == T3R_DEPTH_SENSOR && dice_below(&d, 4) == 0;
+        fitted = c;
+        t3r_plan_info plan, one, more;
+        assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
+        t3r_config single = c;
+        single.max_gaussians = single.gaussians = 1;
+        assert_int_equal(t3r_plan(&single, &one), T3R_OK);
+        /* from too little for one Gaussian to more than all need */
+        const size_t bytes =
+            one.min_bytes - 1 + (size_t)dice_below(&d, 1001) * (plan.min_bytes - one.min_bytes + 5) / 1000;
+        const t3r_status status = t3r_plan_within(bytes, &fitted);
+        if (bytes < one.min_bytes) {
+            assert_int_equal(status, T3R_ERR_ARENA);
+            assert_memory_equal(&fitted, &c, sizeof c);
+            refused++;
+            continue;
+        }
+        assert_int_equal(status, T3R_OK);
+        assert_int_equal(t3r_plan(&fitted, &plan), T3R_OK);
+        assert_true(plan.min_bytes <= bytes);
+        assert_true(fitted.max_gaussians <= c.max_gaussians);
+        assert_int_equal(fitted.gaussians, c.gaussians < fitted.max_gaussians ? c.gaussians : fitted.max_gaussians);
+        if (fitted.max_gaussians < c.max_gaussians) {
+            t3r_config next = fitted;
+            next.max_gaussians++;
+            assert_int_equal(t3r_plan(&next, &more), T3R_OK);
+            assert_true(more.min_bytes > bytes);
+            cut++;
+        }
+        fitted.max_gaussians = c.max_gaussians; /* and nothing else has changed */
+        fitted.gaussians = c.gaussians;
+        assert_memory_equal(&fitted, &c, sizeof c);
+    }
+    assert_true(cut > 10000 && refused > 5);
+    /* all that memory can hold of the largest scene, and what is out of range */
+    t3r_config c = t3r_default_config(256, 256, 2, T3R_MAX_GAUSSIANS);
+    assert_int_equal(t3r_plan_within(T3R_ARENA_MIN_BYTES(256, 256, 2, 13107), &c), T3R_OK);
+    assert_true(c.max_gaussians >= 13107 && c.gaussians == c.max_gaussians);
+    assert_true(T3R_ARENA_MIN_BYTES(256, 256, 2, c.max_gaussians) == T3R_ARENA_MIN_BYTES(256, 256, 2, 13107));
+    const t3r_config good = c;
+    const struct {
+        uint32_t max_gaussians, gaussians, clusters;
+    } bad[] = {{0, 0, 1}, {T3R_MAX_GAUSSIANS + 1, 1, 1}, {UINT32_MAX, 1, 1}, {5, 6, 1}, {5, 0, 1}, {5, 5, 0}};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        t3r_config wrong = good;
+        wrong.max_gaussians = bad[i].max_gaussians;
+        wrong.gaussians = bad[i].gaussians;
+        wrong.clusters = bad[i].clusters;
+        t3r_config left = wrong;
+        assert_int_equal(t3r_plan_within(SIZE_MAX, &left), T3R_ERR_CONFIG);
+        assert_memory_equal(&left, &wrong, sizeof wrong);
+    }
+}
+
 static void plan_depends_on_sizes_alone(void **state)
 {
     (void)state;
@@ -272,13 +334,10 @@ static void a_static_array_is_enough(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plan_equals_macros),
-        cmocka_unit_test(plan_depends_on_sizes_alone),
-        cmocka_unit_test(minimum_works_one_less_is_refused),
-        cmocka_unit_test(every_size_up_to_the_minimum),
-        cmocka_unit_test(misaligned_is_refused),
-        cmocka_unit_test(attach_refuses_foreign_bytes),
-        cmocka_unit_test(a_static_array_is_enough),
+        cmocka_unit_test(plan_equals_macros),           cmocka_unit_test(plan_within_is_the_inverse),
+        cmocka_unit_test(plan_depends_on_sizes_alone),  cmocka_unit_test(minimum_works_one_less_is_refused),
+        cmocka_unit_test(every_size_up_to_the_minimum), cmocka_unit_test(misaligned_is_refused),
+        cmocka_unit_test(attach_refuses_foreign_bytes), cmocka_unit_test(a_static_array_is_enough),
     };
     return cmocka_run_group_tests_name("arena", tests, NULL, NULL);
 }

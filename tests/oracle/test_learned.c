@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "core/ablation.h"
 #include "core/state.h"
 #include "drawing.h"
 #include "head/head_views.h"
@@ -86,7 +87,7 @@ static void same_bits_everywhere(void **state)
         t3r_runtime *rt = with_views(&first, &config, 1);
         t3r_scene expected, scene;
         assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
-        assert_int_equal(t3r_reconstruct(rt, &expected), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &expected), T3R_OK);
         assert_int_equal(expected.count, 400);
         uint32_t different = 0;
         for (uint32_t i = 1; i < expected.count; i++) { /* the network says something, not always the same */
@@ -99,14 +100,14 @@ static void same_bits_everywhere(void **state)
             memset(other.bytes, 0x7e, other.count);
             rt = with_views(&other, &config, 1);
             assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
-            assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
             same_scene(&scene, &expected);
-            assert_int_equal(t3r_rebudget(rt, 123, &scene), T3R_OK);
+            assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 123}, &scene), T3R_OK);
             memcpy(moved.bytes, other.bytes, other.count);
             assert_int_equal(t3r_attach(&rt, moved.bytes, moved.count), T3R_OK);
-            assert_int_equal(t3r_rebudget(rt, 400, &scene), T3R_ERR_STATE); /* weights do not move along */
+            assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* weights do not move along */
             assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
-            assert_int_equal(t3r_rebudget(rt, 400, &scene), T3R_OK);
+            assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
             same_scene(&scene, &expected);
             arena_free(&moved);
             arena_free(&other);
@@ -130,12 +131,12 @@ static void bands_give_the_whole_view(void **state)
     t3r_runtime *rt = with_views(&memory, &config, 1);
     t3r_scene scene;
     t3r_view views[T3R_MAX_VIEWS];
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     t3r_views_of(rt, views);
     const t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
     t3r_head_input input = t3r_head_input_of(rt, views, 0, &settings);
     t3r_gaussian *whole = malloc(POINTS * sizeof *whole), *bands = malloc(POINTS * sizeof *bands);
-    t3r_head_rows *const heads[] = {t3r_head_analytic, t3r_head_none, t3r_head_learned};
+    t3r_head_rows *const heads[] = {t3r_head_analytic, t3r_head_learned};
     uint32_t random = 1;
     for (uint32_t round = 0; round < 160; round++) {
         const uint32_t bits = round / 2 % 4;
@@ -143,7 +144,8 @@ static void bands_give_the_whole_view(void **state)
         uint8_t *weights = make_weights(shapes[round % 2].layers, *shapes[round % 2].count, bits & 1 ? 16 : 8,
                                         bits & 2 ? 16 : 8, round, &bytes);
         const size_t work_bytes = t3r_head_learned_work_bytes(weights, W);
-        t3r_head_rows *head = heads[round < 8 ? round % 3 : 2];
+        t3r_head_rows *head = heads[round < 8 ? round / 2 % 2 : 1];
+        input.unadapted = round % 3 == 1;
         input.weights = weights;
         input.work = aligned_alloc(16, (work_bytes + 15) / 16 * 16);
         memset(input.work, 0x5a, work_bytes);
@@ -212,7 +214,7 @@ static void is_part_of(const t3r_scene *few, const t3r_gaussian *all, uint32_t c
     }
 }
 
-/* adapt 0: what a head makes of all points, pruned and left as it is; with it on, another scene. */
+/* A head that adapts nothing: what it makes of all points, pruned and left as it is; one that adapts, another scene. */
 static void unadapted_is_pruned(void **state)
 {
     (void)state;
@@ -227,30 +229,27 @@ static void unadapted_is_pruned(void **state)
         config.fill_radius = config.bridge_radius = 0; /* nor do filled points take measured ones' places */
         arena memory = arena_of(&config, ARENA_AT_FULL);
         uint32_t count = 0;
-        for (config.adapt = 1; config.adapt < 2; config.adapt--) {
+        const t3r_request fewer = {.gaussians = 300, .allocation = T3R_ALLOCATE_DENSITY};
+        for (uint32_t unadapted = 0; unadapted < 2; unadapted++) {
             t3r_runtime *rt = with_views(&memory, &config, 1);
             t3r_scene scene;
+            assert_int_equal(t3r_set_ablation(rt, &(t3r_ablation){.unadapted = unadapted}), T3R_OK);
             assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
-            assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
-            if (config.adapt == 1) {
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+            if (!unadapted) {
                 count = scene.count;
                 memcpy(all, scene.gaussians, count * sizeof *all);
             } else {
                 assert_int_equal(scene.count, count);
                 assert_memory_equal(all, scene.gaussians, count * sizeof *all);
             }
-            assert_int_equal(t3r_reallocate(rt, 300, T3R_ALLOCATE_DENSITY, config.head, &scene), T3R_OK);
+            assert_int_equal(t3r_rebuild(rt, &fewer, &scene), T3R_OK);
             assert_int_equal(scene.count, 300);
-            if (config.adapt == 1) {
+            if (!unadapted) {
                 memcpy(adapted, scene.gaussians, sizeof adapted);
             } else {
                 is_part_of(&scene, all, count);
                 assert_memory_not_equal(adapted, scene.gaussians, sizeof adapted);
-            }
-            if (config.adapt == 0 && config.head == T3R_HEAD_ANALYTIC) {
-                memcpy(adapted, scene.gaussians, sizeof adapted);
-                assert_int_equal(t3r_reallocate(rt, 300, T3R_ALLOCATE_DENSITY, T3R_HEAD_NONE, &scene), T3R_OK);
-                assert_memory_equal(adapted, scene.gaussians, sizeof adapted);
             }
         }
         arena_free(&memory);
@@ -284,7 +283,7 @@ static void hash_names_the_weights(void **state)
         seal_weights(weights, bytes);
         assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
         assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         assert_int_equal(scene.count, 100);
         hashes[i] = told_hash;
         if (i == 0) {
@@ -316,23 +315,23 @@ static void binding(void **state)
     assert_int_equal(t3r_bind_head(NULL, weights, bytes), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_head_crc(NULL), 0);
     assert_int_equal(t3r_head_crc(rt), 0);
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_ERR_STATE);
     assert_int_equal(t3r_bind_head(rt, weights + 8, bytes - 8), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_bind_head(rt, weights, bytes - 16), T3R_ERR_WEIGHTS);
     assert_int_equal(t3r_bind_head(rt, too_large, wide_bytes), T3R_ERR_WEIGHTS);
     assert_null(t3r_weights_error(too_large, wide_bytes));
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_ERR_STATE);
 
     assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
     uint32_t crc = t3r_head_crc(rt);
     assert_int_not_equal(crc, 0);
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     assert_int_equal(t3r_bind_head(rt, too_large, wide_bytes), T3R_ERR_WEIGHTS); /* the bound one stays */
-    assert_int_equal(t3r_rebudget(rt, 50, &scene), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 50}, &scene), T3R_OK);
     assert_int_equal(t3r_bind_head(rt, NULL, 0), T3R_OK);
-    assert_int_equal(t3r_rebudget(rt, 50, &scene), T3R_ERR_STATE);
-    assert_int_equal(t3r_reallocate(rt, 50, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_OK);
-    assert_int_equal(t3r_reallocate(rt, 50, T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 50}, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 50, .head = T3R_HEAD_ANALYTIC}, &scene), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 50, .head = T3R_HEAD_LEARNED}, &scene), T3R_ERR_STATE);
     assert_int_equal(t3r_get_scene(rt, &scene), T3R_OK); /* refused before anything changed */
     assert_int_equal(t3r_attach(&rt, memory.bytes, memory.count), T3R_OK);
     assert_int_equal(t3r_head_crc(rt), crc);
@@ -375,7 +374,7 @@ static const t3r_gaussian *constant_head(const int16_t outputs[T3R_HEAD_OUTPUTS]
     t3r_runtime *rt = with_views(&memory, &config, 0);
     t3r_scene scene;
     assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     assert_int_equal(scene.count, POINTS);
     memcpy(constant_scene, scene.gaussians, sizeof constant_scene);
     arena_free(&memory);
@@ -516,9 +515,10 @@ static void scaled_by_the_spacing(void **state)
     static t3r_gaussian learned[POINTS];
     t3r_scene scene;
     assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     memcpy(learned, scene.gaussians, scene.count * sizeof *learned);
-    assert_int_equal(t3r_reallocate(rt, POINTS / 10, T3R_ALLOCATE_DENSITY, T3R_HEAD_ANALYTIC, &scene), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = POINTS / 10, .head = T3R_HEAD_ANALYTIC}, &scene),
+                     T3R_OK);
     assert_int_equal(scene.count, POINTS / 10);
     for (uint32_t i = 0; i < scene.count; i++) {
         const t3r_gaussian *a = &scene.gaussians[i], *b = &learned[i];

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "core/ablation.h"
 #include "drawing.h"
 #include "oracle_refine.h"
 
@@ -41,17 +42,24 @@ static void make_views(void)
     }
 }
 
-static t3r_gaussian *reconstruct(uint32_t refinements, t3r_head head, t3r_scene *scene)
+typedef struct splat_maker {
+    const char *name;
+    t3r_head head;
+    t3r_ablation ablation;
+} splat_maker;
+
+static t3r_gaussian *reconstruct(uint32_t refinements, const splat_maker *maker, t3r_scene *scene)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
     config.refinements = refinements;
-    config.head = head;
+    config.head = maker->head;
     config.fill_radius = config.bridge_radius = 0;
     config.flying = config.redundancy = config.exposure = 0; /* nothing but refinement */
     config.clusters = 20;
     arena a = arena_of(&config, ARENA_AT_FULL);
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, a.bytes, a.count, &config), T3R_OK);
+    assert_int_equal(t3r_set_ablation(rt, &maker->ablation), T3R_OK);
     for (uint32_t v = 0; v < VIEWS; v++) {
         t3r_frame frame = {.format = T3R_PIXEL_RGB24,
                            .width = SIDE,
@@ -65,7 +73,7 @@ static t3r_gaussian *reconstruct(uint32_t refinements, t3r_head head, t3r_scene 
                            .depth_unit_q40 = 1099511628};
         assert_int_equal(t3r_add_view(rt, &frame, &camera[v]), T3R_OK);
     }
-    assert_int_equal(t3r_reconstruct(rt, scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, scene), T3R_OK);
     t3r_gaussian *copy = calloc(scene->count, sizeof *copy);
     assert_non_null(copy);
     memcpy(copy, scene->gaussians, scene->count * sizeof *copy);
@@ -108,11 +116,11 @@ static const double mean_share[PASSES] = {0.02, 0.03, 0.035, 0.04};
 static const difference most_off[PASSES] = {
     {4, 0.15, 0.06, 0.06}, {4, 0.3, 0.2, 0.15}, {8, 0.5, 0.3, 0.3}, {12, 0.5, 0.5, 0.5}};
 
-static void check_pass(t3r_head head, uint32_t passes, const oracle_gaussian *scene, const oracle_gaussian *want,
-                       size_t count)
+static void check_pass(const splat_maker *maker, uint32_t passes, const oracle_gaussian *scene,
+                       const oracle_gaussian *want, size_t count)
 {
     t3r_scene refined;
-    t3r_gaussian *after = reconstruct(passes, head, &refined);
+    t3r_gaussian *after = reconstruct(passes, maker, &refined);
     assert_int_equal(refined.count, count);
     difference most = {0}, mean = {0}, moved = {0};
     for (size_t i = 0; i < count; i++) {
@@ -132,8 +140,8 @@ static void check_pass(t3r_head head, uint32_t passes, const oracle_gaussian *sc
     }
     print_message("%-8s %zu Gaussians, %u passes: moved %.2f %.4f %.4f %.4f, off by %.4f %.5f %.5f %.5f, at most %.3f "
                   "%.4f %.4f %.4f\n",
-                  t3r_head_name(head), count, passes, moved.colour, moved.opacity, moved.place, moved.shape,
-                  mean.colour, mean.opacity, mean.place, mean.shape, most.colour, most.opacity, most.place, most.shape);
+                  maker->name, count, passes, moved.colour, moved.opacity, moved.place, moved.shape, mean.colour,
+                  mean.opacity, mean.place, mean.shape, most.colour, most.opacity, most.place, most.shape);
     const double share = mean_share[passes - 1];
     const difference bound = most_off[passes - 1];
     assert_true(moved.colour > 1 && moved.opacity > 0.003 && moved.place > 0.01 && moved.shape > 0.01);
@@ -149,10 +157,12 @@ static void follows_the_oracle(void **state)
 {
     (void)state;
     make_views();
-    const t3r_head heads[] = {T3R_HEAD_ANALYTIC, T3R_HEAD_MOMENT, T3R_HEAD_NONE};
+    const splat_maker heads[] = {{"analytic", T3R_HEAD_ANALYTIC, {0}},
+                                 {"moment", T3R_HEAD_MOMENT, {0}},
+                                 {"unadapted", T3R_HEAD_ANALYTIC, {.unadapted = 1}}};
     for (size_t h = 0; h < sizeof heads / sizeof heads[0]; h++) {
         t3r_scene plain;
-        t3r_gaussian *before = reconstruct(0, heads[h], &plain);
+        t3r_gaussian *before = reconstruct(0, &heads[h], &plain);
         oracle_gaussian *scene = calloc(plain.count, sizeof *scene), *want = calloc(plain.count, sizeof *want);
         oracle_change *changes = calloc(plain.count, sizeof *changes);
         assert_true(scene != NULL && want != NULL && changes != NULL);
@@ -167,7 +177,7 @@ static void follows_the_oracle(void **state)
         }
         for (uint32_t pass = 0; pass < PASSES; pass++) {
             oracle_refine(want, plain.count, views, VIEWS, changes);
-            check_pass(heads[h], pass + 1, scene, want, plain.count);
+            check_pass(&heads[h], pass + 1, scene, want, plain.count);
         }
         free(changes);
         free(want);

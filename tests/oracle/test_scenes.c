@@ -97,7 +97,7 @@ static void check_build(const t3r_recording *recording, const char *scene, t3r_t
         assert_int_equal(t3r_add_view(rt, &frame.frame, &frame.camera), T3R_OK);
     }
     t3r_scene built;
-    assert_int_equal(t3r_reconstruct(rt, &built), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &built), T3R_OK);
     assert_int_equal(built.count, budget);
     oracle_gaussian *exact = calloc(built.count, sizeof *exact);
     assert_non_null(exact);
@@ -106,7 +106,7 @@ static void check_build(const t3r_recording *recording, const char *scene, t3r_t
     }
     char path[2 * PATH_BYTES], error[256] = "";
     (void)snprintf(path, sizeof path, "%s/%s.ply", folder, scene);
-    if (scene_file_write_ply(path, &built, 0, NULL, error, sizeof error) != 0) {
+    if (scene_file_write(path, &built, 0, NULL, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
     size_t exported = 0;
@@ -163,7 +163,7 @@ static void trained_scene(void **state)
     char path[2 * PATH_BYTES], error[256] = "";
     (void)snprintf(path, sizeof path, "%s/splats/bulba.ply", data);
     scene_file scene;
-    if (scene_file_read_ply(path, &scene, error, sizeof error) != 0) {
+    if (scene_file_read(path, &scene, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
     size_t count = 0;

@@ -15,6 +15,7 @@
 #include "core/state.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VIEWS = 2, HALF_DB = 128 };
+static const t3r_request half_db = {.max_loss_q8 = HALF_DB};
 
 static uint8_t rgb[VIEWS][PIXELS * 3], depth[VIEWS][PIXELS * 2];
 static t3r_camera camera[VIEWS];
@@ -85,7 +86,7 @@ static site site_of(uint32_t most, uint32_t views)
 static t3r_scene within(site *s, uint32_t loss_q8)
 {
     t3r_scene scene;
-    assert_int_equal(t3r_reconstruct_within(s->rt, loss_q8, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(s->rt, &(t3r_request){.max_loss_q8 = loss_q8}, &scene), T3R_OK);
     return scene;
 }
 
@@ -98,12 +99,12 @@ static void the_scene_of_that_budget(void **state)
         site chosen = site_of(VIEWS * PIXELS, views), asked = site_of(VIEWS * PIXELS, views);
         t3r_scene a = within(&chosen, HALF_DB), b;
         assert_true(a.count > 20 && a.count < views * PIXELS);
-        assert_int_equal(chosen.rt->config.gaussians, a.count);
-        assert_int_equal(t3r_reconstruct(asked.rt, &b), T3R_OK);
-        assert_int_equal(t3r_rebudget(asked.rt, a.count, &b), T3R_OK);
+        assert_int_equal(chosen.rt->config.gaussians, VIEWS * PIXELS);
+        assert_int_equal(t3r_reconstruct(asked.rt, NULL, &b), T3R_OK);
+        assert_int_equal(t3r_rebuild(asked.rt, &(t3r_request){.gaussians = a.count}, &b), T3R_OK);
         assert_int_equal(a.count, b.count);
         assert_memory_equal(a.gaussians, b.gaussians, a.count * sizeof *a.gaussians);
-        assert_int_equal(t3r_rebudget_within(asked.rt, VIEWS * PIXELS, HALF_DB, &b), T3R_OK);
+        assert_int_equal(t3r_rebuild(asked.rt, &half_db, &b), T3R_OK);
         assert_int_equal(a.count, b.count);
         assert_memory_equal(a.gaussians, b.gaussians, a.count * sizeof *a.gaussians);
         arena_free(&chosen.memory);
@@ -127,7 +128,7 @@ static void never_more_than_the_most(void **state)
     for (uint32_t loss_q8 = 16; loss_q8 <= T3R_MAX_LOSS_Q8; loss_q8 *= 2) {
         t3r_scene scene;
         if (s.rt->has_scene) {
-            assert_int_equal(t3r_rebudget_within(s.rt, VIEWS * PIXELS, loss_q8, &scene), T3R_OK);
+            assert_int_equal(t3r_rebuild(s.rt, &(t3r_request){.max_loss_q8 = loss_q8}, &scene), T3R_OK);
         } else {
             scene = within(&s, loss_q8);
         }
@@ -135,6 +136,42 @@ static void never_more_than_the_most(void **state)
         before = scene.count;
     }
     assert_true(before < VIEWS * PIXELS / 20);
+    arena_free(&s.memory);
+}
+
+/* By an importance, too: the scene is that of the same importance and budget asked for at once. */
+static void by_an_importance(void **state)
+{
+    (void)state;
+    make_views(90);
+    static uint16_t importance[VIEWS][PIXELS];
+    const uint16_t *const planes[VIEWS] = {importance[0], importance[1]};
+    for (uint32_t i = 0; i < VIEWS * PIXELS; i++) {
+        importance[i / PIXELS][i % PIXELS] = (uint16_t)(i * 40503);
+    }
+    t3r_request request = {.importance = planes, .importance_stride_bytes = 2 * SIDE, .max_loss_q8 = HALF_DB};
+    site s = site_of(VIEWS * PIXELS, VIEWS);
+    t3r_scene scene;
+    assert_int_equal(t3r_reconstruct(s.rt, &request, &scene), T3R_OK);
+    const uint32_t chosen = scene.count;
+    static t3r_gaussian kept[VIEWS * PIXELS];
+    memcpy(kept, scene.gaussians, chosen * sizeof *kept);
+    assert_true(chosen > 20 && chosen < VIEWS * PIXELS);
+    assert_int_equal(t3r_rebuild(s.rt, &half_db, &scene), T3R_OK); /* by texture, other trials and another choice */
+    assert_true(scene.count != chosen);
+    request.max_loss_q8 = 0;
+    request.gaussians = chosen;
+    assert_int_equal(t3r_rebuild(s.rt, &request, &scene), T3R_OK);
+    assert_int_equal(scene.count, chosen);
+    assert_memory_equal(scene.gaussians, kept, chosen * sizeof *kept);
+    request.max_loss_q8 = HALF_DB;
+    request.gaussians = 0;
+    assert_int_equal(t3r_rebuild(s.rt, &request, &scene), T3R_OK);
+    assert_int_equal(scene.count, chosen);
+    assert_memory_equal(scene.gaussians, kept, chosen * sizeof *kept);
+    request.gaussians = chosen / 2;
+    assert_int_equal(t3r_rebuild(s.rt, &request, &scene), T3R_OK);
+    assert_true(scene.count <= chosen / 2);
     arena_free(&s.memory);
 }
 
@@ -155,7 +192,7 @@ static void the_error_is_that_of_the_picture(void **state)
     make_views(90);
     site s = site_of(400, VIEWS);
     t3r_scene scene;
-    assert_int_equal(t3r_reconstruct(s.rt, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(s.rt, NULL, &scene), T3R_OK);
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(s.rt, views);
     uint32_t error_q8;
@@ -184,14 +221,13 @@ static void cancelled_anywhere(void **state)
     assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
     uint32_t count = within(&s, HALF_DB).count;
     assert_int_equal(t3r_reset(s.rt), T3R_OK);
-    s.rt->config.gaussians = VIEWS * PIXELS;
     add_views(&s, VIEWS);
     int32_t calls = 0;
     for (bool done = false; !done; calls++) {
         t3r_config before = s.rt->config;
         t3r_scene scene;
         s.calls_left = calls;
-        t3r_status status = t3r_reconstruct_within(s.rt, HALF_DB, &scene);
+        t3r_status status = t3r_reconstruct(s.rt, &half_db, &scene);
         done = status == T3R_OK;
         if (done) {
             assert_int_equal(scene.count, count);
@@ -211,23 +247,23 @@ static void refusals(void **state)
     make_views(90);
     t3r_scene scene;
     site s = site_of(100, VIEWS);
-    assert_int_equal(t3r_reconstruct_within(NULL, HALF_DB, &scene), T3R_ERR_ARGUMENT);
-    assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, NULL), T3R_ERR_ARGUMENT);
-    assert_int_equal(t3r_reconstruct_within(s.rt, 0, &scene), T3R_ERR_ARGUMENT);
-    assert_int_equal(t3r_reconstruct_within(s.rt, T3R_MAX_LOSS_Q8 + 1, &scene), T3R_ERR_ARGUMENT);
-    assert_int_equal(t3r_rebudget_within(s.rt, 100, HALF_DB, &scene), T3R_ERR_STATE); /* no analysis yet */
+    assert_int_equal(t3r_reconstruct(NULL, &half_db, &scene), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_reconstruct(s.rt, &half_db, NULL), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_reconstruct(s.rt, &(t3r_request){.max_loss_q8 = T3R_MAX_LOSS_Q8 + 1}, &scene),
+                     T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_rebuild(s.rt, &half_db, &scene), T3R_ERR_STATE); /* no analysis yet */
     (void)within(&s, HALF_DB);
-    assert_int_equal(t3r_rebudget_within(s.rt, 101, HALF_DB, &scene), T3R_ERR_ARGUMENT);
-    assert_int_equal(t3r_rebudget_within(s.rt, 100, 0, &scene), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_rebuild(s.rt, &(t3r_request){.gaussians = 101, .max_loss_q8 = HALF_DB}, &scene),
+                     T3R_ERR_ARGUMENT);
     s.rt->config.refinements = 0;
-    assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(s.rt, &half_db, &scene), T3R_ERR_STATE);
     s.rt->config.refinements = 4;
     s.rt->config.keep_analysis = 0;
-    assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(s.rt, &half_db, &scene), T3R_ERR_STATE);
     arena_free(&s.memory);
     s = site_of(100, 1);
     s.rt->config.depth = T3R_DEPTH_STEREO; /* of one view */
-    assert_int_equal(t3r_reconstruct_within(s.rt, HALF_DB, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(s.rt, &half_db, &scene), T3R_ERR_STATE);
     arena_free(&s.memory);
 }
 
@@ -236,6 +272,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_scene_of_that_budget),
         cmocka_unit_test(never_more_than_the_most),
+        cmocka_unit_test(by_an_importance),
         cmocka_unit_test(a_blank_wall_needs_next_to_nothing),
         cmocka_unit_test(the_error_is_that_of_the_picture),
         cmocka_unit_test(cancelled_anywhere),

@@ -210,12 +210,12 @@ static void test_runtime_views(void **state)
         assert_int_equal(t3r_add_view(runtime, &frame, &camera), T3R_OK);
         calibration *c = calibration_start(&head);
         assert_int_equal(calibration_add_views(c, runtime), -1);
-        assert_int_equal(t3r_reconstruct(runtime, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(runtime, NULL, &scene), T3R_OK);
         if (!keep) {
             assert_int_equal(calibration_add_views(c, runtime), -1);
         } else {
             assert_int_equal(calibration_add_views(c, runtime), 0);
-            assert_int_equal(t3r_rebudget(runtime, BUDGET / 4, &scene), T3R_OK);
+            assert_int_equal(t3r_rebuild(runtime, &(t3r_request){.gaussians = BUDGET / 4}, &scene), T3R_OK);
             assert_int_equal(calibration_add_views(c, runtime), 0);
             assert_int_equal(calibration_pixels(c), 2 * SIDE * SIDE);
             assert_int_equal(calibration_finish(c, &head, 100, 1), 1);
@@ -292,12 +292,11 @@ static void test_features_of_a_pair(void **state)
 {
     (void)state;
     static taken network, calibrated;
-    for (uint32_t adapt = 0; adapt < 2; adapt++) {
+    for (uint32_t unadapted = 0; unadapted < 2; unadapted++) {
         t3r_config config = t3r_default_config(PAIR_SIDE, PAIR_SIDE, PAIR, PAIR * PAIR_PIXELS);
         config.head = T3R_HEAD_LEARNED;
         config.keep_analysis = 1;
         config.refinements = 0;
-        config.adapt = adapt;
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
         void *arena = NULL;
@@ -310,9 +309,10 @@ static void test_features_of_a_pair(void **state)
         calibration *c = calibration_start(&head);
         assert_non_null(c);
         assert_int_equal(t3r_init(&runtime, arena, plan.bytes, &config), T3R_OK);
+        assert_int_equal(t3r_set_ablation(runtime, &(t3r_ablation){.unadapted = unadapted}), T3R_OK);
         assert_int_equal(t3r_bind_head(runtime, t3r_head_nano, t3r_head_nano_bytes), T3R_OK);
         add_pair(runtime);
-        assert_int_equal(t3r_reconstruct(runtime, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(runtime, NULL, &scene), T3R_OK);
         t3r_view views[T3R_MAX_VIEWS];
         t3r_views_of(runtime, views);
         uint32_t covered = 0;
@@ -326,7 +326,8 @@ static void test_features_of_a_pair(void **state)
         for (size_t k = 0; k < sizeof percent / sizeof *percent; k++) {
             network.rows = calibrated.rows = 0;
             taking = &network;
-            assert_int_equal(t3r_rebudget(runtime, PAIR * PAIR_PIXELS * percent[k] / 100, &scene), T3R_OK);
+            const t3r_request fewer = {.gaussians = PAIR * PAIR_PIXELS * percent[k] / 100};
+            assert_int_equal(t3r_rebuild(runtime, &fewer, &scene), T3R_OK);
             taking = &calibrated;
             assert_int_equal(calibration_add_views(c, runtime), 0);
             taking = NULL;

@@ -28,9 +28,9 @@ static inline int plane_open(void **state, stress_contest contest)
     contest.keep[0] = 20;
     contest.keep_count = contest.seed = 1;
     reconstruction_defaults(&contest.settings);
-    contest.settings.width = contest.settings.height = SIDE;
+    contest.settings.config.width = contest.settings.config.height = SIDE;
     contest.settings.head = "analytic";
-    contest.settings.refine = 0;
+    contest.settings.config.refinements = 0;
     p->contest = contest;
     p->c = (stress_case){.name = "plane", .context = "0,1", .target = "2"};
     p->renders = malloc(METHODS * SIDE * SIDE * 3);

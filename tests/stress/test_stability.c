@@ -61,10 +61,10 @@ static void learned_and_refined(void **state)
     plane *f = *state;
     const double keeps[] = {2, 40};
     reconstruction_defaults(&f->contest.settings);
-    f->contest.settings.width = f->contest.settings.height = SIDE;
-    f->contest.settings.clusters = 80;
+    f->contest.settings.config.width = f->contest.settings.config.height = SIDE;
+    f->contest.settings.config.clusters = 80;
     f->contest.method_count = 1;
-    assert_true(f->contest.settings.refine > 0 && strcmp(f->contest.settings.head, "analytic") != 0);
+    assert_true(f->contest.settings.config.refinements > 0 && strcmp(f->contest.settings.head, "analytic") != 0);
     const stress_scene *scene;
     for (uint32_t i = 0; (scene = stress_scene_at(i)) != NULL; i++) {
         stress_case c = {.name = scene->name, .context = "0,1", .target = "2"};
@@ -79,7 +79,7 @@ static void learned_and_refined(void **state)
             if (f->rows[0].status != STRESS_MEASURED) {
                 fail_msg("%s at %g %%: %s", scene->name, keeps[k], f->rows[0].reason);
             }
-            assert_true(value[STRESS_GAUSSIANS] >= f->contest.settings.clusters);
+            assert_true(value[STRESS_GAUSSIANS] >= f->contest.settings.config.clusters);
             assert_true(value[STRESS_MASK_CHANGED] > 0 && value[STRESS_MOTION] > 0);
             /* the bounds are not out of reach */
             assert_true(stress_mask_changed_most(value[STRESS_GAUSSIANS], 80) < 8 * value[STRESS_MASK_CHANGED]);

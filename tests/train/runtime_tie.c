@@ -30,7 +30,7 @@ static t3r_status draw_on_plane(t3r_runtime *rt, const t3r_frame *frame, const t
         .width = frame->width, .height = frame->height, .rgb = drawn, .rgb_stride_bytes = 3 * frame->width};
     t3r_status status = t3r_bind_head(rt, t3r_head_small, t3r_head_small_bytes);
     status = status == T3R_OK ? t3r_add_view(rt, frame, camera) : status;
-    status = status == T3R_OK ? t3r_reconstruct(rt, &scene) : status;
+    status = status == T3R_OK ? t3r_reconstruct(rt, NULL, &scene) : status;
     return status == T3R_OK ? t3r_render(rt, camera, &target) : status;
 }
 

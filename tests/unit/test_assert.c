@@ -33,13 +33,13 @@ static void misuse_is_asserted_and_refused(void **state)
     (void)state;
     t3r_runtime *rt = fresh();
     t3r_scene scene;
-    assert_int_equal(t3r_reconstruct(NULL, &scene), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_reconstruct(NULL, NULL, &scene), T3R_ERR_ARGUMENT);
     assert_int_equal(noted, 1);
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_ERR_STATE);
     assert_int_equal(noted, 2);
     assert_int_equal(t3r_render(rt, NULL, NULL), T3R_ERR_ARGUMENT);
     assert_int_equal(noted, 3);
-    assert_int_equal(t3r_rebudget(rt, 4, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 4}, &scene), T3R_ERR_STATE);
     assert_int_equal(noted, 4);
 }
 

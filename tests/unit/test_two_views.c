@@ -428,7 +428,7 @@ static void in_the_pipeline(void **state)
     (void)state;
     const uint32_t all = 2 * PIXELS;
     const int comparisons = 3 * 2 + 2 + 1 + 2; /* bridging, flying pixels, exposure, redundancy */
-    for (int mode = 0; mode < T3R_ALLOCATE_GIVEN; mode++) {
+    for (int mode = T3R_ALLOCATE_CONFIGURED + 1; mode < T3R_ALLOCATE_GIVEN; mode++) {
         t3r_config config = t3r_default_config(W, H, 2, all);
         config.clusters = 20;
         config.keep_analysis = 1;
@@ -446,7 +446,7 @@ static void in_the_pipeline(void **state)
         t3r_hooks hooks = {.user = &first, .progress = count_calls, .stage_hash = note_hash};
         assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
         add_frames(rt);
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         assert_int_equal(first.calls, comparisons);
 
         /* few: nothing that is covered or floats */
@@ -454,23 +454,23 @@ static void in_the_pipeline(void **state)
         assert_int_equal(scene.valid_points, all);
         assert_int_equal(of_view(&scene, 0, 255) + of_view(&scene, 1, 255), 300);
         /* many: the covered ones compete, the floating block still does not; all: it comes last */
-        assert_int_equal(t3r_rebudget(rt, all - 36, &scene), T3R_OK);
+        assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = all - 36}, &scene), T3R_OK);
         assert_int_equal(scene.count, all - 36);
         assert_int_equal(of_view(&scene, 1, 64), 0);
         assert_true(of_view(&scene, 1, 192) > 2000);
-        assert_int_equal(t3r_rebudget(rt, all, &scene), T3R_OK);
+        assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = all}, &scene), T3R_OK);
         assert_int_equal(scene.count, all);
         assert_int_equal(of_view(&scene, 1, 64), 36);
 
-        /* the same again, and after a cancel anywhere among the views' comparisons */
-        assert_int_equal(t3r_rebudget(rt, 300, &scene), T3R_OK);
-        for (int cancel = 0; cancel <= comparisons; cancel++) {
+        /* the same again, and after a cancel anywhere among the views' comparisons, which no mode changes */
+        assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 300}, &scene), T3R_OK);
+        for (int cancel = 0; cancel <= (mode == T3R_ALLOCATE_DENSITY ? comparisons : 0); cancel++) {
             second = (trace){.cancel_at = cancel};
             hooks.user = &second;
             assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
-            assert_int_equal(t3r_reconstruct(rt, &scene), cancel == 0 ? T3R_OK : T3R_ERR_CANCELLED);
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), cancel == 0 ? T3R_OK : T3R_ERR_CANCELLED);
             second.cancel_at = 0;
-            assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
             assert_memory_equal(first.hash, second.hash, sizeof first.hash);
         }
         free(arena);
@@ -493,7 +493,7 @@ static void splats_are_levelled(void **state)
         t3r_scene scene;
         assert_int_equal(t3r_init(&rt, arena, plan.bytes, &config), T3R_OK);
         add_frames(rt);
-        assert_int_equal(t3r_reconstruct(rt, &scene), T3R_OK);
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         double sum[2] = {0};
         for (uint32_t i = 0; i < scene.count; i++) {
             sum[scene.gaussians[i].view] += scene.gaussians[i].colour_q7[1];

@@ -78,8 +78,8 @@ static int open_build(live_build *build, uint32_t views, const t3r_capture_frame
         return code;
     }
     r->context_count = views;
-    r->config.width = build->options.width != 0 ? build->options.width : like->frame.width;
-    r->config.height = build->options.height != 0 ? build->options.height : like->frame.height;
+    r->config.width = build->options.config.width != 0 ? build->options.config.width : like->frame.width;
+    r->config.height = build->options.config.height != 0 ? build->options.config.height : like->frame.height;
     code = open_arena(build);
     if (code != CLI_OK) {
         return code;
@@ -205,8 +205,8 @@ static int start_runtime(live_build *build)
         (void)t3r_set_cpu(r->runtime, build->options.cpu);
         status = t3r_set_hooks(r->runtime, &hooks);
     }
-    if (status == T3R_OK && r->head.weights != NULL) {
-        status = t3r_bind_head(r->runtime, r->head.weights, r->head.bytes);
+    if (status == T3R_OK) {
+        status = chosen_head_bind(&r->head, r->runtime, build->options.ablation);
     }
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "arena", &r->config, r->arena_bytes);
 }

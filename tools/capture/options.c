@@ -240,15 +240,16 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--source is missing (--list tells what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {
         argp_error(state, "neither -o REC.mcap nor --build SCENE.ply says what is to become of the frames");
-    } else if (o->scene != NULL && !path_is_ply(o->scene)) {
-        argp_error(state, "--build %s: scenes are written as .ply", o->scene);
+    } else if (o->scene != NULL && !scene_file_is_written(o->scene)) {
+        argp_error(state, "--build %s: scenes are written as %s", o->scene,
+                   scene_file_suffixes((char[SCENE_FILE_SUFFIXES_BYTES]){0}));
     } else if (o->scene == NULL && (o->every > 0 || budget || o->build.context_count > 0 || o->local)) {
         argp_error(state, "--every, --local, --context and budgets belong to --build");
     } else if (o->scene != NULL && o->build.method != METHOD_TRIM3R) {
         argp_error(state, "--method %s needs a recording: trim3r build", method_name(o->build.method));
-    } else if (o->scene != NULL && o->build.allocation == T3R_ALLOCATE_GIVEN) {
+    } else if (o->scene != NULL && o->build.config.allocation == T3R_ALLOCATE_GIVEN) {
         argp_error(state, "--allocate given needs a recording: trim3r build");
-    } else if (o->build.depth == T3R_DEPTH_STEREO) {
+    } else if (o->build.config.depth == T3R_DEPTH_STEREO) {
         argp_error(state, "--depth stereo needs a recording: trim3r build");
     } else if (o->every > 0 && o->build.context_count > 0) {
         argp_error(state, "--every and --context exclude each other");

@@ -198,7 +198,7 @@ static int write_scene(run_state *s)
 {
     char error[512] = "";
     if (s->plan->scene != NULL &&
-        scene_file_write_ply(s->plan->scene, &s->build.r.scene, s->plan->scene_flags, NULL, error, sizeof error) != 0) {
+        scene_file_write(s->plan->scene, &s->build.r.scene, s->plan->scene_flags, NULL, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     return CLI_OK;

@@ -73,7 +73,7 @@ static t3r_status build_and_draw(t3r_runtime *rt, const t3r_capture_frame *frame
     t3r_scene scene;
     t3r_status status = t3r_reset(rt);
     status = status == T3R_OK ? t3r_add_view(rt, &frame->frame, &frame->camera) : status;
-    status = status == T3R_OK ? t3r_reconstruct(rt, &scene) : status;
+    status = status == T3R_OK ? t3r_reconstruct(rt, NULL, &scene) : status;
     return status == T3R_OK ? t3r_render(rt, viewpoint, &display) : status;
 }
 

@@ -42,7 +42,7 @@ static t3r_status build(t3r_runtime *rt, t3r_camera camera)
     camera.fx_q16 = camera.fy_q16 = SIDE << 16;
     camera.cx_q16 = camera.cy_q16 = (SIDE - 1) << 15;
     t3r_scene scene;
-    t3r_status status = t3r_reconstruct(rt, &scene);
+    t3r_status status = t3r_reconstruct(rt, NULL, &scene);
     status = status == T3R_OK ? t3r_render(rt, &camera, &picture) : status;
     return status == T3R_OK ? t3r_reset(rt) : status;
 }

@@ -18,9 +18,9 @@ static int add_scene(calibration *c, const t3r_recording *recording, const char 
     reconstruction_options settings;
     reconstruction_defaults(&settings);
     settings.keep_percent = 100; /* an arena for the largest */
-    settings.keep_analysis = true;
+    settings.config.keep_analysis = 1;
     settings.hash = false;
-    settings.refine = 0;
+    settings.config.refinements = 0;
     settings.head = "analytic"; /* what heads see does not depend on the head */
     settings.context_count = count;
     memcpy(settings.context, context, count * sizeof *context);
@@ -32,7 +32,8 @@ static int add_scene(calibration *c, const t3r_recording *recording, const char 
     }
     for (uint32_t i = 0; i < budget_count && code == CLI_OK; i++) {
         cli_progress("calibrate", i, budget_count);
-        t3r_status status = t3r_rebudget(r.runtime, reconstruction_budget(r.valid_points, budgets[i]), &r.scene);
+        const t3r_request request = {.gaussians = reconstruction_budget(r.valid_points, budgets[i])};
+        t3r_status status = t3r_rebuild(r.runtime, &request, &r.scene);
         if (status != T3R_OK) {
             code = reconstruction_error(status, path, &r.config, r.arena_bytes);
         } else if (calibration_add_views(c, r.runtime) != 0) {

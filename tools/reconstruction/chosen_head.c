@@ -25,15 +25,25 @@ static const struct {
 };
 enum { SHIPPED = sizeof shipped / sizeof shipped[0] };
 
-/* The head without weights of that name; T3R_HEAD_COUNT when there is none. */
-static t3r_head closed_form(const char *text)
+static const struct {
+    const char *name;
+    t3r_head head;
+    bool unadapted;
+} closed_forms[] = {
+    {"analytic", T3R_HEAD_ANALYTIC, false},
+    {"moment", T3R_HEAD_MOMENT, false},
+    {"none", T3R_HEAD_ANALYTIC, true},
+};
+enum { CLOSED_FORMS = sizeof closed_forms / sizeof closed_forms[0] };
+
+static int closed_form_index(const char *text)
 {
-    for (int head = 0; head < T3R_HEAD_COUNT; head++) {
-        if (head != T3R_HEAD_LEARNED && strcmp(text, t3r_head_name((t3r_head)head)) == 0) {
-            return (t3r_head)head;
+    for (int i = 0; i < CLOSED_FORMS; i++) {
+        if (strcmp(text, closed_forms[i].name) == 0) {
+            return i;
         }
     }
-    return T3R_HEAD_COUNT;
+    return -1;
 }
 
 static int shipped_index(const char *text)
@@ -49,7 +59,7 @@ static int shipped_index(const char *text)
 bool chosen_head_is_one(const char *text)
 {
     size_t length = strlen(text), end = sizeof FILE_END - 1;
-    return closed_form(text) != T3R_HEAD_COUNT || shipped_index(text) >= 0 ||
+    return closed_form_index(text) >= 0 || shipped_index(text) >= 0 ||
            (length > end && strcmp(text + length - end, FILE_END) == 0);
 }
 
@@ -96,12 +106,13 @@ static int describe(chosen_head *chosen, const char *text)
 
 int chosen_head_open(chosen_head *chosen, const char *text)
 {
-    *chosen = (chosen_head){.head = closed_form(text)};
-    if (chosen->head != T3R_HEAD_COUNT) {
+    const int closed = closed_form_index(text);
+    if (closed >= 0) {
+        *chosen = (chosen_head){.head = closed_forms[closed].head, .unadapted = closed_forms[closed].unadapted};
         snprintf(chosen->name, sizeof chosen->name, "%s", text);
         return CLI_OK;
     }
-    chosen->head = T3R_HEAD_LEARNED;
+    *chosen = (chosen_head){.head = T3R_HEAD_LEARNED};
     int at = shipped_index(text), code = CLI_OK;
     if (at >= 0) {
         chosen->weights = shipped[at].weights;
@@ -142,4 +153,12 @@ void chosen_head_configure(const chosen_head *chosen, t3r_config *config)
         uint32_t needed = t3r_head_column_bytes(chosen->weights, chosen->bytes, config->width);
         config->head_column_bytes = needed > config->head_column_bytes ? needed : config->head_column_bytes;
     }
+}
+
+t3r_status chosen_head_bind(const chosen_head *chosen, t3r_runtime *runtime, t3r_ablation ablation)
+{
+    ablation.unadapted |= chosen->unadapted;
+    t3r_status status = t3r_set_ablation(runtime, &ablation);
+    return status == T3R_OK && chosen->weights != NULL ? t3r_bind_head(runtime, chosen->weights, chosen->bytes)
+                                                       : status;
 }

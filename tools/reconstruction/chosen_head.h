@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/ablation.h"
 #include "trim3r.h"
 
 #define CHOSEN_HEAD_DEFAULT "small"
@@ -13,6 +14,7 @@
 
 typedef struct chosen_head {
     t3r_head head;
+    bool unadapted;      /* of `none`: `analytic`, which then sees every point as retained */
     char name[16];       /* analytic, moment, none; of a network the name in its weights */
     char bits[8];        /* of a network's weights and activations: 8, 16, or W/A where they differ; else "" */
     const void *weights; /* NULL of the closed forms */
@@ -36,5 +38,8 @@ int chosen_head_hide_mask(chosen_head *chosen);
 
 /* Sets the configuration's head, and its head_column_bytes where the head needs more than there are. */
 void chosen_head_configure(const chosen_head *chosen, t3r_config *config);
+
+/* After t3r_init(): binds a network's weights; takes away what `ablation` does, and of `none` the adapting. */
+t3r_status chosen_head_bind(const chosen_head *chosen, t3r_runtime *runtime, t3r_ablation ablation);
 
 #endif

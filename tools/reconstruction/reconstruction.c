@@ -18,27 +18,10 @@
 
 void reconstruction_defaults(reconstruction_options *options)
 {
-    t3r_config c = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
     *options = (reconstruction_options){
+        .config = t3r_default_config(0, 0, 0, 1),
         .context_views = 2,
-        .allocation = c.allocation,
         .head = CHOSEN_HEAD_DEFAULT,
-        .wavelet = c.wavelet,
-        .wavelet_levels = c.wavelet_levels,
-        .clusters = c.clusters,
-        .gamma_q8 = c.gamma_q8,
-        .paper_keep_percent = c.keep_percent,
-        .shuffle = c.shuffle,
-        .adapt = c.adapt,
-        .refine = c.refinements,
-        .half_life = c.half_life,
-        .depth = c.depth,
-        .fill_radius = c.fill_radius,
-        .bridge_radius = c.bridge_radius,
-        .flying = c.flying,
-        .redundancy = c.redundancy,
-        .exposure = c.exposure,
-        .seed = c.seed,
         .hash = true,
         .arena = ARENA_FULL,
         .threads = 1,
@@ -218,7 +201,7 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
         code = status == T3R_OK ? CLI_OK : frame_error(path, r->context[v], status);
     }
     if (code == CLI_OK) {
-        status = t3r_reconstruct(counted.runtime, &counted.scene);
+        status = t3r_reconstruct(counted.runtime, NULL, &counted.scene);
         code = status == T3R_OK ? CLI_OK : build_error(&counted, status, path);
     }
     if (code == CLI_OK) {
@@ -301,8 +284,8 @@ static int choose_context(reconstruction *r, const t3r_recording *recording, con
             return code;
         }
     }
-    r->config.width = options->width != 0 ? options->width : frames[0].frame.width;
-    r->config.height = options->height != 0 ? options->height : frames[0].frame.height;
+    r->config.width = options->config.width != 0 ? options->config.width : frames[0].frame.width;
+    r->config.height = options->config.height != 0 ? options->config.height : frames[0].frame.height;
     return CLI_OK;
 }
 
@@ -336,53 +319,39 @@ int reconstruction_count(reconstruction_points *points, const t3r_recording *rec
     reconstruction r = {.context_count = 0};
     t3r_capture_frame frames[T3R_MAX_VIEWS];
     int code = choose_context(&r, recording, path, options, frames);
-    code = code == CLI_OK ? need_depth(&r, path, frames, options->depth) : code;
-    return code == CLI_OK ? count_points(&r, frames, path, options->depth, points) : code;
+    code = code == CLI_OK ? need_depth(&r, path, frames, options->config.depth) : code;
+    return code == CLI_OK ? count_points(&r, frames, path, options->config.depth, points) : code;
 }
 
-static int bind_head(reconstruction *r)
+static int bind_head(reconstruction *r, const reconstruction_options *options)
 {
-    t3r_status status = r->head.weights == NULL ? T3R_OK : t3r_bind_head(r->runtime, r->head.weights, r->head.bytes);
+    t3r_status status = chosen_head_bind(&r->head, r->runtime, options->ablation);
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
 }
 
 t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
 {
-    if (planes != NULL) {
-        return t3r_reconstruct_given(r->runtime, planes, r->config.width * 2, &r->scene);
-    }
-    if (options->automatic) {
-        return t3r_reconstruct_within(r->runtime, (uint32_t)(options->max_loss * 256 + 0.5), &r->scene);
-    }
-    return t3r_reconstruct(r->runtime, &r->scene);
+    const t3r_request request = {
+        .max_loss_q8 = options->automatic ? (uint32_t)(options->max_loss * 256 + 0.5) : 0,
+        .importance = planes,
+        .importance_stride_bytes = r->config.width * 2,
+    };
+    return t3r_reconstruct(r->runtime, &request, &r->scene);
 }
 
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options)
 {
-    r->config = t3r_default_config(r->config.width, r->config.height, r->context_count, 1);
-    r->config.allocation = options->allocation;
-    chosen_head_configure(&r->head, &r->config);
-    r->config.wavelet = options->wavelet;
-    r->config.wavelet_levels = options->wavelet_levels;
-    r->config.clusters = options->clusters;
-    r->config.gamma_q8 = options->gamma_q8;
-    r->config.keep_percent = options->paper_keep_percent;
-    r->config.shuffle = options->shuffle;
-    r->config.adapt = options->adapt;
-    r->config.refinements = options->refine;
-    r->config.half_life = options->half_life;
-    r->config.depth = options->depth;
-    r->config.fill_radius = options->fill_radius;
-    r->config.bridge_radius = options->bridge_radius;
-    r->config.flying = options->flying;
-    r->config.redundancy = options->redundancy;
-    r->config.exposure = options->exposure;
-    r->config.seed = options->seed;
-    r->config.keep_analysis = options->keep_analysis || options->automatic;
-    if (options->render_width != 0) {
-        r->config.render_width = options->render_width;
-        r->config.render_height = options->render_height;
+    const uint32_t width = r->config.width, height = r->config.height;
+    r->config = options->config;
+    r->config.width = width;
+    r->config.height = height;
+    r->config.views = r->context_count;
+    if (r->config.render_width == 0) {
+        r->config.render_width = width;
+        r->config.render_height = height;
     }
+    chosen_head_configure(&r->head, &r->config);
+    r->config.keep_analysis |= options->automatic;
 }
 
 void reconstruction_request(reconstruction *r, const reconstruction_options *options)
@@ -404,7 +373,7 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
         code = chosen_head_hide_mask(&r->head);
     }
     if (code == CLI_OK) {
-        code = need_depth(r, path, frames, options->depth);
+        code = need_depth(r, path, frames, options->config.depth);
     }
     if (code != CLI_OK) {
         return code;
@@ -419,7 +388,7 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
     }
 
     reconstruction_points points;
-    code = count_points(r, frames, path, options->depth, &points);
+    code = count_points(r, frames, path, options->config.depth, &points);
     if (code != CLI_OK) {
         return code;
     }
@@ -430,7 +399,7 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
     }
 
     code = open_arena(r, options);
-    return code == CLI_OK ? bind_head(r) : code;
+    return code == CLI_OK ? bind_head(r, options) : code;
 }
 
 /* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
@@ -471,10 +440,10 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
         r->pruned = made.gaussians;
         r->add_views_seconds = made.seconds;
     }
-    if (options->allocation == T3R_ALLOCATE_GIVEN) {
+    if (options->config.allocation == T3R_ALLOCATE_GIVEN) {
         planes = options->importance_planes;
     }
-    if (code == CLI_OK && options->allocation == T3R_ALLOCATE_GIVEN && options->importance != NULL) {
+    if (code == CLI_OK && options->config.allocation == T3R_ALLOCATE_GIVEN && options->importance != NULL) {
         code = importance_pictures_read(&pictures, options->importance, r->context, r->context_count, r->config.width,
                                         r->config.height);
         planes = (const uint16_t *const *)pictures.planes;

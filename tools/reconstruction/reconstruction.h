@@ -23,41 +23,28 @@ typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
 
 /* Settings as the command line gives them. reconstruction_defaults() fills every field. */
 typedef struct reconstruction_options {
-    uint32_t context[T3R_MAX_VIEWS];      /* frame indices of the context views */
-    uint32_t context_count;               /* 0 = the first two frames */
-    uint32_t context_views;               /* of `eval --views`: the frames of a case; 2 = the triplet's own */
-    uint32_t gaussians;                   /* budget as a count; 0 = keep_percent decides */
-    double keep_percent;                  /* budget as percent of the valid points, (0, 100]; 0 = not given */
-    bool automatic;                       /* fewer than the budget where they lose less than max_loss */
-    double max_loss;                      /* dB, against all points; 0 unless automatic */
-    method_id method;                     /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
-    uint32_t finetune_iterations;         /* of the methods that are fine-tuned */
-    uint32_t width, height;               /* working size; 0 = the first context frame's */
-    uint32_t render_width, render_height; /* largest target; 0 = the working size */
-    t3r_allocation allocation;
+    /* What the runtime is configured with: settings.h has those that a user gives. Views, head and budget are left to
+     * the build; a width of 0 is the first context frame's size, a render_width of 0 the working size. */
+    t3r_config config;
+    uint32_t context[T3R_MAX_VIEWS]; /* frame indices of the context views */
+    uint32_t context_count;          /* 0 = the first two frames */
+    uint32_t context_views;          /* of `eval --views`: the frames of a case; 2 = the triplet's own */
+    uint32_t gaussians;              /* budget as a count; 0 = keep_percent decides */
+    double keep_percent;             /* budget as percent of the valid points, (0, 100]; 0 = not given */
+    bool automatic;                  /* fewer than the budget where they lose less than max_loss */
+    double max_loss;                 /* dB, against all points; 0 unless automatic */
+    method_id method;                /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
+    uint32_t finetune_iterations;    /* of the methods that are fine-tuned */
     const char
         *importance; /* of the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
     const uint16_t *const *importance_planes; /* one a context view at the working size, rows without gaps */
     const char *head;                         /* a text that chosen_head_is_one() */
     const char *mask_head; /* likewise, of a rival with +head: whose unpruned scene it ranks; NULL = `head` */
-    t3r_wavelet wavelet;
-    uint32_t wavelet_levels;
-    uint32_t clusters;
-    uint32_t gamma_q8;
-    uint32_t paper_keep_percent; /* N of the allocation `paper` */
-    uint32_t shuffle, adapt;     /* of t3r_config, for ablations */
-    bool hide_mask;              /* the network is told that every pixel was retained: hidden_mask.h */
-    t3r_depth depth;             /* where it comes from */
-    const char *points_of;       /* a .ply whose Gaussians are the depth instead (scene_frames.h), and of which percents
-                                    are; NULL = none */
-    uint32_t fill_radius;
-    uint32_t bridge_radius;
-    uint32_t flying, redundancy, exposure; /* 0 or 1 each: what views tell of each other */
-    uint32_t seed;
-    uint32_t refine;    /* passes of refinement */
-    uint32_t half_life; /* of a stream */
-    bool keep_analysis; /* so that t3r_rebudget() and t3r_reallocate() work afterwards */
-    bool hash;          /* collect the stages' hashes */
+    t3r_ablation ablation; /* what is taken away from the method */
+    bool hide_mask;        /* the network is told that every pixel was retained: hidden_mask.h */
+    const char *points_of; /* a .ply whose Gaussians are the depth instead (scene_frames.h), and of which percents
+                              are; NULL = none */
+    bool hash;             /* collect the stages' hashes */
     arena_choice arena;
     uint64_t arena_bytes; /* for ARENA_BYTES */
     uint32_t threads;

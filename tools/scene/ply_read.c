@@ -1,5 +1,5 @@
 /* 3DGS .ply, binary little-endian. The header is text from anywhere: every line, count and offset is checked. */
-#include "scene/scene_file.h"
+#include "scene/ply.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -8,18 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file_bytes.h"
-#include "scene/gaussian_shape.h"
 #include "reason.h"
-#include "core/scene_frame.h"
+#include "scene/scene_rows.h"
 
-#define HARMONIC_0 0.28209479177387814
 #define MAX_HEADER_BYTES 65536u
 #define MAX_LINE_BYTES 512u
 #define MAX_ROW_BYTES 8192u
-/* Positions the runtime takes, scene units; a little is left for the rounding of the origin. */
-#define FARTHEST 1023
-
 /* What is read of each vertex, in this order in `offset` and `value`. */
 enum { X, Y, Z, DC_0, DC_1, DC_2, OPACITY, SCALE_0, SCALE_1, SCALE_2, ROT_0, ROT_1, ROT_2, ROT_3, WANTED_COUNT };
 static const char *const wanted[WANTED_COUNT] = {"x",      "y",       "z",       "f_dc_0",  "f_dc_1",
@@ -44,6 +38,11 @@ typedef struct reader {
     char *error;
     size_t error_bytes;
 } reader;
+
+typedef struct ply_vertices {
+    const uint8_t *bytes; /* of the file */
+    const ply_header *header;
+} ply_vertices;
 
 #define FAIL(r, ...) t3r_reason((r)->error, (r)->error_bytes, __VA_ARGS__)
 
@@ -274,130 +273,30 @@ static double get_number(const uint8_t *bytes, bool wide)
     return value;
 }
 
-static int read_vertex(const reader *r, const ply_header *h, uint32_t index, double value[WANTED_COUNT])
+static int read_vertex(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
+    const ply_vertices *vertices = user;
+    const ply_header *h = vertices->header;
+    double value[WANTED_COUNT];
     size_t at = h->data + (size_t)h->skip + (size_t)index * h->row_bytes;
     for (int i = 0; i < WANTED_COUNT; i++) {
-        value[i] = get_number(r->bytes + at + h->offset[i], h->wide[i]);
+        value[i] = get_number(vertices->bytes + at + h->offset[i], h->wide[i]);
         /* exporters write the logit of opacity 1 or 0, and the logarithm of scale 0, as infinities */
         bool meant = isinf(value[i]) && (i == OPACITY || (i >= SCALE_0 && i <= SCALE_2 && value[i] < 0));
         if (!isfinite(value[i]) && !meant) {
-            return FAIL(r, "byte %zu: vertex %" PRIu32 ": %s is not a finite number", at + h->offset[i], index,
-                        wanted[i]);
+            return t3r_reason(error, error_bytes, "byte %zu: vertex %" PRIu32 ": %s is not a finite number",
+                              at + h->offset[i], index, wanted[i]);
         }
     }
+    *row = (scene_row){.position = {value[X], value[Y], value[Z]},
+                       .harmonic = {value[DC_0], value[DC_1], value[DC_2]},
+                       .opacity_logit = value[OPACITY],
+                       .log_scale = {value[SCALE_0], value[SCALE_1], value[SCALE_2]},
+                       .rotation = {value[ROT_0], value[ROT_1], value[ROT_2], value[ROT_3]}};
     return 0;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Q32 of a world coordinate; |value| < 2^30 */
-static int64_t to_q32(double value)
-{
-    return (int64_t)nearbyint(ldexp(value, 32));
-}
-
-/* A frame for positions that name none: origin at their mean, the median distance from it in [1, 2) scene units.
- * Where the runtime's range of 2^10 does not hold the farthest, the exponent rises by up to 6: positions then still
- * keep 2^-14 of the median distance. */
-static int choose_frame(const reader *r, const ply_header *h, t3r_scene_frame *frame)
-{
-    double mean[3] = {0};
-    double value[WANTED_COUNT];
-    for (uint32_t i = 0; i < h->count; i++) {
-        if (read_vertex(r, h, i, value) != 0) {
-            return -1;
-        }
-        for (int axis = 0; axis < 3; axis++) {
-            mean[axis] += value[X + axis] / h->count;
-        }
-    }
-    double *distance = malloc(h->count * sizeof *distance);
-    if (distance == NULL) {
-        return FAIL(r, "out of memory for %" PRIu32 " Gaussians", h->count);
-    }
-    double largest_scale = -INFINITY;
-    for (uint32_t i = 0; i < h->count; i++) {
-        (void)read_vertex(r, h, i, value); /* checked above */
-        distance[i] = sqrt((value[X] - mean[0]) * (value[X] - mean[0]) + (value[Y] - mean[1]) * (value[Y] - mean[1]) +
-                           (value[Z] - mean[2]) * (value[Z] - mean[2]));
-        largest_scale = fmax(largest_scale, fmax(value[SCALE_0], fmax(value[SCALE_1], value[SCALE_2])));
-    }
-    qsort(distance, h->count, sizeof *distance, compare_doubles);
-    double median = distance[h->count / 2], farthest = distance[h->count - 1];
-    free(distance);
-    /* a pile of Gaussians at one place is as large as they are */
-    double size = median > 0 ? median : farthest > 0 ? farthest : exp(fmin(fmax(largest_scale, -30), 30));
-    double span = fmax(fmax(fabs(mean[0]), fabs(mean[1])), fmax(fabs(mean[2]), farthest));
-    int exponent;
-    (void)frexp(size, &exponent);
-    exponent--;
-    if (!(span < 0x1p30) || exponent < T3R_EXPONENT_LEAST || exponent > T3R_EXPONENT_MOST) {
-        return FAIL(r, "half of the positions lie within %g units of (%g, %g, %g): outside 2^-24..2^24", size, mean[0],
-                    mean[1], mean[2]);
-    }
-    int raised = 0;
-    while (raised < 6 && exponent + raised < T3R_EXPONENT_MOST && ldexp(farthest, -exponent - raised) >= FARTHEST) {
-        raised++;
-    }
-    frame->exponent = exponent + raised;
-    for (int axis = 0; axis < 3; axis++) {
-        frame->origin_q32[axis] = to_q32(mean[axis]);
-    }
-    return 0;
-}
-
-static int check_named_frame(const reader *r, const t3r_scene_frame *frame)
-{
-    if (frame->exponent < T3R_EXPONENT_LEAST || frame->exponent > T3R_EXPONENT_MOST) {
-        return FAIL(r, "the header names an exponent of %" PRId32 ", outside %d..%d", frame->exponent,
-                    T3R_EXPONENT_LEAST, T3R_EXPONENT_MOST);
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        /* 2^30 world units, so that differences of two origins fit */
-        if (frame->origin_q32[axis] <= -(INT64_C(1) << 62) || frame->origin_q32[axis] >= INT64_C(1) << 62) {
-            return FAIL(r, "the header names an origin beyond 2^30");
-        }
-    }
-    return 0;
-}
-
-static uint16_t clamp_to(double value, int most)
-{
-    return (uint16_t)(value <= 0 ? 0 : value >= most ? most : nearbyint(value));
-}
-
-static int convert_vertex(const reader *r, const ply_header *h, uint32_t index, const t3r_scene_frame *frame,
-                          t3r_gaussian *g)
-{
-    double value[WANTED_COUNT], scale[3];
-    if (read_vertex(r, h, index, value) != 0) {
-        return -1;
-    }
-    *g = (t3r_gaussian){.confidence = 255};
-    for (int i = 0; i < 3; i++) {
-        double origin = h->local ? 0 : ldexp((double)frame->origin_q32[i], -32);
-        double position = nearbyint(ldexp(value[X + i] - origin, 20 - frame->exponent));
-        if (!(fabs(position) < T3R_POSITION_MOST_Q20)) {
-            return FAIL(r, "vertex %" PRIu32 ": %s = %g lies too far from the others", index, wanted[X + i],
-                        value[X + i]);
-        }
-        g->position_q20[i] = (int32_t)position;
-        g->colour_q7[i] = clamp_to((0.5 + HARMONIC_0 * value[DC_0 + i]) * 32640, 32640);
-        scale[i] = exp(value[SCALE_0 + i] - frame->exponent * M_LN2);
-    }
-    if (gaussian_shape_set(g, scale, &value[ROT_0]) != 0) {
-        return FAIL(r, "vertex %" PRIu32 ": a rotation without length, or a scale beyond the format", index);
-    }
-    g->opacity_q15 = clamp_to(32768 / (1 + exp(-value[OPACITY])), 32767);
-    return 0;
-}
-
-int scene_file_parse_ply(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+int ply_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
 {
     *out = (scene_file){0};
     reader r = {bytes, count, error, error_bytes};
@@ -405,54 +304,12 @@ int scene_file_parse_ply(const uint8_t *bytes, size_t count, scene_file *out, ch
     if (read_header(&r, &h) != 0) {
         return -1;
     }
-    scene_file scene = {.frame = h.frame, .count = h.count};
-    if (!h.has_exponent || !h.has_origin) {
-        h.local = false;
-        if (choose_frame(&r, &h, &scene.frame) != 0) {
-            return -1;
-        }
-    } else if (check_named_frame(&r, &scene.frame) != 0) {
-        return -1;
-    }
-    scene.gaussians = malloc(h.count * sizeof *scene.gaussians);
-    if (scene.gaussians == NULL) {
-        return FAIL(&r, "out of memory for %" PRIu32 " Gaussians", h.count);
-    }
-    for (uint32_t i = 0; i < h.count; i++) {
-        if (convert_vertex(&r, &h, i, &scene.frame, &scene.gaussians[i]) != 0) {
-            free(scene.gaussians);
-            return -1;
-        }
-    }
-    *out = scene;
-    return 0;
-}
-
-int scene_file_read_ply(const char *path, scene_file *out, char *error, size_t error_bytes)
-{
-    *out = (scene_file){0};
-    size_t count;
-    uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, error_bytes);
-    if (bytes == NULL) {
-        return -1;
-    }
-    char reason[256] = "";
-    int result = scene_file_parse_ply(bytes, count, out, reason, sizeof reason);
-    if (result != 0) {
-        t3r_reason(error, error_bytes, "%s: %s", path, reason);
-    }
-    free(bytes);
-    return result;
-}
-
-void scene_file_free(scene_file *scene)
-{
-    free(scene->gaussians);
-    *scene = (scene_file){0};
-}
-
-bool path_is_ply(const char *path)
-{
-    size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".ply") == 0;
+    ply_vertices vertices = {bytes, &h};
+    scene_rows rows = {.count = h.count,
+                       .has_frame = h.has_exponent && h.has_origin,
+                       .local = h.local,
+                       .frame = h.frame,
+                       .read = read_vertex,
+                       .user = &vertices};
+    return scene_file_from_rows(&rows, out, error, error_bytes);
 }

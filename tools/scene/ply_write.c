@@ -1,6 +1,6 @@
 /* 3DGS .ply, binary little-endian, harmonics of degree 0 and therefore no f_rest: readers take their number from
  * the header. */
-#include "scene/scene_file.h"
+#include "scene/ply.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -8,9 +8,7 @@
 #include <string.h>
 
 #include "scene/gaussian_shape.h"
-#include "cli/whole_file.h"
-
-#define HARMONIC_0 0.28209479177387814
+#include "scene/scene_rows.h"
 
 static const char *const properties[] = {"x",       "y",      "z",      "nx",      "ny",      "nz",
                                          "f_dc_0",  "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1",
@@ -42,7 +40,7 @@ static void put_gaussian(uint8_t row[4 * PROPERTY_COUNT], const t3r_gaussian *g,
     for (int i = 0; i < 3; i++) {
         double origin = local ? 0 : ldexp((double)frame->origin_q32[i], -32);
         value[i] = origin + ldexp(g->position_q20[i], frame->exponent - 20);
-        value[6 + i] = (g->colour_q7[i] / 32640.0 - 0.5) / HARMONIC_0;
+        value[6 + i] = (g->colour_q7[i] / 32640.0 - 0.5) / SCENE_HARMONIC_0;
         value[10 + i] = log(shape.scale[i]) + frame->exponent * M_LN2;
     }
     value[9] = opacity_logit(g->opacity_q15);
@@ -74,18 +72,12 @@ static void write_header(FILE *file, const t3r_scene *scene, int flags, const ch
     fputs("end_header\n", file);
 }
 
-int scene_file_write_ply(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
-                         size_t error_bytes)
+void ply_write(FILE *file, const t3r_scene *scene, int flags, const char *note)
 {
-    whole_file file;
-    if (whole_file_begin(&file, path, error, error_bytes) != 0) {
-        return -1;
-    }
-    write_header(file.stream, scene, flags, note);
+    write_header(file, scene, flags, note);
     for (uint32_t i = 0; i < scene->count; i++) {
         uint8_t row[4 * PROPERTY_COUNT];
         put_gaussian(row, &scene->gaussians[i], &scene->frame, flags & SCENE_FILE_LOCAL);
-        fwrite(row, 1, sizeof row, file.stream);
+        fwrite(row, 1, sizeof row, file);
     }
-    return whole_file_commit(&file, NULL, error, error_bytes);
 }

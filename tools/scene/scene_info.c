@@ -120,7 +120,7 @@ static int tell_all(const scene_info_request *request, all_told *told)
     int code = CLI_OK;
     for (uint32_t i = 0; i < request->scene_count && code == CLI_OK; i++) {
         scene_file scene;
-        if (scene_file_read_ply(request->scenes[i], &scene, error, sizeof error) != 0) {
+        if (scene_file_read(request->scenes[i], &scene, error, sizeof error) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }
         told->scene[i] = tell_scene(&scene);
@@ -224,7 +224,7 @@ static int write_svg(const scene_info_request *request, const all_told *told)
     char names[SCENE_INFO_MOST][PANEL_NAME_BYTES];
     for (uint32_t i = 0; i < request->scene_count; i++) {
         const char *slash = strrchr(request->scenes[i], '/'), *name = slash != NULL ? slash + 1 : request->scenes[i];
-        snprintf(names[i], sizeof names[i], "%.*s", (int)(strlen(name) - strlen(".ply")), name);
+        snprintf(names[i], sizeof names[i], "%.*s", (int)(strrchr(name, '.') - name), name);
         panels[i] = (scale_panel){names[i], &told->scales[i]};
     }
     if (whole_file_begin(&file, request->svg, error, sizeof error) != 0) {

@@ -69,7 +69,7 @@ int firmware(void *arena, size_t bytes, const t3r_config *config, const t3r_fram
         status = t3r_add_view(rt, frame, camera);
     }
     if (status == T3R_OK) {
-        status = t3r_reconstruct(rt, &scene);
+        status = t3r_reconstruct(rt, NULL, &scene);
     }
     return status == T3R_OK ? t3r_render(rt, camera, target) : status;
 }

@@ -55,13 +55,13 @@ const char *ablation_name(uint32_t ablation)
     return ablation < ABLATIONS ? ablations[ablation].name : NULL;
 }
 
-bool ablation_applies(uint32_t ablation, t3r_head head, bool planar)
+bool ablation_applies(uint32_t ablation, const chosen_head *head, bool planar)
 {
     switch (ablations[ablation].what) {
     case HIDDEN_MASK:
-        return head == T3R_HEAD_LEARNED;
+        return head->weights != NULL;
     case UNADAPTED:
-        return head != T3R_HEAD_NONE;
+        return !head->unadapted;
     case FLYING_OFF:
     case REDUNDANCY_OFF:
     case EXPOSURE_OFF:
@@ -78,39 +78,39 @@ void ablation_apply(uint32_t ablation, reconstruction_options *settings)
     case NOTHING:
         break;
     case UNADAPTED:
-        settings->adapt = 0;
+        settings->ablation.unadapted = 1;
         break;
     case HIDDEN_MASK:
         settings->hide_mask = true;
         break;
     case SHUFFLED_PAPER:
-        settings->allocation = T3R_ALLOCATE_PAPER;
-        settings->shuffle = 1;
+        settings->config.allocation = T3R_ALLOCATE_PAPER;
+        settings->ablation.shuffle = 1;
         break;
     case SHUFFLED:
-        settings->shuffle = 1;
+        settings->ablation.shuffle = 1;
         break;
     case ALLOCATION:
-        settings->allocation = (t3r_allocation)value;
+        settings->config.allocation = (t3r_allocation)value;
         break;
     case CLUSTERS:
-        settings->clusters = value;
+        settings->config.clusters = value;
         break;
     case PAPER_PERCENT:
-        settings->allocation = T3R_ALLOCATE_PAPER;
-        settings->paper_keep_percent = value;
+        settings->config.allocation = T3R_ALLOCATE_PAPER;
+        settings->config.keep_percent = value;
         break;
     case UNREFINED:
-        settings->refine = 0;
+        settings->config.refinements = 0;
         break;
     case FLYING_OFF:
-        settings->flying = 0;
+        settings->config.flying = 0;
         break;
     case REDUNDANCY_OFF:
-        settings->redundancy = 0;
+        settings->config.redundancy = 0;
         break;
     case EXPOSURE_OFF:
-        settings->exposure = 0;
+        settings->config.exposure = 0;
         break;
     }
 }

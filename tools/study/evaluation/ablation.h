@@ -17,7 +17,7 @@
 const char *ablation_name(uint32_t ablation);
 
 /* Whether it changes anything for this head, and for a recording or for a single image on a plane. */
-bool ablation_applies(uint32_t ablation, t3r_head head, bool planar);
+bool ablation_applies(uint32_t ablation, const chosen_head *head, bool planar);
 
 /* Changes the settings, and nothing else of them. */
 void ablation_apply(uint32_t ablation, reconstruction_options *settings);

@@ -178,7 +178,7 @@ static int find_depth(const evaluation_case *what, const t3r_capture_frame *firs
     if (*depth > 0) {
         return CLI_OK;
     }
-    if (settings->depth == T3R_DEPTH_STEREO) {
+    if (settings->config.depth == T3R_DEPTH_STEREO) {
         reconstruction_options options = *settings;
         reconstruction_points points;
         options.context_count = what->context_count;
@@ -218,7 +218,7 @@ static int fill_context(evaluation_case *what, const view_place *places, uint32_
                          "%s: --views %" PRIu32 " is too much: beside target %" PRIu32 " there are %" PRIu32
                          " frames with %spose and intrinsics",
                          what->path, views, what->target, what->context_count,
-                         settings->depth == T3R_DEPTH_STEREO ? "" : "depth, ");
+                         settings->config.depth == T3R_DEPTH_STEREO ? "" : "depth, ");
     }
     return CLI_OK;
 }
@@ -236,7 +236,7 @@ static int fill_contexts(evaluation_cases *cases, const reconstruction_options *
             places = calloc(count + 1, sizeof *places);
             known = what->recording;
             code = places == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                                  : find_places(known, what->path, places, count, settings->depth);
+                                  : find_places(known, what->path, places, count, settings->config.depth);
         }
         code = code == CLI_OK ? fill_context(what, places, count, settings, cases->count == 1) : code;
     }

@@ -68,22 +68,21 @@ int evaluation_contestants_ablations(evaluation_contestants *chosen, const uint3
     if (code != CLI_OK) {
         return code;
     }
-    t3r_head kind = head.head;
-    chosen_head_close(&head);
     chosen->count = 0;
     for (uint32_t a = 0; count == 0 && ablation_name(a) != NULL; a++) {
-        if (ablation_applies(a, kind, planar)) {
+        if (ablation_applies(a, &head, planar)) {
             add_ablation(chosen, a);
         }
     }
-    for (uint32_t i = 0; i < count; i++) {
-        if (!ablation_applies(ablations[i], kind, planar)) {
-            return cli_error(CLI_BAD_USAGE, "--ablate: %s does not apply to %s", ablation_name(ablations[i]),
+    for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
+        if (!ablation_applies(ablations[i], &head, planar)) {
+            code = cli_error(CLI_BAD_USAGE, "--ablate: %s does not apply to %s", ablation_name(ablations[i]),
                              planar ? "a single image with this head" : "this head");
         }
         add_ablation(chosen, ablations[i]);
     }
-    return CLI_OK;
+    chosen_head_close(&head);
+    return code;
 }
 
 reconstruction_options evaluation_contestant_settings(const evaluation_contestant *it,

@@ -120,17 +120,17 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     if (looked != CLI_OK) {
         return looked;
     }
-    options.depth = sensed ? T3R_DEPTH_SENSOR : settings->depth;
+    options.config.depth = sensed ? T3R_DEPTH_SENSOR : settings->config.depth;
     options.points_of = sensed ? NULL : settings->points_of;
     options.gaussians = 0;
     options.keep_percent = 100;
     options.automatic = false;
-    options.fill_radius = options.bridge_radius = 0;
+    options.config.fill_radius = options.config.bridge_radius = 0;
     options.head = "analytic";
-    options.allocation = T3R_ALLOCATE_UNIFORM;
-    options.flying = options.redundancy = options.exposure = 0;
-    options.keep_analysis = false;
-    options.refine = 0;
+    options.config.allocation = T3R_ALLOCATE_UNIFORM;
+    options.config.flying = options.config.redundancy = options.config.exposure = 0;
+    options.config.keep_analysis = false;
+    options.config.refinements = 0;
     options.hash = false;
     options.arena = ARENA_FULL;
     options.context_count = what->context_count;
@@ -218,9 +218,9 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     }
     close(file);
     scene_file scene;
-    int failed = scene_file_write_ply(path, &built->scene, 0, NULL, error, sizeof error);
+    int failed = scene_file_write(path, &built->scene, 0, NULL, error, sizeof error);
     if (failed == 0) {
-        failed = scene_file_read_ply(path, &scene, error, sizeof error);
+        failed = scene_file_read(path, &scene, error, sizeof error);
     }
     unlink(path);
     if (failed != 0) {
@@ -257,15 +257,17 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
     bool ours = method_kind_of(m) == METHOD_TRIM3R;
     bool built = ours || settings->points_of == NULL; /* no rival's scene out of a file */
     if (built) {
-        snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->refine);
-        row->wavelet = t3r_wavelet_name(settings->wavelet);
-        snprintf(row->levels, sizeof row->levels, "%" PRIu32, settings->wavelet_levels);
+        snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->config.refinements);
+        row->wavelet = t3r_wavelet_name(settings->config.wavelet);
+        snprintf(row->levels, sizeof row->levels, "%" PRIu32, settings->config.wavelet_levels);
     }
     if (ours) {
-        row->allocate = t3r_allocation_name(settings->allocation);
-        snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, settings->clusters);
+        row->allocate = t3r_allocation_name(settings->config.allocation);
+        snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, settings->config.clusters);
     }
-    row->depth = what->planar ? "plane" : settings->points_of != NULL ? "scene" : t3r_depth_name(settings->depth);
+    row->depth = what->planar                  ? "plane"
+                 : settings->points_of != NULL ? "scene"
+                                               : t3r_depth_name(settings->config.depth);
     row->ablation = "";
     evaluation_settings_rest(settings, row->settings);
     row->value[EVALUATION_KEEP] = keep;

@@ -7,6 +7,7 @@
 
 #include "cli/cli.h"
 #include "core/hash.h"
+#include "reconstruction/settings.h"
 
 /* A list with something between its items. */
 typedef struct words {
@@ -33,13 +34,6 @@ static void add(words *w, const char *format, ...)
     w->length = w->length < EVALUATION_SETTINGS_BYTES ? w->length : EVALUATION_SETTINGS_BYTES - 1;
 }
 
-static void add_switch(words *w, const char *name, uint32_t value, uint32_t usual)
-{
-    if (value != usual) {
-        add(w, "%s-%s", name, value != 0 ? "on" : "off");
-    }
-}
-
 static void add_number(words *w, const char *name, uint32_t value, uint32_t usual)
 {
     if (value != usual) {
@@ -58,22 +52,26 @@ static void add_text(words *w, const char *name, const char *text, bool whole)
     }
 }
 
+/* The settings of the runtime that are not the default: those with a column of their own, or the others. */
+static void add_settings(words *w, bool columns, const t3r_config *config, const t3r_config *usual)
+{
+    for (uint32_t i = 0; i < settings_count; i++) {
+        const setting *s = &settings_table[i];
+        if (s->column == columns && setting_value(s, config) != setting_value(s, usual)) {
+            char value[32];
+            setting_text(s, config, value, sizeof value);
+            add(w, "%s%s%s", s->word != NULL ? s->word : "", s->word != NULL ? "-" : "", value);
+        }
+    }
+}
+
 static void add_rest(words *w, const reconstruction_options *s, const reconstruction_options *usual)
 {
     if (s->automatic) {
         add(w, "max-loss-%.4g", s->max_loss);
     }
-    if (s->gamma_q8 != usual->gamma_q8) {
-        add(w, "gamma-%.4g", s->gamma_q8 / 256.0);
-    }
-    add_number(w, "keep-percent", s->paper_keep_percent, usual->paper_keep_percent);
-    add_number(w, "fill-radius", s->fill_radius, usual->fill_radius);
-    add_number(w, "bridge-radius", s->bridge_radius, usual->bridge_radius);
-    add_switch(w, "flying", s->flying, usual->flying);
-    add_switch(w, "redundancy", s->redundancy, usual->redundancy);
-    add_switch(w, "exposure", s->exposure, usual->exposure);
+    add_settings(w, false, &s->config, &usual->config);
     add_number(w, "views", s->context_views, usual->context_views);
-    add_number(w, "seed", s->seed, usual->seed);
     if (s->points_of != NULL) {
         add_text(w, "prune", s->points_of, false);
     }
@@ -83,8 +81,8 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     if (s->mask_head != NULL) {
         add_text(w, "mask-head", s->mask_head, strchr(s->mask_head, '.') == NULL);
     }
-    if (s->width != usual->width || s->height != usual->height) {
-        add(w, "working-%" PRIu32 "x%" PRIu32, s->width, s->height);
+    if (s->config.width != 0) {
+        add(w, "working-%" PRIu32 "x%" PRIu32, s->config.width, s->config.height);
     }
     add_number(w, "iterations", s->finetune_iterations, usual->finetune_iterations);
     if (s->arena == ARENA_MIN) {
@@ -128,18 +126,7 @@ int evaluation_settings_suffix(const reconstruction_options *settings, bool name
     words w = {.text = text, .separator = '_', .leading = true};
     text[0] = '\0';
     int code = named && strcmp(s->head, CHOSEN_HEAD_DEFAULT) != 0 ? add_head(&w, s->head) : CLI_OK;
-    add_number(&w, "refine", s->refine, usual.refine);
-    if (s->allocation != usual.allocation) {
-        add(&w, "%s", t3r_allocation_name(s->allocation));
-    }
-    if (s->depth != usual.depth) {
-        add(&w, "%s", t3r_depth_name(s->depth));
-    }
-    if (s->wavelet != usual.wavelet) {
-        add(&w, "%s", t3r_wavelet_name(s->wavelet));
-    }
-    add_number(&w, "levels", s->wavelet_levels, usual.wavelet_levels);
-    add_number(&w, "k", s->clusters, usual.clusters);
+    add_settings(&w, true, &s->config, &usual.config);
     add_rest(&w, s, &usual);
     return code;
 }

@@ -32,15 +32,15 @@ static int open_pictures(rival_source *source, const reconstruction *r)
 {
     reconstruction_options *o = &source->options;
     int code = CLI_OK;
-    o->width = r->config.width;
-    o->height = r->config.height;
+    o->config.width = r->config.width;
+    o->config.height = r->config.height;
     o->context_count = r->context_count;
     memcpy(o->context, r->context, sizeof o->context);
     for (uint32_t v = 0; v < o->context_count && code == CLI_OK; v++) {
-        source->rgb[v] = malloc((size_t)o->width * o->height * 3);
+        source->rgb[v] = malloc((size_t)o->config.width * o->config.height * 3);
         code = source->rgb[v] == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                                      : developed_frame(source->recording, source->path, o->context[v], o->width,
-                                                        o->height, source->rgb[v], &source->camera[v]);
+                                      : developed_frame(source->recording, source->path, o->context[v], o->config.width,
+                                                        o->config.height, source->rgb[v], &source->camera[v]);
     }
     source->opened = code == CLI_OK;
     return code;
@@ -52,8 +52,8 @@ static bool open_views(rival_source *source)
     bool done = splat_model_of(&source->model, scene->gaussians, scene->count);
     for (; done && source->view_count < source->options.context_count; source->view_count++) {
         splat_view *view = &source->views[source->view_count];
-        splat_camera camera = splat_camera_of(&source->camera[source->view_count], &scene->frame, source->options.width,
-                                              source->options.height);
+        splat_camera camera = splat_camera_of(&source->camera[source->view_count], &scene->frame,
+                                              source->options.config.width, source->options.config.height);
         done = splat_view_open(view, &camera, scene->count) && splat_view_project(view, &source->model);
     }
     return done;
@@ -113,8 +113,8 @@ static int make_score(rival_source *source, method_kind kind)
     }
     double start = cli_now();
     source->score[kind] = malloc(((size_t)source->model.count + 1) * sizeof(double));
-    if (source->score[kind] == NULL ||
-        !score_of(kind, &source->model, source->views, source->view_count, source->options.seed, source->score[kind])) {
+    if (source->score[kind] == NULL || !score_of(kind, &source->model, source->views, source->view_count,
+                                                 source->options.config.seed, source->score[kind])) {
         free(source->score[kind]);
         source->score[kind] = NULL;
         return cli_error(CLI_BAD_INPUT, "out of memory");
@@ -229,7 +229,7 @@ static int build_by_head(rival_source *source, method_kind kind, const reconstru
     }
     if (code == CLI_OK) {
         reconstruction_options given = *options;
-        given.allocation = T3R_ALLOCATE_GIVEN;
+        given.config.allocation = T3R_ALLOCATE_GIVEN;
         given.importance = NULL;
         given.importance_planes = (const uint16_t *const *)points.planes;
         code = reconstruction_build(made, source->recording, source->path, &given);
@@ -250,8 +250,8 @@ static int tune(const rival_source *source, uint32_t iterations, scene_file *sce
     finetune_target targets[T3R_MAX_VIEWS];
     uint32_t views = source->options.context_count;
     for (uint32_t v = 0; v < views; v++) {
-        targets[v].camera =
-            splat_camera_of(&source->camera[v], &scene->frame, source->options.width, source->options.height);
+        targets[v].camera = splat_camera_of(&source->camera[v], &scene->frame, source->options.config.width,
+                                            source->options.config.height);
         targets[v].rgb = source->rgb[v];
     }
     splat_model model;
@@ -292,8 +292,10 @@ int rival_build(rival_source *source, const t3r_recording *recording, const char
         told->seconds += cli_now() - start;
     }
     if (code == CLI_OK) {
-        uint32_t width = options->render_width != 0 ? options->render_width : source->options.width;
-        uint32_t height = options->render_height != 0 ? options->render_height : source->options.height;
+        uint32_t width =
+            options->config.render_width != 0 ? options->config.render_width : source->options.config.width;
+        uint32_t height =
+            options->config.render_height != 0 ? options->config.render_height : source->options.config.height;
         reconstruction_options plain = *options;
         plain.arena = ARENA_FULL;
         plain.hash = false;

@@ -110,8 +110,8 @@ int stress_capture_read(stress_capture *capture, const evaluation_case *what, co
             return code;
         }
     }
-    uint32_t width = settings->width != 0 ? settings->width : frames[0].frame.width;
-    uint32_t height = settings->height != 0 ? settings->height : frames[0].frame.height;
+    uint32_t width = settings->config.width != 0 ? settings->config.width : frames[0].frame.width;
+    uint32_t height = settings->config.height != 0 ? settings->config.height : frames[0].frame.height;
     const bool colour_only = frames[0].frame.depth == NULL;
     if (!stress_capture_open(capture, width, height, what->context_count,
                              colour_only ? 1 : ldexp((double)frames[0].frame.depth_unit_q40, -40))) {

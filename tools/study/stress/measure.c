@@ -89,7 +89,7 @@ static int measure_row(const cell *it, const stress_run *run, uint32_t keep, uin
     if (code != CLI_OK) {
         return refuse(it, row, code, reason);
     }
-    const bool stereo = options.depth == T3R_DEPTH_STEREO;
+    const bool stereo = options.config.depth == T3R_DEPTH_STEREO;
     uint32_t valid = stereo ? told.valid_points : stress_capture_valid(&run->capture);
     uint32_t expected = T3R_MIN(options.gaussians, valid);
     const char *broken = stress_broken_promise(&built.scene, expected, options.automatic);

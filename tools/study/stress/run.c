@@ -15,12 +15,12 @@ int stress_case_open(stress_case *c, const stress_contest *contest)
     int code = stress_run_open(&run, c, contest, NULL, 0, 0);
     if (code == CLI_OK) {
         reconstruction_options settings = contest->settings;
-        settings.width = c->base.width;
-        settings.height = c->base.height;
+        settings.config.width = c->base.width;
+        settings.config.height = c->base.height;
         code = evaluation_views_make(&c->views, &run.what, &settings);
     }
     uint32_t valid = stress_capture_valid(&c->base);
-    if (code == CLI_OK && contest->settings.depth == T3R_DEPTH_STEREO) {
+    if (code == CLI_OK && contest->settings.config.depth == T3R_DEPTH_STEREO) {
         const reconstruction_options options = stress_run_options(&run, c, contest, contest->keep_count);
         reconstruction_points points = {.valid = 0};
         code = reconstruction_count(&points, run.recording, c->name, &options);
@@ -104,8 +104,8 @@ reconstruction_options stress_run_options(const stress_run *run, const stress_ca
     options.keep_percent = keep < contest->keep_count ? 0 : 100;
     options.automatic &= keep < contest->keep_count;
     options.hash = false;
-    options.width = c->base.width;
-    options.height = c->base.height;
+    options.config.width = c->base.width;
+    options.config.height = c->base.height;
     options.context_count = run->what.context_count;
     memcpy(options.context, run->what.context, sizeof options.context);
     return options;

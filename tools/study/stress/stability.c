@@ -202,7 +202,7 @@ static int add_capture(stress_row *rows, snapshot *last, const stress_case *c, c
             continue;
         }
         reconstruction_options options = stress_run_options(&run, c, contest, i / contest->method_count);
-        options.keep_analysis = true; /* the masks outlive the build */
+        options.config.keep_analysis = true; /* the masks outlive the build */
         snapshot now = {0};
         code = take(&now, &rows[i], c, &run, &options);
         if (code == CLI_OK && capture > 1 && !compare(&rows[i], &last[i], &now, pixels)) {
@@ -231,7 +231,7 @@ int stress_stability(stress_row *rows, const stress_case *c, const stress_contes
         rows[i].value[STRESS_MASK_CHANGED] /= contest->captures - 1;
         rows[i].value[STRESS_MOTION] /= contest->captures - 1;
         if (code == CLI_OK && rows[i].status == STRESS_MEASURED) {
-            stress_judge_still(&rows[i], contest->settings.clusters,
+            stress_judge_still(&rows[i], contest->settings.config.clusters,
                                stress_still_motion(&c->base, rows[i].value[STRESS_GAUSSIANS]));
         }
     }

@@ -108,7 +108,6 @@ static t3r_config config_of(const prepare_views *views, const prepare_settings *
     config.clusters = settings->clusters;
     config.cluster_batches = settings->cluster_batches;
     config.seed = settings->seed;
-    config.head = T3R_HEAD_NONE;
     config.refinements = 0; /* of the scene nothing is read */
     return config;
 }
@@ -174,7 +173,8 @@ static t3r_status retain_for(preparation *p, const prepare_views *views, const p
     }
     t3r_status status = prepare_rival(p->rt, &p->scene, p->cameras, views->count, (method_kind)settings->rival, count,
                                       settings->seed, planes);
-    return status == T3R_OK ? t3r_rebudget_given(p->rt, count, given, 2 * views->width, &p->scene) : status;
+    const t3r_request request = {.gaussians = count, .importance = given, .importance_stride_bytes = 2 * views->width};
+    return status == T3R_OK ? t3r_rebuild(p->rt, &request, &p->scene) : status;
 }
 
 static t3r_status analyse(preparation *p, const prepare_views *views, const prepare_settings *settings)
@@ -184,7 +184,7 @@ static t3r_status analyse(preparation *p, const prepare_views *views, const prep
     for (uint32_t v = 0; v < views->count && status == T3R_OK; v++) {
         status = add_view(p, views, v);
     }
-    status = status == T3R_OK ? t3r_reconstruct(p->rt, &p->scene) : status;
+    status = status == T3R_OK ? t3r_reconstruct(p->rt, NULL, &p->scene) : status;
     return status == T3R_OK && settings->rival != METHOD_TRIM3R ? retain_for(p, views, settings) : status;
 }
 

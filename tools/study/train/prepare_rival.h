@@ -7,7 +7,7 @@
 #include "reconstruction/method.h"
 #include "trim3r.h"
 
-/* The importance of every point for t3r_rebudget_given(): 65535 at those of the `count` Gaussians that `kind` ranks
+/* The importance of every point for a t3r_request: 65535 at those of the `count` Gaussians that `kind` ranks
  * highest, of `scene`, the unpruned one in `rt`, whose `views` views the cameras took; 0 at all others.
  * planes[views]: each of the working size. T3R_ERR_ARENA without memory, T3R_ERR_STATE where the scene is not that of
  * the masks in `rt`. */

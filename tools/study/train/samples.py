@@ -15,7 +15,7 @@ import numpy as np
 import native
 from procedural import Procedural, degrade_depth, expose
 
-ALLOCATIONS = {"density": 0, "paper": 1, "pixel": 2, "uniform": 3, "random": 4}
+ALLOCATIONS = {"density": 1, "paper": 2, "pixel": 3, "uniform": 4, "random": 5}
 MASKS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")  # method.h's kinds, in its order
 KINDS = ("all", "recorded", "rooms", "pictures")  # of scenes
 PLANE = 2000  # mm: a picture without depth is a wall two metres away

@@ -183,7 +183,7 @@ static t3r_status build(workload *w, t3r_runtime *runtime)
         };
         status = t3r_add_view(runtime, &frame, &w->camera[v]);
     }
-    return status == T3R_OK ? t3r_reconstruct(runtime, &scene) : status;
+    return status == T3R_OK ? t3r_reconstruct(runtime, NULL, &scene) : status;
 }
 
 static t3r_status open_scene(workload *w, scene_kind kind)

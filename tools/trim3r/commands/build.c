@@ -14,6 +14,7 @@
 #include "cli/option_values.h"
 #include "import/poses_output.h"
 #include "reconstruction/reconstruction.h"
+#include "reconstruction/settings.h"
 #include "import/recording_poses.h"
 #include "study/rivals/rival.h"
 
@@ -93,8 +94,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "REC.mcap is missing");
         } else if (o->output == NULL && o->colmap == NULL) {
             argp_error(state, "-o SCENE.ply is missing");
-        } else if (o->output != NULL && !path_is_ply(o->output)) {
-            argp_error(state, "-o %s: scenes are written as .ply", o->output);
+        } else if (o->output != NULL && !scene_file_is_written(o->output)) {
+            argp_error(state, "-o %s: scenes are written as %s", o->output,
+                       scene_file_suffixes((char[SCENE_FILE_SUFFIXES_BYTES]){0}));
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
             argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
         } else if (o->settings.points_of != NULL && method_ranks_for_head(o->settings.method)) {
@@ -149,7 +151,7 @@ static const struct argp argp = {
 static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *told,
                           const reconstruction *r)
 {
-    cJSON *list = o->settings.depth == T3R_DEPTH_STEREO ? cJSON_AddArrayToObject(root, "unmatched") : NULL;
+    cJSON *list = o->settings.config.depth == T3R_DEPTH_STEREO ? cJSON_AddArrayToObject(root, "unmatched") : NULL;
     for (uint32_t v = 0; v < told->context_count && list != NULL; v++) {
         if (t3r_stereo_pair(r->runtime, v, NULL) != T3R_PAIR_OK) {
             cJSON_AddItemToArray(list, cJSON_CreateNumber(told->context[v]));
@@ -177,13 +179,13 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     json_add_integer(root, "valid_points", told->valid_points);
     json_add_integers(root, "context", told->context, told->context_count);
     if (o->settings.points_of == NULL) {
-        cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.depth));
+        cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.config.depth));
         add_unmatched(root, o, told, r);
     }
     cJSON_AddNumberToObject(root, "width", told->width);
     cJSON_AddNumberToObject(root, "height", told->height);
     if (!rival) {
-        cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.allocation));
+        cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.config.allocation));
     }
     if (o->settings.points_of != NULL) {
         cJSON_AddStringToObject(root, "pruned", o->settings.points_of);
@@ -195,6 +197,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
         cJSON_AddStringToObject(root, "head_bits", told->bits);
         cJSON_AddStringToObject(root, "head_crc", told->crc);
     }
+    settings_add_json(cJSON_AddObjectToObject(root, "settings"), &o->settings.config);
     json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
     cJSON_AddNumberToObject(root, "build_ms", told->seconds * 1e3);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
@@ -271,7 +274,7 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
 {
     char note[64], error[ERROR_BYTES] = "";
     note_head(told, note, sizeof note);
-    if (o->output != NULL && scene_file_write_ply(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
+    if (o->output != NULL && scene_file_write(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told) : CLI_OK;

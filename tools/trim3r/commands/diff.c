@@ -41,7 +41,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END:
         if (o->path[1] == NULL) {
             argp_error(state, "two files are needed");
-        } else if (path_is_ply(o->path[0]) != path_is_ply(o->path[1])) {
+        } else if (scene_file_is_read(o->path[0]) != scene_file_is_read(o->path[1])) {
             argp_error(state, "a scene (.ply) and a picture cannot be compared");
         }
         return 0;
@@ -118,7 +118,7 @@ static int diff_scenes(const diff_options *o)
     scene_file scene[2] = {0};
     char error[ERROR_BYTES] = "";
     for (int i = 0; i < 2; i++) {
-        if (scene_file_read_ply(o->path[i], &scene[i], error, sizeof error) != 0) {
+        if (scene_file_read(o->path[i], &scene[i], error, sizeof error) != 0) {
             scene_file_free(&scene[0]);
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }
@@ -259,5 +259,5 @@ int command_diff(int argc, char **argv)
 {
     diff_options o = {0};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    return path_is_ply(o.path[0]) ? diff_scenes(&o) : diff_pictures(&o);
+    return scene_file_is_read(o.path[0]) ? diff_scenes(&o) : diff_pictures(&o);
 }

@@ -146,13 +146,13 @@ static void check_options(struct argp_state *state, options *o)
     if (o->settings.context_views > 2 && o->settings.context_count > o->settings.context_views) {
         argp_error(state, "--context names more frames than --views");
     }
-    if (o->planar && o->settings.depth != T3R_DEPTH_SENSOR) {
+    if (o->planar && o->settings.config.depth != T3R_DEPTH_SENSOR) {
         argp_error(state, "--depth belongs to a recording, not to --planar");
     }
     if (!o->planar && o->width != 0) {
         argp_error(state, "--size belongs to --planar; --working sets the size of a recording's views");
     }
-    if (o->planar && o->settings.width != 0) {
+    if (o->planar && o->settings.config.width != 0) {
         argp_error(state, "--working belongs to a recording; --size sets the size of --planar");
     }
     if (o->has_target != (o->settings.context_count > 0)) {

@@ -37,7 +37,7 @@ enum { KEY_JSON = 0x100, KEY_VIEW, KEY_SVG };
 
 static void take_argument(struct argp_state *state, options *o, const char *argument)
 {
-    if (!path_is_ply(argument)) {
+    if (!scene_file_is_read(argument)) {
         option_argument(state, argument, (const char **[]){&o->recording}, 1);
     } else if (o->scene_count == SCENE_INFO_MOST) {
         argp_error(state, "%s: at most %u scenes are shown at once", argument, SCENE_INFO_MOST);

@@ -112,12 +112,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static const struct argp argp = {
     .options = options,
     .parser = parse,
-    .doc =
-        "Prints the arena's buffers, the least and the full bytes, and upper bounds of each stage's inner-loop steps."
-        "\vExamples:\n"
-        "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
-        "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
-        "  trim3r plan --size 256x256 --gaussians 13107 --json",
+    .doc = "Prints the arena's buffers, and the least and the full bytes."
+           "\vExamples:\n"
+           "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
+           "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
+           "  trim3r plan --size 256x256 --gaussians 13107 --json",
 };
 
 static void print_json(const t3r_config *config, const t3r_plan_info *plan)
@@ -143,10 +142,6 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan)
         cJSON_AddStringToObject(item, "last", t3r_stage_name(b->last));
         cJSON_AddItemToArray(buffers, item);
     }
-    cJSON *operations = cJSON_AddObjectToObject(root, "operations");
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        json_add_integer(operations, t3r_stage_name((t3r_stage)stage), (int64_t)plan->operations[stage]);
-    }
     json_print(root);
 }
 
@@ -168,15 +163,6 @@ static void print_table(const t3r_plan_info *plan, bool markdown)
     const char *total = markdown ? "| **%s** | **%zu** | | | |\n" : "%-30s %12zu\n";
     printf(total, "arena, at least", plan->min_bytes);
     printf(total, "arena, full speed", plan->bytes);
-}
-
-static void print_operations(const t3r_plan_info *plan, bool markdown)
-{
-    printf(markdown ? "\n| %s | %s |\n|---|---:|\n" : "\n%-30s %20s\n", "stage", "steps at most");
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        printf(markdown ? "| %s | %" PRIu64 " |\n" : "%-30s %20" PRIu64 "\n", t3r_stage_name((t3r_stage)stage),
-               plan->operations[stage]);
-    }
 }
 
 static int write_svg(const char *path, const t3r_plan_info *plan)
@@ -227,7 +213,6 @@ int command_plan(int argc, char **argv)
         print_json(&config, &plan);
     } else {
         print_table(&plan, o.markdown);
-        print_operations(&plan, o.markdown);
     }
     return CLI_OK;
 }

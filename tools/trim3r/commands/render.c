@@ -375,7 +375,7 @@ int command_render(int argc, char **argv)
     viewpoint_list views;
     scene_file scene = {0};
     int code = choose_viewpoints(&o, &views);
-    if (code == CLI_OK && scene_file_read_ply(o.scene, &scene, error, sizeof error) != 0) {
+    if (code == CLI_OK && scene_file_read(o.scene, &scene, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     if (code == CLI_OK) {

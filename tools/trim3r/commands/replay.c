@@ -67,8 +67,9 @@ static void check_stream(struct argp_state *state, const replay_options *o)
                         o->stream.images != NULL)) {
         argp_error(state, "--every, --overlap, --at-hand, --half-life and --images belong to --stream");
     }
-    if (o->streams && (o->settings.context_count > 0 || o->settings.automatic ||
-                       o->settings.depth == T3R_DEPTH_STEREO || o->settings.allocation == T3R_ALLOCATE_GIVEN)) {
+    if (o->streams &&
+        (o->settings.context_count > 0 || o->settings.automatic || o->settings.config.depth == T3R_DEPTH_STEREO ||
+         o->settings.config.allocation == T3R_ALLOCATE_GIVEN)) {
         argp_error(state, "--stream takes no --context, --auto, --allocate given or --depth stereo");
     }
 }
@@ -104,7 +105,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->stream.at_hand = option_number(state, "at-hand", arg, 1, T3R_MAX_VIEWS);
         return 0;
     case KEY_HALF_LIFE:
-        o->settings.half_life = option_number(state, "half-life", arg, 0, 1024);
+        o->settings.config.half_life = option_number(state, "half-life", arg, 0, 1024);
         o->has_half_life = true;
         return 0;
     case KEY_IMAGES:

@@ -140,7 +140,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         o->input_count = (uint32_t)(state->argc - state->next);
         return 0;
     case ARGP_KEY_END:
-        if (c->settings.allocation == T3R_ALLOCATE_GIVEN) {
+        if (c->settings.config.allocation == T3R_ALLOCATE_GIVEN) {
             argp_error(state, "--allocate given is of pictures of one recording; stress has scenes of its own");
         }
         return 0;
@@ -352,8 +352,8 @@ static int measure_case(stress_report *report, const options *o, stress_case *c,
 
 static void case_size(const options *o, uint32_t side, uint32_t *width, uint32_t *height)
 {
-    *width = o->contest.settings.width != 0 ? o->contest.settings.width : side;
-    *height = o->contest.settings.height != 0 ? o->contest.settings.height : side;
+    *width = o->contest.settings.config.width != 0 ? o->contest.settings.config.width : side;
+    *height = o->contest.settings.config.height != 0 ? o->contest.settings.config.height : side;
 }
 
 /* Its first triplet. */

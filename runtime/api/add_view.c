@@ -1,0 +1,80 @@
+/* Context views: frames to planes, and what stereo found of them. */
+#include <string.h>
+
+#include "core/arena.h"
+#include "core/state.h"
+#include "image/develop.h"
+
+static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
+{
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(rt, views);
+    size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
+    for (size_t i = 0; i < pixels; i++) {
+        if (t3r_is_reliable(views[index].validity[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(!rt->config.stream && rt->views < rt->config.views && !rt->has_scene, T3R_ERR_STATE);
+    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO;
+    t3r_frame shown = *frame;
+    if (stereo) {
+        shown.depth = NULL;
+    } else if (frame->depth == NULL) {
+        return T3R_ERR_NO_DEPTH;
+    }
+    rt->analysed = 0; /* the image stage works where later planes are */
+    t3r_camera undistorted;
+    t3r_status status = t3r_develop_view(rt, rt->views, &shown, camera, &undistorted);
+    if (status != T3R_OK) {
+        return status;
+    }
+    if (!stereo && !has_measured_depth(rt, rt->views)) {
+        return T3R_ERR_NO_DEPTH;
+    }
+    rt->camera[rt->views] = undistorted;
+    rt->depth_unit_q40[rt->views] = stereo ? 1 : frame->depth_unit_q40; /* stereo chooses its own */
+    rt->stereo_pair[rt->views] = T3R_PAIR_OK;
+    rt->stereo_partner[rt->views] = (uint8_t)rt->views;
+    rt->views++;
+    return T3R_OK;
+}
+
+t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
+                       uint16_t *depth_out, t3r_camera *undistorted)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL && rgb_out != NULL && undistorted != NULL,
+                      T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->config.views > 0 && rt->views == 0 && !rt->has_scene, T3R_ERR_STATE);
+    t3r_status status = t3r_develop_view(rt, 0, frame, camera, undistorted);
+    if (status != T3R_OK) {
+        return status;
+    }
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(rt, views);
+    size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
+    for (size_t i = 0; i < pixels; i++) {
+        for (int c = 0; c < 3; c++) {
+            rgb_out[3 * i + (size_t)c] = views[0].colour[c][i];
+        }
+    }
+    if (depth_out != NULL) {
+        memcpy(depth_out, views[0].depth, pixels * sizeof *depth_out);
+    }
+    return T3R_OK;
+}
+
+t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner)
+{
+    const bool known = rt != NULL && rt->config.depth == T3R_DEPTH_STEREO && view < rt->views;
+    if (partner != NULL) {
+        *partner = known ? rt->stereo_partner[view] : view;
+    }
+    return known ? (t3r_pair)rt->stereo_pair[view] : T3R_PAIR_OK;
+}

@@ -1,0 +1,110 @@
+/* A scene of the views: what is asked for, and whether it can be had, is settled here. */
+#include "api/checks.h"
+#include "budget/budget_choice.h"
+#include "core/state.h"
+#include "pipeline.h"
+
+/* A request with the configuration's values where it has none of its own. */
+typedef struct t3r_order {
+    t3r_build build;
+    uint32_t max_loss_q8;      /* 0 = exactly the budget */
+    t3r_importance importance; /* no planes unless the allocation is `given` */
+} t3r_order;
+
+static const t3r_importance *importance_of(const t3r_order *order)
+{
+    return order->importance.planes != NULL ? &order->importance : NULL;
+}
+
+static t3r_order order_of(const t3r_runtime *rt, const t3r_request *request)
+{
+    t3r_order order = {.build = t3r_build_of(&rt->config)};
+    if (request == NULL) {
+        return order;
+    }
+    order.build.gaussians = request->gaussians != 0 ? request->gaussians : order.build.gaussians;
+    if (request->importance != NULL) {
+        order.build.allocation = T3R_ALLOCATE_GIVEN;
+    } else if (request->allocation != T3R_ALLOCATE_CONFIGURED) {
+        order.build.allocation = request->allocation;
+    }
+    order.build.head = request->head != T3R_HEAD_CONFIGURED ? request->head : order.build.head;
+    order.max_loss_q8 = request->max_loss_q8;
+    order.importance = (t3r_importance){request->importance, request->importance_stride_bytes};
+    return order;
+}
+
+/* Whether there is a readable plane for each view added. */
+static bool is_importance(const t3r_runtime *rt, const t3r_importance *importance)
+{
+    if (importance->stride_bytes % 2 != 0 || importance->stride_bytes / 2 < rt->config.width) {
+        return false;
+    }
+    for (uint32_t v = 0; v < rt->views; v++) {
+        const uint16_t *plane = importance->planes[v];
+        if (plane == NULL || (uintptr_t)plane % _Alignof(uint16_t) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether an importance comes with no other allocation than `given`. */
+static bool agrees(const t3r_request *request)
+{
+    return request == NULL || request->importance == NULL || request->allocation == T3R_ALLOCATE_CONFIGURED ||
+           request->allocation == T3R_ALLOCATE_GIVEN;
+}
+
+static bool is_request(const t3r_runtime *rt, const t3r_request *request, const t3r_order *order)
+{
+    return agrees(request) && t3r_is_build(&rt->config, &order->build) && order->max_loss_q8 <= T3R_MAX_LOSS_Q8 &&
+           (order->importance.planes == NULL || is_importance(rt, &order->importance));
+}
+
+/* Whether what the order needs besides the views is there. A loss is measured on trial scenes of one analysis. */
+static bool can_be_built(const t3r_runtime *rt, const t3r_order *order)
+{
+    return t3r_has_head(rt, order->build.head) &&
+           (order->build.allocation != T3R_ALLOCATE_GIVEN || order->importance.planes != NULL) &&
+           (order->max_loss_q8 == 0 || (rt->config.keep_analysis && rt->config.refinements > 0));
+}
+
+static bool has_views(const t3r_runtime *rt)
+{
+    return !rt->config.stream && rt->views >= (rt->config.depth == T3R_DEPTH_STEREO ? 2u : 1u);
+}
+
+static t3r_status build(t3r_runtime *rt, t3r_order *order, t3r_scene *scene)
+{
+    t3r_status status = T3R_OK;
+    if (order->max_loss_q8 != 0) {
+        status = t3r_choose_budget(rt, order->max_loss_q8, &order->build, importance_of(order));
+        rt->has_scene = 0; /* the trial's */
+    }
+    if (status == T3R_OK) {
+        status = t3r_build_scene(rt, &order->build, importance_of(order));
+    }
+    return status == T3R_OK ? t3r_get_scene(rt, scene) : status;
+}
+
+t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
+    t3r_order order = order_of(rt, request);
+    T3R_REFUSE_UNLESS(is_request(rt, request, &order), T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(has_views(rt) && can_be_built(rt, &order), T3R_ERR_STATE);
+    rt->has_scene = 0;
+    rt->analysed = 0;
+    t3r_status status = t3r_analyse(rt);
+    return status == T3R_OK ? build(rt, &order, scene) : status;
+}
+
+t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
+    t3r_order order = order_of(rt, request);
+    T3R_REFUSE_UNLESS(is_request(rt, request, &order), T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->config.keep_analysis && rt->analysed && can_be_built(rt, &order), T3R_ERR_STATE);
+    return build(rt, &order, scene);
+}

@@ -1,0 +1,38 @@
+/* Streams: a keyframe into the map, and how much the next one would show of it. */
+#include "api/checks.h"
+#include "core/camera.h"
+#include "core/state.h"
+#include "stream/stream.h"
+#include "stream/stream_overlap.h"
+
+t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
+                               t3r_stream_report *report)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->config.stream && t3r_has_head(rt, rt->config.head) &&
+                          rt->config.allocation != T3R_ALLOCATE_GIVEN,
+                      T3R_ERR_STATE);
+    if (frame->depth == NULL) {
+        return T3R_ERR_NO_DEPTH;
+    }
+    t3r_stream_report told = {0};
+    t3r_status status = t3r_stream_follow(rt, frame, camera);
+    if (status == T3R_OK) {
+        status = t3r_stream_take(rt, frame, camera, &told);
+    }
+    if (report != NULL) {
+        *report = told;
+    }
+    return status;
+}
+
+t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
+                              uint32_t *overlap_q8)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && camera != NULL && overlap_q8 != NULL && width >= 2 && width <= T3R_MAX_SIDE &&
+                          height >= 2 && height <= T3R_MAX_SIDE,
+                      T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt->config.stream && rt->keyframes > 0, T3R_ERR_STATE);
+    t3r_status status = t3r_camera_check(camera);
+    return status == T3R_OK ? t3r_overlap_with_newest(rt, camera, width, height, overlap_q8) : status;
+}

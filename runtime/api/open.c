@@ -1,0 +1,172 @@
+/* The arena: laid out, or found again as it was left. */
+#include <string.h>
+
+#include "api/checks.h"
+#include "core/arena.h"
+#include "core/camera.h"
+#include "core/hash.h"
+#include "core/scene_frame.h"
+#include "core/state.h"
+#include "image/image.h"
+#include "superclusters/superclusters.h"
+
+/* Changes with the layout: an arena laid out by another build is refused. */
+static uint64_t layout_hash(const t3r_layout *layout)
+{
+    uint64_t hash = t3r_hash_u32(T3R_HASH_START, T3R_BUFFER_COUNT);
+    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
+        hash = t3r_hash_u64(t3r_hash_u64(hash, layout->offset[b]), layout->size[b]);
+    }
+    return t3r_hash_u32(hash, (uint32_t)sizeof(struct t3r_runtime));
+}
+
+static void bind_layout(t3r_runtime *rt, const t3r_layout *layout)
+{
+    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
+        rt->offset[b] = layout->offset[b];
+    }
+    rt->list_capacity = layout->list_capacity;
+    rt->refine_bytes = layout->refine_bytes;
+    rt->layout_hash = layout_hash(layout);
+}
+
+t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config)
+{
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
+    *rt = NULL;
+    T3R_REFUSE_UNLESS(arena != NULL && config != NULL, T3R_ERR_ARGUMENT);
+    if (t3r_config_error(config) != NULL) {
+        return T3R_ERR_CONFIG;
+    }
+    t3r_layout layout;
+    if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || t3r_lay_out(config, arena_bytes, &layout) != T3R_OK) {
+        return T3R_ERR_ARENA;
+    }
+    t3r_runtime *state = arena;
+    memset(state, 0, sizeof *state);
+    state->magic = T3R_MAGIC;
+    state->bits_epoch = T3R_BITS_EPOCH;
+    state->arena_bytes = arena_bytes;
+    state->config = *config;
+    state->build = t3r_build_of(config);
+    state->kernels = t3r_kernels_c;
+    bind_layout(state, &layout);
+    *rt = state;
+    return T3R_OK;
+}
+
+t3r_status t3r_reset(t3r_runtime *rt)
+{
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
+    rt->views = 0;
+    rt->analysed = 0;
+    rt->has_scene = 0;
+    rt->gaussians = 0;
+    rt->valid_points = 0;
+    rt->keyframes = 0;
+    rt->next_slot = 0;
+    return T3R_OK;
+}
+
+t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks)
+{
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
+    rt->hooks = hooks != NULL ? *hooks : (t3r_hooks){0};
+    return T3R_OK;
+}
+
+t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features)
+{
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
+    t3r_kernels_choose(&rt->kernels, features);
+    return T3R_OK;
+}
+
+/* --- an arena that was copied ------------------------------------------------------------------------------------- */
+
+/* Whether labels and SuperClusters of a copied analysis stay within what the budget stage counts on. */
+static bool is_analysis(const t3r_runtime *rt)
+{
+    size_t points = T3R_PIXELS_(rt->config.width, rt->config.height) * rt->views;
+    const uint16_t *labels = t3r_buffer_at(rt, T3R_BUFFER_LABELS);
+    const t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    for (size_t i = 0; i < points; i++) {
+        if (labels[i] >= rt->config.clusters && labels[i] != T3R_NO_LABEL) {
+            return false;
+        }
+    }
+    for (uint32_t k = 0; k < rt->config.clusters; k++) {
+        if (clusters[k].points > points || clusters[k].texture_q4 > UINT16_MAX ||
+            clusters[k].order >= rt->config.clusters) {
+            return false;
+        }
+    }
+    return rt->median_depth_q20 >= 1 << 20 && rt->median_depth_q20 < 2 << 20 && rt->valid_points <= points;
+}
+
+static bool is_scene(const t3r_runtime *rt)
+{
+    const t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
+    for (uint32_t i = 0; i < rt->gaussians; i++) {
+        if (!t3r_is_gaussian(&scene[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether the slots of a stream's keyframes are those that taking them one after the other fills. */
+static bool is_stream(const t3r_runtime *rt)
+{
+    bool full = rt->views == rt->config.views;
+    return !rt->analysed && rt->next_slot <= rt->views && rt->next_slot < rt->config.views &&
+           (full || rt->next_slot == rt->views) && rt->gaussians <= rt->config.gaussians &&
+           (rt->has_scene ? rt->views > 0 && rt->keyframes >= rt->views
+                          : rt->views == 0 && rt->keyframes == 0 && rt->gaussians == 0);
+}
+
+/* Whether a copied arena holds what the stages rely on. Planes may hold anything. */
+static bool is_consistent(const t3r_runtime *rt)
+{
+    if (rt->views > rt->config.views || rt->gaussians > rt->config.max_gaussians || rt->analysed > 1 ||
+        rt->has_scene > 1 || !t3r_is_scene_frame(&rt->frame) || !t3r_is_build(&rt->config, &rt->build) ||
+        (rt->config.stream ? !is_stream(rt) : rt->next_slot != 0)) {
+        return false;
+    }
+    for (uint32_t v = 0; v < rt->views; v++) {
+        t3r_pose pose;
+        if (rt->stereo_pair[v] >= T3R_PAIR_COUNT || rt->stereo_partner[v] >= T3R_MAX_VIEWS ||
+            t3r_camera_check(&rt->camera[v]) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
+            rt->depth_unit_q40[v] > T3R_MAX_DEPTH_UNIT_Q40 ||
+            (rt->analysed && t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK)) {
+            return false;
+        }
+    }
+    return (!rt->analysed || is_analysis(rt)) && (!rt->has_scene || is_scene(rt));
+}
+
+t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
+{
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
+    *rt = NULL;
+    T3R_REFUSE_UNLESS(arena != NULL, T3R_ERR_ARGUMENT);
+    if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || arena_bytes < T3R_HEADER_BYTES) {
+        return T3R_ERR_ARENA;
+    }
+    t3r_runtime *state = arena;
+    t3r_layout layout;
+    if (state->magic != T3R_MAGIC || state->bits_epoch != T3R_BITS_EPOCH || state->arena_bytes != arena_bytes ||
+        t3r_config_error(&state->config) != NULL || t3r_lay_out(&state->config, arena_bytes, &layout) != T3R_OK ||
+        state->layout_hash != layout_hash(&layout)) {
+        return T3R_ERR_EPOCH;
+    }
+    bind_layout(state, &layout);
+    if (!is_consistent(state)) {
+        return T3R_ERR_EPOCH;
+    }
+    memset(&state->hooks, 0, sizeof state->hooks);
+    state->weights = NULL;
+    state->kernels = t3r_kernels_c;
+    *rt = state;
+    return T3R_OK;
+}

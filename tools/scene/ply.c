@@ -1,0 +1,5 @@
+#include "scene/ply.h"
+
+#include "scene/scene_format.h"
+
+const scene_format scene_format_ply = {.suffix = ".ply", .magic = "ply", .parse = ply_parse, .write = ply_write};
