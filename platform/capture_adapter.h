@@ -42,14 +42,19 @@ int t3r_capture_deliver(t3r_capture *capture, const t3r_capture_frame *frame);
 /* The settings with every default filled in. NULL, or which of them is out of range. */
 const char *t3r_capture_settings_fill(const t3r_capture_settings *settings, t3r_capture_settings *filled);
 
-/* Adapters; each NULL with a reason in error[] on failure. Settings are filled. */
+/* A row of the table of sources (capture_sources.c). Each adapter defines its own, as t3r_source_NAME. */
+typedef struct t3r_capture_source {
+    const char *name;     /* before the colon of a source: "replay" */
+    const char *argument; /* behind it, as messages name it: "FILE" */
+    const char *module;   /* the module that it needs (capture_module.h); NULL: none */
+    const char *says;     /* what it reads */
+    /* NULL with a reason in error[] on failure. Settings are filled. */
+    t3r_capture *(*open)(const char *what, const t3r_capture_settings *settings, char *error, size_t error_bytes);
+    /* A line for each device there is; NULL: it can't tell. */
+    void (*devices)(void (*say)(void *user, const char *line), void *user);
+} t3r_capture_source;
+
+/* The adapter `replay`, whose recording begins again until it was shown `times` times. */
 t3r_capture *t3r_replay_open_repeated(const char *path, uint32_t times, char *error, size_t error_bytes);
-t3r_capture *t3r_v4l2_open(const char *device, const t3r_capture_settings *settings, char *error, size_t error_bytes);
-t3r_capture *t3r_libcamera_open(const char *camera, const t3r_capture_settings *settings, char *error,
-                                size_t error_bytes);
-t3r_capture *t3r_opencv_open(const char *url, const t3r_capture_settings *settings, char *error, size_t error_bytes);
-/* Devices there are, a line each. */
-void t3r_v4l2_devices(void (*say)(void *user, const char *line), void *user);
-void t3r_libcamera_devices(void (*say)(void *user, const char *line), void *user);
 
 #endif

@@ -6,87 +6,70 @@
 #include "capture_module.h"
 #include "reason.h"
 
+/* Every adapter, in the order of the list; of one that was left out, what its user is told. */
+#define ALWAYS(name) HERE(name)
 #ifdef T3R_V4L2
-#define V4L2_THERE true
-#define V4L2_SAYS "cameras of Linux: a device such as /dev/video0"
+#define WITH_V4L2 HERE(v4l2)
 #else
-#define V4L2_THERE false
-#define V4L2_SAYS "not in this build (it needs Linux; T3R_V4L2 was off when it was configured)"
+#define WITH_V4L2 ABSENT("v4l2", "DEVICE", "it needs Linux; T3R_V4L2 was off when it was configured")
 #endif
 #ifdef T3R_LIBCAMERA
-#define LIBCAMERA_SAYS "cameras of libcamera: a number of its list, or a camera's id"
+#define WITH_LIBCAMERA HERE(libcamera)
 #else
-#define LIBCAMERA_SAYS "not in this build (tools/setup --cameras, then configure again with T3R_LIBCAMERA=AUTO)"
+#define WITH_LIBCAMERA                                                                                                 \
+    ABSENT("libcamera", "CAMERA", "tools/setup --cameras, then configure again with T3R_LIBCAMERA=AUTO")
 #endif
 #ifdef T3R_OPENCV
-#define OPENCV_SAYS "VideoCapture of OpenCV: a film, pictures as p%03d.png, a stream's URL, a device's number"
+#define WITH_OPENCV HERE(opencv)
 #else
-#define OPENCV_SAYS "not in this build (tools/setup --cameras, then configure again with T3R_OPENCV=AUTO)"
+#define WITH_OPENCV ABSENT("opencv", "URL", "tools/setup --cameras, then configure again with T3R_OPENCV=AUTO")
 #endif
+#define SOURCES ALWAYS(replay) WITH_V4L2 WITH_LIBCAMERA WITH_OPENCV
 
-#if !defined T3R_LIBCAMERA || !defined T3R_OPENCV || !defined T3R_V4L2
-static t3r_capture *absent(const char *what, const t3r_capture_settings *settings, char *error, size_t error_bytes)
-{
-    (void)what;
-    (void)settings;
-    t3r_reason(error, error_bytes, "this adapter is not in this build: trim3r capture --list says why");
-    return NULL;
-}
-#endif
+#define HERE(name) extern const t3r_capture_source t3r_source_##name;
+#define ABSENT(name, argument, why)
+SOURCES
+#undef HERE
+#undef ABSENT
 
-static t3r_capture *open_replay(const char *path, const t3r_capture_settings *settings, char *error, size_t error_bytes)
-{
-    return t3r_replay_open_repeated(path, settings->repeat, error, error_bytes);
-}
+typedef struct source_row {
+    const t3r_capture_source *source; /* NULL: not in this build */
+    const char *name, *argument, *why;
+} source_row;
 
-static const struct {
-    const char *name;
-    bool there;
-    const char *module, *says;
-    t3r_capture *(*open)(const char *what, const t3r_capture_settings *settings, char *error, size_t error_bytes);
-    void (*devices)(void (*say)(void *user, const char *line), void *user);
-} adapters[] = {
-    {"replay", true, NULL, "a recording, REC.mcap", open_replay, NULL},
-#ifdef T3R_V4L2
-    {"v4l2", V4L2_THERE, NULL, V4L2_SAYS, t3r_v4l2_open, t3r_v4l2_devices},
-#else
-    {"v4l2", V4L2_THERE, NULL, V4L2_SAYS, absent, NULL},
-#endif
-#ifdef T3R_LIBCAMERA
-    {"libcamera", true, "libcamera", LIBCAMERA_SAYS, t3r_libcamera_open, t3r_libcamera_devices},
-#else
-    {"libcamera", false, NULL, LIBCAMERA_SAYS, absent, NULL},
-#endif
-#ifdef T3R_OPENCV
-    {"opencv", true, "opencv", OPENCV_SAYS, t3r_opencv_open, NULL},
-#else
-    {"opencv", false, NULL, OPENCV_SAYS, absent, NULL},
-#endif
+static const source_row rows[] = {
+#define HERE(name) {&t3r_source_##name, #name, NULL, NULL},
+#define ABSENT(name, argument, why) {NULL, name, argument, "not in this build (" why ")"},
+    SOURCES
+#undef HERE
+#undef ABSENT
 };
-#define ADAPTERS (sizeof adapters / sizeof adapters[0])
+#define ROWS (sizeof rows / sizeof rows[0])
 
 uint32_t t3r_capture_adapter_count(void)
 {
-    return ADAPTERS;
+    return ROWS;
 }
 
 t3r_capture_adapter t3r_capture_adapter_of(uint32_t index)
 {
-    t3r_capture_adapter told = {.name = adapters[index].name, .available = adapters[index].there};
-    const char *module = adapters[index].module;
-    if (module != NULL && t3r_capture_module(module, told.says, sizeof told.says) == NULL) {
+    const t3r_capture_source *source = rows[index].source;
+    t3r_capture_adapter told = {.name = rows[index].name, .available = source != NULL};
+    if (source != NULL && source->module != NULL &&
+        t3r_capture_module(source->module, told.says, sizeof told.says) == NULL) {
         told.available = false;
     } else {
-        snprintf(told.says, sizeof told.says, "%s", adapters[index].says);
+        snprintf(told.says, sizeof told.says, "%s", source != NULL ? source->says : rows[index].why);
     }
     return told;
 }
 
 void t3r_capture_devices(const char *adapter, void (*say)(void *user, const char *line), void *user)
 {
-    for (uint32_t i = 0; i < ADAPTERS; i++) {
-        if (strcmp(adapters[i].name, adapter) == 0 && adapters[i].devices != NULL) {
-            adapters[i].devices(say, user);
+    for (uint32_t i = 0; i < ROWS; i++) {
+        const t3r_capture_source *source = rows[i].source;
+        if (source != NULL && source->devices != NULL && strcmp(source->name, adapter) == 0) {
+            source->devices(say, user);
         }
     }
 }
@@ -102,6 +85,19 @@ const char *t3r_capture_formats(void)
     return "YUYV UYVY NV12 RGB3 BGR3 " MJPEG_NAME "GREY";
 }
 
+static t3r_capture *refuse_unknown(const char *what, char *error, size_t error_bytes)
+{
+    char known[256] = "";
+    size_t length = 0;
+    for (uint32_t i = 0; i < ROWS && length < sizeof known; i++) {
+        const char *argument = rows[i].source != NULL ? rows[i].source->argument : rows[i].argument;
+        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s:%s", i == 0 ? "" : ", ", rows[i].name,
+                                   argument);
+    }
+    t3r_reason(error, error_bytes, "%s: is none of %s", what, known);
+    return NULL;
+}
+
 t3r_capture *t3r_capture_open(const char *source, const t3r_capture_settings *settings, char *error, size_t error_bytes)
 {
     t3r_capture_settings filled;
@@ -111,12 +107,16 @@ t3r_capture *t3r_capture_open(const char *source, const t3r_capture_settings *se
         return NULL;
     }
     const char *colon = strchr(source, ':');
-    for (uint32_t i = 0; colon != NULL && i < ADAPTERS; i++) {
-        size_t length = strlen(adapters[i].name);
-        if ((size_t)(colon - source) == length && strncmp(source, adapters[i].name, length) == 0) {
-            return adapters[i].open(colon + 1, &filled, error, error_bytes);
+    for (uint32_t i = 0; colon != NULL && i < ROWS; i++) {
+        size_t length = strlen(rows[i].name);
+        if ((size_t)(colon - source) != length || strncmp(source, rows[i].name, length) != 0) {
+            continue;
         }
+        if (rows[i].source != NULL) {
+            return rows[i].source->open(colon + 1, &filled, error, error_bytes);
+        }
+        t3r_reason(error, error_bytes, "this adapter is not in this build: trim3r capture --list says why");
+        return NULL;
     }
-    t3r_reason(error, error_bytes, "%s: is none of replay:FILE, v4l2:DEVICE, libcamera:CAMERA, opencv:URL", source);
-    return NULL;
+    return refuse_unknown(source, error, error_bytes);
 }

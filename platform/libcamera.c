@@ -277,14 +277,14 @@ t3r_capture *t3r_libcamera_open_on(const t3r_libcamera_shim *shim, const char *c
     return NULL;
 }
 
-t3r_capture *t3r_libcamera_open(const char *camera, const t3r_capture_settings *settings, char *error,
+static t3r_capture *open_source(const char *camera, const t3r_capture_settings *settings, char *error,
                                 size_t error_bytes)
 {
     const t3r_libcamera_shim *shim = t3r_capture_module("libcamera", error, error_bytes);
     return shim != NULL ? t3r_libcamera_open_on(shim, camera, settings, error, error_bytes) : NULL;
 }
 
-void t3r_libcamera_devices(void (*say)(void *user, const char *line), void *user)
+static void list_devices(void (*say)(void *user, const char *line), void *user)
 {
     char why[256];
     const t3r_libcamera_shim *shim = t3r_capture_module("libcamera", why, sizeof why);
@@ -292,3 +292,10 @@ void t3r_libcamera_devices(void (*say)(void *user, const char *line), void *user
         shim->list(say, user);
     }
 }
+
+const t3r_capture_source t3r_source_libcamera = {.name = "libcamera",
+                                                 .argument = "CAMERA",
+                                                 .module = "libcamera",
+                                                 .says = "cameras of libcamera: a number of its list, or a camera's id",
+                                                 .open = open_source,
+                                                 .devices = list_devices};

@@ -5,7 +5,7 @@
 #include "capture.h"
 #include "libcamera_shim.h"
 
-/* As t3r_libcamera_open(). Settings are filled (capture_adapter.h). */
+/* With the module given. Settings are filled (capture_adapter.h). */
 t3r_capture *t3r_libcamera_open_on(const t3r_libcamera_shim *shim, const char *camera,
                                    const t3r_capture_settings *settings, char *error, size_t error_bytes);
 

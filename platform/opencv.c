@@ -194,7 +194,7 @@ static void close_capture(t3r_capture *capture)
     free(self);
 }
 
-t3r_capture *t3r_opencv_open(const char *url, const t3r_capture_settings *settings, char *error, size_t error_bytes)
+static t3r_capture *open_source(const char *url, const t3r_capture_settings *settings, char *error, size_t error_bytes)
 {
     static const t3r_capture_operations operations = {next, reopen, close_capture};
     const t3r_opencv_shim *shim = t3r_capture_module("opencv", error, error_bytes);
@@ -221,3 +221,10 @@ t3r_capture *t3r_opencv_open(const char *url, const t3r_capture_settings *settin
     close_capture(&self->capture);
     return NULL;
 }
+
+const t3r_capture_source t3r_source_opencv = {
+    .name = "opencv",
+    .argument = "URL",
+    .module = "opencv",
+    .says = "VideoCapture of OpenCV: a film, pictures as p%03d.png, a stream's URL, a device's number",
+    .open = open_source};

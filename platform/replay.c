@@ -102,3 +102,11 @@ t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes)
 {
     return t3r_replay_open_repeated(path, 1, error, error_bytes);
 }
+
+static t3r_capture *open_source(const char *path, const t3r_capture_settings *settings, char *error, size_t error_bytes)
+{
+    return t3r_replay_open_repeated(path, settings->repeat, error, error_bytes);
+}
+
+const t3r_capture_source t3r_source_replay = {
+    .name = "replay", .argument = "FILE", .says = "a recording, REC.mcap", .open = open_source};

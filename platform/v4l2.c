@@ -478,7 +478,14 @@ t3r_capture *t3r_v4l2_open_on(const t3r_v4l2_system *system, const char *device,
     return &self->capture;
 }
 
-t3r_capture *t3r_v4l2_open(const char *device, const t3r_capture_settings *settings, char *error, size_t error_bytes)
+static t3r_capture *open_source(const char *device, const t3r_capture_settings *settings, char *error,
+                                size_t error_bytes)
 {
     return t3r_v4l2_open_on(&t3r_v4l2_kernel, device, settings, error, error_bytes);
 }
+
+const t3r_capture_source t3r_source_v4l2 = {.name = "v4l2",
+                                            .argument = "DEVICE",
+                                            .says = "cameras of Linux: a device such as /dev/video0",
+                                            .open = open_source,
+                                            .devices = t3r_v4l2_devices};

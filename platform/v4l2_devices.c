@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "capture_adapter.h"
+#include "v4l2.h"
 #include "v4l2_format.h"
 
 #define MOST_NODES 64

@@ -153,7 +153,7 @@ def planar(folder, room):
 
 with tempfile.TemporaryDirectory() as folder:
     room = f"{folder}/room.mcap"
-    run(trim3r, "room", "--size", "64x64", "-o", room)
+    run(trim3r, "room", "--size", "40x40", "-o", room)
     one = [room, "--context", "0,2", "--target", "1"]
     what_each_row_is(room, one)
     closed_forms(one)

@@ -29,7 +29,7 @@ def refuse(status, words, *command):
 
 with tempfile.TemporaryDirectory() as folder:
     room, again = f"{folder}/room.mcap", f"{folder}/again.csv"
-    run(trim3r, "room", "--size", "64x64", "-o", room)
+    run(trim3r, "room", "--size", "32x32", "-o", room)
     call = (trim3r, "eval", room, "--keep", "40,10", "--methods", "trim3r,random,eagles", "--csv")
     whole = f"{folder}/whole.csv"
     text = run(*call, whole).stdout

@@ -1,4 +1,4 @@
-/* The subcommands of trim3r: each is one file, command_NAME.c, and parses its own arguments with argp.
+/* The subcommands of trim3r: each is one file, commands/NAME.c, and parses its own arguments with argp.
  * argv[0] is the subcommand's name; the result is the exit status (cli.h). */
 #ifndef TRIM3R_TOOLS_COMMANDS_H
 #define TRIM3R_TOOLS_COMMANDS_H
