@@ -191,8 +191,8 @@ static void texture_of(const t3r_runtime *rt, const t3r_view *view, uint32_t wor
     t3r_cut cut = t3r_cut_of((uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_WAVELET_WORK) + worker * bytes, bytes);
     int16_t *plane = t3r_take(&cut, T3R_PIXELS_(config->width, config->height) * sizeof *plane);
     int16_t *work = t3r_take(&cut, T3R_WAVELET_ROW_BYTES(config->width));
-    t3r_wavelet_texture((const uint8_t *const *)view->colour, config->width, config->height, config->wavelet_levels,
-                        config->wavelet, view->texture, plane, work);
+    t3r_wavelet_texture(&rt->kernels, (const uint8_t *const *)view->colour, config->width, config->height,
+                        config->wavelet_levels, config->wavelet, view->texture, plane, work);
 }
 
 void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
@@ -229,7 +229,8 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);
-    t3r_blur_texture(views, rt->views, &workers); /* means are of the texture as it is, densities of it blurred */
+    t3r_blur_texture(&rt->kernels, views, rt->views,
+                     &workers); /* means are of the texture as it is, densities of it blurred */
     return T3R_OK;
 }
 

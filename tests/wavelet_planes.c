@@ -42,6 +42,7 @@ void wavelet_forward(int16_t *plane, uint32_t width, uint32_t height, uint32_t l
 
     for (uint32_t l = 0; l < levels; l++) {
         t3r_level level = t3r_level_of(plane, width, height, l, kind, work);
+        level.kernels = &t3r_kernels_c;
         t3r_wavelet_level_forward(&level);
         order_rows(&level);
     }
@@ -178,7 +179,7 @@ void wavelet_texture_wrapped(const uint8_t *const colour[3], uint32_t width, uin
             }
         }
     }
-    t3r_wavelet_texture(planes, wide, high, levels, kind, texture, plane, work);
+    t3r_wavelet_texture(&t3r_kernels_c, planes, wide, high, levels, kind, texture, plane, work);
     for (uint32_t y = 0; y < height; y++) {
         memcpy(texture_q4 + (size_t)y * width, texture + (size_t)(y + around) * wide + around,
                width * sizeof *texture_q4);

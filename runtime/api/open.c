@@ -49,6 +49,7 @@ t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r
     state->arena_bytes = arena_bytes;
     state->config = *config;
     state->build = t3r_build_of(config);
+    state->kernels = t3r_kernels_c;
     bind_layout(state, &layout);
     *rt = state;
     return T3R_OK;
@@ -71,6 +72,13 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     rt->hooks = hooks != NULL ? *hooks : (t3r_hooks){0};
+    return T3R_OK;
+}
+
+t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features)
+{
+    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
+    t3r_kernels_choose(&rt->kernels, features);
     return T3R_OK;
 }
 
@@ -158,6 +166,7 @@ t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
     }
     memset(&state->hooks, 0, sizeof state->hooks);
     state->weights = NULL;
+    state->kernels = t3r_kernels_c;
     *rt = state;
     return T3R_OK;
 }

@@ -13,19 +13,9 @@
 
 /* --- texture ---------------------------------------------------------------------------------------------------- */
 
-/* The 5-box twice: weights 1 2 3 4 5 4 3 2 1 of 25; variance 4 px^2. Beyond the border the edge repeats. */
-static uint16_t blur_at(const uint16_t *line, size_t stride, uint32_t at, uint32_t length)
-{
-    uint32_t sum = 12; /* half of 25: one rounding. 25 x 65535 fits. */
-    for (int32_t tap = -4; tap <= 4; tap++) {
-        int32_t place = t3r_clamp32((int32_t)at + tap, 0, (int32_t)length - 1);
-        sum += (uint32_t)(5 - t3r_abs32(tap)) * line[(size_t)place * stride];
-    }
-    return (uint16_t)(sum / 25);
-}
-
 /* A step over the rows of one view, and whatever it needs. */
 typedef struct rows_of_view {
+    const t3r_kernels *kernels; /* of the blur */
     const t3r_view *view;
     uint32_t number; /* of the view */
     const t3r_budget_settings *settings;
@@ -34,33 +24,37 @@ typedef struct rows_of_view {
     uint32_t step;
 } rows_of_view;
 
+/* The 5-box twice: weights 1 2 3 4 5 4 3 2 1 of 25; variance 4 px^2. Beyond the border the edge repeats. */
 static void blur_across(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;
-    const t3r_view *view = ((const rows_of_view *)context)->view;
+    const rows_of_view *job = context;
+    const t3r_view *view = job->view;
     for (uint32_t y = begin; y < end; y++) {
-        const uint16_t *row = view->texture + (size_t)y * view->width;
-        for (uint32_t x = 0; x < view->width; x++) {
-            view->key[(size_t)y * view->width + x] = blur_at(row, 1, x, view->width);
-        }
+        const size_t at = (size_t)y * view->width;
+        job->kernels->blur_row(view->texture + at, view->width, view->key + at);
     }
 }
 
 static void blur_down(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;
-    const t3r_view *view = ((const rows_of_view *)context)->view;
+    const rows_of_view *job = context;
+    const t3r_view *view = job->view;
     for (uint32_t y = begin; y < end; y++) {
-        for (uint32_t x = 0; x < view->width; x++) {
-            view->texture[(size_t)y * view->width + x] = blur_at(view->key + x, view->width, y, view->height);
+        const uint16_t *rows[T3R_BLUR_TAPS];
+        for (int32_t tap = 0; tap < T3R_BLUR_TAPS; tap++) {
+            int32_t row = t3r_clamp32((int32_t)y + tap - T3R_BLUR_REACH, 0, (int32_t)view->height - 1);
+            rows[tap] = view->key + (size_t)row * view->width;
         }
+        job->kernels->blur_column(rows, view->width, view->texture + (size_t)y * view->width);
     }
 }
 
-void t3r_blur_texture(const t3r_view *views, uint32_t count, const t3r_workers *workers)
+void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count, const t3r_workers *workers)
 {
     for (uint32_t v = 0; v < count; v++) {
-        rows_of_view job = {.view = &views[v]};
+        rows_of_view job = {.kernels = kernels, .view = &views[v]};
         t3r_run_rows(workers, views[v].height, blur_across, &job);
         t3r_run_rows(workers, views[v].height, blur_down, &job);
     }

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "core/workers.h"
+#include "kernels/kernels.h"
 #include "superclusters/superclusters.h"
 #include "trim3r.h"
 #include "core/views.h"
@@ -55,7 +56,7 @@ static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r
 bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 
 /* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */
-void t3r_blur_texture(const t3r_view *views, uint32_t count, const t3r_workers *workers);
+void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count, const t3r_workers *workers);
 
 /* Mean texture of every cluster (eq. 2), from the texture planes before they are blurred. */
 void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);

@@ -1,6 +1,6 @@
 /* The head of the arena: everything the runtime remembers besides the planes. Offsets, never pointers, so
- * that a copied arena goes on working; the hooks and the bound weights are the exceptions and are cleared by
- * t3r_attach(). */
+ * that a copied arena goes on working. The hooks, the bound weights and the table of kernels are the exceptions:
+ * t3r_attach() clears the first two and fills the third anew. */
 #ifndef T3R_STATE_H
 #define T3R_STATE_H
 
@@ -9,6 +9,7 @@
 
 #include "ablation.h"
 #include "assertion.h"
+#include "kernels/kernels.h"
 #include "trim3r.h"
 #include "views.h"
 #include "workers.h"
@@ -66,6 +67,7 @@ struct t3r_runtime {
     uint32_t next_slot; /* the view that the next one takes */
     const void *weights;
     t3r_hooks hooks;
+    t3r_kernels kernels; /* chosen by t3r_set_cpu(); plain C until then */
 };
 
 _Static_assert(sizeof(struct t3r_runtime) <= T3R_HEADER_BYTES, "the state outgrew its buffer");

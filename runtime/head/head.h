@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "budget/budget.h"
+#include "kernels/kernels.h"
 #include "pointmap/pointmap.h"
 #include "superclusters/superclusters.h"
 
@@ -14,6 +15,7 @@
 
 /* What a head sees of one view. */
 typedef struct t3r_head_input {
+    const t3r_kernels *kernels;
     t3r_pointmap map;
     uint32_t view_index;
     const t3r_budget_settings *settings;

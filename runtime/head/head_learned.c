@@ -105,7 +105,7 @@ uint32_t t3r_head_learned(const t3r_head_input *input, uint32_t begin, uint32_t 
     void *network_work = t3r_take(&cut, t3r_network_work_bytes(input->weights, view->width));
     int16_t(*outputs)[T3R_HEAD_OUTPUTS] = t3r_take(&cut, outputs_bytes(view->width));
     t3r_network network;
-    t3r_network_begin(&network, input->weights, view->width, view->height, begin, network_work);
+    t3r_network_begin(&network, input->kernels, input->weights, view->width, view->height, begin, network_work);
     uint32_t count = 0;
     for (int32_t y = t3r_network_first(&network); y < (int32_t)end; y++) {
         while (t3r_network_wants_features(&network, y)) {

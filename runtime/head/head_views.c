@@ -26,6 +26,7 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
                                  const t3r_budget_settings *settings)
 {
     return (t3r_head_input){
+        .kernels = &rt->kernels,
         .map = t3r_pointmap_of(&views[view_index], rt->frame.exponent),
         .view_index = view_index,
         .settings = settings,

@@ -1,11 +1,13 @@
 #include "network.h"
 
-#include "kernels/depthwise.h"
-#include "kernels/requantize.h"
+#include "core/fixed.h"
+#include "core/little_endian.h"
 
 #define ROW_ALIGN 16u
 #define PERIOD (1 << T3R_MAX_LEVEL) /* image rows after which every layer's progress repeats */
 #define NOT_READ INT32_MIN
+
+_Static_assert(T3R_MAX_CHANNELS == T3R_LAYER_OUTPUTS, "the kernels hold a layer's outputs");
 
 /* --- geometry ----------------------------------------------------------------------------------------------------- */
 
@@ -127,9 +129,9 @@ static uint64_t lay_out(t3r_network *net, const void *weights, uint32_t width, u
         }
     }
     choose_rings(net);
-    net->column_pitch = (column + 15) / 16 * 16;
-    net->columns = (int16_t *)(void *)work;
-    uint64_t at = (uint64_t)net->column_pitch * T3R_DOT_PIXELS * sizeof *net->columns;
+    net->column_pitch = (column + T3R_COLUMN_TAPS - 1) / T3R_COLUMN_TAPS * T3R_COLUMN_TAPS;
+    net->columns = work;
+    uint64_t at = (uint64_t)net->column_pitch * T3R_BLOCK_PIXELS * sizeof(int16_t);
     for (uint32_t n = 0; n <= net->planes; n++) {
         t3r_node *node = &net->nodes[n];
         node->pitch = ((size_t)node->width * node->channels * node->bytes + ROW_ALIGN - 1) / ROW_ALIGN * ROW_ALIGN;
@@ -163,10 +165,13 @@ static void skip_rows(t3r_network *net)
     }
 }
 
-void t3r_network_begin(t3r_network *net, const void *weights, uint32_t width, uint32_t height, uint32_t begin,
-                       void *work)
+void t3r_network_begin(t3r_network *net, const t3r_kernels *kernels, const void *weights, uint32_t width,
+                       uint32_t height, uint32_t begin, void *work)
 {
     (void)lay_out(net, weights, width, height, work);
+    net->kernels = kernels;
+    net->column_bytes = net->header.activation_bits == 8 ? kernels->column_bytes : 2;
+    net->block = T3R_BLOCK_PIXELS * 2 / net->column_bytes;
     net->begin = begin;
     skip_rows(net);
 }
@@ -178,9 +183,23 @@ static uint8_t *row_of(const t3r_node *node, uint32_t y)
     return node->rows + (size_t)(y % node->ring) * node->pitch;
 }
 
-/* `count` activations from place `first` of a row, to 16 bits. */
-static void widen(const t3r_node *node, const uint8_t *row, size_t first, uint32_t count, int16_t *to)
+/* The column of the block's pixel i. */
+static uint8_t *column_of(const t3r_network *net, uint32_t i)
 {
+    return net->columns + (size_t)i * net->column_pitch * net->column_bytes;
+}
+
+/* `count` activations from place `first` of a row, to a column from place `at` on. */
+static void load(const t3r_network *net, const t3r_node *node, const uint8_t *row, size_t first, uint32_t count,
+                 uint8_t *column, uint32_t at)
+{
+    if (net->column_bytes == 1) {
+        for (uint32_t i = 0; i < count; i++) {
+            column[at + i] = row[first + i];
+        }
+        return;
+    }
+    int16_t *to = (int16_t *)(void *)column + at;
     if (node->bytes == 1) {
         const int8_t *from = (const int8_t *)row + first;
         for (uint32_t i = 0; i < count; i++) {
@@ -194,26 +213,21 @@ static void widen(const t3r_node *node, const uint8_t *row, size_t first, uint32
     }
 }
 
-static void narrow(const t3r_node *node, uint8_t *row, size_t first, uint32_t count, const int16_t *from)
+static void fill(const t3r_network *net, uint8_t *column, uint32_t at, uint32_t count, int16_t value)
 {
-    if (node->bytes == 1) {
-        int8_t *to = (int8_t *)row + first;
-        for (uint32_t i = 0; i < count; i++) {
-            to[i] = (int8_t)from[i]; /* held to 8 bits already */
-        }
-    } else {
-        int16_t *to = (int16_t *)(void *)row + first;
-        for (uint32_t i = 0; i < count; i++) {
-            to[i] = from[i];
+    for (uint32_t i = at; i < at + count; i++) {
+        if (net->column_bytes == 1) {
+            ((int8_t *)column)[i] = (int8_t)value;
+        } else {
+            ((int16_t *)(void *)column)[i] = value;
         }
     }
 }
 
-static void fill(int16_t *to, uint32_t count, int16_t value)
+/* Zeros from place `count` on, up to a multiple of T3R_COLUMN_TAPS. */
+static void pad(const t3r_network *net, uint8_t *column, uint32_t count)
 {
-    for (uint32_t i = 0; i < count; i++) {
-        to[i] = value;
-    }
+    fill(net, column, count, (T3R_COLUMN_TAPS - count % T3R_COLUMN_TAPS) % T3R_COLUMN_TAPS, 0);
 }
 
 /* --- layers ------------------------------------------------------------------------------------------------------- */
@@ -246,127 +260,64 @@ static window window_at(const t3r_network *net, const t3r_layer *layer, uint32_t
     return w;
 }
 
-/* One source's channels under kernel column kx of kernel row ky. */
-static void gather_tap(const window *w, uint32_t source, int64_t x, int32_t ky, int16_t *to)
+/* One source's channels under kernel column x of kernel row ky, to the column from place `at` on. */
+static void gather_tap(const t3r_network *net, const window *w, uint32_t source, int64_t x, int32_t ky, uint8_t *column,
+                       uint32_t at)
 {
     const t3r_node *node = w->source[source].node;
     const uint8_t *row = w->source[source].row[ky];
     if (row == NULL || x < 0 || x >= w->grid_width) {
-        fill(to, node->channels, node->zero);
+        fill(net, column, at, node->channels, node->zero);
     } else {
-        widen(node, row, (size_t)(x >> w->source[source].coarser) * node->channels, node->channels, to);
+        size_t first = (size_t)(x >> w->source[source].coarser) * node->channels;
+        load(net, node, row, first, node->channels, column, at);
     }
 }
 
 /* The activations under the kernel of output column x: [kernel][kernel][inputs]. */
-static void gather(const window *w, uint32_t x, int16_t *column)
+static void gather(const t3r_network *net, const window *w, uint32_t x, uint8_t *column)
 {
     const t3r_layer *layer = w->layer;
     const uint32_t inputs = layer->inputs, run = layer->kernel * inputs;
     const int64_t left = (int64_t)layer->stride * x - padding(layer);
     const bool inside = left >= 0 && left + layer->kernel <= w->grid_width;
     const bool plain = sources_of(layer) == 1 && w->source[0].coarser == 0;
-    for (int32_t ky = 0; ky < layer->kernel; ky++, column += run) {
+    uint32_t at = 0;
+    for (int32_t ky = 0; ky < layer->kernel; ky++, at += run) {
         if (plain && inside && w->source[0].row[ky] != NULL) {
-            widen(w->source[0].node, w->source[0].row[ky], (size_t)left * inputs, run, column);
+            load(net, w->source[0].node, w->source[0].row[ky], (size_t)left * inputs, run, column, at);
             continue;
         }
-        uint32_t channel = 0;
+        uint32_t channel = at;
         for (uint32_t i = 0; i < sources_of(layer); i++) {
             for (int32_t kx = 0; kx < layer->kernel; kx++) {
-                gather_tap(w, i, left + kx, ky, column + (uint32_t)kx * inputs + channel);
+                gather_tap(net, w, i, left + kx, ky, column, channel + (uint32_t)kx * inputs);
             }
             channel += w->source[i].node->channels;
         }
     }
+    pad(net, column, at);
 }
 
-static t3r_requantization requantization_of(const t3r_network *net, const t3r_layer *layer, uint32_t output)
+/* The layer for its kernel; phase: of a point layer with four. */
+static t3r_convolution convolution_of(const t3r_network *net, const t3r_layer *layer, uint32_t phase)
 {
-    bool narrow_output = net->header.activation_bits == 8 && layer != &net->layers[net->header.layers - 1];
-    return (t3r_requantization){
-        .multiplier = t3r_le_i32(net->file + layer->multiplier + (size_t)output * 4),
-        .shift = (int8_t)net->file[layer->shift + output],
+    const bool is_last = layer == &net->layers[net->header.layers - 1];
+    const uint32_t taps = t3r_layer_taps(layer), first = phase * layer->outputs;
+    const uint32_t weights = layer->weights + first * taps * (net->header.weight_bits / 8);
+    return (t3r_convolution){
+        .weights = net->file + weights,
+        .readable = net->header.bytes - weights,
+        .bias = net->file + layer->bias + (size_t)first * (net->header.activation_bits == 16 ? 8 : 4),
+        .multiplier = net->file + layer->multiplier,
+        .shift = net->file + layer->shift,
+        .taps = taps,
+        .outputs = layer->outputs,
         .zero = layer->zero,
-        .low = narrow_output ? INT8_MIN : INT16_MIN,
-        .high = narrow_output ? INT8_MAX : INT16_MAX,
+        .weight_bits = (uint8_t)net->header.weight_bits,
+        .activation_bits = (uint8_t)net->header.activation_bits,
+        .output_bits = (uint8_t)(is_last ? 16 : net->header.activation_bits),
     };
-}
-
-/* Sums without the bias of one row of weights, that begins at weight `first`, over four columns. Columns go on with
- * zeros up to a multiple of 16, so the loop may as well, as long as there are bytes to read: what they hold does not
- * matter. */
-static void dot(const t3r_network *net, const t3r_layer *layer, uint32_t first, int64_t sum[T3R_DOT_PIXELS])
-{
-    const uint32_t taps = t3r_layer_taps(layer), whole = (taps + 15) / 16 * 16;
-    const uint32_t bytes = net->header.weight_bits / 8, at = layer->weights + first * bytes;
-    const uint32_t count = net->header.bytes - at >= whole * bytes ? whole : taps;
-    const int8_t *w8 = (const int8_t *)net->file + at;
-    const t3r_le16 *w16 = (const t3r_le16 *)(const void *)(net->file + at);
-    if (net->header.activation_bits == 16) {
-        if (bytes == 1) {
-            t3r_dot_w8_wide(net->columns, net->column_pitch, w8, count, sum);
-        } else {
-            t3r_dot_w16_wide(net->columns, net->column_pitch, w16, count, sum);
-        }
-        return;
-    }
-    int32_t narrow_sum[T3R_DOT_PIXELS];
-    if (bytes == 1) {
-        t3r_dot_w8(net->columns, net->column_pitch, w8, count, narrow_sum);
-    } else {
-        t3r_dot_w16(net->columns, net->column_pitch, w16, count, narrow_sum);
-    }
-    for (int i = 0; i < T3R_DOT_PIXELS; i++) {
-        sum[i] = narrow_sum[i];
-    }
-}
-
-typedef int16_t pixel_block[T3R_DOT_PIXELS][T3R_MAX_CHANNELS];
-
-static int16_t finish(const t3r_network *net, const t3r_layer *layer, uint32_t bias_row, int64_t sum,
-                      const t3r_requantization *r)
-{
-    if (net->header.activation_bits == 16) {
-        return t3r_requantize_wide(t3r_le_i64(net->file + layer->bias + (size_t)bias_row * 8) + sum, r);
-    }
-    return t3r_requantize((int32_t)(t3r_le_i32(net->file + layer->bias + (size_t)bias_row * 4) + sum), r);
-}
-
-/* All outputs of a convolution or point layer for the pixels whose columns were gathered. */
-static void multiply(const t3r_network *net, const t3r_layer *layer, uint32_t phase, pixel_block out)
-{
-    for (uint32_t o = 0; o < layer->outputs; o++) {
-        uint32_t row = phase * layer->outputs + o;
-        int64_t sum[T3R_DOT_PIXELS];
-        dot(net, layer, row * t3r_layer_taps(layer), sum);
-        t3r_requantization r = requantization_of(net, layer, o);
-        for (int i = 0; i < T3R_DOT_PIXELS; i++) {
-            out[i][o] = finish(net, layer, row, sum[i], &r);
-        }
-    }
-}
-
-/* All channels of a depthwise layer for the pixel in `column`. */
-static void multiply_depthwise(const t3r_network *net, const t3r_layer *layer, const int16_t *column, int16_t *out)
-{
-    const uint32_t channels = layer->outputs, taps = t3r_layer_taps(layer);
-    const int8_t *w8 = (const int8_t *)net->file + layer->weights;
-    const t3r_le16 *w16 = (const t3r_le16 *)(const void *)(net->file + layer->weights);
-    int32_t sum[T3R_MAX_CHANNELS];
-    int64_t wide[T3R_MAX_CHANNELS];
-    bool is_wide = net->header.activation_bits == 16 && net->header.weight_bits == 16;
-    if (is_wide) {
-        t3r_depthwise_w16_wide(column, w16, taps, channels, wide);
-    } else if (net->header.weight_bits == 16) {
-        t3r_depthwise_w16(column, w16, taps, channels, sum);
-    } else {
-        t3r_depthwise_w8(column, w8, taps, channels, sum);
-    }
-    for (uint32_t c = 0; c < channels; c++) {
-        t3r_requantization r = requantization_of(net, layer, c);
-        out[c] = finish(net, layer, c, is_wide ? wide[c] : sum[c], &r);
-    }
 }
 
 /* The next row of plane layer n, counted from 1. */
@@ -374,25 +325,19 @@ static void make_row(t3r_network *net, uint32_t n)
 {
     const t3r_layer *layer = &net->layers[n - 1];
     t3r_node *node = &net->nodes[n];
-    const uint32_t size = (uint32_t)layer->kernel * layer->kernel * layer->inputs, whole = (size + 15) / 16 * 16;
+    const t3r_convolution kernel = convolution_of(net, layer, 0);
     window w = window_at(net, layer, node->made);
     uint8_t *row = row_of(node, node->made);
-    pixel_block out;
-    for (uint32_t x = 0; x < node->width; x += T3R_DOT_PIXELS) {
-        uint32_t count = T3R_MIN(node->width - x, (uint32_t)T3R_DOT_PIXELS);
-        for (uint32_t i = 0; i < T3R_DOT_PIXELS; i++) { /* behind the last pixel, the last again */
-            int16_t *column = net->columns + (size_t)i * net->column_pitch;
-            gather(&w, x + T3R_MIN(i, count - 1), column);
-            fill(column + size, whole - size, 0);
+    for (uint32_t x = 0; x < node->width; x += net->block) {
+        const t3r_block block = {net->columns, net->column_pitch, T3R_MIN(node->width - x, net->block)};
+        for (uint32_t i = 0; i < block.pixels; i++) {
+            gather(net, &w, x + i, column_of(net, i));
         }
+        void *out = row + (size_t)x * node->channels * node->bytes;
         if (layer->kind == T3R_LAYER_CONV) {
-            multiply(net, layer, 0, out);
-        }
-        for (uint32_t i = 0; i < count; i++) {
-            if (layer->kind == T3R_LAYER_DEPTHWISE) {
-                multiply_depthwise(net, layer, net->columns + (size_t)i * net->column_pitch, out[i]);
-            }
-            narrow(node, row, (size_t)(x + i) * node->channels, node->channels, out[i]);
+            net->kernels->convolve(&kernel, &block, out, node->channels);
+        } else {
+            net->kernels->depthwise(&kernel, &block, out, node->channels);
         }
     }
     node->made++;
@@ -441,47 +386,59 @@ void t3r_network_step(t3r_network *net, int32_t y)
     }
 }
 
-/* The inputs of a point layer at one pixel; `before` is what the point layer in front of it gave. */
+/* The outputs of a point layer at the pixels of a call, int8 or int16. */
+typedef union point_outputs {
+    int8_t narrow[T3R_NETWORK_POINTS * T3R_MAX_CHANNELS];
+    int16_t wide[T3R_NETWORK_POINTS * T3R_MAX_CHANNELS];
+} point_outputs;
+
+/* The inputs of a point layer at one pixel; `before`: the outputs of the point layer in front of it, a node's row. */
 static void gather_point(const t3r_network *net, uint32_t n, uint32_t x, uint32_t y, const int8_t *features,
-                         const int16_t *before, int16_t *column)
+                         const uint8_t *before, uint8_t *column)
 {
     const t3r_layer *layer = &net->layers[n];
+    uint32_t at = 0;
     for (uint32_t i = 0; i < sources_of(layer); i++) {
         uint32_t source = layer->source[i], channels = T3R_FEATURES;
         if (source == T3R_SOURCE_FEATURES) {
-            for (uint32_t c = 0; c < T3R_FEATURES; c++) {
-                column[c] = (int16_t)(features[c] * net->nodes[0].factor);
-            }
+            load(net, &net->nodes[0], (const uint8_t *)features, 0, T3R_FEATURES, column, at);
         } else if (source <= net->planes) {
             const t3r_node *node = &net->nodes[source];
             channels = node->channels;
-            widen(node, row_of(node, y >> node->level), (size_t)(x >> node->level) * channels, channels, column);
+            load(net, node, row_of(node, y >> node->level), (size_t)(x >> node->level) * channels, channels, column,
+                 at);
         } else {
+            const t3r_node made = {.bytes = net->header.activation_bits / 8, .factor = 1};
             channels = net->layers[source - 1].outputs;
-            for (uint32_t c = 0; c < channels; c++) {
-                column[c] = before[c];
-            }
+            load(net, &made, before, 0, channels, column, at);
         }
-        column += channels;
+        at += channels;
     }
-    fill(column, (layer->inputs + 15u) / 16 * 16 - layer->inputs, 0);
+    pad(net, column, at);
 }
 
 void t3r_network_points(const t3r_network *net, uint32_t y, uint32_t count, const uint32_t *x,
                         const int8_t (*features)[T3R_FEATURES], int16_t (*out)[T3R_HEAD_OUTPUTS])
 {
-    pixel_block made;
+    point_outputs made; /* a layer's inputs are gathered before its outputs are written */
+    const uint32_t bytes = net->header.activation_bits / 8;
     for (uint32_t n = net->planes; n < net->header.layers; n++) {
         const t3r_layer *layer = &net->layers[n];
-        for (uint32_t i = 0; i < T3R_DOT_PIXELS; i++) { /* behind the last point, the last again */
-            uint32_t k = T3R_MIN(i, count - 1);
-            gather_point(net, n, x[k], y, features[k], made[k], net->columns + (size_t)i * net->column_pitch);
-        }
-        multiply(net, layer, layer->phases == 1 ? 0 : 2 * (y & 1) + (x[0] & 1), made);
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        for (int o = 0; o < T3R_HEAD_OUTPUTS; o++) {
-            out[i][o] = made[i][o];
+        const t3r_convolution kernel = convolution_of(net, layer, layer->phases == 1 ? 0 : 2 * (y & 1) + (x[0] & 1));
+        const bool is_last = n + 1 == net->header.layers;
+        for (uint32_t first = 0; first < count; first += net->block) {
+            const t3r_block block = {net->columns, net->column_pitch, T3R_MIN(count - first, net->block)};
+            for (uint32_t i = 0; i < block.pixels; i++) {
+                const uint32_t k = first + i;
+                gather_point(net, n, x[k], y, features[k],
+                             (const uint8_t *)made.narrow + (size_t)k * T3R_MAX_CHANNELS * bytes, column_of(net, i));
+            }
+            if (is_last) {
+                net->kernels->convolve(&kernel, &block, out[first], T3R_HEAD_OUTPUTS);
+            } else {
+                net->kernels->convolve(&kernel, &block, made.narrow + (size_t)first * T3R_MAX_CHANNELS * bytes,
+                                       T3R_MAX_CHANNELS);
+            }
         }
     }
 }

@@ -17,10 +17,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "kernels/dot.h"
+#include "kernels/kernels.h"
 #include "weights.h"
 
-#define T3R_NETWORK_POINTS T3R_DOT_PIXELS /* most points a call: they share the weights' loads */
+#define T3R_NETWORK_POINTS (2 * T3R_BLOCK_PIXELS) /* most points a call: they share the weights' loads */
 
 /* What layers read: the features (node 0), or what plane layer n makes (node n). */
 typedef struct t3r_node {
@@ -36,6 +36,7 @@ typedef struct t3r_node {
 } t3r_node;
 
 typedef struct t3r_network {
+    const t3r_kernels *kernels;
     const uint8_t *file;
     t3r_weights_header header;
     uint32_t width, height;
@@ -43,8 +44,10 @@ typedef struct t3r_network {
     uint32_t planes; /* layers before the first point layer */
     t3r_layer layers[T3R_MAX_LAYERS];
     t3r_node nodes[T3R_MAX_LAYERS + 1];
-    int16_t *columns;      /* T3R_DOT_PIXELS times column_pitch: the activations under a kernel, 16 bits each */
+    uint8_t *columns;      /* a block's, column_pitch activations each: those under a kernel */
     uint32_t column_pitch; /* a multiple of 16 */
+    uint32_t column_bytes; /* of an activation there: as the kernels ask for */
+    uint32_t block;        /* pixels of a block */
 } t3r_network;
 
 /* Bytes of work for images of this width and any height; SIZE_MAX when that is more than can be counted. */
@@ -53,8 +56,8 @@ size_t t3r_network_work_bytes(const void *weights, uint32_t width);
 /* Prepares a pass over the rows of an image from row `begin` (below the height) on. Rows above it that its kernels read
  * are made, too, so that a band has the bits of the whole image. work: t3r_network_work_bytes() bytes, aligned to 16.
  */
-void t3r_network_begin(t3r_network *net, const void *weights, uint32_t width, uint32_t height, uint32_t begin,
-                       void *work);
+void t3r_network_begin(t3r_network *net, const t3r_kernels *kernels, const void *weights, uint32_t width,
+                       uint32_t height, uint32_t begin, void *work);
 
 /* The first step, at most `begin`: above the band, so that rows at its top are made at the same pace as below. */
 int32_t t3r_network_first(const t3r_network *net);

@@ -36,14 +36,14 @@ t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *fr
     uint8_t *const raw[3] = {colour, colour + pixels, colour + 2 * pixels};
 
     if (resized.distortion == T3R_DISTORTION_NONE) {
-        t3r_image_colour(frame, width, height, view->colour, rows);
+        t3r_image_colour(&rt->kernels, frame, width, height, view->colour, rows);
         t3r_image_depth(frame, width, height, view->depth);
     } else {
         status = t3r_undistort_grid(&resized, width, height, grid);
         if (status != T3R_OK) {
             return status;
         }
-        t3r_image_colour(frame, width, height, raw, rows);
+        t3r_image_colour(&rt->kernels, frame, width, height, raw, rows);
         t3r_image_depth(frame, width, height, depth);
         t3r_undistort_colour(grid, width, height, (const uint8_t *const *)raw, view->colour);
         t3r_undistort_depth(grid, width, height, depth, view->depth);

@@ -68,75 +68,28 @@ size_t t3r_image_work_bytes(uint32_t width)
     return (size_t)width * 6 * sizeof(uint32_t);
 }
 
-/* BT.601 limited range to R, G, B; coefficients Q13, each the real one within 2^-14. No int32 overflow: the
- * largest sum is below 2^23. */
-static inline void yuv_pixel(int32_t y, int32_t u, int32_t v, uint8_t *r, uint8_t *g, uint8_t *b)
-{
-    int32_t luma = 9539 * (y - 16);
-    int32_t red = luma + 13075 * (v - 128);
-    int32_t green = luma - 3209 * (u - 128) - 6660 * (v - 128);
-    int32_t blue = luma + 16525 * (u - 128);
-
-    *r = (uint8_t)t3r_clamp32(t3r_round_shift32(red, 13), 0, 255);
-    *g = (uint8_t)t3r_clamp32(t3r_round_shift32(green, 13), 0, 255);
-    *b = (uint8_t)t3r_clamp32(t3r_round_shift32(blue, 13), 0, 255);
-}
-
-/* count pixels (even) whose samples stand at the given offsets in 4 bytes for two */
-static void packed_row(const uint8_t *restrict in, uint32_t count, uint32_t y_at, uint32_t u_at, uint8_t *restrict r,
-                       uint8_t *restrict g, uint8_t *restrict b)
-{
-    for (uint32_t i = 0; i < count / 2; i++) {
-        const uint8_t *pair = in + (size_t)4 * i;
-        int32_t u = pair[u_at];
-        int32_t v = pair[u_at + 2];
-        yuv_pixel(pair[y_at], u, v, &r[2 * i], &g[2 * i], &b[2 * i]);
-        yuv_pixel(pair[y_at + 2], u, v, &r[2 * i + 1], &g[2 * i + 1], &b[2 * i + 1]);
-    }
-}
-
-static void nv12_row(const uint8_t *restrict luma, const uint8_t *restrict chroma, uint32_t count, uint8_t *restrict r,
-                     uint8_t *restrict g, uint8_t *restrict b)
-{
-    for (uint32_t i = 0; i < count / 2; i++) {
-        int32_t u = chroma[2 * i];
-        int32_t v = chroma[2 * i + 1];
-        yuv_pixel(luma[2 * i], u, v, &r[2 * i], &g[2 * i], &b[2 * i]);
-        yuv_pixel(luma[2 * i + 1], u, v, &r[2 * i + 1], &g[2 * i + 1], &b[2 * i + 1]);
-    }
-}
-
-static void triple_row(const uint8_t *restrict in, uint32_t count, uint8_t *restrict first, uint8_t *restrict second,
-                       uint8_t *restrict third)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        first[i] = in[3 * i];
-        second[i] = in[3 * i + 1];
-        third[i] = in[3 * i + 2];
-    }
-}
-
 /* count pixels of row y from column x (even for the YUV formats) to r, g, b */
-static void convert(const t3r_frame *frame, uint32_t y, uint32_t x, uint32_t count, uint8_t *r, uint8_t *g, uint8_t *b)
+static void convert(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t y, uint32_t x, uint32_t count,
+                    uint8_t *r, uint8_t *g, uint8_t *b)
 {
     const uint8_t *row =
         frame->planes[0] + (size_t)y * frame->stride_bytes[0] + (size_t)x * bytes_per_pixel(frame->format);
 
     switch (frame->format) {
     case T3R_PIXEL_RGB24:
-        triple_row(row, count, r, g, b);
+        kernels->triple_row(row, count, r, g, b);
         break;
     case T3R_PIXEL_BGR24:
-        triple_row(row, count, b, g, r);
+        kernels->triple_row(row, count, b, g, r);
         break;
     case T3R_PIXEL_YUYV:
-        packed_row(row, count, 0, 1, r, g, b);
+        kernels->packed_row(row, count, 0, 1, r, g, b);
         break;
     case T3R_PIXEL_UYVY:
-        packed_row(row, count, 1, 0, r, g, b);
+        kernels->packed_row(row, count, 1, 0, r, g, b);
         break;
     case T3R_PIXEL_NV12:
-        nv12_row(row, frame->planes[1] + (size_t)(y / 2) * frame->stride_bytes[1] + x, count, r, g, b);
+        kernels->nv12_row(row, frame->planes[1] + (size_t)(y / 2) * frame->stride_bytes[1] + x, count, r, g, b);
         break;
     default:
         memcpy(r, row, count);
@@ -146,69 +99,28 @@ static void convert(const t3r_frame *frame, uint32_t y, uint32_t x, uint32_t cou
     }
 }
 
-/* Where a walk along one axis stands: destination box `box`, of which `left` units (1 / (W w)) are still open. */
-typedef struct box_walk {
-    uint32_t box, left;
-} box_walk;
-
-/* Adds a run of one channel of a source row to the boxes of the destination row. A source pixel is w units long,
- * a box W units; a box's sum ends at most at 255 W < 2^20. */
-static box_walk add_run(box_walk at, const uint8_t *run, uint32_t count, uint32_t pixel_units, uint32_t box_units,
-                        uint32_t *sums)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t value = run[i];
-        uint32_t units = pixel_units;
-        /* at most units / box_units + 2 turns, and over the whole row at most W + w */
-        while (units >= at.left) {
-            sums[at.box] += at.left * value;
-            units -= at.left;
-            at.box++;
-            at.left = box_units;
-        }
-        if (units > 0) {
-            sums[at.box] += units * value;
-            at.left -= units;
-        }
-    }
-    return at;
-}
-
 /* The three channels of source row y, summed over the boxes of the destination's columns. */
-static void sum_row(const t3r_frame *frame, uint32_t y, uint32_t width, uint32_t *const sums[3])
+static void sum_row(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t y, uint32_t width,
+                    uint32_t *const sums[3])
 {
     uint8_t run[3][CHUNK];
-    box_walk at = {0, frame->width};
+    t3r_box_walk at = {0, frame->width}; /* a source pixel is w units long, a box W units */
 
     for (uint32_t c = 0; c < 3; c++) {
         memset(sums[c], 0, width * sizeof(uint32_t));
     }
     for (uint32_t x = 0; x < frame->width; x += CHUNK) {
         uint32_t count = T3R_MIN(CHUNK, frame->width - x);
-        convert(frame, y, x, count, run[0], run[1], run[2]);
-        add_run(at, run[0], count, width, frame->width, sums[0]);
-        add_run(at, run[1], count, width, frame->width, sums[1]);
-        at = add_run(at, run[2], count, width, frame->width, sums[2]);
+        convert(kernels, frame, y, x, count, run[0], run[1], run[2]);
+        (void)kernels->box_sums(at, run[0], count, width, frame->width, sums[0]);
+        (void)kernels->box_sums(at, run[1], count, width, frame->width, sums[1]);
+        at = kernels->box_sums(at, run[2], count, width, frame->width, sums[2]);
     }
 }
 
-static void add_weighted(uint32_t *restrict total, const uint32_t *restrict sums, uint32_t weight, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        total[i] += weight * sums[i];
-    }
-}
-
-/* total <= 255 W H <= 255 x 2^24 and half an area is at most 2^23, so the sum stays below 2^32. */
-static void divide_row(uint32_t *restrict total, uint32_t area, uint32_t count, uint8_t *restrict out)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        out[i] = (uint8_t)((total[i] + area / 2) / area);
-        total[i] = 0;
-    }
-}
-
-static void average(const t3r_frame *frame, uint32_t width, uint32_t height, uint8_t *const planes[3], void *work)
+/* Totals are at most 255 W H, with W H at most 2^24. */
+static void average(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
+                    uint8_t *const planes[3], void *work)
 {
     uint32_t *memory = work;
     uint32_t *sums[3], *totals[3];
@@ -223,18 +135,18 @@ static void average(const t3r_frame *frame, uint32_t width, uint32_t height, uin
     }
     for (uint32_t y = 0; y < frame->height; y++) {
         uint32_t units = height;
-        sum_row(frame, y, width, sums);
+        sum_row(kernels, frame, y, width, sums);
         /* over the whole image at most H + h turns */
         while (units > 0) {
             uint32_t part = T3R_MIN(units, left);
             for (uint32_t c = 0; c < 3; c++) {
-                add_weighted(totals[c], sums[c], part, width);
+                kernels->weigh_row(totals[c], sums[c], part, width);
             }
             units -= part;
             left -= part;
             if (left == 0) {
                 for (uint32_t c = 0; c < 3; c++) {
-                    divide_row(totals[c], area, width, planes[c] + (size_t)row * width);
+                    kernels->divide_row(totals[c], area, width, planes[c] + (size_t)row * width);
                 }
                 row++;
                 left = frame->height;
@@ -243,15 +155,16 @@ static void average(const t3r_frame *frame, uint32_t width, uint32_t height, uin
     }
 }
 
-void t3r_image_colour(const t3r_frame *frame, uint32_t width, uint32_t height, uint8_t *const planes[3], void *work)
+void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
+                      uint8_t *const planes[3], void *work)
 {
     if (frame->width != width || frame->height != height) {
-        average(frame, width, height, planes, work);
+        average(kernels, frame, width, height, planes, work);
         return;
     }
     for (uint32_t y = 0; y < height; y++) {
         size_t at = (size_t)y * width;
-        convert(frame, y, 0, width, planes[0] + at, planes[1] + at, planes[2] + at);
+        convert(kernels, frame, y, 0, width, planes[0] + at, planes[1] + at, planes[2] + at);
     }
 }
 

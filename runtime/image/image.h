@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "kernels/kernels.h"
 #include "trim3r.h"
 
 /* Longest row stride of a frame or depth plane, in bytes: T3R_MAX_SIDE rows of it stay below 2^31. */
@@ -24,7 +25,8 @@ size_t t3r_image_work_bytes(uint32_t width);
 
 /* A checked frame to R, G, B planes of width x height (1..T3R_MAX_SIDE each), rows without gaps. work:
  * t3r_image_work_bytes(width), aligned for uint32_t; untouched (may be NULL) when no size changes. */
-void t3r_image_colour(const t3r_frame *frame, uint32_t width, uint32_t height, uint8_t *const planes[3], void *work);
+void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
+                      uint8_t *const planes[3], void *work);
 
 /* A checked frame's depth to width x height steps of its unit, 0 = none; all 0 when the frame has no depth. */
 void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, uint16_t *depth);

@@ -351,12 +351,26 @@ const char *t3r_config_error(const t3r_config *config);
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
 t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config);
 
-/* Re-binds an arena that was copied or restored from bytes, of the very same size; hooks start empty and no weights are
- * bound. T3R_ERR_EPOCH when it was made by another version or is damaged. */
+/* Re-binds an arena that was copied or restored from bytes, of the very same size; hooks start empty, no weights are
+ * bound, and inner loops are plain C. T3R_ERR_EPOCH when it was made by another version or is damaged. */
 t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes);
 
 /* Binds callbacks (NULL: none). */
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
+
+/* Features of processors that variants of the runtime's inner loops use. */
+#define T3R_CPU_AVX2 (1u << 0)     /* x86-64 */
+#define T3R_CPU_AVX512 (1u << 1)   /* F, BW, DQ and VL of AVX-512 */
+#define T3R_CPU_VNNI (1u << 2)     /* AVX512_VNNI, with T3R_CPU_AVX512 */
+#define T3R_CPU_NEON (1u << 8)     /* 64-bit Arm */
+#define T3R_CPU_DOTPROD (1u << 9)  /* its dot products of 8 bits */
+#define T3R_CPU_MVE (1u << 10)     /* Arm Cortex-M */
+#define T3R_CPU_SIMD128 (1u << 16) /* WebAssembly */
+
+/* Chooses the inner loops for a processor that has these T3R_CPU_... features (0, as after t3r_init() and t3r_attach():
+ * plain C). The caller warrants that the processor and its operating system have them. No bit of any output changes.
+ * A firmware that does not call it links none of the variants. */
+t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features);
 
 /* Binds the weights of the head T3R_HEAD_LEARNED, a whole .t3w file in memory aligned to 16 (NULL: none). Only the
  * pointer is kept: the memory stays the caller's, is read in place, and must not change or go while it is bound. Bind

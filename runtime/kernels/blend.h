@@ -1,4 +1,5 @@
-/* The innermost loop of the rasterizer: one splat over eight columns of a tile (SPEC.md, "Raster: blending"). */
+/* The innermost loop of the rasterizer: one splat over its rows of a tile, eight columns at a time (SPEC.md, "Raster:
+ * blending"). */
 #ifndef T3R_KERNEL_BLEND_H
 #define T3R_KERNEL_BLEND_H
 
@@ -6,7 +7,8 @@
 
 #include "trim3r_arena.h"
 
-#define T3R_LANES 8
+#define T3R_LANES 8 /* columns of a group */
+#define T3R_TILE_GROUPS (T3R_TILE_SIDE / T3R_LANES)
 
 /* A tile's pixels, row by row. Transmittance starts at T3R_ONE_Q16.
  *
@@ -24,18 +26,41 @@ typedef struct t3r_tile {
 #define T3R_ALPHA_LEAST_Q16 257  /* 1/255 */
 #define T3R_STOP_Q16 7           /* below 1e-4 a pixel takes no more: 6.55 rounded up */
 
-/* A splat in the coordinates of eight columns, (0, 0) their topmost left pixel in the tile: q(i, j) = q + i gx + j gy +
- * i^2 a + i j b + j^2 c, Q17. */
-typedef struct t3r_lane_splat {
-    int32_t q, gx, gy, a, b, c;
+/* A splat's quadratic from eight columns' topmost left pixel (0, 0) on: q(i, j) = q + i gx + j gy + i^2 a + i j b + j^2
+ * c, Q17; a, b and c are the same in both groups of columns. */
+typedef struct t3r_tile_splat {
+    struct {
+        int32_t q, gx, gy;
+    } group[T3R_TILE_GROUPS];
+    int32_t a, b, c;
     uint16_t opacity_q16;
     uint16_t colour_q7[3];
-} t3r_lane_splat;
+    uint8_t column;      /* of the first group: 0..8, or 0 where there are two */
+    uint8_t groups;      /* 1, or 2 of eight columns each, side by side */
+    uint8_t drawn;       /* bit g: group g is drawn; the other one is left as it is */
+    uint8_t first, last; /* rows */
+    uint8_t x0, x1;      /* columns of the splat's box in the tile, inclusive: what refinement counts */
+} t3r_tile_splat;
+
+/* The weights w that a splat has in eight columns of a row, Q16: what transmittance loses. Those of a splat in a tile
+ * are the rows first..last of its first group, then of its second. */
+typedef struct t3r_blend_weights {
+    uint16_t q16[T3R_LANES];
+} t3r_blend_weights;
+
+/* Blends a splat behind what the tile holds. weights: room for groups x rows, 0 where a group is not drawn; NULL: not
+ * wanted. Nothing is aligned to more than its type. */
+typedef void t3r_blend_kernel(t3r_tile *restrict tile, const t3r_tile_splat *splat,
+                              t3r_blend_weights *restrict weights);
+
+/* Blends it again by its weights, to the same bits. Of the splat only the colour, columns and rows are read. */
+typedef void t3r_blend_again_kernel(t3r_tile *restrict tile, const t3r_tile_splat *splat,
+                                    const t3r_blend_weights *weights);
+
+t3r_blend_kernel t3r_blend_c;
+t3r_blend_again_kernel t3r_blend_again_c;
 
 /* Alpha in Q16 of one pixel: opacity x exp(-q), at most 0.99, 0 where below 1/255. Exposed for tests. */
 uint16_t t3r_alpha_q16(int32_t q_q17, uint16_t opacity_q16);
-
-/* Blends a splat behind what the tile holds, over the columns column..column + 7 and the rows first..last. */
-void t3r_blend_rows(t3r_tile *tile, const t3r_lane_splat *splat, uint32_t column, uint32_t first, uint32_t last);
 
 #endif

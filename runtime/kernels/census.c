@@ -11,7 +11,7 @@ static void compare(const uint8_t *a, const uint8_t *b, uint32_t count, uint8_t 
 }
 
 /* Which places are compared, columns and rows from the pixel: 17 opposite pairs of 7 x 5, which noise moves least, and
- * the pixel itself with seven others, which tells where edges are. */
+ * the pixel itself with seven others, which shows where edges are. */
 static const struct {
     int8_t ax, ay, bx, by;
 } pairs[T3R_CENSUS_PAIRS] = {
@@ -34,7 +34,7 @@ static void compare_ends(const uint8_t *a, const uint8_t *b, int32_t ax, int32_t
     }
 }
 
-void t3r_census_row(const uint8_t *const rows[T3R_CENSUS_ROWS], uint32_t width, uint32_t pitch, uint8_t *bits)
+void t3r_census_row_c(const uint8_t *const rows[T3R_CENSUS_ROWS], uint32_t width, uint32_t pitch, uint8_t *bits)
 {
     const int32_t middle = T3R_CENSUS_ROWS / 2, last = (int32_t)width;
     const int32_t from = T3R_MIN(T3R_CENSUS_REACH, last), to = T3R_MAX(from, last - T3R_CENSUS_REACH);
@@ -60,8 +60,8 @@ static inline uint8_t nibble_counts(uint8_t x)
     return (uint8_t)((x & 0x33) + ((x >> 2) & 0x33));
 }
 
-void t3r_census_cost(const uint8_t own[T3R_CENSUS_BYTES], const uint8_t *others, uint32_t pitch, const uint8_t *least,
-                     uint32_t count, uint8_t *restrict cost)
+void t3r_census_cost_c(const uint8_t own[T3R_CENSUS_BYTES], const uint8_t *others, uint32_t pitch, const uint8_t *least,
+                       uint32_t count, uint8_t *restrict cost)
 {
     const uint8_t a = own[0], b = own[1], c = own[2];
     const uint8_t *p = others, *q = p + pitch, *r = q + pitch;

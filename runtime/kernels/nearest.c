@@ -22,7 +22,7 @@ static int64_t square_between(const t3r_centres *centres, uint32_t a, uint32_t b
     return sum;
 }
 
-void t3r_find_neighbours(const t3r_centres *centres, t3r_neighbours *neighbours)
+void t3r_nearest_begin_c(const t3r_centres *centres, t3r_neighbours *neighbours)
 {
     for (uint32_t k = 0; k < centres->count; k++) {
         int64_t square[T3R_NEIGHBOURS];
@@ -95,8 +95,8 @@ static bool nearest_near(const t3r_centres *centres, const t3r_neighbours *neigh
     return listed == centres->count - 1;
 }
 
-void t3r_nearest(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,
-                 const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest)
+void t3r_nearest_c(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,
+                   const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest)
 {
     for (uint32_t point = 0; point < points; point++) {
         const int16_t *p = feature_q11[point];

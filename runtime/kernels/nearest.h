@@ -24,12 +24,18 @@ typedef struct t3r_neighbours {
     uint16_t index[T3R_MAX_CLUSTERS][T3R_NEIGHBOURS];
 } t3r_neighbours;
 
-/* Fills the neighbours: count^2 distances. */
-void t3r_find_neighbours(const t3r_centres *centres, t3r_neighbours *neighbours);
+/* What `nearest` of the same table asks for before it is first called with these centres. In plain C that is the list
+ * of neighbours: count^2 distances. A variant that looks at all centres needs none and may leave it as it is. */
+typedef void t3r_nearest_begin_kernel(const t3r_centres *centres, t3r_neighbours *neighbours);
 
-/* Index of the nearest centre of each point. A point is first compared with the neighbours of the centre its
- * predecessor had, which the triangle inequality often shows to be enough; else with all. `guess`: where to start. */
-void t3r_nearest(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,
-                 const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest);
+/* Index of the nearest centre of each of `points` points, which lie one behind the other, aligned to 2 bytes. `guess`,
+ * below the number of centres, is where to start; it changes no result. In plain C a point is first compared with the
+ * neighbours of the centre its predecessor had, which the triangle inequality often shows to be enough; else with all.
+ */
+typedef void t3r_nearest_kernel(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,
+                                const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest);
+
+t3r_nearest_begin_kernel t3r_nearest_begin_c;
+t3r_nearest_kernel t3r_nearest_c;
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "core/fixed.h"
 
-/* How one output channel is scaled and where its layer is held. */
+/* How one output channel is scaled, and the range that its layer is clamped to. */
 typedef struct t3r_requantization {
     int32_t multiplier; /* [2^30, 2^31) */
     int32_t shift;      /* -30..15 */

@@ -1,54 +1,59 @@
-/* The innermost loops of refinement: what eight columns of a tile tell one splat (SPEC.md, "Refinement"). */
+/* The innermost loop of refinement: what the pixels of a tile add to the sums of one splat (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SCATTER_H
 #define T3R_KERNEL_SCATTER_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "blend.h"
 
-/* A tile as it will be, and what is missing from it. */
+/* Monomials e_x^i e_y^j with i + j <= 2, and with i + j <= 4, in the order 1 x y xx xy yy xxx xxy xyy yyy xxxx ... */
+#define T3R_REFINE_MOMENTS_2 6
+#define T3R_REFINE_MOMENTS_4 15
+
+/* Where x^k y^l stands. */
+enum t3r_moment {
+    T3R_M_1,
+    T3R_M_X,
+    T3R_M_Y,
+    T3R_M_X2,
+    T3R_M_XY,
+    T3R_M_Y2,
+    T3R_M_X3,
+    T3R_M_X2Y,
+    T3R_M_XY2,
+    T3R_M_Y3,
+    T3R_M_X4,
+    T3R_M_X3Y,
+    T3R_M_X2Y2,
+    T3R_M_XY3,
+    T3R_M_Y4
+};
+
+/* A tile as it is when all splats are drawn, and what the view shows beyond it. */
 typedef struct t3r_wanted {
     t3r_tile drawn;
     int16_t residual_q4[3][T3R_TILE_SIDE][T3R_TILE_SIDE]; /* target - drawn, levels: +-4080 */
-    uint16_t counts[T3R_TILE_SIDE][T3R_TILE_SIDE];        /* 65,535, or 0 where a pixel says nothing */
+    uint16_t counts[T3R_TILE_SIDE][T3R_TILE_SIDE];        /* 65,535, or 0 where a pixel has no depth */
 } t3r_wanted;
 
-/* Sums down each column over the rows first..last, row j with the weight C(last - j + l, l): l = 0 the plain sum, l = 1
- * the sum of the sums so far, and so on. Of at most 16 rows these weights sum to 16, 136, 816, 3,876 and 15,504.
- * Everything in the scale of w: a factor 2^s, curvature 2^2s. */
-typedef struct t3r_scatter_sums {
-    uint64_t curvature_4[T3R_LANES];  /* |g|^2, levels^2, Q2: l = 4 */
-    uint32_t curvature[4][T3R_LANES]; /* l = 0..3; at most 786,432 a pixel */
-    int32_t gradient[3][T3R_LANES];   /* g . r, levels^2, Q3: l = 0..2; at most 1,566,720 a pixel */
-    int32_t colour[3][T3R_LANES];     /* w r, levels, Q19; the plain sum alone */
-    int32_t weight[T3R_LANES];        /* w, Q15; likewise */
-} t3r_scatter_sums;
+/* Exact sums over one splat's pixels in one tile, in the order of T3R_REFINE_MOMENTS_4: x^k y^l stands for the weight
+ * C(p + k, k) C(s + l, l), p the columns to the end of the splat's groups and s the rows to `last` that are still to
+ * come after the pixel. */
+typedef struct t3r_tile_sums {
+    int64_t gradient[T3R_REFINE_MOMENTS_2];  /* levels^2, Q3 */
+    int64_t curvature[T3R_REFINE_MOMENTS_4]; /* levels^2, Q2 */
+    int64_t colour[3];                       /* levels, Q19 */
+    int64_t weight;                          /* Q15 */
+    uint32_t scale;                          /* all of them times 2^scale, curvature 2^(2 scale) */
+    uint32_t last;                           /* of the rows, the last with a weight that counts */
+} t3r_tile_sums;
 
-/* The weights w that a splat has in eight columns of a row, Q16. */
-typedef struct t3r_weights {
-    uint16_t q16[T3R_LANES];
-} t3r_weights;
-
-/* Of the rows first..last, weights[0] being the first's. Before a splat is blended transmittance is kept, afterwards
- * what that lost is taken. By its weights it can be blended again, to the same bits. */
-void t3r_weights_keep(const t3r_tile *tile, uint32_t column, uint32_t first, uint32_t last,
-                      t3r_weights *restrict weights);
-void t3r_weights_take(const t3r_tile *tile, uint32_t column, uint32_t first, uint32_t last,
-                      t3r_weights *restrict weights);
-void t3r_weights_blend(t3r_tile *restrict tile, const uint16_t colour_q7[3], uint32_t column, uint32_t first,
-                       uint32_t last, const t3r_weights *weights);
-
-/* masked[first..last] are these weights, but 0 in columns that are not `inside` (65,535, else 0) and where a pixel does
- * not count; returns all of their bits. */
-uint16_t t3r_weights_mask(const t3r_wanted *want, const uint16_t inside[T3R_LANES], uint32_t column, uint32_t first,
-                          uint32_t last, const t3r_weights *weights, t3r_weights *restrict masked);
-
-/* What weights[first..last], below 2^(16 - scale), tell a splat of that colour. `tile` is as it is after the splat. */
-void t3r_scatter(const t3r_wanted *want, const t3r_tile *tile, const uint16_t colour_q7[3], uint32_t column,
-                 uint32_t first, uint32_t last, const t3r_weights *weights, uint32_t scale, t3r_scatter_sums *sums);
-
-/* About 2^31 / n for n = 2^15..2^16 - 1: too small by at most 2^-13 of it, never so large that n times it reaches 2^31.
- * Exposed for tests. */
-uint16_t t3r_reciprocal_q31(uint16_t n);
+/* The sums of a splat just blended, whose weights these are. A weight counts in the splat's box and where the pixel
+ * does. The scale is the most by which all weights that count stay below 2^16. tile: as it is after the splat. False:
+ * no weight counts, and the sums may hold anything. */
+typedef bool t3r_scatter_kernel(const t3r_wanted *want, const t3r_tile *tile, const t3r_tile_splat *splat,
+                                const t3r_blend_weights *weights, t3r_tile_sums *sums);
+t3r_scatter_kernel t3r_scatter_c;
 
 #endif

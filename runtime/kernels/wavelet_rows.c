@@ -3,7 +3,7 @@
 
 #include "core/fixed.h"
 
-void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row, size_t count)
+void t3r_split_row_c(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row, size_t count)
 {
     for (size_t i = 0; i < count / 2; i++) {
         even[i] = row[2 * i];
@@ -14,8 +14,8 @@ void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t 
     }
 }
 
-void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
-                  const uint8_t *restrict b, size_t count)
+void t3r_luma_row_c(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
+                    const uint8_t *restrict b, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         /* at most 255 x 256 + 128: 16 bits */
@@ -24,14 +24,14 @@ void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_
     }
 }
 
-void t3r_row_db2_predict(int16_t *restrict high, const int16_t *restrict low, size_t count)
+void t3r_db2_predict_c(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         high[i] = (int16_t)(high[i] - 2 * low[i] + t3r_mulr_q15_small(low[i], T3R_DB2_PREDICT_Q15));
     }
 }
 
-void t3r_row_db2_update(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count)
+void t3r_db2_update_c(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         low[i] = (int16_t)(low[i] + t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_Q15) -
@@ -39,14 +39,14 @@ void t3r_row_db2_update(int16_t *restrict low, const int16_t *high, const int16_
     }
 }
 
-void t3r_row_add(int16_t *restrict high, const int16_t *restrict low, size_t count)
+void t3r_add_row_c(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         high[i] = (int16_t)(high[i] + low[i]);
     }
 }
 
-void t3r_row_subtract(int16_t *restrict high, const int16_t *restrict low, size_t count)
+void t3r_subtract_row_c(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         high[i] = (int16_t)(high[i] - low[i]);
@@ -70,28 +70,28 @@ void t3r_row_db2_last(int16_t *restrict last, const int16_t *restrict before, co
 
 void t3r_row_db2_pair(int16_t *restrict low, int16_t *restrict high, size_t count)
 {
-    t3r_row_db2_predict(high, low, count);
+    t3r_db2_predict_c(high, low, count);
     for (size_t i = 0; i < count; i++) {
         low[i] = (int16_t)(low[i] + t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_PAIR_Q15));
         high[i] = (int16_t)(high[i] + low[i]);
     }
 }
 
-void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count)
+void t3r_haar_update_c(int16_t *restrict even, const int16_t *restrict odd, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         even[i] = (int16_t)(even[i] + t3r_round_shift32(odd[i], 1));
     }
 }
 
-void t3r_row_cdf53_predict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count)
+void t3r_cdf53_predict_c(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         odd[i] = (int16_t)(odd[i] - t3r_round_shift32(even[i] + even_next[i], 1));
     }
 }
 
-void t3r_row_cdf53_update(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count)
+void t3r_cdf53_update_c(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         even[i] = (int16_t)(even[i] + t3r_round_shift32(odd_previous[i] + odd[i], 2));
@@ -103,8 +103,8 @@ static inline uint16_t absolute(int16_t x)
     return (uint16_t)(x < 0 ? -x : x);
 }
 
-void t3r_row_texture_finest(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
-                            const int16_t *restrict d, uint16_t d_gain_q16, size_t count)
+void t3r_texture_finest_c(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
+                          const int16_t *restrict d, uint16_t d_gain_q16, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         uint32_t product = (uint32_t)absolute(d[i]) * d_gain_q16;
@@ -115,8 +115,8 @@ void t3r_row_texture_finest(uint16_t *restrict texture, const int16_t *restrict 
     }
 }
 
-void t3r_row_texture_coarse(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
-                            const int16_t *restrict d, uint32_t gain_q8, uint32_t d_gain_q8, size_t count)
+void t3r_texture_coarse_c(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
+                          const int16_t *restrict d, uint32_t gain_q8, uint32_t d_gain_q8, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         /* |h| + |v| < 2^14.4, |d| < 2^14.6 on levels above 1 (wavelet_texture.c); gains < 2^15.7 and 2^13.8: the
@@ -132,7 +132,7 @@ static inline uint16_t add_saturated(uint16_t a, uint16_t b)
     return (uint16_t)(T3R_MIN(a, room) + b);
 }
 
-void t3r_row_texture_add(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count)
+void t3r_texture_add_c(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count)
 {
     for (size_t i = 0; i < count / 2; i++) {
         fine[2 * i] = add_saturated(fine[2 * i], coarse[i]);
@@ -143,7 +143,7 @@ void t3r_row_texture_add(uint16_t *restrict fine, const uint16_t *restrict coars
     }
 }
 
-void t3r_row_texture_spread(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count)
+void t3r_texture_spread_c(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count)
 {
     for (size_t i = 0; i < count / 2; i++) {
         fine[2 * i] = coarse[i];

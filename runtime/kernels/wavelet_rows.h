@@ -1,5 +1,7 @@
 /* The lifting steps of the wavelets over rows of int16, in the plain C that defines them. A row is a plane's row
- * (vertical lifting) or one half of a split row (horizontal lifting). */
+ * (vertical lifting) or one half of a split row (horizontal lifting). Rows are aligned to 2 bytes and of any length;
+ * nothing beyond `count` samples is read or written. Where two inputs are not `restrict` they may be the same row or
+ * overlap. */
 #ifndef T3R_WAVELET_ROWS_H
 #define T3R_WAVELET_ROWS_H
 
@@ -23,20 +25,21 @@ static inline int16_t t3r_mulr_q15_small(int16_t a, int16_t c)
 }
 
 /* even[i] = row[2 i], odd[i] = row[2 i + 1]; an odd count leaves one more even */
-void t3r_row_split(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row, size_t count);
+typedef void t3r_split_row_kernel(int16_t *restrict even, int16_t *restrict odd, const int16_t *restrict row,
+                                  size_t count);
 
 /* (luma - 128) x 16 of count pixels */
-void t3r_row_luma(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
-                  const uint8_t *restrict b, size_t count);
+typedef void t3r_luma_row_kernel(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
+                                 const uint8_t *restrict b, size_t count);
 
 /* db2, 1: high -= sqrt(3) low, as 2 low - mulr(low, 2 - sqrt 3) */
-void t3r_row_db2_predict(int16_t *restrict high, const int16_t *restrict low, size_t count);
+typedef void t3r_db2_predict_kernel(int16_t *restrict high, const int16_t *restrict low, size_t count);
 /* db2, 2: low += mulr(high, sqrt 3 / 4) - mulr(next high, (2 - sqrt 3) / 4) */
-void t3r_row_db2_update(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
+typedef void t3r_db2_update_kernel(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
 /* db2, 3: high += previous low */
-void t3r_row_add(int16_t *restrict high, const int16_t *restrict low, size_t count);
-void t3r_row_subtract(int16_t *restrict high, const int16_t *restrict low, size_t count);
-/* db2, the first sample, which has no partner: x0 -= mulr(x1, 2 - sqrt 3) */
+typedef void t3r_add_row_kernel(int16_t *restrict high, const int16_t *restrict low, size_t count);
+typedef void t3r_subtract_row_kernel(int16_t *restrict high, const int16_t *restrict low, size_t count);
+/* Seldom called, and so not in the table. db2, the first sample, which has no partner: x0 -= mulr(x1, 2 - sqrt 3) */
 void t3r_row_db2_first(int16_t *restrict x0, const int16_t *restrict x1, size_t count);
 /* db2, the last sample of an even length, which has none either: last += that before - 2 before */
 void t3r_row_db2_last(int16_t *restrict last, const int16_t *restrict before, const int16_t *restrict before_that,
@@ -44,22 +47,38 @@ void t3r_row_db2_last(int16_t *restrict last, const int16_t *restrict before, co
 /* db2, a line of two samples: step 1; low += mulr(high, (sqrt 3 - 1) / 2); high += low */
 void t3r_row_db2_pair(int16_t *restrict low, int16_t *restrict high, size_t count);
 
-/* Haar: odd -= even (t3r_row_subtract); even += (odd + 1) >> 1 */
-void t3r_row_haar_update(int16_t *restrict even, const int16_t *restrict odd, size_t count);
+/* Haar: odd -= even (subtract_row); even += (odd + 1) >> 1 */
+typedef void t3r_haar_update_kernel(int16_t *restrict even, const int16_t *restrict odd, size_t count);
 
 /* CDF 5/3: odd -= (even + next even + 1) >> 1; even += (previous odd + odd + 2) >> 2 */
-void t3r_row_cdf53_predict(int16_t *restrict odd, const int16_t *even, const int16_t *even_next, size_t count);
-void t3r_row_cdf53_update(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd, size_t count);
+typedef void t3r_cdf53_predict_kernel(int16_t *restrict odd, const int16_t *even, const int16_t *even_next,
+                                      size_t count);
+typedef void t3r_cdf53_update_kernel(int16_t *restrict even, const int16_t *odd_previous, const int16_t *odd,
+                                     size_t count);
 
 /* Texture of a level-1 row: |h| + |v| + mulr(|d|, d_gain), Q4; the sum is below 2^15 (wavelet_texture.c). */
-void t3r_row_texture_finest(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
-                            const int16_t *restrict d, uint16_t d_gain_q16, size_t count);
+typedef void t3r_texture_finest_kernel(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
+                                       const int16_t *restrict d, uint16_t d_gain_q16, size_t count);
 /* Of a coarser level: (gain (|h| + |v|) + d_gain |d|) with Q8 gains, one rounding, at most 65535. */
-void t3r_row_texture_coarse(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
-                            const int16_t *restrict d, uint32_t gain_q8, uint32_t d_gain_q8, size_t count);
+typedef void t3r_texture_coarse_kernel(uint16_t *restrict texture, const int16_t *restrict h, const int16_t *restrict v,
+                                       const int16_t *restrict d, uint32_t gain_q8, uint32_t d_gain_q8, size_t count);
 /* fine[i] += coarse[i / 2], at most 65535 */
-void t3r_row_texture_add(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count);
+typedef void t3r_texture_add_kernel(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count);
 /* fine[i] = coarse[i / 2] */
-void t3r_row_texture_spread(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count);
+typedef void t3r_texture_spread_kernel(uint16_t *restrict fine, const uint16_t *restrict coarse, size_t count);
+
+t3r_split_row_kernel t3r_split_row_c;
+t3r_luma_row_kernel t3r_luma_row_c;
+t3r_db2_predict_kernel t3r_db2_predict_c;
+t3r_db2_update_kernel t3r_db2_update_c;
+t3r_add_row_kernel t3r_add_row_c;
+t3r_subtract_row_kernel t3r_subtract_row_c;
+t3r_haar_update_kernel t3r_haar_update_c;
+t3r_cdf53_predict_kernel t3r_cdf53_predict_c;
+t3r_cdf53_update_kernel t3r_cdf53_update_c;
+t3r_texture_finest_kernel t3r_texture_finest_c;
+t3r_texture_coarse_kernel t3r_texture_coarse_c;
+t3r_texture_add_kernel t3r_texture_add_c;
+t3r_texture_spread_kernel t3r_texture_spread_c;
 
 #endif

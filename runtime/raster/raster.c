@@ -25,8 +25,8 @@ static void draw_job(void *context, uint32_t index, uint32_t worker)
     const t3r_binning *bin = job->bin;
     uint32_t tile = job->first + index;
     uint32_t begin = tile == job->pass_first ? 0 : bin->table[tile - 1];
-    t3r_draw_tile(bin->splats, bin->lists + begin, bin->table[tile] - begin, tile % bin->across, tile / bin->across,
-                  job->target);
+    t3r_draw_tile(bin->kernels, bin->splats, bin->lists + begin, bin->table[tile] - begin, tile % bin->across,
+                  tile / bin->across, job->target);
 }
 
 static t3r_status check_target(const t3r_runtime *rt, const t3r_target *t)

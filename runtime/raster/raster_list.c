@@ -6,23 +6,19 @@
 #define PROJECT_CHUNK 512u
 
 typedef struct project_job {
+    const t3r_kernels *kernels;
     const t3r_projection *projection;
     const t3r_gaussian *gaussians;
     uint32_t count;
     t3r_splat *splats;
 } project_job;
 
-/* A culled Gaussian leaves z = 0 behind. */
 static void project_chunk(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const project_job *job = context;
     uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
-    for (uint32_t i = first; i < end; i++) {
-        if (!t3r_project(job->projection, &job->gaussians[i], &job->splats[i])) {
-            job->splats[i].z_q20 = 0;
-        }
-    }
+    job->kernels->project(job->projection, job->gaussians + first, end - first, job->splats + first);
 }
 
 t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_raster_room *room)
@@ -32,7 +28,7 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
     uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};
     uint32_t *indices[2] = {keys[1] + most, keys[1] + 2 * (size_t)most};
 
-    project_job projecting = {projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, room->splats};
+    project_job projecting = {&rt->kernels, projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, room->splats};
     const t3r_workers workers = t3r_workers_of(rt);
     t3r_run_tasks(&workers, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
     uint32_t visible = 0;
@@ -41,9 +37,10 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
         indices[0][visible] = i;
         visible += room->splats[i].z_q20 != 0;
     }
-    t3r_order(keys, indices, visible, histogram);
+    t3r_order(&rt->kernels, keys, indices, visible, histogram);
 
     t3r_binning bin = {
+        .kernels = &rt->kernels,
         .splats = room->splats,
         .order = indices[0],
         .visible = visible,

@@ -50,24 +50,17 @@ static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
     return least < (int64_t)LEVEL_MOST << 18;
 }
 
-/* The quadratic about the columns' first pixel. With the columns touched it is below 885 there (the root of 6 and the
+/* The quadratic about the group's first pixel. With the columns touched it is below 885 there (the root of 6 and the
  * group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.3; the centre is less than 2^14.6
  * px away: the two products of q sum to less than 2^62.8. */
-static void lane_splat_of(const t3r_splat *s, uint32_t x, uint32_t y, t3r_lane_splat *out)
+static void place_group(const t3r_splat *s, uint32_t x, uint32_t y, uint32_t group, t3r_tile_splat *out)
 {
     int64_t dx = ((int64_t)x << 12) - s->x_q12, dy = ((int64_t)y << 12) - s->y_q12;
     int64_t hx_q30 = t3r_round_shift64(s->a_q30 * dx + s->b_q30 * dy, 12);
     int64_t hy_q30 = t3r_round_shift64(s->b_q30 * dx + s->c_q30 * dy, 12);
-    out->q = (int32_t)t3r_round_shift64(hx_q30 * dx + hy_q30 * dy, 25);
-    out->gx = (int32_t)t3r_round_shift64(hx_q30, 12);
-    out->gy = (int32_t)t3r_round_shift64(hy_q30, 12);
-    out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
-    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12);
-    out->c = t3r_round_shift32(s->c_q30 >> 1, 12);
-    out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
-    for (int i = 0; i < 3; i++) {
-        out->colour_q7[i] = s->colour_q7[i];
-    }
+    out->group[group].q = (int32_t)t3r_round_shift64(hx_q30 * dx + hy_q30 * dy, 25);
+    out->group[group].gx = (int32_t)t3r_round_shift64(hx_q30, 12);
+    out->group[group].gy = (int32_t)t3r_round_shift64(hy_q30, 12);
 }
 
 /* The splat at which a pixel's transmittance first falls below one half gives it its depth. */
@@ -90,44 +83,48 @@ static bool is_near(int32_t centre_q12, uint32_t tile)
     return offset >= -(SMALL_SPLAT << 12) && offset <= (SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12;
 }
 
-bool t3r_tile_lane(const t3r_splat *s, uint32_t left, uint32_t top, uint32_t column, t3r_lane_splat *lane)
+void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
 {
-    bool small = is_near(s->x_q12, left) && is_near(s->y_q12, top);
-    if (!small && !touches(s, left + column, top)) {
-        return false;
+    const uint32_t x0 = T3R_MAX(s->x0, left) - left, x1 = T3R_MIN(s->x1, left + T3R_TILE_SIDE - 1) - left;
+    const bool wide = x1 - x0 >= T3R_LANES;
+    for (int i = 0; i < 3; i++) {
+        out->colour_q7[i] = s->colour_q7[i];
     }
-    lane_splat_of(s, left + column, top, lane);
-    return true;
+    out->column = (uint8_t)(wide ? 0 : T3R_MIN(x0, (uint32_t)T3R_TILE_SIDE - T3R_LANES));
+    out->groups = wide ? T3R_TILE_GROUPS : 1;
+    out->first = (uint8_t)(T3R_MAX(s->y0, top) - top);
+    out->last = (uint8_t)(T3R_MIN(s->y1, top + T3R_TILE_SIDE - 1) - top);
+    out->x0 = (uint8_t)x0;
+    out->x1 = (uint8_t)x1;
 }
 
-t3r_tile_blocks t3r_blocks_of(const t3r_splat *s, uint32_t left, uint32_t top)
+void t3r_splat_in_tile(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
 {
-    uint32_t x0 = T3R_MAX(s->x0, left) - left, x1 = T3R_MIN(s->x1, left + T3R_TILE_SIDE - 1) - left;
-    t3r_tile_blocks blocks = {
-        .count = 1,
-        .column = T3R_MIN(x0, (uint32_t)T3R_TILE_SIDE - T3R_LANES),
-        .first = T3R_MAX(s->y0, top) - top,
-        .last = T3R_MIN(s->y1, top + T3R_TILE_SIDE - 1) - top,
-    };
-    if (x1 - x0 >= T3R_LANES) {
-        blocks.count = T3R_TILE_SIDE / T3R_LANES;
-        blocks.column = 0;
-    }
-    return blocks;
-}
-
-static void blend_splat(tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top, bool with_depth)
-{
-    t3r_tile_blocks blocks = t3r_blocks_of(s, left, top);
-    for (uint32_t i = 0; i < blocks.count; i++) {
-        uint32_t column = blocks.column + i * T3R_LANES;
-        t3r_lane_splat lane;
-        if (!t3r_tile_lane(s, left, top, column, &lane)) {
-            continue;
+    const bool small = is_near(s->x_q12, left) && is_near(s->y_q12, top);
+    t3r_splat_span(s, left, top, out);
+    out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
+    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12);
+    out->c = t3r_round_shift32(s->c_q30 >> 1, 12);
+    out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
+    out->drawn = 0;
+    for (uint32_t group = 0; group < out->groups; group++) {
+        const uint32_t x = left + out->column + group * T3R_LANES;
+        if (small || touches(s, x, top)) {
+            place_group(s, x, top, group, out);
+            out->drawn |= (uint8_t)(1 << group);
         }
-        t3r_blend_rows(&tile->pixels, &lane, column, blocks.first, blocks.last);
-        if (with_depth) {
-            note_depth(tile, column, blocks.first, blocks.last, s->z_q20);
+    }
+}
+
+static void blend_splat(const t3r_kernels *kernels, tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top,
+                        bool with_depth)
+{
+    t3r_tile_splat splat;
+    t3r_splat_in_tile(s, left, top, &splat);
+    kernels->blend(&tile->pixels, &splat, NULL);
+    for (uint32_t group = 0; group < splat.groups && with_depth; group++) {
+        if ((splat.drawn >> group & 1) != 0) {
+            note_depth(tile, splat.column + group * T3R_LANES, splat.first, splat.last, s->z_q20);
         }
     }
 }
@@ -186,8 +183,8 @@ void t3r_tile_clear(t3r_tile *tile)
     }
 }
 
-void t3r_draw_tile(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y,
-                   const t3r_target *target)
+void t3r_draw_tile(const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list, uint32_t count,
+                   uint32_t tile_x, uint32_t tile_y, const t3r_target *target)
 {
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
     bool with_depth = target->depth_q20 != NULL;
@@ -198,7 +195,7 @@ void t3r_draw_tile(const t3r_splat *splats, const uint32_t *list, uint32_t count
         if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile.pixels)) {
             break; /* the rest would add nothing: the same pixels, sooner */
         }
-        blend_splat(&tile, &splats[list[i]], left, top, with_depth);
+        blend_splat(kernels, &tile, &splats[list[i]], left, top, with_depth);
     }
     write_tile(&tile, left, top, target);
 }

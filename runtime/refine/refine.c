@@ -124,7 +124,8 @@ static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view 
 {
     const t3r_workers workers = t3r_workers_of(rt);
     const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
-    const t3r_refine_view view = {.view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
+    const t3r_refine_view view = {
+        .kernels = &rt->kernels, .view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
     error_job to = {.job = {.view = &view, .bin = &bin}};
     view_job *job = &to.job;
     uint64_t error = 0;
@@ -150,6 +151,7 @@ static uint32_t chunks_of(uint32_t count)
 }
 
 typedef struct slice_job {
+    const t3r_kernels *kernels;
     const layout *work;
     t3r_refine_slice slice;
     t3r_gaussian *scene;
@@ -175,10 +177,8 @@ static void solve_chunk(void *context, uint32_t index, uint32_t worker)
     (void)worker;
     const slice_job *job = context;
     t3r_correction *corrections = job->work->corrections + job->slice.first;
-    const uint32_t end = T3R_MIN((index + 1) * CHUNK, job->slice.count);
-    for (uint32_t i = index * CHUNK; i < end; i++) {
-        corrections[i] = t3r_refine_solve(&job->slice.sums[i], &corrections[i]);
-    }
+    const uint32_t begin = index * CHUNK, count = T3R_MIN(CHUNK, job->slice.count - begin);
+    job->kernels->solve(job->slice.sums + begin, count, corrections + begin);
 }
 
 /* Here the slice is the whole scene. */
@@ -203,8 +203,9 @@ static void accumulate(const t3r_runtime *rt, const slice_job *slice, const t3r_
     const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
     t3r_run_tasks(&workers, chunks_of(slice->slice.count), widen_chunk, (void *)(uintptr_t)slice);
     const uint32_t kept_rows =
-        (uint32_t)((size_t)rt->config.max_gaussians * T3R_RASTER_SPARE_BYTES / sizeof(t3r_weights));
+        (uint32_t)((size_t)rt->config.max_gaussians * T3R_RASTER_SPARE_BYTES / sizeof(t3r_blend_weights));
     const t3r_refine_view view = {
+        .kernels = &rt->kernels,
         .view = &views[v],
         .projection = projection,
         .scene = slice->scene,
@@ -250,7 +251,7 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_ma
 {
     const layout w = layout_of(rt);
     const t3r_workers workers = t3r_workers_of(rt);
-    slice_job job = {&w, {w.sums, 0, 0}, t3r_buffer_at(rt, T3R_BUFFER_SCENE), records, rt->config.views};
+    slice_job job = {&rt->kernels, &w, {w.sums, 0, 0}, t3r_buffer_at(rt, T3R_BUFFER_SCENE), records, rt->config.views};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
     uint32_t total = rt->config.refinements * slices * rt->views, done = 0;
     memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);

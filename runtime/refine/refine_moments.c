@@ -9,53 +9,6 @@
 #define ORIGIN_MOST_Q12 (5 << 12) /* within the ellipse |e| < 3.47, and 0.65 for rounding to a pixel */
 #define ORIGIN_FAR_Q12 (32 << 12) /* anywhere in a tile that the ellipse touches */
 
-/* Where x^k y^l stands. */
-enum { ONE, X, Y, X2, XY, Y2, X3, X2Y, XY2, Y3, X4, X3Y, X2Y2, XY3, Y4 };
-
-/* One row of sums, x^0.. at the places `at`, continued over eight columns: sum k adds up what sum k - 1 has become. */
-static inline void continue_sums(int64_t *sums, const uint8_t *at, int order, const int64_t columns[T3R_LANES])
-{
-    int64_t sum[5];
-    for (int k = 0; k <= order; k++) {
-        sum[k] = sums[at[k]];
-    }
-    for (int i = 0; i < T3R_LANES; i++) {
-        int64_t more = columns[i];
-        for (int k = 0; k <= order; k++) {
-            sum[k] += more;
-            more = sum[k];
-        }
-    }
-    for (int k = 0; k <= order; k++) {
-        sums[at[k]] = sum[k];
-    }
-}
-
-void t3r_tile_sums_add(t3r_tile_sums *sums, const t3r_scatter_sums *columns)
-{
-    static const uint8_t at[5][5] = {{ONE, X, X2, X3, X4}, {Y, XY, X2Y, X3Y}, {Y2, XY2, X2Y2}, {Y3, XY3}, {Y4}};
-    int64_t curvature[5][T3R_LANES], gradient[3][T3R_LANES];
-    for (int i = 0; i < T3R_LANES; i++) {
-        for (int l = 0; l < 4; l++) {
-            curvature[l][i] = columns->curvature[l][i];
-        }
-        curvature[4][i] = (int64_t)columns->curvature_4[i];
-        for (int l = 0; l < 3; l++) {
-            gradient[l][i] = columns->gradient[l][i];
-            sums->colour[l] += columns->colour[l][i];
-        }
-        sums->weight += columns->weight[i];
-    }
-    continue_sums(sums->curvature, at[0], 4, curvature[0]);
-    continue_sums(sums->curvature, at[1], 3, curvature[1]);
-    continue_sums(sums->curvature, at[2], 2, curvature[2]);
-    continue_sums(sums->curvature, at[3], 1, curvature[3]);
-    continue_sums(sums->curvature, at[4], 0, curvature[4]);
-    continue_sums(sums->gradient, at[0], 2, gradient[0]);
-    continue_sums(sums->gradient, at[1], 1, gradient[1]);
-    continue_sums(sums->gradient, at[2], 0, gradient[2]);
-}
-
 /* From sums of C(p + k, k), k = 0..n at the places a, b, .., to moments (p - centre)^k, exactly: each of the n rounds
  * turns a factor (p + j) of (p + j) C(p + j - 1, j - 1) = j C(p + j, j) into p - centre, by taking (centre + j) away.
  */
@@ -90,22 +43,22 @@ static inline void centre_4(int64_t *m, int a, int b, int c, int d, int e, int64
 
 static inline void centre_gradient(int64_t *m, int64_t column, int64_t row)
 {
-    centre_2(m, ONE, X, X2, column);
-    centre_1(m, Y, XY, column);
-    centre_2(m, ONE, Y, Y2, row);
-    centre_1(m, X, XY, row);
+    centre_2(m, T3R_M_1, T3R_M_X, T3R_M_X2, column);
+    centre_1(m, T3R_M_Y, T3R_M_XY, column);
+    centre_2(m, T3R_M_1, T3R_M_Y, T3R_M_Y2, row);
+    centre_1(m, T3R_M_X, T3R_M_XY, row);
 }
 
 static inline void centre_curvature(int64_t *m, int64_t column, int64_t row)
 {
-    centre_4(m, ONE, X, X2, X3, X4, column);
-    centre_3(m, Y, XY, X2Y, X3Y, column);
-    centre_2(m, Y2, XY2, X2Y2, column);
-    centre_1(m, Y3, XY3, column);
-    centre_4(m, ONE, Y, Y2, Y3, Y4, row);
-    centre_3(m, X, XY, XY2, XY3, row);
-    centre_2(m, X2, X2Y, X2Y2, row);
-    centre_1(m, X3, X3Y, row);
+    centre_4(m, T3R_M_1, T3R_M_X, T3R_M_X2, T3R_M_X3, T3R_M_X4, column);
+    centre_3(m, T3R_M_Y, T3R_M_XY, T3R_M_X2Y, T3R_M_X3Y, column);
+    centre_2(m, T3R_M_Y2, T3R_M_XY2, T3R_M_X2Y2, column);
+    centre_1(m, T3R_M_Y3, T3R_M_XY3, column);
+    centre_4(m, T3R_M_1, T3R_M_Y, T3R_M_Y2, T3R_M_Y3, T3R_M_Y4, row);
+    centre_3(m, T3R_M_X, T3R_M_XY, T3R_M_XY2, T3R_M_XY3, row);
+    centre_2(m, T3R_M_X2, T3R_M_X2Y, T3R_M_X2Y2, row);
+    centre_1(m, T3R_M_X3, T3R_M_X3Y, row);
 }
 
 /* From moments x^k, k = 0..n at the places a, b, .., to (x + origin)^k: n rounds again, each of them a factor. */
@@ -140,22 +93,22 @@ static inline void shift_4(int64_t *m, int a, int b, int c, int d, int e, int64_
 
 static inline void shift_gradient(int64_t *m, const int64_t origin_q12[2])
 {
-    shift_2(m, ONE, X, X2, origin_q12[0]);
-    shift_1(m, Y, XY, origin_q12[0]);
-    shift_2(m, ONE, Y, Y2, origin_q12[1]);
-    shift_1(m, X, XY, origin_q12[1]);
+    shift_2(m, T3R_M_1, T3R_M_X, T3R_M_X2, origin_q12[0]);
+    shift_1(m, T3R_M_Y, T3R_M_XY, origin_q12[0]);
+    shift_2(m, T3R_M_1, T3R_M_Y, T3R_M_Y2, origin_q12[1]);
+    shift_1(m, T3R_M_X, T3R_M_XY, origin_q12[1]);
 }
 
 static inline void shift_curvature(int64_t *m, const int64_t origin_q12[2])
 {
-    shift_4(m, ONE, X, X2, X3, X4, origin_q12[0]);
-    shift_3(m, Y, XY, X2Y, X3Y, origin_q12[0]);
-    shift_2(m, Y2, XY2, X2Y2, origin_q12[0]);
-    shift_1(m, Y3, XY3, origin_q12[0]);
-    shift_4(m, ONE, Y, Y2, Y3, Y4, origin_q12[1]);
-    shift_3(m, X, XY, XY2, XY3, origin_q12[1]);
-    shift_2(m, X2, X2Y, X2Y2, origin_q12[1]);
-    shift_1(m, X3, X3Y, origin_q12[1]);
+    shift_4(m, T3R_M_1, T3R_M_X, T3R_M_X2, T3R_M_X3, T3R_M_X4, origin_q12[0]);
+    shift_3(m, T3R_M_Y, T3R_M_XY, T3R_M_X2Y, T3R_M_X3Y, origin_q12[0]);
+    shift_2(m, T3R_M_Y2, T3R_M_XY2, T3R_M_X2Y2, origin_q12[0]);
+    shift_1(m, T3R_M_Y3, T3R_M_XY3, origin_q12[0]);
+    shift_4(m, T3R_M_1, T3R_M_Y, T3R_M_Y2, T3R_M_Y3, T3R_M_Y4, origin_q12[1]);
+    shift_3(m, T3R_M_X, T3R_M_XY, T3R_M_XY2, T3R_M_XY3, origin_q12[1]);
+    shift_2(m, T3R_M_X2, T3R_M_X2Y, T3R_M_X2Y2, origin_q12[1]);
+    shift_1(m, T3R_M_X3, T3R_M_X3Y, origin_q12[1]);
 }
 
 /* The linear part of e = e0 + K (u, v), Q16, and the products of its rows. |a| + |b| <= 1.84 in a row; what multiplies
@@ -192,37 +145,39 @@ static inline int64_t map_2(const int64_t by[3], const int64_t *m, uint32_t shif
 /* To Q7. Below 2^(32.6 + n 4.79) for order n: 2^42.2. */
 static inline void map_gradient(const linear_map *by, const int64_t *m, int64_t *own)
 {
-    own[ONE] = m[ONE] * 16;
-    own[X] = map_1(by->x, m + X, 12);
-    own[Y] = map_1(by->y, m + X, 12);
-    own[X2] = map_2(by->xx, m + X2, 12);
-    own[XY] = map_2(by->xy, m + X2, 12);
-    own[Y2] = map_2(by->yy, m + X2, 12);
+    own[T3R_M_1] = m[T3R_M_1] * 16;
+    own[T3R_M_X] = map_1(by->x, m + T3R_M_X, 12);
+    own[T3R_M_Y] = map_1(by->y, m + T3R_M_X, 12);
+    own[T3R_M_X2] = map_2(by->xx, m + T3R_M_X2, 12);
+    own[T3R_M_XY] = map_2(by->xy, m + T3R_M_X2, 12);
+    own[T3R_M_Y2] = map_2(by->yy, m + T3R_M_X2, 12);
 }
 
 /* To Q7, below 2^(32.6 + n 4.79): 2^51.8. Order 3 by way of Q4, below 2^39.3 x 2^17.76 / 2^14 = 2^43.1; order 4 by way
  * of Q2, below 2^43.3 x 2^17.76 / 2^16 = 2^45.1, which times 2^17.76 is below 2^62.9. */
 static inline void map_curvature(const linear_map *by, const int64_t *m, int64_t *own)
 {
-    own[ONE] = m[ONE] * 32;
-    own[X] = map_1(by->x, m + X, 11);
-    own[Y] = map_1(by->y, m + X, 11);
-    own[X2] = map_2(by->xx, m + X2, 11);
-    own[XY] = map_2(by->xy, m + X2, 11);
-    own[Y2] = map_2(by->yy, m + X2, 11);
-    const int64_t xx_q4[2] = {map_2(by->xx, m + X3, 14), map_2(by->xx, m + X2Y, 14)};
-    const int64_t yy_q4[2] = {map_2(by->yy, m + X3, 14), map_2(by->yy, m + X2Y, 14)};
-    own[X3] = map_1(by->x, xx_q4, 13);
-    own[X2Y] = map_1(by->y, xx_q4, 13);
-    own[XY2] = map_1(by->x, yy_q4, 13);
-    own[Y3] = map_1(by->y, yy_q4, 13);
-    const int64_t xx_q2[3] = {map_2(by->xx, m + X4, 16), map_2(by->xx, m + X3Y, 16), map_2(by->xx, m + X2Y2, 16)};
-    const int64_t yy_q2[3] = {map_2(by->yy, m + X4, 16), map_2(by->yy, m + X3Y, 16), map_2(by->yy, m + X2Y2, 16)};
-    own[X4] = map_2(by->xx, xx_q2, 11);
-    own[X3Y] = map_2(by->xy, xx_q2, 11);
-    own[X2Y2] = map_2(by->yy, xx_q2, 11);
-    own[XY3] = map_2(by->xy, yy_q2, 11);
-    own[Y4] = map_2(by->yy, yy_q2, 11);
+    own[T3R_M_1] = m[T3R_M_1] * 32;
+    own[T3R_M_X] = map_1(by->x, m + T3R_M_X, 11);
+    own[T3R_M_Y] = map_1(by->y, m + T3R_M_X, 11);
+    own[T3R_M_X2] = map_2(by->xx, m + T3R_M_X2, 11);
+    own[T3R_M_XY] = map_2(by->xy, m + T3R_M_X2, 11);
+    own[T3R_M_Y2] = map_2(by->yy, m + T3R_M_X2, 11);
+    const int64_t xx_q4[2] = {map_2(by->xx, m + T3R_M_X3, 14), map_2(by->xx, m + T3R_M_X2Y, 14)};
+    const int64_t yy_q4[2] = {map_2(by->yy, m + T3R_M_X3, 14), map_2(by->yy, m + T3R_M_X2Y, 14)};
+    own[T3R_M_X3] = map_1(by->x, xx_q4, 13);
+    own[T3R_M_X2Y] = map_1(by->y, xx_q4, 13);
+    own[T3R_M_XY2] = map_1(by->x, yy_q4, 13);
+    own[T3R_M_Y3] = map_1(by->y, yy_q4, 13);
+    const int64_t xx_q2[3] = {map_2(by->xx, m + T3R_M_X4, 16), map_2(by->xx, m + T3R_M_X3Y, 16),
+                              map_2(by->xx, m + T3R_M_X2Y2, 16)};
+    const int64_t yy_q2[3] = {map_2(by->yy, m + T3R_M_X4, 16), map_2(by->yy, m + T3R_M_X3Y, 16),
+                              map_2(by->yy, m + T3R_M_X2Y2, 16)};
+    own[T3R_M_X4] = map_2(by->xx, xx_q2, 11);
+    own[T3R_M_X3Y] = map_2(by->xy, xx_q2, 11);
+    own[T3R_M_X2Y2] = map_2(by->yy, xx_q2, 11);
+    own[T3R_M_XY3] = map_2(by->xy, yy_q2, 11);
+    own[T3R_M_Y4] = map_2(by->yy, yy_q2, 11);
 }
 
 void t3r_own_moments_of(const t3r_tile_sums *sums, const t3r_own_axes *axes, int64_t dx_q12, int64_t dy_q12,
@@ -236,9 +191,9 @@ void t3r_own_moments_of(const t3r_tile_sums *sums, const t3r_own_axes *axes, int
         curvature[k] = sums->curvature[k];
     }
     /* the reference: the pixel next to the mean of |g|^2, which C(p + 1, 1) leaves one too far */
-    const int64_t whole = curvature[ONE], most = whole != 0 ? ORIGIN_MOST_Q12 : ORIGIN_FAR_Q12;
-    const int64_t column = whole != 0 ? (2 * curvature[X] - whole) / (2 * whole) : 0;
-    const int64_t row = whole != 0 ? (2 * curvature[Y] - whole) / (2 * whole) : 0;
+    const int64_t whole = curvature[T3R_M_1], most = whole != 0 ? ORIGIN_MOST_Q12 : ORIGIN_FAR_Q12;
+    const int64_t column = whole != 0 ? (2 * curvature[T3R_M_X] - whole) / (2 * whole) : 0;
+    const int64_t row = whole != 0 ? (2 * curvature[T3R_M_Y] - whole) / (2 * whole) : 0;
     centre_gradient(gradient, column, row);
     centre_curvature(curvature, column, row);
 

@@ -1,4 +1,4 @@
-/* From what eight columns of pixels tell a splat to moments in the splat's own coordinates (SPEC.md, "Refinement"). */
+/* From the sums over a splat's pixels in a tile to moments in the splat's own coordinates (SPEC.md, "Refinement"). */
 #ifndef T3R_REFINE_MOMENTS_H
 #define T3R_REFINE_MOMENTS_H
 
@@ -6,16 +6,6 @@
 
 #include "kernels/scatter.h"
 #include "refine.h"
-
-/* Exact sums over one splat's pixels in one tile, in the order of T3R_REFINE_MOMENTS_4: x^k y^l stands for the weight
- * C(p + k, k) C(s + l, l), p and s the columns and rows that are still to come after the pixel. */
-typedef struct t3r_tile_sums {
-    int64_t gradient[T3R_REFINE_MOMENTS_2];  /* levels^2, Q3 */
-    int64_t curvature[T3R_REFINE_MOMENTS_4]; /* levels^2, Q2 */
-    int64_t colour[3];                       /* levels, Q19 */
-    int64_t weight;                          /* Q15 */
-    uint32_t scale;                          /* all of them times 2^scale, curvature 2^(2 scale) */
-} t3r_tile_sums;
 
 /* The splat's own coordinates: e = K d, K = T^T S^-1 with the first two columns of T, so that d q = -e . step for a
  * shift by `step` of them; e per pixel to the right and down, Q20, held to T3R_OWN_AXIS_MOST_Q20. */
@@ -30,9 +20,6 @@ typedef struct t3r_own_moments {
     int64_t gradient[T3R_REFINE_MOMENTS_2];
     int64_t curvature[T3R_REFINE_MOMENTS_4];
 } t3r_own_moments;
-
-/* Adds eight columns that follow those already summed: at most two times. */
-void t3r_tile_sums_add(t3r_tile_sums *sums, const t3r_scatter_sums *columns);
 
 /* dx, dy: the last column and row of the sums less the splat's centre, pixels in Q12, below 2^27. */
 void t3r_own_moments_of(const t3r_tile_sums *sums, const t3r_own_axes *axes, int64_t dx_q12, int64_t dy_q12,

@@ -48,123 +48,24 @@ static void add_tile(const t3r_tile_sums *tile, const t3r_own_moments *own, uint
     }
 }
 
-/* A splat on its way over a tile. */
-typedef struct passage {
-    const t3r_splat *splat;
-    t3r_tile_blocks blocks;
-    uint32_t rows;      /* of each block */
-    uint32_t left, top; /* of the tile */
-} passage;
-
-/* Weights of both blocks, a row each. */
-typedef struct tile_weights {
-    t3r_weights rows[T3R_TILE_SIDE / T3R_LANES * T3R_TILE_SIDE];
-} tile_weights;
-
-static passage passage_of(const t3r_splat *splat, uint32_t left, uint32_t top)
+/* What the pixels of a splat just blended, with these weights, add to its sums. */
+static void scatter(const t3r_refine_view *job, const t3r_wanted *want, const t3r_tile *tile, const t3r_splat *s,
+                    const t3r_tile_splat *splat, uint32_t left, uint32_t top, const t3r_blend_weights *weights)
 {
-    t3r_tile_blocks blocks = t3r_blocks_of(splat, left, top);
-    return (passage){splat, blocks, blocks.last - blocks.first + 1, left, top};
-}
-
-static uint32_t column_of(const passage *p, uint32_t block)
-{
-    return p->blocks.column + block * T3R_LANES;
-}
-
-/* Blends by the rasterizer's own kernel; what transmittance loses are the weights, one block's rows after the other's.
- * NULL: not wanted. */
-static void blend(const passage *p, t3r_tile *tile, t3r_weights *weights)
-{
-    const uint32_t first = p->blocks.first, last = p->blocks.last;
-    for (uint32_t i = 0; i < p->blocks.count; i++) {
-        t3r_weights *block = weights == NULL ? NULL : weights + i * p->rows;
-        if (block != NULL) {
-            t3r_weights_keep(tile, column_of(p, i), first, last, block);
-        }
-        t3r_lane_splat lane;
-        if (t3r_tile_lane(p->splat, p->left, p->top, column_of(p, i), &lane)) {
-            t3r_blend_rows(tile, &lane, column_of(p, i), first, last);
-        }
-        if (block != NULL) {
-            t3r_weights_take(tile, column_of(p, i), first, last, block);
-        }
-    }
-}
-
-static void blend_again(const passage *p, t3r_tile *tile, const t3r_weights *weights)
-{
-    for (uint32_t i = 0; i < p->blocks.count; i++) {
-        t3r_weights_blend(tile, p->splat->colour_q7, column_of(p, i), p->blocks.first, p->blocks.last,
-                          weights + i * p->rows);
-    }
-}
-
-/* The weights of pixels that count, in the splat's box: at rows + 16 block + row; returns all of their bits. Beyond the
- * box alpha is 0 but for roundings, and `area` counts the box. */
-static uint32_t mask(const t3r_wanted *want, const passage *p, const t3r_weights *weights, tile_weights *masked)
-{
-    const uint32_t x0 = T3R_MAX(p->splat->x0, p->left) - p->left, x1 = p->splat->x1 - p->left;
-    uint32_t bits = 0;
-    for (uint32_t i = 0; i < p->blocks.count; i++) {
-        uint16_t inside[T3R_LANES];
-        for (uint32_t k = 0; k < T3R_LANES; k++) {
-            uint32_t x = column_of(p, i) + k;
-            inside[k] = x >= x0 && x <= x1 ? UINT16_MAX : 0;
-        }
-        bits |= t3r_weights_mask(want, inside, column_of(p, i), p->blocks.first, p->blocks.last, weights + i * p->rows,
-                                 masked->rows + i * T3R_TILE_SIDE);
-    }
-    return bits;
-}
-
-static bool is_empty(const tile_weights *masked, uint32_t blocks, uint32_t row)
-{
-    uint64_t bits = 0;
-    for (uint32_t i = 0; i < blocks; i++) {
-        uint64_t halves[2];
-        memcpy(halves, masked->rows[i * T3R_TILE_SIDE + row].q16, sizeof halves);
-        bits |= halves[0] | halves[1];
-    }
-    return bits == 0;
-}
-
-/* What a splat just blended, with these weights, is told. */
-static void scatter(const t3r_refine_view *job, const t3r_wanted *want, const t3r_tile *tile, const passage *p,
-                    const t3r_weights *weights)
-{
-    const t3r_splat *s = p->splat;
-    const uint32_t index = (uint32_t)(s - job->splats), blocks = p->blocks.count;
+    const uint32_t index = (uint32_t)(s - job->splats);
     t3r_refine_sums *to = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
     __builtin_prefetch(to, 1); /* needed last, and seldom near the one before */
     __builtin_prefetch(to->curvature + 8, 1);
-    tile_weights masked;
-    uint32_t bits = mask(want, p, weights, &masked);
-    if (bits == 0) {
+    t3r_tile_sums sums;
+    if (!job->kernels->scatter(want, tile, splat, weights, &sums)) {
         return;
     }
-    uint32_t first = p->blocks.first, last = p->blocks.last; /* a row between them is not empty */
-    while (is_empty(&masked, blocks, first)) {
-        first++;
-    }
-    while (is_empty(&masked, blocks, last)) {
-        last--;
-    }
-    t3r_tile_sums sums;
-    memset(&sums, 0, sizeof sums);
-    sums.scale = 15 - t3r_msb32(bits);
-    for (uint32_t i = 0; i < blocks; i++) {
-        t3r_scatter_sums columns;
-        t3r_scatter(want, tile, s->colour_q7, column_of(p, i), first, last, masked.rows + i * T3R_TILE_SIDE, sums.scale,
-                    &columns);
-        t3r_tile_sums_add(&sums, &columns);
-    }
-    uint32_t right = p->left + column_of(p, blocks) - 1, bottom = p->top + last;
-    uint32_t columns = T3R_MIN(s->x1 + 1u, p->left + T3R_TILE_SIDE) - T3R_MAX(s->x0, p->left);
+    uint32_t right = left + splat->column + splat->groups * T3R_LANES - 1u, bottom = top + sums.last;
+    uint32_t columns = splat->x1 - splat->x0 + 1u, rows = splat->last - splat->first + 1u;
     t3r_own_axes axes = axes_of(job, index);
     t3r_own_moments own;
     t3r_own_moments_of(&sums, &axes, ((int64_t)right << 12) - s->x_q12, ((int64_t)bottom << 12) - s->y_q12, &own);
-    add_tile(&sums, &own, columns * p->rows, to);
+    add_tile(&sums, &own, columns * rows, to);
 }
 
 /* What the drawn tile lacks; columns and rows beyond the image count for nothing. */
@@ -200,10 +101,11 @@ static uint32_t draw(const t3r_refine_view *job, const uint32_t *list, uint32_t 
         if (used % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(tile)) {
             break;
         }
-        passage p = passage_of(&job->splats[list[used]], left, top);
-        uint32_t more = p.blocks.count * p.rows;
+        t3r_tile_splat splat;
+        t3r_splat_in_tile(&job->splats[list[used]], left, top, &splat);
+        uint32_t more = splat.groups * (splat.last - splat.first + 1u);
         keeps = keeps && more <= job->kept_rows - rows;
-        blend(&p, tile, keeps ? job->kept + rows : NULL);
+        job->kernels->blend(tile, &splat, keeps ? job->kept + rows : NULL);
         rows += keeps ? more : 0;
         *kept += keeps;
     }
@@ -219,20 +121,23 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
 
     t3r_tile tile;
     t3r_tile_clear(&tile);
-    const t3r_weights *next = job->kept;
+    const t3r_blend_weights *next = job->kept;
     for (uint32_t i = 0; i < used; i++) {
-        passage p = passage_of(&job->splats[list[i]], left, top);
-        tile_weights again;
-        const t3r_weights *weights = i < kept ? next : again.rows;
+        const t3r_splat *s = &job->splats[list[i]];
+        t3r_tile_splat splat;
+        t3r_blend_weights again[T3R_TILE_GROUPS * T3R_TILE_SIDE];
+        const t3r_blend_weights *weights = i < kept ? next : again;
         if (i < kept) {
-            blend_again(&p, &tile, next);
-            next += p.blocks.count * p.rows;
+            t3r_splat_span(s, left, top, &splat);
+            job->kernels->blend_again(&tile, &splat, next);
+            next += splat.groups * (splat.last - splat.first + 1u);
         } else {
-            blend(&p, &tile, again.rows);
+            t3r_splat_in_tile(s, left, top, &splat);
+            job->kernels->blend(&tile, &splat, again);
         }
         /* unsigned: an index below the slice wraps and fails the test */
         if (list[i] - job->slice.first < job->slice.count) {
-            scatter(job, &want, &tile, &p, weights);
+            scatter(job, &want, &tile, s, &splat, left, top, weights);
         }
     }
 }

@@ -4,12 +4,13 @@
 
 #include <stdint.h>
 
-#include "kernels/scatter.h"
+#include "kernels/kernels.h"
 #include "raster/raster_tile.h"
 #include "refine_bands.h"
 
 /* A view to measure, and the slice of the scene whose sums there is room for. */
 typedef struct t3r_refine_view {
+    const t3r_kernels *kernels;
     const t3r_view *view;
     const t3r_projection *projection;
     const t3r_gaussian *scene;
@@ -17,9 +18,10 @@ typedef struct t3r_refine_view {
     t3r_refine_slice slice;
     const t3r_refine_borders *borders;
     const t3r_refine_band *bands;
-    uint32_t band;     /* number of the band that is drawn */
-    uint32_t across;   /* tiles a row */
-    t3r_weights *kept; /* room for `kept_rows` rows of weights between a tile's two drawings; 0 will do, but slower */
+    uint32_t band;   /* number of the band that is drawn */
+    uint32_t across; /* tiles a row */
+    t3r_blend_weights
+        *kept; /* room for `kept_rows` rows of weights between a tile's two drawings; 0 will do, but slower */
     uint32_t kept_rows;
     const uint16_t *gain_q14; /* of the view's three channels: what it shows is levelled first */
 } t3r_refine_view;
@@ -30,7 +32,7 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
                      uint32_t tile_y);
 
 /* Draws the tile and accumulates nothing: its squared residuals, three channels, Q8, below 2^34; adds the pixels that
- * have depth, and so count, to *pixels. Of the job only view, splats and gain_q14 are read. */
+ * have depth, and so count, to *pixels. Of the job only kernels, view, splats and gain_q14 are read. */
 uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                                uint32_t tile_y, uint32_t *pixels);
 

@@ -6,14 +6,15 @@
 #include "match_layout.h"
 #include "match_winner.h"
 
-static void census(const uint8_t *luma, uint32_t width, uint32_t height, uint32_t y, uint8_t *bits)
+static void census(const t3r_kernels *kernels, const uint8_t *luma, uint32_t width, uint32_t height, uint32_t y,
+                   uint8_t *bits)
 {
     const uint8_t *rows[T3R_CENSUS_ROWS];
     for (int32_t i = 0; i < T3R_CENSUS_ROWS; i++) {
         int32_t row = t3r_clamp32((int32_t)y + i - T3R_CENSUS_ROWS / 2, 0, (int32_t)height - 1);
         rows[i] = luma + (size_t)row * width;
     }
-    t3r_census_row(rows, width, width, bits);
+    kernels->census_row(rows, width, width, bits);
 }
 
 static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t y, uint8_t *cost)
@@ -21,8 +22,8 @@ static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t
     const uint32_t width = match->width, count = match->disparities;
     const uint32_t right = (uint32_t)T3R_MATCH_RIGHT(width, count);
     const uint8_t *luma = match->luma[0] + (size_t)y * width, *luma_right = match->luma[1] + (size_t)y * right;
-    census(match->luma[0], width, match->height, y, w->bits);
-    census(match->luma[1], right, match->height, y, w->straight);
+    census(match->kernels, match->luma[0], width, match->height, y, w->bits);
+    census(match->kernels, match->luma[1], right, match->height, y, w->straight);
     for (uint32_t i = 0; i < T3R_CENSUS_BYTES; i++) {
         for (uint32_t n = 0; n < right; n++) {
             w->bits_right[i * right + n] = w->straight[i * right + right - 1 - n];
@@ -37,7 +38,8 @@ static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t
             own[i] = w->bits[i * width + x];
         }
         if (luma[x] != 0) {
-            t3r_census_cost(own, w->bits_right + (width - 1 - x), right, w->least + (width - 1 - x), count, to);
+            match->kernels->census_cost(own, w->bits_right + (width - 1 - x), right, w->least + (width - 1 - x), count,
+                                        to);
         } else {
             for (uint32_t k = 0; k < count; k++) {
                 to[k] = 0; /* paths pass through a pixel without luma */
@@ -68,7 +70,7 @@ void t3r_match_pair(const t3r_match *match)
     const t3r_path_costs costs = t3r_path_costs_of(match->p1, match->p2, match->p2_min);
     t3r_cut cut = t3r_cut_of(match->work, T3R_MATCH_PATH_BYTES_(width, height, count, match->paths));
     t3r_match_layout w = t3r_match_lay_out(match, &cut);
-    t3r_path_row row = {.width = width, .disparities = count, .costs = &costs};
+    t3r_path_row row = {.kernels = match->kernels, .width = width, .disparities = count, .costs = &costs};
 
     for (uint32_t path = 0; path < T3R_MATCH_STATES(match->paths); path++) {
         for (int i = 0; i < 2; i++) {

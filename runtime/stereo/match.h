@@ -13,14 +13,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "kernels/census.h"
-#include "kernels/path.h"
+#include "kernels/kernels.h"
+#include "path.h"
 #include "trim3r_arena.h"
 
 #define T3R_NO_DISPARITY UINT16_MAX
 #define T3R_DISPARITY_BITS 7 /* disparities k are in Q7 */
 
 typedef struct t3r_match {
+    const t3r_kernels *kernels;
     uint32_t width, height;  /* of the left plane; at least 8 x 8 */
     uint32_t disparities;    /* 16..T3R_PATH_MOST, a multiple of 16 */
     uint32_t paths;          /* 4 or 8 */

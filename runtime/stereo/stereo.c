@@ -53,6 +53,7 @@ static t3r_match match_of(const planes *p, const t3r_stereo_settings *settings, 
                           uint32_t disparities)
 {
     return (t3r_match){
+        .kernels = settings->kernels,
         .width = width,
         .height = height,
         .disparities = disparities,

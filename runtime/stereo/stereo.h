@@ -21,6 +21,7 @@
 #define T3R_STEREO_SURE 64u  /* from here on as good as measured: below, errors are two to four times as frequent */
 
 typedef struct t3r_stereo_settings {
+    const t3r_kernels *kernels;
     uint32_t disparities; /* most that are compared: 16..T3R_PATH_MOST, a multiple of 16 */
     uint32_t paths;       /* 4 or 8 */
     uint32_t fill;        /* 1 = holes get their surroundings' depth, T3R_STEREO_FILLED */

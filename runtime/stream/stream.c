@@ -259,7 +259,7 @@ static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t sl
     t3r_view_texture(rt, view);
     t3r_hash_wavelet(rt, views, slot, slot + 1);
     report->points = label_points(rt, view);
-    t3r_blur_texture(view, 1, &work.workers);
+    t3r_blur_texture(&rt->kernels, view, 1, &work.workers);
 
     t3r_budget_settings settings = settings_of(rt);
     t3r_map map = t3r_map_of(rt);

@@ -49,7 +49,7 @@ t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
         points.maps[v] = t3r_pointmap_of(&views[v], rt->frame.exponent);
     }
     t3r_point_source source = {&points, points.pixels * rt->views, pixel_features};
-    t3r_cluster_settings settings = {rt->config.clusters, rt->config.cluster_batches, rt->config.seed};
+    t3r_cluster_settings settings = {&rt->kernels, rt->config.clusters, rt->config.cluster_batches, rt->config.seed};
     const t3r_cluster_host host = {
         .workers = t3r_workers_of(rt),
         .sums = t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_SUMS),

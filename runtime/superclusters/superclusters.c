@@ -138,6 +138,7 @@ static bool step(const t3r_cluster_host *host, uint32_t done, uint32_t total)
 
 /* A run over points that workers share: each adds to sums of its own, and these are added up in the end. */
 typedef struct means_job {
+    const t3r_kernels *kernels;
     const t3r_point_source *source;
     const t3r_cluster_host *host;
     t3r_cluster_work *work;
@@ -186,7 +187,7 @@ static void add_point(t3r_cluster_sums *sums, uint16_t label, const int16_t feat
 static void label_block(const means_job *job, uint32_t worker, uint32_t valid, const int16_t feature[][T3R_DIMENSIONS],
                         uint16_t *guess, uint16_t *label)
 {
-    t3r_nearest(&job->work->centres, &job->work->u.means.neighbours, valid, feature, *guess, label);
+    job->kernels->nearest(&job->work->centres, &job->work->u.means.neighbours, valid, feature, *guess, label);
     for (uint32_t i = 0; i < valid; i++) {
         *guess = label[i];
         add_point(sums_of(job, worker), label[i], feature[i]);
@@ -228,7 +229,7 @@ static void batch_task(void *context, uint32_t index, uint32_t worker)
 static void begin_means(means_job *job, const t3r_cluster *clusters)
 {
     load_centres(&job->work->centres, clusters, job->count);
-    t3r_find_neighbours(&job->work->centres, &job->work->u.means.neighbours);
+    job->kernels->nearest_begin(&job->work->centres, &job->work->u.means.neighbours);
     clear_sums(job);
 }
 
@@ -315,7 +316,12 @@ uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_set
         seed(settings, sample, clusters, work);
     }
     memset(work->u.means.weight, 0, sizeof work->u.means.weight);
-    means_job job = {.source = source, .host = host, .work = work, .count = settings->clusters, .labels = labels};
+    means_job job = {.kernels = settings->kernels,
+                     .source = source,
+                     .host = host,
+                     .work = work,
+                     .count = settings->clusters,
+                     .labels = labels};
     for (uint32_t batch = 0; batch < settings->batches; batch++) {
         if (!step(host, batch, total)) {
             return T3R_CLUSTERS_CANCELLED;

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "kernels/nearest.h"
+#include "kernels/kernels.h"
 #include "core/workers.h"
 #include "trim3r.h"
 #include "core/views.h"
@@ -62,6 +62,7 @@ typedef struct t3r_cluster_work {
 } t3r_cluster_work;
 
 typedef struct t3r_cluster_settings {
+    const t3r_kernels *kernels;
     uint32_t clusters, batches, seed;
 } t3r_cluster_settings;
 

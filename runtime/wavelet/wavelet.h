@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "kernels/kernels.h"
 #include "trim3r.h"
 
 #define T3R_WAVELET_FRACTION 4
@@ -15,7 +16,7 @@
 /* Texture energy of an image: E = sum over levels of |h| + |v| + |d| in orthonormal units of luma, Q4, a
  * coefficient of level l covering its 2^l x 2^l pixels; clamped to 65535. plane: width x height; work:
  * T3R_WAVELET_ROW_BYTES(width), aligned for int16_t. */
-void t3r_wavelet_texture(const uint8_t *const colour[3], uint32_t width, uint32_t height, uint32_t levels,
-                         t3r_wavelet kind, uint16_t *texture_q4, int16_t *plane, int16_t *work);
+void t3r_wavelet_texture(const t3r_kernels *kernels, const uint8_t *const colour[3], uint32_t width, uint32_t height,
+                         uint32_t levels, t3r_wavelet kind, uint16_t *texture_q4, int16_t *plane, int16_t *work);
 
 #endif

@@ -12,14 +12,17 @@
 typedef struct halves {
     int16_t *low, *high;
     uint32_t lows, highs;
+    const t3r_kernels *kernels;
 } halves;
 
-static halves halves_in(int16_t *work, uint32_t width)
+static halves halves_of(const t3r_level *level)
 {
+    const uint32_t width = level->width;
     halves x;
+    x.kernels = level->kernels;
     x.lows = (width + 1) / 2;
     x.highs = width / 2;
-    x.low = work + PAD;
+    x.low = level->work + PAD;
     x.high = x.low + (x.lows + PAD - 1) / PAD * PAD + 2 * PAD;
     return x;
 }
@@ -37,16 +40,16 @@ static void forward_db2(int16_t *row, halves x)
     uint32_t width = x.lows + x.highs, pairs = (width - 1) / 2;
     int16_t *last = &x.low[pairs + 1]; /* the sample that an even width leaves */
 
-    t3r_row_split(x.low + 1, x.high, row + 1, width - 1);
+    x.kernels->split_row(x.low + 1, x.high, row + 1, width - 1);
     x.low[0] = row[0];
     if (width % 2 == 0) {
         t3r_row_db2_last(last, &x.high[pairs - 1], &x.low[pairs], 1);
     }
     t3r_row_db2_first(x.low, x.low + 1, 1);
-    t3r_row_db2_predict(x.high, x.low + 1, pairs);
+    x.kernels->db2_predict(x.high, x.low + 1, pairs);
     x.high[pairs] = x.high[pairs - 1];
-    t3r_row_db2_update(x.low + 1, x.high, x.high + 1, pairs);
-    t3r_row_add(x.high, x.low, pairs);
+    x.kernels->db2_update(x.low + 1, x.high, x.high + 1, pairs);
+    x.kernels->add_row(x.high, x.low, pairs);
     if (width % 2 == 0) {
         x.high[pairs] = *last;
     }
@@ -57,9 +60,9 @@ static void forward_db2(int16_t *row, halves x)
 
 static void forward_haar(int16_t *row, halves x)
 {
-    t3r_row_split(x.low, x.high, row, x.lows + x.highs);
-    t3r_row_subtract(x.high, x.low, x.highs);
-    t3r_row_haar_update(x.low, x.high, x.highs);
+    x.kernels->split_row(x.low, x.high, row, x.lows + x.highs);
+    x.kernels->subtract_row(x.high, x.low, x.highs);
+    x.kernels->haar_update(x.low, x.high, x.highs);
     store_halves(row, x);
 }
 
@@ -80,11 +83,11 @@ static void repeat_even(halves x)
 
 static void forward_cdf53(int16_t *row, halves x)
 {
-    t3r_row_split(x.low, x.high, row, x.lows + x.highs);
+    x.kernels->split_row(x.low, x.high, row, x.lows + x.highs);
     repeat_even(x);
-    t3r_row_cdf53_predict(x.high, x.low, x.low + 1, x.highs);
+    x.kernels->cdf53_predict(x.high, x.low, x.low + 1, x.highs);
     repeat_odds(x);
-    t3r_row_cdf53_update(x.low, x.high - 1, x.high, x.lows);
+    x.kernels->cdf53_update(x.low, x.high - 1, x.high, x.lows);
     store_halves(row, x);
 }
 
@@ -92,7 +95,7 @@ static void forward_cdf53(int16_t *row, halves x)
 
 void t3r_wavelet_row_forward(const t3r_level *level, int16_t *row)
 {
-    halves x = halves_in(level->work, level->width);
+    halves x = halves_of(level);
 
     if (level->width < 2) {
         return;

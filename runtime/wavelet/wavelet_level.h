@@ -43,6 +43,7 @@
 /* The rows of one level. They are the plane's first, or, where the levels before left theirs in place, the low
  * rows of the last of these. */
 typedef struct t3r_level {
+    const t3r_kernels *kernels;
     int16_t *plane;
     size_t stride;          /* samples from row to row of the plane */
     uint32_t width, height; /* of this level */

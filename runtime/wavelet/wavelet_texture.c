@@ -39,9 +39,9 @@ static void texture_row(const t3r_level *x, uint32_t index, uint32_t n, uint16_t
     }
     const int16_t *v = t3r_high_row(x, n), *d = v + lows;
     if (index == 0) {
-        t3r_row_texture_finest(out, h, v, d, finest_d_gain_q16[x->kind], highs);
+        x->kernels->texture_finest(out, h, v, d, finest_d_gain_q16[x->kind], highs);
     } else {
-        t3r_row_texture_coarse(out, h, v, d, gain, gain_q8[x->kind][index - 1], highs);
+        x->kernels->texture_coarse(out, h, v, d, gain, gain_q8[x->kind][index - 1], highs);
     }
     if (lows > highs) {
         out[highs] = texture_of_one(v[highs], gain);
@@ -66,19 +66,19 @@ static void texture_plane(const t3r_level *level, uint32_t levels, uint16_t *tex
             }
             texture_row(&level[l], l, y / (2u << l), rows[l]);
             if (l + 1 < levels) {
-                t3r_row_texture_add(rows[l], rows[l + 1], level[l + 1].width);
+                level[l].kernels->texture_add(rows[l], rows[l + 1], level[l + 1].width);
             }
         }
         uint16_t *out = texture_q4 + (size_t)y * width;
-        t3r_row_texture_spread(out, rows[0], width);
+        level[0].kernels->texture_spread(out, rows[0], width);
         if (y + 1 < height) {
             memcpy(out + width, out, width * sizeof(uint16_t));
         }
     }
 }
 
-void t3r_wavelet_texture(const uint8_t *const colour[3], uint32_t width, uint32_t height, uint32_t levels,
-                         t3r_wavelet kind, uint16_t *texture_q4, int16_t *plane, int16_t *work)
+void t3r_wavelet_texture(const t3r_kernels *kernels, const uint8_t *const colour[3], uint32_t width, uint32_t height,
+                         uint32_t levels, t3r_wavelet kind, uint16_t *texture_q4, int16_t *plane, int16_t *work)
 {
     t3r_level level[T3R_MAX_LEVELS];
 
@@ -88,6 +88,7 @@ void t3r_wavelet_texture(const uint8_t *const colour[3], uint32_t width, uint32_
     }
     for (uint32_t l = 0; l < levels; l++) {
         level[l] = t3r_level_of(plane, width, height, l, kind, work);
+        level[l].kernels = kernels;
         level[l].in_place = l;
         level[l].colour = l == 0 ? colour : NULL;
         t3r_wavelet_level_forward(&level[l]);

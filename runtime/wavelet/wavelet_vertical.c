@@ -10,7 +10,7 @@ static void make_row(const t3r_level *x, uint32_t y)
 
     if (x->colour != NULL) {
         size_t at = (size_t)y * x->width;
-        t3r_row_luma(row, x->colour[0] + at, x->colour[1] + at, x->colour[2] + at, x->width);
+        x->kernels->luma_row(row, x->colour[0] + at, x->colour[1] + at, x->colour[2] + at, x->width);
     }
     t3r_wavelet_row_forward(x, row);
 }
@@ -38,7 +38,7 @@ static void predict_pair(const t3r_level *x, uint32_t n)
         make_row(x, 2 * n + 1);
         t3r_row_db2_last(t3r_level_row(x, 2 * n + 1), b_row(x, n), a_row(x, n), x->width);
     }
-    t3r_row_db2_predict(b_row(x, n), a_row(x, n), x->width);
+    x->kernels->db2_predict(b_row(x, n), a_row(x, n), x->width);
 }
 
 static void forward_db2(const t3r_level *x)
@@ -52,8 +52,8 @@ static void forward_db2(const t3r_level *x)
         if (n < pairs) {
             predict_pair(x, n + 1);
         }
-        t3r_row_db2_update(a_row(x, n), b_row(x, n), b_row(x, T3R_MIN(n + 1, pairs)), x->width);
-        t3r_row_add(b_row(x, n), a_row(x, n - 1), x->width);
+        x->kernels->db2_update(a_row(x, n), b_row(x, n), b_row(x, T3R_MIN(n + 1, pairs)), x->width);
+        x->kernels->add_row(b_row(x, n), a_row(x, n - 1), x->width);
     }
 }
 
@@ -66,8 +66,8 @@ static void forward_haar(const t3r_level *x)
     for (uint32_t n = 0; n < pairs; n++) {
         make_row(x, 2 * n);
         make_row(x, 2 * n + 1);
-        t3r_row_subtract(t3r_high_row(x, n), t3r_low_row(x, n), x->width);
-        t3r_row_haar_update(t3r_low_row(x, n), t3r_high_row(x, n), x->width);
+        x->kernels->subtract_row(t3r_high_row(x, n), t3r_low_row(x, n), x->width);
+        x->kernels->haar_update(t3r_low_row(x, n), t3r_high_row(x, n), x->width);
     }
     if (x->height % 2 != 0) {
         make_row(x, 2 * pairs);
@@ -93,16 +93,16 @@ static void forward_cdf53(const t3r_level *x)
         if (2 * n + 2 < x->height) {
             make_row(x, 2 * n + 2);
         }
-        t3r_row_cdf53_predict(t3r_high_row(x, n), t3r_low_row(x, n), even_behind(x, n), x->width);
+        x->kernels->cdf53_predict(t3r_high_row(x, n), t3r_low_row(x, n), even_behind(x, n), x->width);
         if (n > 0) {
-            t3r_row_cdf53_update(t3r_low_row(x, n), t3r_high_row(x, n - 1), t3r_high_row(x, n), x->width);
+            x->kernels->cdf53_update(t3r_low_row(x, n), t3r_high_row(x, n - 1), t3r_high_row(x, n), x->width);
         } else {
-            t3r_row_cdf53_update(t3r_low_row(x, 0), t3r_high_row(x, 0), t3r_high_row(x, 0), x->width);
+            x->kernels->cdf53_update(t3r_low_row(x, 0), t3r_high_row(x, 0), t3r_high_row(x, 0), x->width);
         }
     }
     if (x->height % 2 != 0) {
         const int16_t *last = t3r_high_row(x, pairs - 1);
-        t3r_row_cdf53_update(t3r_low_row(x, pairs), last, last, x->width);
+        x->kernels->cdf53_update(t3r_low_row(x, pairs), last, last, x->width);
     }
 }
 

@@ -35,7 +35,7 @@ def refused():
         "--working": ["64", "4x64", "64x5000"],
         "--arena": ["x", "-1", "1k", ""],
         "--threads": ["0", "65"],
-        "--cpu-mask": ["all"],
+        "--cpu-mask": ["every", "avx2,", ",avx2", "0x", "-1", "4294967296", ""],
         "--method": ["best", "", "pup+", "+finetune"],
         "--finetune-iterations": ["0", "100001", "x"],
         "--depth": ["Stereo", "radar", ""],

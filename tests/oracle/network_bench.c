@@ -21,7 +21,7 @@ static int8_t features[SIDE][SIDE * T3R_FEATURES];
 static void run(const void *weights, void *work, uint32_t every)
 {
     t3r_network net;
-    t3r_network_begin(&net, weights, SIDE, SIDE, 0, work);
+    t3r_network_begin(&net, &t3r_kernels_c, weights, SIDE, SIDE, 0, work);
     for (int32_t y = t3r_network_first(&net); y < SIDE; y++) {
         while (t3r_network_wants_features(&net, y)) {
             uint32_t row;

@@ -157,7 +157,7 @@ static cloud cloud_of(uint32_t count, uint32_t blobs, double reach, double sprea
 static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
 {
     const t3r_point_source source = {c, c->count, cloud_features};
-    const t3r_cluster_settings settings = {k, 24, 1};
+    const t3r_cluster_settings settings = {&t3r_kernels_c, k, 24, 1};
     t3r_cluster *clusters = calloc(k, sizeof *clusters);
     uint16_t *labels = calloc(c->count, sizeof *labels);
     t3r_cluster_work *work = calloc(1, sizeof *work);

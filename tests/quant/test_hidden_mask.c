@@ -60,7 +60,7 @@ static void run(const uint8_t *file, int16_t (*out)[T3R_HEAD_OUTPUTS])
     void *work = malloc(t3r_network_work_bytes(file, W));
     assert_non_null(work);
     t3r_network net;
-    t3r_network_begin(&net, file, W, H, 0, work);
+    t3r_network_begin(&net, &t3r_kernels_c, file, W, H, 0, work);
     for (int32_t y = t3r_network_first(&net); y < H; y++) {
         while (t3r_network_wants_features(&net, y)) {
             uint32_t row;

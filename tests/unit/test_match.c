@@ -61,7 +61,7 @@ static void census(void **state)
         for (int i = 0; i < 5; i++) {
             rows[i] = picture + i * width;
         }
-        t3r_census_row(rows, (uint32_t)width, (uint32_t)width, bits);
+        t3r_census_row_c(rows, (uint32_t)width, (uint32_t)width, bits);
         for (int x = 0; x < width; x++) {
             uint8_t expected[24];
             census_of(picture, width, 5, x, 2, expected);
@@ -87,6 +87,7 @@ static pair pair_new(uint32_t width, uint32_t height, uint32_t disparities, uint
     pair p = {.m = {.width = width,
                     .height = height,
                     .disparities = disparities,
+                    .kernels = &t3r_kernels_c,
                     .paths = paths,
                     .p1 = 12,
                     .p2 = 60,

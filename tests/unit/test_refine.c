@@ -15,6 +15,13 @@ static t3r_camera camera[2];
 static void *memory;
 static size_t memory_bytes;
 
+static t3r_correction solve(const t3r_refine_sums *sums, const t3r_correction *before)
+{
+    t3r_correction c = *before;
+    t3r_solve_c(sums, 1, &c);
+    return c;
+}
+
 typedef struct counter {
     uint32_t calls, cancel_at; /* 0 = never */
 } counter;
@@ -194,7 +201,7 @@ static void nothing_missing_changes_nothing(void **state)
         for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
             sums.curvature[k] = (int32_t)unit_between(&seed, -INT32_MAX, INT32_MAX);
         }
-        t3r_correction correction = t3r_refine_solve(&sums, &still);
+        t3r_correction correction = solve(&sums, &still);
         t3r_gaussian before = {.position_q20 = {1, -2, 3 << 20},
                                .factor = {100, -7, 3, 9000, 32767, 0, -32768, 12, 1},
                                .factor_exponent = (int8_t)unit_between(&seed, -60, 15),
@@ -221,7 +228,7 @@ static void extremes_stay_in_range(void **state)
         memcpy(&sums, words, sizeof words);
         t3r_correction c = {.step_q16 = {0}};
         for (uint32_t pass = 0; pass < 4; pass++) { /* momentum adds up */
-            c = t3r_refine_solve(&sums, &c);
+            c = solve(&sums, &c);
             assert_true(abs(c.step_q16[0]) <= 32767);
             assert_true(sums.weight <= 0 ? c.share_q14 == 0 : c.share_q14 >= 512 && c.share_q14 <= 8192);
             for (int k = 1; k < T3R_REFINE_PARAMETERS; k++) {
@@ -257,7 +264,7 @@ static void momentum_fades(void **state)
         .colour_q7 = {32640, -32640, 100}, .step_q16 = {32767, -32767, 1600, 160, -160, 3}, .share_q14 = 1000};
     for (int i = 0; i < 3; i++) {
         t3r_correction before = c;
-        c = t3r_refine_solve(&sums, &before);
+        c = solve(&sums, &before);
         for (int k = 0; k < 3; k++) {
             assert_int_equal(c.colour_q7[k], t3r_round_shift32(before.colour_q7[k] * 3, 4));
         }
@@ -267,7 +274,7 @@ static void momentum_fades(void **state)
         assert_int_equal(c.share_q14, 1000); /* no curvature: nothing is known of the answer */
     }
     sums.weight = 0; /* not seen: nothing moves */
-    c = t3r_refine_solve(&sums, &c);
+    c = solve(&sums, &c);
     assert_memory_equal(&c, &still, sizeof c);
 }
 
@@ -296,20 +303,20 @@ static void share_follows_the_answer(void **state)
     } cases[] = {{4, 5632}, {2, 5632}, {1, 3755}, {0, 2816}, {-4, 1408}, {-12, 704}, {-40, 704}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         t3r_refine_sums sums = told_of(4);
-        t3r_correction c = t3r_refine_solve(&sums, &still);
+        t3r_correction c = solve(&sums, &still);
         assert_int_equal(c.share_q14, 2816);
         sums = told_of(cases[i].quarters);
-        c = t3r_refine_solve(&sums, &c);
+        c = solve(&sums, &c);
         assert_in_range(c.share_q14, cases[i].share_q14 - 4, cases[i].share_q14 + 4);
     }
     static const int32_t onward[] = {2816, 5632, 8192, 8192};
     t3r_correction on = still, to_and_fro = still;
     for (int pass = 0; pass < 8; pass++) {
         t3r_refine_sums sums = told_of(4);
-        on = t3r_refine_solve(&sums, &on);
+        on = solve(&sums, &on);
         assert_int_equal(on.share_q14, onward[T3R_MIN(pass, 3)]);
         sums = told_of(pass % 2 == 0 ? 4 : -4);
-        to_and_fro = t3r_refine_solve(&sums, &to_and_fro);
+        to_and_fro = solve(&sums, &to_and_fro);
     }
     assert_int_equal(to_and_fro.share_q14, 512);
 }
@@ -327,7 +334,7 @@ static void largest_share_stays_in_range(void **state)
             sums.gradient[k] = sign * INT32_MAX;
         }
         t3r_correction before = {.step_q16 = {32767, 32767, 32767, 8066, 8066, 8066}, .share_q14 = 8192};
-        t3r_correction c = t3r_refine_solve(&sums, &before);
+        t3r_correction c = solve(&sums, &before);
         assert_in_range(c.share_q14, 2048, 8192);
     }
 }

@@ -3,6 +3,7 @@
 
 #include <stdbool.h>
 
+#include "kernels/scatter_columns.h"
 #include "refine/refine_moments.h"
 
 enum { SIDE = T3R_TILE_SIDE, CURVATURE_MOST_Q2 = 786432, GRADIENT_MOST_Q3 = 1566720 };

@@ -11,7 +11,7 @@ static uint8_t colour[3][SIDE * SIDE], validity[SIDE * SIDE];
 static t3r_view view;
 static t3r_gaussian scene[SPLATS];
 static t3r_splat splats[SPLATS];
-static t3r_weights kept[4096];
+static t3r_blend_weights kept[4096];
 static const uint16_t gain_q14[3] = {1 << 14, 17000, 16000};
 /* 64 px of focal length, the camera at the origin */
 static const t3r_projection projection = {.world_to_camera_q30 = {1 << 30, 0, 0, 0, 1 << 30, 0, 0, 0, 1 << 30},
@@ -103,7 +103,8 @@ static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint
 {
     uint32_t list[SPLATS], listed = list_tile(x, y, list);
     clear_sums(sums, first, count);
-    t3r_refine_view job = {.view = &view,
+    t3r_refine_view job = {.kernels = &t3r_kernels_c,
+                           .view = &view,
                            .projection = &projection,
                            .scene = scene,
                            .splats = splats,
@@ -197,13 +198,9 @@ static void add_pixel(const pixel *p, const t3r_splat *s, const own_axes *axes, 
 
 static void draw(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile *tile)
 {
-    t3r_tile_blocks blocks = t3r_blocks_of(s, left, top);
-    for (uint32_t i = 0; i < blocks.count; i++) {
-        t3r_lane_splat lane;
-        if (t3r_tile_lane(s, left, top, blocks.column + i * T3R_LANES, &lane)) {
-            t3r_blend_rows(tile, &lane, blocks.column + i * T3R_LANES, blocks.first, blocks.last);
-        }
-    }
+    t3r_tile_splat splat;
+    t3r_splat_in_tile(s, left, top, &splat);
+    t3r_blend_c(tile, &splat, NULL);
 }
 
 static pixel pixel_of(const t3r_tile *before, const t3r_tile *after, const t3r_tile *drawn, const t3r_splat *s,

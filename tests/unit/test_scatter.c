@@ -1,8 +1,8 @@
-/* Refinement's inner loops: reciprocals over their whole range, blending again by weights, and what eight columns tell
- * a splat against the same in double, up to the largest values there can be. */
+/* Refinement's inner loops: reciprocals over their whole range, blending again by weights, and what eight columns
+ * add to a splat's sums against the same in double, up to the largest values there can be. */
 #include "unit.h"
 
-#include "kernels/scatter.h"
+#include "kernels/scatter_columns.h"
 
 enum { SIDE = T3R_TILE_SIDE };
 
@@ -16,11 +16,13 @@ static void reciprocals_are_a_little_small(void **state)
     }
 }
 
-static t3r_lane_splat any_lane(uint64_t *seed)
+static t3r_tile_splat any_splat(uint64_t *seed)
 {
-    t3r_lane_splat lane = {.q = (int32_t)unit_between(seed, 0, 6 << 17),
-                           .gx = (int32_t)unit_between(seed, -(1 << 15), 1 << 15),
-                           .gy = (int32_t)unit_between(seed, -(1 << 15), 1 << 15),
+    t3r_tile_splat lane = {.group = {{.q = (int32_t)unit_between(seed, 0, 6 << 17),
+                                      .gx = (int32_t)unit_between(seed, -(1 << 15), 1 << 15),
+                                      .gy = (int32_t)unit_between(seed, -(1 << 15), 1 << 15)}},
+                           .groups = 1,
+                           .drawn = 1,
                            .a = (int32_t)unit_between(seed, 0, 1 << 12),
                            .c = (int32_t)unit_between(seed, 0, 1 << 12),
                            .opacity_q16 = (uint16_t)unit_between(seed, 300, 65535)};
@@ -45,14 +47,17 @@ static void weights_blend_to_the_same_bits(void **state)
         clear(&drawn);
         clear(&again);
         for (int i = 0; i < 40; i++) {
-            t3r_lane_splat lane = any_lane(&seed);
-            uint32_t column = (uint32_t)unit_between(&seed, 0, 8), first = (uint32_t)unit_between(&seed, 0, 15);
-            uint32_t last = (uint32_t)unit_between(&seed, first, 15);
-            t3r_weights *weights = unit_array(last - first + 1, sizeof *weights);
-            t3r_weights_keep(&drawn, column, first, last, weights);
-            t3r_blend_rows(&drawn, &lane, column, first, last);
-            t3r_weights_take(&drawn, column, first, last, weights);
-            t3r_weights_blend(&again, lane.colour_q7, column, first, last, weights);
+            t3r_tile_splat lane = any_splat(&seed);
+            lane.groups = (uint8_t)unit_between(&seed, 1, 2);
+            lane.group[1] = lane.group[0];
+            lane.drawn = (uint8_t)unit_between(&seed, 0, (1 << lane.groups) - 1);
+            lane.column = (uint8_t)(lane.groups == 2 ? 0 : unit_between(&seed, 0, 8));
+            lane.first = (uint8_t)unit_between(&seed, 0, 15);
+            lane.last = (uint8_t)unit_between(&seed, lane.first, 15);
+            size_t rows = (size_t)lane.groups * (lane.last - lane.first + 1u);
+            t3r_blend_weights *weights = unit_array(rows, sizeof *weights);
+            t3r_blend_c(&drawn, &lane, weights);
+            t3r_blend_again_c(&again, &lane, weights);
             free(weights);
             assert_memory_equal(&drawn, &again, sizeof drawn);
         }
@@ -68,7 +73,7 @@ static void masks_what_does_not_count(void **state)
         uint32_t column = (uint32_t)unit_between(&seed, 0, 8), first = (uint32_t)unit_between(&seed, 0, 15);
         uint32_t last = (uint32_t)unit_between(&seed, first, 15), top = (uint32_t)unit_between(&seed, 0, 65535);
         uint16_t inside[T3R_LANES], all = 0;
-        t3r_weights weights[SIDE], masked[SIDE];
+        t3r_blend_weights weights[SIDE], masked[SIDE];
         for (uint32_t i = 0; i < T3R_LANES; i++) {
             inside[i] = unit_random(&seed) % 2 ? UINT16_MAX : 0;
             for (uint32_t j = first; j <= last; j++) {
@@ -76,7 +81,7 @@ static void masks_what_does_not_count(void **state)
                 want.counts[j][column + i] = unit_random(&seed) % 2 ? UINT16_MAX : 0;
             }
         }
-        uint16_t bits = t3r_weights_mask(&want, inside, column, first, last, weights, masked);
+        uint16_t bits = t3r_mask_weights(&want, inside, column, first, last, weights, masked);
         for (uint32_t i = 0; i < T3R_LANES; i++) {
             for (uint32_t j = first; j <= last; j++) {
                 uint16_t w = inside[i] && want.counts[j][column + i] ? weights[j - first].q16[i] : 0;
@@ -107,19 +112,18 @@ static void near(double got, double want, double by)
 }
 
 /* A tile in the middle of being drawn: some splats blended, `want` what some more make of it. */
-static void any_tiles(uint64_t *seed, t3r_tile *tile, t3r_wanted *want, t3r_lane_splat *lane, t3r_weights weights[SIDE])
+static void any_tiles(uint64_t *seed, t3r_tile *tile, t3r_wanted *want, t3r_tile_splat *lane,
+                      t3r_blend_weights weights[SIDE])
 {
     clear(tile);
     int before = (int)unit_between(seed, 0, 4);
     for (int i = 0; i < 12; i++) {
-        t3r_lane_splat next = any_lane(seed);
+        t3r_tile_splat next = any_splat(seed);
+        next.column = 4;
+        next.last = SIDE - 1;
+        t3r_blend_c(tile, &next, i == before ? weights : NULL);
         if (i == before) {
             *lane = next;
-            t3r_weights_keep(tile, 4, 0, SIDE - 1, weights);
-        }
-        t3r_blend_rows(tile, &next, 4, 0, SIDE - 1);
-        if (i == before) {
-            t3r_weights_take(tile, 4, 0, SIDE - 1, weights);
             want->drawn = *tile;
         }
     }
@@ -136,15 +140,15 @@ static void any_tiles(uint64_t *seed, t3r_tile *tile, t3r_wanted *want, t3r_lane
 }
 
 /* g is right to half a unit, a share of what is behind for the reciprocal and its unit; the rest follows. */
-static void tells_what_double_tells(void **state)
+static void sums_what_double_sums(void **state)
 {
     (void)state;
     uint64_t seed = 5;
     static t3r_tile tile;
     static t3r_wanted want;
     for (int round = 0; round < 2000; round++) {
-        t3r_lane_splat lane;
-        t3r_weights weights[SIDE];
+        t3r_tile_splat lane;
+        t3r_blend_weights weights[SIDE];
         any_tiles(&seed, &tile, &want, &lane, weights);
         uint32_t first = (uint32_t)unit_between(&seed, 0, 15), last = (uint32_t)unit_between(&seed, first, 15);
         uint32_t most = 1, scale = 0;
@@ -157,7 +161,9 @@ static void tells_what_double_tells(void **state)
             scale++;
         }
         t3r_scatter_sums sums;
-        t3r_scatter(&want, &tile, lane.colour_q7, 4, first, last, weights, scale, &sums);
+        t3r_blend_weights scaled[SIDE];
+        memcpy(scaled, weights, sizeof scaled);
+        t3r_scatter_columns(&want, &tile, lane.colour_q7, 4, first, last, scaled, scale, &sums);
         double factor = 1 << scale;
         for (uint32_t i = 0; i < T3R_LANES; i++) {
             double gg[5] = {0}, gg_off[5] = {0}, gr[3] = {0}, gr_off[3] = {0}, wr[3] = {0}, w_all = 0;
@@ -204,9 +210,8 @@ static void the_most_there_can_be_fits(void **state)
     (void)state;
     static t3r_tile tile;
     static t3r_wanted want;
-    t3r_weights weights[SIDE];
+    t3r_blend_weights weights[SIDE];
     const uint16_t white[3] = {32640, 32640, 32640};
-    memset(weights, 0xff, sizeof weights);
     for (int sign = -1; sign <= 1; sign += 2) {
         for (uint32_t c = 0; c < 3; c++) {
             for (uint32_t j = 0; j < SIDE; j++) {
@@ -216,7 +221,8 @@ static void the_most_there_can_be_fits(void **state)
             }
         }
         t3r_scatter_sums sums;
-        t3r_scatter(&want, &tile, white, 0, 0, SIDE - 1, weights, 0, &sums);
+        memset(weights, 0xff, sizeof weights);
+        t3r_scatter_columns(&want, &tile, white, 0, 0, SIDE - 1, weights, 0, &sums);
         const int64_t g = ((int64_t)32767 * 32640 + 32768) >> 16, square = (3 * g * g + 512) >> 10;
         const int64_t product = (sign * 3 * g * 4080 + 64) >> 7;
         static const int64_t times[5] = {16, 136, 816, 3876, 15504};
@@ -238,7 +244,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reciprocals_are_a_little_small), cmocka_unit_test(weights_blend_to_the_same_bits),
-        cmocka_unit_test(masks_what_does_not_count),      cmocka_unit_test(tells_what_double_tells),
+        cmocka_unit_test(masks_what_does_not_count),      cmocka_unit_test(sums_what_double_sums),
         cmocka_unit_test(the_most_there_can_be_fits),
     };
     return cmocka_run_group_tests_name("scatter", tests, NULL, NULL);

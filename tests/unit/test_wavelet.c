@@ -356,8 +356,8 @@ static void texture_by_definition(void **state)
             }
             for (int kind = 0; kind < KINDS; kind++) {
                 for (uint32_t levels = 1; levels <= LEVELS; levels++) {
-                    t3r_wavelet_texture((const uint8_t *const *)x.colour, width, height, levels, (t3r_wavelet)kind,
-                                        x.texture, x.b.plane, x.b.work);
+                    t3r_wavelet_texture(&t3r_kernels_c, (const uint8_t *const *)x.colour, width, height, levels,
+                                        (t3r_wavelet)kind, x.texture, x.b.plane, x.b.work);
                     memcpy(x.b.plane, x.b.copy, (size_t)width * height * 2);
                     wavelet_forward(x.b.plane, width, height, levels, (t3r_wavelet)kind);
                     double up = kind == T3R_WAVELET_DB2 ? 2 + root : 2;
@@ -396,8 +396,8 @@ static void texture_of_nothing(void **state)
             memset(x.colour[c], grey, 67 * 45);
         }
         for (int kind = 0; kind < KINDS; kind++) {
-            t3r_wavelet_texture((const uint8_t *const *)x.colour, 67, 45, 2, (t3r_wavelet)kind, x.texture, x.b.plane,
-                                x.b.work);
+            t3r_wavelet_texture(&t3r_kernels_c, (const uint8_t *const *)x.colour, 67, 45, 2, (t3r_wavelet)kind,
+                                x.texture, x.b.plane, x.b.work);
             for (int i = 0; i < 67 * 45; i++) {
                 worst = x.texture[i] > worst ? (uint32_t)x.texture[i] : worst;
                 assert_true(kind == T3R_WAVELET_DB2 || x.texture[i] == 0);
@@ -423,14 +423,16 @@ static void texture_saturates(void **state)
             x.colour[c][at] = positive ? 255 : 0;
         }
     }
-    t3r_wavelet_texture((const uint8_t *const *)x.colour, 64, 64, 5, T3R_WAVELET_DB2, x.texture, x.b.plane, x.b.work);
+    t3r_wavelet_texture(&t3r_kernels_c, (const uint8_t *const *)x.colour, 64, 64, 5, T3R_WAVELET_DB2, x.texture,
+                        x.b.plane, x.b.work);
     uint32_t full = 0;
     for (int i = 0; i < 64 * 64; i++) {
         full += x.texture[i] == 65535 ? 1 : 0;
     }
     assert_true(full >= 32 * 32);
     assert_int_equal(x.texture[40 * 64 + 8], 65535);
-    t3r_wavelet_texture((const uint8_t *const *)x.colour, 64, 64, 0, T3R_WAVELET_DB2, x.texture, x.b.plane, x.b.work);
+    t3r_wavelet_texture(&t3r_kernels_c, (const uint8_t *const *)x.colour, 64, 64, 0, T3R_WAVELET_DB2, x.texture,
+                        x.b.plane, x.b.work);
     assert_int_equal(x.texture[33 * 64 + 31], 0);
     image_free(x);
 }

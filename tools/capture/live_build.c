@@ -202,6 +202,7 @@ static int start_runtime(live_build *build)
     t3r_status status = t3r_init(&r->runtime, r->arena, r->arena_bytes, &r->config);
     if (status == T3R_OK) {
         t3r_hooks hooks = reconstruction_hooks(r, &build->options);
+        (void)t3r_set_cpu(r->runtime, build->options.cpu);
         status = t3r_set_hooks(r->runtime, &hooks);
     }
     if (status == T3R_OK) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "cpu.h"
 #include "trim3r.h"
 
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
@@ -14,6 +15,15 @@ uint32_t option_number(struct argp_state *state, const char *option, const char 
         argp_error(state, "--%s takes a whole number %" PRIu32 "..%" PRIu32 ", not '%s'", option, low, high, text);
     }
     return value;
+}
+
+uint32_t option_cpu_mask(struct argp_state *state, const char *text)
+{
+    uint32_t mask = 0;
+    if (!t3r_cpu_parse_mask(text, &mask)) {
+        argp_error(state, "--cpu-mask takes all, none, names as avx2,vnni or a number, not '%s'", text);
+    }
+    return t3r_cpu_features() & mask;
 }
 
 uint32_t option_threads(struct argp_state *state, const char *option, const char *text)

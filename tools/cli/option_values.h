@@ -20,6 +20,8 @@ void option_percents(struct argp_state *state, const char *option, const char *t
                      uint32_t *count);
 /* 1 to T3R_MAX_VIEWS frame indices with commas between. */
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
+/* A mask of --cpu-mask as platform/cpu.h reads it: the features left of the processor's own. */
+uint32_t option_cpu_mask(struct argp_state *state, const char *text);
 /* The next free one of `count` places for arguments that are no options. */
 void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count);
 

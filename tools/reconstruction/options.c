@@ -44,7 +44,7 @@ static const struct argp_option settings[] = {
     {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
     {"threads", KEY_THREADS, "N|all", 0, "1..16, or `all` processors (1)", 0},
     {"cpu-mask", KEY_CPU_MASK, "MASK", 0,
-     "SIMD variants allowed; there is plain C alone so far, which every mask allows", 0},
+     "of the processor's vector extensions use these alone: all (default), none, names as avx2,vnni, or a number", 0},
     {0},
 };
 
@@ -126,7 +126,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         o->threads = option_threads(state, "threads", arg);
         return 0;
     case KEY_CPU_MASK:
-        (void)option_number(state, "cpu-mask", arg, 0, UINT32_MAX);
+        o->cpu = option_cpu_mask(state, arg);
         return 0;
     case KEY_AUTO:
         o->automatic = true;

@@ -8,6 +8,7 @@
 
 #include "core/camera.h"
 #include "cli/cli.h"
+#include "cpu.h"
 #include "reconstruction/reconstruction_error.h"
 #include "cli/recorded_frame.h"
 #include "core/fixed.h"
@@ -24,6 +25,7 @@ void reconstruction_defaults(reconstruction_options *options)
         .hash = true,
         .arena = ARENA_FULL,
         .threads = 1,
+        .cpu = t3r_cpu_features(),
         .finetune_iterations = METHOD_ITERATIONS,
     };
 }
@@ -135,6 +137,7 @@ static int open_arena(reconstruction *r, const reconstruction_options *options)
     }
     t3r_hooks hooks = reconstruction_hooks(r, options);
     hooks.progress = show_progress;
+    (void)t3r_set_cpu(r->runtime, options->cpu);
     status = t3r_set_hooks(r->runtime, &hooks);
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "hooks", &r->config, r->arena_bytes);
 }

@@ -48,6 +48,7 @@ typedef struct reconstruction_options {
     arena_choice arena;
     uint64_t arena_bytes; /* for ARENA_BYTES */
     uint32_t threads;
+    uint32_t cpu; /* T3R_CPU_...: what the processor has, less what --cpu-mask leaves out */
 } reconstruction_options;
 
 void reconstruction_defaults(reconstruction_options *options);

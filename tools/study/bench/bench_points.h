@@ -25,7 +25,7 @@ int bench_points_read(bench_points *points, const char *path, char *error, size_
 int bench_points_unproject(bench_points *points, uint32_t views, uint32_t width, uint32_t height, uint8_t *const *rgb,
                            uint16_t *const *depth_mm, const t3r_camera *cameras, char *error, size_t error_bytes);
 /* One K-means with the default settings; false when it failed. */
-bool bench_points_cluster(bench_points *points);
+bool bench_points_cluster(bench_points *points, uint32_t cpu);
 /* Of the points as given from their centres. */
 double bench_points_mean_squared_distance(const bench_points *points);
 void bench_points_free(bench_points *points);

@@ -17,6 +17,7 @@
 #include "cli/cli.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
+#include "cpu.h"
 #include "reconstruction/option_names.h"
 #include "reconstruction/reconstruction.h"
 #include "room/room.h"
@@ -37,11 +38,11 @@
 typedef struct bench_options {
     const char *points, *head, *stages;
     t3r_depth depth;
-    uint32_t runs, threads;
+    uint32_t runs, threads, cpu;
     bool json;
 } bench_options;
 
-enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_THREADS, KEY_JSON };
+enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_THREADS, KEY_CPU_MASK, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", 0, "cluster these points instead: raw float32, N x 6", 0},
@@ -50,7 +51,10 @@ static const struct argp_option options[] = {
      "of the scenes that are built and drawn: sensor (default), or stereo, made of the colours", 0},
     {"stages", KEY_STAGES, "LIST", 0, "time these rows alone, as kmeans_ms,stereo_ms (all)", 0},
     {"runs", KEY_RUNS, "N", 0, "timed runs of each stage, 1..101 (7)", 0},
-    {"threads", KEY_THREADS, "N|all", 0, "1..16, or `all` processors (1); with more than one, elapsed time instead of processor time", 0},
+    {"threads", KEY_THREADS, "N|all", 0,
+     "1..16, or `all` processors (1); with more than one, elapsed time instead of processor time", 0},
+    {"cpu-mask", KEY_CPU_MASK, "MASK", 0, "vector extensions to use: all (default), none, names as avx2,vnni, a number",
+     0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
     {0},
 };
@@ -76,6 +80,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_THREADS:
         o->threads = option_threads(state, "threads", arg);
+        return 0;
+    case KEY_CPU_MASK:
+        o->cpu = option_cpu_mask(state, arg);
         return 0;
     case KEY_JSON:
         o->json = true;
@@ -146,6 +153,8 @@ typedef struct workload {
     void *stereo_work;   /* of a pair matched with eight paths */
     chosen_head small, measured;
     t3r_threads *threads;
+    uint32_t cpu; /* features that kernels may use */
+    t3r_kernels kernels;
     uint8_t *view; /* where renders go */
     uint8_t *wavelet_rgb;
     uint8_t *wavelet_planes;
@@ -199,6 +208,7 @@ static t3r_status open_scene(workload *w, scene_kind kind)
     status = t3r_init(&s->runtime, s->arena, plan.bytes, &config);
     t3r_hooks hooks = {.user = w->threads, .parallel_for = w->threads != NULL ? t3r_threads_run : NULL};
     if (status == T3R_OK) {
+        (void)t3r_set_cpu(s->runtime, w->cpu);
         status = t3r_set_hooks(s->runtime, &hooks);
     }
     if (status == T3R_OK && head != NULL) {
@@ -298,6 +308,8 @@ static int open_workload(workload *w, const bench_options *o)
     if (!allocate(w)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
+    w->cpu = o->cpu;
+    t3r_kernels_choose(&w->kernels, o->cpu);
     if (o->threads > 1 && (w->threads = t3r_threads_start(o->threads)) == NULL) {
         return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", o->threads);
     }
@@ -363,15 +375,15 @@ static bool run_stereo_8_paths(workload *w)
 
 static bool run_kmeans(workload *w)
 {
-    return bench_points_cluster(&w->points);
+    return bench_points_cluster(&w->points, w->cpu);
 }
 
 static bool run_texture(workload *w)
 {
     size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
     const uint8_t *colour[3] = {w->wavelet_planes, w->wavelet_planes + pixels, w->wavelet_planes + 2 * pixels};
-    t3r_wavelet_texture(colour, WAVELET_WIDTH, WAVELET_HEIGHT, 2, T3R_WAVELET_DB2, w->texture, w->wavelet_plane,
-                        w->wavelet_work);
+    t3r_wavelet_texture(&w->kernels, colour, WAVELET_WIDTH, WAVELET_HEIGHT, 2, T3R_WAVELET_DB2, w->texture,
+                        w->wavelet_plane, w->wavelet_work);
     return true;
 }
 
@@ -524,7 +536,7 @@ static void read_cpu_flags(char *flags, size_t flags_bytes)
 static void print_results(const workload *w, const bench_options *o, const bool chosen[STAGE_COUNT],
                           double times[STAGE_COUNT][MAX_RUNS])
 {
-    char flags[1024];
+    char flags[1024], flags_used[64];
     read_cpu_flags(flags, sizeof flags);
     if (!o->json) {
         for (int s = 0; s < STAGE_COUNT; s++) {
@@ -561,13 +573,15 @@ static void print_results(const workload *w, const bench_options *o, const bool 
     cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->depth));
     cJSON_AddStringToObject(root, "cpu_flags", flags);
     json_add_integer(root, "threads", o->threads);
+    t3r_cpu_describe(o->cpu, flags_used, sizeof flags_used);
+    cJSON_AddStringToObject(root, "cpu_used", flags_used);
     json_add_integer(root, "runs", o->runs);
     json_print(root);
 }
 
 int command_bench(int argc, char **argv)
 {
-    bench_options o = {.head = CHOSEN_HEAD_DEFAULT, .runs = 7, .threads = 1};
+    bench_options o = {.head = CHOSEN_HEAD_DEFAULT, .runs = 7, .threads = 1, .cpu = t3r_cpu_features()};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
     bool chosen[STAGE_COUNT];

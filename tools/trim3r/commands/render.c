@@ -44,6 +44,7 @@ enum {
     KEY_ALPHA,
     KEY_ARENA,
     KEY_THREADS,
+    KEY_CPU_MASK,
     KEY_JSON
 };
 
@@ -63,6 +64,8 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "What must not change a bit:", 3},
     {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
     {"threads", KEY_THREADS, "N|all", 0, "1..16, or `all` processors (1)", 0},
+    {"cpu-mask", KEY_CPU_MASK, "MASK", 0, "vector extensions to use: all (default), none, names as avx2,vnni, a number",
+     0},
     {NULL, 0, NULL, 0, "Other:", 4},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
     {0},
@@ -135,6 +138,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_THREADS:
         o->settings.threads = option_threads(state, "threads", arg);
+        return 0;
+    case KEY_CPU_MASK:
+        o->settings.cpu = option_cpu_mask(state, arg);
         return 0;
     case KEY_JSON:
         o->json = true;

@@ -1,42 +1,10 @@
 /* EWA projection of 3-D covariances (Zwicker et al. 2001, "EWA volume splatting"; the Jacobian held at 1.3 half
  * fields of view and the 0.3 px^2 dilation as 3D Gaussian Splatting, Kerbl et al. 2023). */
-#include "core/camera.h"
+#include "project.h"
+
 #include "core/fixed.h"
-#include "raster_splat.h"
-#include "core/scene_frame.h"
 
 #define EXTENT_MOST_Q12 (1 << 24) /* a footprint column is held within 4096 px */
-
-t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
-                               t3r_projection *projection)
-{
-    t3r_status status = t3r_camera_check(camera);
-    if (status != T3R_OK) {
-        return status;
-    }
-    t3r_pose pose;
-    status = t3r_pose_in_scene(camera, frame, &pose);
-    if (status != T3R_OK) {
-        return status;
-    }
-    for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 3; column++) {
-            projection->world_to_camera_q30[row * 3 + column] = pose.rotation_q30[column * 3 + row];
-        }
-        projection->centre_q20[row] = pose.position_q20[row];
-    }
-    projection->fx_q16 = camera->fx_q16;
-    projection->fy_q16 = camera->fy_q16;
-    projection->cx_q16 = camera->cx_q16;
-    projection->cy_q16 = camera->cy_q16;
-    /* 1.3 (w / 2) / f = 13 w / (20 f), Q24; w < 2^13, so the numerator is below 2^57 */
-    int64_t most = (int64_t)T3R_ASIDE << 24;
-    projection->limit_x_q24 = (int32_t)T3R_MIN(((int64_t)(13 * width) << 40) / ((int64_t)20 * camera->fx_q16), most);
-    projection->limit_y_q24 = (int32_t)T3R_MIN(((int64_t)(13 * height) << 40) / ((int64_t)20 * camera->fy_q16), most);
-    projection->width = width;
-    projection->height = height;
-    return T3R_OK;
-}
 
 /* 1 / z as rn 2^(lz - 62), rn in (2^30, 2^31] */
 typedef struct reciprocal {
@@ -149,15 +117,15 @@ static bool clip_range(int32_t centre_q12, int64_t half_q8, uint32_t size, uint1
     return true;
 }
 
-/* Where a camera sees a Gaussian's mean. */
-typedef struct sight {
+/* A Gaussian's mean before a camera. */
+typedef struct seen_mean {
     int64_t z_q20; /* in (T3R_NEAR_Q20, 2^31) */
     reciprocal inverse;
     int64_t u_q24, v_q24; /* x / z and y / z, at most 16 and 2^-23 */
-} sight;
+} seen_mean;
 
 /* false = culled */
-static bool see(const t3r_projection *p, const t3r_gaussian *g, sight *seen)
+static bool see(const t3r_projection *p, const t3r_gaussian *g, seen_mean *seen)
 {
     int64_t d[3]; /* positions and centres are within 2^30: below 2^31 */
     for (int i = 0; i < 3; i++) {
@@ -181,7 +149,7 @@ static bool see(const t3r_projection *p, const t3r_gaussian *g, sight *seen)
 }
 
 /* Both rows of T, pixels, Q12. */
-static void footprint(const t3r_projection *p, const t3r_gaussian *g, const sight *seen, int32_t a_q12[3],
+static void footprint(const t3r_projection *p, const t3r_gaussian *g, const seen_mean *seen, int32_t a_q12[3],
                       int32_t b_q12[3])
 {
     const int32_t *w = p->world_to_camera_q30;
@@ -193,7 +161,7 @@ static void footprint(const t3r_projection *p, const t3r_gaussian *g, const sigh
 
 bool t3r_footprint_rows(const t3r_projection *p, const t3r_gaussian *g, int32_t a_q12[3], int32_t b_q12[3])
 {
-    sight seen;
+    seen_mean seen;
     if (!see(p, g, &seen)) {
         return false;
     }
@@ -203,8 +171,8 @@ bool t3r_footprint_rows(const t3r_projection *p, const t3r_gaussian *g, int32_t 
 
 bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *splat)
 {
-    sight seen;
-    if (g->opacity_q15 <= 128 || !see(p, g, &seen)) { /* below 1/255 everywhere, or out of sight */
+    seen_mean seen;
+    if (g->opacity_q15 <= 128 || !see(p, g, &seen)) { /* below 1/255 everywhere, or not seen */
         return false;
     }
     /* |u| <= 16 + 2^-23 and f < 2^30: below 2^59 */
@@ -229,4 +197,13 @@ bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *spla
     }
     splat->opacity_q15 = g->opacity_q15;
     return true;
+}
+
+void t3r_project_c(const t3r_projection *p, const t3r_gaussian *gaussians, uint32_t count, t3r_splat *splats)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (!t3r_project(p, &gaussians[i], &splats[i])) {
+            splats[i].z_q20 = 0;
+        }
+    }
 }

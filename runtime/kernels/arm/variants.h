@@ -1,0 +1,8 @@
+/* The variants for Arm: none so far. */
+#ifndef T3R_ARM_VARIANTS_H
+#define T3R_ARM_VARIANTS_H
+
+/* X(entry, features, function), as x86/variants.h has it. */
+#define T3R_ARM_VARIANTS(X)
+
+#endif

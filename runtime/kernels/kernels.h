@@ -1,0 +1,78 @@
+/* The table of the runtime's hot loops: an entry a loop, each told in the header of its kernel, with ranges, alignment
+ * and padding.
+ *
+ * Plain C defines every entry (kernels_c.c). A variant for an instruction set gives the same bits for all that the
+ * kernel's header allows, and reads and writes no byte beyond what it tells. t3r_kernels_choose() fills a table with
+ * plain C and puts over it what the processor has. To add a variant: its file in the room of the architecture, and a
+ * row in that room's variants.h. tests/kernels compares it with plain C from then on. */
+#ifndef T3R_KERNELS_H
+#define T3R_KERNELS_H
+
+#include <stdint.h>
+
+#include "blend.h"
+#include "blur.h"
+#include "census.h"
+#include "convolve.h"
+#include "image_rows.h"
+#include "nearest.h"
+#include "path_step.h"
+#include "project.h"
+#include "radix.h"
+#include "scatter.h"
+#include "solve.h"
+#include "wavelet_rows.h"
+
+typedef struct t3r_kernels {
+    /* image */
+    t3r_packed_row_kernel *packed_row;
+    t3r_nv12_row_kernel *nv12_row;
+    t3r_triple_row_kernel *triple_row;
+    t3r_box_sums_kernel *box_sums;
+    t3r_weigh_row_kernel *weigh_row;
+    t3r_divide_row_kernel *divide_row;
+    /* stereo */
+    t3r_census_row_kernel *census_row;
+    t3r_census_cost_kernel *census_cost;
+    t3r_path_step_kernel *path_step;
+    /* wavelet */
+    t3r_luma_row_kernel *luma_row;
+    t3r_split_row_kernel *split_row;
+    t3r_db2_predict_kernel *db2_predict;
+    t3r_db2_update_kernel *db2_update;
+    t3r_add_row_kernel *add_row;
+    t3r_subtract_row_kernel *subtract_row;
+    t3r_haar_update_kernel *haar_update;
+    t3r_cdf53_predict_kernel *cdf53_predict;
+    t3r_cdf53_update_kernel *cdf53_update;
+    t3r_texture_finest_kernel *texture_finest;
+    t3r_texture_coarse_kernel *texture_coarse;
+    t3r_texture_add_kernel *texture_add;
+    t3r_texture_spread_kernel *texture_spread;
+    /* superclusters and budget */
+    t3r_nearest_begin_kernel *nearest_begin; /* and nearest: a variant replaces both */
+    t3r_nearest_kernel *nearest;
+    t3r_blur_row_kernel *blur_row;
+    t3r_blur_column_kernel *blur_column;
+    /* head */
+    t3r_convolve_kernel *convolve; /* and depthwise: both read the columns that column_bytes says */
+    t3r_depthwise_kernel *depthwise;
+    /* raster and refine */
+    t3r_project_kernel *project;
+    t3r_radix_count_kernel *radix_count;
+    t3r_radix_pass_kernel *radix_pass;
+    t3r_blend_kernel *blend;
+    t3r_blend_again_kernel *blend_again;
+    t3r_scatter_kernel *scatter;
+    t3r_solve_kernel *solve;
+
+    uint32_t column_bytes; /* of an 8-bit activation in the columns that convolve and depthwise read: 1 or 2 */
+} t3r_kernels;
+
+/* Plain C: the definition. */
+extern const t3r_kernels t3r_kernels_c;
+
+/* Fills the table for a processor with these features, T3R_CPU_...; 0: plain C. */
+void t3r_kernels_choose(t3r_kernels *table, uint32_t cpu);
+
+#endif
