@@ -12,10 +12,11 @@ import sys
 import proof
 
 # Rooms of the runtime from the foundation up: each may include those before it.
-ROOMS = ("include", "core", "kernels", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
+ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
          "raster", "head", "refine", "stage_hash", "pipeline", "choice", "stream", "layout", "api")
-# Files that know the rooms beside or above their own: they stand at the front door, whatever folder they are in.
-FRONT_DOOR = {
+# Files that know rooms above their own: they stand elsewhere in this order, whatever folder they are in.
+ELSEWHERE = {
+    "core/state": "state", "core/views.c": "state", "core/ablation.c": "state",  # which holds the table of kernels
     "core/arena": "layout", "core/plan": "layout",  # sizes of what every room keeps in the arena
     "core/stage_hash": "stage_hash",  # the outputs of every room
     "budget/budget_choice": "choice",  # builds trial scenes, so it calls the pipeline
@@ -58,8 +59,8 @@ def area_of(path):
     """The area of a source file, by its path from the root of the tree."""
     folder, stem = path.parent.as_posix(), path.with_suffix("").as_posix()
     if folder.startswith("runtime"):
-        inside = stem.removeprefix("runtime/")
-        return "runtime/" + FRONT_DOOR.get(inside, inside.split("/")[0])
+        inside, name = stem.removeprefix("runtime/"), path.as_posix().removeprefix("runtime/")
+        return "runtime/" + ELSEWHERE.get(name, ELSEWHERE.get(inside, inside.split("/")[0]))
     if folder.startswith("tools/study"):
         return "/".join(folder.split("/")[:3])
     if folder.startswith("tools"):
