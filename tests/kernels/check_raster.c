@@ -1,0 +1,187 @@
+/* Projection, blending, scattering and solving. Plain C is judged in doubles by the tests of the rasterizer and of
+ * refinement; here a variant must have its bits, and blending goes pixel by pixel. */
+#include "checks.h"
+#include "guarded.h"
+
+enum { SIDE = T3R_TILE_SIDE, COUNT = 40 };
+
+const char *check_project(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = any_length(seed, COUNT);
+    t3r_projection p = {.world_to_camera_q30 = {1 << 30, 0, 0, 0, 1 << 30, 0, 0, 0, 1 << 30},
+                        .fx_q16 = (int32_t)any_value(seed, 1 << 16, 1 << 28),
+                        .fy_q16 = (int32_t)any_value(seed, 1 << 16, 1 << 28),
+                        .cx_q16 = (int32_t)any_value(seed, -(1 << 24), 1 << 24),
+                        .cy_q16 = (int32_t)any_value(seed, -(1 << 24), 1 << 24),
+                        .limit_x_q24 = (int32_t)any_value(seed, 1 << 20, 16 << 24),
+                        .limit_y_q24 = (int32_t)any_value(seed, 1 << 20, 16 << 24),
+                        .width = (uint32_t)unit_between(seed, 1, 4096),
+                        .height = (uint32_t)unit_between(seed, 1, 4096)};
+    t3r_gaussian *g = guarded_take(count * sizeof *g, _Alignof(t3r_gaussian));
+    t3r_splat *splats = guarded_take(count * sizeof *splats, _Alignof(t3r_splat)), want[COUNT];
+    memset(g, 0, count * sizeof *g);
+    for (uint32_t i = 0; i < count; i++) {
+        for (int k = 0; k < 3; k++) {
+            g[i].position_q20[k] = (int32_t)any_value(seed, k == 2 ? -(1 << 20) : -(1 << 21), 1 << 23);
+            g[i].colour_q7[k] = (uint16_t)any_value(seed, 0, 32640);
+        }
+        for (int k = 0; k < 9; k++) {
+            g[i].factor[k] = (int16_t)any_value(seed, -32768, 32767);
+        }
+        g[i].factor_exponent = (int8_t)any_value(seed, -60, 15);
+        g[i].opacity_q15 = (uint16_t)any_value(seed, 0, 32767);
+    }
+    kernels->project(&p, g, count, splats);
+    t3r_project_c(&p, g, count, want);
+    for (uint32_t i = 0; i < count; i++) {
+        if (splats[i].z_q20 != want[i].z_q20 || (want[i].z_q20 != 0 && !SAME(&splats[i], &want[i], 1))) {
+            return "a splat differs";
+        }
+    }
+    return NULL;
+}
+
+static t3r_tile_splat any_splat(uint64_t *seed)
+{
+    t3r_tile_splat s = {.a = (int32_t)any_value(seed, 0, 218453), /* 1 / 0.6 in Q17 */
+                        .c = (int32_t)any_value(seed, 0, 218453),
+                        .opacity_q16 = (uint16_t)any_value(seed, 258, 65534)};
+    s.b = (int32_t)any_value(seed, -s.a / 2, s.a / 2);
+    s.groups = (uint8_t)unit_between(seed, 1, 2);
+    s.drawn = (uint8_t)unit_between(seed, 0, (1 << s.groups) - 1);
+    s.column = (uint8_t)(s.groups == 2 ? 0 : unit_between(seed, 0, SIDE - T3R_LANES));
+    s.first = (uint8_t)unit_between(seed, 0, SIDE - 1);
+    s.last = (uint8_t)unit_between(seed, s.first, SIDE - 1);
+    s.x0 = (uint8_t)unit_between(seed, s.column, s.column + 8 * s.groups - 1);
+    s.x1 = (uint8_t)unit_between(seed, s.x0, s.column + 8 * s.groups - 1);
+    for (int g = 0; g < s.groups; g++) {
+        s.group[g].q = (int32_t)any_value(seed, -4, 6 << 17);
+        s.group[g].gx = (int32_t)any_value(seed, -(1 << 17), 1 << 17);
+        s.group[g].gy = (int32_t)any_value(seed, -(1 << 17), 1 << 17);
+    }
+    for (int c = 0; c < 3; c++) {
+        s.colour_q7[c] = (uint16_t)any_value(seed, 0, 32640);
+    }
+    return s;
+}
+
+/* As some splats leave it. */
+static void any_tile(uint64_t *seed, t3r_tile *tile)
+{
+    memset(tile, 0, sizeof *tile);
+    memset(tile->transmittance_q16, 0xff, sizeof tile->transmittance_q16);
+    for (uint64_t i = unit_random(seed) % 12; i > 0; i--) {
+        const t3r_tile_splat s = any_splat(seed);
+        t3r_blend_c(tile, &s, NULL);
+    }
+}
+
+static uint32_t rows_of(const t3r_tile_splat *s)
+{
+    return s->groups * (s->last - s->first + 1u);
+}
+
+/* One pixel after the other, by the formulas of SPEC.md. */
+static void blend_by_pixels(t3r_tile *tile, const t3r_tile_splat *s, t3r_blend_weights *weights)
+{
+    for (uint32_t g = 0; g < s->groups; g++) {
+        for (uint32_t j = s->first; j <= s->last; j++, weights++) {
+            for (int64_t i = 0; i < T3R_LANES; i++) {
+                const int64_t y = j, x = s->column + 8 * g + i;
+                const int64_t q = s->group[g].q + i * s->group[g].gx + y * s->group[g].gy + i * i * s->a +
+                                  i * y * s->b + y * y * s->c;
+                uint16_t *t = &tile->transmittance_q16[j][x];
+                uint64_t alpha = t3r_alpha_q16((int32_t)q, s->opacity_q16);
+                alpha = *t < T3R_STOP_Q16 || !(s->drawn >> g & 1) ? 0 : alpha;
+                const uint64_t w = (*t * alpha + 32768) >> 16;
+                *t = (uint16_t)(*t - w);
+                for (int c = 0; c < 3; c++) {
+                    tile->colour_q7[c][j][x] =
+                        (uint16_t)(tile->colour_q7[c][j][x] + ((w * s->colour_q7[c] + 32768) >> 16));
+                }
+                weights->q16[i] = (uint16_t)w;
+            }
+        }
+    }
+}
+
+const char *check_blend(const t3r_kernels *kernels, uint64_t *seed)
+{
+    t3r_tile *tile = guarded_take(sizeof *tile, 2), want;
+    const t3r_tile_splat s = any_splat(seed);
+    any_tile(seed, tile);
+    want = *tile;
+    t3r_blend_weights *weights = guarded_take(rows_of(&s) * sizeof *weights, 2), want_weights[2 * SIDE];
+    const bool weighs = unit_random(seed) % 2;
+    kernels->blend(tile, &s, weighs ? weights : NULL);
+    blend_by_pixels(&want, &s, want_weights);
+    if (weighs && !SAME(weights, want_weights, rows_of(&s))) {
+        return "a weight differs";
+    }
+    return SAME(tile, &want, 1) ? NULL : "a pixel differs";
+}
+
+const char *check_blend_again(const t3r_kernels *kernels, uint64_t *seed)
+{
+    t3r_tile *tile = guarded_take(sizeof *tile, 2), want;
+    const t3r_tile_splat s = any_splat(seed);
+    t3r_blend_weights *weights = guarded_take(rows_of(&s) * sizeof *weights, 2);
+    any_tile(seed, tile);
+    want = *tile;
+    blend_by_pixels(&want, &s, weights);
+    kernels->blend_again(tile, &s, weights);
+    return SAME(tile, &want, 1) ? NULL : "a pixel differs";
+}
+
+const char *check_scatter(const t3r_kernels *kernels, uint64_t *seed)
+{
+    t3r_tile *tile = guarded_take(sizeof *tile, 2);
+    t3r_wanted *want = guarded_take(sizeof *want, 2);
+    const t3r_tile_splat s = any_splat(seed);
+    t3r_blend_weights *weights = guarded_take(rows_of(&s) * sizeof *weights, 2);
+    any_tile(seed, tile);
+    t3r_blend_c(tile, &s, weights);
+    want->drawn = *tile;
+    for (uint64_t i = unit_random(seed) % 8; i > 0; i--) {
+        const t3r_tile_splat behind = any_splat(seed);
+        t3r_blend_c(&want->drawn, &behind, NULL);
+    }
+    const uint64_t one_in = 1 + unit_random(seed) % 6;
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        want->counts[i / SIDE][i % SIDE] = unit_random(seed) % one_in == 0 ? UINT16_MAX : 0;
+        for (int c = 0; c < 3; c++) {
+            want->residual_q4[c][i / SIDE][i % SIDE] = (int16_t)any_value(seed, -4080, 4080);
+        }
+    }
+    t3r_tile_sums got, expected;
+    const bool counts = kernels->scatter(want, tile, &s, weights, &got);
+    if (counts != t3r_scatter_c(want, tile, &s, weights, &expected)) {
+        return "it says otherwise whether a weight counts";
+    }
+    return !counts || SAME(&got, &expected, 1) ? NULL : "a sum differs";
+}
+
+const char *check_solve(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = any_length(seed, COUNT);
+    t3r_refine_sums *sums = guarded_take(count * sizeof *sums, 4);
+    t3r_correction *corrections = guarded_take(count * sizeof *corrections, 2), want[COUNT];
+    memset(corrections, 0, count * sizeof *corrections);
+    for (uint32_t i = 0; i < count; i++) {
+        int32_t *words = (int32_t *)&sums[i];
+        const int64_t most = (int64_t)1 << unit_between(seed, 1, 30);
+        for (size_t k = 0; k + 1 < sizeof *sums / 4; k++) {
+            words[k] = (int32_t)any_value(seed, -most, most);
+        }
+        sums[i].area = (uint32_t)any_value(seed, 1, (1 << 28) - 1);
+    }
+    for (int pass = 0; pass < 2; pass++) { /* the second goes on from the first's corrections */
+        memcpy(want, corrections, count * sizeof *want);
+        kernels->solve(sums, count, corrections);
+        t3r_solve_c(sums, count, want);
+        if (!SAME(corrections, want, count)) {
+            return "a correction differs";
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,44 @@
+/* A check an entry of the table: makes an input of the seed, random or of the largest values, runs the entry in guarded
+ * buffers and compares with a straightforward reference, or with plain C where a test in doubles judges plain C. */
+#ifndef T3R_TESTS_KERNEL_CHECKS_H
+#define T3R_TESTS_KERNEL_CHECKS_H
+
+#include "kernels/kernels.h"
+#include "unit/unit.h"
+
+/* What is wrong, as text; NULL: nothing. */
+typedef const char *kernel_check(const t3r_kernels *kernels, uint64_t *seed);
+
+kernel_check check_packed_row, check_nv12_row, check_triple_row, check_box_sums, check_weigh_row, check_divide_row;
+kernel_check check_census_row, check_census_cost, check_path_step;
+kernel_check check_luma_row, check_split_row, check_db2_predict, check_db2_update, check_add_row, check_subtract_row;
+kernel_check check_haar_update, check_cdf53_predict, check_cdf53_update;
+kernel_check check_texture_finest, check_texture_coarse, check_texture_add, check_texture_spread;
+kernel_check check_nearest, check_blur_row, check_blur_column;
+kernel_check check_convolve, check_depthwise;
+kernel_check check_project, check_radix_count, check_radix_pass;
+kernel_check check_blend, check_blend_again, check_scatter, check_solve;
+
+/* 0, 1 and small lengths often, else up to `most`. */
+static inline uint32_t any_length(uint64_t *seed, uint32_t most)
+{
+    const uint32_t small = most < 40 ? most : 40;
+    return (uint32_t)unit_between(seed, 0, unit_random(seed) % 2 ? small : most);
+}
+
+/* low..high, its ends often. */
+static inline int64_t any_value(uint64_t *seed, int64_t low, int64_t high)
+{
+    switch (unit_random(seed) % 8) {
+    case 0:
+        return low;
+    case 1:
+        return high;
+    default:
+        return unit_between(seed, low, high);
+    }
+}
+
+#define SAME(a, b, count) (memcmp(a, b, (count) * sizeof *(a)) == 0)
+
+#endif
