@@ -38,18 +38,6 @@ const char *t3r_allocation_name(t3r_allocation allocation)
     return pick(names, T3R_ALLOCATE_COUNT, (uint32_t)allocation);
 }
 
-const char *t3r_head_name(t3r_head head)
-{
-    static const char *const names[] = {
-        [T3R_HEAD_CONFIGURED] = NULL,
-        [T3R_HEAD_ANALYTIC] = "analytic",
-        [T3R_HEAD_MOMENT] = "moment",
-        [T3R_HEAD_LEARNED] = "learned",
-    };
-    EVERY_NAME(names, T3R_HEAD_COUNT);
-    return pick(names, T3R_HEAD_COUNT, (uint32_t)head);
-}
-
 const char *t3r_depth_name(t3r_depth depth)
 {
     static const char *const names[] = {

@@ -49,7 +49,15 @@ uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
  * their number. The bands of a view together give what the whole view gives. `moment` sweeps over the whole view: its
  * range must be 0..height. */
 typedef uint32_t t3r_head_rows(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out);
-t3r_head_rows t3r_head_analytic, t3r_head_moment, t3r_head_learned;
+
+/* X(enumerator of t3r_head, name, function), a row a head. */
+#define T3R_HEADS(X)                                                                                                   \
+    X(T3R_HEAD_ANALYTIC, "analytic", t3r_head_analytic)                                                                \
+    X(T3R_HEAD_MOMENT, "moment", t3r_head_moment)                                                                      \
+    X(T3R_HEAD_LEARNED, "learned", t3r_head_learned)
+
+#define T3R_HEAD_FUNCTION_(HEAD, name, function) t3r_head_rows function;
+T3R_HEADS(T3R_HEAD_FUNCTION_)
 
 /* Bytes of work that a learned head needs for views of this width. */
 size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width);

@@ -3,11 +3,9 @@
 #include "core/fixed.h"
 #include "pointmap/exposure.h"
 
-static t3r_head_rows *const heads[T3R_HEAD_COUNT] = {
-    [T3R_HEAD_ANALYTIC] = t3r_head_analytic,
-    [T3R_HEAD_MOMENT] = t3r_head_moment,
-    [T3R_HEAD_LEARNED] = t3r_head_learned,
-};
+#define FUNCTION_OF(HEAD, name, function) [HEAD] = (function),
+static t3r_head_rows *const heads[] = {T3R_HEADS(FUNCTION_OF)};
+_Static_assert(sizeof heads / sizeof heads[0] == T3R_HEAD_COUNT, "a row in T3R_HEADS for each head");
 
 /* A band is a view's rows `begin`..`end` - 1. */
 typedef struct band {

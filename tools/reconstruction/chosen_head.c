@@ -25,25 +25,15 @@ static const struct {
 };
 enum { SHIPPED = sizeof shipped / sizeof shipped[0] };
 
-static const struct {
-    const char *name;
-    t3r_head head;
-    bool unadapted;
-} closed_forms[] = {
-    {"analytic", T3R_HEAD_ANALYTIC, false},
-    {"moment", T3R_HEAD_MOMENT, false},
-    {"none", T3R_HEAD_ANALYTIC, true},
-};
-enum { CLOSED_FORMS = sizeof closed_forms / sizeof closed_forms[0] };
-
-static int closed_form_index(const char *text)
+/* The runtime's own heads; `none` is the analytic one, unadapted. T3R_HEAD_CONFIGURED when it is none of them. */
+static t3r_head closed_form_of(const char *text)
 {
-    for (int i = 0; i < CLOSED_FORMS; i++) {
-        if (strcmp(text, closed_forms[i].name) == 0) {
-            return i;
+    for (int head = T3R_HEAD_CONFIGURED + 1; head < T3R_HEAD_COUNT; head++) {
+        if (head != T3R_HEAD_LEARNED && strcmp(text, t3r_head_name((t3r_head)head)) == 0) {
+            return (t3r_head)head;
         }
     }
-    return -1;
+    return strcmp(text, "none") == 0 ? T3R_HEAD_ANALYTIC : T3R_HEAD_CONFIGURED;
 }
 
 static int shipped_index(const char *text)
@@ -59,7 +49,7 @@ static int shipped_index(const char *text)
 bool chosen_head_is_one(const char *text)
 {
     size_t length = strlen(text), end = sizeof FILE_END - 1;
-    return closed_form_index(text) >= 0 || shipped_index(text) >= 0 ||
+    return closed_form_of(text) != T3R_HEAD_CONFIGURED || shipped_index(text) >= 0 ||
            (length > end && strcmp(text + length - end, FILE_END) == 0);
 }
 
@@ -106,9 +96,9 @@ static int describe(chosen_head *chosen, const char *text)
 
 int chosen_head_open(chosen_head *chosen, const char *text)
 {
-    const int closed = closed_form_index(text);
-    if (closed >= 0) {
-        *chosen = (chosen_head){.head = closed_forms[closed].head, .unadapted = closed_forms[closed].unadapted};
+    const t3r_head closed = closed_form_of(text);
+    if (closed != T3R_HEAD_CONFIGURED) {
+        *chosen = (chosen_head){.head = closed, .unadapted = strcmp(text, "none") == 0};
         snprintf(chosen->name, sizeof chosen->name, "%s", text);
         return CLI_OK;
     }
