@@ -5,7 +5,7 @@
  *                     +- depth ---- pointmap --------+
  *                        sensor | stereo
  *
- * Each stage tells what it made through the stage_hash hook. */
+ * The stage_hash hook gets a hash of each stage's output. */
 #include "pipeline.h"
 
 #include "pointmap/bridge.h"

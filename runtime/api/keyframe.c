@@ -15,13 +15,13 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
-    t3r_stream_report told = {0};
+    t3r_stream_report outcome = {0};
     t3r_status status = t3r_stream_follow(rt, frame, camera);
     if (status == T3R_OK) {
-        status = t3r_stream_take(rt, frame, camera, &told);
+        status = t3r_stream_take(rt, frame, camera, &outcome);
     }
     if (report != NULL) {
-        *report = told;
+        *report = outcome;
     }
     return status;
 }

@@ -246,8 +246,8 @@ static const char *layer_error(const uint8_t *file, const t3r_weights_header *he
     return error != NULL ? error : block_error(file, header, &layer);
 }
 
-/* What holds of the layers together: the last, the counts in the header, nobody unread. At most 24 layers of 36 x 128 x
- * 128 multiply-accumulates in Q8: below 2^32. */
+/* What holds of the layers together: the last layer, the counts in the header, and that every output is read. At most
+ * 24 layers of 36 x 128 x 128 multiply-accumulates in Q8: below 2^32. */
 static const char *graph_error(const uint8_t *file, const t3r_weights_header *header)
 {
     uint32_t macs_q8 = 0, parameters = 0, unread = 0;

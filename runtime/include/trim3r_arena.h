@@ -131,7 +131,7 @@
 #define T3R_STEREO_WORK_BYTES(width, height, disparities, paths)                                                       \
     (T3R_STEREO_PLANES_(width, height, disparities) +                                                                  \
      T3R_UP_(T3R_STEREO_REST_BYTES_(width, height, disparities, paths)))
-/* Depth and confidence of two views as one pair has them, where several pairs tell of a view */
+/* Depth and confidence of two views from one pair, where a view is in several pairs */
 #define T3R_STEREO_PAIR_BYTES_(w, h) (2 * (T3R_UP_(T3R_PIXELS_(w, h) * 2) + T3R_UP_(T3R_PIXELS_(w, h))))
 #define T3R_STEREO_BYTES_(w, h, v, s)                                                                                  \
     ((s) != 0 && (v) > 1 ? T3R_STEREO_WORK_BYTES(w, h, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS) +                     \
@@ -156,7 +156,7 @@
       T3R_AT_RASTER)                                                                                                   \
     X(p, COLOUR, "colour planes", T3R_PIXELS_(w, h) * (v)*3, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))             \
     X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))               \
-    X(p, CONFIDENCE, "confidence planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))       \
+    X(p, VALIDITY, "validity planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))           \
     X(p, IMAGE_WORK, "undistortion and resize work",                                                                   \
       T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w)*24), T3R_AT_IMAGE, T3R_AT_IMAGE)  \
     X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \

@@ -327,7 +327,7 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
         rt->views = T3R_MAX(views, slot + 1);
         status = take(rt, slot, report);
     }
-    if (status != T3R_OK) { /* the slot's planes are nobody's now */
+    if (status != T3R_OK) { /* the slot's planes hold no keyframe now */
         t3r_view view[T3R_MAX_VIEWS];
         t3r_views_of(rt, view);
         memset(view[slot].validity, T3R_NO_DEPTH, (size_t)view[slot].width * view[slot].height);
