@@ -4,10 +4,10 @@
 
 #include "budget/budget.h"
 #include "budget/importance.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "head/head.h"
 #include "trim3r.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* Depth, pointmap, wavelet, superclusters: all that does not depend on the budget. */
 t3r_status t3r_analyse(t3r_runtime *rt);

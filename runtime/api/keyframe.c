@@ -1,7 +1,7 @@
 /* Streams: a keyframe into the map, and how much the next one would show of it. */
 #include "api/checks.h"
 #include "core/camera.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "stream/stream.h"
 #include "stream/stream_overlap.h"
 

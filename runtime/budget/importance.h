@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "superclusters/superclusters.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* One plane a context view, each width x height, as the caller lends it for a call. */
 typedef struct t3r_importance {

@@ -3,7 +3,7 @@
 #include "core/camera.h"
 #include "depth/depth.h"
 #include "image.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "undistort.h"
 
 t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,

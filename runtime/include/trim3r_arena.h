@@ -1,6 +1,6 @@
 /* The arena, at compile time: every buffer's bytes, first and last stage, and the sums that follow.
  *
- * t3r_plan() and t3r_init() read the same table (runtime/core/arena.c), so a static array sized by
+ * t3r_plan() and t3r_init() read the same table (runtime/layout/arena.c), so a static array sized by
  * T3R_ARENA_BYTES() and the layout inside it cannot drift apart. */
 #ifndef TRIM3R_ARENA_H
 #define TRIM3R_ARENA_H
@@ -29,7 +29,7 @@
 #define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
 #define T3R_MAX_(a, b) ((a) > (b) ? (a) : (b))
 
-/* Sizes of the records in the arena; runtime/core/arena.c asserts each against its struct. */
+/* Sizes of the records in the arena; runtime/layout/arena.c asserts each against its struct. */
 #define T3R_HEADER_BYTES 4096
 #define T3R_GAUSSIAN_BYTES 44
 #define T3R_SPLAT_BYTES 40

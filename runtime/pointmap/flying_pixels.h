@@ -8,7 +8,7 @@
 
 #include "pointmap_work.h"
 #include "reproject.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* Marks the doubtful pixels of view v (t3r_is_doubtful) and returns how many they are:
  * - measured ones whose two measured neighbours in a row or a column lie one nearer and one deeper, neither on the same

@@ -8,7 +8,7 @@
 
 #include "raster/raster_list.h"
 #include "core/map_record.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* A Gaussian takes the step of its correction. */
 void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);

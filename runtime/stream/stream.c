@@ -20,8 +20,9 @@
 #include "pipeline.h"
 #include "refine/refine.h"
 #include "core/scene_frame.h"
-#include "core/stage_hash.h"
-#include "core/state.h"
+#include "pointmap/scene_scale.h"
+#include "stage_hash.h"
+#include "state/state.h"
 #include "stream_map.h"
 
 #define REBASE_Q20 (1 << 29) /* so far from the origin it follows: 512 scene units */
@@ -301,7 +302,7 @@ static t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report
     t3r_hash_depth(rt, views, slot, slot + 1);
     if (rt->keyframes == 0) {
         memcpy(rt->frame.origin_q32, rt->camera[slot].position_q32, sizeof rt->frame.origin_q32);
-        t3r_status status = t3r_scene_frame_choose(view, 1, &rt->frame.exponent, &rt->median_depth_q20);
+        t3r_status status = t3r_scene_scale_choose(view, 1, &rt->frame.exponent, &rt->median_depth_q20);
         if (status != T3R_OK) {
             return status;
         }

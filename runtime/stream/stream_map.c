@@ -3,7 +3,7 @@
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
 #include "head/head.h"
-#include "core/state.h"
+#include "state/state.h"
 
 #define FINER_Q8 256        /* log2: pixels on the surface so much narrower replace the Gaussian */
 #define AFAR_Q8 128         /* log2: pixels on the surface so much wider than its own do not update it */

@@ -3,7 +3,7 @@
 #include "core/camera.h"
 #include "core/fixed.h"
 #include "pointmap/reproject.h"
-#include "core/state.h"
+#include "state/state.h"
 
 #define STEP 2 /* pixels */
 #define GRID 8 /* cells along each side of the picture */

@@ -9,7 +9,7 @@
 #include "kernels/kernels.h"
 #include "core/workers.h"
 #include "trim3r.h"
-#include "core/views.h"
+#include "state/views.h"
 
 #define T3R_CLUSTER_SAMPLE 2560u /* points of the seeding subsample */
 #define T3R_CLUSTER_BATCH 4096u  /* points of a mini-batch */

@@ -1,7 +1,7 @@
 /* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
 #include "rig.h"
 
-#include "budget/disagreement.h"
+#include "loss/disagreement.h"
 #include "pointmap/exposure.h"
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"

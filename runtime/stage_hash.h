@@ -3,7 +3,7 @@
 #ifndef T3R_STAGE_HASH_H
 #define T3R_STAGE_HASH_H
 
-#include "state.h"
+#include "state/state.h"
 
 void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end);
 void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end);

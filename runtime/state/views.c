@@ -1,6 +1,6 @@
 #include "views.h"
 
-#include "scene_frame.h"
+#include "core/scene_frame.h"
 #include "state.h"
 
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])

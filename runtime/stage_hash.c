@@ -1,6 +1,6 @@
 #include "stage_hash.h"
 
-#include "hash.h"
+#include "core/hash.h"
 #include "pointmap/pointmap.h"
 #include "superclusters/superclusters.h"
 
