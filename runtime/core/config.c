@@ -1,7 +1,5 @@
 /* Settings: their defaults and their ranges. */
-#include <stdbool.h>
-
-#include "trim3r.h"
+#include "config.h"
 
 t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
 {
@@ -38,52 +36,63 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
     };
 }
 
-const char *t3r_config_error(const t3r_config *c)
+/* X(text, value, low, high), a row a setting. `least` is the smaller side. */
+#define RANGES(X)                                                                                                      \
+    X("width must be 8..4096", c->width, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                   \
+    X("height must be 8..4096", c->height, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                 \
+    X("views must be 0..16", c->views, 0, T3R_MAX_VIEWS)                                                               \
+    X("max_gaussians must be 1..2^24", c->max_gaussians, 1, T3R_MAX_GAUSSIANS)                                         \
+    X("gaussians must be 1..max_gaussians", c->gaussians, 1, c->max_gaussians)                                         \
+    X("render_width must be 1..4096", c->render_width, 1, T3R_MAX_SIDE)                                                \
+    X("render_height must be 1..4096", c->render_height, 1, T3R_MAX_SIDE)                                              \
+    X("wavelet is none of t3r_wavelet", (uint32_t)c->wavelet, 0, T3R_WAVELET_COUNT - 1)                                \
+    X("wavelet_levels must be 1..5", c->wavelet_levels, 1, T3R_MAX_LEVELS)                                             \
+    X("clusters must be 1..512", c->clusters, 1, T3R_MAX_CLUSTERS)                                                     \
+    X("cluster_batches must be 0..1024", c->cluster_batches, 0, 1024)                                                  \
+    X("colour_weight_q8 must be 0..1024", c->colour_weight_q8, 0, 1024)                                                \
+    X("allocation is none of t3r_allocation", (uint32_t)c->allocation, T3R_ALLOCATE_CONFIGURED + 1,                    \
+      T3R_ALLOCATE_COUNT - 1)                                                                                          \
+    X("keep_percent must be 0..100", c->keep_percent, 0, 100)                                                          \
+    X("gamma_q8 must be 0..512", c->gamma_q8, 0, 512)                                                                  \
+    X("head is none of t3r_head", (uint32_t)c->head, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT - 1)                      \
+    X("head_column_bytes must be 0..65536", c->head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES)                        \
+    X("refinements must be 0..16", c->refinements, 0, T3R_MAX_REFINEMENTS)                                             \
+    X("depth is none of t3r_depth", (uint32_t)c->depth, 0, T3R_DEPTH_COUNT - 1)                                        \
+    X("width and height must be 32 and more with depth by stereo", least, stereo ? T3R_STEREO_LEAST_SIDE : 0,          \
+      T3R_MAX_SIDE)                                                                                                    \
+    X("fill_radius must be 0..8", c->fill_radius, 0, 8)                                                                \
+    X("bridge_radius must be 0..255", c->bridge_radius, 0, 255)                                                        \
+    X("flying must be 0 or 1", c->flying, 0, 1)                                                                        \
+    X("redundancy must be 0 or 1", c->redundancy, 0, 1)                                                                \
+    X("exposure must be 0 or 1", c->exposure, 0, 1)                                                                    \
+    X("keep_analysis must be 0 or 1", c->keep_analysis, 0, 1)                                                          \
+    X("stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo)     \
+    X("half_life must be 0..1024", c->half_life, 0, 1024)                                                              \
+    X("workers must be 1..16", c->workers, 1, T3R_MAX_WORKERS)
+
+#define BOUNDS(text, value, low, high) {(uint32_t)(value), (low), (high)},
+#define TEXT(text, value, low, high) text,
+
+/* The texts lie apart, so that a firmware links them only when it asks for them. */
+static const char *const texts[] = {"no configuration",
+                                    RANGES(TEXT) "the arena would be larger than this machine can address"};
+
+#define FAULTS (sizeof texts / sizeof texts[0])
+
+/* The text's place, FAULTS when nothing is wrong. */
+static size_t first_fault(const t3r_config *c)
 {
     if (c == NULL) {
-        return "no configuration";
+        return 0;
     }
     const bool stereo = c->depth == T3R_DEPTH_STEREO && c->views > 0;
     const uint32_t side = T3R_MAX_(c->width, c->height), least = c->width < c->height ? c->width : c->height;
     const struct {
-        const char *text;
         uint32_t value, low, high;
-    } range[] = {
-        {"width must be 8..4096", c->width, T3R_MIN_SIDE, T3R_MAX_SIDE},
-        {"height must be 8..4096", c->height, T3R_MIN_SIDE, T3R_MAX_SIDE},
-        {"views must be 0..16", c->views, 0, T3R_MAX_VIEWS},
-        {"max_gaussians must be 1..2^24", c->max_gaussians, 1, T3R_MAX_GAUSSIANS},
-        {"gaussians must be 1..max_gaussians", c->gaussians, 1, c->max_gaussians},
-        {"render_width must be 1..4096", c->render_width, 1, T3R_MAX_SIDE},
-        {"render_height must be 1..4096", c->render_height, 1, T3R_MAX_SIDE},
-        {"wavelet is none of t3r_wavelet", (uint32_t)c->wavelet, 0, T3R_WAVELET_COUNT - 1},
-        {"wavelet_levels must be 1..5", c->wavelet_levels, 1, T3R_MAX_LEVELS},
-        {"clusters must be 1..512", c->clusters, 1, T3R_MAX_CLUSTERS},
-        {"cluster_batches must be 0..1024", c->cluster_batches, 0, 1024},
-        {"colour_weight_q8 must be 0..1024", c->colour_weight_q8, 0, 1024},
-        {"allocation is none of t3r_allocation", (uint32_t)c->allocation, T3R_ALLOCATE_CONFIGURED + 1,
-         T3R_ALLOCATE_COUNT - 1},
-        {"keep_percent must be 0..100", c->keep_percent, 0, 100},
-        {"gamma_q8 must be 0..512", c->gamma_q8, 0, 512},
-        {"head is none of t3r_head", (uint32_t)c->head, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT - 1},
-        {"head_column_bytes must be 0..65536", c->head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES},
-        {"refinements must be 0..16", c->refinements, 0, T3R_MAX_REFINEMENTS},
-        {"depth is none of t3r_depth", (uint32_t)c->depth, 0, T3R_DEPTH_COUNT - 1},
-        {"width and height must be 32 and more with depth by stereo", least, stereo ? T3R_STEREO_LEAST_SIDE : 0,
-         T3R_MAX_SIDE},
-        {"fill_radius must be 0..8", c->fill_radius, 0, 8},
-        {"bridge_radius must be 0..255", c->bridge_radius, 0, 255},
-        {"flying must be 0 or 1", c->flying, 0, 1},
-        {"redundancy must be 0 or 1", c->redundancy, 0, 1},
-        {"exposure must be 0 or 1", c->exposure, 0, 1},
-        {"keep_analysis must be 0 or 1", c->keep_analysis, 0, 1},
-        {"stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo},
-        {"half_life must be 0..1024", c->half_life, 0, 1024},
-        {"workers must be 1..16", c->workers, 1, T3R_MAX_WORKERS},
-    };
+    } range[] = {RANGES(BOUNDS)};
     for (size_t i = 0; i < sizeof range / sizeof range[0]; i++) {
         if (range[i].value < range[i].low || range[i].value > range[i].high) {
-            return range[i].text;
+            return i + 1;
         }
     }
     /* Sizes are summed in size_t: an arena of more than half of what it can count is refused, generously estimated. */
@@ -93,5 +102,16 @@ const char *t3r_config_error(const t3r_config *c)
     /* planes of a quarter more on a side, the right one wider; 64 rows of sums and costs, and as many path states */
     const uint64_t wide = (uint64_t)side * 5 / 4 + 8 + T3R_STEREO_DISPARITIES;
     bytes += stereo ? wide * wide * 16 + wide * (T3R_STEREO_DISPARITIES + 2) * 300 : 0;
-    return bytes > SIZE_MAX / 2 ? "the arena would be larger than this machine can address" : NULL;
+    return bytes > SIZE_MAX / 2 ? FAULTS - 1 : FAULTS;
+}
+
+bool t3r_is_config(const t3r_config *config)
+{
+    return first_fault(config) == FAULTS;
+}
+
+const char *t3r_config_error(const t3r_config *config)
+{
+    const size_t fault = first_fault(config);
+    return fault == FAULTS ? NULL : texts[fault];
 }

@@ -81,65 +81,65 @@ static bool is_name(const uint8_t name[16])
     return length > 0 && length < 16 && all_zero(name + length, 16 - length);
 }
 
-static const char *header_error(const uint8_t *p, size_t bytes)
+static t3r_weights_fault header_fault(const uint8_t *p, size_t bytes)
 {
     if (bytes < T3R_WEIGHTS_HEADER_BYTES || t3r_le_u32(p) != MAGIC) {
-        return "not a weight file";
+        return T3R_FAULT_FOREIGN;
     }
     if (t3r_le_u16(p + 4) != T3R_WEIGHTS_FORMAT) {
-        return "a weight file of another format";
+        return T3R_FAULT_FORMAT;
     }
     if (t3r_le_u16(p + 6) != T3R_BITS_EPOCH) {
-        return "weights of another bits epoch";
+        return T3R_FAULT_EPOCH;
     }
     t3r_weights_header header = t3r_weights_header_of(p);
     if (header.bytes != bytes || bytes > T3R_MAX_WEIGHTS_BYTES) {
-        return "the file is not as long as it says, or over 16 MiB";
+        return T3R_FAULT_LENGTH;
     }
     if (header.crc != crc_of(p + CRC_FROM, bytes - CRC_FROM)) {
-        return "damaged: the CRC does not match";
+        return T3R_FAULT_CRC;
     }
     if ((header.weight_bits != 8 && header.weight_bits != 16) ||
         (header.activation_bits != 8 && header.activation_bits != 16)) {
-        return "weights and activations must have 8 or 16 bits";
+        return T3R_FAULT_BITS;
     }
     if (p[19] != T3R_FEATURE_SET) {
-        return "made for other features";
+        return T3R_FAULT_FEATURES;
     }
     if (!is_name(p + 32) || !all_zero(p + 28, 4) || !all_zero(p + 48, 16)) {
-        return "the header's name or reserved bytes are not as they must be";
+        return T3R_FAULT_HEADER;
     }
     if (header.layers < 1 || header.layers > T3R_MAX_LAYERS ||
         bytes < T3R_WEIGHTS_HEADER_BYTES + header.layers * T3R_WEIGHTS_LAYER_BYTES) {
-        return "layers must be 1..24, their table in the file";
+        return T3R_FAULT_LAYERS;
     }
-    return NULL;
+    return T3R_FAULT_NONE;
 }
 
 /* Shape: what of a layer is said without looking at another. */
-static const char *shape_error(const uint8_t *row, const t3r_layer *layer)
+static t3r_weights_fault shape_fault(const uint8_t *row, const t3r_layer *layer)
 {
     if (row[0] >= T3R_LAYER_KINDS || row[11] != 0 || row[14] != 0 || row[15] != 0) {
-        return "a layer's kind or reserved bytes are not as they must be";
+        return T3R_FAULT_KIND;
     }
     if (layer->inputs < 1 || layer->inputs > T3R_MAX_CHANNELS || layer->outputs < 1 ||
         layer->outputs > T3R_MAX_CHANNELS) {
-        return "a layer's channels must be 1..128";
+        return T3R_FAULT_CHANNELS;
     }
     bool point = layer->kind == T3R_LAYER_POINT, depthwise = layer->kind == T3R_LAYER_DEPTHWISE;
     if (point) {
         bool sound =
             layer->level == 0 && layer->kernel == 1 && layer->stride == 1 && (layer->phases == 1 || layer->phases == 4);
-        return sound ? NULL : "a point layer's level, kernel, stride and phases must be 0, 1, 1 and 1 or 4";
+        return sound ? T3R_FAULT_NONE : T3R_FAULT_POINT;
     }
     if (layer->level > T3R_MAX_LEVEL || layer->stride < 1 || layer->stride > 2 || layer->level + 1 < layer->stride ||
         layer->phases != 1) {
-        return "a layer's level, stride or phases are out of range";
+        return T3R_FAULT_SHAPE;
     }
     if (layer->kernel < 1 || layer->kernel > (depthwise ? 5 : T3R_MAX_KERNEL)) {
-        return "a layer's kernel is out of range";
+        return T3R_FAULT_KERNEL;
     }
-    return depthwise && layer->outputs != layer->inputs ? "a depthwise layer's outputs must be its inputs" : NULL;
+    return depthwise && layer->outputs != layer->inputs ? T3R_FAULT_DEPTHWISE : T3R_FAULT_NONE;
 }
 
 /* Whether layer n (from 1) may read the source. Adds its channels. */
@@ -160,21 +160,21 @@ static bool may_read(const void *weights, uint32_t n, const t3r_layer *layer, ui
     return from.kind != T3R_LAYER_POINT && from.level + layer->stride - 1 >= layer->level;
 }
 
-static const char *source_error(const void *weights, uint32_t n, const t3r_layer *layer)
+static t3r_weights_fault source_fault(const void *weights, uint32_t n, const t3r_layer *layer)
 {
     bool second = layer->source[1] != T3R_SOURCE_NONE;
     uint32_t channels = 0;
     if (!may_read(weights, n, layer, layer->source[0], &channels) ||
         (second && (layer->kind == T3R_LAYER_DEPTHWISE || !may_read(weights, n, layer, layer->source[1], &channels)))) {
-        return "a layer's source is none that it may read";
+        return T3R_FAULT_SOURCE;
     }
     if (channels != layer->inputs) {
-        return "a layer's inputs are not the channels of its sources";
+        return T3R_FAULT_INPUTS;
     }
     if (layer->kind != T3R_LAYER_POINT && n > 1 && t3r_weights_layer(weights, n - 2).kind == T3R_LAYER_POINT) {
-        return "a layer stands behind a point layer";
+        return T3R_FAULT_BEHIND_POINT;
     }
-    return NULL;
+    return T3R_FAULT_NONE;
 }
 
 static bool in_file(uint32_t offset, uint64_t block, const t3r_weights_header *header)
@@ -207,48 +207,48 @@ static bool sum_fits(const uint8_t *file, const t3r_weights_header *header, cons
                 : magnitude(t3r_le_i32(bias)) + (sum << 7) < (uint64_t)1 << 31;
 }
 
-static const char *block_error(const uint8_t *file, const t3r_weights_header *header, const t3r_layer *layer)
+static t3r_weights_fault block_fault(const uint8_t *file, const t3r_weights_header *header, const t3r_layer *layer)
 {
     uint32_t rows = (uint32_t)layer->phases * layer->outputs;
     if (!in_file(layer->weights, (uint64_t)rows * t3r_layer_taps(layer) * (header->weight_bits / 8), header) ||
         !in_file(layer->bias, (uint64_t)rows * (header->activation_bits == 16 ? 8 : 4), header) ||
         !in_file(layer->multiplier, (uint64_t)layer->outputs * 4, header) ||
         !in_file(layer->shift, layer->outputs, header)) {
-        return "a layer's block lies outside the file or is not aligned to 16";
+        return T3R_FAULT_BLOCK;
     }
     for (uint32_t o = 0; o < layer->outputs; o++) {
         int8_t shift = (int8_t)file[layer->shift + o];
         if (t3r_le_i32(file + layer->multiplier + (size_t)o * 4) < 1 << 30 || shift < SHIFT_LEAST ||
             shift > SHIFT_MOST) {
-            return "a multiplier or shift is out of range";
+            return T3R_FAULT_MULTIPLIER;
         }
         for (uint32_t phase = 0; phase < layer->phases; phase++) {
             if (!sum_fits(file, header, layer, phase, o)) {
-                return "a layer's sums could leave their accumulators";
+                return T3R_FAULT_SUMS;
             }
         }
     }
-    return NULL;
+    return T3R_FAULT_NONE;
 }
 
-static const char *layer_error(const uint8_t *file, const t3r_weights_header *header, uint32_t n)
+static t3r_weights_fault layer_fault(const uint8_t *file, const t3r_weights_header *header, uint32_t n)
 {
     t3r_layer layer = t3r_weights_layer(file, n - 1);
-    const char *error =
-        shape_error(file + T3R_WEIGHTS_HEADER_BYTES + (size_t)(n - 1) * T3R_WEIGHTS_LAYER_BYTES, &layer);
-    if (error == NULL) {
-        error = source_error(file, n, &layer);
+    t3r_weights_fault fault =
+        shape_fault(file + T3R_WEIGHTS_HEADER_BYTES + (size_t)(n - 1) * T3R_WEIGHTS_LAYER_BYTES, &layer);
+    if (fault == T3R_FAULT_NONE) {
+        fault = source_fault(file, n, &layer);
     }
-    if (error == NULL && header->activation_bits == 8 && n < header->layers &&
+    if (fault == T3R_FAULT_NONE && header->activation_bits == 8 && n < header->layers &&
         (layer.zero < -128 || layer.zero > 127)) {
-        error = "an output zero is no int8";
+        fault = T3R_FAULT_ZERO;
     }
-    return error != NULL ? error : block_error(file, header, &layer);
+    return fault != T3R_FAULT_NONE ? fault : block_fault(file, header, &layer);
 }
 
 /* What holds of the layers together: the last layer, the counts in the header, and that every output is read. At most
  * 24 layers of 36 x 128 x 128 multiply-accumulates in Q8: below 2^32. */
-static const char *graph_error(const uint8_t *file, const t3r_weights_header *header)
+static t3r_weights_fault graph_fault(const uint8_t *file, const t3r_weights_header *header)
 {
     uint32_t macs_q8 = 0, parameters = 0, unread = 0;
     for (uint32_t n = 1; n <= header->layers; n++) {
@@ -263,38 +263,36 @@ static const char *graph_error(const uint8_t *file, const t3r_weights_header *he
     }
     t3r_layer last = t3r_weights_layer(file, header->layers - 1);
     if (last.kind != T3R_LAYER_POINT || last.outputs != T3R_HEAD_OUTPUTS || last.zero != 0) {
-        return "the last layer is not a linear point layer of 9 outputs";
+        return T3R_FAULT_LAST;
     }
     if (unread != 1u << header->layers) {
-        return "a layer is read by none";
+        return T3R_FAULT_UNREAD;
     }
     if (macs_q8 != header->macs_q8 || parameters != header->parameters) {
-        return "the header's counts are not those of the layers";
+        return T3R_FAULT_COUNTS;
     }
-    return macs_q8 > T3R_MAX_HEAD_MACS << 8 ? "over 65536 multiply-accumulates a pixel" : NULL;
+    return macs_q8 > T3R_MAX_HEAD_MACS << 8 ? T3R_FAULT_COST : T3R_FAULT_NONE;
 }
 
-const char *t3r_weights_error(const void *weights, size_t bytes)
+t3r_weights_fault t3r_weights_fault_of(const void *weights, size_t bytes)
 {
     if (weights == NULL || (uintptr_t)weights % T3R_WEIGHTS_ALIGN != 0) {
-        return "no weights, or not aligned to 16 bytes";
+        return T3R_FAULT_MISALIGNED;
     }
     const uint8_t *file = weights;
-    const char *error = header_error(file, bytes);
-    if (error != NULL) {
-        return error;
+    t3r_weights_fault fault = header_fault(file, bytes);
+    if (fault != T3R_FAULT_NONE) {
+        return fault;
     }
     t3r_weights_header header = t3r_weights_header_of(file);
-    for (uint32_t n = 1; n <= header.layers && error == NULL; n++) {
-        error = layer_error(file, &header, n);
+    for (uint32_t n = 1; n <= header.layers && fault == T3R_FAULT_NONE; n++) {
+        fault = layer_fault(file, &header, n);
     }
-    return error != NULL ? error : graph_error(file, &header);
+    return fault != T3R_FAULT_NONE ? fault : graph_fault(file, &header);
 }
 
 t3r_status t3r_weights_check(const void *weights, size_t bytes)
 {
-    if (weights == NULL || (uintptr_t)weights % T3R_WEIGHTS_ALIGN != 0) {
-        return T3R_ERR_ARGUMENT;
-    }
-    return t3r_weights_error(weights, bytes) == NULL ? T3R_OK : T3R_ERR_WEIGHTS;
+    const t3r_weights_fault fault = t3r_weights_fault_of(weights, bytes);
+    return fault == T3R_FAULT_NONE ? T3R_OK : fault == T3R_FAULT_MISALIGNED ? T3R_ERR_ARGUMENT : T3R_ERR_WEIGHTS;
 }

@@ -105,6 +105,42 @@ typedef struct t3r_layer {
     uint32_t weights, bias, multiplier, shift;
 } t3r_layer;
 
+/* What t3r_weights_check() found wrong. The texts lie apart, so that a firmware links them only when it asks for them.
+ */
+#define T3R_WEIGHTS_FAULTS(X)                                                                                          \
+    X(FOREIGN, "not a weight file")                                                                                    \
+    X(FORMAT, "a weight file of another format")                                                                       \
+    X(EPOCH, "weights of another bits epoch")                                                                          \
+    X(LENGTH, "the file is not as long as it says, or over 16 MiB")                                                    \
+    X(CRC, "damaged: the CRC does not match")                                                                          \
+    X(BITS, "weights and activations must have 8 or 16 bits")                                                          \
+    X(FEATURES, "made for other features")                                                                             \
+    X(HEADER, "the header's name or reserved bytes are not as they must be")                                           \
+    X(LAYERS, "layers must be 1..24, their table in the file")                                                         \
+    X(KIND, "a layer's kind or reserved bytes are not as they must be")                                                \
+    X(CHANNELS, "a layer's channels must be 1..128")                                                                   \
+    X(POINT, "a point layer's level, kernel, stride and phases must be 0, 1, 1 and 1 or 4")                            \
+    X(SHAPE, "a layer's level, stride or phases are out of range")                                                     \
+    X(KERNEL, "a layer's kernel is out of range")                                                                      \
+    X(DEPTHWISE, "a depthwise layer's outputs must be its inputs")                                                     \
+    X(SOURCE, "a layer's source is none that it may read")                                                             \
+    X(INPUTS, "a layer's inputs are not the channels of its sources")                                                  \
+    X(BEHIND_POINT, "a layer stands behind a point layer")                                                             \
+    X(BLOCK, "a layer's block lies outside the file or is not aligned to 16")                                          \
+    X(MULTIPLIER, "a multiplier or shift is out of range")                                                             \
+    X(SUMS, "a layer's sums could leave their accumulators")                                                           \
+    X(ZERO, "an output zero is no int8")                                                                               \
+    X(LAST, "the last layer is not a linear point layer of 9 outputs")                                                 \
+    X(UNREAD, "a layer is read by none")                                                                               \
+    X(COUNTS, "the header's counts are not those of the layers")                                                       \
+    X(COST, "over 65536 multiply-accumulates a pixel")                                                                 \
+    X(MISALIGNED, "no weights, or not aligned to 16 bytes")
+
+#define T3R_WEIGHTS_FAULT_(NAME, text) T3R_FAULT_##NAME,
+typedef enum t3r_weights_fault { T3R_FAULT_NONE, T3R_WEIGHTS_FAULTS(T3R_WEIGHTS_FAULT_) } t3r_weights_fault;
+
+t3r_weights_fault t3r_weights_fault_of(const void *weights, size_t bytes);
+
 /* T3R_ERR_ARGUMENT: null or not aligned to T3R_WEIGHTS_ALIGN; T3R_ERR_WEIGHTS: t3r_weights_error() says why. */
 t3r_status t3r_weights_check(const void *weights, size_t bytes);
 

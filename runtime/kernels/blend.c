@@ -101,23 +101,30 @@ void t3r_blend_c(t3r_tile *restrict tile, const t3r_tile_splat *splat, t3r_blend
     }
 }
 
+static void blend_rows_again(t3r_tile *restrict tile, const uint16_t colour_q7[3], uint32_t column, uint32_t first,
+                             uint32_t last, const t3r_blend_weights *weights)
+{
+    const uint16_t red = colour_q7[0], green = colour_q7[1], blue = colour_q7[2];
+    for (uint32_t j = first; j <= last; j++) {
+        uint16_t *transmittance = tile->transmittance_q16[j] + column;
+        uint16_t *r = tile->colour_q7[0][j] + column;
+        uint16_t *g = tile->colour_q7[1][j] + column;
+        uint16_t *b = tile->colour_q7[2][j] + column;
+        for (int32_t i = 0; i < T3R_LANES; i++) {
+            uint16_t w = weights[j - first].q16[i];
+            transmittance[i] = (uint16_t)(transmittance[i] - w);
+            r[i] = (uint16_t)(r[i] + t3r_mulr_q16(w, red));
+            g[i] = (uint16_t)(g[i] + t3r_mulr_q16(w, green));
+            b[i] = (uint16_t)(b[i] + t3r_mulr_q16(w, blue));
+        }
+    }
+}
+
 void t3r_blend_again_c(t3r_tile *restrict tile, const t3r_tile_splat *splat, const t3r_blend_weights *weights)
 {
-    const uint16_t red = splat->colour_q7[0], green = splat->colour_q7[1], blue = splat->colour_q7[2];
+    const uint32_t rows = splat->last - splat->first + 1u;
     for (uint32_t group = 0; group < splat->groups; group++) {
-        const uint32_t column = splat->column + group * T3R_LANES;
-        for (uint32_t j = splat->first; j <= splat->last; j++, weights++) {
-            uint16_t *transmittance = tile->transmittance_q16[j] + column;
-            uint16_t *r = tile->colour_q7[0][j] + column;
-            uint16_t *g = tile->colour_q7[1][j] + column;
-            uint16_t *b = tile->colour_q7[2][j] + column;
-            for (int32_t i = 0; i < T3R_LANES; i++) {
-                uint16_t w = weights->q16[i];
-                transmittance[i] = (uint16_t)(transmittance[i] - w);
-                r[i] = (uint16_t)(r[i] + t3r_mulr_q16(w, red));
-                g[i] = (uint16_t)(g[i] + t3r_mulr_q16(w, green));
-                b[i] = (uint16_t)(b[i] + t3r_mulr_q16(w, blue));
-            }
-        }
+        blend_rows_again(tile, splat->colour_q7, splat->column + group * T3R_LANES, splat->first, splat->last,
+                         weights + group * rows);
     }
 }

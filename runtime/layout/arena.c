@@ -19,20 +19,21 @@ _Static_assert(sizeof(t3r_map_record) == T3R_MAP_RECORD_BYTES, "trim3r_arena.h k
 _Static_assert(sizeof(t3r_correction) == T3R_CORRECTION_BYTES, "trim3r_arena.h knows the correction's size");
 
 typedef struct buffer_row {
-    const char *name;
     size_t bytes;
     t3r_stage first, last;
 } buffer_row;
 
 #define ROW(p, NAME, text, buffer_bytes, first_stage, last_stage)                                                      \
-    rows[T3R_BUFFER_##NAME] =                                                                                          \
-        (buffer_row){text, T3R_UP_(buffer_bytes), (t3r_stage)(first_stage), (t3r_stage)(last_stage)};
+    rows[T3R_BUFFER_##NAME] = (buffer_row){buffer_bytes, (t3r_stage)(first_stage), (t3r_stage)(last_stage)};
 
 static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
 {
     const uint32_t keep = c->stream != 0 ? T3R_KEEP_MAP : c->keep_analysis;
     T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,
                 c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO, c->workers)
+    for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
+        rows[b].bytes = T3R_UP_(rows[b].bytes);
+    }
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)

@@ -191,9 +191,7 @@ uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, in
                            const t3r_pointmap_work *work)
 {
     settle_job job = {.count = count, .v = v, .settled = settled};
-    for (uint32_t w = 0; w < count; w++) {
-        job.maps[w] = t3r_pointmap_of(&views[w], exponent);
-    }
+    t3r_pointmaps_of(views, count, exponent, job.maps);
     t3r_run_rows(&work->workers, views[v].height, settle_rows, &job);
     uint32_t bridged = 0;
     for (uint32_t w = 0; w < work->workers.count; w++) {

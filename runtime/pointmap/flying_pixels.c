@@ -93,9 +93,7 @@ uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int3
 {
     const t3r_view *view = &views[v];
     flying_job job = {.count = count, .v = v, .guessed = guessed, .is_flying = (uint8_t *)work->pixels};
-    for (uint32_t w = 0; w < count; w++) {
-        job.maps[w] = t3r_pointmap_of(&views[w], exponent);
-    }
+    t3r_pointmaps_of(views, count, exponent, job.maps);
     t3r_run_rows(&work->workers, view->height, find_rows, &job);
     uint32_t marked = 0;
     for (size_t i = 0; i < (size_t)view->width * view->height; i++) {

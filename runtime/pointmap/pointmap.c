@@ -19,6 +19,13 @@ t3r_pointmap t3r_pointmap_of(const t3r_view *view, int32_t exponent)
     };
 }
 
+void t3r_pointmaps_of(const t3r_view *views, uint32_t count, int32_t exponent, t3r_pointmap maps[T3R_MAX_VIEWS])
+{
+    for (uint32_t v = 0; v < count; v++) {
+        maps[v] = t3r_pointmap_of(&views[v], exponent);
+    }
+}
+
 void t3r_ray_q24(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t ray_q24[2])
 {
     /* |u - c| < 2^15 and 1 / f <= 1/8: below 2^31 x 2^29 */

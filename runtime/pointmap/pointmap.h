@@ -17,6 +17,7 @@ typedef struct t3r_pointmap {
 } t3r_pointmap;
 
 t3r_pointmap t3r_pointmap_of(const t3r_view *view, int32_t exponent);
+void t3r_pointmaps_of(const t3r_view *views, uint32_t count, int32_t exponent, t3r_pointmap maps[T3R_MAX_VIEWS]);
 
 /* The direction of pixel (u, v)'s ray at unit depth, camera frame: x and y, Q24, held within +-16 (z is 1). */
 void t3r_ray_q24(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t ray_q24[2]);

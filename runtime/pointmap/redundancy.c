@@ -68,9 +68,7 @@ uint32_t t3r_mark_covered(const t3r_view *views, uint32_t count, uint32_t v, int
 {
     const uint32_t pixels = views[v].width * views[v].height;
     covered_job job = {.count = count, .v = v, .witness = work->pixels};
-    for (uint32_t w = 0; w < count; w++) {
-        job.maps[w] = t3r_pointmap_of(&views[w], exponent);
-    }
+    t3r_pointmaps_of(views, count, exponent, job.maps);
     t3r_run_rows(&work->workers, views[v].height, mark_rows, &job);
     uint32_t marked = 0;
     for (uint32_t i = 0; i < pixels; i++) {

@@ -46,24 +46,24 @@ t3r_raster_room t3r_refine_room(const t3r_runtime *rt)
     return layout_of(rt).room;
 }
 
+static void shift_each(int32_t *sums, uint32_t count, uint32_t shift)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        sums[i] = (int32_t)t3r_round_shift64(sums[i], shift);
+    }
+}
+
 /* Before a view adds to a Gaussian's sums they are brought to the scale that its box asks for. */
 static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
 {
     uint32_t area = sums->area + (uint32_t)(splat->x1 - splat->x0 + 1) * (uint32_t)(splat->y1 - splat->y0 + 1);
     uint32_t shift = t3r_refine_shift(area) - t3r_refine_shift(sums->area);
     sums->area = area;
-    if (shift == 0) {
-        return;
-    }
-    for (int c = 0; c < 3; c++) {
-        sums->colour[c] = (int32_t)t3r_round_shift64(sums->colour[c], shift);
-    }
-    sums->weight = (int32_t)t3r_round_shift64(sums->weight, shift);
-    for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
-        sums->gradient[k] = (int32_t)t3r_round_shift64(sums->gradient[k], shift);
-    }
-    for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
-        sums->curvature[k] = (int32_t)t3r_round_shift64(sums->curvature[k], shift);
+    if (shift > 0) {
+        shift_each(sums->colour, 3, shift);
+        shift_each(&sums->weight, 1, shift);
+        shift_each(sums->gradient, T3R_REFINE_MOMENTS_2, shift);
+        shift_each(sums->curvature, T3R_REFINE_MOMENTS_4, shift);
     }
 }
 

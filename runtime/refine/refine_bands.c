@@ -84,18 +84,19 @@ t3r_refine_sums *t3r_refine_sums_in(const t3r_refine_band *bands, uint32_t band,
     return &borders->sums[place + low];
 }
 
+static void add_each(int32_t *to, const int32_t *from, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        to[i] += from[i];
+    }
+}
+
 static void add(t3r_refine_sums *to, const t3r_refine_sums *from)
 {
-    for (int c = 0; c < 3; c++) {
-        to->colour[c] += from->colour[c];
-    }
-    to->weight += from->weight;
-    for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
-        to->gradient[k] += from->gradient[k];
-    }
-    for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
-        to->curvature[k] += from->curvature[k];
-    }
+    add_each(to->colour, from->colour, 3);
+    add_each(&to->weight, &from->weight, 1);
+    add_each(to->gradient, from->gradient, T3R_REFINE_MOMENTS_2);
+    add_each(to->curvature, from->curvature, T3R_REFINE_MOMENTS_4);
 }
 
 void t3r_refine_join(const t3r_refine_band *bands, uint32_t count, const t3r_refine_borders *borders,

@@ -45,9 +45,7 @@ t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
         .inverse_median_q30 = ((int64_t)1 << 50) / rt->median_depth_q20,
         .colour_scale_q16 = (int32_t)((rt->config.colour_weight_q8 << 19) / 255),
     };
-    for (uint32_t v = 0; v < rt->views; v++) {
-        points.maps[v] = t3r_pointmap_of(&views[v], rt->frame.exponent);
-    }
+    t3r_pointmaps_of(views, rt->views, rt->frame.exponent, points.maps);
     t3r_point_source source = {&points, points.pixels * rt->views, pixel_features};
     t3r_cluster_settings settings = {&rt->kernels, rt->config.clusters, rt->config.cluster_batches, rt->config.seed};
     const t3r_cluster_host host = {
