@@ -1,10 +1,40 @@
 #include "develop.h"
 
 #include "core/camera.h"
+#include "core/cut.h"
 #include "depth/depth.h"
 #include "image.h"
 #include "state/state.h"
 #include "undistort.h"
+
+/* A frame on its way into a view's planes. */
+typedef struct develop_job {
+    const t3r_runtime *rt;
+    const t3r_frame *frame;
+    const t3r_view *view;
+    const int32_t *grid; /* NULL: nothing to undistort */
+    uint8_t *colour[3];  /* resized: the view's own planes, or those that are undistorted into them */
+    uint16_t *depth;
+    uint8_t *work; /* T3R_IMAGE_ROW_BYTES_ a worker */
+} develop_job;
+
+static void resize_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    const develop_job *job = context;
+    const uint32_t width = job->view->width, height = job->view->height;
+    t3r_image_colour(&job->rt->kernels, job->frame, width, height, begin, end, job->colour,
+                     job->work + worker * T3R_IMAGE_ROW_BYTES_(width));
+    t3r_image_depth(job->frame, width, height, begin, end, job->depth);
+}
+
+static void undistort_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const develop_job *job = context;
+    const uint32_t width = job->view->width, height = job->view->height;
+    t3r_undistort_colour(job->grid, width, height, begin, end, (const uint8_t *const *)job->colour, job->view->colour);
+    t3r_undistort_depth(job->grid, width, height, begin, end, job->depth, job->view->depth);
+}
 
 t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
                             t3r_camera *undistorted)
@@ -26,27 +56,30 @@ t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *fr
     t3r_views_of(rt, views);
     t3r_view *view = &views[index];
 
-    /* The work buffer: grid, resize rows, a depth plane, three colour planes (trim3r_arena.h). */
-    size_t pixels = T3R_PIXELS_(width, height);
-    uint8_t *work = t3r_buffer_at(rt, T3R_BUFFER_IMAGE_WORK);
-    int32_t *grid = (int32_t *)(void *)work;
-    uint8_t *rows = work + T3R_GRID_NODES_(width, height) * 8;
-    uint16_t *depth = (uint16_t *)(void *)(rows + t3r_image_work_bytes(width));
-    uint8_t *colour = (uint8_t *)(depth + pixels);
-    uint8_t *const raw[3] = {colour, colour + pixels, colour + 2 * pixels};
-
-    if (resized.distortion == T3R_DISTORTION_NONE) {
-        t3r_image_colour(&rt->kernels, frame, width, height, view->colour, rows);
-        t3r_image_depth(frame, width, height, view->depth);
-    } else {
+    t3r_cut cut =
+        t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_IMAGE_WORK), T3R_IMAGE_WORK_BYTES_(width, height, rt->config.workers));
+    const size_t pixels = T3R_PIXELS_(width, height);
+    develop_job job = {
+        .rt = rt, .frame = frame, .view = view, .colour = {view->colour[0], view->colour[1], view->colour[2]}};
+    int32_t *grid = t3r_take(&cut, T3R_GRID_NODES_(width, height) * 8);
+    job.work = t3r_take(&cut, rt->config.workers * T3R_IMAGE_ROW_BYTES_(width));
+    job.depth = view->depth;
+    const t3r_workers workers = t3r_workers_of(rt);
+    if (resized.distortion != T3R_DISTORTION_NONE) {
         status = t3r_undistort_grid(&resized, width, height, grid);
         if (status != T3R_OK) {
             return status;
         }
-        t3r_image_colour(&rt->kernels, frame, width, height, raw, rows);
-        t3r_image_depth(frame, width, height, depth);
-        t3r_undistort_colour(grid, width, height, (const uint8_t *const *)raw, view->colour);
-        t3r_undistort_depth(grid, width, height, depth, view->depth);
+        job.grid = grid;
+        job.depth = t3r_take(&cut, pixels * sizeof *job.depth);
+        uint8_t *colour = t3r_take(&cut, 3 * pixels);
+        for (int c = 0; c < 3; c++) {
+            job.colour[c] = colour + (size_t)c * pixels;
+        }
+    }
+    t3r_run_rows(&workers, height, resize_rows, &job);
+    if (job.grid != NULL) {
+        t3r_run_rows(&workers, height, undistort_rows, &job);
     }
     t3r_depth_validity(view);
     resized.distortion = T3R_DISTORTION_NONE;

@@ -118,14 +118,15 @@ static void sum_row(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
     }
 }
 
-/* Totals are at most 255 W H, with W H at most 2^24. */
-static void average(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
-                    uint8_t *const planes[3], void *work)
+/* Totals are at most 255 W H, with W H at most 2^24. In units of which a source row is h high and a destination row H,
+ * destination row r begins at r H: at most 2^24. */
+static void average(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t begin,
+                    uint32_t end, uint8_t *const planes[3], void *work)
 {
     uint32_t *memory = work;
     uint32_t *sums[3], *totals[3];
     uint32_t area = frame->width * frame->height;
-    uint32_t row = 0;
+    uint32_t row = begin;
     uint32_t left = frame->height;
 
     for (uint32_t c = 0; c < 3; c++) {
@@ -133,11 +134,11 @@ static void average(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
         totals[c] = memory + (size_t)(3 + c) * width;
         memset(totals[c], 0, width * sizeof(uint32_t));
     }
-    for (uint32_t y = 0; y < frame->height; y++) {
-        uint32_t units = height;
+    uint32_t units = height - begin * frame->height % height; /* of the first source row, what lies in the first row */
+    for (uint32_t y = begin * frame->height / height; row < end; y++, units = height) {
         sum_row(kernels, frame, y, width, sums);
         /* over the whole image at most H + h turns */
-        while (units > 0) {
+        while (units > 0 && row < end) {
             uint32_t part = T3R_MIN(units, left);
             for (uint32_t c = 0; c < 3; c++) {
                 kernels->weigh_row(totals[c], sums[c], part, width);
@@ -156,26 +157,27 @@ static void average(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
 }
 
 void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
-                      uint8_t *const planes[3], void *work)
+                      uint32_t begin, uint32_t end, uint8_t *const planes[3], void *work)
 {
     if (frame->width != width || frame->height != height) {
-        average(kernels, frame, width, height, planes, work);
+        average(kernels, frame, width, height, begin, end, planes, work);
         return;
     }
-    for (uint32_t y = 0; y < height; y++) {
+    for (uint32_t y = begin; y < end; y++) {
         size_t at = (size_t)y * width;
         convert(kernels, frame, y, 0, width, planes[0] + at, planes[1] + at, planes[2] + at);
     }
 }
 
-void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, uint16_t *depth)
+void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
+                     uint16_t *depth)
 {
     if (frame->depth == NULL) {
-        memset(depth, 0, (size_t)width * height * sizeof(uint16_t));
+        memset(depth + (size_t)begin * width, 0, (size_t)width * (end - begin) * sizeof(uint16_t));
         return;
     }
     /* (2 j + 1) W <= 2^13 x 2^12: no overflow; the quotient is at most W - 1 */
-    for (uint32_t y = 0; y < height; y++) {
+    for (uint32_t y = begin; y < end; y++) {
         uint32_t from_y = (2 * y + 1) * frame->depth_height / (2 * height);
         const uint8_t *row = frame->depth + (size_t)from_y * frame->depth_stride_bytes;
         uint16_t *out = depth + (size_t)y * width;

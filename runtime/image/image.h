@@ -23,12 +23,14 @@ t3r_status t3r_image_check(const t3r_frame *frame);
 /* Bytes of the `work` of t3r_image_colour() for a destination of that width: 24 a pixel. */
 size_t t3r_image_work_bytes(uint32_t width);
 
-/* A checked frame to R, G, B planes of width x height (1..T3R_MAX_SIDE each), rows without gaps. work:
- * t3r_image_work_bytes(width), aligned for uint32_t; untouched (may be NULL) when no size changes. */
+/* A checked frame to R, G, B planes of width x height (1..T3R_MAX_SIDE each), rows without gaps: the rows begin..end -
+ * 1 of these. work: t3r_image_work_bytes(width), aligned for uint32_t; untouched (may be NULL) when no size changes. */
 void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
-                      uint8_t *const planes[3], void *work);
+                      uint32_t begin, uint32_t end, uint8_t *const planes[3], void *work);
 
-/* A checked frame's depth to width x height steps of its unit, 0 = none; all 0 when the frame has no depth. */
-void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, uint16_t *depth);
+/* A checked frame's depth to width x height steps of its unit, 0 = none; all 0 when the frame has no depth. Likewise
+ * the rows begin..end - 1. */
+void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
+                     uint16_t *depth);
 
 #endif

@@ -256,12 +256,12 @@ static uint8_t bilinear(const uint8_t *plane, uint32_t width, tap x, tap y)
     return (uint8_t)t3r_round_shift32((int32_t)(above * (256 - y.weight) + below * y.weight), 16);
 }
 
-void t3r_undistort_colour(const int32_t *grid, uint32_t width, uint32_t height, const uint8_t *const source[3],
-                          uint8_t *const out[3])
+void t3r_undistort_colour(const int32_t *grid, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
+                          const uint8_t *const source[3], uint8_t *const out[3])
 {
     int32_t positions[T3R_GRID_STEP][2];
 
-    for (uint32_t y = 0; y < height; y++) {
+    for (uint32_t y = begin; y < end; y++) {
         for (uint32_t x = 0; x < width; x += T3R_GRID_STEP) {
             bool shown = cell_positions(grid, width, x / T3R_GRID_STEP, y, positions);
             uint32_t count = T3R_MIN(T3R_GRID_STEP, width - x);
@@ -281,11 +281,12 @@ void t3r_undistort_colour(const int32_t *grid, uint32_t width, uint32_t height, 
     }
 }
 
-void t3r_undistort_depth(const int32_t *grid, uint32_t width, uint32_t height, const uint16_t *source, uint16_t *out)
+void t3r_undistort_depth(const int32_t *grid, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
+                         const uint16_t *source, uint16_t *out)
 {
     int32_t positions[T3R_GRID_STEP][2];
 
-    for (uint32_t y = 0; y < height; y++) {
+    for (uint32_t y = begin; y < end; y++) {
         for (uint32_t x = 0; x < width; x += T3R_GRID_STEP) {
             bool shown = cell_positions(grid, width, x / T3R_GRID_STEP, y, positions);
             uint32_t count = T3R_MIN(T3R_GRID_STEP, width - x);

@@ -21,10 +21,11 @@ t3r_status t3r_undistort_grid(const t3r_camera *camera, uint32_t width, uint32_t
 
 /* Bilinear; 0 where the source position's nearest pixel lies outside. source and out are different planes of
  * width x height. */
-void t3r_undistort_colour(const int32_t *grid, uint32_t width, uint32_t height, const uint8_t *const source[3],
-                          uint8_t *const out[3]);
+void t3r_undistort_colour(const int32_t *grid, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
+                          const uint8_t *const source[3], uint8_t *const out[3]);
 
 /* Nearest; 0, which is "no depth", where that pixel lies outside: the only sign of it that later stages need. */
-void t3r_undistort_depth(const int32_t *grid, uint32_t width, uint32_t height, const uint16_t *source, uint16_t *out);
+void t3r_undistort_depth(const int32_t *grid, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
+                         const uint16_t *source, uint16_t *out);
 
 #endif

@@ -53,6 +53,11 @@
 #define T3R_TILES_(w, h)                                                                                               \
     ((((size_t)(w) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE) * (((size_t)(h) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE))
 #define T3R_GRID_NODES_(w, h) (((size_t)(w) / T3R_GRID_STEP + 2) * ((size_t)(h) / T3R_GRID_STEP + 2))
+/* Resizing sums rows of each worker; undistortion reads planes by a grid. */
+#define T3R_IMAGE_ROW_BYTES_(w) T3R_UP_((size_t)(w)*24)
+#define T3R_IMAGE_WORK_BYTES_(w, h, wk)                                                                                \
+    (T3R_UP_(T3R_GRID_NODES_(w, h) * 8) + (wk)*T3R_IMAGE_ROW_BYTES_(w) + T3R_UP_(T3R_PIXELS_(w, h) * 2) +              \
+     T3R_UP_(T3R_PIXELS_(w, h) * 3))
 /* Columns of a picture whose coarsest level, 16 pixels wide, is whole */
 #define T3R_HEAD_COLUMNS_(w) (((size_t)(w) + 15) / 16 * 16)
 #define T3R_HEAD_WORK_(w, h, hc)                                                                                       \
@@ -157,8 +162,8 @@
     X(p, COLOUR, "colour planes", T3R_PIXELS_(w, h) * (v)*3, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))             \
     X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))               \
     X(p, VALIDITY, "validity planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))           \
-    X(p, IMAGE_WORK, "undistortion and resize work",                                                                   \
-      T3R_ANY_(v) * (T3R_PIXELS_(w, h) * 5 + T3R_GRID_NODES_(w, h) * 8 + (size_t)(w)*24), T3R_AT_IMAGE, T3R_AT_IMAGE)  \
+    X(p, IMAGE_WORK, "undistortion and resize work", T3R_ANY_(v) * T3R_IMAGE_WORK_BYTES_(w, h, wk), T3R_AT_IMAGE,      \
+      T3R_AT_IMAGE)                                                                                                    \
     X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \
     X(p, POINTMAP_WORK, "comparison of views", T3R_ANY_(v) * T3R_PIXELS_(w, h) * 4, T3R_AT_POINTMAP, T3R_AT_POINTMAP)  \
     X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_WAVELET,                    \

@@ -125,7 +125,7 @@ static void packed_formats(void **state)
             }
             t3r_frame frame = {layouts[l].format, 256, height, {packed, NULL}, {520, 0}, NULL, 0, 0, 0, 0};
             assert_int_equal(t3r_image_check(&frame), T3R_OK);
-            t3r_image_colour(&t3r_kernels_c, &frame, 256, height, planes, NULL);
+            t3r_image_colour(&t3r_kernels_c, &frame, 256, height, 0, height, planes, NULL);
             for (uint32_t at = 0; at < 256 * height; at++) {
                 double rgb[3];
                 real_rgb(at % 256, u, 3 * (at / 256), rgb);
@@ -158,7 +158,7 @@ static void nv12(void **state)
         chroma[i] = (uint8_t)unit_random(&seed);
     }
     t3r_frame frame = {T3R_PIXEL_NV12, W, H, {luma, chroma}, {7, 9}, NULL, 0, 0, 0, 0};
-    t3r_image_colour(&t3r_kernels_c, &frame, W, H, out, NULL);
+    t3r_image_colour(&t3r_kernels_c, &frame, W, H, 0, H, out, NULL);
     for (int y = 0; y < H; y++) {
         for (int x = 0; x < W; x++) {
             double rgb[3];
@@ -180,15 +180,15 @@ static void plain_formats(void **state)
     uint8_t planes[3][4];
     uint8_t *out[3] = {planes[0], planes[1], planes[2]};
     t3r_frame frame = {T3R_PIXEL_RGB24, 2, 2, {bytes, NULL}, {7, 0}, NULL, 0, 0, 0, 0};
-    t3r_image_colour(&t3r_kernels_c, &frame, 2, 2, out, NULL);
+    t3r_image_colour(&t3r_kernels_c, &frame, 2, 2, 0, 2, out, NULL);
     assert_memory_equal(planes[0], ((uint8_t[]){1, 4, 7, 10}), 4);
     assert_memory_equal(planes[2], ((uint8_t[]){3, 6, 9, 12}), 4);
     frame.format = T3R_PIXEL_BGR24;
-    t3r_image_colour(&t3r_kernels_c, &frame, 2, 2, out, NULL);
+    t3r_image_colour(&t3r_kernels_c, &frame, 2, 2, 0, 2, out, NULL);
     assert_memory_equal(planes[0], ((uint8_t[]){3, 6, 9, 12}), 4);
     assert_memory_equal(planes[1], ((uint8_t[]){2, 5, 8, 11}), 4);
     frame.format = T3R_PIXEL_GREY;
-    t3r_image_colour(&t3r_kernels_c, &frame, 2, 2, out, NULL);
+    t3r_image_colour(&t3r_kernels_c, &frame, 2, 2, 0, 2, out, NULL);
     for (int c = 0; c < 3; c++) {
         assert_memory_equal(planes[c], ((uint8_t[]){1, 2, 7, 8}), 4);
     }
@@ -233,7 +233,7 @@ static void average(void **state)
             planes[c] = unit_array(w, h);
         }
         t3r_frame frame = {T3R_PIXEL_GREY, from_w, from_h, {grey, NULL}, {from_w, 0}, NULL, 0, 0, 0, 0};
-        t3r_image_colour(&t3r_kernels_c, &frame, w, h, planes, work);
+        t3r_image_colour(&t3r_kernels_c, &frame, w, h, 0, h, planes, work);
         for (uint32_t at = 0; at < w * h; at++) {
             uint8_t exact = box_average(grey, from_w, from_h, w, h, at % w, at / w);
             for (int c = 0; c < 3; c++) {
@@ -265,7 +265,7 @@ static void average_wide(void **state)
         rgb[i] = (uint8_t)unit_random(&seed);
     }
     t3r_frame frame = {T3R_PIXEL_RGB24, W, H, {rgb, NULL}, {W * 3, 0}, NULL, 0, 0, 0, 0};
-    t3r_image_colour(&t3r_kernels_c, &frame, w, h, planes, work);
+    t3r_image_colour(&t3r_kernels_c, &frame, w, h, 0, h, planes, work);
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < W * H; i++) {
             grey[i] = rgb[3 * i + c];
@@ -292,7 +292,7 @@ static void average_largest(void **state)
     memset(grey, 255, (size_t)side * side);
     t3r_frame frame = {T3R_PIXEL_GREY, side, side, {grey, NULL}, {side, 0}, NULL, 0, 0, 0, 0};
     assert_int_equal(t3r_image_check(&frame), T3R_OK);
-    t3r_image_colour(&t3r_kernels_c, &frame, 9, 7, out, work);
+    t3r_image_colour(&t3r_kernels_c, &frame, 9, 7, 0, 7, out, work);
     for (int i = 0; i < 63; i++) {
         assert_int_equal(planes[0][i], 255);
         assert_int_equal(planes[2][i], 255);
@@ -319,13 +319,13 @@ static void depth(void **state)
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
         uint32_t w = sizes[s][0], h = sizes[s][1];
         uint16_t *out = unit_array((size_t)w * h, sizeof(uint16_t));
-        t3r_image_depth(&frame, w, h, out);
+        t3r_image_depth(&frame, w, h, 0, h, out);
         for (uint32_t at = 0; at < w * h; at++) {
             int x = (int)floor((at % w + 0.5) * W / w), y = (int)floor((at / w + 0.5) * H / h);
             assert_int_equal(out[at], bytes[y][2 * x] + 256 * bytes[y][2 * x + 1]);
         }
         frame.depth = NULL;
-        t3r_image_depth(&frame, w, h, out);
+        t3r_image_depth(&frame, w, h, 0, h, out);
         for (uint32_t at = 0; at < w * h; at++) {
             assert_int_equal(out[at], 0);
         }

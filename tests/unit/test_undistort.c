@@ -139,8 +139,8 @@ static void sampling(void **state)
             in.depth[at] = (uint16_t)(1 + at % 60000);
         }
         assert_int_equal(t3r_undistort_grid(&camera, width, height, grid), T3R_OK);
-        t3r_undistort_colour(grid, width, height, (const uint8_t *const *)in.colour, out.colour);
-        t3r_undistort_depth(grid, width, height, in.depth, out.depth);
+        t3r_undistort_colour(grid, width, height, 0, height, (const uint8_t *const *)in.colour, out.colour);
+        t3r_undistort_depth(grid, width, height, 0, height, in.depth, out.depth);
         uint32_t near_misses = 0;
         for (uint32_t at = 0; at < width * height; at++) {
             double p[2];
@@ -192,8 +192,8 @@ static void identity(void **state)
                 in.depth[at] = (uint16_t)unit_random(&seed);
             }
             assert_int_equal(t3r_undistort_grid(&camera, width, height, grid), T3R_OK);
-            t3r_undistort_colour(grid, width, height, (const uint8_t *const *)in.colour, out.colour);
-            t3r_undistort_depth(grid, width, height, in.depth, out.depth);
+            t3r_undistort_colour(grid, width, height, 0, height, (const uint8_t *const *)in.colour, out.colour);
+            t3r_undistort_depth(grid, width, height, 0, height, in.depth, out.depth);
             for (int k = 0; k < 3; k++) {
                 assert_memory_equal(in.colour[k], out.colour[k], width * height);
             }
@@ -219,7 +219,7 @@ static void fold(void **state)
         in.depth[at] = 7;
     }
     assert_int_equal(t3r_undistort_grid(&camera, side, side, grid), T3R_OK);
-    t3r_undistort_depth(grid, side, side, in.depth, out.depth);
+    t3r_undistort_depth(grid, side, side, 0, side, in.depth, out.depth);
     for (uint32_t at = 0; at < side * side; at++) {
         double r = hypot(at % side - 63.5, at / side - 63.5);
         if (r < 45) {
@@ -261,8 +261,8 @@ static void wild(void **state)
             continue;
         }
         taken++;
-        t3r_undistort_colour(grid, width, height, (const uint8_t *const *)in.colour, out.colour);
-        t3r_undistort_depth(grid, width, height, in.depth, out.depth);
+        t3r_undistort_colour(grid, width, height, 0, height, (const uint8_t *const *)in.colour, out.colour);
+        t3r_undistort_depth(grid, width, height, 0, height, in.depth, out.depth);
     }
     assert_true(refused > 50 && taken > 50);
     lens_case c = {"", width, height, 40, 40, 36, 20, T3R_DISTORTION_RADTAN, {-100, 0, 0, 0, 0}, 0};

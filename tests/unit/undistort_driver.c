@@ -37,7 +37,7 @@ int main(int argc, char **argv)
         t3r_camera_check(&camera) == T3R_OK && t3r_undistort_grid(&camera, width, height, grid) == T3R_OK) {
         const uint8_t *const source[3] = {in, in + pixels, in + 2 * pixels};
         uint8_t *const target[3] = {out, out + pixels, out + 2 * pixels};
-        t3r_undistort_colour(grid, width, height, source, target);
+        t3r_undistort_colour(grid, width, height, 0, height, source, target);
         done = fwrite(out, 1, pixels * 3, stdout) == pixels * 3;
     }
     free(in);

@@ -134,7 +134,7 @@ static int develop_colour(const picture *in, const import_crop *crop, uint32_t w
     int status = memory != NULL && work != NULL && t3r_image_check(&frame) == T3R_OK ? 0 : -1;
     if (status == 0) {
         uint8_t *const planes[3] = {memory, memory + pixels, memory + 2 * pixels};
-        t3r_image_colour(&t3r_kernels_c, &frame, width, height, planes, work);
+        t3r_image_colour(&t3r_kernels_c, &frame, width, height, 0, height, planes, work);
         for (size_t i = 0; i < pixels; i++) {
             for (size_t c = 0; c < 3; c++) {
                 rgb[i * 3 + c] = planes[c][i];
@@ -172,7 +172,7 @@ static int develop_depth(picture *in, const import_crop *crop, uint32_t width, u
     if (t3r_image_check(&frame) != T3R_OK) {
         return -1;
     }
-    t3r_image_depth(&frame, width, height, depth);
+    t3r_image_depth(&frame, width, height, 0, height, depth);
     return 0;
 }
 

@@ -16,7 +16,7 @@
 static uint16_t level(uint8_t grey, uint32_t view, uint32_t x, uint32_t y)
 {
     uint32_t row = (y + 23 * view) % T3R_BLUE_NOISE_SIDE, column = (x + 46 * view) % T3R_BLUE_NOISE_SIDE;
-    return (uint16_t)(grey << 8 | (255 - (t3r_blue_noise(row, column) >> 4)));
+    return (uint16_t)((uint32_t)grey << 8 | (255 - (t3r_blue_noise(row, column) >> 4)));
 }
 
 static int read_plane(uint16_t **plane, const char *path, uint32_t view, uint32_t width, uint32_t height)
