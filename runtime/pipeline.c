@@ -5,7 +5,7 @@
  *                     +- depth ---- pointmap --------+
  *                        sensor | stereo
  *
- * Each stage tells what it made through the stage_hash hook. */
+ * The stage_hash hook gets a hash of each stage's output. */
 #include "pipeline.h"
 
 #include "pointmap/bridge.h"
@@ -21,8 +21,9 @@
 #include "pointmap/redundancy.h"
 #include "refine/refine.h"
 #include "core/scene_frame.h"
-#include "core/stage_hash.h"
-#include "core/state.h"
+#include "pointmap/scene_scale.h"
+#include "stage_hash.h"
+#include "state/state.h"
 #include "stereo/stereo_views.h"
 #include "superclusters/superclusters.h"
 #include "wavelet/wavelet.h"
@@ -92,7 +93,7 @@ static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
     for (int i = 0; i < 3; i++) {
         rt->frame.origin_q32[i] = rt->camera[0].position_q32[i];
     }
-    t3r_status status = t3r_scene_frame_choose(views, rt->views, &rt->frame.exponent, &rt->median_depth_q20);
+    t3r_status status = t3r_scene_scale_choose(views, rt->views, &rt->frame.exponent, &rt->median_depth_q20);
     for (uint32_t v = 0; v < rt->views && status == T3R_OK; v++) {
         status = t3r_pose_in_scene(&rt->camera[v], &rt->frame, &views[v].pose);
     }

@@ -4,10 +4,10 @@
 
 #include "budget/budget.h"
 #include "budget/importance.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "head/head.h"
 #include "trim3r.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* Depth, pointmap, wavelet, superclusters: all that does not depend on the budget. */
 t3r_status t3r_analyse(t3r_runtime *rt);
@@ -15,8 +15,8 @@ t3r_status t3r_analyse(t3r_runtime *rt);
 t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_view *views, const t3r_build *build,
                            const t3r_importance *importance);
 
-/* What the last t3r_build_scene() allocated by, for whoever looks on from outside: of an analysed runtime, its planes by
- * t3r_views_of(). */
+/* What the last t3r_build_scene() allocated by, for whoever looks on from outside: of an analysed runtime, its planes
+ * by t3r_views_of(). */
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views);
 
 /* The texture plane of a single view, not blurred yet: for streams. */

@@ -1,8 +1,8 @@
 /* Context views: frames to planes, and what stereo found of them. */
 #include <string.h>
 
-#include "core/arena.h"
-#include "core/state.h"
+#include "layout/arena.h"
+#include "state/state.h"
 #include "image/develop.h"
 
 static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)

@@ -1,6 +1,6 @@
 /* The weights of a learned head. */
-#include "core/arena.h"
-#include "core/state.h"
+#include "layout/arena.h"
+#include "state/state.h"
 #include "head/head.h"
 #include "head/weights.h"
 

@@ -1,7 +1,7 @@
 /* A scene of the views: what is asked for, and whether it can be had, is settled here. */
 #include "api/checks.h"
-#include "budget/budget_choice.h"
-#include "core/state.h"
+#include "loss/budget_choice.h"
+#include "state/state.h"
 #include "pipeline.h"
 
 /* A request with the configuration's values where it has none of its own. */

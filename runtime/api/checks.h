@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "core/state.h"
+#include "state/state.h"
 #include "trim3r.h"
 
 bool t3r_is_scene_frame(const t3r_scene_frame *frame);

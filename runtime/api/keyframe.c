@@ -1,7 +1,7 @@
 /* Streams: a keyframe into the map, and how much the next one would show of it. */
 #include "api/checks.h"
 #include "core/camera.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "stream/stream.h"
 #include "stream/stream_overlap.h"
 
@@ -15,13 +15,13 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
-    t3r_stream_report told = {0};
+    t3r_stream_report outcome = {0};
     t3r_status status = t3r_stream_follow(rt, frame, camera);
     if (status == T3R_OK) {
-        status = t3r_stream_take(rt, frame, camera, &told);
+        status = t3r_stream_take(rt, frame, camera, &outcome);
     }
     if (report != NULL) {
-        *report = told;
+        *report = outcome;
     }
     return status;
 }

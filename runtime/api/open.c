@@ -2,12 +2,12 @@
 #include <string.h>
 
 #include "api/checks.h"
-#include "core/arena.h"
 #include "core/config.h"
+#include "layout/arena.h"
 #include "core/camera.h"
 #include "core/hash.h"
 #include "core/scene_frame.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "image/image.h"
 #include "superclusters/superclusters.h"
 

@@ -1,7 +1,7 @@
 /* The scene in the arena: read, or written by whoever has one from a file. A render is checked in raster/raster.c. */
 #include "api/checks.h"
-#include "core/arena.h"
-#include "core/state.h"
+#include "layout/arena.h"
+#include "state/state.h"
 
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene)
 {

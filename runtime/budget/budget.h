@@ -14,7 +14,7 @@
 #include "kernels/kernels.h"
 #include "superclusters/superclusters.h"
 #include "trim3r.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* Keys are logarithms in Q10 above this zero: where the key of a point of blue noise 1 and wanted density 1 stands. */
 #define T3R_KEY_ZERO (50 << 10)

@@ -1,4 +1,4 @@
-/* The allocation `given`: which points are retained is told by the caller, how densely they stand is counted
+/* The allocation `given`: the caller says which points are retained, and their density is counted
  * (SPEC.md, "Budget"). */
 #ifndef T3R_IMPORTANCE_H
 #define T3R_IMPORTANCE_H
@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "superclusters/superclusters.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* One plane a context view, each width x height, as the caller lends it for a call. */
 typedef struct t3r_importance {

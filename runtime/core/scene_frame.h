@@ -4,12 +4,19 @@
 #ifndef T3R_SCENE_FRAME_H
 #define T3R_SCENE_FRAME_H
 
+#include <stdint.h>
+
 #include "trim3r.h"
-#include "views.h"
 
 #define T3R_POSITION_MOST_Q20 (1 << 30) /* 1024 scene units */
 #define T3R_EXPONENT_LEAST (-24)
 #define T3R_EXPONENT_MOST 24
+
+/* A rigid pose in fixed point, expanded once from t3r_camera. */
+typedef struct t3r_pose {
+    int32_t rotation_q30[9]; /* row-major, camera to scene */
+    int32_t position_q20[3]; /* scene units */
+} t3r_pose;
 
 /* The camera's pose in the frame; T3R_ERR_CAMERA when it stands more than 1024 scene units from the origin. */
 t3r_status t3r_pose_in_scene(const t3r_camera *camera, const t3r_scene_frame *frame, t3r_pose *pose);
@@ -23,9 +30,5 @@ t3r_depth_scale t3r_depth_scale_of(uint64_t depth_unit_q40, int32_t exponent);
 
 /* The depth of a raw step, Q20, held at T3R_POSITION_MOST_Q20 - 1. */
 int32_t t3r_depth_q20(t3r_depth_scale scale, uint16_t raw);
-
-/* Chooses the frame's exponent from the measured depths of the views, and the median depth in that frame.
- * T3R_ERR_NO_DEPTH when a view has no measured depth. */
-t3r_status t3r_scene_frame_choose(const t3r_view *views, uint32_t count, int32_t *exponent, int32_t *median_q20);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "core/views.h"
+#include "state/views.h"
 
 /* Whether two depths of a view, in its steps, belong to one surface: |a - b| <= 1/16 of the lesser. */
 static inline bool t3r_same_surface(uint16_t a, uint16_t b)

@@ -22,7 +22,7 @@ typedef struct t3r_head_input {
     const t3r_cluster *clusters;
     const void *weights; /* of `learned`, checked; NULL for the others */
     void *work;          /* two bytes a pixel; `learned`: t3r_head_learned_work_bytes() */
-    bool unadapted;      /* the head is told that nothing was pruned: every point retained, spacing 1 */
+    bool unadapted;      /* the head takes every point for retained, spacing 1 */
 } t3r_head_input;
 
 /* A total footprint in the image plane: mean and covariance in pixels, as the source view shall show it. */

@@ -2,7 +2,7 @@
 #ifndef T3R_HEAD_VIEWS_H
 #define T3R_HEAD_VIEWS_H
 
-#include "core/state.h"
+#include "state/state.h"
 #include "head.h"
 
 /* What the head sees of a view, its work being worker 0's. It holds the pointers that it is given. */

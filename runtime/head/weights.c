@@ -246,8 +246,8 @@ static t3r_weights_fault layer_fault(const uint8_t *file, const t3r_weights_head
     return fault != T3R_FAULT_NONE ? fault : block_fault(file, header, &layer);
 }
 
-/* What holds of the layers together: the last, the counts in the header, nobody unread. At most 24 layers of 36 x 128 x
- * 128 multiply-accumulates in Q8: below 2^32. */
+/* What holds of the layers together: the last layer, the counts in the header, and that every output is read. At most
+ * 24 layers of 36 x 128 x 128 multiply-accumulates in Q8: below 2^32. */
 static t3r_weights_fault graph_fault(const uint8_t *file, const t3r_weights_header *header)
 {
     uint32_t macs_q8 = 0, parameters = 0, unread = 0;

@@ -4,7 +4,7 @@
 #include "core/cut.h"
 #include "depth/depth.h"
 #include "image.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "undistort.h"
 
 /* A frame on its way into a view's planes. */

@@ -209,7 +209,7 @@ typedef struct t3r_config {
     /* What makes Gaussians of retained points. [T3R_HEAD_ANALYTIC] */
     t3r_head head;
     /* The working memory of a learned head in bytes a column of the view, 0..T3R_MAX_HEAD_COLUMN_BYTES:
-     * t3r_head_column_bytes() tells what a head needs. 0 = two bytes a pixel of the view must do.
+     * t3r_head_column_bytes() returns what a head needs. 0 = two bytes a pixel of the view.
      * [T3R_HEAD_COLUMN_BYTES, enough for nano, small and base with 8-bit activations] */
     uint32_t head_column_bytes;
     /* The passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS] */

@@ -1,6 +1,6 @@
 /* The arena, at compile time: every buffer's bytes, first and last stage, and the sums that follow.
  *
- * t3r_plan() and t3r_init() read the same table (runtime/core/arena.c), so a static array sized by
+ * t3r_plan() and t3r_init() read the same table (runtime/layout/arena.c), so a static array sized by
  * T3R_ARENA_BYTES() and the layout inside it cannot drift apart. */
 #ifndef TRIM3R_ARENA_H
 #define TRIM3R_ARENA_H
@@ -29,7 +29,7 @@
 #define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
 #define T3R_MAX_(a, b) ((a) > (b) ? (a) : (b))
 
-/* Sizes of the records in the arena; runtime/core/arena.c asserts each against its struct. */
+/* Sizes of the records in the arena; runtime/layout/arena.c asserts each against its struct. */
 #define T3R_HEADER_BYTES 4096
 #define T3R_GAUSSIAN_BYTES 44
 #define T3R_SPLAT_BYTES 40
@@ -136,7 +136,7 @@
 #define T3R_STEREO_WORK_BYTES(width, height, disparities, paths)                                                       \
     (T3R_STEREO_PLANES_(width, height, disparities) +                                                                  \
      T3R_UP_(T3R_STEREO_REST_BYTES_(width, height, disparities, paths)))
-/* Depth and confidence of two views as one pair has them, where several pairs tell of a view */
+/* Depth and confidence of two views from one pair, where a view is in several pairs */
 #define T3R_STEREO_PAIR_BYTES_(w, h) (2 * (T3R_UP_(T3R_PIXELS_(w, h) * 2) + T3R_UP_(T3R_PIXELS_(w, h))))
 #define T3R_STEREO_BYTES_(w, h, v, s)                                                                                  \
     ((s) != 0 && (v) > 1 ? T3R_STEREO_WORK_BYTES(w, h, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS) +                     \
@@ -161,7 +161,7 @@
       T3R_AT_RASTER)                                                                                                   \
     X(p, COLOUR, "colour planes", T3R_PIXELS_(w, h) * (v)*3, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))             \
     X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))               \
-    X(p, CONFIDENCE, "confidence planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))       \
+    X(p, VALIDITY, "validity planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))           \
     X(p, IMAGE_WORK, "undistortion and resize work", T3R_ANY_(v) * T3R_IMAGE_WORK_BYTES_(w, h, wk), T3R_AT_IMAGE,      \
       T3R_AT_IMAGE)                                                                                                    \
     X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \

@@ -1,10 +1,10 @@
-/* The table of the runtime's hot loops: an entry a loop, each told in the header of its kernel, with ranges, alignment
+/* The table of the runtime's hot loops: one entry a loop. The header of each kernel states its ranges, alignment
  * and padding.
  *
  * Plain C defines every entry (kernels_c.c). A variant for an instruction set gives the same bits for all that the
- * kernel's header allows, and reads and writes no byte beyond what it tells. t3r_kernels_choose() fills a table with
- * plain C and puts over it what the processor has. To add a variant: its file in the room of the architecture, and a
- * row in that room's variants.h. tests/kernels compares it with plain C from then on. */
+ * kernel's header allows, and reads and writes no byte beyond what that header states. t3r_kernels_choose() fills a
+ * table with plain C and puts over it what the processor has. To add a variant: its file in the room of the
+ * architecture, and a row in that room's variants.h. tests/kernels compares it with plain C from then on. */
 #ifndef T3R_KERNELS_H
 #define T3R_KERNELS_H
 

@@ -19,13 +19,13 @@ static reciprocal invert(uint32_t z)
     return (reciprocal){(int64_t)((UINT64_C(1) << 62) / normal), lz};
 }
 
-/* One row of T = J W F in pixels, Q12: (f / z) (w - aside w2) F. */
-static void footprint_row(const int32_t *w, const int32_t *w2, int32_t aside_q24, int32_t f_q16, reciprocal inverse,
+/* One row of T = J W F in pixels, Q12: (f / z) (w - tangent w2) F, with tangent = x / z or y / z. */
+static void footprint_row(const int32_t *w, const int32_t *w2, int32_t tangent_q24, int32_t f_q16, reciprocal inverse,
                           const t3r_gaussian *g, int32_t row_q12[3])
 {
-    int32_t r_q24[3]; /* |w| <= 1 and |aside| <= 16: below 2^29 */
+    int32_t r_q24[3]; /* |w| <= 1 and |tangent| <= 16: below 2^29 */
     for (int i = 0; i < 3; i++) {
-        int64_t along = t3r_round_shift64((int64_t)aside_q24 * w2[i], 24);
+        int64_t along = t3r_round_shift64((int64_t)tangent_q24 * w2[i], 24);
         r_q24[i] = (int32_t)t3r_round_shift64(w[i] - along, 6);
     }
     /* f / z = scale 2^(lz - 28): scale in [2^19, 2^31] */

@@ -7,7 +7,7 @@
 
 #include "trim3r.h"
 
-/* Splats at and nearer than 1/32 scene unit, and centres more than 16 times farther aside than ahead, are culled. */
+/* Culled are splats at or nearer than 1/32 scene unit, and those whose centre has |x| or |y| above 16 z. */
 #define T3R_NEAR_Q20 (1 << 15)
 #define T3R_ASIDE 16
 #define T3R_DILATION_Q24 5033165 /* 0.3 px^2, added to every projected covariance */

@@ -25,16 +25,16 @@ static uint16_t step_at(t3r_depth_scale scale, int32_t z_q20)
 }
 
 /* Of several points that fall on a pixel the nearest stays. */
-static void lend(const t3r_view *to, const t3r_sight *sight, t3r_depth_scale scale)
+static void lend(const t3r_view *to, const t3r_projected_pixel *projected, t3r_depth_scale scale)
 {
-    uint8_t *validity = &to->validity[sight->pixel];
+    uint8_t *validity = &to->validity[projected->pixel];
     bool empty = !t3r_has_depth(*validity);
     if (!empty && !t3r_is_lent(*validity)) {
         return;
     }
-    uint16_t step = step_at(scale, sight->z_q20);
-    if (step != 0 && (empty || step < to->depth[sight->pixel])) {
-        to->depth[sight->pixel] = step;
+    uint16_t step = step_at(scale, projected->z_q20);
+    if (step != 0 && (empty || step < to->depth[projected->pixel])) {
+        to->depth[projected->pixel] = step;
         *validity = t3r_marked(T3R_BRIDGED, T3R_MARK_LENT);
     }
 }
@@ -46,10 +46,10 @@ void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t 
         t3r_pointmap from = t3r_pointmap_of(&views[w], exponent);
         for (uint32_t y = 0; y < views[w].height && w != v; y++) {
             for (uint32_t x = 0; x < views[w].width; x++) {
-                t3r_sight sight;
+                t3r_projected_pixel projected;
                 if (t3r_is_reliable(views[w].validity[(size_t)y * views[w].width + x]) &&
-                    t3r_reproject(&from, x, y, &to, &sight)) {
-                    lend(&views[v], &sight, to.scale);
+                    t3r_reproject(&from, x, y, &to, &projected)) {
+                    lend(&views[v], &projected, to.scale);
                 }
             }
         }
@@ -139,18 +139,18 @@ void t3r_bridge_view(const t3r_view *view, uint32_t radius)
 /* --- against the other views -------------------------------------------------------------------------------------- */
 
 /* What view `to` makes of a bridged or lent pixel that it sees there. */
-static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_sight *sight, bool settled)
+static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_projected_pixel *projected, bool settled)
 {
-    uint8_t there = to->view->validity[sight->pixel];
+    uint8_t there = to->view->validity[projected->pixel];
     bool known = t3r_is_known(there), bridged = t3r_is_bridged(there) && !t3r_is_marked(there);
     if (!known && !(settled && bridged)) {
         return validity;
     }
-    int64_t behind = (int64_t)sight->z_q20 - t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
-    if (known && 16 * -behind > sight->z_q20) {
+    int64_t behind = (int64_t)projected->z_q20 - t3r_depth_q20(to->scale, to->view->depth[projected->pixel]);
+    if (known && 16 * -behind > projected->z_q20) {
         return T3R_NO_DEPTH;
     }
-    return 16 * t3r_abs64(behind) <= sight->z_q20 ? t3r_marked(T3R_BRIDGED, T3R_MARK_COVERED) : validity;
+    return 16 * t3r_abs64(behind) <= projected->z_q20 ? t3r_marked(T3R_BRIDGED, T3R_MARK_COVERED) : validity;
 }
 
 typedef struct settle_job {
@@ -175,9 +175,9 @@ static void settle_rows(void *context, uint32_t begin, uint32_t end, uint32_t wo
                 validity = t3r_marked(T3R_BRIDGED, T3R_MARK_COVERED);
             }
             for (uint32_t w = 0; w < job->count && t3r_has_depth(validity); w++) {
-                t3r_sight sight;
-                if (w != job->v && t3r_reproject(&job->maps[job->v], x, y, &job->maps[w], &sight)) {
-                    validity = judge(validity, &job->maps[w], &sight, (job->settled >> w & 1) != 0);
+                t3r_projected_pixel projected;
+                if (w != job->v && t3r_reproject(&job->maps[job->v], x, y, &job->maps[w], &projected)) {
+                    validity = judge(validity, &job->maps[w], &projected, (job->settled >> w & 1) != 0);
                 }
             }
             view->validity[pixel] = validity;

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/views.h"
+#include "state/views.h"
 #include "pointmap_work.h"
 
 /* Gives depth to pixels without one that have known ones within `radius` (0..255; 0 leaves what other views lend) at

@@ -28,14 +28,15 @@ static bool well_exposed(const t3r_view *view, size_t pixel)
     return true;
 }
 
-static bool is_pair(const t3r_pointmap *from, size_t pixel, const t3r_pointmap *to, const t3r_sight *sight)
+static bool is_pair(const t3r_pointmap *from, size_t pixel, const t3r_pointmap *to,
+                    const t3r_projected_pixel *projected)
 {
-    if (!t3r_is_reliable(to->view->validity[sight->pixel])) {
+    if (!t3r_is_reliable(to->view->validity[projected->pixel])) {
         return false;
     }
-    int32_t there = t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
-    return 64 * t3r_abs64((int64_t)sight->z_q20 - there) <= T3R_MIN(sight->z_q20, there) &&
-           well_exposed(from->view, pixel) && well_exposed(to->view, sight->pixel);
+    int32_t there = t3r_depth_q20(to->scale, to->view->depth[projected->pixel]);
+    return 64 * t3r_abs64((int64_t)projected->z_q20 - there) <= T3R_MIN(projected->z_q20, there) &&
+           well_exposed(from->view, pixel) && well_exposed(to->view, projected->pixel);
 }
 
 /* Levels of `from` over those of `to`, whose own are level_q8 above the first view's. */
@@ -45,13 +46,14 @@ static void compare(const t3r_pointmap *from, const t3r_pointmap *to, const int3
     for (uint32_t y = 0; y < view->height; y += STEP) {
         for (uint32_t x = 0; x < view->width; x += STEP) {
             size_t pixel = (size_t)y * view->width + x;
-            t3r_sight sight;
-            if (!t3r_is_reliable(view->validity[pixel]) || !t3r_reproject(from, x, y, to, &sight) ||
-                !is_pair(from, pixel, to, &sight)) {
+            t3r_projected_pixel projected;
+            if (!t3r_is_reliable(view->validity[pixel]) || !t3r_reproject(from, x, y, to, &projected) ||
+                !is_pair(from, pixel, to, &projected)) {
                 continue;
             }
             for (int c = 0; c < 3; c++) {
-                int32_t log_q16 = t3r_log2_q16(view->colour[c][pixel]) - t3r_log2_q16(to->view->colour[c][sight.pixel]);
+                int32_t log_q16 =
+                    t3r_log2_q16(view->colour[c][pixel]) - t3r_log2_q16(to->view->colour[c][projected.pixel]);
                 r->bin[c][t3r_clamp32(t3r_round_shift32(log_q16, 8) + level_q8[c] + BINS / 2, 0, BINS - 1)]++;
             }
             r->count++;

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/views.h"
+#include "state/views.h"
 
 #define T3R_GAIN_ONE_Q14 (1u << 14)
 

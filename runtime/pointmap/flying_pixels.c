@@ -31,19 +31,19 @@ static bool counts(uint8_t validity, bool filled)
     return filled ? t3r_has_depth(validity) : t3r_is_measured(validity);
 }
 
-bool t3r_seen_through(const t3r_pointmap *to, const t3r_sight *sight, bool filled)
+bool t3r_seen_through(const t3r_pointmap *to, const t3r_projected_pixel *projected, bool filled)
 {
     const t3r_view *view = to->view;
-    uint32_t u = (uint32_t)(sight->pixel % view->width), v = (uint32_t)(sight->pixel / view->width);
-    if (!counts(view->validity[sight->pixel], filled) || u == 0 || v == 0 || u + 1 == view->width ||
+    uint32_t u = (uint32_t)(projected->pixel % view->width), v = (uint32_t)(projected->pixel / view->width);
+    if (!counts(view->validity[projected->pixel], filled) || u == 0 || v == 0 || u + 1 == view->width ||
         v + 1 == view->height) {
         return false;
     }
     for (uint32_t y = v - 1; y <= v + 1; y++) {
         for (uint32_t x = u - 1; x <= u + 1; x++) {
             size_t pixel = (size_t)y * view->width + x;
-            int64_t behind = (int64_t)t3r_depth_q20(to->scale, view->depth[pixel]) - sight->z_q20;
-            if (counts(view->validity[pixel], filled) && 16 * behind <= sight->z_q20) {
+            int64_t behind = (int64_t)t3r_depth_q20(to->scale, view->depth[pixel]) - projected->z_q20;
+            if (counts(view->validity[pixel], filled) && 16 * behind <= projected->z_q20) {
                 return false;
             }
         }
@@ -55,9 +55,10 @@ static bool seen_through_by_any(const t3r_pointmap *maps, uint32_t count, uint32
                                 bool guessed)
 {
     const bool filled = guessed && !t3r_is_measured(maps[v].view->validity[(size_t)y * maps[v].view->width + x]);
-    t3r_sight sight;
+    t3r_projected_pixel projected;
     for (uint32_t w = 0; w < count; w++) {
-        if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &sight) && t3r_seen_through(&maps[w], &sight, filled)) {
+        if (w != v && t3r_reproject(&maps[v], x, y, &maps[w], &projected) &&
+            t3r_seen_through(&maps[w], &projected, filled)) {
             return true;
         }
     }

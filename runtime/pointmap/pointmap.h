@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "core/scene_frame.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* A view's back-projection, prepared once. */
 typedef struct t3r_pointmap {

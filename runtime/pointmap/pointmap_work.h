@@ -2,7 +2,7 @@
 #ifndef T3R_POINTMAP_WORK_H
 #define T3R_POINTMAP_WORK_H
 
-#include "core/state.h"
+#include "state/state.h"
 
 typedef struct t3r_pointmap_work {
     t3r_workers workers;

@@ -5,7 +5,7 @@
 #include "core/fixed.h"
 #include "reproject.h"
 
-/* z / f of a sight against the pixel's own, cross-multiplied: z < 2^31, f in Q8 < 2^23. */
+/* z / f of the projected pixel against the pixel's own, cross-multiplied: z < 2^31, f in Q8 < 2^23. */
 static bool fine_enough(const t3r_view *view, int32_t z_q20, const t3r_view *other, int32_t other_z_q20, bool earlier)
 {
     int64_t focal = ((int64_t)view->fx_q16 + view->fy_q16) >> 8;
@@ -20,18 +20,18 @@ static bool same_surface_q20(int32_t a, int32_t b)
 }
 
 static bool covers(const t3r_pointmap *from, uint32_t x, uint32_t y, const t3r_pointmap *to, bool earlier,
-                   t3r_sight *sight)
+                   t3r_projected_pixel *projected)
 {
-    if (!t3r_reproject(from, x, y, to, sight)) {
+    if (!t3r_reproject(from, x, y, to, projected)) {
         return false;
     }
-    uint8_t validity = to->view->validity[sight->pixel];
+    uint8_t validity = to->view->validity[projected->pixel];
     if (!t3r_is_measured(validity) || t3r_is_covered(validity) || t3r_is_doubtful(validity)) {
         return false;
     }
-    int32_t there = t3r_depth_q20(to->scale, to->view->depth[sight->pixel]);
+    int32_t there = t3r_depth_q20(to->scale, to->view->depth[projected->pixel]);
     int32_t z = t3r_depth_q20(from->scale, from->view->depth[(size_t)y * from->view->width + x]);
-    return same_surface_q20(sight->z_q20, there) && fine_enough(from->view, z, to->view, sight->z_q20, earlier);
+    return same_surface_q20(projected->z_q20, there) && fine_enough(from->view, z, to->view, projected->z_q20, earlier);
 }
 
 typedef struct covered_job {
@@ -52,11 +52,11 @@ static void mark_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
             const size_t pixel = (size_t)y * view->width + x;
             job->witness[pixel] = 0;
             for (uint32_t w = 0; w < job->count && job->witness[pixel] == 0; w++) {
-                t3r_sight sight;
+                t3r_projected_pixel projected;
                 if (w != job->v && t3r_is_known(view->validity[pixel]) &&
-                    covers(&job->maps[job->v], x, y, &job->maps[w], w < job->v, &sight)) {
+                    covers(&job->maps[job->v], x, y, &job->maps[w], w < job->v, &projected)) {
                     view->validity[pixel] = t3r_marked(view->validity[pixel], T3R_MARK_COVERED);
-                    job->witness[pixel] = w * pixels + (uint32_t)sight.pixel + 1; /* at most 2^4 x 2^24 */
+                    job->witness[pixel] = w * pixels + (uint32_t)projected.pixel + 1; /* at most 2^4 x 2^24 */
                 }
             }
         }

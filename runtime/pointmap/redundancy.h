@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/views.h"
+#include "state/views.h"
 #include "pointmap_work.h"
 
 /* Marks the pixels of view v that another view covers (t3r_is_covered) and returns how many they are. The other view's

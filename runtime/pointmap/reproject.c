@@ -11,7 +11,7 @@ static int64_t place(int64_t x, int64_t z, int32_t focal_q16, int32_t centre_q16
     return t3r_round_shift64(t3r_round_shift64(ratio_q24 * focal_q16, 24) + centre_q16, 16); /* 2^28 x 2^30 */
 }
 
-bool t3r_sight_of(const t3r_view *view, const int32_t point[3], t3r_sight *sight)
+bool t3r_project_to_pixel(const t3r_view *view, const int32_t point[3], t3r_projected_pixel *projected)
 {
     const int32_t *r_q30 = view->pose.rotation_q30;
     int64_t offset[3], camera[3];
@@ -31,13 +31,14 @@ bool t3r_sight_of(const t3r_view *view, const int32_t point[3], t3r_sight *sight
     if (column < 0 || row < 0 || column >= view->width || row >= view->height) {
         return false;
     }
-    sight->pixel = (size_t)row * view->width + (size_t)column;
-    sight->z_q20 = (int32_t)z;
+    projected->pixel = (size_t)row * view->width + (size_t)column;
+    projected->z_q20 = (int32_t)z;
     return true;
 }
 
-bool t3r_reproject(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_pointmap *to, t3r_sight *sight)
+bool t3r_reproject(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_pointmap *to,
+                   t3r_projected_pixel *projected)
 {
     int32_t point[3];
-    return t3r_point(from, u, v, point) && t3r_sight_of(to->view, point, sight);
+    return t3r_point(from, u, v, point) && t3r_project_to_pixel(to->view, point, projected);
 }

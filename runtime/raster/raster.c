@@ -6,7 +6,7 @@
 
 #include "core/fixed.h"
 #include "core/hash.h"
-#include "core/state.h"
+#include "state/state.h"
 
 typedef struct tile_job {
     const t3r_binning *bin;

@@ -1,7 +1,7 @@
 #include "raster_list.h"
 
 #include "core/fixed.h"
-#include "core/state.h"
+#include "state/state.h"
 
 #define PROJECT_CHUNK 512u
 

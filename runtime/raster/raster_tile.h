@@ -39,7 +39,7 @@ void t3r_draw_tile(const t3r_kernels *kernels, const t3r_splat *splats, const ui
 void t3r_tile_clear(t3r_tile *tile);
 bool t3r_tile_stopped(const t3r_tile *tile);
 
-/* A splat in the coordinates of the tile at (left, top), which it overlaps: eight columns, wherever they lie, when its
+/* A splat in the coordinates of the tile at (left, top), which it overlaps: any eight columns when its
  * box is no wider there, else both halves of the tile. A half on which it draws nothing is not marked as drawn. */
 void t3r_splat_in_tile(const t3r_splat *splat, uint32_t left, uint32_t top, t3r_tile_splat *out);
 /* Its columns, rows, box and colour alone: all that blending again reads, and scattering. */

@@ -6,7 +6,7 @@
 #include "core/fixed.h"
 #include "refine_bands.h"
 #include "refine_tile.h"
-#include "core/state.h"
+#include "state/state.h"
 
 /* The refinement work, cut up. The first four parts and the least lists always fit; sums take what they can use of the
  * rest, lists what is left. */

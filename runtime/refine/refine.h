@@ -8,7 +8,7 @@
 
 #include "raster/raster_list.h"
 #include "core/map_record.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* A Gaussian takes the step of its correction. */
 void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);
@@ -16,8 +16,8 @@ void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);
 /* All passes over the scene in the arena. T3R_ERR_CANCELLED leaves it somewhere between two passes. */
 t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views);
 
-/* The same of a map: Gaussians of which none of the keyframes at hand has as much to tell as their own had stay as they
- * are. records: one a Gaussian; NULL: all change. */
+/* The same of a map. A Gaussian stays as it is when no retained keyframe sees it as finely as its own keyframe did.
+ * records: one a Gaussian; NULL: all change. */
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records);
 
 /* The room in which refinement draws a view of the working size: whoever draws one before can use it. */

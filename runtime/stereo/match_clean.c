@@ -75,7 +75,7 @@ static bool joined(const plane *p, size_t a, size_t b)
 }
 
 /* Follows the region that begins at `start` until it ends or `least` pixels of it are known, or until it meets a pixel
- * of one known to be large. Returns how many pixels are in the queue; *large tells which. */
+ * of one known to be large. Returns how many pixels are in the queue; *large says whether the region is large. */
 static uint32_t explore(const plane *p, uint32_t start, uint32_t least, uint8_t *mark, uint32_t *queue, bool *large)
 {
     uint32_t queued = 1;

@@ -8,7 +8,7 @@
 
 #include "match.h"
 #include "rectify.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* Penalties of the aggregation: P1; P2 where luma does not change, and its least (DESIGN.md) */
 #define T3R_STEREO_P1 20u

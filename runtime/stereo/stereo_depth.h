@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "rectify.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* A matched pair of planes. */
 typedef struct t3r_stereo_planes {

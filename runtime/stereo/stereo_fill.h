@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "core/views.h"
+#include "state/views.h"
 
 /* Cells a view's longer side is cut into, for the slopes of surfaces */
 #define T3R_STEREO_FILL_CELLS 8u

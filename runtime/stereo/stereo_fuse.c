@@ -5,7 +5,7 @@
 
 #define LEAST ((int32_t)T3R_STEREO_LEAST)
 
-/* Depths of a view that differ by at most 1/16 of the lesser tell of one surface. */
+/* Depths of a view that differ by at most 1/16 of the lesser belong to one surface. */
 static bool agree(int64_t a, int64_t b)
 {
     return 16 * t3r_abs64(a - b) <= T3R_MIN(a, b);

@@ -2,7 +2,7 @@
 #ifndef T3R_STEREO_FUSE_H
 #define T3R_STEREO_FUSE_H
 
-#include "core/views.h"
+#include "state/views.h"
 
 /* Adds what one more pair found of a view to what there is: both have match confidences T3R_STEREO_..., and depths in
  * steps of their own depth_unit_q40; the view keeps its unit. Of two that agree the mean, of two that do not the surer.

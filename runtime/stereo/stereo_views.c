@@ -4,7 +4,7 @@
 
 #include "core/cut.h"
 #include "core/fixed.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "stereo.h"
 #include "stereo_fill.h"
 #include "stereo_fuse.h"

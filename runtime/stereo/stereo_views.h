@@ -4,7 +4,7 @@
 #define T3R_STEREO_VIEWS_H
 
 #include "trim3r.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* Clears the planes of depth and validity: without a sensor they hold what an earlier analysis made. */
 void t3r_stereo_clear(const t3r_view *views, uint32_t count);

@@ -20,8 +20,9 @@
 #include "pipeline.h"
 #include "refine/refine.h"
 #include "core/scene_frame.h"
-#include "core/stage_hash.h"
-#include "core/state.h"
+#include "pointmap/scene_scale.h"
+#include "stage_hash.h"
+#include "state/state.h"
 #include "stream_map.h"
 
 #define REBASE_Q20 (1 << 29) /* so far from the origin it follows: 512 scene units */
@@ -301,7 +302,7 @@ static t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report
     t3r_hash_depth(rt, views, slot, slot + 1);
     if (rt->keyframes == 0) {
         memcpy(rt->frame.origin_q32, rt->camera[slot].position_q32, sizeof rt->frame.origin_q32);
-        t3r_status status = t3r_scene_frame_choose(view, 1, &rt->frame.exponent, &rt->median_depth_q20);
+        t3r_status status = t3r_scene_scale_choose(view, 1, &rt->frame.exponent, &rt->median_depth_q20);
         if (status != T3R_OK) {
             return status;
         }
@@ -327,7 +328,7 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
         rt->views = T3R_MAX(views, slot + 1);
         status = take(rt, slot, report);
     }
-    if (status != T3R_OK) { /* the slot's planes are nobody's now */
+    if (status != T3R_OK) { /* the slot's planes hold no keyframe now */
         t3r_view view[T3R_MAX_VIEWS];
         t3r_views_of(rt, view);
         memset(view[slot].validity, T3R_NO_DEPTH, (size_t)view[slot].width * view[slot].height);

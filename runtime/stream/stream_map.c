@@ -3,10 +3,10 @@
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
 #include "head/head.h"
-#include "core/state.h"
+#include "state/state.h"
 
 #define FINER_Q8 256        /* log2: pixels on the surface so much narrower replace the Gaussian */
-#define AFAR_Q8 128         /* log2: pixels on the surface so much wider than its own have less to tell of it */
+#define AFAR_Q8 128         /* log2: pixels on the surface so much wider than its own do not update it */
 #define WIDEN_STEP_Q10 64   /* log2 of density: smaller changes wait until they add up */
 #define WIDEN_MOST_Q10 8192 /* of one step */
 
@@ -28,16 +28,16 @@ typedef enum look { UNSEEN, SEEN_AFAR, SEEN, CONTRADICTED, COARSE } look;
 static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t3r_pointmap *keyframe)
 {
     const t3r_view *view = keyframe->view;
-    t3r_sight sight;
-    if (!t3r_sight_of(view, g->position_q20, &sight) || !t3r_is_measured(view->validity[sight.pixel])) {
+    t3r_projected_pixel projected;
+    if (!t3r_project_to_pixel(view, g->position_q20, &projected) || !t3r_is_measured(view->validity[projected.pixel])) {
         return UNSEEN;
     }
-    int32_t there = t3r_depth_q20(keyframe->scale, view->depth[sight.pixel]);
-    if (16 * t3r_abs64((int64_t)there - sight.z_q20) <= T3R_MIN(there, sight.z_q20)) {
-        int32_t wider_q8 = grain_of(view, sight.z_q20) - record->grain_q8;
+    int32_t there = t3r_depth_q20(keyframe->scale, view->depth[projected.pixel]);
+    if (16 * t3r_abs64((int64_t)there - projected.z_q20) <= T3R_MIN(there, projected.z_q20)) {
+        int32_t wider_q8 = grain_of(view, projected.z_q20) - record->grain_q8;
         return wider_q8 < -FINER_Q8 ? COARSE : wider_q8 <= AFAR_Q8 ? SEEN : SEEN_AFAR;
     }
-    return t3r_seen_through(keyframe, &sight, false) ? CONTRADICTED : UNSEEN;
+    return t3r_seen_through(keyframe, &projected, false) ? CONTRADICTED : UNSEEN;
 }
 
 static void move_to(t3r_map *map, uint32_t from, uint32_t to)

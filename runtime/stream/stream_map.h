@@ -8,7 +8,7 @@
 #include "pointmap/pointmap.h"
 #include "trim3r.h"
 #include "core/map_record.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* Keys below are held for so much, 20 octaves: sure points of a keyframe outlast others by a bounded time only. */
 #define T3R_MAP_KEY_LEAST (T3R_KEY_ZERO - (20 << 10))

@@ -3,7 +3,7 @@
 #include "core/camera.h"
 #include "core/fixed.h"
 #include "pointmap/reproject.h"
-#include "core/state.h"
+#include "state/state.h"
 
 #define STEP 2 /* pixels */
 #define GRID 8 /* cells along each side of the picture */
@@ -52,16 +52,16 @@ t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *came
     for (uint32_t y = 0; y < newest->height; y += STEP) {
         for (uint32_t x = 0; x < newest->width; x += STEP) {
             int32_t point[3];
-            t3r_sight sight;
+            t3r_projected_pixel projected;
             size_t pixel = (size_t)y * newest->width + x;
             if (!t3r_has_depth(newest->validity[pixel]) || !t3r_point(&map, x, y, point)) {
                 continue;
             }
             points++;
             own_cells |= cell_of(newest, pixel);
-            if (t3r_sight_of(&there, point, &sight)) {
+            if (t3r_project_to_pixel(&there, point, &projected)) {
                 shown++;
-                cells |= cell_of(&there, sight.pixel);
+                cells |= cell_of(&there, projected.pixel);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 #include "core/fixed.h"
 #include "pointmap/pointmap.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "superclusters.h"
 
 /* Pixels of all views, view after view, as points x, y, z over the median depth and r, g, b over 255. */

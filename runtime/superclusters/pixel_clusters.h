@@ -3,7 +3,7 @@
 #define T3R_PIXEL_CLUSTERS_H
 
 #include "trim3r.h"
-#include "core/views.h"
+#include "state/views.h"
 
 /* Clusters the valid pixels of all views by x, y, z over the median depth and r, g, b over 255: labels and
  * SuperClusters in the arena. T3R_OK or T3R_ERR_CANCELLED. */

@@ -9,7 +9,7 @@
 #include "kernels/kernels.h"
 #include "core/workers.h"
 #include "trim3r.h"
-#include "core/views.h"
+#include "state/views.h"
 
 #define T3R_CLUSTER_SAMPLE 2560u /* points of the seeding subsample */
 #define T3R_CLUSTER_BATCH 4096u  /* points of a mini-batch */
@@ -71,7 +71,7 @@ typedef struct t3r_cluster_host {
     t3r_workers workers;
     t3r_cluster_sums *sums; /* one each of workers 1 and up; NULL with one worker */
     void *context;
-    bool (*step)(void *context, uint32_t done, uint32_t total); /* false = stop; NULL: nobody asks */
+    bool (*step)(void *context, uint32_t done, uint32_t total); /* false = stop; NULL: never stops */
 } t3r_cluster_host;
 
 /* Clusters the source's points: clusters[0..K-1] and a label a point. Returns the number of valid points, or

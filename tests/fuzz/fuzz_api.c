@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/ablation.h"
+#include "state/ablation.h"
 #include "trim3r.h"
 #include "weights_maker.h"
 

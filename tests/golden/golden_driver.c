@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/ablation.h"
+#include "state/ablation.h"
 #include "core/hash.h"
 #include "room/room.h"
 #include "trim3r.h"

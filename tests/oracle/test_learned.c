@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "core/ablation.h"
-#include "core/state.h"
+#include "state/ablation.h"
+#include "state/state.h"
 #include "drawing.h"
 #include "head/head_views.h"
 #include "pipeline.h"

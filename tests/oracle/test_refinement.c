@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "core/ablation.h"
+#include "state/ablation.h"
 #include "drawing.h"
 #include "oracle_refine.h"
 

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "drawing.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "sanitized.h"
 #include "stream/stream_map.h"
 

@@ -13,14 +13,7 @@ import proof
 
 # Rooms of the runtime from the foundation up: each may include those before it.
 ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
-         "raster", "head", "refine", "stage_hash", "pipeline", "choice", "stream", "layout", "api")
-# Files that know rooms above their own: they stand elsewhere in this order, whatever folder they are in.
-ELSEWHERE = {
-    "core/state": "state", "core/views.c": "state", "core/ablation.c": "state",  # which holds the table of kernels
-    "core/arena": "layout", "core/plan": "layout",  # sizes of what every room keeps in the arena
-    "core/stage_hash": "stage_hash",  # the outputs of every room
-    "budget/budget_choice": "choice",  # builds trial scenes, so it calls the pipeline
-}
+         "raster", "head", "refine", "stage_hash", "pipeline", "loss", "stream", "layout", "api")
 MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, room in enumerate(ROOMS)}
 RUNTIME = set(MAY)
 MAY["quant"] = RUNTIME
@@ -59,8 +52,7 @@ def area_of(path):
     """The area of a source file, by its path from the root of the tree."""
     folder, stem = path.parent.as_posix(), path.with_suffix("").as_posix()
     if folder.startswith("runtime"):
-        inside, name = stem.removeprefix("runtime/"), path.as_posix().removeprefix("runtime/")
-        return "runtime/" + ELSEWHERE.get(name, ELSEWHERE.get(inside, inside.split("/")[0]))
+        return "/".join(stem.split("/")[:2])
     if folder.startswith("tools/study"):
         return "/".join(folder.split("/")[:3])
     if folder.startswith("tools"):

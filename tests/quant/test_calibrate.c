@@ -4,7 +4,7 @@
 #include "budget/budget.h"
 #include "head/head_features.h"
 #include "sample_head.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "trim3r_heads.h"
 #include "unit/unit.h"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """stress_all.py TRIM3R ours|rivals|settings: every perturbation and drawn scene in every strength, small: nothing crashes,
-no promise breaks, and with sanitizers nothing is found. ours: with noisy captures and still scenes, from as many
+no invariant breaks, and with sanitizers nothing is found. ours: with noisy captures and still scenes, from as many
 Gaussians as SuperClusters up; rivals: as published, fine-tuned, and as points for our head; settings: budgets in other
 ways, `--auto`, depth by stereo."""
 import json
@@ -20,7 +20,7 @@ HARD = ("--rows", "noise,depth-blobs,pose,black,near,scene-foliage", "--strength
 
 def cells(*arguments, may_refuse=MAY_REFUSE):
     answer = json.loads(run(trim3r, "stress", "--json", *arguments).stdout)
-    check(answer["broken"] == 0, f"{arguments}: broken promises")
+    check(answer["broken"] == 0, f"{arguments}: broken invariants")
     for row in answer["rows"]:
         check(row["status"] in ("measured", "refused"), f"{arguments}: {row}")
         if row["status"] == "refused":
@@ -38,7 +38,7 @@ def ours():
     rows = all_of(cells(*SMALL), 1)
     still = [r for r in rows if r["mask_changed"] is not None]
     check(len(still) == 1 + SCENES * STRENGTHS, "still scenes")
-    check(all(r["gaussians"] >= 40 and r["mask_changed"] > 0 for r in still), "whose promise is one")
+    check(all(r["gaussians"] >= 40 and r["mask_changed"] > 0 for r in still), "the invariant covers these rows")
     check(sum(r["flicker"] is not None for r in rows) >= len(rows) - 2, "flicker")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""stress_recorded.py TRIM3R SHARED_DATA: what is promised of a still scene, on the recorded test scenes with sensor depth at
+"""stress_recorded.py TRIM3R SHARED_DATA: what is guaranteed of a still scene, on the recorded test scenes with sensor depth at
 256x256, from few Gaussians to half of the points, with the shipped head and refinement."""
 import json
 import os
@@ -21,10 +21,10 @@ with tempfile.TemporaryDirectory() as folder:
         run(TRIM3R, "import", os.path.join(DATA, scene), "--size", "256x256", "-o", recording)
     answer = json.loads(run(TRIM3R, "stress", *recordings, "--rows", "exposure", "--strengths", "1", "--keep", "2,10,50",
                             "--json").stdout)
-check(answer["broken"] == 0, "no promise breaks")
+check(answer["broken"] == 0, "no invariant breaks")
 still = [row for row in answer["rows"] if row["perturbation"] == "unperturbed"]
 check(len(still) == 3 * len(SCENES), f"{len(still)} still scenes")
 for row in still:
     print(f"{row['scene']} {row['keep']:g} %: {row['mask_changed'] * 100:.1f} % of the mask changes, motion {row['motion']:.2f}")
-    check(row["gaussians"] >= CLUSTERS and row["mask_changed"] > 0, "the promise is of these")
+    check(row["gaussians"] >= CLUSTERS and row["mask_changed"] > 0, "the invariant covers these rows")
 done()

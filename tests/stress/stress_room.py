@@ -53,7 +53,7 @@ def table_and_page(folder):
             check((row["mask_changed"] == "") == (row["perturbation"] in ("noise", "depth-all")), "still scenes")
     lines = [line for line in shown.splitlines() if line.startswith("noise ")]
     check(len(lines) == 2 * 4 * 2, "a line a strength in a table a budget and measure")
-    check("28 rows: 24 measured, 4 refused with a reason, 0 with a broken promise" in shown, shown)
+    check("28 rows: 24 measured, 4 refused with a reason, 0 with a broken invariant" in shown, shown)
     check("refused  depth-all 100 %: " in shown and "noise at its middle strength" not in shown, "the verdict")
     text = open(page).read()
     check(text.count("<section") == 2 and not re.search(r"https?:|<script", text), "the worst two, on a page alone")

@@ -1,4 +1,4 @@
-/* What each perturbation promises, on frames where it can be seen; of strength 0 each is none. */
+/* What each perturbation guarantees, on frames where it can be seen; of strength 0 each is none. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -54,7 +54,7 @@ static void still_scene(void **state)
     assert_true(f->rows[2].value[STRESS_MASK_CHANGED] > f->rows[0].value[STRESS_MASK_CHANGED]);
 }
 
-/* The promise where it can fail: the shipped head and refinement on every drawn scene, from as many Gaussians as
+/* The invariant where it can fail: the shipped head and refinement on every drawn scene, from as many Gaussians as
  * SuperClusters up. A mask that changed by nothing would say that nothing was captured anew. */
 static void learned_and_refined(void **state)
 {

@@ -4,7 +4,7 @@
 
 #include "pointmap/pointmap_work.h"
 #include "unit.h"
-#include "core/views.h"
+#include "state/views.h"
 
 enum { W = 64, H = 48, PIXELS = W * H, F = 64, VIEWS = 3 };
 

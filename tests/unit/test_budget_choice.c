@@ -2,7 +2,7 @@
  */
 #include "unit.h"
 
-#include "budget/budget_choice.h"
+#include "loss/budget_choice.h"
 
 static const t3r_budget_evidence plain = {
     .points = 100000,

@@ -13,7 +13,7 @@
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "budget/importance.h"
-#include "core/state.h"
+#include "state/state.h"
 
 enum {
     W = 61, /* rows begin within words of the mask */

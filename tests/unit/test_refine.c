@@ -6,7 +6,7 @@
 #include "core/fixed.h"
 #include "refine/refine.h"
 #include "room/room.h"
-#include "core/state.h"
+#include "state/state.h"
 
 enum { SIDE = 96, POINTS = 2 * SIDE * SIDE, BUDGET = POINTS / 10 };
 

@@ -2,8 +2,8 @@
  * of these values gives, holds for its call alone, and leaves everything as it was when it is refused. */
 #include "unit.h"
 
-#include "core/ablation.h"
-#include "core/state.h"
+#include "state/ablation.h"
+#include "state/state.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, MOST = PIXELS, BUDGET = 300, FEWER = 120, HALF_DB = 128 };
 

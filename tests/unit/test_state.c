@@ -8,7 +8,7 @@
 
 #include "core/fixed.h"
 #include "core/hash.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "superclusters/superclusters.h"
 
 enum { SIDE = 48, BUDGET = 300 };

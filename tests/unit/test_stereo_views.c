@@ -5,7 +5,7 @@
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "room/room.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "stereo/stereo.h"
 #include "stereo/stereo_fill.h"
 #include "stereo/stereo_fuse.h"

@@ -1,7 +1,7 @@
 /* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
 #include "rig.h"
 
-#include "budget/disagreement.h"
+#include "loss/disagreement.h"
 #include "pointmap/exposure.h"
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
@@ -37,19 +37,19 @@ static void shifted_by_the_disparity(void **state)
     t3r_pointmap zero = t3r_pointmap_of(&s->view[0], 0), one = t3r_pointmap_of(&s->view[1], 0);
     for (uint32_t y = 0; y < H; y++) {
         for (uint32_t x = 0; x < W; x++) {
-            t3r_sight sight;
+            t3r_projected_pixel projected;
             bool inside = x + 8 < W && !(x == 5 && y == 5);
-            assert_int_equal(t3r_reproject(&one, x, y, &zero, &sight), inside);
+            assert_int_equal(t3r_reproject(&one, x, y, &zero, &projected), inside);
             if (inside) {
-                assert_int_equal(sight.pixel, y * W + x + 8);
-                assert_int_equal(sight.z_q20, 2 << 20);
+                assert_int_equal(projected.pixel, y * W + x + 8);
+                assert_int_equal(projected.z_q20, 2 << 20);
             }
         }
     }
     /* a camera that looks the other way sees nothing of it */
     s->view[0].pose.rotation_q30[0] = s->view[0].pose.rotation_q30[8] = -(1 << 30);
-    t3r_sight sight;
-    assert_false(t3r_reproject(&one, 20, 20, &zero, &sight));
+    t3r_projected_pixel projected;
+    assert_false(t3r_reproject(&one, 20, 20, &zero, &projected));
     free(s);
 }
 
@@ -79,11 +79,12 @@ static void as_in_double(void **state)
         }
         double u = q[0] / q[2] * F + W / 2, v = q[1] / q[2] * F + H / 2;
         t3r_pointmap to = t3r_pointmap_of(&s->view[0], 0), from = t3r_pointmap_of(&s->view[1], 0);
-        t3r_sight sight;
-        if (t3r_reproject(&from, x, y, &to, &sight)) {
+        t3r_projected_pixel projected;
+        if (t3r_reproject(&from, x, y, &to, &projected)) {
             inside++;
-            assert_true(fabs(u - (double)(sight.pixel % W)) < 0.51 && fabs(v - (double)(sight.pixel / W)) < 0.51);
-            assert_true(fabs(q[2] - sight.z_q20 / 1048576.0) < 1e-4);
+            assert_true(fabs(u - (double)(projected.pixel % W)) < 0.51 &&
+                        fabs(v - (double)(projected.pixel / W)) < 0.51);
+            assert_true(fabs(q[2] - projected.z_q20 / 1048576.0) < 1e-4);
         } else {
             assert_true(q[2] < 0.032 || u < 0 || v < 0 || u > W - 1 || v > H - 1);
         }
@@ -266,12 +267,12 @@ static void no_surface_is_lost(void **state)
                 bool witnessed = false;
                 for (uint32_t w = 0; w < VIEWS && t3r_is_covered(s->validity[v][i]); w++) {
                     t3r_pointmap to = t3r_pointmap_of(&s->view[w], 0);
-                    t3r_sight sight;
-                    if (w == v || !t3r_reproject(&from, i % W, i / W, &to, &sight)) {
+                    t3r_projected_pixel projected;
+                    if (w == v || !t3r_reproject(&from, i % W, i / W, &to, &projected)) {
                         continue;
                     }
-                    double there = s->depth[w][sight.pixel] / (double)UNIT, here = sight.z_q20 / 1048576.0;
-                    witnessed |= s->validity[w][sight.pixel] == T3R_MEASURED && fabs(there - here) < 0.0313 * here;
+                    double there = s->depth[w][projected.pixel] / (double)UNIT, here = projected.z_q20 / 1048576.0;
+                    witnessed |= s->validity[w][projected.pixel] == T3R_MEASURED && fabs(there - here) < 0.0313 * here;
                 }
                 assert_int_equal(witnessed, t3r_is_covered(s->validity[v][i]));
             }

@@ -1,7 +1,7 @@
 /* The validity plane: its predicates exclude each other, and its numbers outside the runtime are those of the SPEC. */
 #include "unit.h"
 
-#include "core/views.h"
+#include "state/views.h"
 
 /* SPEC.md, "Between views" */
 static void confidences(void **state)

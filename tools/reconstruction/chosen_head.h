@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "core/ablation.h"
+#include "state/ablation.h"
 #include "trim3r.h"
 
 #define CHOSEN_HEAD_DEFAULT "small"

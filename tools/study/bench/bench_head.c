@@ -3,7 +3,7 @@
 #include "head/head.h"
 #include "head/head_views.h"
 #include "pipeline.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "head/weights.h"
 
 bool bench_head_run(t3r_runtime *runtime)

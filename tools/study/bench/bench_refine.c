@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "refine/refine.h"
-#include "core/state.h"
+#include "state/state.h"
 
 bool bench_refine_run(t3r_runtime *runtime, const t3r_gaussian *scene)
 {

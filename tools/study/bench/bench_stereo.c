@@ -1,6 +1,6 @@
 #include "study/bench/bench_stereo.h"
 
-#include "core/state.h"
+#include "state/state.h"
 #include "stereo/stereo.h"
 #include "stereo/stereo_fill.h"
 #include "stereo/stereo_views.h"

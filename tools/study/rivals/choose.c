@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "budget/budget.h"
-#include "core/views.h"
+#include "state/views.h"
 
 typedef struct ranked {
     double score;

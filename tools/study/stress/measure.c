@@ -7,7 +7,7 @@
 
 #include "cli/cli.h"
 #include "core/fixed.h"
-#include "study/stress/promise.h"
+#include "study/stress/invariant.h"
 #include "study/stress/stability.h"
 
 #define NO_MEMORY "out of memory"
@@ -33,13 +33,13 @@ static size_t picture_bytes(const cell *it)
 
 static void set_status(stress_row *row, stress_status status, const char *reason)
 {
-    if (row->status != STRESS_BROKEN) { /* the first broken promise is told */
+    if (row->status != STRESS_BROKEN) { /* the first broken invariant is reported */
         row->status = status;
         snprintf(row->reason, sizeof row->reason, "%s", reason);
     }
 }
 
-/* An arena that suffices for the unperturbed frames alone breaks a promise; no memory on the host ends the test. */
+/* An arena that suffices for the unperturbed frames alone breaks an invariant; no memory on the host ends the test. */
 static int refuse(const cell *it, stress_row *row, int code, const char *reason)
 {
     if (strcmp(reason, NO_MEMORY) == 0) {
@@ -92,7 +92,7 @@ static int measure_row(const cell *it, const stress_run *run, uint32_t keep, uin
     const bool stereo = options.config.depth == T3R_DEPTH_STEREO;
     uint32_t valid = stereo ? told.valid_points : stress_capture_valid(&run->capture);
     uint32_t expected = T3R_MIN(options.gaussians, valid);
-    const char *broken = stress_broken_promise(&built.scene, expected, options.automatic);
+    const char *broken = stress_broken_invariant(&built.scene, expected, options.automatic);
     if (broken != NULL) {
         set_status(row, STRESS_BROKEN, broken);
     }

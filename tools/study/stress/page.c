@@ -178,12 +178,13 @@ static void add_why(html_page *page, const stress_row *rows, uint32_t count)
         add_cells(page,
                   (const char *const[]){row->scene, row->target, row->what, strength,
                                         alike && count > 1 ? "every method and budget" : who,
-                                        row->status == STRESS_BROKEN ? "a promise is broken" : "refused", row->reason},
+                                        row->status == STRESS_BROKEN ? "an invariant is broken" : "refused",
+                                        row->reason},
                   7);
     }
 }
 
-/* What no picture shows: cells that were refused, and promises that were broken. */
+/* What no picture shows: cells that were refused, and invariants that were broken. */
 static void add_unscored(html_page *page, const stress_row *rows, uint32_t count, uint32_t cell)
 {
     bool any = false;
@@ -193,7 +194,7 @@ static void add_unscored(html_page *page, const stress_row *rows, uint32_t count
     if (!any) {
         return;
     }
-    html_page_table(page, "Refused, or a promise broken", 0);
+    html_page_table(page, "Refused, or an invariant broken", 0);
     add_cells(page, (const char *const[]){"scene", "target", "perturbation", "strength", "method", "", "reason"}, 7);
     for (uint32_t at = 0; at + cell <= count; at += cell) {
         add_why(page, rows + at, cell);

@@ -28,8 +28,8 @@ typedef struct stress_album {
  * NULL. False without memory. */
 bool stress_album_offer(stress_album *album, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,
                         const stress_case *c, const stress_contest *contest, const perturbation *p);
-/* The `worst` of them, the worst first, under the tables: what was refused or broke a promise, and all rows. 0, or -1
- * without memory. */
+/* The `worst` of them, the worst first, under the tables: what was refused or broke an invariant, and all rows. 0, or
+ * -1 without memory. */
 int stress_album_write(stress_album *album, uint32_t worst, const stress_row *rows, uint32_t count,
                        const stress_contest *contest, FILE *out);
 void stress_album_free(stress_album *album);

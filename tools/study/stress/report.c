@@ -98,7 +98,7 @@ static int finish(stress_report *report)
     int code = report->to.page != NULL ? write_page(report) : CLI_OK;
     uint32_t broken = stress_broken(report->rows, report->row_count);
     if (code == CLI_OK && broken > 0) {
-        code = cli_error(CLI_BAD_INPUT, "%u rows break a promise", (unsigned)broken);
+        code = cli_error(CLI_BAD_INPUT, "%u rows break an invariant", (unsigned)broken);
     }
     return code;
 }

@@ -30,8 +30,8 @@ int stress_report_open(stress_report *report, const stress_outputs *to, const st
 /* The rows of a cell, with pictures as stress_album_offer() takes them. */
 int stress_report_cell(stress_report *report, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,
                        const stress_case *c, const perturbation *p);
-/* Tables, verdict, JSON and page when `code` is CLI_OK. `code`, or what went wrong here; CLI_BAD_INPUT where a promise
- * is broken. */
+/* Tables, verdict, JSON and page when `code` is CLI_OK. `code`, or what went wrong here; CLI_BAD_INPUT where an
+ * invariant is broken. */
 int stress_report_close(stress_report *report, int code);
 
 #endif

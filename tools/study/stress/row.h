@@ -11,7 +11,7 @@
 typedef enum stress_status {
     STRESS_MEASURED,
     STRESS_REFUSED, /* an error with a reason, as it should be where nothing can be made of the frames */
-    STRESS_BROKEN   /* a promise is broken; the reason says which */
+    STRESS_BROKEN   /* an invariant is broken; the reason says which */
 } stress_status;
 
 /* NaN = does not apply. */

@@ -8,8 +8,8 @@
 #include "budget/budget.h"
 #include "cli/cli.h"
 #include "study/rivals/rival.h"
-#include "core/state.h"
-#include "core/views.h"
+#include "state/state.h"
+#include "state/views.h"
 
 #define NOBODY UINT32_MAX
 /* Median of the difference of two normal numbers, in their deviation: 0.6745 sqrt(2) */

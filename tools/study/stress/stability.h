@@ -5,7 +5,7 @@
 
 #include "study/stress/run.h"
 
-/* What is promised of the method trim3r under the noise of a still scene (perturbation.h), where there are as many
+/* What is guaranteed of the method trim3r under the noise of a still scene (perturbation.h), where there are as many
  * Gaussians as SuperClusters: with fewer, chance says which of them get one.
  *
  * The share of the retained pixels that change is at most STRESS_MASK_CHANGED_MOST, and with n Gaussians a SuperCluster

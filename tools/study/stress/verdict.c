@@ -8,7 +8,7 @@
 #include "study/stress/table.h"
 
 #define MIDDLE_GRADE 2u
-#define FLICKER_MOST 1.2 /* times that of all points: what is wanted, not promised */
+#define FLICKER_MOST 1.2 /* times that of all points: what is wanted, not guaranteed */
 #define LEVEL 0.01       /* dB: no difference */
 #define SLOWER_THAN 1.5  /* times the unperturbed build: worth a line */
 
@@ -29,7 +29,7 @@ static void name_cell(FILE *out, const stress_row *row)
             method_name(row->method), row->keep);
 }
 
-static void print_promises(FILE *out, const stress_row *rows, uint32_t count)
+static void print_invariants(FILE *out, const stress_row *rows, uint32_t count)
 {
     uint32_t broken = stress_broken(rows, count), refused = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -40,9 +40,9 @@ static void print_promises(FILE *out, const stress_row *rows, uint32_t count)
             fprintf(out, ": %s\n", rows[i].reason);
         }
     }
-    fprintf(out, "%u rows: %u measured, %u refused with a reason, %u with a broken promise (budget, arena, range%s)\n",
-            (unsigned)count, (unsigned)(count - refused - broken), (unsigned)refused, (unsigned)broken,
-            ", still scene");
+    fprintf(
+        out, "%u rows: %u measured, %u refused with a reason, %u with a broken invariant (budget, arena, range%s)\n",
+        (unsigned)count, (unsigned)(count - refused - broken), (unsigned)refused, (unsigned)broken, ", still scene");
     /* each reason once a perturbation and strength */
     for (uint32_t i = 0; i < count; i++) {
         bool told = rows[i].status != STRESS_REFUSED;
@@ -172,7 +172,7 @@ static void print_against(FILE *out, const stress_row *rows, uint32_t count, con
 
 void stress_print_verdict(FILE *out, const stress_row *rows, uint32_t count, const stress_contest *contest)
 {
-    print_promises(out, rows, count);
+    print_invariants(out, rows, count);
     print_slowest(out, rows, count);
     print_stability(out, rows, count, contest);
     for (uint32_t k = 0; k < contest->keep_count; k++) {

@@ -10,7 +10,7 @@
 #include "head/head_views.h"
 #include "pipeline.h"
 #include "prepare_rival.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "trim3r_heads.h"
 
 typedef struct prepare_settings {

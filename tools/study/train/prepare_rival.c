@@ -5,7 +5,7 @@
 
 #include "study/rivals/choose.h"
 #include "study/rivals/score.h"
-#include "core/state.h"
+#include "state/state.h"
 
 typedef struct ranking {
     splat_model model;

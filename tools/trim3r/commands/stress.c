@@ -217,7 +217,7 @@ static const struct argp parser = {
         "not retain, and the median way of the Gaussians of the others as a share of their spacing. Chance is drawn "
         "from "
         "fixed seeds: the same command gives the same figures, but for times.\n\n"
-        "An error with a reason is a refusal: a result. Broken promises end in exit status 1: another number of "
+        "An error with a reason is a refusal: a result. Broken invariants end in exit status 1: another number of "
         "Gaussians than the budget, another arena than before, a Gaussian out of range or not finite, a score that is "
         "no number, trim3r on a still scene beyond its bounds (with as many Gaussians as SuperClusters or more, n for "
         "each: 0.6 / sqrt(n) of the mask, at most half; a median way of three quarters of the spacing "

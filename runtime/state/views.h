@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/scene_frame.h"
 #include "trim3r.h"
 
 /* Where a pixel's depth comes from: the two low bits of the validity plane. */
@@ -96,12 +97,6 @@ static inline uint8_t t3r_unmarked(uint8_t validity)
 /* The number that leaves the runtime for it: a Gaussian's confidence, and the hashes of stages (SPEC.md,
  * "Between views"). Marks that only stage pointmap knows do not count. */
 uint8_t t3r_confidence_of(uint8_t validity);
-
-/* A rigid pose in fixed point, expanded once from t3r_camera. */
-typedef struct t3r_pose {
-    int32_t rotation_q30[9]; /* row-major, camera to scene */
-    int32_t position_q20[3]; /* scene units */
-} t3r_pose;
 
 /* The planes of one view, each width x height, rows without gaps. */
 typedef struct t3r_view {

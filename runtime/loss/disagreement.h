@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/views.h"
+#include "state/views.h"
 
 /* Mean squared difference of levelled colours a channel, levels^2 Q8, at most 2^24, over the pixels not doubtful that
  * were measured and fall on such a one in the next or the previous view, the last and the first being next to each

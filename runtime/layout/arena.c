@@ -1,10 +1,10 @@
 #include "arena.h"
 
 #include "budget/budget.h"
-#include "fixed.h"
+#include "core/fixed.h"
 #include "raster/raster_splat.h"
 #include "refine/refine.h"
-#include "state.h"
+#include "state/state.h"
 #include "stream/stream_map.h"
 #include "superclusters/superclusters.h"
 

@@ -1,9 +1,9 @@
 /* What each stage made, hashed for the replay that expects the same bits (SPEC.md, "Hash"). Each does nothing
- * unless the stage_hash hook is set; views `first` to `end` - 1 are told of. */
+ * unless the stage_hash hook is set; views `first` to `end` - 1 are hashed. */
 #ifndef T3R_STAGE_HASH_H
 #define T3R_STAGE_HASH_H
 
-#include "state.h"
+#include "state/state.h"
 
 void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end);
 void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end);

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "budget/importance.h"
-#include "core/state.h"
+#include "state/state.h"
 #include "trim3r.h"
 
 /* What the prediction goes by. */

@@ -1,4 +1,4 @@
-/* Every promise, broken on purpose: it must be told, and end `trim3r stress` in an exit status of 1. */
+/* Every invariant, broken on purpose: it must be reported, and end `trim3r stress` in an exit status of 1. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "plane.h"
-#include "study/stress/promise.h"
+#include "study/stress/invariant.h"
 #include "study/stress/random.h"
 #include "study/stress/report.h"
 #include "study/stress/stability.h"
@@ -24,18 +24,18 @@ static void scenes_out_of_bounds(void **state)
     (void)state;
     t3r_gaussian g[2] = {{.factor = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .opacity_q15 = 32767}, {.factor = {0}}};
     t3r_scene scene = {.gaussians = g, .count = 2};
-    assert_null(stress_broken_promise(&scene, 2, false));
-    assert_string_equal(stress_broken_promise(&scene, 3, false), "the budget is not met");
-    assert_null(stress_broken_promise(&scene, 3, true));
-    assert_string_equal(stress_broken_promise(&scene, 1, true), "the budget is not met");
+    assert_null(stress_broken_invariant(&scene, 2, false));
+    assert_string_equal(stress_broken_invariant(&scene, 3, false), "the budget is not met");
+    assert_null(stress_broken_invariant(&scene, 3, true));
+    assert_string_equal(stress_broken_invariant(&scene, 1, true), "the budget is not met");
     g[1].position_q20[2] = (1 << 30) + 1;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
+    assert_string_equal(stress_broken_invariant(&scene, 2, false), "a Gaussian is out of range");
     g[1].position_q20[2] = 0;
     g[0].opacity_q15 = 32768;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
+    assert_string_equal(stress_broken_invariant(&scene, 2, false), "a Gaussian is out of range");
     g[0].opacity_q15 = 0;
     g[0].factor_exponent = 16;
-    assert_string_equal(stress_broken_promise(&scene, 2, false), "a Gaussian is out of range");
+    assert_string_equal(stress_broken_invariant(&scene, 2, false), "a Gaussian is out of range");
 }
 
 /* The extremes of what in_range lets pass are finite; what is not, by whatever fault, is told. */
@@ -96,7 +96,7 @@ static void scores_that_are_no_numbers(void **state)
     assert_string_equal(f->rows[0].reason, "the render has no finite score");
 }
 
-/* Of unperturbed frames an arena that is too small is a refusal: nobody promised that it would do. Where it did for
+/* Of unperturbed frames an arena that is too small is a refusal: nothing guarantees that it is enough. Where it did for
  * those, it must do for perturbed ones. */
 static void arenas_too_small_for_perturbed_frames(void **state)
 {
@@ -172,8 +172,8 @@ static void still_scenes_that_do_not_stay(void **state)
     }
 }
 
-/* What is told of a broken promise: a line, its cell and reason, and the exit status. */
-static void exit_status_of_a_broken_promise(void **state)
+/* What is reported of a broken invariant: a line, its cell and reason, and the exit status. */
+static void exit_status_of_a_broken_invariant(void **state)
 {
     (void)state;
     const stress_contest contest = {.methods = {METHOD_TRIM3R}, .method_count = 1, .keep = {10}, .keep_count = 1};
@@ -202,7 +202,7 @@ static void exit_status_of_a_broken_promise(void **state)
     stress_print_verdict(out, &row, 1, &contest);
     assert_int_equal(fclose(out), 0);
     assert_non_null(strstr(told, "BROKEN  room: unperturbed, trim3r at 10 %: the budget is not met\n"));
-    assert_non_null(strstr(told, "1 rows: 0 measured, 0 refused with a reason, 1 with a broken promise"));
+    assert_non_null(strstr(told, "1 rows: 0 measured, 0 refused with a reason, 1 with a broken invariant"));
     free(told);
 }
 
@@ -215,6 +215,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(arenas_too_small_for_perturbed_frames, open_plane, plane_close),
         cmocka_unit_test(arenas_that_change),
         cmocka_unit_test(still_scenes_that_do_not_stay),
-        cmocka_unit_test(exit_status_of_a_broken_promise)};
+        cmocka_unit_test(exit_status_of_a_broken_invariant)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,14 +38,14 @@ static void compare(const t3r_view *views, uint32_t v, uint32_t w, int32_t expon
     for (uint32_t y = 0; y < view->height; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
             size_t pixel = (size_t)y * view->width + x;
-            t3r_sight sight;
-            if (!is_sure(view->validity[pixel]) || !t3r_reproject(&from, x, y, &to, &sight) ||
-                !is_sure(other->validity[sight.pixel])) {
+            t3r_projected_pixel projected;
+            if (!is_sure(view->validity[pixel]) || !t3r_reproject(&from, x, y, &to, &projected) ||
+                !is_sure(other->validity[projected.pixel])) {
                 continue;
             }
-            int32_t there_q20 = t3r_depth_q20(to.scale, other->depth[sight.pixel]);
-            if (32 * t3r_abs64((int64_t)sight.z_q20 - there_q20) <= T3R_MIN(sight.z_q20, there_q20)) {
-                d->squares_q8 += squares_q8(view, pixel, gain_q14[v], other, sight.pixel, gain_q14[w]);
+            int32_t there_q20 = t3r_depth_q20(to.scale, other->depth[projected.pixel]);
+            if (32 * t3r_abs64((int64_t)projected.z_q20 - there_q20) <= T3R_MIN(projected.z_q20, there_q20)) {
+                d->squares_q8 += squares_q8(view, pixel, gain_q14[v], other, projected.pixel, gain_q14[w]);
                 d->pairs++;
             }
         }

@@ -1,8 +1,8 @@
 /* What a configuration needs, and which configuration an arena can hold. */
 #include "arena.h"
-#include "config.h"
-#include "fixed.h"
-#include "state.h"
+#include "core/config.h"
+#include "core/fixed.h"
+#include "state/state.h"
 
 t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
 {

@@ -8,11 +8,11 @@
 #include <stdint.h>
 
 #include "ablation.h"
-#include "assertion.h"
+#include "core/assertion.h"
 #include "kernels/kernels.h"
 #include "trim3r.h"
 #include "views.h"
-#include "workers.h"
+#include "core/workers.h"
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 

@@ -1,6 +1,6 @@
 #include "views.h"
 
-#include "scene_frame.h"
+#include "core/scene_frame.h"
 #include "state.h"
 
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
@@ -16,7 +16,7 @@ void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
             .height = rt->config.height,
             .colour = {colour, colour + pixels, colour + 2 * pixels},
             .depth = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_DEPTH) + pixels * v,
-            .validity = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_CONFIDENCE) + pixels * v,
+            .validity = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY) + pixels * v,
             .texture = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_TEXTURE) + pixels * plane,
             .key = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_KEYS) + pixels * plane,
             .label = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * plane,

@@ -1,15 +1,15 @@
 #include "stage_hash.h"
 
-#include "hash.h"
+#include "core/hash.h"
 #include "pointmap/pointmap.h"
 #include "superclusters/superclusters.h"
 
-static void tell(const t3r_runtime *rt, t3r_stage stage, uint64_t hash)
+static void report(const t3r_runtime *rt, t3r_stage stage, uint64_t hash)
 {
     rt->hooks.stage_hash(rt->hooks.user, stage, hash);
 }
 
-static bool silent(const t3r_runtime *rt)
+static bool no_hook(const t3r_runtime *rt)
 {
     return rt->hooks.stage_hash == NULL;
 }
@@ -38,7 +38,7 @@ static uint64_t hash_confidence(const t3r_runtime *rt, const t3r_view *view, uin
 
 void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
-    if (silent(rt)) {
+    if (no_hook(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
@@ -51,12 +51,12 @@ void t3r_hash_image(const t3r_runtime *rt, const t3r_view *views, uint32_t first
             hash = t3r_hash_u16(hash, measured ? views[v].depth[i] : 0);
         }
     }
-    tell(rt, T3R_STAGE_IMAGE, hash);
+    report(rt, T3R_STAGE_IMAGE, hash);
 }
 
 void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
-    if (silent(rt)) {
+    if (no_hook(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
@@ -64,12 +64,12 @@ void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views, uint32_t first
         hash = t3r_hash_u16s(hash, views[v].depth, pixels_of(rt));
         hash = hash_confidence(rt, &views[v], hash);
     }
-    tell(rt, T3R_STAGE_DEPTH, hash);
+    report(rt, T3R_STAGE_DEPTH, hash);
 }
 
 void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
-    if (silent(rt)) {
+    if (no_hook(rt)) {
         return;
     }
     uint64_t hash = hash_frame(rt);
@@ -92,24 +92,24 @@ void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views, uint32_t fi
         }
         hash = hash_confidence(rt, &views[v], hash);
     }
-    tell(rt, T3R_STAGE_POINTMAP, hash);
+    report(rt, T3R_STAGE_POINTMAP, hash);
 }
 
 void t3r_hash_wavelet(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
-    if (silent(rt)) {
+    if (no_hook(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
     for (uint32_t v = first; v < end; v++) {
         hash = t3r_hash_u16s(hash, views[v].texture, pixels_of(rt));
     }
-    tell(rt, T3R_STAGE_WAVELET, hash);
+    report(rt, T3R_STAGE_WAVELET, hash);
 }
 
 void t3r_hash_superclusters(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
-    if (silent(rt)) {
+    if (no_hook(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
@@ -123,12 +123,12 @@ void t3r_hash_superclusters(const t3r_runtime *rt, const t3r_view *views, uint32
     for (uint32_t v = first; v < end; v++) {
         hash = t3r_hash_u16s(hash, views[v].label, pixels_of(rt));
     }
-    tell(rt, T3R_STAGE_SUPERCLUSTERS, hash);
+    report(rt, T3R_STAGE_SUPERCLUSTERS, hash);
 }
 
 void t3r_hash_budget(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
-    if (silent(rt)) {
+    if (no_hook(rt)) {
         return;
     }
     uint64_t hash = T3R_HASH_START;
@@ -137,12 +137,12 @@ void t3r_hash_budget(const t3r_runtime *rt, const t3r_view *views, uint32_t firs
             hash = t3r_hash_u32(hash, views[v].mask[i]);
         }
     }
-    tell(rt, T3R_STAGE_BUDGET, hash);
+    report(rt, T3R_STAGE_BUDGET, hash);
 }
 
 void t3r_hash_scene(const t3r_runtime *rt, t3r_stage stage)
 {
-    if (silent(rt)) {
+    if (no_hook(rt)) {
         return;
     }
     uint64_t hash = t3r_hash_u32(hash_frame(rt), rt->gaussians);
@@ -164,5 +164,5 @@ void t3r_hash_scene(const t3r_runtime *rt, t3r_stage stage)
         }
         hash = t3r_hash_u8(t3r_hash_u16(hash, g->opacity_q15), g->confidence);
     }
-    tell(rt, stage, hash);
+    report(rt, stage, hash);
 }

@@ -4,7 +4,7 @@
 #include "core/fixed.h"
 #include "pipeline.h"
 #include "refine/refine.h"
-#include "core/state.h"
+#include "state/state.h"
 
 #define TRIAL_PART 100u     /* of the points are the first trial's; the second has twice as many */
 #define LEAST_PART 400u     /* of the points are kept whatever the prediction */

@@ -1,4 +1,4 @@
-#include "study/stress/promise.h"
+#include "study/stress/invariant.h"
 
 #include <math.h>
 
@@ -32,7 +32,7 @@ bool stress_finite(const gaussian_shape *shape)
     return isfinite(sum);
 }
 
-const char *stress_broken_promise(const t3r_scene *scene, uint32_t count, bool at_most)
+const char *stress_broken_invariant(const t3r_scene *scene, uint32_t count, bool at_most)
 {
     if (at_most ? scene->count == 0 || scene->count > count : scene->count != count) {
         return "the budget is not met";
