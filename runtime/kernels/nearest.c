@@ -22,9 +22,9 @@ static int64_t square_between(const t3r_centres *centres, uint32_t a, uint32_t b
     return sum;
 }
 
-void t3r_nearest_begin_c(const t3r_centres *centres, t3r_neighbours *neighbours)
+void t3r_nearest_begin_c(const t3r_centres *centres, uint32_t first, uint32_t end, t3r_neighbours *neighbours)
 {
-    for (uint32_t k = 0; k < centres->count; k++) {
+    for (uint32_t k = first; k < end; k++) {
         int64_t square[T3R_NEIGHBOURS];
         uint16_t *list = neighbours->index[k];
         uint32_t known = 0;

@@ -24,9 +24,13 @@ typedef struct t3r_neighbours {
     uint16_t index[T3R_MAX_CLUSTERS][T3R_NEIGHBOURS];
 } t3r_neighbours;
 
-/* What `nearest` of the same table asks for before it is first called with these centres. In plain C that is the list
- * of neighbours: count^2 distances. A variant that looks at all centres needs none and may leave it as it is. */
-typedef void t3r_nearest_begin_kernel(const t3r_centres *centres, t3r_neighbours *neighbours);
+/* What `nearest` of the same table asks for before it is first called with these centres: the part of the centres
+ * first..end - 1, so that workers can share it. `first` is a multiple of T3R_CENTRE_GROUP, and so is `end`, unless it
+ * is the number of centres. In plain C that is the list of neighbours: count distances a centre. A variant that looks
+ * at all centres needs none and may leave it as it is. */
+#define T3R_CENTRE_GROUP 16u
+typedef void t3r_nearest_begin_kernel(const t3r_centres *centres, uint32_t first, uint32_t end,
+                                      t3r_neighbours *neighbours);
 
 /* Index of the nearest centre of each of `points` points, which lie one behind the other, aligned to 2 bytes. `guess`,
  * below the number of centres, is where to start; it changes no result. In plain C a point is first compared with the

@@ -226,10 +226,18 @@ static void batch_task(void *context, uint32_t index, uint32_t worker)
     }
 }
 
+static void begin_groups(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const means_job *job = context;
+    job->kernels->nearest_begin(&job->work->centres, begin * T3R_CENTRE_GROUP,
+                                T3R_MIN(end * T3R_CENTRE_GROUP, job->count), &job->work->u.means.neighbours);
+}
+
 static void begin_means(means_job *job, const t3r_cluster *clusters)
 {
     load_centres(&job->work->centres, clusters, job->count);
-    job->kernels->nearest_begin(&job->work->centres, &job->work->u.means.neighbours);
+    t3r_run_rows(&job->host->workers, (job->count + T3R_CENTRE_GROUP - 1) / T3R_CENTRE_GROUP, begin_groups, job);
     clear_sums(job);
 }
 

@@ -29,7 +29,9 @@ const char *check_nearest(const t3r_kernels *kernels, uint64_t *seed)
             feature[i][d] = (int16_t)any_value(seed, -most, most);
         }
     }
-    kernels->nearest_begin(centres, neighbours);
+    const uint32_t half = count / 2 / T3R_CENTRE_GROUP * T3R_CENTRE_GROUP; /* as two workers share it */
+    kernels->nearest_begin(centres, half, count, neighbours);
+    kernels->nearest_begin(centres, 0, half, neighbours);
     kernels->nearest(centres, neighbours, points, (const int16_t(*)[T3R_DIMENSIONS])feature,
                      (uint16_t)unit_between(seed, 0, count - 1), nearest);
     for (uint32_t i = 0; i < points; i++) {

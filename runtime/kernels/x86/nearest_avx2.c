@@ -32,12 +32,13 @@ static T3R_AVX2 void store(void *packed, size_t offset, uint32_t k, __m256i x)
     _mm256_storeu_si256((__m256i *)(void *)place_of(packed, offset, k), x);
 }
 
-T3R_AVX2 void t3r_nearest_begin_avx2(const t3r_centres *centres, t3r_neighbours *neighbours)
+T3R_AVX2 void t3r_nearest_begin_avx2(const t3r_centres *centres, uint32_t first, uint32_t end,
+                                     t3r_neighbours *neighbours)
 {
-    for (uint32_t first = 0; first < centres->count; first += LANES) {
+    for (uint32_t at = first; at < end; at += LANES) {
         int32_t pair[T3R_DIMENSIONS / 2][LANES], half_norm[LANES];
         for (uint32_t i = 0; i < LANES; i++) {
-            const uint32_t k = first + i;
+            const uint32_t k = at + i;
             const bool is_centre = k < centres->count;
             for (uint32_t d = 0; d < T3R_DIMENSIONS / 2; d++) {
                 uint32_t low = is_centre ? (uint16_t)centres->feature_q11[2 * d][k] : 0;
@@ -47,10 +48,10 @@ T3R_AVX2 void t3r_nearest_begin_avx2(const t3r_centres *centres, t3r_neighbours 
             half_norm[i] = is_centre ? centres->half_norm[k] : INT32_MAX; /* no centre's score is so large */
         }
         for (uint32_t d = 0; d < T3R_DIMENSIONS / 2; d++) {
-            store(neighbours, offsetof(packed_centres, pair) + d * sizeof(int32_t) * T3R_MAX_CLUSTERS, first,
+            store(neighbours, offsetof(packed_centres, pair) + d * sizeof(int32_t) * T3R_MAX_CLUSTERS, at,
                   _mm256_loadu_si256((const __m256i *)(const void *)pair[d]));
         }
-        store(neighbours, offsetof(packed_centres, half_norm), first,
+        store(neighbours, offsetof(packed_centres, half_norm), at,
               _mm256_loadu_si256((const __m256i *)(const void *)half_norm));
     }
 }
