@@ -46,11 +46,11 @@ def tie():
     inside = os.path.join(native.RUNTIME, "head", "head_learned.c")
 
     def all_of(*pattern):
-        return sorted(glob.glob(os.path.join(native.RUNTIME, *pattern)))
+        return sorted(glob.glob(os.path.join(native.RUNTIME, *pattern), recursive=True))
 
-    sources = [s for s in all_of("*.c") + all_of("*", "*.c") if s != inside]
+    sources = [s for s in all_of("**", "*.c") if s != inside]
     sources += [os.path.join(HERE, "runtime_tie.c"), os.path.join(HEADS, "small.c")]
-    headers = all_of("*.h") + all_of("*", "*.h")
+    headers = all_of("**", "*.h")
     includes = (native.RUNTIME, os.path.join(native.RUNTIME, "include"), HEADS)
     flags = ("-std=c11", "-O2", *("-I" + folder for folder in includes))
     library = ctypes.CDLL(native.build("runtime_tie", sources, flags, [inside, *headers]))

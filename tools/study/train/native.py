@@ -48,13 +48,13 @@ def preparer():
     """prepare.c, the runtime that it calls, and what rivals rank with."""
 
     def here(*pattern):
-        return sorted(glob.glob(os.path.join(HERE, "..", "..", "..", *pattern)))
+        return sorted(glob.glob(os.path.join(HERE, "..", "..", "..", *pattern), recursive=True))
 
     rivals = [path for part in ("gaussian_shape", "splat_camera") for path in here("tools", "scene", part + ".c")]
     rivals += [path for part in ("choose", "score*", "splat_*") for path in here("tools", "study", "rivals", part + ".c")]
     sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals
-    sources += here("quant", "heads", "small.c") + here("runtime", "*.c") + here("runtime", "*", "*.c")
-    headers = here("runtime", "*.h") + here("runtime", "*", "*.h") + here("tools", "study", "rivals", "*.h")
+    sources += here("quant", "heads", "small.c") + here("runtime", "**", "*.c")
+    headers = here("runtime", "**", "*.h") + here("tools", "study", "rivals", "*.h")
     headers += here("tools", "scene", "*.h") + here("tools", "reconstruction", "method.h")
     headers += here("tools", "study", "train", "prepare_rival.h")
     includes = (RUNTIME, os.path.join(RUNTIME, "include"), os.path.join(HERE, "..", ".."), HEADS)
