@@ -148,10 +148,10 @@ def planted_findings():
     """The offenders: a small house in planted/house, and two files that call each other."""
     house = proof.PLANTED / "house"
     findings = check_includes(house)
-    for offence in ("runtime/core/outward.c includes platform/replay.h",
-                    "runtime/core/upward.c includes runtime/stream/stream.h",
-                    "tools/cli/back.c includes tools/scene/scene.h",
-                    "tools/scene/study.c includes tools/study/rivals/rival.h",
+    for offence in ("runtime/core/outward.c includes platform/planted_replay.h",
+                    "runtime/core/upward.c includes runtime/stream/planted_stream.h",
+                    "tools/cli/back.c includes tools/scene/planted_scene.h",
+                    "tools/scene/study.c includes tools/study/rivals/planted_rival.h",
                     "tools/attic/new.c: its area tools/attic is not in the picture"):
         proof.must_find(findings, offence, "house")
     if len(findings) != 5:

@@ -1,1 +1,1 @@
-#include "replay.h"
+#include "planted_replay.h"

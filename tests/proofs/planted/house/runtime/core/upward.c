@@ -1,1 +1,1 @@
-#include "stream/stream.h"
+#include "stream/planted_stream.h"

@@ -1,1 +1,1 @@
-#include "cli/cli.h"
+#include "cli/planted_cli.h"

@@ -1,1 +1,1 @@
-#include "scene/scene.h"
+#include "scene/planted_scene.h"

@@ -1,1 +1,1 @@
-#include "study/rivals/rival.h"
+#include "study/rivals/planted_rival.h"

@@ -1,0 +1,1 @@
+#include "core/planted_fixed.h"

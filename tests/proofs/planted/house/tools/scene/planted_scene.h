@@ -1,0 +1,1 @@
+#include "cli/planted_cli.h"

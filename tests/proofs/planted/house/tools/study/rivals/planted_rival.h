@@ -1,0 +1,1 @@
+#include "scene/planted_scene.h"
