@@ -31,6 +31,9 @@ def plan():
     check(all((f"| {b['name']} | {b['bytes']} |" in table) == (b['bytes'] > 0) for b in found["buffers"]),
           "the Markdown table is to have all buffers that have bytes")
     check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
+    # the settings are those of build
+    check(expect_json(*base, "--refine", 0)["arena_bytes"] <= found["arena_bytes"], "refinement saves bytes")
+    expect_json(*base, "--levels", 3, "--bridge-radius", 0, "--allocate", "paper")
     # a head needs what plan says: one with wider activations more, and a closed form nothing
     small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
     check(small["arena_bytes"] == analytic["arena_bytes"] == found["arena_bytes"], "the default arena holds small")

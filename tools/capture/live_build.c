@@ -45,7 +45,7 @@ static int open_arena(live_build *build)
     t3r_plan_info plan;
     reconstruction_configure(r, &build->options);
     r->config.gaussians = r->config.max_gaussians = most_gaussians(build);
-    r->config.workers = build->options.threads;
+    r->config.workers = build->options.processor.threads;
     t3r_status status = t3r_plan(&r->config, &plan);
     if (status != T3R_OK) {
         return reconstruction_error(status, "settings", &r->config, 0);
@@ -61,10 +61,10 @@ static int open_arena(live_build *build)
         return cli_error(CLI_BAD_INPUT, "no memory for an arena of %" PRIu64 " bytes", bytes);
     }
     r->arena_bytes = (size_t)bytes;
-    if (build->options.threads > 1) {
-        r->threads = t3r_threads_start(build->options.threads);
+    if (build->options.processor.threads > 1) {
+        r->threads = t3r_threads_start(build->options.processor.threads);
         if (r->threads == NULL) {
-            return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", build->options.threads);
+            return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", build->options.processor.threads);
         }
     }
     return CLI_OK;
@@ -202,7 +202,7 @@ static int start_runtime(live_build *build)
     t3r_status status = t3r_init(&r->runtime, r->arena, r->arena_bytes, &r->config);
     if (status == T3R_OK) {
         t3r_hooks hooks = reconstruction_hooks(r, &build->options);
-        (void)t3r_set_cpu(r->runtime, build->options.cpu);
+        (void)t3r_set_cpu(r->runtime, build->options.processor.cpu);
         status = t3r_set_hooks(r->runtime, &hooks);
     }
     if (status == T3R_OK) {

@@ -87,17 +87,6 @@ static const struct argp_option options[] = {
 
 /* ---- options ---- */
 
-static double positive(struct argp_state *state, const char *option, const char *text, double most)
-{
-    char *end;
-    size_t length = strspn(text, "0123456789.");
-    double value = strtod(text, &end);
-    if (length == 0 || end != text + length || *end != '\0' || !(value >= 0 && value <= most)) {
-        argp_error(state, "--%s takes a number 0..%g, not '%s'", option, most, text);
-    }
-    return value;
-}
-
 static uint64_t bytes_of(struct argp_state *state, const char *text)
 {
     char *end;
@@ -296,7 +285,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         option_size(state, "size", arg, 2, &s->width, &s->height);
         return 0;
     case KEY_RATE:
-        s->rate_millihertz = (uint32_t)(positive(state, "rate", arg, 10000) * 1000 + 0.5);
+        s->rate_millihertz = (uint32_t)(option_decimal(state, "rate", arg, 0, 10000) * 1000 + 0.5);
         return 0;
     case KEY_FORMAT:
         s->format = arg;
@@ -317,7 +306,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         option_size(state, "depth-size", arg, 2, &s->depth_width, &s->depth_height);
         return 0;
     case KEY_DEPTH_UNIT:
-        s->depth_unit_q40 = (uint64_t)(positive(state, "depth-unit", arg, 100) * 0x1p40 + 0.5);
+        s->depth_unit_q40 = (uint64_t)(option_decimal(state, "depth-unit", arg, 0, 100) * 0x1p40 + 0.5);
         return 0;
     case KEY_PAIR:
         s->pair_ms = option_number(state, "pair", arg, 1, 1000);
@@ -326,7 +315,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         s->stall_ms = option_number(state, "stall", arg, 1, 3600000);
         return 0;
     case KEY_RECONNECT:
-        o->reconnect_seconds = positive(state, "reconnect", arg, 1e6);
+        o->reconnect_seconds = option_decimal(state, "reconnect", arg, 0, 1e6);
         return 0;
     case KEY_INTRINSICS:
         parse_intrinsics(state, arg, o);
@@ -356,7 +345,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->frames = option_number(state, "frames", arg, 1, UINT32_MAX);
         return 0;
     case KEY_SECONDS:
-        o->seconds = positive(state, "seconds", arg, 1e9);
+        o->seconds = option_decimal(state, "seconds", arg, 0, 1e9);
         return 0;
     case KEY_BUILD:
         o->scene = arg;

@@ -1,11 +1,10 @@
 #include "cli/option_values.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/cli.h"
-#include "cpu.h"
 #include "trim3r.h"
 
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
@@ -17,22 +16,16 @@ uint32_t option_number(struct argp_state *state, const char *option, const char 
     return value;
 }
 
-uint32_t option_cpu_mask(struct argp_state *state, const char *text)
+double option_decimal(struct argp_state *state, const char *option, const char *text, double low, double high)
 {
-    uint32_t mask = 0;
-    if (!t3r_cpu_parse_mask(text, &mask)) {
-        argp_error(state, "--cpu-mask takes all, none, names as avx2,vnni or a number, not '%s'", text);
+    /* digits, signs, a point and an exponent alone: strtod() would also take spaces, hexadecimal and "nan" */
+    char *end;
+    double value = strtod(text, &end);
+    if (text[0] == '\0' || text[strspn(text, "0123456789.eE+-")] != '\0' || *end != '\0' ||
+        !(value >= low && value <= high)) {
+        argp_error(state, "--%s takes a number %g..%g, not '%s'", option, low, high, text);
     }
-    return t3r_cpu_features() & mask;
-}
-
-uint32_t option_threads(struct argp_state *state, const char *option, const char *text)
-{
-    if (strcmp(text, "all") == 0) {
-        const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-        return processors < 1 ? 1 : processors > (long)T3R_MAX_WORKERS ? T3R_MAX_WORKERS : (uint32_t)processors;
-    }
-    return option_number(state, option, text, 1, T3R_MAX_WORKERS);
+    return value;
 }
 
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
@@ -59,6 +52,12 @@ void option_frames(struct argp_state *state, const char *option, const char *tex
         argp_error(state, "--%s takes 1 to %u frame indices with commas between, not '%s'", option, T3R_MAX_VIEWS,
                    text);
     }
+}
+
+void option_arguments(struct argp_state *state, char ***arguments, uint32_t *count)
+{
+    *arguments = state->argv + state->next;
+    *count = (uint32_t)(state->argc - state->next);
 }
 
 void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count)

@@ -10,8 +10,8 @@
 
 /* A whole number in [low, high]. */
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
-/* 1..T3R_MAX_WORKERS threads, or "all": as many as there are processors. */
-uint32_t option_threads(struct argp_state *state, const char *option, const char *text);
+/* A decimal number in [low, high], with an exponent or not. */
+double option_decimal(struct argp_state *state, const char *option, const char *text, double low, double high);
 /* "WxH", each side in [low, T3R_MAX_SIDE]. */
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
                  uint32_t *height);
@@ -20,8 +20,8 @@ void option_percents(struct argp_state *state, const char *option, const char *t
                      uint32_t *count);
 /* 1 to T3R_MAX_VIEWS frame indices with commas between. */
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
-/* A mask of --cpu-mask as platform/cpu.h reads it: the features left of the processor's own. */
-uint32_t option_cpu_mask(struct argp_state *state, const char *text);
+/* All arguments that are no options; of ARGP_KEY_ARGS. */
+void option_arguments(struct argp_state *state, char ***arguments, uint32_t *count);
 /* The next free one of `count` places for arguments that are no options. */
 void option_argument(struct argp_state *state, const char *argument, const char **places[], uint32_t count);
 

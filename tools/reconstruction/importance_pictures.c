@@ -8,6 +8,7 @@
 
 #include "budget/blue_noise.h"
 #include "cli/cli.h"
+#include "cli/word_list.h"
 #include "pictures/picture.h"
 
 #define PATH_BYTES 4096
@@ -72,9 +73,9 @@ static int read_folder(importance_pictures *pictures, const char *folder, const 
 
 static int read_list(importance_pictures *pictures, const char *text, uint32_t count, uint32_t width, uint32_t height)
 {
-    uint32_t named = 1;
-    for (const char *c = text; *c != '\0'; c++) {
-        named += *c == ',';
+    uint32_t named = 0;
+    for (list_word w = word_first(text); w.text != NULL; w = word_next(w)) {
+        named++;
     }
     if (named != count) {
         return cli_error(CLI_BAD_USAGE,
@@ -82,16 +83,15 @@ static int read_list(importance_pictures *pictures, const char *text, uint32_t c
                          named == 1 ? "" : "s", count, count == 1 ? "" : "s");
     }
     int code = CLI_OK;
-    for (uint32_t v = 0; v < count && code == CLI_OK; v++) {
+    list_word w = word_first(text);
+    for (uint32_t v = 0; v < count && code == CLI_OK; v++, w = word_next(w)) {
         char path[PATH_BYTES];
-        size_t length = strcspn(text, ",");
-        if (length >= sizeof path) {
+        if (w.length >= sizeof path) {
             return name_too_long();
         }
-        memcpy(path, text, length);
-        path[length] = '\0';
+        memcpy(path, w.text, w.length);
+        path[w.length] = '\0';
         code = read_plane(&pictures->planes[v], path, v, width, height);
-        text += length + (text[length] == ',');
     }
     return code;
 }

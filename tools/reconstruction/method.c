@@ -1,7 +1,5 @@
 #include "reconstruction/method.h"
 
-#include <string.h>
-
 const char *method_name(method_id m)
 {
     static const char *const names[METHOD_COUNT] = {"trim3r",
@@ -25,10 +23,10 @@ const char *method_name(method_id m)
     return names[m];
 }
 
-method_id method_named(const char *text, size_t length)
+method_id method_named(list_word name)
 {
     method_id m = 0;
-    while (m < METHOD_COUNT && (strlen(method_name(m)) != length || strncmp(text, method_name(m), length) != 0)) {
+    while (m < METHOD_COUNT && !word_is(name, method_name(m))) {
         m++;
     }
     return m;

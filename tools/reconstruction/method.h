@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cli/word_list.h"
+
 typedef enum method_kind {
     METHOD_TRIM3R, /* allocation and head as the settings say */
     /* rivals: the head's unpruned scene, of which those Gaussians stay that a score ranks highest (rivals/score.h) */
@@ -32,6 +34,9 @@ typedef uint32_t method_id;
 #define METHOD_ITERATIONS 200u /* of fine-tuning, unless told otherwise */
 #define METHOD_ITERATIONS_MOST 100000u
 #define METHOD_NAMES "trim3r, random, eagles, lightgaussian, pup, efficientgs, each also with +finetune or +head"
+#define METHOD_HELP                                                                                                    \
+    "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "  \
+    "+head: their points for our head"
 
 static inline method_kind method_kind_of(method_id m)
 {
@@ -51,7 +56,7 @@ static inline bool method_ranks_for_head(method_id m)
 
 /* "trim3r", "eagles+finetune", "eagles+head". */
 const char *method_name(method_id m);
-/* The method of these `length` characters; METHOD_COUNT where there is none. */
-method_id method_named(const char *text, size_t length);
+/* METHOD_COUNT where there is none. */
+method_id method_named(list_word name);
 
 #endif

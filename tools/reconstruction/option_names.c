@@ -24,12 +24,13 @@ t3r_depth option_depth(struct argp_state *state, const char *option, const char 
     return (t3r_depth)depth;
 }
 
-static void add_method(struct argp_state *state, const char *option, const char *name, size_t length,
-                       method_id methods[METHOD_COUNT], uint32_t *count)
+static void add_method(struct argp_state *state, const char *option, list_word name, method_id methods[METHOD_COUNT],
+                       uint32_t *count)
 {
-    method_id m = method_named(name, length);
+    method_id m = method_named(name);
     if (m == METHOD_COUNT) {
-        argp_error(state, "--%s: '%.*s' is not a method; there are %s", option, (int)length, name, METHOD_NAMES);
+        argp_error(state, "--%s: '%.*s' is not a method; there are %s", option, (int)name.length, name.text,
+                   METHOD_NAMES);
     }
     for (uint32_t i = 0; i < *count; i++) {
         if (methods[i] == m) {
@@ -43,12 +44,7 @@ void option_methods(struct argp_state *state, const char *option, const char *te
                     uint32_t *count)
 {
     *count = 0;
-    for (;;) {
-        size_t length = strcspn(text, ",");
-        add_method(state, option, text, length, methods, count);
-        if (text[length] == '\0') {
-            return;
-        }
-        text += length + 1;
+    for (list_word w = word_first(text); w.text != NULL; w = word_next(w)) {
+        add_method(state, option, w, methods, count);
     }
 }

@@ -14,16 +14,14 @@ enum {
     KEY_KEEP,
     KEY_METHOD,
     KEY_MASK_HEAD,
-    KEY_ITERATIONS,
     KEY_CONTEXT,
+    KEY_ITERATIONS,
     KEY_AUTO,
     KEY_MAX_LOSS,
     KEY_IMPORTANCE,
     KEY_HEAD,
     KEY_WORKING,
-    KEY_ARENA,
-    KEY_THREADS,
-    KEY_CPU_MASK
+    KEY_ARENA
 };
 
 static const struct argp_option settings[] = {
@@ -40,11 +38,8 @@ static const struct argp_option settings[] = {
     {"head", KEY_HEAD, "HEAD", 0,
      "the networks nano, small (default), base, or one in a FILE.t3w; without weights: analytic, moment, none", 0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
-    {NULL, 0, NULL, 0, "What must not change a bit:", 30},
-    {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
-    {"threads", KEY_THREADS, "N|all", 0, "1..16, or `all` processors (1)", 0},
-    {"cpu-mask", KEY_CPU_MASK, "MASK", 0,
-     "of the processor's vector extensions use these alone: all (default), none, names as avx2,vnni, or a number", 0},
+    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
+    {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", PROCESSOR_GROUP},
     {0},
 };
 
@@ -64,18 +59,6 @@ void reconstruction_parse_arena(struct argp_state *state, const char *text, reco
         o->arena = ARENA_BYTES;
         o->arena_bytes = bytes;
     }
-}
-
-static void parse_max_loss(struct argp_state *state, const char *text, reconstruction_options *o)
-{
-    char *end = NULL;
-    size_t length = strspn(text, "0123456789.");
-    double loss = strtod(text, &end);
-    if (length == 0 || end != text + length || *end != '\0' || loss < 0.01 || loss > 10) {
-        argp_error(state, "--max-loss takes decibels 0.01..10, not '%s'", text);
-        return;
-    }
-    o->max_loss = loss;
 }
 
 static void check_settings(struct argp_state *state, reconstruction_options *o)
@@ -109,6 +92,10 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->config;
+        state->child_inputs[1] = &o->processor;
+        return 0;
+    case KEY_ITERATIONS:
+        o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
         return 0;
     case KEY_IMPORTANCE:
         o->importance = arg;
@@ -122,17 +109,11 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     case KEY_ARENA:
         reconstruction_parse_arena(state, arg, o);
         return 0;
-    case KEY_THREADS:
-        o->threads = option_threads(state, "threads", arg);
-        return 0;
-    case KEY_CPU_MASK:
-        o->cpu = option_cpu_mask(state, arg);
-        return 0;
     case KEY_AUTO:
         o->automatic = true;
         return 0;
     case KEY_MAX_LOSS:
-        parse_max_loss(state, arg, o);
+        o->max_loss = option_decimal(state, "max-loss", arg, 0.01, 10);
         return 0;
     case ARGP_KEY_END:
         check_settings(state, o);
@@ -142,7 +123,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child settings_children[] = {{.argp = &settings_argp}, {0}};
+static const struct argp_child settings_children[] = {{.argp = &settings_argp}, {.argp = &processor_argp}, {0}};
 
 const struct argp reconstruction_settings_argp = {
     .options = settings, .parser = parse_setting, .children = settings_children};
@@ -152,13 +133,9 @@ static const struct argp_option budget[] = {
     {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, 1..16 (the first two)", 0},
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "exactly Z Gaussians, or all valid points where there are fewer", 0},
     {"keep", KEY_KEEP, "P%", 0, "as many as P percent of the valid points, rounded half up", 0},
-    {"method", KEY_METHOD, "METHOD", 0,
-     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
-     "+head: their points for our head",
-     0},
+    {"method", KEY_METHOD, "METHOD", 0, METHOD_HELP, 0},
     {"mask-head", KEY_MASK_HEAD, "HEAD", 0, "of a rival with +head: the head whose unpruned scene it ranks (--head's)",
      0},
-    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {0},
 };
 
@@ -177,16 +154,13 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         option_percents(state, "keep", arg, &o->keep_percent, 1, &count);
         return 0;
     case KEY_METHOD:
-        o->method = method_named(arg, strlen(arg));
+        o->method = method_named((list_word){arg, strlen(arg)});
         if (o->method == METHOD_COUNT) {
             argp_error(state, "--method does not know '%s'; there are %s", arg, METHOD_NAMES);
         }
         return 0;
     case KEY_MASK_HEAD:
         o->mask_head = option_head(state, "mask-head", arg);
-        return 0;
-    case KEY_ITERATIONS:
-        o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
         return 0;
     case ARGP_KEY_END:
         if (o->gaussians != 0 && o->keep_percent > 0) {
@@ -202,3 +176,20 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
 }
 
 const struct argp reconstruction_budget_argp = {.options = budget, .parser = parse_budget};
+
+/* ---- both ------------------------------------------------------------------------------------------------------ */
+
+static error_t parse_both(int key, char *arg, struct argp_state *state)
+{
+    (void)arg;
+    if (key == ARGP_KEY_INIT) {
+        state->child_inputs[0] = state->child_inputs[1] = state->input;
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const struct argp_child both[] = {
+    {.argp = &reconstruction_budget_argp}, {.argp = &reconstruction_settings_argp}, {0}};
+
+const struct argp reconstruction_argp = {.parser = parse_both, .children = both};

@@ -24,8 +24,7 @@ void reconstruction_defaults(reconstruction_options *options)
         .head = CHOSEN_HEAD_DEFAULT,
         .hash = true,
         .arena = ARENA_FULL,
-        .threads = 1,
-        .cpu = t3r_cpu_features(),
+        .processor = processor_defaults(),
         .finetune_iterations = METHOD_ITERATIONS,
     };
 }
@@ -109,7 +108,7 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
 static int open_arena(reconstruction *r, const reconstruction_options *options)
 {
     t3r_plan_info plan;
-    r->config.workers = options->threads;
+    r->config.workers = options->processor.threads;
     t3r_status status = t3r_plan(&r->config, &plan);
     if (status != T3R_OK) {
         return reconstruction_error(status, "settings", &r->config, 0);
@@ -129,15 +128,15 @@ static int open_arena(reconstruction *r, const reconstruction_options *options)
     if (status != T3R_OK) {
         return reconstruction_error(status, "arena", &r->config, r->arena_bytes);
     }
-    if (options->threads > 1) {
-        r->threads = t3r_threads_start(options->threads);
+    if (options->processor.threads > 1) {
+        r->threads = t3r_threads_start(options->processor.threads);
         if (r->threads == NULL) {
-            return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", options->threads);
+            return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", options->processor.threads);
         }
     }
     t3r_hooks hooks = reconstruction_hooks(r, options);
     hooks.progress = show_progress;
-    (void)t3r_set_cpu(r->runtime, options->cpu);
+    (void)t3r_set_cpu(r->runtime, options->processor.cpu);
     status = t3r_set_hooks(r->runtime, &hooks);
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "hooks", &r->config, r->arena_bytes);
 }
@@ -194,7 +193,7 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
     c->flying = c->redundancy = c->exposure = c->refinements = c->cluster_batches = 0;
     c->wavelet = T3R_WAVELET_HAAR;
     c->wavelet_levels = c->clusters = c->render_width = c->render_height = 1;
-    int code = open_arena(&counted, &(reconstruction_options){.arena = ARENA_MIN, .threads = 1});
+    int code = open_arena(&counted, &(reconstruction_options){.arena = ARENA_MIN, .processor = processor_defaults()});
     t3r_status status = T3R_OK;
     for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
         status = t3r_add_view(counted.runtime, &frames[v].frame, &frames[v].camera);

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cli/processor_options.h"
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/method.h"
 #include "recording.h"
@@ -47,17 +48,17 @@ typedef struct reconstruction_options {
     bool hash;             /* collect the stages' hashes */
     arena_choice arena;
     uint64_t arena_bytes; /* for ARENA_BYTES */
-    uint32_t threads;
-    uint32_t cpu; /* T3R_CPU_...: what the processor has, less what --cpu-mask leaves out */
+    processor_options processor;
 } reconstruction_options;
 
 void reconstruction_defaults(reconstruction_options *options);
 
 /* argp children; each parent's parser hands reconstruction_options * on in state->child_inputs[].
- * `settings`: --auto --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep --method
- * --finetune-iterations. */
+ * `settings`: --auto --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep
+ * --method. */
 extern const struct argp reconstruction_settings_argp;
 extern const struct argp reconstruction_budget_argp;
+extern const struct argp reconstruction_argp; /* both */
 
 /* The value of --arena, for parsers without the children; a usage error when it is none. */
 void reconstruction_parse_arena(struct argp_state *state, const char *text, reconstruction_options *options);

@@ -156,14 +156,7 @@ static char *complete_help(int key, const char *text, void *input)
 
 static uint32_t parse_q8(struct argp_state *state, const setting *s, const char *text)
 {
-    char *end = NULL;
-    size_t length = strspn(text, "0123456789.");
-    double number = strtod(text, &end);
-    if (length == 0 || end != text + length || *end != '\0' || number < s->low || number > s->high) {
-        argp_error(state, "--%s takes a number %" PRIu32 "..%" PRIu32 ", not '%s'", s->option, s->low, s->high, text);
-        return 0;
-    }
-    return (uint32_t)(number * 256 + 0.5);
+    return (uint32_t)(option_decimal(state, s->option, text, s->low, s->high) * 256 + 0.5);
 }
 
 static uint32_t parse_switch(struct argp_state *state, const setting *s, const char *text)

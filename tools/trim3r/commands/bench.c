@@ -17,6 +17,8 @@
 #include "cli/cli.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
+#include "cli/processor_options.h"
+#include "cli/word_list.h"
 #include "cpu.h"
 #include "reconstruction/option_names.h"
 #include "reconstruction/reconstruction.h"
@@ -38,11 +40,12 @@
 typedef struct bench_options {
     const char *points, *head, *stages;
     t3r_depth depth;
-    uint32_t runs, threads, cpu;
+    uint32_t runs;
+    processor_options processor;
     bool json;
 } bench_options;
 
-enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_THREADS, KEY_CPU_MASK, KEY_JSON };
+enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", 0, "cluster these points instead: raw float32, N x 6", 0},
@@ -51,10 +54,6 @@ static const struct argp_option options[] = {
      "of the scenes that are built and drawn: sensor (default), or stereo, made of the colours", 0},
     {"stages", KEY_STAGES, "LIST", 0, "time these rows alone, as kmeans_ms,stereo_ms (all)", 0},
     {"runs", KEY_RUNS, "N", 0, "timed runs of each stage, 1..101 (7)", 0},
-    {"threads", KEY_THREADS, "N|all", 0,
-     "1..16, or `all` processors (1); with more than one, elapsed time instead of processor time", 0},
-    {"cpu-mask", KEY_CPU_MASK, "MASK", 0, "vector extensions to use: all (default), none, names as avx2,vnni, a number",
-     0},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
     {0},
 };
@@ -63,6 +62,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     bench_options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->processor;
+        return 0;
     case KEY_POINTS:
         o->points = arg;
         return 0;
@@ -78,12 +80,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_RUNS:
         o->runs = option_number(state, "runs", arg, 1, MAX_RUNS);
         return 0;
-    case KEY_THREADS:
-        o->threads = option_threads(state, "threads", arg);
-        return 0;
-    case KEY_CPU_MASK:
-        o->cpu = option_cpu_mask(state, arg);
-        return 0;
     case KEY_JSON:
         o->json = true;
         return 0;
@@ -95,13 +91,14 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
+static const struct argp_child children[] = {{.argp = &processor_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
     .doc =
         "Times the stages on two 256x256 views of the built-in room (131,072 points): the median of interleaved runs, "
         "with "
-        "the least and the most beside; processor time of one thread."
+        "the least and the most beside; processor time of one thread, or with more of them elapsed time."
         "\vExamples:\n"
         "  trim3r bench\n"
         "  trim3r bench --head base\n"
@@ -115,6 +112,7 @@ static const struct argp argp = {
         "refinement pass over both views, 13,107 Gaussians. stereo_ms: depth of both views from their colours, holes "
         "filled, with the four paths that --depth stereo takes; stereo_8_paths_ms: with eight. build_analytic_ms and "
         "build_small_ms have it in them with --depth stereo.",
+    .children = children,
 };
 
 /* ---- the work ---------------------------------------------------------------------------------------------------- */
@@ -308,10 +306,10 @@ static int open_workload(workload *w, const bench_options *o)
     if (!allocate(w)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    w->cpu = o->cpu;
-    t3r_kernels_choose(&w->kernels, o->cpu);
-    if (o->threads > 1 && (w->threads = t3r_threads_start(o->threads)) == NULL) {
-        return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", o->threads);
+    w->cpu = o->processor.cpu;
+    t3r_kernels_choose(&w->kernels, o->processor.cpu);
+    if (o->processor.threads > 1 && (w->threads = t3r_threads_start(o->processor.threads)) == NULL) {
+        return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", o->processor.threads);
     }
     /* context views 0 and 2, seen from view 1 between them */
     for (uint32_t v = 0; v < VIEWS; v++) {
@@ -415,17 +413,16 @@ static int choose_stages(const char *list, bool chosen[STAGE_COUNT])
     for (int s = 0; s < STAGE_COUNT; s++) {
         chosen[s] = list == NULL;
     }
-    for (const char *word = list; word != NULL;) {
-        size_t length = strcspn(word, ",");
+    for (list_word w = word_first(list); w.text != NULL; w = word_next(w)) {
         int s = 0;
-        while (s < STAGE_COUNT && (strlen(stages[s].key) != length || strncmp(stages[s].key, word, length) != 0)) {
+        while (s < STAGE_COUNT && !word_is(w, stages[s].key)) {
             s++;
         }
         if (s == STAGE_COUNT) {
-            return cli_error(CLI_BAD_USAGE, "--stages: no row is called '%.*s'; see trim3r bench", (int)length, word);
+            return cli_error(CLI_BAD_USAGE, "--stages: no row is called '%.*s'; see trim3r bench", (int)w.length,
+                             w.text);
         }
         chosen[s] = true;
-        word = word[length] == ',' ? word + length + 1 : NULL;
     }
     return CLI_OK;
 }
@@ -480,7 +477,7 @@ static int time_stages(workload *w, const bench_options *o, const bool chosen[ST
                        double times[STAGE_COUNT][MAX_RUNS])
 {
     const double giga_macs = bench_head_macs(w->measured.weights, SIDE, SIDE, VIEWS) / 1e9;
-    clockid_t clock = o->threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
+    clockid_t clock = o->processor.threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
     for (uint32_t run = 0; run <= o->runs; run++) {
         for (int s = 0; s < STAGE_COUNT; s++) {
             if (!chosen[s]) {
@@ -572,8 +569,8 @@ static void print_results(const workload *w, const bench_options *o, const bool 
     cJSON_AddStringToObject(root, "head_bits", w->measured.bits);
     cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->depth));
     cJSON_AddStringToObject(root, "cpu_flags", flags);
-    json_add_integer(root, "threads", o->threads);
-    t3r_cpu_describe(o->cpu, flags_used, sizeof flags_used);
+    json_add_integer(root, "threads", o->processor.threads);
+    t3r_cpu_describe(o->processor.cpu, flags_used, sizeof flags_used);
     cJSON_AddStringToObject(root, "cpu_used", flags_used);
     json_add_integer(root, "runs", o->runs);
     json_print(root);
@@ -581,7 +578,7 @@ static void print_results(const workload *w, const bench_options *o, const bool 
 
 int command_bench(int argc, char **argv)
 {
-    bench_options o = {.head = CHOSEN_HEAD_DEFAULT, .runs = 7, .threads = 1, .cpu = t3r_cpu_features()};
+    bench_options o = {.head = CHOSEN_HEAD_DEFAULT, .runs = 7, .processor = processor_defaults()};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
     bool chosen[STAGE_COUNT];

@@ -17,6 +17,7 @@
 #include "cli/cli.h"
 #include "cli/option_values.h"
 #include "cli/whole_file.h"
+#include "cli/word_list.h"
 
 #define ERROR_BYTES 512
 #define MOST_COSTS ((uint32_t)(CHART_COSTS_END - CHART_QUALITIES))
@@ -41,35 +42,31 @@ enum { KEY_SVG = 0x100, KEY_PNG, KEY_PICTURES, KEY_MIB, KEY_QUALITY, KEY_AGAINST
 /* ---- arguments ------------------------------------------------------------------------------------------------- */
 
 /* A measure within [from, to) by its column's name. */
-static chart_measure measure(struct argp_state *state, const char *option, const char *text, size_t length, int from,
-                             int to)
+static chart_measure measure(struct argp_state *state, const char *option, list_word name, int from, int to)
 {
     for (int m = from; m < to; m++) {
-        if (strlen(chart_measures[m].column) == length && strncmp(chart_measures[m].column, text, length) == 0) {
+        if (word_is(name, chart_measures[m].column)) {
             return (chart_measure)m;
         }
     }
     argp_error(state, "--%s takes %s, not '%.*s'", option,
                from == 0 ? "psnr, ssim, perceptual or planar_psnr"
                          : "build_ms, render_ms, arena_bytes and scene_bytes with commas between",
-               (int)length, text);
+               (int)name.length, name.text);
     return CHART_MEASURES;
 }
 
 static void parse_against(struct argp_state *state, options *o, const char *text)
 {
     o->cost_count = 0;
-    for (bool more = true; more;) {
-        size_t length = strcspn(text, ",");
-        chart_measure cost = measure(state, "against", text, length, CHART_QUALITIES, CHART_COSTS_END);
+    for (list_word w = word_first(text); w.text != NULL; w = word_next(w)) {
+        chart_measure cost = measure(state, "against", w, CHART_QUALITIES, CHART_COSTS_END);
         for (uint32_t i = 0; i < o->cost_count; i++) {
             if (o->costs[i] == cost) {
                 argp_error(state, "--against names %s twice", chart_measures[cost].column);
             }
         }
         o->costs[o->cost_count++] = cost; /* each once: there is room */
-        more = text[length] == ',';
-        text += length + more;
     }
 }
 
@@ -112,7 +109,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->picture_mib = option_number(state, "picture-mib", arg, 1, 1024);
         return 0;
     case KEY_QUALITY:
-        o->quality = measure(state, "quality", arg, strlen(arg), 0, CHART_QUALITIES);
+        o->quality = measure(state, "quality", (list_word){arg, strlen(arg)}, 0, CHART_QUALITIES);
         return 0;
     case KEY_AGAINST:
         parse_against(state, o, arg);
@@ -124,8 +121,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->dark = true;
         return 0;
     case ARGP_KEY_ARGS:
-        o->tables = state->argv + state->next;
-        o->table_count = (uint32_t)(state->argc - state->next);
+        option_arguments(state, &o->tables, &o->table_count);
         return 0;
     case ARGP_KEY_END:
         check_options(state, o);

@@ -12,6 +12,7 @@
 #include "study/evaluation/settings.h"
 #include "study/evaluation/work.h"
 #include "cli/option_values.h"
+#include "cli/word_list.h"
 #include "reconstruction/option_names.h"
 #include "cli/process_pool.h"
 #include "reconstruction/reconstruction.h"
@@ -47,7 +48,6 @@ enum {
     KEY_KEEP,
     KEY_METHODS,
     KEY_PRUNE,
-    KEY_ITERATIONS,
     KEY_HEADS,
     KEY_MASK_HEAD,
     KEY_ABLATE,
@@ -85,16 +85,17 @@ static void parse_heads(struct argp_state *state, options *o, const char *text)
     }
 }
 
-static void add_ablation(struct argp_state *state, options *o, const char *name, size_t length)
+static void add_ablation(struct argp_state *state, options *o, list_word name)
 {
     uint32_t found = 0;
     for (const char *known; (known = ablation_name(found)) != NULL; found++) {
-        if (strlen(known) == length && strncmp(name, known, length) == 0) {
+        if (word_is(name, known)) {
             break;
         }
     }
     if (ablation_name(found) == NULL) {
-        argp_error(state, "--ablate does not know '%.*s'; --help lists what can be ablated", (int)length, name);
+        argp_error(state, "--ablate does not know '%.*s'; --help lists what can be ablated", (int)name.length,
+                   name.text);
     }
     for (uint32_t i = 0; i < o->ablation_count; i++) {
         if (o->ablations[i] == found) {
@@ -108,10 +109,8 @@ static void parse_ablations(struct argp_state *state, options *o, const char *te
 {
     o->ablate = true;
     o->ablation_count = 0;
-    while (text != NULL) {
-        size_t length = strcspn(text, ",");
-        add_ablation(state, o, text, length);
-        text = text[length] == '\0' ? NULL : text + length + 1;
+    for (list_word w = word_first(text); w.text != NULL; w = word_next(w)) {
+        add_ablation(state, o, w);
     }
 }
 
@@ -222,9 +221,6 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case KEY_PRUNE:
         o->settings.points_of = arg;
         return 0;
-    case KEY_ITERATIONS:
-        o->settings.finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
-        return 0;
     case KEY_HEADS:
         parse_heads(state, o, arg);
         return 0;
@@ -263,8 +259,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
                                                : option_number(state, "jobs", arg, 1, PROCESS_POOL_MOST);
         return 0;
     case ARGP_KEY_ARGS:
-        o->inputs = state->argv + state->next;
-        o->input_count = (uint32_t)(state->argc - state->next);
+        option_arguments(state, &o->inputs, &o->input_count);
         return 0;
     case ARGP_KEY_END:
         check_options(state, o);
@@ -283,15 +278,11 @@ static const struct argp_option argp_options[] = {
      "fill every context up to N frames, 2..16 (2: the triplet's own, or --context), with those nearest to the target",
      0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each; with --auto the most (100)", 0},
-    {"methods", KEY_METHODS, "M,M,...", 0,
-     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
-     "+head: their points for our head",
-     0},
+    {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
     {"prune", KEY_PRUNE, "SCENE.ply", 0,
      "prune this scene, made elsewhere of the views of --context: percents are of its Gaussians; trim3r makes new ones "
      "of points among their means, the rivals keep some; the mask is of its means where a view has no depth",
      0},
-    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
     {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
     {"mask-head", KEY_MASK_HEAD, "HEAD", 0,
      "of rivals with +head: the head whose unpruned scene they rank (--head's); so --head can be one retrained for "

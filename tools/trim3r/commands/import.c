@@ -71,16 +71,6 @@ static int parse_numbers(const char *text, double *numbers, uint32_t most, uint3
     }
 }
 
-static double parse_number(struct argp_state *state, const char *option, const char *text, double low, double high)
-{
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end != '\0' || !(value >= low && value <= high)) {
-        argp_error(state, "--%s takes a number from %g to %g, not '%s'", option, low, high, text);
-    }
-    return value;
-}
-
 static void check_options(struct argp_state *state, const options *o)
 {
     if (o->directory == NULL) {
@@ -114,10 +104,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         o->pointmaps.file = argument;
         return 0;
     case KEY_CONFIDENCE:
-        o->pointmaps.confidence_least = parse_number(state, "min-confidence", argument, -1e30, 1e30);
+        o->pointmaps.confidence_least = option_decimal(state, "min-confidence", argument, -1e30, 1e30);
         return 0;
     case KEY_UNIT:
-        o->pointmaps.depth_unit = parse_number(state, "depth-unit", argument, 0x1p-39, 0x1p6);
+        o->pointmaps.depth_unit = option_decimal(state, "depth-unit", argument, 0x1p-39, 0x1p6);
         return 0;
     case 'o':
         o->output = argument;

@@ -13,39 +13,23 @@
 #include "reconstruction/option_names.h"
 #include "pictures/plan_picture.h"
 #include "reconstruction/reconstruction.h"
+#include "reconstruction/settings.h"
 #include "cli/whole_file.h"
 
 typedef struct plan_options {
-    uint32_t width, height, views, gaussians, clusters, render_width, render_height, refine;
-    t3r_depth depth;
-    bool has_clusters, keep_analysis, json, markdown;
+    t3r_config config; /* but for the head; a render_width of 0 is the working size */
+    bool json, markdown;
     const char *svg, *head;
 } plan_options;
 
-enum {
-    KEY_SIZE = 0x1000,
-    KEY_VIEWS,
-    KEY_GAUSSIANS,
-    KEY_CLUSTERS,
-    KEY_RENDER,
-    KEY_REFINE,
-    KEY_HEAD,
-    KEY_DEPTH,
-    KEY_KEEP,
-    KEY_SVG,
-    KEY_MARKDOWN,
-    KEY_JSON
-};
+enum { KEY_SIZE = 0x1000, KEY_VIEWS, KEY_GAUSSIANS, KEY_RENDER, KEY_HEAD, KEY_KEEP, KEY_SVG, KEY_MARKDOWN, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"size", KEY_SIZE, "WxH", 0, "working size of the context views (needed)", 0},
     {"views", KEY_VIEWS, "N", 0, "context views, 0..16; 0 = an arena that only renders (2)", 0},
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "the budget (needed)", 0},
-    {"clusters", KEY_CLUSTERS, "K", 0, "SuperClusters, 1..512 (300)", 0},
     {"head", KEY_HEAD, "HEAD", 0, "nano, small (default), base, FILE.t3w, analytic, moment or none", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
-    {"refine", KEY_REFINE, "N", 0, "refinement passes, 0..16 (4)", 0},
-    {"depth", KEY_DEPTH, "SOURCE", 0, "sensor (default) or stereo", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
     {"svg", KEY_SVG, "FILE", 0, "the arena as a picture: stages across, bytes upwards", 0},
     {"markdown", KEY_MARKDOWN, NULL, 0, "the table in Markdown", 0},
@@ -56,34 +40,28 @@ static const struct argp_option options[] = {
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     plan_options *o = state->input;
+    t3r_config *c = &o->config;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = c;
+        return 0;
     case KEY_SIZE:
-        option_size(state, "size", arg, T3R_MIN_SIDE, &o->width, &o->height);
+        option_size(state, "size", arg, T3R_MIN_SIDE, &c->width, &c->height);
         return 0;
     case KEY_VIEWS:
-        o->views = option_number(state, "views", arg, 0, T3R_MAX_VIEWS);
+        c->views = option_number(state, "views", arg, 0, T3R_MAX_VIEWS);
         return 0;
     case KEY_GAUSSIANS:
-        o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
-        return 0;
-    case KEY_CLUSTERS:
-        o->clusters = option_number(state, "clusters", arg, 1, T3R_MAX_CLUSTERS);
-        o->has_clusters = true;
+        c->gaussians = c->max_gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
         return 0;
     case KEY_RENDER:
-        option_size(state, "render", arg, 1, &o->render_width, &o->render_height);
-        return 0;
-    case KEY_REFINE:
-        o->refine = option_number(state, "refine", arg, 0, T3R_MAX_REFINEMENTS);
+        option_size(state, "render", arg, 1, &c->render_width, &c->render_height);
         return 0;
     case KEY_HEAD:
         o->head = option_head(state, "head", arg);
         return 0;
-    case KEY_DEPTH:
-        o->depth = option_depth(state, "depth", arg);
-        return 0;
     case KEY_KEEP:
-        o->keep_analysis = true;
+        c->keep_analysis = 1;
         return 0;
     case KEY_SVG:
         o->svg = arg;
@@ -98,8 +76,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         option_argument(state, arg, NULL, 0);
         return 0;
     case ARGP_KEY_END:
-        if (o->width == 0 || o->gaussians == 0) {
-            argp_error(state, "%s is missing", o->width == 0 ? "--size WxH" : "--gaussians Z");
+        if (c->width == 0 || c->gaussians == 0) {
+            argp_error(state, "%s is missing", c->width == 0 ? "--size WxH" : "--gaussians Z");
         } else if (o->json && o->markdown) {
             argp_error(state, "--json and --markdown exclude each other");
         }
@@ -109,6 +87,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
+static const struct argp_child children[] = {{.argp = &settings_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
@@ -117,6 +96,7 @@ static const struct argp argp = {
            "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
            "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
            "  trim3r plan --size 256x256 --gaussians 13107 --json",
+    .children = children,
 };
 
 static void print_json(const t3r_config *config, const t3r_plan_info *plan)
@@ -178,12 +158,10 @@ static int write_svg(const char *path, const t3r_plan_info *plan)
 
 int command_plan(int argc, char **argv)
 {
-    plan_options o = {.views = 2,
-                      .head = CHOSEN_HEAD_DEFAULT,
-                      .refine = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1).refinements};
+    plan_options o = {.config = t3r_default_config(0, 0, 2, 0), .head = CHOSEN_HEAD_DEFAULT};
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
-    t3r_config config = t3r_default_config(o.width, o.height, o.views, o.gaussians);
+    t3r_config config = o.config;
     chosen_head head;
     int code = chosen_head_open(&head, o.head);
     if (code != CLI_OK) {
@@ -191,15 +169,9 @@ int command_plan(int argc, char **argv)
     }
     chosen_head_configure(&head, &config);
     chosen_head_close(&head);
-    config.keep_analysis = o.keep_analysis;
-    config.depth = o.depth;
-    config.refinements = o.refine;
-    if (o.has_clusters) {
-        config.clusters = o.clusters;
-    }
-    if (o.render_width != 0) {
-        config.render_width = o.render_width;
-        config.render_height = o.render_height;
+    if (config.render_width == 0) {
+        config.render_width = config.width;
+        config.render_height = config.height;
     }
     t3r_plan_info plan;
     t3r_status status = t3r_plan(&config, &plan);

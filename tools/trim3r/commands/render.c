@@ -43,8 +43,6 @@ enum {
     KEY_DEPTH_UNIT,
     KEY_ALPHA,
     KEY_ARENA,
-    KEY_THREADS,
-    KEY_CPU_MASK,
     KEY_JSON
 };
 
@@ -61,12 +59,8 @@ static const struct argp_option options[] = {
     {"depth", KEY_DEPTH, "d.png", 0, "16-bit depth along z, 0 = none", 0},
     {"depth-unit", KEY_DEPTH_UNIT, "U", 0, "world units a step of the depth picture (0.001)", 0},
     {"alpha", KEY_ALPHA, "a.png", 0, "16-bit coverage, 65535 = opaque", 0},
-    {NULL, 0, NULL, 0, "What must not change a bit:", 3},
-    {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", 0},
-    {"threads", KEY_THREADS, "N|all", 0, "1..16, or `all` processors (1)", 0},
-    {"cpu-mask", KEY_CPU_MASK, "MASK", 0, "vector extensions to use: all (default), none, names as avx2,vnni, a number",
-     0},
-    {NULL, 0, NULL, 0, "Other:", 4},
+    {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", PROCESSOR_GROUP},
+    {NULL, 0, NULL, 0, "Other:", PROCESSOR_GROUP + 1},
     {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
     {0},
 };
@@ -103,6 +97,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     render_options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->settings.processor;
+        return 0;
     case KEY_VIEW:
         o->view = option_number(state, "view", arg, 0, UINT32_MAX);
         o->has_view = true;
@@ -136,12 +133,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_ARENA:
         reconstruction_parse_arena(state, arg, &o->settings);
         return 0;
-    case KEY_THREADS:
-        o->settings.threads = option_threads(state, "threads", arg);
-        return 0;
-    case KEY_CPU_MASK:
-        o->settings.cpu = option_cpu_mask(state, arg);
-        return 0;
     case KEY_JSON:
         o->json = true;
         return 0;
@@ -156,6 +147,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
+static const struct argp_child children[] = {{.argp = &processor_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
@@ -171,6 +163,7 @@ static const struct argp argp = {
            "transform_matrix: camera to world, x right, y up, z backward; cx, cy from the picture's corner; "
            "fl_y, cx and cy may be left out. Several poses give view_0000.png, view_0001.png ...\n"
            "A trajectory has lines `stamp tx ty tz qx qy qz qw`: camera to world, x right, y down, z forward.",
+    .children = children,
 };
 
 /* ---- viewpoints ------------------------------------------------------------------------------------------------ */

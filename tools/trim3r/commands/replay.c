@@ -80,7 +80,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
-        state->child_inputs[1] = &o->settings;
         return 0;
     case KEY_EXPECT:
         o->expect = arg;
@@ -132,8 +131,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {
-    {&reconstruction_budget_argp, 0, NULL, 0}, {&reconstruction_settings_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,

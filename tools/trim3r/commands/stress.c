@@ -9,6 +9,7 @@
 
 #include "cli/cli.h"
 #include "cli/option_values.h"
+#include "cli/word_list.h"
 #include "reconstruction/option_names.h"
 #include "room/room.h"
 #include "study/stress/measure.h"
@@ -31,7 +32,6 @@ typedef struct options {
 
 enum {
     KEY_METHODS = 0x200,
-    KEY_ITERATIONS,
     KEY_KEEP,
     KEY_ROWS,
     KEY_STRENGTHS,
@@ -45,23 +45,23 @@ enum {
 
 /* ---- arguments --------------------------------------------------------------------------------------------------- */
 
-static void choose_row(struct argp_state *state, options *o, const char *name, size_t length)
+static void choose_row(struct argp_state *state, options *o, list_word name)
 {
     bool found = false;
     const perturbation *p;
     const stress_scene *s;
     for (uint32_t i = 0; (p = stress_perturbation(i)) != NULL; i++) {
-        if (strlen(p->name) == length && strncmp(name, p->name, length) == 0) {
+        if (word_is(name, p->name)) {
             found = o->perturb[i] = true;
         }
     }
     for (uint32_t i = 0; (s = stress_scene_at(i)) != NULL; i++) {
-        if (strlen(s->name) == length && strncmp(name, s->name, length) == 0) {
+        if (word_is(name, s->name)) {
             found = o->scene[i] = true;
         }
     }
     if (!found) {
-        argp_error(state, "--rows does not know '%.*s'; --help lists what there is", (int)length, name);
+        argp_error(state, "--rows does not know '%.*s'; --help lists what there is", (int)name.length, name.text);
     }
 }
 
@@ -69,10 +69,8 @@ static void parse_rows(struct argp_state *state, options *o, const char *text)
 {
     memset(o->perturb, 0, sizeof o->perturb);
     memset(o->scene, 0, sizeof o->scene);
-    while (text != NULL) {
-        size_t length = strcspn(text, ",");
-        choose_row(state, o, text, length);
-        text = text[length] == '\0' ? NULL : text + length + 1;
+    for (list_word w = word_first(text); w.text != NULL; w = word_next(w)) {
+        choose_row(state, o, w);
     }
 }
 
@@ -101,9 +99,6 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_METHODS:
         option_methods(state, "methods", arg, c->methods, &c->method_count);
-        return 0;
-    case KEY_ITERATIONS:
-        c->settings.finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
         return 0;
     case KEY_KEEP:
         option_percents(state, "keep", arg, c->keep, STRESS_KEEPS_MOST, &c->keep_count);
@@ -136,8 +131,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         o->to.json = true;
         return 0;
     case ARGP_KEY_ARGS:
-        o->inputs = state->argv + state->next;
-        o->input_count = (uint32_t)(state->argc - state->next);
+        option_arguments(state, &o->inputs, &o->input_count);
         return 0;
     case ARGP_KEY_END:
         if (c->settings.config.allocation == T3R_ALLOCATE_GIVEN) {
@@ -151,11 +145,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 
 static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is compared:", 1},
-    {"methods", KEY_METHODS, "M,M,...", 0,
-     "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "
-     "+head: their points for our head",
-     0},
-    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
+    {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points of the unperturbed frames (10)", 0},
     {"rows", KEY_ROWS, "NAME,...", 0, "perturbations and scenes, see below (all)", 0},
     {"strengths", KEY_STRENGTHS, "N,...", 0, "of each, 1 the least, 3 the most (1,2,3)", 0},
