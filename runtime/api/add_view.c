@@ -1,6 +1,5 @@
 /* Context views: frames to planes, and what stereo found of them. */
-#include <string.h>
-
+#include "core/memory.h"
 #include "layout/arena.h"
 #include "state/state.h"
 #include "image/develop.h"

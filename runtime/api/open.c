@@ -1,11 +1,10 @@
 /* The arena: laid out, or found again as it was left. */
-#include <string.h>
-
 #include "api/checks.h"
 #include "core/config.h"
 #include "layout/arena.h"
 #include "core/camera.h"
 #include "core/hash.h"
+#include "core/memory.h"
 #include "core/scene_frame.h"
 #include "state/state.h"
 #include "image/image.h"

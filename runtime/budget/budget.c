@@ -1,9 +1,8 @@
 #include "budget.h"
 
-#include <string.h>
-
 #include "blue_noise.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "importance.h"
 
 /* Added to the texture before its power, 0.002 of full scale, so that blank walls keep some points. */

@@ -1,9 +1,8 @@
 /* A head without weights, by closed-form moment matching: every pixel of the view joins
  * the retained pixel that is nearest in position and colour; a splat takes its pixels' mean, covariance and colour. */
-#include <string.h>
-
 #include "depth/depth.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "head.h"
 
 #define REACH 15 /* pixels join within +-15 */

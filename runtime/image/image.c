@@ -2,9 +2,9 @@
 #include "image.h"
 
 #include <stdbool.h>
-#include <string.h>
 
 #include "core/fixed.h"
+#include "core/memory.h"
 
 /* Source pixels converted at a time when the size changes; even, so that a YUYV pair is never split. */
 #define CHUNK 256u

@@ -1,9 +1,8 @@
 #include "blend.h"
 
-#include <string.h>
-
 #include "alpha.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 
 /* One lane: exp(-q / 8) by the polynomial about q = 6, squared three times. Nothing is negative, so one unsigned
  * multiplication serves throughout. */

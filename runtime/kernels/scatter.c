@@ -1,8 +1,7 @@
 #include "scatter.h"
 
-#include <string.h>
-
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "scatter_columns.h"
 
 /* The weights of a group's pixels that count, in the splat's box, row j at masked[j]; returns all of their bits. Beyond

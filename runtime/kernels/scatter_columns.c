@@ -1,8 +1,7 @@
 #include "scatter_columns.h"
 
-#include <string.h>
-
 #include "core/fixed.h"
+#include "core/memory.h"
 
 /* What each pixel adds, before it is summed. */
 typedef struct pixel_terms {

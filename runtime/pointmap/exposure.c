@@ -1,9 +1,9 @@
 #include "exposure.h"
 
 #include <stdbool.h>
-#include <string.h>
 
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "reproject.h"
 
 #define STEP 2 /* pixels */

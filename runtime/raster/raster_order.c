@@ -1,7 +1,7 @@
 /* The global depth order: a stable radix sort, a byte a pass. */
 #include "raster_splat.h"
 
-#include <string.h>
+#include "core/memory.h"
 
 void t3r_order(const t3r_kernels *kernels, uint32_t *keys[2], uint32_t *indices[2], uint32_t count, uint32_t *histogram)
 {

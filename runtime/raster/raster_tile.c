@@ -1,8 +1,7 @@
 #include "raster_tile.h"
 
-#include <string.h>
-
 #include "core/fixed.h"
+#include "core/memory.h"
 
 /* A splat centred at most this far from a tile needs no test against its columns: within 24 + 16 px of the centre,
  * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6), and Q17 holds

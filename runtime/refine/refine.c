@@ -1,9 +1,8 @@
 #include "refine.h"
 
-#include <string.h>
-
 #include "core/cut.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "refine_bands.h"
 #include "refine_tile.h"
 #include "state/state.h"

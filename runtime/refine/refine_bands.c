@@ -1,8 +1,7 @@
 #include "refine_bands.h"
 
-#include <string.h>
-
 #include "core/fixed.h"
+#include "core/memory.h"
 
 static uint32_t first_tile_of(const t3r_splat *splat, uint32_t across)
 {

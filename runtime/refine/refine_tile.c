@@ -1,10 +1,10 @@
 #include "refine_tile.h"
 
 #include <stdbool.h>
-#include <string.h>
 
 #include "pointmap/exposure.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "refine_moments.h"
 
 /* What one pixel adds at most, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 / 2),

@@ -1,9 +1,8 @@
 #include "stereo_fill.h"
 
-#include <string.h>
-
 #include "core/cut.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "stereo.h"
 
 /* Sweeps over the picture: down, up, down, up. Ways with more bends than that are found as longer ones. */

@@ -1,9 +1,8 @@
 #include "stereo_views.h"
 
-#include <string.h>
-
 #include "core/cut.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "state/state.h"
 #include "stereo.h"
 #include "stereo_fill.h"

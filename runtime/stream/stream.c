@@ -6,14 +6,13 @@
  * The map is the scene; what competes with it are the pixels that it does not show. */
 #include "stream.h"
 
-#include <string.h>
-
 #include "pointmap/bridge.h"
 #include "core/camera.h"
 #include "depth/depth.h"
 #include "image/develop.h"
 #include "pointmap/exposure.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "pointmap/flying_pixels.h"
 #include "image/image.h"
 #include "head/head_views.h"

@@ -1,8 +1,7 @@
 #include "superclusters.h"
 
-#include <string.h>
-
 #include "core/fixed.h"
+#include "core/memory.h"
 
 #define CENTRE_FRACTION 8 /* a centre has so many bits more than a feature, so that small steps are not lost */
 #define BLOCK 64u         /* points gathered at a time */

@@ -2,8 +2,7 @@
  * lows first. */
 #include "wavelet_level.h"
 
-#include <string.h>
-
+#include "core/memory.h"
 #include "kernels/wavelet_rows.h"
 
 #define PAD T3R_WAVELET_PAD

@@ -4,8 +4,7 @@
  * on level 1, so their sum is below 2^15; |d| <= 23,620 on the others. */
 #include "wavelet_level.h"
 
-#include <string.h>
-
+#include "core/memory.h"
 #include "kernels/wavelet_rows.h"
 
 /* Orthonormal over lifted. db2: low 1.93185, high 0.51764, so h and v 1, d 2 - sqrt 3, and 2 + sqrt 3 a level

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""firmware.py TARGET: a firmware that names one head links without a C library and holds that head alone.
+"""firmware.py TARGET: a firmware that names one head is made without a C library and holds that head alone.
 
-freestanding/firmware.c, the runtime and the shipped heads, these as a library with an object a head, linked with
--nostdlib; what the file holds then is read back, and its bytes are told.
+freestanding/firmware.c, the runtime and the shipped heads, these as a library with an object a head, compiled with no
+headers but the compiler's own (-nostdinc) and linked with -nostdlib; what the file holds then is read back, and its bytes
+are told.
 """
 import re
 import sys
@@ -44,6 +45,8 @@ def main():
     with proof.scratch() as folder:
         (folder / "runtime").mkdir()
         (folder / "heads").mkdir()
+        hosted = proof.compile_one(proof.compiler_of(target), target, proof.PLANTED / "hosted.c", folder / "hosted.o")
+        proof.must_find(hosted.stderr.splitlines(), "string.h", "hosted.c")
         objects = proof.compile_each(target, proof.runtime_sources(), folder / "runtime", EXTRA)
         heads = proof.compile_each(target, sorted(HEADS.glob("*.c")), folder / "heads", EXTRA)
         library = folder / "libheads.a"
@@ -59,7 +62,7 @@ def main():
             if not findings:
                 size = proof.run([target.prefix + "size", folder / "firmware"], check=True).stdout.splitlines()[1].split()
                 print(f"{target.name}, {name}: {size[0]} bytes of code and constants, {size[1]} of data, {size[2]} of bss")
-        proof.verdict(f"{target.name}: links without a C library, and a firmware holds just the head that it names",
+        proof.verdict(f"{target.name}: compiles and links without a C library, and a firmware holds just the head that it names",
                       findings)
 
 

@@ -20,28 +20,29 @@ FREESTANDING = ["-std=c11", "-ffreestanding", "-fno-tree-loop-distribute-pattern
 
 
 class Target:
-    """A compiler, its flags, and the helpers it may call where the processor lacks an instruction."""
+    """A compiler, its flags, and the core's row in docs/firmware.md: the helpers that it may call where the processor
+    lacks an instruction. They are of integers; __aeabi_f... and __aeabi_d... would be soft float."""
 
-    def __init__(self, name, prefix, flags, helpers=()):
-        self.name, self.prefix, self.flags, self.helpers = name, prefix, flags, set(helpers)
+    def __init__(self, name, prefix, flags, core="x86-64, and other 64-bit cores"):
+        self.name, self.prefix, self.flags, self.core = name, prefix, flags, core
+
+    @property
+    def helpers(self):
+        text = (ROOT / "docs" / "firmware.md").read_text()
+        row = re.search(rf"^\| {re.escape(self.core)} \| (.*) \|$", text, flags=re.M)
+        if row is None:
+            broken(f"docs/firmware.md has no row '{self.core}'")
+        return set(re.findall(r"`(\w+)`", row[1]))
 
 
 TARGETS = {
     "x86_64": Target("x86_64", "", ["-O3"]),
     "x86_64-general-registers": Target("x86_64-general-registers", "", ["-O2", "-mgeneral-regs-only"]),
-    # 64-bit division and multiplication of integers
-    "i686": Target("i686", "i686-linux-gnu-", ["-O2", "-fno-pic"],
-                   ["__divdi3", "__moddi3", "__udivdi3", "__umoddi3", "__divmoddi4", "__udivmoddi4"]),
-    # no divide, no 64-bit shift, no FPU: integer helpers only; __aeabi_f... and __aeabi_d... would be soft float
+    "i686": Target("i686", "i686-linux-gnu-", ["-O2", "-fno-pic"], "i686"),
     "cortex-m3": Target("cortex-m3", "arm-none-eabi-", ["-O2", "-mthumb", "-mcpu=cortex-m3", "-mfloat-abi=soft"],
-                        ["__aeabi_ldivmod", "__aeabi_uldivmod", "__aeabi_lmul", "__aeabi_llsl", "__aeabi_llsr",
-                         "__aeabi_lasr", "__aeabi_memcpy", "__aeabi_memcpy4", "__aeabi_memcpy8", "__aeabi_memmove",
-                         "__aeabi_memset", "__aeabi_memclr"]),
+                        "Cortex-M3 and larger"),
     "cortex-m0": Target("cortex-m0", "arm-none-eabi-", ["-O2", "-mthumb", "-mcpu=cortex-m0", "-mfloat-abi=soft"],
-                        ["__aeabi_idiv", "__aeabi_idivmod", "__aeabi_uidiv", "__aeabi_uidivmod", "__aeabi_ldivmod",
-                         "__aeabi_uldivmod", "__aeabi_lmul", "__aeabi_llsl", "__aeabi_llsr", "__aeabi_lasr",
-                         "__clzsi2", "__ctzsi2", "__popcountsi2", "__gnu_thumb1_case_sqi", "__gnu_thumb1_case_uqi",
-                         "__gnu_thumb1_case_shi", "__gnu_thumb1_case_uhi", "__gnu_thumb1_case_si"]),
+                        "Cortex-M0"),
 }
 
 
@@ -71,9 +72,9 @@ def compile_each(target, sources, folder, extra=()):
 
 
 def compile_one(compiler, target, source, made, extra=()):
-    includes = ["-I", RUNTIME / "include", "-I", RUNTIME]
-    if source.parent != PLANTED:
-        includes = ["-isystem", HERE / "freestanding"] + includes
+    """One source to an object, with no other headers than the compiler's own and ours: none of a C library."""
+    own = run([compiler, "-print-file-name=include"], check=True).stdout.strip()
+    includes = ["-nostdinc", "-isystem", own, "-I", RUNTIME / "include", "-I", RUNTIME]
     return run([compiler, *FREESTANDING, *target.flags, *extra, *includes, "-c", source, "-o", made])
 
 

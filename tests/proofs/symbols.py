@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """symbols.py TARGET [LIBRARY]: the runtime calls nothing but memcpy, memmove, memset and memcmp, and keeps no state.
 
-Beyond those four, only the integer helpers that are listed for the target (proof.py). On a core without an FPU every
+Beyond those four, only the integer helpers that docs/firmware.md names for the core. On a core without an FPU every
 use of a real number would call a helper that is not listed. With a LIBRARY, that one is judged instead of a build
 made here.
 """

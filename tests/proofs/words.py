@@ -13,7 +13,7 @@ import proof
 WORDS = re.compile(r"\b(float|double|malloc|calloc|realloc|alloca|free|\w*printf|fopen|FILE|errno|setjmp|longjmp|goto)\b")
 REAL_LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*|\.\d+|\d+[eE][+-]?\d+)[fFlL]?(?![\w.])")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+[>"])', re.M)
-SYSTEM_HEADERS = {"<stddef.h>", "<stdint.h>", "<stdbool.h>", "<string.h>"}
+SYSTEM_HEADERS = {"<stddef.h>", "<stdint.h>", "<stdbool.h>"}
 VECTOR_HEADERS = {"<immintrin.h>", "<emmintrin.h>", "<tmmintrin.h>", "<arm_neon.h>", "<arm_mve.h>"}
 
 

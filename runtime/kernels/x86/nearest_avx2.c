@@ -3,7 +3,7 @@
 
 #ifdef T3R_X86
 
-#include <immintrin.h>
+#include "intrinsics.h"
 
 #define LANES 8u
 

@@ -1,7 +1,6 @@
 /* A firmware without a C library, with one head: what a linker keeps of the runtime and of the shipped heads. */
 #include <stddef.h>
 #include <stdint.h>
-#include <string.h>
 
 #include "trim3r.h"
 #include "trim3r_heads.h"

@@ -1,6 +1,7 @@
-/* All of <string.h> that the runtime may use: a call of anything else does not compile. */
-#ifndef T3R_PROOF_STRING_H
-#define T3R_PROOF_STRING_H
+/* The four functions that the runtime calls and does not define: a C library's, or a firmware's own. They are declared
+ * here, so that no header of a C library is needed. */
+#ifndef T3R_CORE_MEMORY_H
+#define T3R_CORE_MEMORY_H
 
 #include <stddef.h>
 

@@ -1,0 +1,8 @@
+/* The processor's vector instructions, without a header of the C library. */
+#ifndef T3R_KERNELS_X86_INTRINSICS_H
+#define T3R_KERNELS_X86_INTRINSICS_H
+
+#define _MM_MALLOC_H_INCLUDED /* gcc's header would include stdlib.h for an allocator that nothing here calls */
+#include <immintrin.h>
+
+#endif
