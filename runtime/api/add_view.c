@@ -6,11 +6,10 @@
 
 static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
 {
-    t3r_view views[T3R_MAX_VIEWS];
-    t3r_views_of(rt, views);
+    const t3r_view view = t3r_view_of(rt, index);
     size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
     for (size_t i = 0; i < pixels; i++) {
-        if (t3r_is_reliable(views[index].validity[i])) {
+        if (t3r_is_reliable(view.validity[i])) {
             return true;
         }
     }
@@ -55,16 +54,15 @@ t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera
     if (status != T3R_OK) {
         return status;
     }
-    t3r_view views[T3R_MAX_VIEWS];
-    t3r_views_of(rt, views);
+    const t3r_view view = t3r_view_of(rt, 0);
     size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
     for (size_t i = 0; i < pixels; i++) {
         for (int c = 0; c < 3; c++) {
-            rgb_out[3 * i + (size_t)c] = views[0].colour[c][i];
+            rgb_out[3 * i + (size_t)c] = view.colour[c][i];
         }
     }
     if (depth_out != NULL) {
-        memcpy(depth_out, views[0].depth, pixels * sizeof *depth_out);
+        memcpy(depth_out, view.depth, pixels * sizeof *depth_out);
     }
     return T3R_OK;
 }

@@ -52,9 +52,7 @@ t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *fr
     if (status != T3R_OK) {
         return status;
     }
-    t3r_view views[T3R_MAX_VIEWS];
-    t3r_views_of(rt, views);
-    t3r_view *view = &views[index];
+    t3r_view planes = t3r_view_of(rt, index), *view = &planes;
 
     t3r_cut cut =
         t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_IMAGE_WORK), T3R_IMAGE_WORK_BYTES_(width, height, rt->config.workers));

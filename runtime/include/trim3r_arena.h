@@ -45,6 +45,7 @@
 #define T3R_HEAD_KERNEL_BYTES 4096
 #define T3R_CORRECTION_BYTES 20   /* what refinement will change in a Gaussian */
 #define T3R_REFINE_SUMS_BYTES 104 /* what refinement sums over a Gaussian's pixels */
+#define T3R_WANTED_BYTES 4096     /* a tile that refinement compares with its view */
 #define T3R_MAP_RECORD_BYTES 12   /* what a stream notes about a Gaussian of its map */
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8 /* undistortion grid, pixels */
@@ -191,6 +192,8 @@
       T3R_ANY_(v) * T3R_ANY_((n) + T3R_STREAMS_(keep)) * ((wk)-1) * T3R_REFINE_BORDER_(z) *                            \
           (T3R_REFINE_SUMS_BYTES + 4),                                                                                 \
       T3R_AT_REFINE, T3R_AT_REFINE)                                                                                    \
+    X(p, WANTED, "workers' compared tiles",                                                                            \
+      T3R_ANY_(v) * T3R_ANY_((n) + T3R_STREAMS_(keep)) * ((wk)-1) * T3R_WANTED_BYTES, T3R_AT_REFINE, T3R_AT_REFINE)    \
     X(p, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep)), T3R_AT_REFINE,       \
       T3R_AT_REFINE)                                                                                                   \
     X(p, SPLATS, "projected splats", (size_t)(z)*T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)                        \

@@ -22,6 +22,12 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
  * took. T3R_ERR_CANCELLED leaves the target part drawn. */
 t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const t3r_target *target, uint32_t *passes);
 
+/* Where the histogram was: T3R_SORT_BYTES that are of no use to anyone once the view is listed. */
+static inline void *t3r_raster_spare_histogram(const t3r_raster_room *room)
+{
+    return room->order;
+}
+
 /* Where the keys were: of no use to anyone once the view is listed, T3R_RASTER_SPARE_BYTES a Gaussian of max_gaussians.
  */
 #define T3R_RASTER_SPARE_BYTES 8

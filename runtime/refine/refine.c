@@ -15,6 +15,7 @@ typedef struct layout {
     t3r_refine_sums *sums;
     uint32_t slice; /* Gaussians whose sums fit */
     t3r_refine_borders borders;
+    t3r_wanted *wanted; /* of each band but the first */
 } layout;
 
 static layout layout_of(const t3r_runtime *rt)
@@ -37,7 +38,14 @@ static layout layout_of(const t3r_runtime *rt)
     w.borders.most = (uint32_t)T3R_REFINE_BORDER_(most);
     w.borders.sums = t3r_buffer_at(rt, T3R_BUFFER_BORDER_SUMS);
     w.borders.index = (void *)(w.borders.sums + (size_t)(c->workers - 1) * w.borders.most);
+    w.wanted = t3r_buffer_at(rt, T3R_BUFFER_WANTED);
     return w;
+}
+
+/* Where a band's tile is compared with the view: while the first one is drawn, nothing is sorted. */
+static t3r_wanted *wanted_of(const layout *w, uint32_t band)
+{
+    return band == 0 ? t3r_raster_spare_histogram(&w->room) : &w->wanted[band - 1];
 }
 
 t3r_raster_room t3r_refine_room(const t3r_runtime *rt)
@@ -68,6 +76,7 @@ static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
 
 /* One view on its way: what all its bands share. */
 typedef struct view_job {
+    const layout *work;
     const t3r_refine_view *view;
     const t3r_binning *bin;
     uint32_t begin; /* the first tile of the pass: its list starts at 0 */
@@ -95,6 +104,7 @@ static void accumulate_band(void *context, uint32_t index, uint32_t worker)
     t3r_refine_view view = *job->view;
     view.bands = job->bands;
     view.band = index;
+    view.wanted = wanted_of(job->work, index);
     view.kept += (size_t)index * view.kept_rows;
     for (uint32_t tile = band->begin; tile < band->end; tile++) {
         const uint32_t from = list_begin(job, tile);
@@ -108,12 +118,14 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
     error_job *to = context;
     const view_job *job = &to->job;
     const t3r_binning *bin = job->bin;
+    t3r_refine_view view = *job->view;
+    view.wanted = wanted_of(job->work, index);
     to->error[index] = 0;
     to->pixels[index] = 0;
     for (uint32_t tile = job->bands[index].begin; tile < job->bands[index].end; tile++) {
         const uint32_t from = list_begin(job, tile);
-        to->error[index] += t3r_refine_tile_error(job->view, bin->lists + from, bin->table[tile] - from,
-                                                  tile % bin->across, tile / bin->across, &to->pixels[index]);
+        to->error[index] += t3r_refine_tile_error(&view, bin->lists + from, bin->table[tile] - from, tile % bin->across,
+                                                  tile / bin->across, &to->pixels[index]);
     }
 }
 
@@ -125,7 +137,7 @@ static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view 
     const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
     const t3r_refine_view view = {
         .kernels = &rt->kernels, .view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
-    error_job to = {.job = {.view = &view, .bin = &bin}};
+    error_job to = {.job = {.work = w, .view = &view, .bin = &bin}};
     view_job *job = &to.job;
     uint64_t error = 0;
     while (job->begin < bin.tiles) {
@@ -216,7 +228,7 @@ static void accumulate(const t3r_runtime *rt, const slice_job *slice, const t3r_
         .kept_rows = kept_rows / w->borders.bands,
         .gain_q14 = rt->gain_q14[v],
     };
-    view_job job = {.view = &view, .bin = &bin};
+    view_job job = {.work = w, .view = &view, .bin = &bin};
     while (job.begin < bin.tiles) {
         uint32_t end = t3r_bin_pass(&bin, job.begin);
         uint32_t bands = t3r_refine_bands(&bin, job.begin, end, &view.slice, &w->borders, job.bands);

@@ -115,9 +115,9 @@ static uint32_t draw(const t3r_refine_view *job, const uint32_t *list, uint32_t 
 void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y)
 {
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
-    t3r_wanted want;
-    uint32_t kept, used = draw(job, list, count, left, top, &want.drawn, &kept);
-    compare(job, left, top, &want);
+    t3r_wanted *want = job->wanted;
+    uint32_t kept, used = draw(job, list, count, left, top, &want->drawn, &kept);
+    compare(job, left, top, want);
 
     t3r_tile tile;
     t3r_tile_clear(&tile);
@@ -137,7 +137,7 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
         }
         /* unsigned: an index below the slice wraps and fails the test */
         if (list[i] - job->slice.first < job->slice.count) {
-            scatter(job, &want, &tile, s, &splat, left, top, weights);
+            scatter(job, want, &tile, s, &splat, left, top, weights);
         }
     }
 }
@@ -146,16 +146,16 @@ uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list,
                                uint32_t tile_y, uint32_t *pixels)
 {
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE, kept;
-    t3r_wanted want;
-    (void)draw(job, list, count, left, top, &want.drawn, &kept);
-    compare(job, left, top, &want);
+    t3r_wanted *want = job->wanted;
+    (void)draw(job, list, count, left, top, &want->drawn, &kept);
+    compare(job, left, top, want);
     uint64_t error = 0;
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
         for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
-            for (int c = 0; c < 3 && want.counts[j][i] != 0; c++) {
-                error += (uint32_t)(want.residual_q4[c][j][i] * want.residual_q4[c][j][i]);
+            for (int c = 0; c < 3 && want->counts[j][i] != 0; c++) {
+                error += (uint32_t)(want->residual_q4[c][j][i] * want->residual_q4[c][j][i]);
             }
-            *pixels += want.counts[j][i] != 0;
+            *pixels += want->counts[j][i] != 0;
         }
     }
     return error;

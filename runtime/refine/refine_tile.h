@@ -18,8 +18,9 @@ typedef struct t3r_refine_view {
     t3r_refine_slice slice;
     const t3r_refine_borders *borders;
     const t3r_refine_band *bands;
-    uint32_t band;   /* number of the band that is drawn */
-    uint32_t across; /* tiles a row */
+    uint32_t band;      /* number of the band that is drawn */
+    uint32_t across;    /* tiles a row */
+    t3r_wanted *wanted; /* where the tile and what it lacks are held: too large for the stack */
     t3r_blend_weights
         *kept; /* room for `kept_rows` rows of weights between a tile's two drawings; 0 will do, but slower */
     uint32_t kept_rows;
@@ -32,7 +33,8 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
                      uint32_t tile_y);
 
 /* Draws the tile and accumulates nothing: its squared residuals, three channels, Q8, below 2^34; adds the pixels that
- * have depth, and so count, to *pixels. Of the job only kernels, view, splats and gain_q14 are read. */
+ * have depth, and so count, to *pixels. Of the job only kernels, view, splats, wanted and gain_q14
+ * are read. */
 uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                                uint32_t tile_y, uint32_t *pixels);
 

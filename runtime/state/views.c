@@ -3,34 +3,39 @@
 #include "core/scene_frame.h"
 #include "state.h"
 
+t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index)
+{
+    const size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height), words = (pixels + 31) / 32;
+    const uint32_t plane = rt->config.stream ? 0 : index; /* a stream analyses one keyframe at a time */
+    uint8_t *colour = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_COLOUR) + 3 * pixels * index;
+    const t3r_camera *camera = &rt->camera[index];
+    t3r_view view = {
+        .width = rt->config.width,
+        .height = rt->config.height,
+        .colour = {colour, colour + pixels, colour + 2 * pixels},
+        .depth = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_DEPTH) + pixels * index,
+        .validity = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY) + pixels * index,
+        .texture = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_TEXTURE) + pixels * plane,
+        .key = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_KEYS) + pixels * plane,
+        .label = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * plane,
+        .mask = (uint32_t *)t3r_buffer_at(rt, T3R_BUFFER_MASK) + words * plane,
+        .fx_q16 = camera->fx_q16,
+        .fy_q16 = camera->fy_q16,
+        .cx_q16 = camera->cx_q16,
+        .cy_q16 = camera->cy_q16,
+        .depth_unit_q40 = rt->depth_unit_q40[index],
+    };
+    if (index < rt->views) {
+        /* In range once there is an analysis; t3r_analyse() asks again with the frame that it chooses. */
+        (void)t3r_pose_in_scene(camera, &rt->frame, &view.pose);
+    }
+    return view;
+}
+
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
 {
-    size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
-    size_t words = (pixels + 31) / 32;
     for (uint32_t v = 0; v < rt->config.views; v++) {
-        const uint32_t plane = rt->config.stream ? 0 : v; /* a stream analyses one keyframe at a time */
-        uint8_t *colour = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_COLOUR) + 3 * pixels * v;
-        const t3r_camera *camera = &rt->camera[v];
-        views[v] = (t3r_view){
-            .width = rt->config.width,
-            .height = rt->config.height,
-            .colour = {colour, colour + pixels, colour + 2 * pixels},
-            .depth = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_DEPTH) + pixels * v,
-            .validity = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY) + pixels * v,
-            .texture = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_TEXTURE) + pixels * plane,
-            .key = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_KEYS) + pixels * plane,
-            .label = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * plane,
-            .mask = (uint32_t *)t3r_buffer_at(rt, T3R_BUFFER_MASK) + words * plane,
-            .fx_q16 = camera->fx_q16,
-            .fy_q16 = camera->fy_q16,
-            .cx_q16 = camera->cx_q16,
-            .cy_q16 = camera->cy_q16,
-            .depth_unit_q40 = rt->depth_unit_q40[v],
-        };
-        if (v < rt->views) {
-            /* In range once there is an analysis; t3r_analyse() asks again with the frame that it chooses. */
-            (void)t3r_pose_in_scene(camera, &rt->frame, &views[v].pose);
-        }
+        views[v] = t3r_view_of(rt, v);
     }
 }
 

@@ -123,7 +123,10 @@ static inline bool t3r_retained(const t3r_view *view, size_t pixel)
     return (view->mask[pixel / 32] >> (pixel % 32) & 1) != 0;
 }
 
-/* The planes of every view there is room for, as the stages take them; poses only of those added. */
+/* The planes of one of the views there is room for, as the stages take them; its pose only when it was added. */
+t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index);
+
+/* The planes of every view there is room for, likewise. */
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS]);
 
 /* Takes back what the comparison of views made: all marks, and the depth in wide holes. */

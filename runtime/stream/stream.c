@@ -328,9 +328,8 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
         status = take(rt, slot, report);
     }
     if (status != T3R_OK) { /* the slot's planes hold no keyframe now */
-        t3r_view view[T3R_MAX_VIEWS];
-        t3r_views_of(rt, view);
-        memset(view[slot].validity, T3R_NO_DEPTH, (size_t)view[slot].width * view[slot].height);
+        const t3r_view view = t3r_view_of(rt, slot);
+        memset(view.validity, T3R_NO_DEPTH, (size_t)view.width * view.height);
         rt->views = views;
         rt->camera[slot] = replaced;
         rt->depth_unit_q40[slot] = replaced_unit_q40;

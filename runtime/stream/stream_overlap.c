@@ -27,9 +27,7 @@ static uint32_t count_bits(uint64_t bits)
 t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                                    uint32_t *overlap_q8)
 {
-    t3r_view views[T3R_MAX_VIEWS];
-    t3r_views_of(rt, views);
-    const t3r_view *newest = &views[(rt->next_slot + rt->config.views - 1) % rt->config.views];
+    const t3r_view view = t3r_view_of(rt, (rt->next_slot + rt->config.views - 1) % rt->config.views), *newest = &view;
     const t3r_pointmap map = t3r_pointmap_of(newest, rt->frame.exponent);
     const t3r_camera resized = t3r_camera_resized(camera, width, height, newest->width, newest->height);
     t3r_view there = {

@@ -37,6 +37,8 @@ class Target:
 
 TARGETS = {
     "x86_64": Target("x86_64", "", ["-O3"]),
+    "x86_64-O2": Target("x86_64-O2", "", ["-O2"]),
+    "x86_64-O0": Target("x86_64-O0", "", ["-O0"]),
     "x86_64-general-registers": Target("x86_64-general-registers", "", ["-O2", "-mgeneral-regs-only"]),
     "i686": Target("i686", "i686-linux-gnu-", ["-O2", "-fno-pic"], "i686"),
     "cortex-m3": Target("cortex-m3", "arm-none-eabi-", ["-O2", "-mthumb", "-mcpu=cortex-m3", "-mfloat-abi=soft"],

@@ -98,6 +98,7 @@ static void clear_sums(t3r_refine_sums *sums, uint32_t first, uint32_t count)
 
 /* One band: every Gaussian adds to its own sums. */
 static const t3r_refine_band all_tiles = {0};
+static t3r_wanted wanted;
 
 static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint32_t kept_rows, t3r_refine_sums *sums)
 {
@@ -110,6 +111,7 @@ static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint
                            .splats = splats,
                            .slice = {sums, first, count},
                            .bands = &all_tiles,
+                           .wanted = &wanted,
                            .kept = kept_rows == 0 ? NULL : kept,
                            .kept_rows = kept_rows,
                            .gain_q14 = gain_q14};
