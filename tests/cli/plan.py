@@ -31,6 +31,20 @@ def plan():
     check(all((f"| {b['name']} | {b['bytes']} |" in table) == (b['bytes'] > 0) for b in found["buffers"]),
           "the Markdown table is to have all buffers that have bytes")
     check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
+    # the inverse: the most Gaussians that so many bytes hold
+    within = ["plan", "--size", "96x96", "--within"]
+    least = expect_json(*within[:-1], "--gaussians", 900)["min_bytes"]
+    most = expect_json(*within, least)["gaussians"]
+    check(most >= 900 and expect_json(*within[:-1], "--gaussians", most)["min_bytes"] <= least
+          < expect_json(*within[:-1], "--gaussians", most + 1)["min_bytes"], f"{most} is not the most for {least} bytes")
+    check(expect_json(*within, least, "--gaussians", 700)["gaussians"] == 700, "--gaussians is not the cap of --within")
+    check(expect_json(*within, "900K") == expect_json(*within, 900 << 10), "900K is not 900 x 1024 bytes")
+    check(expect_json(*within, "4G")["gaussians"] == 96 * 96 * 2, "more Gaussians than points")
+    expect(0, *within, least, out=f"{most} Gaussians fit into {least} bytes")
+    expect(3, *within, "9K", err="9216 bytes hold no Gaussian")
+    expect(2, "plan", "--size", "16x16", "--within", "9M", "--depth", "stereo", err="stereo")
+    for value in ("0", "x", "5X", "-1", ""):
+        expect(2, *within, value, err="--within")
     # the settings are those of build
     check(expect_json(*base, "--refine", 0)["arena_bytes"] <= found["arena_bytes"], "refinement saves bytes")
     expect_json(*base, "--levels", 3, "--bridge-radius", 0, "--allocate", "paper")

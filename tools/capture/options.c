@@ -70,7 +70,7 @@ static const struct argp_option options[] = {
      0},
     {NULL, 0, NULL, 0, "What becomes of it:", 4},
     {"output", 'o', "REC.mcap", 0, "a recording; what is there is overwritten, but for what is read", 0},
-    {"max-bytes", KEY_MAX_BYTES, "N[k|M|G]", 0, "of a file; the next one is REC-1.mcap and so on", 0},
+    {"max-bytes", KEY_MAX_BYTES, "BYTES[K|M|G]", 0, "of a file; the next one is REC-1.mcap and so on", 0},
     {"sync", KEY_SYNC, NULL, 0, "every message to the disk at once: power loss, too, costs one message at most", 0},
     {"frames", KEY_FRAMES, "N", 0, "stop after N frames", 0},
     {"seconds", KEY_SECONDS, "S", 0, "stop after S seconds", 0},
@@ -86,18 +86,6 @@ static const struct argp_option options[] = {
 };
 
 /* ---- options ---- */
-
-static uint64_t bytes_of(struct argp_state *state, const char *text)
-{
-    char *end;
-    size_t digits = strspn(text, "0123456789");
-    uint64_t value = strtoull(text, &end, 10);
-    uint32_t shift = *end == 'k' ? 10 : *end == 'M' ? 20 : *end == 'G' ? 30 : 0;
-    if (digits == 0 || digits > 9 + (shift == 0) * 8 || end[shift != 0] != '\0' || value == 0) {
-        argp_error(state, "--max-bytes takes a number of bytes, with k, M or G behind it or not, not '%s'", text);
-    }
-    return value << shift;
-}
 
 /* Seconds below CAPTURE_MOST_OFFSET_S with up to nine digits behind the point, exactly. */
 static bool signed_seconds(const char *text, int64_t *ns)
@@ -336,7 +324,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->output = arg;
         return 0;
     case KEY_MAX_BYTES:
-        o->max_bytes = bytes_of(state, arg);
+        o->max_bytes = option_bytes(state, "max-bytes", arg);
         return 0;
     case KEY_SYNC:
         o->sync = true;

@@ -28,6 +28,18 @@ double option_decimal(struct argp_state *state, const char *option, const char *
     return value;
 }
 
+uint64_t option_bytes(struct argp_state *state, const char *option, const char *text)
+{
+    char *end;
+    size_t digits = strspn(text, "0123456789");
+    uint64_t value = strtoull(text, &end, 10);
+    uint32_t shift = *end == 'k' || *end == 'K' ? 10 : *end == 'M' ? 20 : *end == 'G' ? 30 : 0;
+    if (digits == 0 || digits > 9 + (shift == 0) * 8 || end[shift != 0] != '\0' || value == 0) {
+        argp_error(state, "--%s takes a number of bytes, with K, M or G behind it or not, not '%s'", option, text);
+    }
+    return value << shift;
+}
+
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
                  uint32_t *height)
 {

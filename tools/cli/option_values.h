@@ -12,6 +12,8 @@
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
 /* A decimal number in [low, high], with an exponent or not. */
 double option_decimal(struct argp_state *state, const char *option, const char *text, double low, double high);
+/* Bytes above 0, with K (2^10), M (2^20) or G (2^30) behind the number or not. */
+uint64_t option_bytes(struct argp_state *state, const char *option, const char *text);
 /* "WxH", each side in [low, T3R_MAX_SIDE]. */
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
                  uint32_t *height);

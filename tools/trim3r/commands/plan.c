@@ -18,16 +18,30 @@
 
 typedef struct plan_options {
     t3r_config config; /* but for the head; a render_width of 0 is the working size */
+    uint64_t within;   /* bytes of the arena; 0 = as many as it takes */
     bool json, markdown;
     const char *svg, *head;
 } plan_options;
 
-enum { KEY_SIZE = 0x1000, KEY_VIEWS, KEY_GAUSSIANS, KEY_RENDER, KEY_HEAD, KEY_KEEP, KEY_SVG, KEY_MARKDOWN, KEY_JSON };
+enum {
+    KEY_SIZE = 0x1000,
+    KEY_VIEWS,
+    KEY_GAUSSIANS,
+    KEY_WITHIN,
+    KEY_RENDER,
+    KEY_HEAD,
+    KEY_KEEP,
+    KEY_SVG,
+    KEY_MARKDOWN,
+    KEY_JSON
+};
 
 static const struct argp_option options[] = {
     {"size", KEY_SIZE, "WxH", 0, "working size of the context views (needed)", 0},
     {"views", KEY_VIEWS, "N", 0, "context views, 0..16; 0 = an arena that only renders (2)", 0},
-    {"gaussians", KEY_GAUSSIANS, "Z", 0, "the budget (needed)", 0},
+    {"gaussians", KEY_GAUSSIANS, "Z", 0, "the budget (needed, or --within)", 0},
+    {"within", KEY_WITHIN, "BYTES[K|M]", 0,
+     "the largest budget that an arena of so many bytes can hold, at most --gaussians (all points of the views)", 0},
     {"head", KEY_HEAD, "HEAD", 0, "nano, small (default), base, FILE.t3w, analytic, moment or none", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
@@ -54,6 +68,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_GAUSSIANS:
         c->gaussians = c->max_gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
         return 0;
+    case KEY_WITHIN:
+        o->within = option_bytes(state, "within", arg);
+        return 0;
     case KEY_RENDER:
         option_size(state, "render", arg, 1, &c->render_width, &c->render_height);
         return 0;
@@ -76,8 +93,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         option_argument(state, arg, NULL, 0);
         return 0;
     case ARGP_KEY_END:
-        if (c->width == 0 || c->gaussians == 0) {
-            argp_error(state, "%s is missing", c->width == 0 ? "--size WxH" : "--gaussians Z");
+        if (c->width == 0 || (c->gaussians == 0 && o->within == 0)) {
+            argp_error(state, "%s is missing", c->width == 0 ? "--size WxH" : "--gaussians Z or --within BYTES");
         } else if (o->json && o->markdown) {
             argp_error(state, "--json and --markdown exclude each other");
         }
@@ -94,6 +111,7 @@ static const struct argp argp = {
     .doc = "Prints the arena's buffers, and the least and the full bytes."
            "\vExamples:\n"
            "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
+           "  trim3r plan --size 96x96 --within 512K\n"
            "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
            "  trim3r plan --size 256x256 --gaussians 13107 --json",
     .children = children,
@@ -156,6 +174,24 @@ static int write_svg(const char *path, const t3r_plan_info *plan)
     return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
+/* To what an arena of so many bytes can hold. */
+static int lower_budget(t3r_config *config, uint64_t bytes)
+{
+    if (config->gaussians == 0) {
+        uint64_t points = (uint64_t)config->width * config->height * (config->views > 0 ? config->views : 1);
+        config->gaussians = config->max_gaussians = points < T3R_MAX_GAUSSIANS ? (uint32_t)points : T3R_MAX_GAUSSIANS;
+    }
+    t3r_status status = t3r_plan_within((size_t)bytes, config);
+    if (status != T3R_ERR_ARENA) {
+        return status == T3R_OK ? CLI_OK : reconstruction_error(status, "settings", config, 0);
+    }
+    t3r_plan_info plan;
+    config->gaussians = config->max_gaussians = 1;
+    (void)t3r_plan(config, &plan); /* the configuration is a valid one: its arena alone is too large */
+    return cli_error(CLI_BUDGET_TOO_SMALL, "%" PRIu64 " bytes hold no Gaussian: one needs an arena of %zu", bytes,
+                     plan.min_bytes);
+}
+
 int command_plan(int argc, char **argv)
 {
     plan_options o = {.config = t3r_default_config(0, 0, 2, 0), .head = CHOSEN_HEAD_DEFAULT};
@@ -173,6 +209,9 @@ int command_plan(int argc, char **argv)
         config.render_width = config.width;
         config.render_height = config.height;
     }
+    if (o.within != 0 && (code = lower_budget(&config, o.within)) != CLI_OK) {
+        return code;
+    }
     t3r_plan_info plan;
     t3r_status status = t3r_plan(&config, &plan);
     if (status != T3R_OK) {
@@ -184,6 +223,9 @@ int command_plan(int argc, char **argv)
     if (o.json) {
         print_json(&config, &plan);
     } else {
+        if (o.within != 0) {
+            printf("%" PRIu32 " Gaussians fit into %" PRIu64 " bytes\n\n", config.gaussians, o.within);
+        }
         print_table(&plan, o.markdown);
     }
     return CLI_OK;
