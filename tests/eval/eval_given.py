@@ -66,6 +66,22 @@ def pictures_choose(folder, room):
     return every, names
 
 
+def no_more_than_needed(folder, room, names):
+    """--auto: as many of the given points as the loss asks for, the same in all commands."""
+    pictures = ["--allocate", "given", "--importance", ",".join(names)]
+    auto = [*pictures, "--auto", "--max-loss", "3"]
+    scene = build(room, *auto, out=f"{folder}/auto.ply")
+    check(0 < len(scene) < 2 * SIDE * SIDE, f"fewer than all: {len(scene)}")
+    exact = build(room, *pictures, "--gaussians", len(scene), out=f"{folder}/exact.ply")
+    check(numpy.array_equal(scene, exact), "the scene of so many of the brightest points")
+    hashes = [json.loads(run(trim3r, "replay", room, *SMALL, *more, "--json").stdout)["hash"]
+              for more in (auto, [*auto, "--threads", "2"], [*auto, "--gaussians", "9"])]
+    check(hashes[0] == hashes[1] != hashes[2], "replay has a hash of it")
+    row = json.loads(run(trim3r, "eval", room, *SMALL, *auto, "--target", "1", "--json").stdout)["rows"][0]
+    check((row["allocate"], row["gaussians"]) == ("given", len(scene)), f"eval takes another number: {row}")
+    check(len(build(room, *auto, "--gaussians", "9", out=f"{folder}/few.ply")) == 9, "--gaussians is the most")
+
+
 def levels_are_spread(folder, room, every):
     """8 bits: whole levels first; within a level evenly, not row by row."""
     ground = numpy.zeros((SIDE, SIDE), numpy.uint8)
@@ -180,6 +196,7 @@ with tempfile.TemporaryDirectory() as folder:
     room = f"{folder}/room.mcap"
     run(trim3r, "room", "--size", "64x64", "-o", room)
     every, names = pictures_choose(folder, room)
+    no_more_than_needed(folder, room, names)
     levels_are_spread(folder, room, every)
     errors(folder, room, names)
     rivals_choose(folder, room)

@@ -75,9 +75,6 @@ static void check_settings(struct argp_state *state, reconstruction_options *o)
     if (!o->automatic) {
         return;
     }
-    if (o->config.allocation == T3R_ALLOCATE_GIVEN) {
-        argp_error(state, "--auto predicts nothing for --allocate given");
-    }
     if (o->config.refinements == 0) {
         argp_error(state, "--auto measures where refinement does: it needs --refine 1 or more");
     }
