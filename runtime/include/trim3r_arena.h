@@ -50,41 +50,29 @@
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8 /* undistortion grid, pixels */
 
-#define T3R_PIXELS_(w, h) ((size_t)(w) * (h))
-#define T3R_TILES_(w, h)                                                                                               \
-    ((((size_t)(w) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE) * (((size_t)(h) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE))
-#define T3R_GRID_NODES_(w, h) (((size_t)(w) / T3R_GRID_STEP + 2) * ((size_t)(h) / T3R_GRID_STEP + 2))
-/* Resizing sums rows of each worker; undistortion reads planes by a grid. */
-#define T3R_IMAGE_ROW_BYTES_(w) T3R_UP_((size_t)(w)*24)
-#define T3R_IMAGE_WORK_BYTES_(w, h, wk)                                                                                \
-    (T3R_UP_(T3R_GRID_NODES_(w, h) * 8) + (wk)*T3R_IMAGE_ROW_BYTES_(w) + T3R_UP_(T3R_PIXELS_(w, h) * 2) +              \
-     T3R_UP_(T3R_PIXELS_(w, h) * 3))
-/* Columns of a picture whose coarsest level, 16 pixels wide, is whole */
-#define T3R_HEAD_COLUMNS_(w) (((size_t)(w) + 15) / 16 * 16)
-#define T3R_HEAD_WORK_(w, h, hc)                                                                                       \
-    T3R_MAX_(T3R_PIXELS_(w, h) * 2, (hc) > 0 ? T3R_HEAD_COLUMNS_(w) * (hc) + T3R_HEAD_KERNEL_BYTES : (size_t)0)
-/* What lifting needs beside its plane: a row's halves, each with T3R_WAVELET_PAD samples before and behind and rounded
- * up to so many. The texture rows of all levels, width + 5 samples, take less. */
+#define T3R_PIXELS_(width, height) ((size_t)(width) * (height))
+#define T3R_TILES_(width, height)                                                                                      \
+    ((((size_t)(width) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE) * (((size_t)(height) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE))
+#define T3R_GRID_NODES_(width, height) (((size_t)(width) / T3R_GRID_STEP + 2) * ((size_t)(height) / T3R_GRID_STEP + 2))
+/* Resizing accumulates rows, one set for each worker; undistortion reads planes by a grid. */
+#define T3R_IMAGE_ROW_BYTES_(width) T3R_UP_((size_t)(width)*24)
+#define T3R_IMAGE_WORK_BYTES_(width, height, workers)                                                                  \
+    (T3R_UP_(T3R_GRID_NODES_(width, height) * 8) + (workers)*T3R_IMAGE_ROW_BYTES_(width) +                             \
+     T3R_UP_(T3R_PIXELS_(width, height) * 2) + T3R_UP_(T3R_PIXELS_(width, height) * 3))
+/* The columns of a picture whose coarsest level, 16 pixels wide, is whole. */
+#define T3R_HEAD_COLUMNS_(width) (((size_t)(width) + 15) / 16 * 16)
+#define T3R_HEAD_WORK_(width, height, column_bytes)                                                                    \
+    T3R_MAX_(T3R_PIXELS_(width, height) * 2,                                                                           \
+             (column_bytes) > 0 ? T3R_HEAD_COLUMNS_(width) * (column_bytes) + T3R_HEAD_KERNEL_BYTES : (size_t)0)
+/* What lifting needs beside its plane: the two halves of a row. Each has T3R_WAVELET_PAD samples before and behind it,
+ * and its length is rounded up to as many. The texture rows of all levels, width + 5 samples, take less. */
 #define T3R_WAVELET_PAD 8u /* samples: 16 bytes, so that halves stay aligned */
 #define T3R_WAVELET_ROW_BYTES(width) (((size_t)(width) + 5 * T3R_WAVELET_PAD) * 2)
-#define T3R_WAVELET_WORK_BYTES_(w, h) (T3R_UP_(T3R_PIXELS_(w, h) * 2) + T3R_UP_(T3R_WAVELET_ROW_BYTES(w)))
-#define T3R_ANY_(v) ((v) > 0 ? (size_t)1 : (size_t)0)
+#define T3R_WAVELET_WORK_BYTES_(width, height)                                                                         \
+    (T3R_UP_(T3R_PIXELS_(width, height) * 2) + T3R_UP_(T3R_WAVELET_ROW_BYTES(width)))
 
-/* Refinement works in one buffer: splats, depth order, tile table and corrections of all Gaussians, then the sums of
- * as many Gaussians as there is room for, at least every eighth, then tile lists. */
-#define T3R_REFINE_FIXED_BYTES_(w, h, z)                                                                               \
-    (T3R_UP_((size_t)(z)*T3R_SPLAT_BYTES) + T3R_UP_((size_t)(z)*T3R_ORDER_BYTES + T3R_SORT_BYTES) +                    \
-     T3R_UP_(T3R_TILES_(w, h) * 4) + T3R_UP_((size_t)(z)*T3R_CORRECTION_BYTES))
-#define T3R_REFINE_LEAST_SUMS_(z) (((size_t)(z) + 7) / 8)
 /* Gaussians that may reach into one worker's tiles from those of another: where there are more, fewer workers draw. */
-#define T3R_REFINE_BORDER_(z) (((size_t)(z) + 3) / 4)
-#define T3R_REFINE_BYTES_(w, h, v, z, n)                                                                               \
-    (T3R_ANY_(v) * T3R_ANY_(n) *                                                                                       \
-     (T3R_REFINE_FIXED_BYTES_(w, h, z) + T3R_UP_(T3R_REFINE_LEAST_SUMS_(z) * T3R_REFINE_SUMS_BYTES) +                  \
-      T3R_UP_((size_t)(z)*4)))
-#define T3R_REFINE_FULL_BYTES_(w, h, v, z, n)                                                                          \
-    (T3R_ANY_(v) * T3R_ANY_(n) *                                                                                       \
-     (T3R_REFINE_FIXED_BYTES_(w, h, z) + T3R_UP_((size_t)(z)*T3R_REFINE_SUMS_BYTES) + T3R_UP_((size_t)(z)*16)))
+#define T3R_REFINE_BORDER_(gaussians) (((size_t)(gaussians) + 3) / 4)
 
 /* Stereo: work of one pair of views, and as many disparities and paths as the pipeline asks for. */
 #define T3R_STEREO_DISPARITIES 128u /* most; as many as the first look finds are compared */
@@ -138,122 +126,192 @@
     (T3R_STEREO_PLANES_(width, height, disparities) +                                                                  \
      T3R_UP_(T3R_STEREO_REST_BYTES_(width, height, disparities, paths)))
 /* Depth and confidence of two views from one pair, where a view is in several pairs */
-#define T3R_STEREO_PAIR_BYTES_(w, h) (2 * (T3R_UP_(T3R_PIXELS_(w, h) * 2) + T3R_UP_(T3R_PIXELS_(w, h))))
-#define T3R_STEREO_BYTES_(w, h, v, s)                                                                                  \
-    ((s) != 0 && (v) > 1 ? T3R_STEREO_WORK_BYTES(w, h, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS) +                     \
-                               ((v) > 2 ? T3R_STEREO_PAIR_BYTES_(w, h) : (size_t)0)                                    \
-                         : (size_t)0)
+#define T3R_STEREO_PAIR_BYTES_(width, height)                                                                          \
+    (2 * (T3R_UP_(T3R_PIXELS_(width, height) * 2) + T3R_UP_(T3R_PIXELS_(width, height))))
+#define T3R_STEREO_BYTES_(width, height, views, stereo)                                                                \
+    ((stereo) != 0 && (views) > 1 ? T3R_STEREO_WORK_BYTES(width, height, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS) +   \
+                                        ((views) > 2 ? T3R_STEREO_PAIR_BYTES_(width, height) : (size_t)0)              \
+                                  : (size_t)0)
 
-/* X(p, NAME, text, bytes, first, last); p is handed through.
- * w x h working size, v views, z Gaussians, k clusters, rw x rh largest target, hc the learned head's bytes a column;
- * keep: the analysis outlives the build, or T3R_KEEP_MAP: a stream, whose map and keyframes outlive everything, one
- * keyframe being analysed at a time; n refinements; s: depth is made by stereo; wk workers. Buffers come in the order
- * of their first stage; `scene` and nothing else is laid from the arena's end, so that lifetimes nest and the sum over
- * the live buffers of a stage is what that stage needs. `tile lists` and `refinement work` grow: more bytes than their
- * minimum save passes. */
+/* --- the shape of an arena: what its bytes depend on ---------------------------------------------------------------
+ *
+ * Twelve numbers in parentheses, handed on as one argument and read by name, as T3R_VIEWS_(shape): a constant
+ * expression cannot read a struct. `gaussians` is max_gaussians of t3r_config, and `stereo` is 1 where depth is made by
+ * stereo, 0 where it comes from a sensor. `keep` is 0 where the analysis ends with the build, 1 where it outlives it,
+ * and T3R_KEEP_MAP for a stream: its map and keyframes outlive everything, and one keyframe is analysed at a time. The
+ * others are the fields of t3r_config with their names. */
 #define T3R_KEEP_MAP 2
-#define T3R_STREAMS_(keep) ((keep) == T3R_KEEP_MAP)
-#define T3R_LAST_(keep, stage) ((keep) ? T3R_AT_RASTER : (stage))
-#define T3R_LAST_ANALYSIS_(keep, stage) ((keep) && !T3R_STREAMS_(keep) ? T3R_AT_RASTER : (stage))
-#define T3R_ANALYSED_(v, keep) (T3R_STREAMS_(keep) ? T3R_ANY_(v) : (size_t)(v))
-#define T3R_BUFFERS(X, p, w, h, v, z, k, rw, rh, hc, keep, n, s, wk)                                                   \
-    X(p, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                               \
-    X(p, MAP_RECORDS, "map records", T3R_STREAMS_(keep) * (size_t)(z)*T3R_MAP_RECORD_BYTES, T3R_AT_IMAGE,              \
-      T3R_AT_RASTER)                                                                                                   \
-    X(p, COLOUR, "colour planes", T3R_PIXELS_(w, h) * (v)*3, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))             \
-    X(p, DEPTH, "depth planes", T3R_PIXELS_(w, h) * (v)*2, T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))               \
-    X(p, VALIDITY, "validity planes", T3R_PIXELS_(w, h) * (v), T3R_AT_IMAGE, T3R_LAST_(keep, T3R_AT_REFINE))           \
-    X(p, IMAGE_WORK, "undistortion and resize work", T3R_ANY_(v) * T3R_IMAGE_WORK_BYTES_(w, h, wk), T3R_AT_IMAGE,      \
-      T3R_AT_IMAGE)                                                                                                    \
-    X(p, STEREO_WORK, "stereo work", T3R_STEREO_BYTES_(w, h, v, s), T3R_AT_DEPTH, T3R_AT_DEPTH)                        \
-    X(p, POINTMAP_WORK, "comparison of views", T3R_ANY_(v) * T3R_PIXELS_(w, h) * 4, T3R_AT_POINTMAP, T3R_AT_POINTMAP)  \
-    X(p, TEXTURE, "texture planes", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_WAVELET,                    \
-      T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
-    X(p, WAVELET_WORK, "wavelet work", T3R_ANY_(v) * (wk)*T3R_WAVELET_WORK_BYTES_(w, h), T3R_AT_WAVELET,               \
-      T3R_AT_WAVELET)                                                                                                  \
-    X(p, LABELS, "SuperCluster labels", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_SUPERCLUSTERS,          \
-      T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
-    X(p, CLUSTERS, "SuperClusters", T3R_ANY_(v) * ((k) + 1) * T3R_CLUSTER_BYTES, T3R_AT_SUPERCLUSTERS,                 \
-      T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
-    X(p, CLUSTER_WORK, "K-means work", T3R_ANY_(v) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS,                     \
+#define T3R_SHAPE_(width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep,    \
+                   refinements, stereo, workers)                                                                       \
+    (width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep, refinements,     \
+     stereo, workers)
+#define T3R_WIDTH_(shape) T3R_SHAPE_WIDTH_ shape
+#define T3R_HEIGHT_(shape) T3R_SHAPE_HEIGHT_ shape
+#define T3R_VIEWS_(shape) T3R_SHAPE_VIEWS_ shape
+#define T3R_GAUSSIANS_(shape) T3R_SHAPE_GAUSSIANS_ shape
+#define T3R_CLUSTERS_(shape) T3R_SHAPE_CLUSTERS_ shape
+#define T3R_RENDER_WIDTH_(shape) T3R_SHAPE_RENDER_WIDTH_ shape
+#define T3R_RENDER_HEIGHT_(shape) T3R_SHAPE_RENDER_HEIGHT_ shape
+#define T3R_COLUMN_BYTES_(shape) T3R_SHAPE_COLUMN_BYTES_ shape
+#define T3R_KEEP_(shape) T3R_SHAPE_KEEP_ shape
+#define T3R_REFINEMENTS_(shape) T3R_SHAPE_REFINEMENTS_ shape
+#define T3R_STEREO_(shape) T3R_SHAPE_STEREO_ shape
+#define T3R_WORKERS_(shape) T3R_SHAPE_WORKERS_ shape
+#define T3R_SHAPE_WIDTH_(width, ...) ((size_t)(width))
+#define T3R_SHAPE_HEIGHT_(a, height, ...) ((size_t)(height))
+#define T3R_SHAPE_VIEWS_(a, b, views, ...) ((size_t)(views))
+#define T3R_SHAPE_GAUSSIANS_(a, b, c, gaussians, ...) ((size_t)(gaussians))
+#define T3R_SHAPE_CLUSTERS_(a, b, c, d, clusters, ...) ((size_t)(clusters))
+#define T3R_SHAPE_RENDER_WIDTH_(a, b, c, d, e, render_width, ...) ((size_t)(render_width))
+#define T3R_SHAPE_RENDER_HEIGHT_(a, b, c, d, e, f, render_height, ...) ((size_t)(render_height))
+#define T3R_SHAPE_COLUMN_BYTES_(a, b, c, d, e, f, g, head_column_bytes, ...) ((size_t)(head_column_bytes))
+#define T3R_SHAPE_KEEP_(a, b, c, d, e, f, g, h, keep, ...) ((size_t)(keep))
+#define T3R_SHAPE_REFINEMENTS_(a, b, c, d, e, f, g, h, i, refinements, ...) ((size_t)(refinements))
+#define T3R_SHAPE_STEREO_(a, b, c, d, e, f, g, h, i, j, stereo, ...) ((size_t)(stereo))
+#define T3R_SHAPE_WORKERS_(a, b, c, d, e, f, g, h, i, j, k, workers) ((size_t)(workers))
+
+/* 1 or 0 */
+#define T3R_BUILDS_(shape) (T3R_VIEWS_(shape) > 0 ? (size_t)1 : (size_t)0)
+#define T3R_STREAMS_(shape) (T3R_KEEP_(shape) == T3R_KEEP_MAP ? (size_t)1 : (size_t)0)
+#define T3R_REFINES_(shape)                                                                                            \
+    (T3R_BUILDS_(shape) * (T3R_REFINEMENTS_(shape) + T3R_STREAMS_(shape) > 0 ? (size_t)1 : (size_t)0))
+
+#define T3R_OTHER_WORKERS_(shape) (T3R_WORKERS_(shape) - 1) /* all but the first */
+#define T3R_VIEW_PIXELS_(shape) (T3R_WIDTH_(shape) * T3R_HEIGHT_(shape))
+#define T3R_ALL_PIXELS_(shape) (T3R_VIEW_PIXELS_(shape) * T3R_VIEWS_(shape))
+/* Views that are analysed at once. */
+#define T3R_ANALYSED_(shape) (T3R_STREAMS_(shape) ? T3R_BUILDS_(shape) : T3R_VIEWS_(shape))
+#define T3R_ANALYSED_PIXELS_(shape) (T3R_VIEW_PIXELS_(shape) * T3R_ANALYSED_(shape))
+/* The last stage of what a build needs until `stage`: of the planes, and of the analysis. */
+#define T3R_LAST_(shape, stage) (T3R_KEEP_(shape) ? T3R_AT_RASTER : (stage))
+#define T3R_LAST_ANALYSIS_(shape, stage) (T3R_KEEP_(shape) && !T3R_STREAMS_(shape) ? T3R_AT_RASTER : (stage))
+
+/* Refinement works in one buffer. First come splats, depth order, tile table and corrections of all Gaussians. Then
+ * come the sums of as many Gaussians as there is room for, at least every eighth, and last tile lists. */
+#define T3R_REFINE_FIXED_BYTES_(shape)                                                                                 \
+    (T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_SPLAT_BYTES) +                                                                \
+     T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_ORDER_BYTES + T3R_SORT_BYTES) +                                               \
+     T3R_UP_(T3R_TILES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape)) * 4) +                                                  \
+     T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_CORRECTION_BYTES))
+#define T3R_REFINE_BYTES_(shape)                                                                                       \
+    (T3R_REFINES_(shape) *                                                                                             \
+     (T3R_REFINE_FIXED_BYTES_(shape) + T3R_UP_((T3R_GAUSSIANS_(shape) + 7) / 8 * T3R_REFINE_SUMS_BYTES) +              \
+      T3R_UP_(T3R_GAUSSIANS_(shape) * 4)))
+#define T3R_REFINE_FULL_BYTES_(shape)                                                                                  \
+    (T3R_REFINES_(shape) * (T3R_REFINE_FIXED_BYTES_(shape) + T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_REFINE_SUMS_BYTES) +  \
+                            T3R_UP_(T3R_GAUSSIANS_(shape) * 16)))
+
+/* Tile lists: an entry a Gaussian at least. With an entry for four tiles a Gaussian and one a pixel, a pass takes a
+ * whole view unless most splats are many tiles wide. */
+#define T3R_LISTS_LEAST_BYTES_(shape) (T3R_GAUSSIANS_(shape) * 4)
+#define T3R_LISTS_BYTES_(shape)                                                                                        \
+    ((T3R_GAUSSIANS_(shape) * 4 + T3R_PIXELS_(T3R_RENDER_WIDTH_(shape), T3R_RENDER_HEIGHT_(shape))) * 4)
+
+/* --- the buffers ------------------------------------------------------------------------------------------------- */
+
+/* X(with, NAME, text, bytes, first stage, last stage), a row a buffer; `with` is handed through to X.
+ *
+ * Buffers come in the order of their first stage. `scene` and nothing else is laid from the arena's end, so lifetimes
+ * nest, and a stage needs the sum over its live buffers. `tile lists` and `refinement work` grow: with more bytes than
+ * these least ones they save passes. */
+#define T3R_BUFFERS(X, with, shape)                                                                                    \
+    X(with, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                            \
+    X(with, MAP_RECORDS, "map records", T3R_STREAMS_(shape) * T3R_GAUSSIANS_(shape) * T3R_MAP_RECORD_BYTES,            \
+      T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
+    X(with, COLOUR, "colour planes", T3R_ALL_PIXELS_(shape) * 3, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))        \
+    X(with, DEPTH, "depth planes", T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))          \
+    X(with, VALIDITY, "validity planes", T3R_ALL_PIXELS_(shape), T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))        \
+    X(with, IMAGE_WORK, "undistortion and resize work",                                                                \
+      T3R_BUILDS_(shape) * T3R_IMAGE_WORK_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_WORKERS_(shape)),          \
+      T3R_AT_IMAGE, T3R_AT_IMAGE)                                                                                      \
+    X(with, STEREO_WORK, "stereo work",                                                                                \
+      T3R_STEREO_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_VIEWS_(shape), T3R_STEREO_(shape)), T3R_AT_DEPTH,   \
+      T3R_AT_DEPTH)                                                                                                    \
+    X(with, POINTMAP_WORK, "comparison of views", T3R_BUILDS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_POINTMAP,   \
+      T3R_AT_POINTMAP)                                                                                                 \
+    X(with, TEXTURE, "texture planes", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_WAVELET,                                \
+      T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
+    X(with, WAVELET_WORK, "wavelet work",                                                                              \
+      T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_WAVELET_WORK_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape)),       \
+      T3R_AT_WAVELET, T3R_AT_WAVELET)                                                                                  \
+    X(with, LABELS, "SuperCluster labels", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_SUPERCLUSTERS,                      \
+      T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
+    X(with, CLUSTERS, "SuperClusters", T3R_BUILDS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_CLUSTER_BYTES,            \
+      T3R_AT_SUPERCLUSTERS, T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                    \
+    X(with, CLUSTER_WORK, "K-means work", T3R_BUILDS_(shape) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS,           \
       T3R_AT_SUPERCLUSTERS)                                                                                            \
-    X(p, CLUSTER_SUMS, "workers' K-means sums", T3R_ANY_(v) * ((wk)-1) * T3R_CLUSTER_SUMS_BYTES, T3R_AT_SUPERCLUSTERS, \
+    X(with, CLUSTER_SUMS, "workers' K-means sums",                                                                     \
+      T3R_BUILDS_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_CLUSTER_SUMS_BYTES, T3R_AT_SUPERCLUSTERS,                   \
       T3R_AT_SUPERCLUSTERS)                                                                                            \
-    X(p, MASK, "masks", (T3R_PIXELS_(w, h) + 31) / 32 * T3R_ANALYSED_(v, keep) * 4, T3R_AT_BUDGET,                     \
-      T3R_LAST_ANALYSIS_(keep, T3R_AT_HEAD))                                                                           \
-    X(p, KEYS, "budget keys", T3R_PIXELS_(w, h) * T3R_ANALYSED_(v, keep) * 2, T3R_AT_BUDGET,                           \
-      T3R_STREAMS_(keep) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                                \
-    X(p, BUDGET_WORK, "counts by SuperCluster", T3R_ANY_(v) * (wk)*T3R_GROUP_COUNTS_BYTES, T3R_AT_BUDGET,              \
-      T3R_AT_BUDGET)                                                                                                   \
-    X(p, HEAD_WORK, "head work", T3R_ANY_(v) * (wk)*T3R_UP_(T3R_HEAD_WORK_(w, h, hc)), T3R_AT_HEAD, T3R_AT_HEAD)       \
-    X(p, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(keep) * T3R_PIXELS_(w, h) * 4, T3R_AT_REFINE,             \
+    X(with, MASK, "masks", (T3R_VIEW_PIXELS_(shape) + 31) / 32 * T3R_ANALYSED_(shape) * 4, T3R_AT_BUDGET,              \
+      T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
+    X(with, KEYS, "budget keys", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_BUDGET,                                       \
+      T3R_STREAMS_(shape) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                               \
+    X(with, BUDGET_WORK, "counts by SuperCluster", T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_GROUP_COUNTS_BYTES,  \
+      T3R_AT_BUDGET, T3R_AT_BUDGET)                                                                                    \
+    X(with, HEAD_WORK, "head work",                                                                                    \
+      T3R_BUILDS_(shape) * T3R_WORKERS_(shape) *                                                                       \
+          T3R_UP_(T3R_HEAD_WORK_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_COLUMN_BYTES_(shape))),                    \
+      T3R_AT_HEAD, T3R_AT_HEAD)                                                                                        \
+    X(with, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_REFINE,   \
       T3R_AT_REFINE)                                                                                                   \
-    X(p, BORDER_SUMS, "sums across workers' borders",                                                                  \
-      T3R_ANY_(v) * T3R_ANY_((n) + T3R_STREAMS_(keep)) * ((wk)-1) * T3R_REFINE_BORDER_(z) *                            \
+    X(with, BORDER_SUMS, "sums across workers' borders",                                                               \
+      T3R_REFINES_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_REFINE_BORDER_(T3R_GAUSSIANS_(shape)) *                    \
           (T3R_REFINE_SUMS_BYTES + 4),                                                                                 \
       T3R_AT_REFINE, T3R_AT_REFINE)                                                                                    \
-    X(p, WANTED, "workers' compared tiles",                                                                            \
-      T3R_ANY_(v) * T3R_ANY_((n) + T3R_STREAMS_(keep)) * ((wk)-1) * T3R_WANTED_BYTES, T3R_AT_REFINE, T3R_AT_REFINE)    \
-    X(p, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep)), T3R_AT_REFINE,       \
-      T3R_AT_REFINE)                                                                                                   \
-    X(p, SPLATS, "projected splats", (size_t)(z)*T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)                        \
-    X(p, ORDER, "depth order", (size_t)(z)*T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)             \
-    X(p, TILES, "tile table", T3R_TILES_(rw, rh) * 4, T3R_AT_RASTER, T3R_AT_RASTER)                                    \
-    X(p, LISTS, "tile lists", (size_t)(z)*4, T3R_AT_RASTER, T3R_AT_RASTER)                                             \
-    X(p, SCENE, "scene", (size_t)(z)*T3R_GAUSSIAN_BYTES, T3R_STREAMS_(keep) ? T3R_AT_IMAGE : T3R_AT_HEAD, T3R_AT_RASTER)
+    X(with, WANTED, "workers' compared tiles", T3R_REFINES_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_WANTED_BYTES,     \
+      T3R_AT_REFINE, T3R_AT_REFINE)                                                                                    \
+    X(with, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(shape), T3R_AT_REFINE, T3R_AT_REFINE)                    \
+    X(with, SPLATS, "projected splats", T3R_GAUSSIANS_(shape) * T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)         \
+    X(with, ORDER, "depth order", T3R_GAUSSIANS_(shape) * T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER,             \
+      T3R_AT_RASTER)                                                                                                   \
+    X(with, TILES, "tile table", T3R_TILES_(T3R_RENDER_WIDTH_(shape), T3R_RENDER_HEIGHT_(shape)) * 4, T3R_AT_RASTER,   \
+      T3R_AT_RASTER)                                                                                                   \
+    X(with, LISTS, "tile lists", T3R_LISTS_LEAST_BYTES_(shape), T3R_AT_RASTER, T3R_AT_RASTER)                          \
+    X(with, SCENE, "scene", T3R_GAUSSIANS_(shape) * T3R_GAUSSIAN_BYTES,                                                \
+      T3R_STREAMS_(shape) ? T3R_AT_IMAGE : T3R_AT_HEAD, T3R_AT_RASTER)
 
-#define T3R_NAME_(p, NAME, text, bytes, first, last) T3R_BUFFER_##NAME,
-enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1) T3R_BUFFER_COUNT };
+#define T3R_NAME_(with, NAME, text, bytes, first, last) T3R_BUFFER_##NAME,
+enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 
-/* Tile-list bytes with which a pass takes a whole view, unless most splats are many tiles wide: an entry for four tiles
- * a Gaussian and one a pixel. */
-#define T3R_LISTS_BYTES_(z, rw, rh) (((size_t)(z)*4 + T3R_PIXELS_(rw, rh)) * 4)
+/* --- the sums ---------------------------------------------------------------------------------------------------- */
 
 #define T3R_LIVE_(stage, NAME, text, bytes, first, last)                                                               \
     +((first) <= (stage) && (stage) <= (last) ? T3R_UP_(bytes) : (size_t)0)
-#define T3R_STAGE_BYTES_(stage, w, h, v, z, k, rw, rh, hc, keep, n, s, wk)                                             \
-    (0 T3R_BUFFERS(T3R_LIVE_, stage, w, h, v, z, k, rw, rh, hc, keep, n, s, wk))
+#define T3R_STAGE_BYTES_(stage, shape) (0 T3R_BUFFERS(T3R_LIVE_, stage, shape))
 /* Every argument is written out 2^depth times, so the tree is kept flat. */
 #define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
-#define T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk, more_refine, more_raster)                       \
-    T3R_MAX_(T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                      \
-                       T3R_STAGE_BYTES_(T3R_AT_DEPTH, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                      \
-                       T3R_STAGE_BYTES_(T3R_AT_WAVELET, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                    \
-                       T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, w, h, v, z, k, rw, rh, hc, keep, n, s, wk)),             \
-             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                     \
-                       T3R_STAGE_BYTES_(T3R_AT_HEAD, w, h, v, z, k, rw, rh, hc, keep, n, s, wk),                       \
-                       T3R_STAGE_BYTES_(T3R_AT_REFINE, w, h, v, z, k, rw, rh, hc, keep, n, s, wk) + (more_refine),     \
-                       T3R_STAGE_BYTES_(T3R_AT_RASTER, w, h, v, z, k, rw, rh, hc, keep, n, s, wk) + (more_raster)))
-#define T3R_MIN_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk)                                                      \
-    T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk, 0, 0)
-#define T3R_FULL_BYTES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk)                                                     \
-    T3R_MOST_OF_STAGES_(w, h, v, z, k, rw, rh, hc, keep, n, s, wk,                                                     \
-                        T3R_UP_(T3R_REFINE_FULL_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))) -                        \
-                            T3R_UP_(T3R_REFINE_BYTES_(w, h, v, z, (n) + T3R_STREAMS_(keep))),                          \
-                        T3R_UP_(T3R_LISTS_BYTES_(z, rw, rh)) - T3R_UP_((size_t)(z)*4))
+#define T3R_MOST_OF_STAGES_(shape, more_refine, more_raster)                                                           \
+    T3R_MAX_(T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, shape), T3R_STAGE_BYTES_(T3R_AT_DEPTH, shape),                   \
+                       T3R_STAGE_BYTES_(T3R_AT_WAVELET, shape), T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, shape)),        \
+             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, shape), T3R_STAGE_BYTES_(T3R_AT_HEAD, shape),                   \
+                       T3R_STAGE_BYTES_(T3R_AT_REFINE, shape) + (more_refine),                                         \
+                       T3R_STAGE_BYTES_(T3R_AT_RASTER, shape) + (more_raster)))
+#define T3R_MIN_BYTES_(shape) T3R_MOST_OF_STAGES_(shape, 0, 0)
+#define T3R_FULL_BYTES_(shape)                                                                                         \
+    T3R_MOST_OF_STAGES_(shape, T3R_UP_(T3R_REFINE_FULL_BYTES_(shape)) - T3R_UP_(T3R_REFINE_BYTES_(shape)),             \
+                        T3R_UP_(T3R_LISTS_BYTES_(shape)) - T3R_UP_(T3R_LISTS_LEAST_BYTES_(shape)))
 
-/* For the default configuration (targets of the working size, analysis not kept):
- * the smallest arena that works, and the one with which a view takes one pass (views of wide splats may take more). */
+/* The default configuration: targets of the working size, the analysis not kept, one worker. */
+#define T3R_DEFAULT_SHAPE_(width, height, views, gaussians, keep, stereo)                                              \
+    T3R_SHAPE_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, keep,      \
+               T3R_DEFAULT_REFINEMENTS, stereo, 1)
+
+/* The arena of the default configuration: the least bytes that work, and those with which a view takes one pass (views
+ * of wide splats may take more). */
 #define T3R_ARENA_MIN_BYTES(width, height, views, gaussians)                                                           \
-    T3R_MIN_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, 0,     \
-                   T3R_DEFAULT_REFINEMENTS, 0, 1)
+    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0))
 #define T3R_ARENA_BYTES(width, height, views, gaussians)                                                               \
-    T3R_FULL_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, 0,    \
-                    T3R_DEFAULT_REFINEMENTS, 0, 1)
+    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0))
 /* The same with depth by stereo (t3r_config.depth). */
 #define T3R_STEREO_ARENA_MIN_BYTES(width, height, views, gaussians)                                                    \
-    T3R_MIN_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, 0,     \
-                   T3R_DEFAULT_REFINEMENTS, 1, 1)
+    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 1))
 #define T3R_STEREO_ARENA_BYTES(width, height, views, gaussians)                                                        \
-    T3R_FULL_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, 0,    \
-                    T3R_DEFAULT_REFINEMENTS, 1, 1)
-
-/* Likewise of a stream (t3r_config.stream) with `views` keyframes at hand, otherwise of the default configuration. */
+    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 1))
+/* The same of a stream (t3r_config.stream) with `views` keyframes at hand. */
 #define T3R_STREAM_MIN_BYTES(width, height, views, gaussians)                                                          \
-    T3R_MIN_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES,        \
-                   T3R_KEEP_MAP, T3R_DEFAULT_REFINEMENTS, 0, 1)
+    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, T3R_KEEP_MAP, 0))
 #define T3R_STREAM_BYTES(width, height, views, gaussians)                                                              \
-    T3R_FULL_BYTES_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES,       \
-                    T3R_KEEP_MAP, T3R_DEFAULT_REFINEMENTS, 0, 1)
+    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, T3R_KEEP_MAP, 0))
 
 #endif

@@ -25,17 +25,29 @@ typedef struct buffer_row {
     t3r_stage first, last;
 } buffer_row;
 
-#define ROW(p, NAME, text, buffer_bytes, first_stage, last_stage)                                                      \
+#define ROW(with, NAME, text, buffer_bytes, first_stage, last_stage)                                                   \
     rows[T3R_BUFFER_##NAME] = (buffer_row){buffer_bytes, (t3r_stage)(first_stage), (t3r_stage)(last_stage)};
 
-static void read_table(const t3r_config *c, buffer_row rows[T3R_BUFFER_COUNT])
+/* What the public table says of a configuration; bytes are rounded up. */
+typedef struct buffer_table {
+    buffer_row row[T3R_BUFFER_COUNT];
+    size_t full_lists, full_refine; /* bytes with which they save all the passes that they can */
+} buffer_table;
+
+static void read_table(const t3r_config *c, buffer_table *table)
 {
     const uint32_t keep = c->stream != 0 ? T3R_KEEP_MAP : c->keep_analysis;
-    T3R_BUFFERS(ROW, 0, c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,
-                c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO, c->workers)
+    buffer_row *rows = table->row;
+#define SHAPE                                                                                                          \
+    T3R_SHAPE_(c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,        \
+               c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO, c->workers)
+    T3R_BUFFERS(ROW, 0, SHAPE)
     for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
         rows[b].bytes = T3R_UP_(rows[b].bytes);
     }
+    table->full_lists = T3R_UP_(T3R_LISTS_BYTES_(SHAPE));
+    table->full_refine = T3R_UP_(T3R_REFINE_FULL_BYTES_(SHAPE));
+#undef SHAPE
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)
@@ -68,16 +80,12 @@ static size_t stack_buffers(const buffer_row rows[T3R_BUFFER_COUNT], size_t offs
 
 t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout *layout)
 {
-    buffer_row rows[T3R_BUFFER_COUNT];
-    read_table(config, rows);
+    buffer_table table;
+    read_table(config, &table);
+    buffer_row *rows = table.row, *lists = &rows[T3R_BUFFER_LISTS], *refine = &rows[T3R_BUFFER_REFINE_WORK];
     layout->min_bytes = stack_buffers(rows, layout->offset);
-
-    buffer_row *lists = &rows[T3R_BUFFER_LISTS], *refine = &rows[T3R_BUFFER_REFINE_WORK];
-    size_t full_lists = T3R_UP_(T3R_LISTS_BYTES_(config->max_gaussians, config->render_width, config->render_height));
-    size_t full_refine = T3R_REFINE_FULL_BYTES_(config->width, config->height, config->views, config->max_gaussians,
-                                                config->refinements + config->stream);
-    size_t raster_top = layout->offset[T3R_BUFFER_LISTS] + full_lists + rows[T3R_BUFFER_SCENE].bytes;
-    size_t refine_top = layout->offset[T3R_BUFFER_REFINE_WORK] + full_refine + rows[T3R_BUFFER_SCENE].bytes;
+    size_t raster_top = layout->offset[T3R_BUFFER_LISTS] + table.full_lists + rows[T3R_BUFFER_SCENE].bytes;
+    size_t refine_top = layout->offset[T3R_BUFFER_REFINE_WORK] + table.full_refine + rows[T3R_BUFFER_SCENE].bytes;
     layout->bytes = T3R_MAX(layout->min_bytes, T3R_MAX(raster_top, refine_top));
     if (arena_bytes < layout->min_bytes) {
         return T3R_ERR_ARENA;
@@ -96,18 +104,18 @@ t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout 
     return T3R_OK;
 }
 
-#define NAME_OF(p, NAME, text, buffer_bytes, first_stage, last_stage) [T3R_BUFFER_##NAME] = text,
+#define NAME_OF(with, NAME, text, buffer_bytes, first_stage, last_stage) [T3R_BUFFER_##NAME] = text,
 
 const char *t3r_buffer_name(enum t3r_buffer buffer)
 {
-    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)};
+    static const char *const names[] = {T3R_BUFFERS(NAME_OF, 0, 0)};
     return names[buffer];
 }
 
 void t3r_buffer_lifetime(const t3r_config *config, enum t3r_buffer buffer, t3r_stage *first, t3r_stage *last)
 {
-    buffer_row rows[T3R_BUFFER_COUNT];
-    read_table(config, rows);
-    *first = rows[buffer].first;
-    *last = rows[buffer].last;
+    buffer_table table;
+    read_table(config, &table);
+    *first = table.row[buffer].first;
+    *last = table.row[buffer].last;
 }

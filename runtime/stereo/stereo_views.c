@@ -28,7 +28,7 @@ void t3r_stereo_clear(const t3r_view *views, uint32_t count)
 }
 
 /* Filled is what all pairs left. */
-static t3r_stereo_settings settings_of(const t3r_runtime *rt)
+static t3r_stereo_settings stereo_settings(const t3r_runtime *rt)
 {
     return (t3r_stereo_settings){
         .kernels = &rt->kernels, .disparities = T3R_STEREO_DISPARITIES, .paths = T3R_STEREO_PATHS, .fill = 0};
@@ -37,7 +37,7 @@ static t3r_stereo_settings settings_of(const t3r_runtime *rt)
 /* First looks at all pairs; of two views there is nothing to choose. */
 static t3r_status look_at_all(const t3r_runtime *rt, const t3r_view *views, survey *found)
 {
-    const t3r_stereo_settings settings = settings_of(rt);
+    const t3r_stereo_settings settings = stereo_settings(rt);
     const uint32_t pairs = rt->views * (rt->views - 1) / 2;
     uint32_t done = 0;
     memset(found, 0, sizeof *found);
@@ -103,7 +103,7 @@ static void divide_pair(const t3r_runtime *rt, t3r_view both[2])
 
 static void match(t3r_runtime *rt, t3r_view *views, survey *s, uint32_t a, uint32_t b)
 {
-    const t3r_stereo_settings settings = settings_of(rt);
+    const t3r_stereo_settings settings = stereo_settings(rt);
     const t3r_camera cameras[2] = {rt->camera[a], rt->camera[b]};
     const uint32_t index[2] = {a, b};
     t3r_view both[2] = {views[a], views[b]};

@@ -235,7 +235,7 @@ static uint32_t label_points(const t3r_runtime *rt, const t3r_view *view)
     return points;
 }
 
-static t3r_budget_settings settings_of(const t3r_runtime *rt)
+static t3r_budget_settings keyframe_settings(const t3r_runtime *rt)
 {
     const t3r_config *config = &rt->config;
     bool clustered = config->allocation == T3R_ALLOCATE_DENSITY || config->allocation == T3R_ALLOCATE_PAPER;
@@ -261,7 +261,7 @@ static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t sl
     report->points = label_points(rt, view);
     t3r_blur_texture(&rt->kernels, view, 1, &work.workers);
 
-    t3r_budget_settings settings = settings_of(rt);
+    t3r_budget_settings settings = keyframe_settings(rt);
     t3r_map map = t3r_map_of(rt);
     t3r_budget_keys(view, 1, &settings, &work.workers);
     t3r_map_cut cut = t3r_map_compete(&map, view, &settings, rt->config.gaussians);

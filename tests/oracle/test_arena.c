@@ -96,12 +96,12 @@ static void plan_equals_macros(void **state)
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
         const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
-        assert_true(plan.min_bytes == T3R_MIN_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                     c.render_width, c.render_height, c.head_column_bytes, keep,
-                                                     c.refinements, c.depth == T3R_DEPTH_STEREO, c.workers));
-        assert_true(plan.bytes == T3R_FULL_BYTES_(c.width, c.height, c.views, c.max_gaussians, c.clusters,
-                                                  c.render_width, c.render_height, c.head_column_bytes, keep,
-                                                  c.refinements, c.depth == T3R_DEPTH_STEREO, c.workers));
+#define SHAPE                                                                                                          \
+    T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.clusters, c.render_width, c.render_height,               \
+               c.head_column_bytes, keep, c.refinements, c.depth == T3R_DEPTH_STEREO, c.workers)
+        assert_true(plan.min_bytes == T3R_MIN_BYTES_(SHAPE));
+        assert_true(plan.bytes == T3R_FULL_BYTES_(SHAPE));
+#undef SHAPE
         /* the public macros speak of the defaults */
         c = t3r_default_config(c.width, c.height, c.views, c.max_gaussians);
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);

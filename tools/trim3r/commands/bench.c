@@ -126,7 +126,7 @@ static const struct {
     bool keep;                               /* the analysis, to run a stage alone again */
     uint32_t refinements;
     bool stereo; /* whatever --depth says */
-} settings_of[SCENES] = {
+} scene_settings[SCENES] = {
     [FULL] = {POINTS, ANALYTIC, false, REFINEMENTS, false},
     [TRIMMED] = {TRIMMED_TO, ANALYTIC, false, REFINEMENTS, false},
     [LEARNED] = {TRIMMED_TO, SMALL, false, REFINEMENTS, false},
@@ -187,12 +187,12 @@ static t3r_status build(workload *w, t3r_runtime *runtime)
 static t3r_status open_scene(workload *w, scene_kind kind)
 {
     scene_bench *s = &w->scene[kind];
-    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, settings_of[kind].gaussians);
+    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, scene_settings[kind].gaussians);
     const chosen_head *heads[] = {[ANALYTIC] = NULL, [SMALL] = &w->small, [MEASURED] = &w->measured};
-    const chosen_head *head = heads[settings_of[kind].head];
-    config.depth = settings_of[kind].stereo ? T3R_DEPTH_STEREO : w->source;
-    config.keep_analysis = settings_of[kind].keep;
-    config.refinements = settings_of[kind].refinements;
+    const chosen_head *head = heads[scene_settings[kind].head];
+    config.depth = scene_settings[kind].stereo ? T3R_DEPTH_STEREO : w->source;
+    config.keep_analysis = scene_settings[kind].keep;
+    config.refinements = scene_settings[kind].refinements;
     if (head != NULL) {
         chosen_head_configure(head, &config);
     }
