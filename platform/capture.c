@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "capture_adapter.h"
+#include "text.h"
 
 int t3r_capture_next(t3r_capture *capture, t3r_capture_frame *frame)
 {
@@ -81,6 +82,7 @@ void t3r_capture_remark(t3r_capture *capture, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(capture->note + used, sizeof capture->note - used, format, arguments);
     va_end(arguments);
+    t3r_text_clean(capture->note + used);
 }
 
 void t3r_capture_tell(t3r_capture *capture, t3r_capture_event event)
@@ -115,6 +117,7 @@ int t3r_capture_lose(t3r_capture *capture, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(capture->error, sizeof capture->error, format, arguments);
     va_end(arguments);
+    t3r_text_clean(capture->error);
     t3r_capture_tell(capture, (t3r_capture_event){.kind = T3R_EVENT_LOST, .detail = capture->error});
     return T3R_CAPTURE_LOST;
 }

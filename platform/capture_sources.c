@@ -5,6 +5,7 @@
 #include "capture_adapter.h"
 #include "capture_module.h"
 #include "reason.h"
+#include "text.h"
 
 /* Every adapter, in the order of the list; of one that was left out, what its user is told. */
 #define ALWAYS(name) HERE(name)
@@ -64,12 +65,27 @@ t3r_capture_adapter t3r_capture_adapter_of(uint32_t index)
     return told;
 }
 
+/* Devices name themselves: any text. */
+typedef struct listener {
+    void (*say)(void *user, const char *line);
+    void *user;
+} listener;
+
+static void say_clean(void *user, const char *line)
+{
+    const listener *to = user;
+    char text[512];
+    t3r_text_copy(text, sizeof text, t3r_text_of(line));
+    to->say(to->user, text);
+}
+
 void t3r_capture_devices(const char *adapter, void (*say)(void *user, const char *line), void *user)
 {
+    listener to = {say, user};
     for (uint32_t i = 0; i < ROWS; i++) {
         const t3r_capture_source *source = rows[i].source;
         if (source != NULL && source->devices != NULL && strcmp(source->name, adapter) == 0) {
-            source->devices(say, user);
+            source->devices(say_clean, &to);
         }
     }
 }

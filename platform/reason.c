@@ -3,6 +3,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "text.h"
+
 int t3r_reason(char *error, size_t error_bytes, const char *format, ...)
 {
     if (error != NULL && error_bytes > 0) {
@@ -10,6 +12,7 @@ int t3r_reason(char *error, size_t error_bytes, const char *format, ...)
         va_start(arguments, format);
         vsnprintf(error, error_bytes, format, arguments);
         va_end(arguments);
+        t3r_text_clean(error);
     }
     return -1;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "recording_index.h"
+#include "text.h"
 
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...)
 {
@@ -16,4 +17,5 @@ void t3r_recording_remark(t3r_recording *recording, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(recording->note + used, sizeof recording->note - used, format, arguments);
     va_end(arguments);
+    t3r_text_clean(recording->note + used);
 }

@@ -37,23 +37,55 @@ static size_t sequence_bytes(const unsigned char *s, size_t count)
     return wrong ? 0 : length;
 }
 
+/* U+0000..1F, U+007F..9F; the separators and directions U+2028..202E and U+2066..2069, which reorder a line. */
+static bool is_control(const unsigned char *s, size_t length)
+{
+    if (length == 1) {
+        return s[0] < 0x20 || s[0] == 0x7f;
+    }
+    return (length == 2 && s[0] == 0xc2 && s[1] < 0xa0) ||
+           (length == 3 && s[0] == 0xe2 &&
+            ((s[1] == 0x80 && s[2] >= 0xa8 && s[2] <= 0xae) || (s[1] == 0x81 && s[2] >= 0xa6 && s[2] <= 0xa9)));
+}
+
+bool t3r_text_is_clean(t3r_text text)
+{
+    const unsigned char *s = (const unsigned char *)text.chars;
+    for (size_t at = 0, length; at < text.count; at += length) {
+        length = sequence_bytes(s + at, text.count - at);
+        if (length == 0 || is_control(s + at, length)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void t3r_text_clean(char *text)
+{
+    unsigned char *s = (unsigned char *)text;
+    for (size_t at = 0, count = strlen(text); at < count;) {
+        size_t length = sequence_bytes(s + at, count - at);
+        if (length == 0 || is_control(s + at, length)) {
+            length = length == 0 ? 1 : length;
+            memset(s + at, '?', length);
+        }
+        at += length;
+    }
+}
+
 void t3r_text_copy(char *out, size_t room, t3r_text text)
 {
     const unsigned char *s = (const unsigned char *)text.chars;
-    size_t at = 0; /* the whole sequences that fit and are UTF-8 end here */
-    bool utf8 = true;
-    while (utf8 && at < text.count) {
-        size_t length = sequence_bytes(s + at, text.count - at);
-        if (length > 0 && at + length >= room) {
-            break;
+    size_t count = 0;
+    for (size_t length; count < text.count && count + 1 < room; count += length) {
+        length = sequence_bytes(s + count, text.count - count);
+        length = length == 0 ? 1 : length;
+        if (count + length >= room) {
+            break; /* only whole sequences */
         }
-        utf8 = length > 0;
-        at += length;
-    }
-    size_t count = utf8 ? at : text.count < room - 1 ? text.count : room - 1;
-    for (size_t i = 0; i < count; i++) {
-        bool safe = s[i] >= 0x20 && s[i] != 0x7f && (utf8 || s[i] < 0x80);
-        out[i] = safe ? (char)s[i] : '?';
+        memcpy(out + count, s + count, length);
+        out[count] = out[count] != '\0' ? out[count] : '?'; /* a zero would end the copy */
     }
     out[count] = '\0';
+    t3r_text_clean(out);
 }

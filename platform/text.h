@@ -15,8 +15,12 @@ t3r_text t3r_text_of(const char *string);
 bool t3r_text_is(t3r_text text, const char *literal);
 bool t3r_text_same(t3r_text a, t3r_text b);
 
-/* Copies what fits and terminates it; room > 0. Control characters become '?', and so does every byte over 127
- * of a text that is not UTF-8: the copy is safe to print and to put into JSON. */
+/* Text of others is data: a terminal, a page or a table must not obey it. Clean text is UTF-8 without control
+ * characters (C0, DEL, C1, line separators, changes of direction). */
+bool t3r_text_is_clean(t3r_text text);
+/* Makes a string clean in its place: each byte of what may not stand there becomes '?'. */
+void t3r_text_clean(char *text);
+/* Copies what fits, whole characters alone, cleans and terminates it; room > 0. */
 void t3r_text_copy(char *out, size_t room, t3r_text text);
 
 #endif

@@ -10,6 +10,9 @@
 #include <unistd.h>
 
 #include "cli/time_left.h"
+#include "text.h"
+
+#define MESSAGE_BYTES 2048
 
 static const char *command_name;
 
@@ -42,23 +45,19 @@ void cli_keep_errors(char *text, size_t bytes)
 
 int cli_error(int code, const char *format, ...)
 {
+    char message[MESSAGE_BYTES];
     va_list arguments;
     cli_progress_end();
-    if (kept.text != NULL) {
-        va_start(arguments, format);
-        vsnprintf(kept.text, kept.bytes, format, arguments);
-        va_end(arguments);
-        return code;
-    }
-    fputs("trim3r", stderr);
-    if (command_name != NULL) {
-        fprintf(stderr, " %s", command_name);
-    }
-    fputs(": ", stderr);
     va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
+    vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    fputc('\n', stderr);
+    t3r_text_clean(message); /* names of files and what they hold stand in it */
+    if (kept.text != NULL) {
+        snprintf(kept.text, kept.bytes, "%s", message);
+    } else {
+        fprintf(stderr, "trim3r%s%s: %s\n", command_name != NULL ? " " : "", command_name != NULL ? command_name : "",
+                message);
+    }
     return code;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "text.h"
 #include "trim3r/commands/commands.h"
 #include "trim3r.h"
 
@@ -50,6 +51,17 @@ static void print_help(FILE *out)
           out);
 }
 
+/* Names of files stand in messages, tables and pages: one that a terminal would obey is refused before any of them. */
+static int check_arguments(int argc, char **argv)
+{
+    for (int i = 1; i < argc; i++) {
+        if (!t3r_text_is_clean(t3r_text_of(argv[i]))) {
+            return cli_error(CLI_BAD_USAGE, "argument %d, '%s', has a control character or is not UTF-8", i, argv[i]);
+        }
+    }
+    return CLI_OK;
+}
+
 static int run(int argc, char **argv)
 {
     if (argc < 2) {
@@ -80,7 +92,8 @@ static int run(int argc, char **argv)
 int main(int argc, char **argv)
 {
     argp_err_exit_status = CLI_BAD_USAGE;
-    int code = run(argc, argv);
+    int code = check_arguments(argc, argv);
+    code = code == CLI_OK ? run(argc, argv) : code;
     /* a result that could not be printed is not a success */
     if ((fflush(stdout) != 0 || ferror(stdout)) && code == CLI_OK) {
         code = cli_error(CLI_BAD_INPUT, "standard output: %s", strerror(errno));
