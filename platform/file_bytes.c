@@ -1,43 +1,84 @@
 #include "file_bytes.h"
 
 #include <errno.h>
-#include <limits.h>
-#include <stdio.h>
+#include <fcntl.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "reason.h"
 
-/* A seekable file's size is only the first guess: what is read counts. */
-static size_t guess_bytes(FILE *file)
+#define FIRST_BYTES 64u
+
+static const char too_large[] = "the file is too large";
+
+/* O_NONBLOCK: the opening of a pipe does not wait for a writer, it reads as empty then. */
+static FILE *open_kind(const char *path, bool pipes, struct stat *about, char *error, size_t error_bytes)
 {
-    long end = fseek(file, 0, SEEK_END) == 0 ? ftell(file) : -1;
-    rewind(file);
-    return end >= 0 && (uint64_t)end < SIZE_MAX / 2 && end != LONG_MAX ? (size_t)end : (size_t)1 << 16;
+    if (stat(path, about) != 0) {
+        t3r_reason(error, error_bytes, "%s: %s", path, strerror(errno));
+        return NULL;
+    }
+    if (!S_ISREG(about->st_mode) && !(pipes && S_ISFIFO(about->st_mode))) {
+        t3r_reason(error, error_bytes, "%s: %s", path,
+                   S_ISDIR(about->st_mode) ? strerror(EISDIR) : "not a regular file");
+        return NULL;
+    }
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    FILE *file = NULL;
+    if (descriptor >= 0 && fstat(descriptor, about) == 0 && fcntl(descriptor, F_SETFL, 0) == 0) {
+        file = fdopen(descriptor, "rb");
+    }
+    if (file == NULL) {
+        t3r_reason(error, error_bytes, "%s: %s", path, strerror(errno));
+        if (descriptor >= 0) {
+            close(descriptor);
+        }
+    }
+    return file;
+}
+
+FILE *t3r_file_open(const char *path, char *error, size_t error_bytes)
+{
+    struct stat about;
+    return open_kind(path, false, &about, error, error_bytes);
 }
 
 /* NULL with a reason, which may be errno's, when it fails. */
-static uint8_t *read_stream(FILE *file, size_t most, size_t *count, const char **why)
+static uint8_t *read_stream(FILE *file, uint64_t guess, size_t most, t3r_file_check check, size_t *count,
+                            const char **why)
 {
-    size_t room = guess_bytes(file);
-    room = (room < most ? room : most) + 2; /* one to notice the end or one byte too many, one for the 0 */
-    uint8_t *bytes = NULL;
-    size_t got;
+    uint8_t first[FIRST_BYTES];
     errno = 0;
-    *count = 0;
-    do {
-        uint8_t *grown = bytes == NULL ? malloc(room) : room > SIZE_MAX / 2 ? NULL : realloc(bytes, room *= 2);
-        if (grown == NULL) {
-            *why = "out of memory";
-            free(bytes);
-            return NULL;
+    *count = fread(first, 1, sizeof first, file);
+    *why = ferror(file) ? strerror(errno) : check != NULL ? check(first, *count) : NULL;
+    if (*why == NULL && (guess > most || *count > most)) {
+        *why = too_large;
+    }
+    if (*why != NULL) {
+        return NULL;
+    }
+    size_t room = (guess < sizeof first ? sizeof first : (size_t)guess) + 2; /* to notice the end, and for the 0 */
+    uint8_t *bytes = malloc(room);
+    if (bytes != NULL) {
+        memcpy(bytes, first, *count);
+    }
+    for (size_t got = 1; bytes != NULL && got > 0 && *count <= most;) {
+        if (*count == room - 1) {
+            uint8_t *grown = room > SIZE_MAX / 2 ? NULL : realloc(bytes, room *= 2);
+            if (grown == NULL) {
+                free(bytes);
+            }
+            bytes = grown;
+            continue;
         }
-        bytes = grown;
         got = fread(bytes + *count, 1, room - 1 - *count, file);
         *count += got;
-    } while (*count == room - 1 && *count <= most);
-    if (ferror(file) || *count > most) {
-        *why = ferror(file) ? strerror(errno) : "the file is too large";
+    }
+    if (bytes == NULL || ferror(file) || *count > most) {
+        *why = bytes == NULL ? "out of memory" : ferror(file) ? strerror(errno) : too_large;
         free(bytes);
         return NULL;
     }
@@ -45,16 +86,28 @@ static uint8_t *read_stream(FILE *file, size_t most, size_t *count, const char *
     return bytes;
 }
 
-uint8_t *t3r_file_bytes(const char *path, size_t most, size_t *count, char *error, size_t error_bytes)
+uint8_t *t3r_file_bytes_checked(const char *path, size_t most, t3r_file_check check, size_t *count, char *error,
+                                size_t error_bytes)
 {
-    FILE *file = fopen(path, "rb");
-    const char *why = file == NULL ? strerror(errno) : NULL;
-    uint8_t *bytes = file == NULL ? NULL : read_stream(file, most, count, &why);
+    struct stat about;
+    FILE *file = open_kind(path, true, &about, error, error_bytes);
+    if (file == NULL) {
+        return NULL;
+    }
+    bool pipe = !S_ISREG(about.st_mode);
+    /* a file's size is only the first guess: what is read counts */
+    uint64_t guess = pipe || about.st_size < 0 ? 1 << 16 : (uint64_t)about.st_size;
+    const char *why;
+    uint8_t *bytes =
+        read_stream(file, guess, pipe && most > T3R_PIPE_BYTES_MOST ? T3R_PIPE_BYTES_MOST : most, check, count, &why);
     if (bytes == NULL) {
         t3r_reason(error, error_bytes, "%s: %s", path, why);
     }
-    if (file != NULL) {
-        fclose(file);
-    }
+    fclose(file);
     return bytes;
+}
+
+uint8_t *t3r_file_bytes(const char *path, size_t most, size_t *count, char *error, size_t error_bytes)
+{
+    return t3r_file_bytes_checked(path, most, NULL, count, error, error_bytes);
 }

@@ -9,6 +9,7 @@
 #include "chunk_codec.h"
 #include "crc32.h"
 #include "grow.h"
+#include "reader_limits.h"
 #include "mcap.h"
 #include "reason.h"
 
@@ -148,7 +149,7 @@ static int read_metadata(walk *w, fields *in, t3r_mcap_place place)
     while (!pairs.failed && pairs.at < pairs.count) {
         t3r_text key = get_text(&pairs);
         t3r_text value = get_text(&pairs);
-        if (!pairs.failed && w->visitor->metadata(w->visitor->user, name, key, value, place) != 0) {
+        if (!pairs.failed && w->visitor->metadata(w->visitor->user, name, key, value, place) < 0) {
             return -1;
         }
     }
@@ -176,17 +177,19 @@ static int read_attachment(walk *w, fields *in, t3r_mcap_place place)
 
 /* ---- chunks ---- */
 
-/* The records of a chunk; one that reaches past the end is an error, or, in a chunk that was cut, the end. */
+/* The records of a chunk; one that reaches past the end is an error, or, in a chunk that was cut, the end. 0,
+ * T3R_MCAP_KEPT once the visitor keeps any of them, or -1. */
 static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chunk_offset, bool cut)
 {
     t3r_mcap_place place = {0, true, chunk_offset};
+    int kept = 0;
     for (size_t at = 0; at < count;) {
         place.offset = at;
         uint8_t opcode = bytes[at];
         bool has_head = count - at >= T3R_MCAP_RECORD_HEAD_BYTES;
         uint64_t length = has_head ? t3r_load_le64(bytes + at + 1) : 0;
         if (!has_head || length > count - at - T3R_MCAP_RECORD_HEAD_BYTES) {
-            return cut ? 0 : malformed(w, opcode, place, "it reaches past the chunk's end");
+            return cut ? kept : malformed(w, opcode, place, "it reaches past the chunk's end");
         }
         fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
         int status = 0;
@@ -204,29 +207,38 @@ static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chun
             status = opcode <= T3R_MCAP_DATA_END ? malformed(w, opcode, place, "it may not stand in a chunk") : 0;
             break;
         }
-        if (status != 0) {
+        if (status < 0) {
             return -1;
         }
+        kept |= status;
         at += T3R_MCAP_RECORD_HEAD_BYTES + (size_t)length;
     }
-    return 0;
+    return kept;
 }
 
-/* Memory for `bytes` bytes, kept in w->chunks; NULL when memory is out. */
-static uint8_t *keep_chunk(walk *w, uint64_t bytes)
+/* Room in w->chunks for one more; -1 when memory is out. */
+static int reserve_chunk(walk *w)
 {
     t3r_mcap_chunks *chunks = w->chunks;
     uint8_t **grown = t3r_grow(chunks->data, chunks->count, &chunks->capacity, sizeof *chunks->data);
-    if (grown == NULL) {
-        return NULL;
+    chunks->data = grown != NULL ? grown : chunks->data;
+    return grown != NULL ? 0 : -1;
+}
+
+/* What a chunk of that many bytes may not become, or 0: asked before memory is. */
+static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
+{
+    uint64_t most = t3r_limit_unpacked(w->limit), all = w->chunks->bytes;
+    most = most < T3R_MCAP_MAX_CHUNKS_BYTES ? most : T3R_MCAP_MAX_CHUNKS_BYTES;
+    if (bytes <= T3R_MCAP_MAX_CHUNK_BYTES && bytes <= most - all) {
+        return 0;
     }
-    chunks->data = grown;
-    uint8_t *data = malloc(bytes > 0 ? (size_t)bytes : 1);
-    if (data != NULL) {
-        chunks->data[chunks->count++] = data;
-        chunks->bytes += bytes;
-    }
-    return data;
+    char what[160];
+    snprintf(what, sizeof what,
+             "it unpacks to %" PRIu64 " bytes, those before it to %" PRIu64 ": a file of %" PRIu64
+             " may unpack to %" PRIu64,
+             bytes, all, w->limit, most);
+    return malformed(w, T3R_MCAP_CHUNK, place, what);
 }
 
 /* `in` holds the content, or as much of it as a cut file has left. */
@@ -247,6 +259,8 @@ static int read_chunk(walk *w, fields *in, t3r_mcap_place place, bool cut)
     }
     available = compressed_bytes < available ? (size_t)compressed_bytes : available;
     const uint8_t *data = in->bytes + in->at;
+    uint8_t *own = NULL;
+    const char *wrong = NULL;
     size_t count = available;
     if (compression.count == 0) {
         if (uncompressed_bytes != compressed_bytes) {
@@ -259,32 +273,35 @@ static int read_chunk(walk *w, fields *in, t3r_mcap_place place, bool cut)
             snprintf(what, sizeof what, "its compression '%s' is not supported (lz4 and zstd are)", name);
             return malformed(w, T3R_MCAP_CHUNK, place, what);
         }
-        if (uncompressed_bytes > T3R_MCAP_MAX_CHUNK_BYTES ||
-            uncompressed_bytes > T3R_MCAP_MAX_CHUNKS_BYTES - w->chunks->bytes) {
-            return malformed(w, T3R_MCAP_CHUNK, place, "it decompresses to more than 1 GiB, or all chunks to 4 GiB");
+        if (check_unpacked(w, place, uncompressed_bytes) != 0) {
+            return -1;
         }
         uint64_t most = t3r_chunk_codec_most(compression, available);
         if (uncompressed_bytes > most && !cut) {
             return malformed(w, T3R_MCAP_CHUNK, place, "its uncompressed_size is more than its data can hold");
         }
         uint64_t room = uncompressed_bytes < most ? uncompressed_bytes : most;
-        uint8_t *out = keep_chunk(w, room);
-        if (out == NULL) {
+        data = own = reserve_chunk(w) == 0 ? malloc(room > 0 ? (size_t)room : 1) : NULL;
+        if (own == NULL) {
             return malformed(w, T3R_MCAP_CHUNK, place, "out of memory");
         }
-        const char *wrong = t3r_chunk_decompress(compression, data, available, out, (size_t)room, &count);
+        w->chunks->bytes += room;
+        wrong = t3r_chunk_decompress(compression, in->bytes + in->at, available, own, (size_t)room, &count);
         if (wrong == NULL && count != uncompressed_bytes) {
             wrong = "its data are shorter than its uncompressed_size";
         }
-        if (wrong != NULL && !cut) {
-            return malformed(w, T3R_MCAP_CHUNK, place, wrong);
-        }
-        data = out;
     }
-    if (!cut && crc != 0 && crc != t3r_crc32(0, data, count)) {
-        return malformed(w, T3R_MCAP_CHUNK, place, "its CRC does not match its records");
+    if (wrong == NULL && !cut && crc != 0 && crc != t3r_crc32(0, data, count)) {
+        wrong = "its CRC does not match its records";
     }
-    return walk_chunk(w, data, count, place.offset, cut);
+    int status = wrong != NULL && !cut ? malformed(w, T3R_MCAP_CHUNK, place, wrong)
+                                       : walk_chunk(w, data, count, place.offset, cut);
+    if (own != NULL && status == T3R_MCAP_KEPT) {
+        w->chunks->data[w->chunks->count++] = own;
+    } else {
+        free(own);
+    }
+    return status < 0 ? -1 : 0;
 }
 
 /* ---- the file ---- */
@@ -362,8 +379,7 @@ static int read_record(walk *w, uint8_t opcode, fields *in, t3r_mcap_place place
     }
 }
 
-/* What is wrong with the first 8 bytes, or NULL. */
-static const char *magic_error(const uint8_t *bytes, size_t count)
+const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count)
 {
     size_t compared = count < T3R_MCAP_MAGIC_BYTES ? count : T3R_MCAP_MAGIC_BYTES;
     if (count == 0) {
@@ -396,7 +412,7 @@ static int check_end(walk *w, uint64_t at, size_t count, t3r_mcap_end *end)
 int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *visitor, t3r_mcap_chunks *chunks,
                   t3r_mcap_end *end, char *error, size_t error_bytes)
 {
-    const char *wrong = magic_error(bytes, count);
+    const char *wrong = t3r_mcap_magic_error(bytes, count);
     if (wrong != NULL) {
         return t3r_reason(error, error_bytes, "%s", wrong);
     }
@@ -436,7 +452,7 @@ int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *vi
             return malformed(&w, opcode, place, "the first record is not a Header");
         }
         fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
-        if (read_record(&w, opcode, &in, place) != 0) {
+        if (read_record(&w, opcode, &in, place) < 0) {
             return -1;
         }
         at += T3R_MCAP_RECORD_HEAD_BYTES + length;

@@ -41,7 +41,9 @@ typedef struct t3r_mcap_message_record {
     size_t bytes;
 } t3r_mcap_message_record;
 
-/* Each returns 0 to go on, or -1 once it has written its reason where t3r_mcap_read()'s goes. */
+/* Each returns 0 to go on, T3R_MCAP_KEPT when it keeps what the record points to, or -1 once it has written its reason
+ * where t3r_mcap_read()'s goes. */
+#define T3R_MCAP_KEPT 1
 typedef struct t3r_mcap_visitor {
     void *user;
     int (*schema)(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_place place);
@@ -51,11 +53,12 @@ typedef struct t3r_mcap_visitor {
     int (*metadata)(void *user, t3r_text name, t3r_text key, t3r_text value, t3r_mcap_place place);
 } t3r_mcap_visitor;
 
-/* Decompressed chunks: the memory that messages point into; freed by t3r_mcap_chunks_free(). Start with zeros. */
+/* Decompressed chunks of which something was kept: the memory that messages point into; freed by
+ * t3r_mcap_chunks_free(). Start with zeros. */
 typedef struct t3r_mcap_chunks {
     uint8_t **data;
     size_t count, capacity;
-    uint64_t bytes;
+    uint64_t bytes; /* decompressed so far, kept or not */
 } t3r_mcap_chunks;
 void t3r_mcap_chunks_free(t3r_mcap_chunks *chunks);
 
@@ -63,6 +66,9 @@ typedef struct t3r_mcap_end {
     bool cut;            /* the file stops short of its end */
     uint64_t cut_offset; /* where the first record that is not whole starts */
 } t3r_mcap_end;
+
+/* What is wrong with the first bytes of a file, 8 of them and more if there are, or NULL. */
+const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count);
 
 /* 0, or -1 with "what, where" in error[]. */
 int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *visitor, t3r_mcap_chunks *chunks,

@@ -6,9 +6,12 @@
 
 #include <jpeglib.h>
 
+#include "jpeg_scans.h"
+
 struct t3r_mjpeg {
     struct jpeg_decompress_struct jpeg;
     struct jpeg_error_mgr errors;
+    t3r_jpeg_scans scans;
     jmp_buf back;
     char message[JMSG_LENGTH_MAX];
 };
@@ -28,6 +31,13 @@ static void emit(j_common_ptr jpeg, int level)
     }
 }
 
+static void refuse(j_common_ptr jpeg, const char *reason)
+{
+    t3r_mjpeg *self = jpeg->client_data;
+    snprintf(self->message, sizeof self->message, "%s", reason);
+    longjmp(self->back, 1);
+}
+
 static int create(t3r_mjpeg *self)
 {
     self->jpeg.err = jpeg_std_error(&self->errors);
@@ -38,6 +48,7 @@ static int create(t3r_mjpeg *self)
         return -1;
     }
     jpeg_create_decompress(&self->jpeg); /* keeps err and client_data */
+    t3r_jpeg_watch_scans(&self->jpeg, &self->scans, refuse);
     return 0;
 }
 

@@ -9,6 +9,7 @@
 #include "file_bytes.h"
 #include "fixed_text.h"
 #include "grow.h"
+#include "reader_limits.h"
 #include "pixel_layout.h"
 #include "reason.h"
 #include "recording_index.h"
@@ -16,7 +17,6 @@
 #define IDS 65536u                                  /* schema and channel ids have 16 bits */
 #define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
 #define MAX_DEPTH_UNIT_Q40 (UINT64_C(1) << 56)
-#define MAX_TRIPLETS (1u << 20)
 #define MAX_LOG_NS ((uint64_t)1 << 62)
 
 /* State of one pass over the records. */
@@ -62,7 +62,7 @@ static int on_schema(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_
     x->schemas = grown;
     x->schemas[x->schema_count++] = *schema;
     x->schema_of[schema->id] = (uint32_t)x->schema_count;
-    return 0;
+    return T3R_MCAP_KEPT;
 }
 
 /* Schema names come as "package/msg/Type", from older writers as "package/Type". */
@@ -109,7 +109,7 @@ static int on_channel(void *user, const t3r_mcap_channel_record *channel, t3r_mc
         .type = t3r_text_is(channel->encoding, "cdr") ? type_of(schema) : T3R_ROS_TYPE_COUNT,
     };
     x->stream_of[channel->id] = (uint32_t)recording->stream_count;
-    return stream->topic != NULL && stream->schema != NULL ? 0 : fail(x, "channel", place, "out of memory");
+    return stream->topic != NULL && stream->schema != NULL ? T3R_MCAP_KEPT : fail(x, "channel", place, "out of memory");
 }
 
 /* ---- messages ---- */
@@ -171,6 +171,7 @@ static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mc
         return fail(x, "message", place, "its channel was not defined before it");
     }
     t3r_stream *stream = &x->recording->streams[x->stream_of[message->channel] - 1];
+    int kept = 0;
     int64_t log_ns = (int64_t)(message->log_ns < MAX_LOG_NS ? message->log_ns : MAX_LOG_NS);
     if (stream->type != T3R_ROS_TYPE_COUNT) {
         int64_t stamp_ns = 0;
@@ -192,12 +193,13 @@ static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mc
             stream->messages[stream->kept] = (t3r_indexed_message){
                 message->data, message->bytes, stamp_ns != 0 ? stamp_ns : log_ns, stream->kept, place};
             stream->kept++;
+            kept = T3R_MCAP_KEPT;
         }
     }
     stream->first_ns = stream->count == 0 || log_ns < stream->first_ns ? log_ns : stream->first_ns;
     stream->last_ns = stream->count == 0 || log_ns > stream->last_ns ? log_ns : stream->last_ns;
     stream->count++;
-    return 0;
+    return kept;
 }
 
 /* ---- metadata ---- */
@@ -227,8 +229,8 @@ static const char *parse_triplets(t3r_text text, t3r_recording *recording)
     if (text.count == 0) {
         return NULL;
     }
-    if (room > MAX_TRIPLETS) {
-        return "more than 1048576 triplets";
+    if (room > T3R_LIMIT_TRIPLETS) {
+        return T3R_LIMIT_TEXT("more than ", T3R_LIMIT_TRIPLETS, " triplets");
     }
     t3r_triplet *triplets = calloc(room, sizeof *triplets);
     if (triplets == NULL) {
@@ -349,7 +351,7 @@ t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *err
 t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_bytes)
 {
     size_t count;
-    uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, error_bytes);
+    uint8_t *bytes = t3r_file_bytes_checked(path, SIZE_MAX, t3r_mcap_magic_error, &count, error, error_bytes);
     if (bytes == NULL) {
         return NULL;
     }

@@ -615,9 +615,9 @@ static void broken_chunks_are_refused(void **state)
                 c.packed.count--;
             } else if (way == 4) {
                 c.uncompressed = UINT64_MAX - 7;
-                reason = i > 0 ? "more than 1 GiB" : reason;
+                reason = i > 0 ? "may unpack to 134" : reason; /* 128 MiB and a little more */
             } else {
-                c.uncompressed = 1u << 30;
+                c.uncompressed = 127u << 20;
                 reason = i > 0 ? "more than its data can hold" : reason;
             }
             bag b;

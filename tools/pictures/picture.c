@@ -12,6 +12,8 @@
 #include <jerror.h>
 #include <png.h>
 
+#include "file_bytes.h"
+#include "jpeg_scans.h"
 #include "reason.h"
 #include "trim3r.h"
 #include "cli/whole_file.h"
@@ -87,7 +89,8 @@ static int png_decode(png_work *work, picture *out)
     }
     png_init_io(work->png, work->file);
     png_set_user_limits(work->png, T3R_MAX_SIDE, T3R_MAX_SIDE);
-    png_set_chunk_malloc_max(work->png, 8u << 20);
+    /* pixels alone: a text, profile or preview may unpack to megabytes; -1: nor what libpng knows of these */
+    png_set_keep_unknown_chunks(work->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(work->png, work->info);
     png_byte colour_type = png_get_color_type(work->png, work->info);
     png_byte depth = png_get_bit_depth(work->png, work->info);
@@ -184,6 +187,7 @@ int picture_write_png(const char *path, const picture *in, char *error, size_t e
 typedef struct jpeg_work {
     struct jpeg_error_mgr manager; /* first: the library hands back a pointer to it */
     struct jpeg_decompress_struct jpeg;
+    t3r_jpeg_scans scans;
     jmp_buf escape;
     bool header_only;
     char reason[REASON_BYTES];
@@ -211,12 +215,18 @@ static void jpeg_on_message(j_common_ptr jpeg, int level)
     }
 }
 
+static void jpeg_refuse(j_common_ptr jpeg, const char *reason)
+{
+    jpeg_fail((jpeg_work *)jpeg->err, reason);
+}
+
 static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
 {
     if (setjmp(work->escape)) {
         return -1;
     }
     jpeg_create_decompress(&work->jpeg);
+    t3r_jpeg_watch_scans(&work->jpeg, &work->scans, jpeg_refuse);
     jpeg_stdio_src(&work->jpeg, file);
     jpeg_read_header(&work->jpeg, TRUE);
     if (work->jpeg.image_width > T3R_MAX_SIDE || work->jpeg.image_height > T3R_MAX_SIDE) {
@@ -271,9 +281,9 @@ static int read_either(const char *path, bool header_only, picture *out, char *e
     static const uint8_t png_magic[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t jpeg_magic[3] = {0xff, 0xd8, 0xff};
     memset(out, 0, sizeof *out);
-    FILE *file = fopen(path, "rb");
+    FILE *file = t3r_file_open(path, error, error_bytes);
     if (file == NULL) {
-        return fail(error, error_bytes, path, strerror(errno));
+        return -1;
     }
     uint8_t magic[8] = {0};
     size_t got = fread(magic, 1, sizeof magic, file);

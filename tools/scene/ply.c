@@ -2,4 +2,5 @@
 
 #include "scene/scene_format.h"
 
-const scene_format scene_format_ply = {.suffix = ".ply", .magic = "ply", .parse = ply_parse, .write = ply_write};
+const scene_format scene_format_ply = {
+    .suffix = ".ply", .magic = "ply", .foreign = "byte 0: not a .ply file", .parse = ply_parse, .write = ply_write};

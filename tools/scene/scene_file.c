@@ -84,11 +84,21 @@ int scene_file_parse(const uint8_t *bytes, size_t count, scene_file *out, char *
     return parse_as(format != NULL ? format : formats[0], bytes, count, out, error, error_bytes);
 }
 
+/* Before the whole of a file is read. */
+static const char *check_first(const uint8_t *first, size_t count)
+{
+    bool any = false;
+    for (int i = 0; i < FORMATS_COUNT; i++) {
+        any = any || formats[i]->magic == NULL;
+    }
+    return any || format_of_bytes(first, count) != NULL ? NULL : formats[0]->foreign;
+}
+
 int scene_file_read(const char *path, scene_file *out, char *error, size_t error_bytes)
 {
     *out = (scene_file){0};
     size_t count;
-    uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, error_bytes);
+    uint8_t *bytes = t3r_file_bytes_checked(path, SIZE_MAX, check_first, &count, error, error_bytes);
     if (bytes == NULL) {
         return -1;
     }

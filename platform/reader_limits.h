@@ -1,0 +1,49 @@
+/* The limits of all readers: what import takes, build, eval and replay can use, and no file asks for more work or
+ * memory than its frames justify. SECURITY.md lists them by reader. Plain integers, so that messages name them, too. */
+#ifndef T3R_PLATFORM_READER_LIMITS_H
+#define T3R_PLATFORM_READER_LIMITS_H
+
+#include <stdint.h>
+
+#include "trim3r.h"
+
+#define T3R_LIMIT_TEXT_OF(number) #number
+#define T3R_LIMIT_TEXT(before, number, behind) before T3R_LIMIT_TEXT_OF(number) behind
+
+/* ---- of what the runtime takes: cameras and depth in its fixed point ---- */
+
+#define T3R_LIMIT_FOCAL_LEAST 8 /* pixels: focal lengths are from here ... */
+#define T3R_LIMIT_PIXELS 16384  /* ... to below this, |cx| and |cy| below it */
+#define T3R_LIMIT_DISTORTION 128
+#define T3R_LIMIT_TANGENTIAL 16    /* |p1|, |p2| of radial-tangential distortion */
+#define T3R_LIMIT_POSITION_LOG2 30 /* |x|, |y|, |z| below 2^30 world units */
+#define T3R_LIMIT_DEPTH_UNIT 128   /* world units a step: below it, and 2^-40 or more */
+#define T3R_LIMIT_ROTATION_Q1 3    /* |w| ... |z| of a recorded quaternion: 1.5 */
+
+/* ---- of how many ---- */
+
+#define T3R_LIMIT_FRAMES 100000        /* of a folder */
+#define T3R_LIMIT_TRIPLETS 1048576     /* of a folder or a recording */
+#define T3R_LIMIT_POSES 2097152        /* of a trajectory */
+#define T3R_LIMIT_PICTURES 1000000     /* lines of a list of pictures */
+#define T3R_LIMIT_JSON_VALUES 4194304  /* of a JSON text, keys included: 80 bytes of memory each */
+#define T3R_LIMIT_JPEG_SCANS 32        /* cameras and programs write 10 or so */
+#define T3R_LIMIT_VIEWS_OF_POINTS 1000 /* pointmaps in a file */
+
+/* ---- of bytes ---- */
+
+#define T3R_LIMIT_TEXT_BYTES (UINT32_C(64) << 20) /* of transforms.json, a list, a trajectory, a table */
+
+/* Compressed data may become this many bytes, whatever they are, and this many for each of theirs. Pictures of cameras
+ * become at most ten times smaller without loss; what packs better is worth no more memory. */
+#define T3R_LIMIT_UNPACKED_FREE (UINT64_C(128) << 20)
+#define T3R_LIMIT_UNPACKED_RATIO 32
+
+static inline uint64_t t3r_limit_unpacked(uint64_t packed_bytes)
+{
+    return packed_bytes > (UINT64_MAX - T3R_LIMIT_UNPACKED_FREE) / T3R_LIMIT_UNPACKED_RATIO
+               ? UINT64_MAX
+               : T3R_LIMIT_UNPACKED_FREE + T3R_LIMIT_UNPACKED_RATIO * packed_bytes;
+}
+
+#endif
