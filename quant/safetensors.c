@@ -10,7 +10,7 @@
 #include "quant_reason.h"
 
 #define LENGTH_BYTES 8u
-#define MAX_HEADER_BYTES (1u << 24) /* a head's is a few KB */
+#define MAX_HEADER_BYTES (1u << 20) /* a head's is a few KB; each two bytes may be a value of 80 in memory */
 #define METADATA "__metadata__"
 
 typedef struct reader {

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "reader_limits.h"
 #include "reason.h"
 
 static int is_picture(const struct dirent *entry)
@@ -37,10 +38,10 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
     }
     out->frames = calloc((size_t)count + 1, sizeof *out->frames);
     int status = 0;
-    if (count == 0 || (uint32_t)count > POSED_FOLDER_MAX_FRAMES) {
+    if (count == 0 || count > T3R_LIMIT_FRAMES) {
         status = t3r_reason(error, error_bytes, "%s: %s", directory,
                             count == 0 ? "no transforms.json, no rgb.txt and groundtruth.txt, no pictures"
-                                       : "more than 100000 pictures");
+                                       : T3R_LIMIT_TEXT("more than ", T3R_LIMIT_FRAMES, " pictures"));
     }
     for (int i = 0; i < count; i++) {
         if (status == 0 && out->frames != NULL) {

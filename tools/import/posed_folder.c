@@ -11,9 +11,8 @@
 #include "import/picture_folder.h"
 #include "import/transforms_json.h"
 #include "import/tum_rgbd.h"
+#include "reader_limits.h"
 #include "reason.h"
-
-#define MAX_TEXT_BYTES ((size_t)256 << 20)
 
 static bool exists(const char *directory, const char *name)
 {
@@ -32,7 +31,7 @@ static int read_transforms(const char *directory, const posed_folder_options *op
     }
     size_t bytes = 0;
     char reason[512];
-    char *text = (char *)t3r_file_bytes(path, MAX_TEXT_BYTES, &bytes, error, error_bytes);
+    char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &bytes, error, error_bytes);
     int status = -1;
     if (text != NULL) {
         status = transforms_json_parse(text, bytes, options, out, reason, sizeof reason);

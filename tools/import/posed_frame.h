@@ -8,8 +8,6 @@
 
 #include "recording.h"
 
-#define POSED_FOLDER_MAX_FRAMES 100000u
-
 /* What a folder says of a camera; a number that it does not give is NAN. Pixels, with the principal point measured
  * from the corner of the top-left pixel, whose centre is thus at (0.5, 0.5). */
 typedef struct posed_intrinsics {

@@ -6,10 +6,11 @@
 
 #include "file_bytes.h"
 #include "mcap.h"
+#include "reader_limits.h"
 #include "reason.h"
 #include "recording.h"
 
-#define MAX_BYTES ((size_t)1 << 30)
+#define MAX_BYTES ((size_t)1 << 30) /* of a bag */
 #define MAX_STAMP_S INT64_C(4000000000)
 #define MAX_STAMP_NS (MAX_STAMP_S * 1000000000)
 #define FAR 2147483648.0 /* positions are below it */
@@ -26,19 +27,23 @@ static int by_stamp(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static int append(trajectory *t, size_t *room, const trajectory_pose *pose)
+/* NULL, or why not. */
+static const char *append(trajectory *t, size_t *room, const trajectory_pose *pose)
 {
+    if (t->count == T3R_LIMIT_POSES) {
+        return T3R_LIMIT_TEXT("more than ", T3R_LIMIT_POSES, " poses");
+    }
     if (t->count == *room) {
         size_t more = *room == 0 ? 1024 : *room * 2;
         trajectory_pose *grown = realloc(t->poses, more * sizeof *grown);
         if (grown == NULL) {
-            return -1;
+            return "out of memory";
         }
         t->poses = grown;
         *room = more;
     }
     t->poses[t->count++] = *pose;
-    return 0;
+    return NULL;
 }
 
 /* Sorts; of equal stamps the first stays. */
@@ -160,8 +165,8 @@ int trajectory_parse(char *text, const char *path, trajectory *out, char *error,
         out->kind = commas ? "EuRoC" : out->kind;
         trajectory_pose pose;
         const char *wrong = parse_line(line, commas, &pose);
-        if (wrong == NULL && append(out, &room, &pose) != 0) {
-            wrong = "out of memory";
+        if (wrong == NULL) {
+            wrong = append(out, &room, &pose);
         }
         if (wrong != NULL) {
             trajectory_free(out);
@@ -211,8 +216,8 @@ static int take_poses(const t3r_recording *bag, const char *path, uint32_t strea
             p.stamp_ns,
             {p.position[0], p.position[1], p.position[2], p.rotation[1], p.rotation[2], p.rotation[3], p.rotation[0]}};
         const char *wrong = check(pose.pose);
-        if (wrong == NULL && append(out, &room, &pose) != 0) {
-            wrong = "out of memory";
+        if (wrong == NULL) {
+            wrong = append(out, &room, &pose);
         }
         if (wrong != NULL) {
             return t3r_reason(error, error_bytes, "%s: pose %u: %s", path, i, wrong);
@@ -257,6 +262,8 @@ int trajectory_read(const char *path, const char *topic, trajectory *out, char *
         status = read_bag(bytes, count, path, topic, out, error, error_bytes);
     } else if (count >= 15 && memcmp(bytes, "SQLite format 3", 15) == 0) {
         status = t3r_reason(error, error_bytes, "%s: is a bag in SQLite: ros2 bag convert makes MCAP of it", path);
+    } else if (count > T3R_LIMIT_TEXT_BYTES) {
+        status = t3r_reason(error, error_bytes, "%s: a text of more than %u bytes", path, T3R_LIMIT_TEXT_BYTES);
     } else {
         status = trajectory_parse((char *)bytes, path, out, error, error_bytes);
     }

@@ -3,19 +3,58 @@
 #include "import/transforms_json.h"
 #include "posing/quaternion.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cjson/cJSON.h>
-
+#include "cli/json_input.h"
+#include "reader_limits.h"
 #include "reason.h"
 #include "trim3r.h"
 
 #define MAX_PATH_BYTES 4096u
 
+/* Every field that is read of the top or of a frame, in the order of strcmp(). */
+static const char *const known[] = {"camera_angle_x",
+                                    "camera_angle_y",
+                                    "camera_model",
+                                    "confidence_path",
+                                    "cx",
+                                    "cy",
+                                    "depth_path",
+                                    "equirectangular",
+                                    "file_path",
+                                    "fl_x",
+                                    "fl_y",
+                                    "frames",
+                                    "ftheta_p0",
+                                    "h",
+                                    "integer_depth_scale",
+                                    "is_fisheye",
+                                    "k1",
+                                    "k2",
+                                    "k3",
+                                    "k4",
+                                    "k5",
+                                    "k6",
+                                    "latlong",
+                                    "orthographic",
+                                    "p1",
+                                    "p2",
+                                    "pointmap_path",
+                                    "transform_matrix",
+                                    "trim3r_triplets",
+                                    "w"};
+#define KNOWN (sizeof known / sizeof *known)
+
+/* The fields of one object, each found in one pass over it: cJSON looks for one among all of them. */
+typedef struct field_table {
+    const cJSON *item[KNOWN]; /* NULL: not there */
+} field_table;
+
 typedef struct reader {
-    const cJSON *root;
+    field_table top, own;
     const cJSON *frame; /* NULL while the top is read */
     const posed_folder_options *options;
     char where[64]; /* "frames[3]" */
@@ -28,11 +67,44 @@ static int fail(reader *r, const char *field, const char *what)
     return t3r_reason(r->error, r->error_bytes, "%s%s%s: %s", r->where, r->where[0] != '\0' ? ": " : "", field, what);
 }
 
+static int by_name(const void *key, const void *entry)
+{
+    return strcmp(key, *(const char *const *)entry);
+}
+
+/* Its place in `known`; KNOWN when it is no field that is read. */
+static size_t number_of(const char *name)
+{
+    const char *const *found = bsearch(name, known, KNOWN, sizeof *known, by_name);
+    return found != NULL ? (size_t)(found - known) : KNOWN;
+}
+
+/* Of two equal keys the first counts. */
+static void find_fields(const cJSON *object, field_table *table)
+{
+    const cJSON *item;
+    *table = (field_table){0};
+    cJSON_ArrayForEach(item, object)
+    {
+        size_t number = number_of(item->string);
+        if (number < KNOWN && table->item[number] == NULL) {
+            table->item[number] = item;
+        }
+    }
+}
+
+static const cJSON *field(const field_table *table, const char *name)
+{
+    size_t number = number_of(name);
+    assert(number < KNOWN);
+    return table->item[number];
+}
+
 /* The field of the frame, else of the top; NULL when neither has it. */
 static const cJSON *field_of(const reader *r, const char *name)
 {
-    const cJSON *item = r->frame == NULL ? NULL : cJSON_GetObjectItemCaseSensitive(r->frame, name);
-    return item != NULL ? item : cJSON_GetObjectItemCaseSensitive(r->root, name);
+    const cJSON *item = r->frame == NULL ? NULL : field(&r->own, name);
+    return item != NULL ? item : field(&r->top, name);
 }
 
 /* A number, NAN when absent; -1 when it is something else or not finite. */
@@ -55,7 +127,7 @@ static int read_number(reader *r, const char *name, double *value)
 
 static int read_path(reader *r, const char *name, char **path)
 {
-    const cJSON *item = cJSON_GetObjectItemCaseSensitive(r->frame, name);
+    const cJSON *item = field(&r->own, name);
     if (!cJSON_IsString(item)) {
         return fail(r, name, item == NULL ? "missing" : "not a string");
     }
@@ -70,7 +142,7 @@ static int read_path(reader *r, const char *name, char **path)
 /* NULL when absent. */
 static int read_optional_path(reader *r, const char *name, char **path)
 {
-    const cJSON *item = cJSON_GetObjectItemCaseSensitive(r->frame, name);
+    const cJSON *item = field(&r->own, name);
     return item != NULL && !cJSON_IsNull(item) ? read_path(r, name, path) : 0;
 }
 
@@ -210,7 +282,7 @@ static int read_row(reader *r, const cJSON *row, double values[4])
 
 static int read_pose(reader *r, posed_frame *out)
 {
-    const cJSON *matrix = cJSON_GetObjectItemCaseSensitive(r->frame, "transform_matrix");
+    const cJSON *matrix = field(&r->own, "transform_matrix");
     out->rotation[0] = 1;
     out->posed = matrix != NULL;
     if (matrix == NULL) {
@@ -251,13 +323,13 @@ static int read_pose(reader *r, posed_frame *out)
 
 static int read_frames(reader *r, posed_folder *out)
 {
-    const cJSON *frames = cJSON_GetObjectItemCaseSensitive(r->root, "frames");
+    const cJSON *frames = field(&r->top, "frames");
     if (!cJSON_IsArray(frames)) {
         return fail(r, "frames", frames == NULL ? "missing" : "not an array");
     }
     int count = cJSON_GetArraySize(frames);
-    if (count == 0 || (uint32_t)count > POSED_FOLDER_MAX_FRAMES) {
-        return fail(r, "frames", count == 0 ? "empty" : "more than 100000");
+    if (count == 0 || count > T3R_LIMIT_FRAMES) {
+        return fail(r, "frames", count == 0 ? "empty" : T3R_LIMIT_TEXT("more than ", T3R_LIMIT_FRAMES, ""));
     }
     out->frames = calloc((size_t)count, sizeof *out->frames);
     if (out->frames == NULL) {
@@ -270,6 +342,7 @@ static int read_frames(reader *r, posed_folder *out)
         if (!cJSON_IsObject(r->frame)) {
             return t3r_reason(r->error, r->error_bytes, "%s: not an object", r->where);
         }
+        find_fields(r->frame, &r->own);
         if (read_path(r, "file_path", &frame->image) != 0) {
             return -1;
         }
@@ -325,14 +398,18 @@ static bool frame_index(const cJSON *item, uint32_t count, uint32_t *index)
 
 static int read_triplets(reader *r, posed_folder *out)
 {
-    const cJSON *triplets = cJSON_GetObjectItemCaseSensitive(r->root, "trim3r_triplets");
+    const cJSON *triplets = field(&r->top, "trim3r_triplets");
     if (triplets == NULL) {
         return 0;
     }
     if (!cJSON_IsArray(triplets)) {
         return fail(r, "trim3r_triplets", "not an array");
     }
-    out->triplets = calloc((size_t)cJSON_GetArraySize(triplets) + 1, sizeof *out->triplets);
+    int count = cJSON_GetArraySize(triplets);
+    if (count > T3R_LIMIT_TRIPLETS) {
+        return fail(r, "trim3r_triplets", T3R_LIMIT_TEXT("more than ", T3R_LIMIT_TRIPLETS, ""));
+    }
+    out->triplets = calloc((size_t)count + 1, sizeof *out->triplets);
     if (out->triplets == NULL) {
         return fail(r, "trim3r_triplets", "out of memory");
     }
@@ -362,18 +439,16 @@ int transforms_json_parse(const char *text, size_t bytes, const posed_folder_opt
     static const posed_folder_options strict = {0};
     memset(out, 0, sizeof *out);
     out->kind = "transforms.json";
-    const char *end = NULL;
-    cJSON *root = cJSON_ParseWithLengthOpts(text, bytes, &end, 0);
+    cJSON *root = json_parse(text, bytes, error, error_bytes);
     if (root == NULL) {
-        size_t at = end == NULL ? 0 : (size_t)(end - text);
-        return t3r_reason(error, error_bytes, "byte %zu: not JSON (NaN and Infinity are not either)", at);
+        return -1;
     }
-    reader r = {
-        .root = root, .options = options != NULL ? options : &strict, .error = error, .error_bytes = error_bytes};
+    reader r = {.options = options != NULL ? options : &strict, .error = error, .error_bytes = error_bytes};
     int status;
     if (!cJSON_IsObject(root)) {
         status = t3r_reason(error, error_bytes, "byte 0: not a JSON object");
     } else {
+        find_fields(root, &r.top);
         status = read_frames(&r, out) != 0 || read_depth_unit(&r, out) != 0 || read_triplets(&r, out) != 0 ? -1 : 0;
     }
     cJSON_Delete(root);

@@ -7,13 +7,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "file_bytes.h"
 #include "import/pose_between.h"
+#include "reader_limits.h"
 #include "reason.h"
 #include "trim3r.h"
 
-#define MAX_LIST_BYTES ((size_t)64 << 20)
 #define NEAR_SECONDS 0.020
 #define BRACKET_SECONDS 0.100
 #define DEPTH_STEPS_PER_METRE 5000.0
@@ -112,6 +113,10 @@ static int parse_list(const char *path, char *text, bool poses, stamped_list *li
         if (*line == '\0' || *line == '#') {
             continue;
         }
+        if (list->count == (poses ? T3R_LIMIT_POSES : T3R_LIMIT_PICTURES)) {
+            return t3r_reason(error, error_bytes, "%s: line %zu: more than %d entries", path, line_number,
+                              poses ? T3R_LIMIT_POSES : T3R_LIMIT_PICTURES);
+        }
         if (list->count == room) {
             room = room == 0 ? 1024 : room * 2;
             stamped *grown = realloc(list->items, room * sizeof *grown);
@@ -143,7 +148,7 @@ static int read_list(const char *directory, const char *name, bool poses, stampe
         return t3r_reason(error, error_bytes, "out of memory");
     }
     size_t bytes = 0;
-    char *text = (char *)t3r_file_bytes(path, MAX_LIST_BYTES, &bytes, error, error_bytes);
+    char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &bytes, error, error_bytes);
     int status = text == NULL ? -1 : parse_list(path, text, poses, list, error, error_bytes);
     free(text);
     free(path);
@@ -234,8 +239,8 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
                 const posed_intrinsics *intrinsics, bool without_poses, posed_folder *out, char *error,
                 size_t error_bytes)
 {
-    if (colour->count > POSED_FOLDER_MAX_FRAMES) {
-        return t3r_reason(error, error_bytes, "rgb.txt: more than 100000 pictures");
+    if (colour->count > T3R_LIMIT_FRAMES) {
+        return t3r_reason(error, error_bytes, "rgb.txt: more than %d pictures", T3R_LIMIT_FRAMES);
     }
     out->frames = calloc(colour->count, sizeof *out->frames);
     if (out->frames == NULL) {
@@ -269,12 +274,9 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
 static bool is_there(const char *directory, const char *name)
 {
     char *path = posed_path(directory, name);
-    FILE *file = path != NULL ? fopen(path, "rb") : NULL;
-    if (file != NULL) {
-        fclose(file);
-    }
+    bool there = path != NULL && access(path, F_OK) == 0;
     free(path);
-    return file != NULL;
+    return there;
 }
 
 int tum_rgbd_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,

@@ -6,14 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <cjson/cJSON.h>
-
+#include "cli/json_input.h"
 #include "core/camera.h"
 #include "file_bytes.h"
 #include "import/transforms_json.h"
+#include "reader_limits.h"
 #include "reason.h"
 
-#define MAX_TEXT_BYTES ((size_t)256 << 20)
+#define MAX_POSES_BYTES ((size_t)16 << 20) /* a lone pose is parsed twice and printed between */
 
 void viewpoint_list_free(viewpoint_list *list)
 {
@@ -95,7 +95,7 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
 static char *wrap_pose(const char *text, size_t bytes)
 {
     char *wrapped = NULL;
-    cJSON *pose = cJSON_ParseWithLength(text, bytes);
+    cJSON *pose = json_parse(text, bytes, NULL, 0);
     if (cJSON_IsObject(pose) && cJSON_GetObjectItemCaseSensitive(pose, "frames") == NULL) {
         cJSON *root = cJSON_CreateObject();
         cJSON *frames = cJSON_AddArrayToObject(root, "frames");
@@ -115,7 +115,7 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
 {
     *out = (viewpoint_list){0};
     size_t count;
-    uint8_t *bytes = t3r_file_bytes(path, MAX_TEXT_BYTES, &count, error, error_bytes);
+    uint8_t *bytes = t3r_file_bytes(path, MAX_POSES_BYTES, &count, error, error_bytes);
     if (bytes == NULL) {
         return -1;
     }
@@ -170,7 +170,7 @@ int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint
 {
     *out = (viewpoint_list){0};
     size_t count;
-    char *text = (char *)t3r_file_bytes(path, MAX_TEXT_BYTES, &count, error, error_bytes);
+    char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &count, error, error_bytes);
     if (text == NULL) {
         return -1;
     }
@@ -189,6 +189,11 @@ int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint
         line += strspn(line, " \t\r");
         if (*line == '\0' || *line == '#') {
             continue;
+        }
+        if (out->count == T3R_LIMIT_POSES) {
+            snprintf(reason, sizeof reason, "more than %d poses", T3R_LIMIT_POSES);
+            result = -1;
+            break;
         }
         if (out->count == room) {
             room = room == 0 ? 64 : room * 2; /* a line has 16 bytes and more: below 2^23 */

@@ -5,10 +5,11 @@
 
 #include "cli/cli.h"
 #include "file_bytes.h"
+#include "reader_limits.h"
+#include "cli/json_input.h"
 #include "cli/json_output.h"
 
 #define ERROR_BYTES 512
-#define MAX_EXPECTATION_BYTES ((size_t)64 << 20)
 
 static int read_hash(const cJSON *item, uint64_t *hash)
 {
@@ -46,18 +47,18 @@ int expectation_read(expectation *e, const char *text)
     }
     char error[ERROR_BYTES] = "";
     size_t count;
-    uint8_t *bytes = t3r_file_bytes(text, MAX_EXPECTATION_BYTES, &count, error, sizeof error);
+    uint8_t *bytes = t3r_file_bytes(text, T3R_LIMIT_TEXT_BYTES, &count, error, sizeof error);
     if (bytes == NULL) {
         return cli_error(CLI_BAD_INPUT, "--expect takes 16 hexadecimal digits or a file: %s", error);
     }
-    cJSON *root = cJSON_ParseWithLength((const char *)bytes, count);
+    cJSON *root = json_parse((const char *)bytes, count, error, sizeof error);
     free(bytes);
     const cJSON *stages = cJSON_GetObjectItemCaseSensitive(root, "stages");
     const cJSON *keyframes = cJSON_GetObjectItemCaseSensitive(root, "keyframes");
     const cJSON *tiles = cJSON_GetObjectItemCaseSensitive(root, "tiles");
     const char *wrong = NULL;
     if (root == NULL) {
-        wrong = "is not JSON";
+        wrong = error;
     } else if (read_hash(cJSON_GetObjectItemCaseSensitive(root, "hash"), &e->hash) != 0) {
         wrong = "has no field hash of 16 hexadecimal digits";
     }
