@@ -182,7 +182,7 @@ def test_one_world(room, maps):
         return path
 
     path = some("some")
-    refused(path, ["3.png: no pointmap to estimate its pose from"], "--poses", "estimate")
+    refused(path, ["2.png: no pointmap to estimate its pose from"], "--poses", "estimate")
     for options in ((path,), (folder("colour", room), "--pointmaps", f"{work}/points.npz")):
         refused(options[0], ["estimate-colour does not go with pointmaps"], *options[1:], "--poses", "estimate-colour")
     _, got = imported("some", path)

@@ -16,7 +16,7 @@
 #define MOST_STEPS 65535.0
 #define SAME_POSE 1e-3 /* of two poses: what a rotation's entries, and a share of the position, may differ by */
 
-static int read_maps(const pointmap_source *source, uint32_t index, pointmaps *maps, char *error, size_t error_bytes)
+static int open_maps(const pointmap_source *source, uint32_t index, pointmaps *maps, char *error, size_t error_bytes)
 {
     const posed_frame *frame = &source->folder->frames[index];
     char *path = posed_path(source->directory, frame->pointmap);
@@ -24,7 +24,7 @@ static int read_maps(const pointmap_source *source, uint32_t index, pointmaps *m
     *maps = (pointmaps){0};
     int status = path == NULL || (frame->confidence != NULL && confidence == NULL)
                      ? t3r_reason(error, error_bytes, "out of memory")
-                     : pointmaps_read(path, confidence, maps, error, error_bytes);
+                     : pointmaps_open(path, confidence, maps, error, error_bytes);
     if (status == 0 && maps->count != 1) {
         status = t3r_reason(error, error_bytes, "%s: %u pointmaps, but it is one frame's", path, maps->count);
     }
@@ -33,23 +33,22 @@ static int read_maps(const pointmap_source *source, uint32_t index, pointmaps *m
     return status;
 }
 
-/* The maps that hold frame `index`, and which of them; `own` receives what must be freed. */
-static int maps_of(const pointmap_source *source, uint32_t index, pointmaps *own, const pointmaps **maps,
-                   uint32_t *which, char *error, size_t error_bytes)
+/* The maps that hold frame `index`, its view read, and which of them it is; NULL when it has none. `own` receives what
+ * must be freed. */
+static int maps_of(pointmap_source *source, uint32_t index, pointmaps *own, pointmaps **maps, uint32_t *which,
+                   char *error, size_t error_bytes)
 {
     *own = (pointmaps){0};
     *maps = NULL;
-    if (source->options.file != NULL) {
-        *maps = &source->stack;
-        *which = index;
+    if (source->options.file == NULL && source->folder->frames[index].pointmap == NULL) {
         return 0;
     }
-    if (source->folder->frames[index].pointmap == NULL) {
-        return 0;
+    *maps = source->options.file != NULL ? &source->stack : own;
+    *which = source->options.file != NULL ? index : 0;
+    if (*maps == own && open_maps(source, index, own, error, error_bytes) != 0) {
+        return -1;
     }
-    *maps = own;
-    *which = 0;
-    return read_maps(source, index, own, error, error_bytes);
+    return pointmaps_read(*maps, *which, error, error_bytes);
 }
 
 /* ---- cameras ---------------------------------------------------------------------------------------------------- */
@@ -109,11 +108,11 @@ static int map_lens(const pointmap_source *source, const posed_frame *frame, con
 }
 
 /* The pose from which the points lie on their pixels' rays: of the more confident half, spread over the view. */
-static int resect_map(const pointmaps *maps, uint32_t which, const t3r_recorded_camera *lens, double least,
-                      motion *camera, double *pixels_off)
+static int resect_map(const pointmaps *maps, const t3r_recorded_camera *lens, double least, motion *camera,
+                      double *pixels_off)
 {
     size_t pixels = (size_t)maps->width * maps->height, stride = pixels / (2 * (size_t)RESECTED) + 1, count = 0;
-    const float *confidence = maps->confidence != NULL ? maps->confidence + pixels * which : NULL;
+    const float *confidence = maps->confidence;
     double(*points)[3] = malloc((pixels / stride + 1) * sizeof *points);
     double(*rays)[2] = malloc((pixels / stride + 1) * sizeof *rays), error = 0;
     int status = points != NULL && rays != NULL ? 0 : -1;
@@ -121,7 +120,7 @@ static int resect_map(const pointmaps *maps, uint32_t which, const t3r_recorded_
     for (size_t i = stride / 2; i < pixels && status == 0; i += stride) {
         if (confidence == NULL || confidence[i] >= enough) {
             for (int c = 0; c < 3; c++) {
-                points[count][c] = maps->points[3 * (pixels * which + i) + (size_t)c];
+                points[count][c] = maps->points[3 * i + (size_t)c];
             }
             rays[count][0] = ((double)(i % maps->width) - lens->cx) / lens->fx;
             rays[count][1] = ((double)(i / maps->width) - lens->cy) / lens->fy;
@@ -137,10 +136,16 @@ static int resect_map(const pointmaps *maps, uint32_t which, const t3r_recorded_
 }
 
 /* Where the points' frame is the first camera's: the frame's own pose in it, before it is changed. */
-static motion in_first(const posed_folder *folder, uint32_t index)
+static motion in_first(const pointmap_source *source, uint32_t index)
 {
-    motion first = pose_of(&folder->frames[0]), here = pose_of(&folder->frames[index]), back = motion_inverse(&first);
+    motion here = pose_of(&source->folder->frames[index]), back = motion_inverse(&source->first);
     return motion_after(&back, &here);
+}
+
+/* Of frames on which messages depend the first is named. */
+static void note_world(const char **world, const posed_frame *frame)
+{
+    *world = *world != NULL ? *world : frame->image;
 }
 
 /* Whether the folder gives the frame this pose as well: then it does not tell their worlds apart. */
@@ -174,12 +179,14 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     }
     if (maps->poses != NULL && !source->options.resect) {
         *camera = maps->poses[which];
-        source->in_points = folder_agrees(frame, camera) ? source->in_points : frame->image;
+        if (!folder_agrees(frame, camera)) {
+            note_world(&source->in_points, frame);
+        }
         return set_pose(frame, camera);
     }
-    if (frame->posed && folder->frames[0].posed && !source->options.resect) {
-        *camera = in_first(folder, index);
-        source->in_folder = frame->image;
+    if (frame->posed && source->first_posed && !source->options.resect) {
+        *camera = in_first(source, index);
+        note_world(&source->in_folder, frame);
         return 0;
     }
     if (frame->intrinsics.distortion != T3R_DISTORTION_NONE) {
@@ -191,7 +198,7 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     if (map_lens(source, frame, maps, &lens, error, error_bytes) != 0) {
         return -1;
     }
-    if (resect_map(maps, which, &lens, source->options.confidence_least, camera, &off) != 0) {
+    if (resect_map(maps, &lens, source->options.confidence_least, camera, &off) != 0) {
         return t3r_reason(
             error, error_bytes,
             "%s: no pose, and the points do not lie on the pixels' rays from any: intrinsics are wrong or "
@@ -199,12 +206,12 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
             frame->image);
     }
     source->worst_px = fmax(source->worst_px, off);
-    if (source->options.resect || !folder->frames[0].posed) {
-        source->in_points = frame->image;
+    if (source->options.resect || !source->first_posed) {
+        note_world(&source->in_points, frame);
         return set_pose(frame, camera); /* the points' frame is the world */
     }
-    source->in_folder = frame->image;
-    motion first = pose_of(&folder->frames[0]), world = motion_after(&first, camera);
+    note_world(&source->in_folder, frame);
+    motion world = motion_after(&source->first, camera);
     return set_pose(frame, &world);
 }
 
@@ -270,8 +277,7 @@ static int settle_unit(const pointmap_source *source, depths *d, posed_folder *f
 static int note_frame(pointmap_source *source, posed_folder *folder, uint32_t index, depths *d, char *error,
                       size_t error_bytes)
 {
-    pointmaps own;
-    const pointmaps *maps;
+    pointmaps own, *maps;
     uint32_t which;
     int status = maps_of(source, index, &own, &maps, &which, error, error_bytes);
     if (status == 0 && maps != NULL) {
@@ -280,7 +286,7 @@ static int note_frame(pointmap_source *source, posed_folder *folder, uint32_t in
         status = depth != NULL ? place_camera(source, folder, index, maps, which, error, error_bytes)
                                : t3r_reason(error, error_bytes, "out of memory");
         if (status == 0) {
-            pointmaps_depth(maps, which, &source->cameras[index], source->options.confidence_least, depth);
+            pointmaps_depth(maps, &source->cameras[index], source->options.confidence_least, depth);
             status = note_depths(d, depth, pixels) == 0 ? 0 : t3r_reason(error, error_bytes, "out of memory");
             source->count++;
         }
@@ -289,7 +295,7 @@ static int note_frame(pointmap_source *source, posed_folder *folder, uint32_t in
         status = t3r_reason(error, error_bytes, "%s: no pointmap to estimate its pose from, as the others have",
                             folder->frames[index].image);
     } else if (status == 0) {
-        source->in_folder = folder->frames[index].image;
+        note_world(&source->in_folder, &folder->frames[index]);
     }
     pointmaps_free(&own);
     return status;
@@ -304,7 +310,7 @@ int pointmap_source_open(pointmap_source *source, const char *directory, const p
         return t3r_reason(error, error_bytes, "out of memory");
     }
     if (options->file != NULL) {
-        if (pointmaps_read(options->file, NULL, &source->stack, error, error_bytes) != 0) {
+        if (pointmaps_open(options->file, NULL, &source->stack, error, error_bytes) != 0) {
             return -1;
         }
         if (source->stack.count != folder->frame_count) {
@@ -314,8 +320,9 @@ int pointmap_source_open(pointmap_source *source, const char *directory, const p
     }
     depths d = {0};
     int status = 0;
-    /* the first camera's pose last: the others are told against it */
-    for (uint32_t i = folder->frame_count; i-- > 0 && status == 0;) {
+    source->first_posed = folder->frames[0].posed;
+    source->first = pose_of(&folder->frames[0]);
+    for (uint32_t i = 0; i < folder->frame_count && status == 0; i++) {
         status = note_frame(source, folder, i, &d, error, error_bytes);
     }
     if (status == 0 && source->in_folder != NULL && source->in_points != NULL) {
@@ -330,11 +337,9 @@ int pointmap_source_open(pointmap_source *source, const char *directory, const p
     return status;
 }
 
-int pointmap_source_depth(const pointmap_source *source, uint32_t index, picture *depth, char *error,
-                          size_t error_bytes)
+int pointmap_source_depth(pointmap_source *source, uint32_t index, picture *depth, char *error, size_t error_bytes)
 {
-    pointmaps own;
-    const pointmaps *maps;
+    pointmaps own, *maps;
     uint32_t which;
     *depth = (picture){0};
     int status = maps_of(source, index, &own, &maps, &which, error, error_bytes);
@@ -346,7 +351,7 @@ int pointmap_source_depth(const pointmap_source *source, uint32_t index, picture
             free(steps);
             status = t3r_reason(error, error_bytes, "out of memory");
         } else {
-            pointmaps_depth(maps, which, &source->cameras[index], source->options.confidence_least, z);
+            pointmaps_depth(maps, &source->cameras[index], source->options.confidence_least, z);
             for (size_t i = 0; i < pixels; i++) {
                 double step = floor(z[i] / source->folder->depth_unit + 0.5);
                 steps[i] = step >= 1 && step <= MOST_STEPS ? (uint16_t)step : 0;
@@ -354,6 +359,7 @@ int pointmap_source_depth(const pointmap_source *source, uint32_t index, picture
             *depth = (picture){maps->width, maps->height, 1, 16, steps};
         }
         free(z);
+        pointmaps_forget(maps); /* its frame's pictures want the memory */
     }
     pointmaps_free(&own);
     return status;

@@ -19,25 +19,26 @@ typedef struct pointmap_source {
     const posed_folder *folder;
     pointmaps stack; /* of options.file */
     motion *cameras; /* a frame: camera to the points' frame */
-    uint32_t count;  /* frames that have a pointmap */
+    motion first;    /* the pose that the folder gives its first frame, if it does */
+    bool first_posed;
+    uint32_t count; /* frames that have a pointmap */
     /* a frame whose pose is in the folder's world, and one in the points' frame; NULL = none */
     const char *in_folder, *in_points;
     double
         worst_px; /* of poses from points: the largest root mean square error, pixels of the map; 0 = there are none */
 } pointmap_source;
 
-/* Reads all pointmaps once: checks them, gives frames the poses and intrinsics that the files hold (they are what the
- * points were made with, so they win over the folder's), takes the missing poses from the points, and settles the
- * folder's depth unit. Without poses in the file the points are in the first frame's camera. Poses in two
- * worlds, the folder's and the points', are refused, unless a file's pose is the folder's too. 0, or -1 with a reason
- * in error[]; pointmap_source_close() in either case. */
+/* Reads all pointmaps once, a view at a time: checks them, gives frames the poses and intrinsics that the files hold
+ * (they are what the points were made with, so they win over the folder's), takes the missing poses from the points,
+ * and settles the folder's depth unit. Without poses in the file the points are in the first frame's camera. Poses in
+ * two worlds, the folder's and the points', are refused, unless a file's pose is the folder's too. 0, or -1 with a
+ * reason in error[]; pointmap_source_close() in either case. */
 int pointmap_source_open(pointmap_source *source, const char *directory, const pointmap_options *options,
                          posed_folder *folder, char *error, size_t error_bytes);
 void pointmap_source_close(pointmap_source *source);
 
 /* Depth of frame `index` in steps of the folder's unit, rounded to the nearest, as 16-bit grey; what lies behind the
  * camera, beyond 65535 steps or below the confidence is 0. No samples when the frame has no pointmap. */
-int pointmap_source_depth(const pointmap_source *source, uint32_t index, picture *depth, char *error,
-                          size_t error_bytes);
+int pointmap_source_depth(pointmap_source *source, uint32_t index, picture *depth, char *error, size_t error_bytes);
 
 #endif

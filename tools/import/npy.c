@@ -138,7 +138,7 @@ static const char *read_header(remainder *t, npy_array *out)
                                        : NULL;
 }
 
-int npy_parse(const uint8_t *bytes, size_t count, npy_array *out, char *error, size_t error_bytes)
+int npy_parse(const uint8_t *bytes, size_t count, uint64_t file_bytes, npy_array *out, char *error, size_t error_bytes)
 {
     *out = (npy_array){0};
     if (count < MAGIC_BYTES + 4 || memcmp(bytes, MAGIC, MAGIC_BYTES) != 0) {
@@ -151,7 +151,8 @@ int npy_parse(const uint8_t *bytes, size_t count, npy_array *out, char *error, s
     size_t start = MAGIC_BYTES + 2 + length_bytes;
     size_t header = count < start ? 0 : major == 1 ? t3r_load_le16(bytes + 8) : t3r_load_le32(bytes + 8);
     if (count < start || header > count - start) {
-        return t3r_reason(error, error_bytes, "cut off in its header");
+        return t3r_reason(error, error_bytes, "%s",
+                          count < file_bytes ? "a header of over 65,000 bytes" : "cut off in its header");
     }
     remainder t = {(const char *)bytes + start, (const char *)bytes + start + header};
     const char *wrong = read_header(&t, out);
@@ -165,28 +166,29 @@ int npy_parse(const uint8_t *bytes, size_t count, npy_array *out, char *error, s
             return t3r_reason(error, error_bytes, "2^30 numbers or more");
         }
     }
-    size_t left = count - start - header;
+    uint64_t left = file_bytes - start - header;
     if (left != items * out->item_bytes) {
         char shape[64];
         npy_shape_text(out, shape, sizeof shape);
-        return t3r_reason(error, error_bytes, "%zu bytes of numbers, but %s of %u bytes are %llu%s", left, shape,
-                          out->item_bytes, (unsigned long long)(items * out->item_bytes),
+        return t3r_reason(error, error_bytes, "%llu bytes of numbers, but %s of %u bytes are %llu%s",
+                          (unsigned long long)left, shape, out->item_bytes,
+                          (unsigned long long)(items * out->item_bytes),
                           left < items * out->item_bytes ? ": cut off" : "");
     }
     out->count = (size_t)items;
-    out->data = bytes + start + header;
+    out->header_bytes = start + header;
     return 0;
 }
 
-double npy_value(const npy_array *array, size_t index)
+double npy_value(const npy_array *array, const uint8_t *bytes)
 {
     if (array->item_bytes == 4) {
-        uint32_t bits = t3r_load_le32(array->data + 4 * index);
+        uint32_t bits = t3r_load_le32(bytes);
         float value;
         memcpy(&value, &bits, sizeof value);
         return value;
     }
-    uint64_t bits = t3r_load_le64(array->data + 8 * index);
+    uint64_t bits = t3r_load_le64(bytes);
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;

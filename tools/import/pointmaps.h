@@ -19,25 +19,32 @@
 #include "pictures/picture.h"
 #include "posing/motion.h"
 
-#define POINTMAPS_MOST 1000u
-
+/* An open file: what holds for all of its views, and one view's numbers at a time. */
 typedef struct pointmaps {
     uint32_t count, width, height;
-    float *points;           /* count x height x width x 3, all finite */
-    float *confidence;       /* count x height x width, all finite; NULL = none */
     motion *poses;           /* camera to the points' frame; NULL = none */
     double (*intrinsics)[4]; /* fx fy cx cy in pixels of the map; NULL = none */
+    bool has_confidence;
+    float *points;     /* height x width x 3 of the view that was read, all finite; NULL = none is */
+    float *confidence; /* height x width of it, all finite; NULL = the file has none */
+    struct pointmaps_input *input;
 } pointmaps;
 
-/* Reads a .npz or .npy (told by what it holds). 0, or -1 with "array: what" in error[]; pointmaps_free() in either
- * case. */
+/* Opens a .npz or .npy (told by what it holds) and reads all but points and confidence. confidence (may be NULL): a
+ * .npy with them. 0, or -1 with "path: array: what" in error[]; pointmaps_free() in either case. */
+int pointmaps_open(const char *path, const char *confidence, pointmaps *out, char *error, size_t error_bytes);
+/* The same from memory, which must outlive it, with "array: what". */
 int pointmaps_parse(const uint8_t *bytes, size_t count, pointmaps *out, char *error, size_t error_bytes);
-/* The same from a file, with "path: array: what"; confidence (may be NULL): a .npy with them. */
-int pointmaps_read(const char *path, const char *confidence, pointmaps *out, char *error, size_t error_bytes);
+
+/* Reads the points and the confidence of view `index`, in the place of those that were read before: cheap for a view
+ * behind that one. 0, or -1 with what is wrong in error[]. */
+int pointmaps_read(pointmaps *maps, uint32_t index, char *error, size_t error_bytes);
+/* Frees the view that was read. */
+void pointmaps_forget(pointmaps *maps);
 void pointmaps_free(pointmaps *maps);
 
-/* Depth of every point of map `index` along z of a camera, 0 where its confidence is below `least`. camera: to the
- * points' frame. depth: height x width. */
-void pointmaps_depth(const pointmaps *maps, uint32_t index, const motion *camera, double least, float *depth);
+/* Depth of every point of the view that was read along z of a camera, 0 where its confidence is below `least`. camera:
+ * to the points' frame. depth: height x width. */
+void pointmaps_depth(const pointmaps *maps, const motion *camera, double least, float *depth);
 
 #endif

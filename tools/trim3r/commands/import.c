@@ -199,8 +199,7 @@ static char *source_name(const char *directory, const char *kind)
     return name;
 }
 
-static int write_frame(t3r_recorder *recorder, const options *o, const material *m, uint32_t index, totals *t,
-                       char *error)
+static int write_frame(t3r_recorder *recorder, const options *o, material *m, uint32_t index, totals *t, char *error)
 {
     const posed_frame *frame = &m->folder.frames[index];
     picture depth = {0};
@@ -230,7 +229,7 @@ static int write_frame(t3r_recorder *recorder, const options *o, const material 
     return status;
 }
 
-static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, const material *m, const char *source,
+static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, material *m, const char *source,
                         totals *t, char *error)
 {
     const posed_folder *folder = &m->folder;
@@ -255,7 +254,7 @@ static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, 
     return 0;
 }
 
-static int write_recording(const options *o, const material *m, totals *t, char *error)
+static int write_recording(const options *o, material *m, totals *t, char *error)
 {
     whole_file file;
     char *source = source_name(o->directory, m->folder.kind);
