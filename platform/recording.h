@@ -135,7 +135,7 @@ typedef struct t3r_recording_header {
     const char *camera; /* topic prefix, "camera" say: 1..47 of A-Z a-z 0-9 _ and, inside, / */
     const char *source; /* free text: what was imported */
     const char *clock;  /* "synthetic", "monotonic", "boottime", ... */
-    double depth_unit;  /* world units a step; kept in Q40; more than 2^-41, less than 2^16 */
+    double depth_unit;  /* world units a step; kept in Q40; more than 2^-41, less than 128 */
     const t3r_triplet *triplets;
     uint32_t triplet_count;
     bool events; /* the recording also has a topic /<camera>/events: t3r_recorder_event() */

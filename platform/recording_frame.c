@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bytes.h"
+#include "fixed_camera.h"
 #include "fixed_double.h"
 #include "pixel_layout.h"
 #include "reason.h"
@@ -140,17 +141,6 @@ static int read_depth(const reading *r, size_t link, t3r_frame *frame)
 
 /* ---- the camera ---- */
 
-/* A double into [low, high) in fixed point; false for NaN and all else outside. */
-static bool fixed_in(uint64_t f64, uint32_t fraction_bits, int64_t low, int64_t high, int32_t *out)
-{
-    int64_t fixed;
-    if (t3r_fixed_from_double(f64, fraction_bits, &fixed) != 0 || fixed < low || fixed >= high) {
-        return false;
-    }
-    *out = (int32_t)fixed;
-    return true;
-}
-
 static bool is_zero(uint64_t f64)
 {
     return f64 << 1 == 0;
@@ -179,8 +169,8 @@ static const char *read_distortion(const t3r_ros_camera_info *info, t3r_camera *
                        : "D has terms beyond k1 k2 p1 p2 k3, which are not supported";
     }
     for (uint32_t i = 0; i < used; i++) {
-        if (!fixed_in(info->d_f64[i], 24, INT32_MIN, (int64_t)INT32_MAX + 1, &camera->distortion_q24[i])) {
-            return "D has a coefficient that is not a number within -128..128";
+        if (!t3r_fixed_coefficient(info->d_f64[i], camera->distortion, i, &camera->distortion_q24[i])) {
+            return "D has a coefficient that is not a number within -128..128 (p1, p2: -16..16)";
         }
     }
     return NULL;
@@ -199,15 +189,14 @@ static const char *window_error(const t3r_ros_camera_info *info)
 
 static int read_intrinsics(const reading *r, size_t link, const t3r_frame *frame, t3r_camera *camera)
 {
-    static const int64_t focal_low = INT64_C(8) << 16, side = INT64_C(16384) << 16;
     static const struct {
         const char *name;
         uint32_t k;
-        int64_t low;
-    } fields[4] = {{"K[0] (fx)", 0, focal_low},
-                   {"K[4] (fy)", 4, focal_low},
-                   {"K[2] (cx)", 2, -side + 1},
-                   {"K[5] (cy)", 5, -side + 1}};
+        bool (*fixed)(uint64_t f64, int32_t *q16);
+    } fields[4] = {{"K[0] (fx)", 0, t3r_fixed_focal},
+                   {"K[4] (fy)", 4, t3r_fixed_focal},
+                   {"K[2] (cx)", 2, t3r_fixed_centre},
+                   {"K[5] (cy)", 5, t3r_fixed_centre}};
     const t3r_stream *stream = &r->recording->streams[r->recording->camera_info];
     const t3r_indexed_message *message = &stream->messages[link];
     t3r_ros_camera_info info;
@@ -228,7 +217,7 @@ static int read_intrinsics(const reading *r, size_t link, const t3r_frame *frame
     }
     int32_t *const out[4] = {&camera->fx_q16, &camera->fy_q16, &camera->cx_q16, &camera->cy_q16};
     for (uint32_t i = 0; i < 4; i++) {
-        if (!fixed_in(info.k_f64[fields[i].k], 16, fields[i].low, side, out[i])) {
+        if (!fields[i].fixed(info.k_f64[fields[i].k], out[i])) {
             return fail(r, stream, message, fields[i].name,
                         i < 2 ? "is not a number in [8, 16384)" : "is not a number in (-16384, 16384)");
         }
@@ -241,7 +230,6 @@ static int read_pose(const reading *r, size_t link, t3r_camera *camera)
 {
     static const char *const positions[3] = {"position.x", "position.y", "position.z"};
     static const char *const rotations[4] = {"orientation.x", "orientation.y", "orientation.z", "orientation.w"};
-    static const int64_t most = INT64_C(3) << 29; /* 1.5 in Q30 */
     const t3r_stream *stream = &r->recording->streams[r->recording->pose];
     const t3r_indexed_message *message = &stream->messages[link];
     t3r_ros_pose pose;
@@ -251,12 +239,12 @@ static int read_pose(const reading *r, size_t link, t3r_camera *camera)
         return fail(r, stream, message, "", wrong);
     }
     for (uint32_t i = 0; i < 3; i++) {
-        if (t3r_fixed_from_double(pose.position_f64[i], 32, &camera->position_q32[i]) != 0) {
-            return fail(r, stream, message, positions[i], "is not a number within -2^31..2^31");
+        if (!t3r_fixed_position(pose.position_f64[i], &camera->position_q32[i])) {
+            return fail(r, stream, message, positions[i], "is not a number within -2^30..2^30");
         }
     }
     for (uint32_t i = 0; i < 4; i++) {
-        if (!fixed_in(pose.rotation_f64[i], 30, -most, most + 1, &camera->rotation_q30[(i + 1) % 4])) {
+        if (!t3r_fixed_rotation(pose.rotation_f64[i], &camera->rotation_q30[(i + 1) % 4])) {
             return fail(r, stream, message, rotations[i], "is not a number within -1.5..1.5");
         }
     }

@@ -16,7 +16,7 @@
 
 #define IDS 65536u                                  /* schema and channel ids have 16 bits */
 #define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
-#define MAX_DEPTH_UNIT_Q40 (UINT64_C(1) << 56)
+#define MAX_DEPTH_UNIT_Q40 ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40)
 #define MAX_LOG_NS ((uint64_t)1 << 62)
 
 /* State of one pass over the records. */
@@ -270,7 +270,7 @@ static int on_metadata(void *user, t3r_text name, t3r_text key, t3r_text value, 
     } else if (t3r_text_is(name, "trim3r") && t3r_text_is(key, "depth_unit")) {
         bool good = t3r_q40_from_text(value, &recording->depth_unit_q40) == 0 && recording->depth_unit_q40 > 0 &&
                     recording->depth_unit_q40 < MAX_DEPTH_UNIT_Q40;
-        wrong = good ? NULL : "depth_unit is not a decimal number such as 0.001, above 0 and below 65536";
+        wrong = good ? NULL : "depth_unit is not a decimal number such as 0.001, above 0 and below 128";
     } else if (t3r_text_is(name, "trim3r") && t3r_text_is(key, "clock")) {
         t3r_text_copy(recording->clock, sizeof recording->clock, value);
     }

@@ -5,10 +5,12 @@
 #include <string.h>
 
 #include "bytes.h"
+#include "fixed_camera.h"
 #include "fixed_double.h"
 #include "fixed_text.h"
 #include "mcap_writer.h"
 #include "pixel_layout.h"
+#include "reader_limits.h"
 #include "ros_messages.h"
 
 #define CAMERA_ROOM 48u
@@ -17,7 +19,6 @@
 #define LOG_SCHEMA (SCHEMA_COUNT + 1)
 #define MAX_EVENT_BYTES 1024u
 #define MAX_STAMP_NS ((int64_t)1000000000 << 31) /* ROS keeps seconds in int32_t */
-#define MAX_TRIPLETS (1u << 20)
 
 /* The events come last: without them the other channels are as they are with them. */
 enum { CHANNEL_IMAGE, CHANNEL_DEPTH, CHANNEL_CAMERA_INFO, CHANNEL_POSE, CHANNEL_EVENTS, CHANNEL_COUNT };
@@ -175,16 +176,15 @@ static void put_metadata(t3r_recorder *recorder, const t3r_recording_header *hea
 
 int t3r_recorder_begin(t3r_recorder *recorder, t3r_sink sink, const t3r_recording_header *header)
 {
-    int64_t unit_q40;
+    uint64_t unit_q40;
     if (recorder == NULL || header == NULL || sink.write == NULL || header->camera == NULL || header->source == NULL ||
-        header->clock == NULL || !camera_name_fits(header->camera) || header->triplet_count > MAX_TRIPLETS ||
+        header->clock == NULL || !camera_name_fits(header->camera) || header->triplet_count > T3R_LIMIT_TRIPLETS ||
         (header->triplet_count > 0 && header->triplets == NULL) ||
-        t3r_fixed_from_double(t3r_double_bits(header->depth_unit), 40, &unit_q40) != 0 || unit_q40 <= 0 ||
-        unit_q40 >> 56 != 0) {
+        !t3r_fixed_depth_unit(header->depth_unit, &unit_q40)) {
         return -1;
     }
     char depth_unit[T3R_Q40_TEXT_BYTES];
-    t3r_q40_to_text((uint64_t)unit_q40, depth_unit);
+    t3r_q40_to_text(unit_q40, depth_unit);
     memset(recorder, 0, sizeof *recorder);
     memcpy(recorder->camera, header->camera, strlen(header->camera) + 1);
     recorder->channel_count = header->events ? CHANNEL_COUNT : CHANNEL_EVENTS;

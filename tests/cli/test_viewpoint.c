@@ -83,7 +83,7 @@ static void refuses_bad_poses(void **state)
         {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,0,0],[0,0,0,1]]}",
          "transform_matrix"},
         {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"transform_matrix\": [[1,0,0,2e9],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
-         "range"},
+         "2^30"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         viewpoint_list list;

@@ -6,11 +6,20 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/camera.h"
+#include "fixed_camera.h"
 #include "image/image.h"
+#include "image/undistort.h"
 #include "pictures/picture.h"
+#include "reader_limits.h"
 #include "reason.h"
 
 #define MIN_SIDE 2u /* of t3r_frame */
+
+_Static_assert(T3R_MAX_POSITION_Q32 == INT64_C(1) << (T3R_LIMIT_POSITION_LOG2 + 32) &&
+                   T3R_MAX_TANGENTIAL_Q24 == T3R_LIMIT_TANGENTIAL << 24 &&
+                   T3R_MAX_DEPTH_UNIT_Q40 == ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40) - 1,
+               "readers and runtime have the same limits");
 
 /* a b / c to the nearest, halves up; sides are at most 2^12, so nothing overflows */
 static uint32_t share(uint32_t a, uint32_t b, uint32_t c)
@@ -176,23 +185,34 @@ static int develop_depth(picture *in, const import_crop *crop, uint32_t width, u
     return 0;
 }
 
-/* What t3r_camera can hold (trim3r.h). */
+/* Whether the runtime finds its way back through the lens: some coefficients fold the picture. -1 when memory is out.
+ */
+static int lens_folds(const t3r_camera *camera, uint32_t width, uint32_t height)
+{
+    if (camera->distortion == T3R_DISTORTION_NONE) {
+        return 0;
+    }
+    int32_t *grid = malloc(T3R_GRID_VALUES(width, height) * sizeof *grid);
+    int folds = grid == NULL ? -1 : t3r_undistort_grid(camera, width, height, grid) != T3R_OK;
+    free(grid);
+    return folds;
+}
+
+/* What build can use, of the camera that is left after cropping and resizing. */
 static int check_camera(const t3r_recorded_camera *camera, const char *name, char *error, size_t error_bytes)
 {
-    if (!(camera->fx >= 8 && camera->fx < 16384 && camera->fy >= 8 && camera->fy < 16384)) {
-        return t3r_reason(error, error_bytes, "%s: fl_x, fl_y: %g, %g after resizing; 8 to 16384 pixels are supported",
-                          name, camera->fx, camera->fy);
+    t3r_camera fixed;
+    const char *wrong = t3r_fixed_camera(camera, &fixed);
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes,
+                          "%s: %s are supported; after resizing fl_x, fl_y, cx, cy are %g, %g, %g, %g", name, wrong,
+                          camera->fx, camera->fy, camera->cx, camera->cy);
     }
-    if (!(fabs(camera->cx) < 16384 && fabs(camera->cy) < 16384)) {
-        return t3r_reason(error, error_bytes, "%s: cx, cy: %g, %g after resizing; less than 16384 is supported", name,
-                          camera->cx, camera->cy);
-    }
-    for (int i = 0; i < 5; i++) {
-        if (!(fabs(camera->coefficients[i]) < 128)) {
-            return t3r_reason(error, error_bytes, "%s: distortion: a coefficient is 128 or more", name);
-        }
-    }
-    return 0;
+    int folds = lens_folds(&fixed, camera->width, camera->height);
+    return folds == 0 ? 0
+                      : t3r_reason(error, error_bytes, "%s: %s", name,
+                                   folds < 0 ? "out of memory"
+                                             : "distortion: the coefficients fold more than half of the picture");
 }
 
 static int adapt(const char *directory, const posed_frame *frame, uint32_t width, uint32_t height, picture *colour,
@@ -213,6 +233,10 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
     out->format = T3R_PIXEL_RGB24;
     out->width = resize ? width : colour->width;
     out->height = resize ? height : colour->height;
+    if (out->width < T3R_MIN_SIDE || out->height < T3R_MIN_SIDE) {
+        return t3r_reason(error, error_bytes, "%s: %ux%u pixels; sides of %u and more are supported, or give --size",
+                          frame->image, out->width, out->height, T3R_MIN_SIDE);
+    }
     import_crop crop = import_largest_crop(colour->width, colour->height, out->width, out->height);
     if (crop.width < MIN_SIDE || crop.height < MIN_SIDE) {
         return t3r_reason(error, error_bytes, "%s: too narrow to crop to that aspect", frame->image);

@@ -7,6 +7,7 @@
 #include "import/frame.h"
 #include "posing/quaternion.h"
 #include "posing/resection.h"
+#include "fixed_camera.h"
 #include "reason.h"
 
 #define RESECTED 3000u       /* points that a pose is taken from */
@@ -261,7 +262,8 @@ static int settle_unit(const pointmap_source *source, depths *d, posed_folder *f
         qsort(d->some, d->count, sizeof *d->some, ascending);
         unit = exp2(ceil(log2(d->some[d->count / 2] / MEDIAN_STEPS)));
     }
-    if (!(unit >= 0x1p-40 && unit < 0x1p7)) {
+    uint64_t fixed;
+    if (!t3r_fixed_depth_unit(unit, &fixed)) {
         return t3r_reason(error, error_bytes,
                           "%s: the points' depths ask for a unit of %g, which is not within "
                           "1e-12 to 128; scale them",

@@ -200,7 +200,8 @@ static int take_poses(const stack *s, bool inverse, const double *numbers, point
             double value = numbers[at + i];
             *(i % 4 == 3 ? &m.t[i / 4] : &m.r[i / 4 * 3 + i % 4]) = value;
             if (i % 4 == 3 && !(fabs(value) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-                return fail(s, "a position is 2^30 or more", error, error_bytes);
+                return fail(s, T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more"), error,
+                            error_bytes);
             }
         }
         for (uint32_t i = 12; i < rows * 4; i++) {

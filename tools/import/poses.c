@@ -6,37 +6,9 @@
 
 #include "bytes.h"
 #include "cli/cli.h"
-#include "fixed_double.h"
+#include "fixed_camera.h"
 #include "import/frame.h"
 #include "reason.h"
-
-static int32_t fixed(double value, uint32_t fraction_bits)
-{
-    int64_t result = 0;
-    /* within range: import_frame() has checked the camera */
-    (void)t3r_fixed_from_double(t3r_double_bits(value), fraction_bits, &result);
-    return (int32_t)result;
-}
-
-/* As a reader of the recording sees it. */
-static t3r_camera camera_of(const t3r_recorded_camera *in)
-{
-    t3r_camera out = {.fx_q16 = fixed(in->fx, 16),
-                      .fy_q16 = fixed(in->fy, 16),
-                      .cx_q16 = fixed(in->cx, 16),
-                      .cy_q16 = fixed(in->cy, 16),
-                      .distortion = in->distortion};
-    for (int i = 0; i < 5; i++) {
-        out.distortion_q24[i] = fixed(in->coefficients[i], 24);
-    }
-    for (int i = 0; i < 4; i++) {
-        out.rotation_q30[i] = fixed(in->rotation[i], 30);
-    }
-    for (int i = 0; i < 3; i++) {
-        (void)t3r_fixed_from_double(t3r_double_bits(in->position[i]), 32, &out.position_q32[i]);
-    }
-    return out;
-}
 
 static int look_at(const char *directory, const posed_folder *folder, uint32_t index, pose_view *view,
                    t3r_camera *camera, char *error, size_t error_bytes)
@@ -45,7 +17,7 @@ static int look_at(const char *directory, const posed_folder *folder, uint32_t i
     t3r_recorded_frame recorded;
     int status = import_frame(directory, &folder->frames[index], NULL, 0, 0, &buffers, &recorded, error, error_bytes);
     if (status == 0) {
-        *camera = camera_of(&recorded.camera);
+        (void)t3r_fixed_camera(&recorded.camera, camera); /* import_frame() has checked it */
         t3r_frame frame = {.format = recorded.format, .width = recorded.width, .height = recorded.height};
         frame.planes[0] = recorded.planes[0];
         frame.stride_bytes[0] = recorded.stride_bytes[0];
@@ -55,13 +27,11 @@ static int look_at(const char *directory, const posed_folder *folder, uint32_t i
             for (size_t i = 0; i < count; i++) {
                 t3r_store_le16(bytes + 2 * i, buffers.depth[i]);
             }
-            int64_t unit = 0;
-            (void)t3r_fixed_from_double(t3r_double_bits(folder->depth_unit), 40, &unit);
+            (void)t3r_fixed_depth_unit(folder->depth_unit, &frame.depth_unit_q40); /* so has the folder's reader */
             frame.depth = bytes;
             frame.depth_width = recorded.depth_width;
             frame.depth_height = recorded.depth_height;
             frame.depth_stride_bytes = recorded.depth_width * 2;
-            frame.depth_unit_q40 = (uint64_t)unit;
         }
         char reason[256];
         if (pose_view_make(&frame, camera, view, reason, sizeof reason) != 0) {

@@ -13,7 +13,6 @@
 #define MAX_BYTES ((size_t)1 << 30) /* of a bag */
 #define MAX_STAMP_S INT64_C(4000000000)
 #define MAX_STAMP_NS (MAX_STAMP_S * 1000000000)
-#define FAR 2147483648.0 /* positions are below it */
 
 void trajectory_free(trajectory *t)
 {
@@ -67,8 +66,8 @@ static const char *check(const double pose[POSE_NUMBERS])
         if (!isfinite(pose[i])) {
             return "a number is not finite";
         }
-        if (i < 3 && !(fabs(pose[i]) < FAR)) {
-            return "a position is 2^31 or more";
+        if (i < 3 && !(fabs(pose[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
+            return T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more");
         }
         norm += i >= 3 ? pose[i] * pose[i] : 0;
     }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "cli/json_input.h"
+#include "fixed_camera.h"
 #include "reader_limits.h"
 #include "reason.h"
 #include "trim3r.h"
@@ -311,8 +312,8 @@ static int read_pose(reader *r, posed_frame *out)
         rotation[i * 3 + 1] = -m[i][1];
         rotation[i * 3 + 2] = -m[i][2];
         out->position[i] = m[i][3];
-        if (!(fabs(m[i][3]) < 2147483648.0)) {
-            return fail(r, "transform_matrix", "a position is 2^31 or more");
+        if (!(fabs(m[i][3]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
+            return fail(r, "transform_matrix", T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more"));
         }
     }
     const char *wrong = quaternion_of(rotation, out->rotation);
@@ -377,9 +378,9 @@ static int read_depth_unit(reader *r, posed_folder *out)
             return fail(r, "integer_depth_scale", "missing, but frames have a depth_path");
         }
     }
-    /* 2^-40 .. 2^7: what t3r_frame.depth_unit_q40 may hold */
-    if (!isnan(unit) && !(unit >= 0x1p-40 && unit < 0x1p7)) {
-        return fail(r, "integer_depth_scale", "not between 1e-12 and 128");
+    uint64_t fixed;
+    if (!isnan(unit) && !t3r_fixed_depth_unit(unit, &fixed)) {
+        return fail(r, "integer_depth_scale", T3R_LIMIT_TEXT("not between 1e-12 and ", T3R_LIMIT_DEPTH_UNIT, ""));
     }
     out->depth_unit = isnan(unit) ? 0.001 : unit;
     out->depth_unit_given = !isnan(unit);

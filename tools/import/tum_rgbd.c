@@ -91,8 +91,8 @@ static const char *parse_line(char *line, bool poses, stamped *item)
         if (!take_number(&at, &item->pose[i])) {
             return "not 'time tx ty tz qx qy qz qw' in finite numbers";
         }
-        if (i < 3 && !(fabs(item->pose[i]) < 2147483648.0)) {
-            return "a position is 2^31 or more";
+        if (i < 3 && !(fabs(item->pose[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
+            return T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more");
         }
         norm += i >= 3 ? item->pose[i] * item->pose[i] : 0;
     }

@@ -31,7 +31,7 @@ static int32_t to_q(double value, int fraction_bits)
 static int set_pose(t3r_camera *camera, const double position[3], const double rotation[4])
 {
     for (int i = 0; i < 3; i++) {
-        if (!(fabs(position[i]) < 0x1p30)) {
+        if (!(fabs(position[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
             return -1;
         }
         camera->position_q32[i] = (int64_t)nearbyint(ldexp(position[i], 32));
