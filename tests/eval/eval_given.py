@@ -120,7 +120,7 @@ def errors(folder, room, names):
           "given needs pictures")
     check("belong together" in run(trim3r, "eval", room, *common, expect=2).stderr, "in an evaluation too")
     check("of its own" in run(trim3r, "stress", *common, "--importance", folder, expect=2).stderr, "not in stress")
-    check("not told" in run(trim3r, "build", room, "--prune", f"{folder}/every.ply", "--keep", "10", "--method",
+    check("not known" in run(trim3r, "build", room, "--prune", f"{folder}/every.ply", "--keep", "10", "--method",
                             "eagles+head", "-o", f"{folder}/no.ply", expect=2).stderr, "a file tells no pixels")
 
 

@@ -40,48 +40,56 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"source", KEY_SOURCE, "SOURCE", 0, "v4l2:/dev/video0, libcamera:0, opencv:URL or replay:REC.mcap (needed)", 0},
-    {"list", KEY_LIST, NULL, 0, "the adapters of this build, those that it lacks, and the devices found", 0},
-    {"size", KEY_SIZE, "WxH", 0, "of colour; the nearest that the device has (640x480)", 0},
+    {"source", KEY_SOURCE, "SOURCE", 0, "camera: v4l2:/dev/video0, libcamera:0, opencv:URL or replay:REC.mcap (needed)",
+     0},
+    {"list", KEY_LIST, NULL, 0, "list the adapters of this build, those that it lacks, and the devices found", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size of colour; the nearest that the device has (640x480)", 0},
     {"rate", KEY_RATE, "FPS", 0, "frames a second (the device's)", 0},
-    {"format", KEY_FORMAT, "FOURCC", 0, "YUYV, UYVY, NV12, RGB3, BGR3, MJPG or GREY (the first that fits)", 0},
-    {"backend", KEY_BACKEND, "NAME", 0, "of OpenCV: FFMPEG, V4L2, CV_IMAGES, CV_MJPEG, GSTREAMER (its choice)", 0},
-    {"buffers", KEY_BUFFERS, "N", 0, "of a stream, 2..32 (4); more bridge longer builds", 0},
-    {"repeat", KEY_REPEAT, "N", 0, "a recording so many times over (1)", 0},
+    {"format", KEY_FORMAT, "FOURCC", 0,
+     "pixel format: YUYV, UYVY, NV12, RGB3, BGR3, MJPG or GREY (the first that fits)", 0},
+    {"backend", KEY_BACKEND, "NAME", 0, "backend of OpenCV: FFMPEG, V4L2, CV_IMAGES, CV_MJPEG, GSTREAMER (its choice)",
+     0},
+    {"buffers", KEY_BUFFERS, "N", 0, "buffers of a stream, 2..32 (4); more bridge longer builds", 0},
+    {"repeat", KEY_REPEAT, "N", 0, "number of times to play a recording (1)", 0},
     {"depth-source", KEY_DEPTH_SOURCE, "DEVICE", 0,
-     "depth from a second device of the same adapter: /dev/video2 with Z16 or Y16; of OpenCV pictures with 16 bits", 0},
-    {"depth-size", KEY_DEPTH_SIZE, "WxH", 0, "of depth (that of colour)", 0},
-    {"depth-unit", KEY_DEPTH_UNIT, "METRES", 0, "of a step of depth (0.001)", 0},
-    {"pair", KEY_PAIR, "MS", 0, "colour and depth so far apart are of one instant, 1..1000 (20)", 0},
-    {"stall", KEY_STALL, "MS", 0, "a device without a frame for so long is lost (3000)", 0},
-    {"reconnect", KEY_RECONNECT, "SECONDS", 0, "how long a lost device is waited for (10)", 0},
+     "second device of the same adapter, for depth: /dev/video2 with Z16 or Y16; for OpenCV pictures with 16 bits", 0},
+    {"depth-size", KEY_DEPTH_SIZE, "WxH", 0, "size of depth (that of colour)", 0},
+    {"depth-unit", KEY_DEPTH_UNIT, "METRES", 0, "length of one step of depth (0.001)", 0},
+    {"pair", KEY_PAIR, "MS", 0, "most milliseconds between colour and depth of one instant, 1..1000 (20)", 0},
+    {"stall", KEY_STALL, "MS", 0, "milliseconds without a frame after which a device counts as lost, 1..3600000 (3000)",
+     0},
+    {"reconnect", KEY_RECONNECT, "SECONDS", 0, "seconds to wait for a lost device (10)", 0},
     {NULL, 0, NULL, 0, "The camera:", 2},
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
      "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels of the captured size, (0, 0) being the centre of the top-left pixel", 0},
-    {"fisheye", KEY_FISHEYE, NULL, 0, "the intrinsics go on with k1,k2,k3,k4 of a fisheye lens", 0},
+    {"fisheye", KEY_FISHEYE, NULL, 0, "read the intrinsics as those of a fisheye lens, with k1,k2,k3,k4 at the end", 0},
     {"poses", KEY_POSES, "FILE", 0,
-     "camera to world over time: TUM lines, EuRoC's table, or a ROS 2 bag (MCAP) with PoseStamped or TransformStamped; "
-     "interpolated",
+     "poses over time, camera to world, to interpolate: lines of TUM, a table of EuRoC, or a ROS 2 bag (MCAP) with "
+     "PoseStamped or TransformStamped",
      0},
-    {"pose-topic", KEY_POSE_TOPIC, "TOPIC", 0, "of the bag (the only one with poses)", 0},
+    {"pose-topic", KEY_POSE_TOPIC, "TOPIC", 0, "topic of the bag (the only one with poses)", 0},
     {"clock-offset", KEY_OFFSET, "S|estimate[:S]", 0,
-     "the clock of the poses less the camera's in seconds (0), or found from how the picture moves, within a second of "
-     "S; S is 0 where the times overlap, else what brings their starts together",
+     "seconds that the poses' clock is ahead of the camera's (0), or estimate: found from how the picture moves, "
+     "within a second of S; S is 0 where the times overlap, else what brings their starts together",
      0},
-    {NULL, 0, NULL, 0, "What becomes of it:", 4},
-    {"output", 'o', "REC.mcap", 0, "a recording; what is there is overwritten, but for what is read", 0},
-    {"max-bytes", KEY_MAX_BYTES, "BYTES[K|M|G]", 0, "of a file; the next one is REC-1.mcap and so on", 0},
-    {"sync", KEY_SYNC, NULL, 0, "every message to the disk at once: power loss, too, costs one message at most", 0},
+    {NULL, 0, NULL, 0, "What is written:", 4},
+    {"output", 'o', "REC.mcap", 0, "recording to write; an existing file is overwritten, unless it is being read", 0},
+    {"max-bytes", KEY_MAX_BYTES, "BYTES[K|M|G]", 0, "most bytes of a file; the next one is REC-1.mcap and so on", 0},
+    {"sync", KEY_SYNC, NULL, 0, "write every message to the disk at once: a power loss then costs one message at most",
+     0},
     {"frames", KEY_FRAMES, "N", 0, "stop after N frames", 0},
     {"seconds", KEY_SECONDS, "S", 0, "stop after S seconds", 0},
     {"build", KEY_BUILD, "SCENE.ply", 0,
-     "Gaussians of the context frames (--context, as they come in, 0 and 1) as soon as they are there", 0},
+     "scene to write: Gaussians of the context frames (--context, in their order of arrival, 0 and 1) as soon as they "
+     "are there",
+     0},
     {"every", KEY_EVERY, "N", 0,
-     "build anew with every N-th frame, of it and the one N before; SCENE.ply is the last one's", 0},
+     "distance in frames of further builds, each of a frame and the one N before it; SCENE.ply is that of the last one",
+     0},
     {"local", KEY_LOCAL, NULL, 0, "write positions from the first context camera's centre", 0},
-    {"hash", KEY_HASH, NULL, 0, "tell the hash of all frames: a replay of the recording has the same", 0},
-    {"quiet", KEY_QUIET, NULL, 0, "no progress line", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {"hash", KEY_HASH, NULL, 0, "print the hash of all frames: a replay of the recording has the same", 0},
+    {"quiet", KEY_QUIET, NULL, 0, "show no progress line", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -214,7 +222,7 @@ static void check(struct argp_state *state, capture_options *o)
     }
     bool budget = o->build.gaussians != 0 || o->build.keep_percent > 0 || o->build.automatic;
     if (o->source == NULL) {
-        argp_error(state, "--source is missing (--list tells what there is)");
+        argp_error(state, "--source is missing (--list shows what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {
         argp_error(state, "neither -o REC.mcap nor --build SCENE.ply says what is to become of the frames");
     } else if (o->scene != NULL && !scene_file_is_written(o->scene)) {
@@ -370,19 +378,20 @@ static const struct argp_child children[] = {{&reconstruction_budget_argp, 0, "V
 static const struct argp argp = {
     .options = options,
     .parser = parse,
-    .doc = "Captures frames into a recording, straight into Gaussians, or both. Ctrl-C ends it; the recording is whole."
-           "\vExamples:\n"
-           "  trim3r capture --list\n"
-           "  trim3r capture --source v4l2:/dev/video0 -o rec.mcap\n"
-           "  trim3r capture --source v4l2:/dev/video0 --depth-source /dev/video2 \\\n"
-           "    --intrinsics 615,615,320,240 --max-bytes 2G -o rec.mcap\n"
-           "  trim3r capture --source replay:rec.mcap --poses tracker.txt \\\n"
-           "    --clock-offset estimate -o posed.mcap\n"
-           "  trim3r capture --source replay:posed.mcap --build s.ply --keep 10%\n\n"
-           "Poses are known after the capture as a rule: record first, then add them from the recording as above. "
-           "Devices may come back under another name: those of /dev/v4l/by-id do not.\n\n"
-           "Every frame that is not recorded is counted under its cause and told on the topic /camera/events, as is "
-           "every pair of colour and depth. A process that is killed loses at most the message that it was writing.",
+    .doc =
+        "Capture frames into a recording, straight into Gaussians, or both. Ctrl-C ends it; the recording is whole."
+        "\vExamples:\n"
+        "  trim3r capture --list\n"
+        "  trim3r capture --source v4l2:/dev/video0 -o rec.mcap\n"
+        "  trim3r capture --source v4l2:/dev/video0 --depth-source /dev/video2 \\\n"
+        "    --intrinsics 615,615,320,240 --max-bytes 2G -o rec.mcap\n"
+        "  trim3r capture --source replay:rec.mcap --poses tracker.txt \\\n"
+        "    --clock-offset estimate -o posed.mcap\n"
+        "  trim3r capture --source replay:posed.mcap --build s.ply --keep 10%\n\n"
+        "Poses are known after the capture as a rule: record first, then add them from the recording as above. "
+        "Devices may come back under another name: those of /dev/v4l/by-id do not.\n\n"
+        "Every frame that is not recorded is counted under its cause and reported on the topic /camera/events, as is "
+        "every pair of colour and depth. A process that is killed loses at most the message that it was writing.",
     .children = children,
 };
 

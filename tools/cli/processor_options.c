@@ -10,8 +10,8 @@
 enum { KEY_THREADS = 0x180, KEY_CPU_MASK };
 
 static const struct argp_option options[] = {
-    {NULL, 0, NULL, 0, "What must not change a bit:", PROCESSOR_GROUP},
-    {"threads", KEY_THREADS, "N|all", 0, "1..16, or `all` processors (1)", 0},
+    {NULL, 0, NULL, 0, "Without effect on the result:", PROCESSOR_GROUP},
+    {"threads", KEY_THREADS, "N|all", 0, "number of threads, 1..16, or all: one for each processor (1)", 0},
     {"cpu-mask", KEY_CPU_MASK, "MASK", 0,
      "vector extensions to use, of those that the processor has: all (default), none, names as avx2,vnni, or a number",
      0},

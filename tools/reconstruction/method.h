@@ -35,8 +35,8 @@ typedef uint32_t method_id;
 #define METHOD_ITERATIONS_MOST 100000u
 #define METHOD_NAMES "trim3r, random, eagles, lightgaussian, pup, efficientgs, each also with +finetune or +head"
 #define METHOD_HELP                                                                                                    \
-    "trim3r (default); the rivals random, eagles, lightgaussian, pup, efficientgs; behind any of them +finetune, or "  \
-    "+head: their points for our head"
+    "trim3r (default), or a rival: random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them "     \
+    "fine-tunes its Gaussians, +head makes new ones of its points"
 
 static inline method_kind method_kind_of(method_id m)
 {

@@ -27,19 +27,24 @@ enum {
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
     {"auto", KEY_AUTO, NULL, 0,
-     "no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, the budget at most "
-     "(all valid points)",
+     "take no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, and at most the "
+     "budget (all valid points)",
      0},
-    {"max-loss", KEY_MAX_LOSS, "DB", 0, "of --auto: decibels of new views against all valid points, 0.01..10 (0.5)", 0},
+    {"max-loss", KEY_MAX_LOSS, "DB", 0,
+     "decibels that --auto may lose on new views, against a scene of all valid points; 0.01..10 (0.5)", 0},
     {"importance", KEY_IMPORTANCE, "PNG,PNG,...", 0,
-     "of --allocate given, which keeps the brightest points: a grey picture a context view at the working size, in "
-     "their order, or a folder with <frame>.png; 16 bits as they are, 8 bits spread evenly within a level",
+     "importance of each pixel, for --allocate given: a grey picture for each context view, in their order and of the "
+     "working size, or a folder with <frame>.png; the brightest points are retained; 8-bit pictures are spread evenly "
+     "within a level",
      0},
     {"head", KEY_HEAD, "HEAD", 0,
-     "the networks nano, small (default), base, or one in a FILE.t3w; without weights: analytic, moment, none", 0},
+     "head that makes the Gaussians: a network (nano, small (default), base, or a FILE.t3w), or one without weights "
+     "(analytic, moment, none)",
+     0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
-    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "of the methods with +finetune, 1..100000 (200)", 0},
-    {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", PROCESSOR_GROUP},
+    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "iterations of the methods with +finetune, 1..100000 (200)", 0},
+    {"arena", KEY_ARENA, "BYTES|min|full", 0,
+     "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {0},
 };
 
@@ -128,10 +133,11 @@ const struct argp reconstruction_settings_argp = {
 static const struct argp_option budget[] = {
     {NULL, 0, NULL, 0, "Views and budget:", 10},
     {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, 1..16 (the first two)", 0},
-    {"gaussians", KEY_GAUSSIANS, "Z", 0, "exactly Z Gaussians, or all valid points where there are fewer", 0},
-    {"keep", KEY_KEEP, "P%", 0, "as many as P percent of the valid points, rounded half up", 0},
+    {"gaussians", KEY_GAUSSIANS, "Z", 0, "number of Gaussians: exactly Z, or all valid points where there are fewer",
+     0},
+    {"keep", KEY_KEEP, "P%", 0, "percent of the valid points to retain, rounded half up to a number", 0},
     {"method", KEY_METHOD, "METHOD", 0, METHOD_HELP, 0},
-    {"mask-head", KEY_MASK_HEAD, "HEAD", 0, "of a rival with +head: the head whose unpruned scene it ranks (--head's)",
+    {"mask-head", KEY_MASK_HEAD, "HEAD", 0, "head whose unpruned scene a rival with +head ranks (the one of --head)",
      0},
     {0},
 };

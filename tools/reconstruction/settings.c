@@ -30,29 +30,31 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
     SETTING("refine", "N", refinements, NUMBER, 0, T3R_MAX_REFINEMENTS, NULL,                                          \
             "refinement passes on the context views", true, "refine")                                                  \
     SETTING("allocate", "MODE", allocation, NAME, T3R_ALLOCATE_CONFIGURED + 1, UINT32_MAX, allocation_name,            \
-            "how the budget is spread", true, NULL)                                                                    \
+            "allocation of the budget over the points", true, NULL)                                                    \
     SETTING("depth", "SOURCE", depth, NAME, 0, UINT32_MAX, depth_name,                                                 \
-            "where depth comes from; stereo makes it of the colours of two and more posed frames, whether they have "  \
-            "depth or not",                                                                                            \
+            "source of depth; stereo matches the colours of two or more posed frames and ignores recorded depth",      \
             true, NULL)                                                                                                \
-    SETTING("wavelet", "NAME", wavelet, NAME, 0, UINT32_MAX, wavelet_name, "what texture is measured with", true,      \
+    SETTING("wavelet", "NAME", wavelet, NAME, 0, UINT32_MAX, wavelet_name, "wavelet that measures texture", true,      \
             NULL)                                                                                                      \
     SETTING("levels", "N", wavelet_levels, NUMBER, 1, T3R_MAX_LEVELS, NULL, "wavelet levels", true, "levels")          \
-    SETTING("clusters", "K", clusters, NUMBER, 1, T3R_MAX_CLUSTERS, NULL, "SuperClusters", true, "k")                  \
+    SETTING("clusters", "K", clusters, NUMBER, 1, T3R_MAX_CLUSTERS, NULL, "number of SuperClusters", true, "k")        \
     SETTING("gamma", "G", gamma_q8, Q8, 0, 2, NULL, "exponent of texture in the density", false, "gamma")              \
     SETTING("keep-percent", "N", keep_percent, NUMBER, 0, 100, NULL,                                                   \
-            "percent that a trimmed SuperCluster keeps with --allocate paper", false, "keep-percent")                  \
-    SETTING("fill-radius", "N", fill_radius, NUMBER, 0, 8, NULL, "depth holes bracketed within N pixels are filled",   \
-            false, "fill-radius")                                                                                      \
+            "percent of its points that a trimmed SuperCluster keeps, with --allocate paper", false, "keep-percent")   \
+    SETTING("fill-radius", "N", fill_radius, NUMBER, 0, 8, NULL,                                                       \
+            "fill holes of a depth sensor that measurements bracket within N pixels; 0 fills none", false,             \
+            "fill-radius")                                                                                             \
     SETTING("bridge-radius", "N", bridge_radius, NUMBER, 0, 255, NULL,                                                 \
-            "wider ones too, where no other view measured the surface", false, "bridge-radius")                        \
+            "bridge wider holes, bracketed within N pixels, where no other view measured the surface; 0 bridges none", \
+            false, "bridge-radius")                                                                                    \
     SETTING("flying", "on|off", flying, SWITCH, 0, 1, NULL,                                                            \
-            "points between surfaces, or in front of what another view measured, come last", false, "flying")          \
+            "retain flying pixels last: points between surfaces, or in front of what another view measured", false,    \
+            "flying")                                                                                                  \
     SETTING("redundancy", "on|off", redundancy, SWITCH, 0, 1, NULL,                                                    \
-            "small budgets pass over points whose surface another view has as finely", false, "redundancy")            \
+            "let small budgets pass over points whose surface another view shows as finely", false, "redundancy")      \
     SETTING("exposure", "on|off", exposure, SWITCH, 0, 1, NULL,                                                        \
-            "colours of all views are brought to their mean exposure", false, "exposure")                              \
-    SETTING("seed", "N", seed, NUMBER, 0, UINT32_MAX, NULL, "of the K-means seeding and of --allocate random", false,  \
+            "bring the colours of all views to their mean exposure", false, "exposure")                                \
+    SETTING("seed", "N", seed, NUMBER, 0, UINT32_MAX, NULL, "seed of the K-means and of --allocate random", false,     \
             "seed")
 
 const setting settings_table[] = {

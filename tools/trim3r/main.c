@@ -14,40 +14,41 @@ static const struct {
     int (*run)(int argc, char **argv);
     const char *summary;
 } commands[] = {
-    {"import", command_import, "a folder of posed pictures to a recording"},
-    {"capture", command_capture, "a camera, live, to a recording or straight to Gaussians"},
-    {"room", command_room, "the built-in room as a recording"},
-    {"info", command_info, "what recordings and scenes hold: frames, clocks; Gaussians, scales"},
-    {"build", command_build, "frames of a recording to exactly Z Gaussians, as a .ply"},
-    {"render", command_render, "a scene seen from a frame of a recording, a pose file or a trajectory"},
-    {"eval", command_eval, "scores of rendered views against recorded ones"},
-    {"chart", command_chart, "scores against time and bytes: a picture, a report"},
-    {"stress", command_stress, "what noise, dropouts, wrong poses and hard scenes do to each method"},
-    {"replay", command_replay, "the hash of every stage, and whether it is the expected one"},
-    {"diff", command_diff, "what differs between two scenes or two views"},
-    {"plan", command_plan, "the arena's buffers, its bytes and the operation counts, before anything runs"},
-    {"bench", command_bench, "the speed of each stage on this machine"},
-    {"quantize", command_quantize, "a trained head to integers: a weight file or a C source"},
-    {"head-info", command_head_info, "what a head consists of: layers, multiply-accumulates, bytes"},
+    {"import", command_import, "turn a folder of posed pictures into a recording"},
+    {"capture", command_capture, "record a live camera, or turn it straight into Gaussians"},
+    {"room", command_room, "write the built-in room as a recording"},
+    {"info", command_info, "show what recordings and scenes hold"},
+    {"build", command_build, "turn frames of a recording into exactly Z Gaussians"},
+    {"render", command_render, "draw a scene as a recorded camera, a pose or a trajectory sees it"},
+    {"eval", command_eval, "score rendered views against recorded ones"},
+    {"chart", command_chart, "plot scores against time and bytes, as a picture or a report"},
+    {"stress", command_stress, "measure each method under noise, wrong poses and hard scenes"},
+    {"replay", command_replay, "print the hash of every stage, and compare with an earlier run"},
+    {"diff", command_diff, "compare two scenes or two views"},
+    {"plan", command_plan, "list an arena's buffers and bytes before anything runs"},
+    {"bench", command_bench, "time each stage on this machine"},
+    {"quantize", command_quantize, "turn a trained head into integers: a weight file or a C source"},
+    {"head-info", command_head_info, "show a head's layers, multiply-accumulates and bytes"},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_help(FILE *out)
 {
     fputs("Usage: trim3r COMMAND [OPTION...]\n"
-          "A few camera frames to a budgeted set of 3-D Gaussians, and views of it, in integers.\n\n",
+          "Turn a few camera frames into a budgeted set of 3-D Gaussians, and draw views of it, in integers.\n\n",
           out);
     for (int i = 0; i < COMMAND_COUNT; i++) {
         fprintf(out, "  %-9s %s\n", commands[i].name, commands[i].summary);
     }
-    fputs("\nThe way of the data:\n"
+    fputs("\nData flow:\n"
           "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
-          "                        REC.mcap > eval > scores > chart > report.html;  REC.mcap > replay > hashes\n\n"
+          "                        REC.mcap > eval > scores > chart > report.html\n"
+          "                        REC.mcap > replay > hashes\n\n"
           "  trim3r room -o room.mcap\n"
           "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
           "  trim3r render scene.ply room.mcap --view 1 -o view.png\n\n"
-          "trim3r COMMAND --help tells a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
-          "3 budget too small. With --json a command prints one JSON object on stdout.\n",
+          "trim3r COMMAND --help lists a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
+          "3 budget or arena too small. With --json a command prints one JSON object on stdout.\n",
           out);
 }
 

@@ -48,13 +48,13 @@ typedef struct bench_options {
 enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_JSON };
 
 static const struct argp_option options[] = {
-    {"points", KEY_POINTS, "FILE", 0, "cluster these points instead: raw float32, N x 6", 0},
-    {"head", KEY_HEAD, "HEAD", 0, "the network of head_gmac_per_s: nano, small (default), base, or FILE.t3w", 0},
+    {"points", KEY_POINTS, "FILE", 0, "points to cluster instead of the room's: raw float32, N x 6", 0},
+    {"head", KEY_HEAD, "HEAD", 0, "network of head_gmac_per_s: nano, small (default), base, or FILE.t3w", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0,
-     "of the scenes that are built and drawn: sensor (default), or stereo, made of the colours", 0},
-    {"stages", KEY_STAGES, "LIST", 0, "time these rows alone, as kmeans_ms,stereo_ms (all)", 0},
-    {"runs", KEY_RUNS, "N", 0, "timed runs of each stage, 1..101 (7)", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+     "source of depth of the scenes that are built and drawn: sensor (default), or stereo, from the colours", 0},
+    {"stages", KEY_STAGES, "LIST", 0, "rows to time, as kmeans_ms,stereo_ms (all)", 0},
+    {"runs", KEY_RUNS, "N", 0, "number of timed runs of each stage, 1..101 (7)", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -96,7 +96,7 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .doc =
-        "Times the stages on two 256x256 views of the built-in room (131,072 points): the median of interleaved runs, "
+        "Time the stages on two 256x256 views of the built-in room (131,072 points): the median of interleaved runs, "
         "with "
         "the least and the most beside; processor time of one thread, or with more of them elapsed time."
         "\vExamples:\n"

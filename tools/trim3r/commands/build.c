@@ -33,25 +33,24 @@ typedef struct build_options {
 enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_POSES, KEY_JSON };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "SCENE.ply", 0, "where the scene goes (needed, or --colmap)", 0},
+    {"output", 'o', "SCENE.ply", 0, "scene to write (needed, or --colmap)", 0},
     {"colmap", KEY_COLMAP, "DIR", 0,
-     "write the start of an outside optimiser into this folder, new or empty: the context views and the means and "
-     "colours of the Gaussians as a COLMAP model in text",
+     "folder, new or empty, to write the start of an outside optimiser into: the context views, and the means and "
+     "colours of the Gaussians, as a COLMAP model in text",
      0},
     {"prune", KEY_PRUNE, "SCENE.ply", 0,
-     "prune this scene, made elsewhere, instead of building one: the recording gives its views, --context those it was "
-     "made of; percents are of its Gaussians",
+     "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names those it "
+     "was made of; percents are of its Gaussians",
      0},
     {"poses", KEY_POSES, "SOURCE", 0,
-     "of the context views: given (default), those of the recording; estimate, from corners that they share, with "
-     "depth "
-     "where two of them have it; estimate-colour, likewise from colour alone",
+     "source of the poses of the context views: given (default), those of the recording; estimate, from corners that "
+     "views share, with depth where two of them have it; estimate-colour, the same from colour alone",
      0},
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
     {"comments", KEY_COMMENTS, NULL, 0,
      "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -100,7 +99,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
         } else if (o->settings.points_of != NULL && method_ranks_for_head(o->settings.method)) {
             argp_error(state,
-                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not told");
+                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not known");
         }
         return 0;
     default:
@@ -113,35 +112,34 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap",
-    .doc =
-        "Makes exactly Z Gaussians of a recording's context frames, or with --auto as few as it needs."
-        "\vExamples:\n"
-        "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
-        "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
-        "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
-        "  trim3r build room.mcap --auto --max-loss 0.5 -o scene.ply\n"
-        "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
-        "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
-        "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
-        "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% -o less.ply\n"
-        "  trim3r build room.mcap --keep 10% --colmap start\n"
-        "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n\n"
-        "The scene stands in the recording's world frame unless --local is given.\n\n"
-        "--prune: the means of the file's Gaussians, in the same world and of opacity 0.05 and more, seen from each "
-        "context view are its depth; trim3r makes new Gaussians of points among them, the rivals keep some of the "
-        "file's as they are. The recording's own depth is not looked at.\n\n"
-        "--poses estimate: the first context view keeps the pose that the recording has, or is the origin; each other "
-        "one "
-        "is joined to the best of those before. With depth in both views lengths are those of the depth, from colour "
-        "the "
-        "distance of the first two cameras is 1, unless some depth tells. Frames too unlike, a camera that only "
-        "turned, "
-        "and corners on one plane are refused. `trim3r import --poses estimate` keeps the poses in the recording.\n\n"
-        "--colmap: DIR/images/ are the context views at the working size, undistorted; DIR/sparse/0/ holds "
-        "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
-        "look for them; InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that it "
-        "came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise where the "
-        "head and refinement put them.",
+    .doc = "Make exactly Z Gaussians of a recording's context frames, or with --auto as few as they need."
+           "\vExamples:\n"
+           "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+           "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
+           "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
+           "  trim3r build room.mcap --auto --max-loss 0.5 -o scene.ply\n"
+           "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
+           "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
+           "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
+           "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% -o s.ply\n"
+           "  trim3r build room.mcap --keep 10% --colmap start\n"
+           "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n\n"
+           "The scene stands in the recording's world frame unless --local is given.\n\n"
+           "--prune: the means of the file's Gaussians, seen from each context view, are its depth. They are in the "
+           "same world, and those of an opacity below 0.05 do not count. trim3r makes new Gaussians of points among "
+           "them; the rivals keep some of the file's as they are. The recording's own depth is ignored.\n"
+           "\n"
+           "--poses estimate: the first context view keeps its recorded pose, or is the origin. Each other view is "
+           "joined to the best of those before it. With depth in both views, lengths are those of the depth; from "
+           "colour alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too "
+           "unlike, a camera that only turned, and corners on one plane are refused. `trim3r import --poses estimate` "
+           "keeps the poses in the recording.\n"
+           "\n"
+           "--colmap: DIR/images/ holds the context views at the working size, undistorted. DIR/sparse/0/ holds "
+           "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
+           "look for them. InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that "
+           "it came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise they "
+           "are where the head and refinement put them.",
     .children = children,
 };
 

@@ -133,18 +133,22 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is written:", 1},
-    {"output", 'o', "REPORT.html", 0, "every quality against every cost, one file that fetches nothing", 0},
-    {"svg", KEY_SVG, "FILE", 0, "the chart as a picture, a panel for each cost", 0},
-    {"png", KEY_PNG, "FILE", 0, "the same, in pixels", 0},
-    {"dark", KEY_DARK, NULL, 0, "the PNG on a dark ground", 0},
+    {"output", 'o', "REPORT.html", 0,
+     "report to write: every quality against every cost, in one file that fetches nothing", 0},
+    {"svg", KEY_SVG, "FILE", 0, "picture to write: a panel for each cost", 0},
+    {"png", KEY_PNG, "FILE", 0, "the same picture to write, in pixels", 0},
+    {"dark", KEY_DARK, NULL, 0, "draw the PNG on a dark ground", 0},
     {NULL, 0, NULL, 0, "What is shown:", 2},
-    {"quality", KEY_QUALITY, "NAME", 0, "psnr (default), ssim, perceptual, planar_psnr; the report begins with it", 0},
+    {"quality", KEY_QUALITY, "NAME", 0,
+     "quality to draw: psnr (default), ssim, perceptual or planar_psnr; the report begins with it", 0},
     {"against", KEY_AGAINST, "NAME,NAME,...", 0,
-     "build_ms, render_ms, arena_bytes, scene_bytes (all that the tables have); the report begins with the first", 0},
-    {"scene", KEY_SCENE, "NAME", 0, "that scene alone; the report begins with it", 0},
+     "costs to draw it against: build_ms, render_ms, arena_bytes, scene_bytes (all that the tables have); the report "
+     "begins with the first",
+     0},
+    {"scene", KEY_SCENE, "NAME", 0, "scene to draw, alone (the mean over all); the report begins with it", 0},
     {"pictures", KEY_PICTURES, "DIR", 0,
-     "what eval --images wrote, for the report: once for all tables, or once for each in their order", 0},
-    {"picture-mib", KEY_MIB, "N", 0, "the most of pictures that the report holds, in MiB (48)", 0},
+     "folder that eval --images wrote, for the report: one for all tables, or one for each in their order", 0},
+    {"picture-mib", KEY_MIB, "N", 0, "most MiB of pictures that the report holds, 1..1024 (48)", 0},
     {0},
 };
 
@@ -160,15 +164,15 @@ static const struct argp parser = {
         "on all cases. Tables may be of different runs and of older versions: a column that is missing counts as not "
         "varied; rows that agree in everything are one measurement made again. A table that is malformed is refused "
         "with its line.\n\n"
-        "The report shows the settings of a point under the pointer or the keyboard's focus (arrow keys move, Enter "
-        "opens), scenes one by one, and behind each point its render, the target and a map of the error.\n\n"
-        "Examples:\n"
-        "  trim3r eval room.mcap --keep 100,20,5 --methods trim3r,random --csv a.csv --images a\n"
+        "The report shows the settings of the point under the pointer or with the keyboard's focus: arrow keys move, "
+        "Enter opens. It shows scenes one by one, and for each point its render, the target and a map of the error.\n"
+        "\n"
+        "Examples:\n  trim3r eval room.mcap --keep 100,20,5 --csv a.csv --images a\n"
         "  trim3r chart a.csv --pictures a -o report.html\n"
         "  trim3r eval room.mcap --keep 100,20,5 --refine 0 --csv b.csv --images b\n"
         "  trim3r chart a.csv b.csv --pictures a --pictures b -o report.html\n"
-        "  trim3r chart a.csv b.csv --against build_ms --svg speed.svg --png speed.png\n"
-        "  trim3r chart a.csv --quality ssim --against scene_bytes,arena_bytes --scene room --svg bytes.svg",
+        "  trim3r chart a.csv b.csv --against build_ms --svg speed.svg --png speed.png\n  trim3r chart a.csv --quality "
+        "ssim --against scene_bytes --svg bytes.svg",
 };
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */

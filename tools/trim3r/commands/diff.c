@@ -24,7 +24,7 @@ typedef struct diff_options {
 enum { KEY_JSON = 0x1000 };
 
 static const struct argp_option options[] = {
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -54,7 +54,7 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "A B",
-    .doc = "Compares two scenes (.ply) or two views (PNG)."
+    .doc = "Compare two scenes (.ply) or two views (PNG)."
            "\vExamples:\n"
            "  trim3r diff scene.ply other.ply\n"
            "  trim3r diff view.png other.png --json\n\n"

@@ -122,7 +122,7 @@ static void check_prune(struct argp_state *state, const options *o)
     for (uint32_t m = 0; m < o->method_count; m++) {
         if (method_ranks_for_head(o->methods[m])) {
             argp_error(state,
-                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not told");
+                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not known");
         }
     }
 }
@@ -272,45 +272,47 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is compared:", 1},
     {"context", KEY_CONTEXT, "A,B,...", 0,
-     "frames that the scene is made of, one named twice counting once (all triplets that the recording carries)", 0},
-    {"target", KEY_TARGET, "T", 0, "the frame to be met; it is never shown to the method", 0},
+     "frames that the scene is made of; one named twice counts once (all triplets that the recording carries)", 0},
+    {"target", KEY_TARGET, "T", 0, "frame to compare the rendered view with; the method never sees it", 0},
     {"views", KEY_VIEWS, "N", 0,
-     "fill every context up to N frames, 2..16 (2: the triplet's own, or --context), with those nearest to the target",
+     "frames of every context, 2..16 (2: the triplet's own, or --context); those nearest to the target are added", 0},
+    {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points, one row each; with --auto the upper bound (100)",
      0},
-    {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points, one row each; with --auto the most (100)", 0},
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
     {"prune", KEY_PRUNE, "SCENE.ply", 0,
-     "prune this scene, made elsewhere of the views of --context: percents are of its Gaussians; trim3r makes new ones "
-     "of points among their means, the rivals keep some; the mask is of its means where a view has no depth",
+     "scene, made elsewhere of the views of --context, to prune: percents are of its Gaussians; trim3r makes new ones "
+     "of points among their means, the rivals keep some; where a view has no depth, the mask is of the means",
      0},
-    {"heads", KEY_HEADS, "H,H,...", 0, "rows of the method trim3r for each of these heads, see --head", 0},
+    {"heads", KEY_HEADS, "H,H,...", 0, "heads to compare, as --head takes them: rows of the method trim3r for each", 0},
     {"mask-head", KEY_MASK_HEAD, "HEAD", 0,
-     "of rivals with +head: the head whose unpruned scene they rank (--head's); so --head can be one retrained for "
-     "their points",
+     "head whose unpruned scene rivals with +head rank (the one of --head); so --head can be one that was retrained "
+     "for their points",
      0},
     {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
-     "what each part is worth: rows with one part taken away each (all), at 60, 40, 20, 10 and 5 % unless --keep says "
-     "otherwise, and one table at the end",
+     "parts to take away, one in each row (all), at 60, 40, 20, 10 and 5 % unless --keep names others; a table of what "
+     "each is worth comes at the end",
      0},
     {"planar", KEY_PLANAR, NULL, 0,
-     "the arguments are images: each is one view on a plane of constant depth, drawn again from the same camera", 0},
-    {"size", KEY_SIZE, "WxH", 0, "to which --planar crops and averages images (256x256)", 0},
+     "take images as arguments: each is one view on a plane of constant depth, drawn again from the same camera", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size to which --planar crops and averages images (256x256)", 0},
     {"from-file", KEY_FROM_FILE, NULL, 0, "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", KEY_CSV, "FILE", 0, "the rows, as they are made", 0},
+    {"csv", KEY_CSV, "FILE", 0, "table to write; each row appears when it is made", 0},
     {"images", KEY_IMAGES, "DIR", 0,
-     "DIR/<target>/<method>_<keep>.png (with --heads <head>, with --ablate <ablation>; settings that are not the "
-     "default come before <keep>, as in trim3r_refine-0_10.png), target.png, mask.png, context_a.png, ...; the column "
-     "picture names each",
+     "folder to write pictures into: DIR/<target>/<method>_<keep>.png, target.png, mask.png, context_a.png, ...; with "
+     "--heads <head> or with --ablate <ablation> is in the name, and settings that are not the default come before "
+     "<keep>, as in trim3r_refine-0_10.png; the column picture names each",
      0},
-    {"html", KEY_HTML, "PAGE.html", 0, "one page with the pictures side by side; it needs no other file", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: rows, means over the cases, refused cases", 0},
+    {"html", KEY_HTML, "PAGE.html", 0, "page to write, with the pictures side by side; it needs no other file", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout: rows, means over the cases, refused cases", 0},
     {NULL, 0, NULL, 0, "How the work is done:", 3},
     {"jobs", KEY_JOBS, "N", 0,
-     "processes that share the cases, 1..256, or all: one a processor (1); times are then those of a busy machine", 0},
+     "processes that share the cases, 1..256, or all: one for each processor (1); times are then those of a busy "
+     "machine",
+     0},
     {"resume", KEY_RESUME, NULL, 0,
-     "rows that stand in --csv already are not made again; those that do not are added to it; a table that is older "
-     "than the program or a recording is refused",
+     "skip rows that are in --csv already, and add the others to it; a table older than the program or a recording is "
+     "refused",
      0},
     {0},
 };
@@ -321,55 +323,67 @@ static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
     .args_doc = "REC.mcap...\n--planar IMAGE...",
-    .doc =
-        "Score views of a reconstruction against recorded ones.\v"
-        "A row is one scene, context, target, method, head and budget; bits: of a network's weights (and of its "
-        "activations, where they differ). psnr (dB), ssim, sharp (mean gradient over the "
-        "target's) and perceptual (FLIP at 67 pixels a degree, 0 = none) count the pixels of the mask: those that all "
-        "points of the raw depth, drawn with the plain analytic head, leave a transmittance below 0.3. holes: share "
-        "of the mask left above 0.5. psnr_all: all pixels over black. context_psnr: mean over the context views, each "
-        "on its own mask. build_ms: recorded frames to scene; render_ms: the target view; scene_bytes: the Gaussians "
-        "as the arena holds them, 44 bytes each; picture: the render's name within --images. planar_psnr: all pixels "
-        "of "
-        "--planar, where ssim, sharp, holes and perceptual count all pixels too. Cells that do not apply are empty. "
-        "Several cases end in lines of means (decibels are averaged as decibels), which the CSV leaves out; several "
-        "recordings get a folder each in --images.\n\n"
-        "--views N: the triplet's own frames, or those of --context, come first, then the recording's other frames "
-        "with depth (but for --depth stereo), pose and intrinsics by their distance from the target's camera: the root "
-        "of the squares of the "
-        "centres' distance over the median depth of the first frame, and of the distance between the directions of "
-        "view as unit vectors; of equal ones the lower index, the target never. The column context names them, the "
-        "column settings tells views-N; the mask is that of all N. A recording with too few frames is refused.\n\n"
-        "The rivals keep, of the scene that --head and --refine make of all points, the Gaussians that their papers' "
-        "scores rank highest over the context views, and draw them unchanged: random; eagles (influence, the sum of "
-        "blending weights); lightgaussian (hits x opacity x volume); pup (second-order sensitivity to place and "
-        "scale); efficientgs (dominant in most pixels). +finetune: N iterations of Adam on the context views follow, "
-        "on all parameters of what was kept. +head: --head makes new Gaussians of the points that those kept came "
-        "from, "
-        "refined as trim3r's are; trim3r+head makes them of our own points, so that both have their spacing counted. "
-        "build_ms counts the unpruned scene, scoring and fine-tuning.\n\n"
-        "--ablate: each row changes one thing of the settings given, --refine among them, and names it in the column "
-        "ablation. full: nothing. no-adaptation: the head is told that nothing was pruned; its splats at 100 % are "
-        "pruned and, but for --refine, left as they are. no-mask: the network is told so, but its splats still grow "
-        "with the distance of kept neighbours. random, uniform, paper, pixel: --allocate. random-clusters: "
-        "SuperClusters exchange their textures at random; paper-random-clusters: so with --allocate paper. k-5, k-25,"
-        " k-50, k-100, k-200, k-300, k-400: --clusters. n-5, n-10, n-15, n-20: --allocate paper with that "
-        "--keep-percent. no-refinement: --refine 0. no-flying, no-redundancy, no-exposure: that switch off. Left out "
-        "are no-mask of heads without weights, no-adaptation of the head none, and the last three of --planar. The "
-        "table is Markdown, PSNR (dB) / SSIM, means over the cases of a recording; of several recordings the mean, "
-        "each counting once.\n\n"
-        "Of several cases those refused (without depth or stereo match) are left out, and told on stderr and by "
-        "--json; --resume tries them again. Where none is left the exit status is 1.\n\n"
-        "Examples:\n"
-        "  trim3r eval room.mcap --keep 100,20,10\n"
-        "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images dir\n"
-        "  trim3r eval room.mcap --keep 20,5 --views 4\n"
-        "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune,pup+head\n"
-        "  trim3r eval room.mcap --keep 10,5 --heads analytic,small,my.t3w\n"
-        "  trim3r eval room.mcap --ablate=full,no-mask,no-adaptation --keep 10,5 --refine 0\n"
-        "  trim3r eval room.mcap --prune s.ply --context 0,2 --target 1 --methods trim3r,pup --keep 20\n"
-        "  trim3r eval *.mcap --keep 100,40,10 --methods trim3r,eagles --jobs all --csv all.csv --resume\n"
-        "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
+    .doc = "Score views of a reconstruction against recorded ones.\v"
+           "A row is one scene, context, target, method, head and budget. Cells that do not apply are empty. Several "
+           "cases end in lines of means, which the CSV leaves out.\n"
+           "  bits          of a network's weights, and of its activations if not the same\n"
+           "  psnr, ssim    on the mask; decibels are averaged as decibels\n"
+           "  sharp         mean gradient over the target's, on the mask\n"
+           "  perceptual    FLIP at 67 pixels a degree, on the mask; 0 = no difference\n"
+           "  holes         share of the mask that keeps a transmittance above 0.5\n"
+           "  psnr_all      of all pixels, over black\n"
+           "  planar_psnr   of all pixels of --planar, where no score has a mask\n"
+           "  context_psnr  mean over the context views, each on its own mask\n"
+           "  build_ms      recorded frames to scene, with scores and fine-tuning\n"
+           "  render_ms     the target view\n"
+           "  scene_bytes   the Gaussians as the arena holds them, 44 bytes each\n"
+           "  picture       the name of the render within --images\n"
+           "The mask: the pixels that all points of the raw depth, drawn with the plain analytic head, leave a "
+           "transmittance below 0.3.\n"
+           "\n"
+           "--views N: the frames of the triplet, or of --context, come first. Then come the other frames that have "
+           "pose, intrinsics and (but for --depth stereo) depth, the nearest to the target's camera first. Two "
+           "parts make up the distance, as the root of their squares: the distance of the centres over the median "
+           "depth of the first frame, and that of the directions of view as unit vectors. Of equal ones the lower "
+           "index is taken, the target never. The mask is that of all N. A recording with too few frames is refused.\n"
+           "\n"
+           "The rivals rank the Gaussians that --head and --refine make of all points, by the score of their papers "
+           "over the context views. They draw the best ones unchanged.\n"
+           "  eagles         influence: the sum of blend weights\n"
+           "  lightgaussian  hits x opacity x volume\n"
+           "  pup            second-order sensitivity to place and scale\n"
+           "  efficientgs    dominance: in most pixels\n"
+           "  +finetune      N iterations of Adam follow, on all parameters\n"
+           "  +head          --head makes new Gaussians of the points they came from\n"
+           "\n"
+           "--ablate: each row changes one thing of the settings given.\n"
+           "  full                      nothing\n"
+           "  no-adaptation             the head works as if nothing had been pruned; what\n"
+           "                            it makes of all points is pruned, then refined\n"
+           "  no-mask                   the network works so, but its splats still grow\n"
+           "                            with the distance of retained neighbours\n"
+           "  random, uniform, paper, pixel   --allocate\n"
+           "  random-clusters           SuperClusters exchange their textures at random\n"
+           "  paper-random-clusters     the same with --allocate paper\n"
+           "  k-5, k-25, k-50, k-100, k-200, k-300, k-400   --clusters\n"
+           "  n-5, n-10, n-15, n-20     --allocate paper with that --keep-percent\n"
+           "  no-refinement             --refine 0\n"
+           "  no-flying, no-redundancy, no-exposure   that switch off\n"
+           "The table is Markdown: PSNR (dB) / SSIM, means over the cases of a recording; of several recordings the "
+           "mean, each counting once.\n"
+           "\n"
+           "Refused cases (without depth or stereo match) are left out and reported, and --resume tries them again. "
+           "Where no case is left the exit status is 1.\n"
+           "\n"
+           "Examples:\n"
+           "  trim3r eval room.mcap --keep 100,20,10\n"
+           "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images dir\n"
+           "  trim3r eval room.mcap --keep 20,5 --views 4\n"
+           "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune,pup+head\n"
+           "  trim3r eval room.mcap --keep 10,5 --heads analytic,small,my.t3w\n  trim3r eval room.mcap "
+           "--ablate=full,no-mask,no-adaptation --keep 10,5\n  trim3r eval room.mcap --prune s.ply --context 0,2 "
+           "--target 1 --keep 20\n  trim3r eval *.mcap --keep 40,10 --jobs all --csv all.csv --resume\n"
+           "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
     .children = children,
 };
 

@@ -59,8 +59,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    {"size", KEY_SIZE, "WxH", 0, "view that the work bytes are for (256x256)", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size of the view that the work bytes are for (256x256)", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -69,7 +69,7 @@ static const struct argp parser = {
     .parser = parse_option,
     .args_doc = "FILE.t3w\nFILE.safetensors",
     .doc =
-        "Shows a head's layers: what they read, their channels, multiply-accumulates a pixel with all points kept, "
+        "Show a head's layers: what they read, their channels, multiply-accumulates a pixel with all points kept, "
         "bytes and work bytes; every field of the file is checked.\v"
         "Sources: 0 are the features, n is layer n. Bytes: weights, biases, multipliers and shifts; of a float head, "
         "what they will be with 8-bit weights and activations. Work bytes: the rows of a layer's output that must be "

@@ -127,29 +127,29 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    {"output", 'o', "REC.mcap", 0, "The recording to write; it appears when it is whole", 0},
+    {"output", 'o', "REC.mcap", 0, "recording to write; it appears when it is whole (needed)", 0},
     {"size", 's', "WxH", 0,
-     "Crop every picture to the largest centred part of that aspect, then resize: colour by area average, depth by the "
-     "pixel at the centre of each box",
+     "size of the frames: each picture is cropped to the largest centred part of that aspect, then resized, colour by "
+     "area average and depth by the pixel at the centre of each box (as the pictures are)",
      0},
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
-     "Of TUM RGB-D and of pictures alone: the colour camera as fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being "
-     "the "
-     "centre of the top-left pixel; known for folders with freiburg1, freiburg2 or freiburg3 in their name",
+     "colour camera of a TUM RGB-D folder or of pictures alone: fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being "
+     "the centre of the top-left pixel (known where the name of the folder has freiburg1, freiburg2 or freiburg3 in "
+     "it)",
      0},
     {"poses", KEY_POSES, "SOURCE", 0,
-     "given (default), those of the folder; estimate, from corners that frames share, with depth where two of them "
-     "have "
-     "it, or from pointmaps, of all frames then; estimate-colour, from colour alone, without pointmaps",
+     "source of the poses: given (default), those of the folder; estimate, from corners that frames share, with depth "
+     "where two of them have it, or of all frames from pointmaps; estimate-colour, from colour alone, without "
+     "pointmaps",
      0},
-    {"pointmaps", KEY_POINTMAPS, "FILE.npz", 0, "Depth of all frames, one pointmap each, in the frames' order", 0},
-    {"min-confidence", KEY_CONFIDENCE, "C", 0, "Points of pointmaps with less become no depth (all are kept)", 0},
+    {"pointmaps", KEY_POINTMAPS, "FILE.npz", 0, "depth of all frames: one pointmap each, in the frames' order", 0},
+    {"min-confidence", KEY_CONFIDENCE, "C", 0,
+     "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
     {"depth-unit", KEY_UNIT, "U", 0,
-     "Length of a step of depths from pointmaps (integer_depth_scale of the folder, else a power of two so that the "
-     "median "
-     "has 4096 to 8192 steps)",
+     "length of one step of depth made from pointmaps (integer_depth_scale of the folder, else a power of two with "
+     "which the median has 4096 to 8192 steps)",
      0},
-    {"json", KEY_JSON, NULL, 0, "One JSON object on stdout", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -158,21 +158,27 @@ static const struct argp parser = {
     .parser = parse_option,
     .args_doc = "DIR",
     .doc = "Turn a posed folder into a recording.\v"
-           "DIR holds transforms.json (instant-ngp, NeRFCapture, nerfstudio: camera_model OPENCV or OPENCV_FISHEYE, "
-           "depth_path with integer_depth_scale, trim3r_triplets) or rgb.txt, groundtruth.txt and optionally depth.txt "
-           "(TUM RGB-D; pictures without a pose are left out); with --poses estimate or --pointmaps also pictures "
-           "alone, in "
-           "the order of their names. Frames get stamps 1/30 s apart.\n\n"
-           "A pointmap, as DUSt3R, MASt3R and VGGT make them, is float32 pts3d (or world_points, points, pointmap), "
-           "H x W x 3, of a frame in the first frame's camera, x right, y down, z forward: pointmap_path of a frame, a "
-           ".npz "
-           "or .npy, or N of them in the file of --pointmaps. A .npz may hold conf (or world_points_conf), H x W (a "
-           ".npy has "
-           "confidence_path beside it), and what the points were made with, which then wins over the folder: poses, "
-           "camera to the points' frame, 4x4, or extrinsic, the inverse, 3x4; intrinsics, 3x3, or focals, in pixels of "
-           "the "
-           "map. Missing poses are taken from the points. What is not a finite number is refused, and poses of which "
-           "some are in the folder's world, others in that of the points.\n\n"
+           "DIR holds one of\n"
+           "  transforms.json (instant-ngp, NeRFCapture, nerfstudio): camera_model OPENCV\n"
+           "    or OPENCV_FISHEYE, depth_path with integer_depth_scale, trim3r_triplets\n"
+           "  rgb.txt, groundtruth.txt and optionally depth.txt (TUM RGB-D); pictures\n"
+           "    without a pose are left out\n"
+           "  pictures alone, in the order of their names, with --poses estimate or\n"
+           "    --pointmaps\n"
+           "Frames get stamps 1/30 s apart.\n"
+           "\n"
+           "A pointmap, as DUSt3R, MASt3R and VGGT make them, is a point for each pixel of a frame, in the first "
+           "frame's camera, x right, y down, z forward. It is the file pointmap_path of a frame, or one of N in the "
+           "file of --pointmaps. A .npz may hold\n"
+           "  pts3d (or world_points, points, pointmap)   float32, H x W x 3\n"
+           "  conf (or world_points_conf)                 H x W\n"
+           "  poses, or extrinsic                         camera to points, 4x4;\n"
+           "                                              its inverse, 3x4\n"
+           "  intrinsics, or focals                       3x3, in pixels of the map\n"
+           "A .npy holds the points alone, with confidence_path beside it. Cameras of a .npz win over those of the "
+           "folder, and missing poses are taken from the points. Numbers that are not finite are refused. So are poses "
+           "of which some are in the folder's world and others in that of the points.\n"
+           "\n"
            "Estimated poses are rounded into the recording: what is made of it later is the same everywhere. With them "
            "DIR may "
            "also be a recording, which is then written once more.\n\n"

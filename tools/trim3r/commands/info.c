@@ -85,9 +85,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    {"view", KEY_VIEW, "N", 0, "Tell scales in pixels of this frame of REC.mcap, too", 0},
-    {"svg", KEY_SVG, "FILE", 0, "Histograms of the scenes' scales as a picture", 0},
-    {"json", KEY_JSON, NULL, 0, "One JSON object on stdout", 0},
+    {"view", KEY_VIEW, "N", 0, "frame of REC.mcap in whose pixels the scales are shown, too", 0},
+    {"svg", KEY_SVG, "FILE", 0, "picture to write: histograms of the scenes' scales", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 

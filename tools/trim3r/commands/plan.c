@@ -38,16 +38,16 @@ enum {
 
 static const struct argp_option options[] = {
     {"size", KEY_SIZE, "WxH", 0, "working size of the context views (needed)", 0},
-    {"views", KEY_VIEWS, "N", 0, "context views, 0..16; 0 = an arena that only renders (2)", 0},
-    {"gaussians", KEY_GAUSSIANS, "Z", 0, "the budget (needed, or --within)", 0},
+    {"views", KEY_VIEWS, "N", 0, "number of context views, 0..16; 0 = an arena that only renders (2)", 0},
+    {"gaussians", KEY_GAUSSIANS, "Z", 0, "budget (needed, or --within)", 0},
     {"within", KEY_WITHIN, "BYTES[K|M]", 0,
-     "the largest budget that an arena of so many bytes can hold, at most --gaussians (all points of the views)", 0},
-    {"head", KEY_HEAD, "HEAD", 0, "nano, small (default), base, FILE.t3w, analytic, moment or none", 0},
-    {"render", KEY_RENDER, "WxH", 0, "largest picture drawn (the working size)", 0},
-    {"keep-analysis", KEY_KEEP, NULL, 0, "the analysis outlives the build, so that the budget can change", 0},
-    {"svg", KEY_SVG, "FILE", 0, "the arena as a picture: stages across, bytes upwards", 0},
-    {"markdown", KEY_MARKDOWN, NULL, 0, "the table in Markdown", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+     "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
+    {"head", KEY_HEAD, "HEAD", 0, "head: nano, small (default), base, FILE.t3w, analytic, moment or none", 0},
+    {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
+    {"keep-analysis", KEY_KEEP, NULL, 0, "keep the analysis after the build, so that the budget can change", 0},
+    {"svg", KEY_SVG, "FILE", 0, "picture of the arena to write: stages across, bytes upwards", 0},
+    {"markdown", KEY_MARKDOWN, NULL, 0, "print the table in Markdown", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -108,7 +108,7 @@ static const struct argp_child children[] = {{.argp = &settings_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
-    .doc = "Prints the arena's buffers, and the least and the full bytes."
+    .doc = "Print an arena's buffers, the least bytes that work, and the bytes for full speed."
            "\vExamples:\n"
            "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
            "  trim3r plan --size 96x96 --within 512K\n"

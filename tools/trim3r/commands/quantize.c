@@ -110,18 +110,21 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    {NULL, 'o', "OUT", 0, "OUT.t3w: a weight file; OUT.c: the same as a C array t3r_head_NAME (needed)", 0},
+    {NULL, 'o', "OUT", 0,
+     "file to write: OUT.t3w, a weight file, or OUT.c, the same as a C array t3r_head_NAME (needed)", 0},
     {"weights", KEY_WEIGHTS, "8|16", 0, "bits of the weights (8)", 0},
     {"activations", KEY_ACTIVATIONS, "8|16", 0, "bits of the activations (8)", 0},
     {"calibrate", KEY_CALIBRATE, "REC.mcap|IMAGE", 0,
-     "measure the ranges that the head does not bring along on this; more may follow HEAD, or further --calibrate", 0},
+     "recording or image on which to measure the ranges that the head lacks; more may follow HEAD, or further "
+     "--calibrate",
+     0},
     {"percentile", KEY_PERCENTILE, "P", 0,
      "percent of an activation's values that its measured range holds (99.99; with 16-bit activations twice the "
      "largest value)",
      0},
-    {"size", KEY_SIZE, "WxH", 0, "to which --calibrate crops and averages images (256x256)", 0},
-    {"name", KEY_NAME, "NAME", 0, "the head's name: 1 to 15 of a-z 0-9 _ (the one in HEAD)", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size to which --calibrate crops and averages images (256x256)", 0},
+    {"name", KEY_NAME, "NAME", 0, "name of the head: 1 to 15 of a-z 0-9 _ (the one in HEAD)", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -129,10 +132,10 @@ static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
     .args_doc = "HEAD.safetensors [REC.mcap|IMAGE...]",
-    .doc = "Turns a trained head into integers for the runtime.\v"
-           "A head trained with quantization in mind brings its ranges along (layerN.range); those it lacks are "
-           "measured: the float head runs on what the runtime makes of the recordings' context pairs and of images on "
-           "a plane, with 100, 40, 20, 10 and 5 percent of the points kept. The same input gives the same file.\n"
+    .doc = "Turn a trained head into integers for the runtime.\v"
+           "A head trained with quantization in mind brings its ranges along (layerN.range). Those that it lacks are "
+           "measured. The float head runs on what the runtime makes of the recordings' context pairs and of images on "
+           "a plane, with 100, 40, 20, 10 and 5 percent of the points retained. The same input gives the same file.\n"
            "\n"
            "Examples:\n"
            "  trim3r quantize small.safetensors -o small.t3w\n"

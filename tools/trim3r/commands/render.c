@@ -48,20 +48,21 @@ enum {
 
 static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "Viewpoint:", 1},
-    {"view", KEY_VIEW, "N", 0, "the camera of frame N of REC.mcap", 0},
-    {"pose", KEY_POSE, "FILE", 0, "a camera as JSON (below)", 0},
+    {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose camera draws", 0},
+    {"pose", KEY_POSE, "FILE", 0, "camera as JSON (below)", 0},
     {"trajectory", KEY_TRAJECTORY, "FILE", 0,
-     "TUM poses, one picture each, numbered; the lens is that of --view, --pose or --fov", 0},
-    {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view, with --size, for a trajectory", 0},
-    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along", 0},
+     "TUM poses, one numbered picture each; the lens is that of --view, --pose or --fov", 0},
+    {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view of a trajectory, with --size", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along (the camera's)", 0},
     {NULL, 0, NULL, 0, "Pictures:", 2},
-    {"output", 'o', "view.png", 0, "where the picture goes (needed)", 0},
-    {"depth", KEY_DEPTH, "d.png", 0, "16-bit depth along z, 0 = none", 0},
-    {"depth-unit", KEY_DEPTH_UNIT, "U", 0, "world units a step of the depth picture (0.001)", 0},
-    {"alpha", KEY_ALPHA, "a.png", 0, "16-bit coverage, 65535 = opaque", 0},
-    {"arena", KEY_ARENA, "BYTES|min|full", 0, "memory of the runtime (full)", PROCESSOR_GROUP},
+    {"output", 'o', "view.png", 0, "picture to write (needed)", 0},
+    {"depth", KEY_DEPTH, "d.png", 0, "depth along z to write, 16 bits, 0 = none", 0},
+    {"depth-unit", KEY_DEPTH_UNIT, "U", 0, "world units in one step of the depth picture (0.001)", 0},
+    {"alpha", KEY_ALPHA, "a.png", 0, "coverage to write, 16 bits, 65535 = opaque", 0},
+    {"arena", KEY_ARENA, "BYTES|min|full", 0,
+     "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {NULL, 0, NULL, 0, "Other:", PROCESSOR_GROUP + 1},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -152,7 +153,7 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "SCENE.ply [REC.mcap]",
-    .doc = "Draws a scene."
+    .doc = "Draw a scene."
            "\vExamples:\n"
            "  trim3r render scene.ply room.mcap --view 1 -o view.png\n"
            "  trim3r render scene.ply --pose pose.json --depth depth.png -o view.png\n"

@@ -41,21 +41,21 @@ enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_HA
 
 static const struct argp_option options[] = {
     {"expect", KEY_EXPECT, "HASH|FILE", 0,
-     "the final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout, fit for --expect", 0},
+     "expected final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout, fit for --expect", 0},
     {NULL, 0, NULL, 0, "A map that follows the camera:", 5},
     {"stream", KEY_STREAM, NULL, 0,
-     "all frames in turn: keyframes go into one map of at most --gaussians, the frames between them are drawn and "
+     "take all frames in turn: keyframes go into one map of at most --gaussians; the frames between them are drawn and "
      "compared",
      0},
-    {"every", KEY_EVERY, "N", 0, "every Nth frame is a keyframe, 1..1000 (3)", 0},
+    {"every", KEY_EVERY, "N", 0, "distance of keyframes in frames, 1..1000 (3)", 0},
     {"overlap", KEY_OVERLAP, "P%", 0,
-     "a frame between is a keyframe too when it has less than that in common with the last one, 1..100", 0},
-    {"at-hand", KEY_AT_HAND, "K", 0, "keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
+     "least percent that a frame shares with the last keyframe; with less it becomes a keyframe too, 1..100", 0},
+    {"at-hand", KEY_AT_HAND, "K", 0, "number of keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
     {"half-life", KEY_HALF_LIFE, "K", 0,
-     "keyframes that halve the density of what they do not see, 0..1024; 0 = nothing fades (32)", 0},
+     "number of keyframes that halve the density of what they do not see, 0..1024; 0 = nothing fades (32)", 0},
     {"images", KEY_IMAGES, "DIR", 0,
-     "write the held-back frames, where they have a depth, and their views: DIR/frame_<frame>.png, mask_, live_, "
+     "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
      0},
     {0},
@@ -137,11 +137,10 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "REC.mcap",
     .doc =
-        "Builds (10 % kept unless told otherwise), draws the first frame that is not a context view, and prints the "
-        "hash "
-        "of every stage and of the whole. With --stream, all frames of the recording in turn: percents kept are then "
-        "of "
-        "the first two keyframes' points."
+        "Build a scene (10 % of the points, unless a budget is given), draw the first frame that is not a context "
+        "view, "
+        "and print the hash of every stage and of the whole. With --stream, take all frames of the recording in turn; "
+        "percents are then of the points of the first two keyframes."
         "\vExamples:\n"
         "  trim3r replay room.mcap\n"
         "  trim3r replay room.mcap --json > golden.json\n"

@@ -55,11 +55,11 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    {"output", 'o', "REC.mcap", 0, "The recording to write; it appears when it is whole", 0},
-    {"size", 's', "WxH", 0, "Size of the pictures; 256x256", 0},
-    {"frames", KEY_FRAMES, "N", 0, "Number of frames along the arc, 1 to 1000; 6", 0},
-    {"seed", KEY_SEED, "S", 0, "Another seed gives other textures and noise; 1", 0},
-    {"json", KEY_JSON, NULL, 0, "One JSON object on stdout", 0},
+    {"output", 'o', "REC.mcap", 0, "recording to write; it appears when it is whole (needed)", 0},
+    {"size", 's', "WxH", 0, "size of the pictures (256x256)", 0},
+    {"frames", KEY_FRAMES, "N", 0, "number of frames along the arc, 1..1000 (6)", 0},
+    {"seed", KEY_SEED, "S", 0, "seed of the textures and of the noise (1)", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 

@@ -146,16 +146,17 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is compared:", 1},
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
-    {"keep", KEY_KEEP, "P,P,...", 0, "percent of the valid points of the unperturbed frames (10)", 0},
-    {"rows", KEY_ROWS, "NAME,...", 0, "perturbations and scenes, see below (all)", 0},
-    {"strengths", KEY_STRENGTHS, "N,...", 0, "of each, 1 the least, 3 the most (1,2,3)", 0},
-    {"captures", KEY_CAPTURES, "N", 0, "noisy captures of each still scene, for flicker; 0 = none (2)", 0},
-    {"triplets", KEY_TRIPLETS, "N", 0, "of each recording, evenly over those that it carries (1)", 0},
+    {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points of the unperturbed frames (10)", 0},
+    {"rows", KEY_ROWS, "NAME,...", 0, "perturbations and scenes, of those below (all)", 0},
+    {"strengths", KEY_STRENGTHS, "N,...", 0, "strengths of each, 1 the least, 3 the most (1,2,3)", 0},
+    {"captures", KEY_CAPTURES, "N", 0, "number of noisy captures of each still scene, for flicker; 0 = none (2)", 0},
+    {"triplets", KEY_TRIPLETS, "N", 0,
+     "number of triplets of each recording, spread evenly over those that it carries (1)", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", KEY_CSV, "FILE", 0, "the rows, as they are made", 0},
-    {"html", KEY_HTML, "PAGE.html", 0, "one page with pictures of the worst cases; it needs no other file", 0},
-    {"worst", KEY_WORST, "N", 0, "cases on the page, one a perturbation at most, 1..64 (12)", 0},
-    {"json", KEY_JSON, NULL, 0, "one JSON object on stdout: the rows", 0},
+    {"csv", KEY_CSV, "FILE", 0, "table to write; each row appears when it is made", 0},
+    {"html", KEY_HTML, "PAGE.html", 0, "page to write, with pictures of the worst cases; it needs no other file", 0},
+    {"worst", KEY_WORST, "N", 0, "number of cases on the page, 1..64, one for each perturbation at most (12)", 0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout: the rows", 0},
     {0},
 };
 
@@ -195,25 +196,31 @@ static const struct argp parser = {
     .help_filter = list_rows,
     .args_doc = "[REC.mcap...]",
     .doc =
-        "How much each method loses when the frames are perturbed, and what it does with scenes that are hard; without "
-        "a recording, on the built-in room.\v"
-        "The context frames change in memory, the target stays what was recorded. The budget is a number, that of the "
-        "unperturbed frames, so a method must use exactly as many Gaussians or all valid points. Losses (dB, SSIM) are "
-        "against the same method on unperturbed frames, on their mask; those of the scene-* rows against all points. "
-        "psnr_unpruned: of all points of the same frames. flicker: mean change in 8-bit levels, on the mask, between "
-        "renders of consecutive captures of a still scene, "
-        "which have noise of 2 levels and of 0.2 % of the depth beside the perturbation; flicker_unpruned: that of all "
-        "points. mask_changed, motion (unperturbed rows): the share of retained pixels that the next such capture does "
-        "not retain, and the median way of the Gaussians of the others as a share of their spacing. Chance is drawn "
-        "from "
-        "fixed seeds: the same command gives the same figures, but for times.\n\n"
-        "An error with a reason is a refusal: a result. Broken invariants end in exit status 1: another number of "
-        "Gaussians than the budget, another arena than before, a Gaussian out of range or not finite, a score that is "
-        "no number, trim3r on a still scene beyond its bounds (with as many Gaussians as SuperClusters or more, n for "
-        "each: 0.6 / sqrt(n) of the mask, at most half; a median way of three quarters of the spacing "
-        "beyond what the depth's noise makes). Of several "
-        "cases "
-        "the tables show means; * marks that some were refused.\n\n"
+        "Measure how much each method loses when the frames are perturbed, and what it does with scenes that are hard; "
+        "without a recording, on the built-in room.\v"
+        "The context frames change in memory, the target stays as recorded. The budget is a number, that of the "
+        "unperturbed frames, so a method must use exactly as many Gaussians, or all valid points. Losses (dB, SSIM) "
+        "are against the same method on unperturbed frames, on their mask; those of the scene-* rows are against all "
+        "points. Columns:\n"
+        "  psnr_unpruned     of all points of the same frames\n"
+        "  flicker           mean change in 8-bit levels, on the mask, between the\n"
+        "                    renders of two captures of a still scene; these have noise\n"
+        "                    of 2 levels and of 0.2 % of the depth, too\n"
+        "  flicker_unpruned  the same of all points\n"
+        "  mask_changed      share of the retained pixels that the next such capture\n"
+        "                    does not retain (unperturbed rows)\n"
+        "  motion            median movement of the other Gaussians, as a share of\n"
+        "                    their spacing (unperturbed rows)\n"
+        "Chance is drawn from fixed seeds: the same command gives the same figures, but for times.\n"
+        "\n"
+        "An error with a reason is a refusal, which is a result. A broken invariant ends in exit status 1:\n"
+        "  another number of Gaussians than the budget, or another arena than before\n"
+        "  a Gaussian out of range or not finite, or a score that is no number\n"
+        "  trim3r beyond its bounds on a still scene of n Gaussians for each of its\n"
+        "    SuperClusters, n at least 1: 0.6 / sqrt(n) of the mask, at most half; a\n"
+        "    median movement of 3/4 of the spacing beyond what the depth's noise makes\n"
+        "Of several cases the tables show means; * marks that some were refused.\n"
+        "\n"
         "Examples:\n"
         "  trim3r stress\n"
         "  trim3r stress room.mcap --methods trim3r,random,eagles --csv s.csv\n"
