@@ -1,14 +1,11 @@
 /* The arena: laid out, or found again as it was left. */
-#include "api/checks.h"
+#include "api/restored.h"
 #include "core/config.h"
 #include "layout/arena.h"
-#include "core/camera.h"
 #include "core/hash.h"
 #include "core/memory.h"
-#include "core/scene_frame.h"
 #include "state/state.h"
 #include "image/image.h"
-#include "superclusters/superclusters.h"
 
 /* Changes with the layout: an arena laid out by another build is refused. */
 static uint64_t layout_hash(const t3r_layout *layout)
@@ -82,69 +79,6 @@ t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features)
     return T3R_OK;
 }
 
-/* --- an arena that was copied ------------------------------------------------------------------------------------- */
-
-/* Whether labels and SuperClusters of a copied analysis stay within what the budget stage counts on. */
-static bool is_analysis(const t3r_runtime *rt)
-{
-    size_t points = T3R_PIXELS_(rt->config.width, rt->config.height) * rt->views;
-    const uint16_t *labels = t3r_buffer_at(rt, T3R_BUFFER_LABELS);
-    const t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
-    for (size_t i = 0; i < points; i++) {
-        if (labels[i] >= rt->config.clusters && labels[i] != T3R_NO_LABEL) {
-            return false;
-        }
-    }
-    for (uint32_t k = 0; k < rt->config.clusters; k++) {
-        if (clusters[k].points > points || clusters[k].texture_q4 > UINT16_MAX ||
-            clusters[k].order >= rt->config.clusters) {
-            return false;
-        }
-    }
-    return rt->median_depth_q20 >= 1 << 20 && rt->median_depth_q20 < 2 << 20 && rt->valid_points <= points;
-}
-
-static bool is_scene(const t3r_runtime *rt)
-{
-    const t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
-    for (uint32_t i = 0; i < rt->gaussians; i++) {
-        if (!t3r_is_gaussian(&scene[i])) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Whether the slots of a stream's keyframes are those that taking them one after the other fills. */
-static bool is_stream(const t3r_runtime *rt)
-{
-    bool full = rt->views == rt->config.views;
-    return !rt->analysed && rt->next_slot <= rt->views && rt->next_slot < rt->config.views &&
-           (full || rt->next_slot == rt->views) && rt->gaussians <= rt->config.gaussians &&
-           (rt->has_scene ? rt->views > 0 && rt->keyframes >= rt->views
-                          : rt->views == 0 && rt->keyframes == 0 && rt->gaussians == 0);
-}
-
-/* Whether a copied arena holds what the stages rely on. Planes may hold anything. */
-static bool is_consistent(const t3r_runtime *rt)
-{
-    if (rt->views > rt->config.views || rt->gaussians > rt->config.max_gaussians || rt->analysed > 1 ||
-        rt->has_scene > 1 || !t3r_is_scene_frame(&rt->frame) || !t3r_is_build(&rt->config, &rt->build) ||
-        (rt->config.stream ? !is_stream(rt) : rt->next_slot != 0)) {
-        return false;
-    }
-    for (uint32_t v = 0; v < rt->views; v++) {
-        t3r_pose pose;
-        if (rt->stereo_pair[v] >= T3R_PAIR_COUNT || rt->stereo_partner[v] >= T3R_MAX_VIEWS ||
-            t3r_camera_check(&rt->camera[v]) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
-            rt->depth_unit_q40[v] > T3R_MAX_DEPTH_UNIT_Q40 ||
-            (rt->analysed && t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK)) {
-            return false;
-        }
-    }
-    return (!rt->analysed || is_analysis(rt)) && (!rt->has_scene || is_scene(rt));
-}
-
 t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
@@ -161,7 +95,7 @@ t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
         return T3R_ERR_EPOCH;
     }
     bind_layout(state, &layout);
-    if (!is_consistent(state)) {
+    if (!t3r_is_restored(state)) {
         return T3R_ERR_EPOCH;
     }
     memset(&state->hooks, 0, sizeof state->hooks);

@@ -117,6 +117,18 @@ void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count)
     }
 }
 
+bool t3r_are_ranked(const t3r_cluster *clusters, uint32_t cluster_count)
+{
+    for (uint32_t i = 0; i < cluster_count; i++) {
+        /* ascending without ties: then each is there once */
+        if (clusters[i].order >= cluster_count ||
+            (i > 0 && !precedes(clusters, clusters[i - 1].order, clusters[i].order))) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* --- keys --------------------------------------------------------------------------------------------------------- */
 
 static bool follows_texture(t3r_allocation allocation)
@@ -197,18 +209,26 @@ static inline uint32_t open_points(const t3r_cluster *cluster)
     return cluster->points - T3R_MIN(cluster->deferred, cluster->points);
 }
 
-/* Shares `budget` among the clusters in proportion to weight[k]; cumulative rounding makes the sum exact and each
- * quota one of the two integers next to its share. Weights sum to less than 2^39, the budget is below 2^24. */
+/* Weights sum to less than this, points times a factor: sums that count more are held there. */
+#define WEIGHTS_MOST (((uint64_t)1 << 39) - 1)
+
+static uint64_t add_weight(uint64_t sum, uint64_t weight)
+{
+    return T3R_MIN(sum + T3R_MIN(weight, WEIGHTS_MOST), WEIGHTS_MOST);
+}
+
+/* Shares `budget`, at most 2^24, among the clusters in proportion to weight[k]; cumulative rounding makes the sum exact
+ * and each quota one of the two integers next to its share. Whatever the weights, the sum is at most the budget. */
 static void share_out(t3r_cluster *clusters, uint32_t count, const uint64_t *weight, uint64_t budget)
 {
     uint64_t total = 0, running = 0, given = 0;
     for (uint32_t k = 0; k < count; k++) {
-        total += weight[k];
+        total = add_weight(total, weight[k]);
     }
     for (uint32_t k = 0; k < count && total > 0; k++) {
         if (weight[k] > 0) {
-            running += weight[k];
-            uint64_t due = running * budget / total;
+            running = add_weight(running, weight[k]);
+            uint64_t due = running * budget / total; /* `running` is at most `total`, and below 2^39 */
             clusters[k].quota = (uint32_t)(due - given);
             given = due;
         }
@@ -274,6 +294,15 @@ static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_bud
             weight[k] = open_points(&clusters[k]);
         }
         share_out(clusters, count, weight, budget);
+    }
+}
+
+/* A group never retains more than its quota, nor all groups more than Z: the scene has room for no more. */
+static void hold_quotas(t3r_cluster *clusters, uint32_t groups, uint32_t most)
+{
+    for (uint32_t g = 0; g < groups; g++) {
+        clusters[g].quota = T3R_MIN(clusters[g].quota, most);
+        most -= clusters[g].quota;
     }
 }
 
@@ -470,6 +499,7 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     }
     t3r_cluster *deferred = &clusters[settings->clusters];
     deferred->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, deferred->points);
+    hold_quotas(clusters, settings->clusters + 1, settings->gaussians);
     const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
     if (!given) {
         t3r_budget_keys(views, count, settings, &work->workers);

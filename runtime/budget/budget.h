@@ -64,8 +64,9 @@ void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clu
 /* Hands the textures of the clusters that have points round among them, every permutation alike likely. */
 void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t seed);
 
-/* Their order from the lowest texture up. */
+/* Their order from the lowest texture up; whether they are in it, whatever the entries hold. */
 void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
+bool t3r_are_ranked(const t3r_cluster *clusters, uint32_t cluster_count);
 
 /* The keys of all pixels, of which t3r_allocate() retains the smallest; log2 of the density that a texture asks for, up
  * to a constant, Q10: key = T3R_KEY_ZERO + log2 of the threshold - wanted but for sure and deferred points. */
@@ -73,8 +74,8 @@ void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_set
                      const t3r_workers *workers);
 int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings);
 
-/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set. For `given` the key planes hold the keys already
- * (importance.h). */
+/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set, and at most Z whatever the clusters say. For
+ * `given` the key planes hold the keys already (importance.h). */
 void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters,
                   const t3r_budget_work *work);
 

@@ -79,6 +79,24 @@ static const char *const texts[] = {"no configuration",
 
 #define FAULTS (sizeof texts / sizeof texts[0])
 
+uint64_t t3r_most_arena_bytes(const t3r_config *c)
+{
+    const uint64_t pixels = (uint64_t)c->width * c->height, gaussians = c->max_gaussians, workers = c->workers;
+    /* a worker's part of the wavelet's, the head's, K-means', the budget's and refinement's work */
+    const uint64_t worker = pixels * 4 + (uint64_t)(c->width + 15) * (c->head_column_bytes + 32) +
+                            T3R_HEAD_KERNEL_BYTES + T3R_CLUSTER_SUMS_BYTES + T3R_GROUP_COUNTS_BYTES + T3R_WANTED_BYTES +
+                            gaussians * 27 + 512;
+    const uint64_t fixed = T3R_HEADER_BYTES + T3R_CLUSTER_WORK_BYTES + (T3R_MAX_CLUSTERS + 1) * T3R_CLUSTER_BYTES +
+                           2 * T3R_SORT_BYTES + T3R_BUFFER_COUNT * T3R_ARENA_ALIGN * (uint64_t)4;
+    uint64_t bytes = fixed + pixels * (c->views * (uint64_t)24 + 38) +
+                     (uint64_t)c->render_width * c->render_height * 8 + gaussians * 332 + workers * worker;
+    /* planes of a quarter more on a side, the right one wider; 64 rows of sums and costs, and as many path states */
+    const uint64_t wide = (uint64_t)T3R_MAX_(c->width, c->height) * 5 / 4 + 8 + T3R_STEREO_DISPARITIES;
+    bytes +=
+        c->depth == T3R_DEPTH_STEREO && c->views > 0 ? wide * wide * 16 + wide * (T3R_STEREO_DISPARITIES + 2) * 300 : 0;
+    return bytes;
+}
+
 /* The text's place, FAULTS when nothing is wrong. */
 static size_t first_fault(const t3r_config *c)
 {
@@ -86,7 +104,7 @@ static size_t first_fault(const t3r_config *c)
         return 0;
     }
     const bool stereo = c->depth == T3R_DEPTH_STEREO && c->views > 0;
-    const uint32_t side = T3R_MAX_(c->width, c->height), least = c->width < c->height ? c->width : c->height;
+    const uint32_t least = c->width < c->height ? c->width : c->height;
     const struct {
         uint32_t value, low, high;
     } range[] = {RANGES(BOUNDS)};
@@ -95,14 +113,8 @@ static size_t first_fault(const t3r_config *c)
             return i + 1;
         }
     }
-    /* Sizes are summed in size_t: an arena of more than half of what it can count is refused, generously estimated. */
-    uint64_t bytes = (uint64_t)c->width * c->height * (c->views * (uint64_t)24 + 38) +
-                     (uint64_t)c->render_width * c->render_height * 8 + (uint64_t)c->max_gaussians * 332 +
-                     (uint64_t)(c->width + 15) * c->head_column_bytes + T3R_HEAD_KERNEL_BYTES;
-    /* planes of a quarter more on a side, the right one wider; 64 rows of sums and costs, and as many path states */
-    const uint64_t wide = (uint64_t)side * 5 / 4 + 8 + T3R_STEREO_DISPARITIES;
-    bytes += stereo ? wide * wide * 16 + wide * (T3R_STEREO_DISPARITIES + 2) * 300 : 0;
-    return bytes > SIZE_MAX / 2 ? FAULTS - 1 : FAULTS;
+    /* sizes are summed in size_t */
+    return t3r_most_arena_bytes(c) > SIZE_MAX / 2 ? FAULTS - 1 : FAULTS;
 }
 
 bool t3r_is_config(const t3r_config *config)

@@ -9,4 +9,7 @@
 /* t3r_config_error() without its texts. */
 bool t3r_is_config(const t3r_config *config);
 
+/* At least the bytes of any arena for fields in range, counted generously and in 64 bits: sums in size_t may wrap. */
+uint64_t t3r_most_arena_bytes(const t3r_config *config);
+
 #endif

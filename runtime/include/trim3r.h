@@ -476,8 +476,8 @@ t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 
 /* Draws the scene in the arena as seen by the camera (its distortion is ignored: targets are pinhole). Without
  * keep_analysis the views are forgotten: their planes are where the raster works. T3R_ERR_CAMERA when the camera stands
- * more than 1,024 scene units from the origin; T3R_ERR_CANCELLED leaves the target part drawn. The target's depth and
- * alpha must be aligned for their types. */
+ * more than 1,024 scene units from the origin; T3R_ERR_CANCELLED leaves the target part drawn. T3R_ERR_ARGUMENT: sizes or
+ * strides out of range, or depth or alpha not aligned for their types. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);
 
 /* Passes over the scene that the last t3r_render() took: 1 when the arena had room for all. */

@@ -29,17 +29,22 @@ static void draw_job(void *context, uint32_t index, uint32_t worker)
                   tile / bin->across, job->target);
 }
 
+/* Whether rows of `row_bytes` can be written there: aligned for their type, all of them. NULL: not wanted. */
+static bool is_plane(const void *plane, size_t element_bytes, uint32_t row_bytes, uint32_t stride_bytes)
+{
+    return plane == NULL ||
+           ((uintptr_t)plane % element_bytes == 0 && stride_bytes % element_bytes == 0 && stride_bytes >= row_bytes);
+}
+
 static t3r_status check_target(const t3r_runtime *rt, const t3r_target *t)
 {
     if (t->width < 1 || t->height < 1 || t->width > rt->config.render_width || t->height > rt->config.render_height) {
         return T3R_ERR_ARGUMENT;
     }
-    if ((t->rgb != NULL && t->rgb_stride_bytes < 3 * t->width) ||
-        (t->depth_q20 != NULL && (t->depth_stride_bytes < 4 * t->width || t->depth_stride_bytes % 4 != 0)) ||
-        (t->alpha_q15 != NULL && (t->alpha_stride_bytes < 2 * t->width || t->alpha_stride_bytes % 2 != 0))) {
-        return T3R_ERR_ARGUMENT;
-    }
-    return T3R_OK;
+    const bool fits = is_plane(t->rgb, sizeof *t->rgb, 3 * t->width, t->rgb_stride_bytes) &&
+                      is_plane(t->depth_q20, sizeof *t->depth_q20, 4 * t->width, t->depth_stride_bytes) &&
+                      is_plane(t->alpha_q15, sizeof *t->alpha_q15, 2 * t->width, t->alpha_stride_bytes);
+    return fits ? T3R_OK : T3R_ERR_ARGUMENT;
 }
 
 static uint64_t hash_target(const t3r_target *target)

@@ -448,6 +448,8 @@ static void target_ranges(void **state)
     BAD(depth_stride_bytes, W * 4 + 2);
     BAD(alpha_stride_bytes, W * 2 - 2);
     BAD(alpha_stride_bytes, W * 2 + 1);
+    BAD(depth_q20, (uint32_t *)((uintptr_t)depth + 2));
+    BAD(alpha_q15, (uint16_t *)((uintptr_t)alpha + 1));
     for (size_t i = 0; i < n; i++) {
         REFUSED(&b, t3r_render(b.rt, &camera, &bad[i]), T3R_ERR_ARGUMENT);
     }

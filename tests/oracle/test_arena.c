@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "core/config.h"
 #include "drawing.h"
 
 /* The embedded default: what a firmware declares. */
@@ -92,9 +93,11 @@ static void plan_equals_macros(void **state)
     for (int i = 0; i < 20000; i++) {
         t3r_config c = random_config(&d, T3R_MAX_SIDE, T3R_MAX_GAUSSIANS);
         c.stream = c.views > 0 && c.depth == T3R_DEPTH_SENSOR && dice_below(&d, 4) == 0;
+        c.workers = 1 + dice_below(&d, T3R_MAX_WORKERS);
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
+        assert_true(plan.bytes <= t3r_most_arena_bytes(&c)); /* what is refused where size_t is small */
         const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.clusters, c.render_width, c.render_height,               \

@@ -264,6 +264,51 @@ static void textures_are_shuffled(void **state)
     assert_int_equal(one.texture_q4, 5);
 }
 
+/* Whatever the clusters count, no more than Z points are retained: the scene has room for no more. */
+static void wild_counts_stay_within_the_budget(void **state)
+{
+    (void)state;
+    static const uint32_t claims[] = {PIXELS, 1u << 28, UINT32_MAX};
+    for (size_t c = 0; c < sizeof claims / sizeof claims[0]; c++) {
+        for (int mode = T3R_ALLOCATE_CONFIGURED + 1; mode < T3R_ALLOCATE_COUNT; mode++) {
+            t3r_cluster clusters[CLUSTERS + 1];
+            t3r_view view = made_up_view(clusters);
+            t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
+            t3r_rank_clusters(clusters, CLUSTERS);
+            for (uint32_t k = 0; k < CLUSTERS; k++) {
+                clusters[k].points = k % 5 == 4 ? clusters[k].points : claims[c];
+            }
+            t3r_budget_settings settings = settings_of((t3r_allocation)mode, 1000);
+            t3r_allocate(&view, 1, &settings, clusters, &alone);
+            assert_in_range(retained_of(&view), 0, 1000);
+            uint64_t quotas = 0;
+            for (uint32_t k = 0; k <= CLUSTERS; k++) {
+                quotas += clusters[k].quota;
+            }
+            assert_in_range(quotas, 0, 1000);
+        }
+    }
+}
+
+static void an_order_is_of_all_clusters(void **state)
+{
+    (void)state;
+    t3r_cluster clusters[CLUSTERS + 1];
+    t3r_view view = made_up_view(clusters);
+    t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
+    t3r_rank_clusters(clusters, CLUSTERS);
+    assert_true(t3r_are_ranked(clusters, CLUSTERS));
+    for (uint32_t k = 0; k < CLUSTERS; k++) {
+        const uint32_t order = clusters[k].order;
+        clusters[k].order = CLUSTERS;
+        assert_false(t3r_are_ranked(clusters, CLUSTERS));
+        clusters[k].order = clusters[(k + 1) % CLUSTERS].order;
+        assert_false(t3r_are_ranked(clusters, CLUSTERS));
+        clusters[k].order = order;
+    }
+    assert_true(t3r_are_ranked(clusters, CLUSTERS));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +318,8 @@ int main(void)
         cmocka_unit_test(largest_counts_do_not_overflow),
         cmocka_unit_test(deferred_comes_last),
         cmocka_unit_test(textures_are_shuffled),
+        cmocka_unit_test(wild_counts_stay_within_the_budget),
+        cmocka_unit_test(an_order_is_of_all_clusters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

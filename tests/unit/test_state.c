@@ -160,6 +160,37 @@ static void wild_cluster(t3r_runtime *rt)
 {
     ((t3r_cluster *)t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS))->points = UINT32_MAX;
 }
+/* Each SuperCluster claims all points: quotas by these would be many times the budget. */
+static void greedy_clusters(t3r_runtime *rt)
+{
+    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    for (uint32_t k = 0; k < rt->config.clusters; k++) {
+        clusters[k].points = SIDE * SIDE;
+    }
+}
+/* All labels and counts agree, but the order names one SuperCluster twice. */
+static void order_without_an_end(t3r_runtime *rt)
+{
+    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    clusters[1].order = clusters[0].order;
+}
+/* A label where there is no depth, and the count along with it. */
+static void label_without_depth(t3r_runtime *rt)
+{
+    ((uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY))[0] = T3R_NO_DEPTH;
+}
+static void depth_of_nothing(t3r_runtime *rt)
+{
+    ((uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_DEPTH))[0] = 0;
+}
+static void wild_valid_points(t3r_runtime *rt)
+{
+    rt->valid_points = UINT32_MAX;
+}
+static void wild_partner(t3r_runtime *rt)
+{
+    rt->stereo_partner[0] = 1;
+}
 static void wild_gaussian(t3r_runtime *rt)
 {
     ((t3r_gaussian *)t3r_buffer_at(rt, T3R_BUFFER_SCENE))->factor_exponent = 99;
@@ -181,8 +212,10 @@ static void wild_head(t3r_runtime *rt)
 static void damaged_copies_are_refused(void **state)
 {
     (void)state;
-    const damage damages[] = {no_focal_length, no_depth_unit, wild_exponent,  wild_median, wild_label,
-                              wild_cluster,    wild_gaussian, too_many_views, no_budget,   wild_head};
+    const damage damages[] = {no_focal_length, no_depth_unit,       wild_exponent,    wild_median,
+                              wild_label,      wild_cluster,        greedy_clusters,  order_without_an_end,
+                              wild_gaussian,   label_without_depth, depth_of_nothing, wild_valid_points,
+                              wild_partner,    too_many_views,      no_budget,        wild_head};
     t3r_scene scene;
     (void)analysed(&scene);
     uint64_t before = hash_of(&scene);

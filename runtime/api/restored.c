@@ -1,0 +1,118 @@
+#include "restored.h"
+
+#include "api/checks.h"
+#include "budget/budget.h"
+#include "core/camera.h"
+#include "core/scene_frame.h"
+#include "image/image.h"
+#include "superclusters/superclusters.h"
+
+/* Whether what counts as a depth is one: stages divide by it. Stereo makes its planes anew in every analysis. */
+static bool is_depth(const t3r_runtime *rt, const t3r_view *view)
+{
+    if (rt->config.depth == T3R_DEPTH_STEREO && !rt->analysed) {
+        return true;
+    }
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    for (size_t i = 0; i < pixels; i++) {
+        if (t3r_has_depth(view->validity[i]) && view->depth[i] == 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether every point has a SuperCluster's label and no other pixel has; adds up what each label counts. */
+static bool count_labels(const t3r_runtime *rt, const t3r_view *view, uint32_t points[T3R_MAX_CLUSTERS])
+{
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    for (size_t i = 0; i < pixels; i++) {
+        const uint16_t label = view->label[i];
+        if (t3r_has_depth(view->validity[i]) ? label >= rt->config.clusters : label != T3R_NO_LABEL) {
+            return false;
+        }
+        if (label != T3R_NO_LABEL) {
+            points[label]++;
+        }
+    }
+    return true;
+}
+
+/* Whether labels and SuperClusters say the same: the budget shares out what these count, and the head makes a Gaussian
+ * of whatever has a share. */
+static bool is_analysis(const t3r_runtime *rt)
+{
+    uint32_t points[T3R_MAX_CLUSTERS] = {0};
+    for (uint32_t v = 0; v < rt->views; v++) {
+        const t3r_view view = t3r_view_of(rt, v);
+        if (!count_labels(rt, &view, points)) {
+            return false;
+        }
+    }
+    const t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    for (uint32_t k = 0; k < rt->config.clusters; k++) {
+        if (clusters[k].points != points[k] || clusters[k].texture_q4 > UINT16_MAX) {
+            return false;
+        }
+    }
+    return t3r_are_ranked(clusters, rt->config.clusters) && rt->median_depth_q20 >= 1 << 20 &&
+           rt->median_depth_q20 < 2 << 20;
+}
+
+static bool is_scene(const t3r_runtime *rt)
+{
+    const t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
+    for (uint32_t i = 0; i < rt->gaussians; i++) {
+        if (!t3r_is_gaussian(&scene[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether the slots of a stream's keyframes are those that taking them one after the other fills. */
+static bool is_stream(const t3r_runtime *rt)
+{
+    bool full = rt->views == rt->config.views;
+    return !rt->analysed && rt->next_slot <= rt->views && rt->next_slot < rt->config.views &&
+           (full || rt->next_slot == rt->views) && rt->gaussians <= rt->config.gaussians &&
+           (rt->has_scene ? rt->views > 0 && rt->keyframes >= rt->views
+                          : rt->views == 0 && rt->keyframes == 0 && rt->gaussians == 0);
+}
+
+static bool is_view(const t3r_runtime *rt, uint32_t v)
+{
+    if (rt->stereo_pair[v] >= T3R_PAIR_COUNT || rt->stereo_partner[v] >= rt->views ||
+        t3r_camera_check(&rt->camera[v]) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
+        rt->depth_unit_q40[v] > T3R_MAX_DEPTH_UNIT_Q40) {
+        return false;
+    }
+    t3r_pose pose;
+    if (rt->analysed && t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK) {
+        return false;
+    }
+    const t3r_view view = t3r_view_of(rt, v);
+    return is_depth(rt, &view);
+}
+
+/* The numbers of the state, before anything that they lead to is read. */
+static bool is_state(const t3r_runtime *rt)
+{
+    const size_t most_points = T3R_PIXELS_(rt->config.width, rt->config.height) * rt->config.views;
+    return rt->views <= rt->config.views && rt->gaussians <= rt->config.max_gaussians && rt->analysed <= 1 &&
+           rt->has_scene <= 1 && rt->valid_points <= most_points && t3r_is_scene_frame(&rt->frame) &&
+           t3r_is_build(&rt->config, &rt->build) && (rt->config.stream ? is_stream(rt) : rt->next_slot == 0);
+}
+
+bool t3r_is_restored(const t3r_runtime *rt)
+{
+    if (!is_state(rt)) {
+        return false;
+    }
+    for (uint32_t v = 0; v < rt->views; v++) {
+        if (!is_view(rt, v)) {
+            return false;
+        }
+    }
+    return (!rt->analysed || is_analysis(rt)) && (!rt->has_scene || is_scene(rt));
+}
