@@ -1,0 +1,63 @@
+/* What fuzzers of the C interface share: bytes to numbers, frames, cameras, Gaussians and pictures, wild ones among
+ * them. Whatever is read or written lies in memory of exactly the bytes that the interface names. */
+#ifndef T3R_FUZZ_ARGUMENTS_H
+#define T3R_FUZZ_ARGUMENTS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "trim3r.h"
+
+enum { MOST_SIDE = 40 };
+
+#define REQUIRE(condition)                                                                                             \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            fprintf(stderr, "line %d: not true: %s\n", __LINE__, #condition);                                          \
+            abort();                                                                                                   \
+        }                                                                                                              \
+    } while (0)
+
+typedef struct input {
+    const uint8_t *bytes;
+    size_t left;
+} input;
+
+uint8_t take8(input *in);
+uint32_t take32(input *in);
+/* Below the bound, which is not 0: a byte of input, or two. */
+uint32_t below(input *in, uint32_t bound);
+/* A size near the small ones, or one that must be refused. */
+uint32_t take_side(input *in);
+
+/* Zeros; ends the program when there is no memory. */
+void *allocate(size_t bytes);
+uint8_t *allocate_arena(size_t bytes);
+
+void require_status(t3r_status status);
+
+t3r_camera take_camera(input *in);
+
+/* Planes are allocated to the byte, so that a read beyond what width, height and stride say is caught. */
+typedef struct held_frame {
+    t3r_frame frame;
+    uint8_t *planes[3];
+} held_frame;
+
+held_frame take_frame(input *in);
+void free_frame(held_frame *held);
+
+t3r_gaussian take_gaussian(input *in);
+
+/* A target with all its planes, `padding` elements between rows. */
+typedef struct picture {
+    t3r_target target;
+    size_t bytes[3];
+} picture;
+
+picture picture_of(uint32_t width, uint32_t height, uint32_t padding);
+void free_picture(picture *p);
+
+#endif
