@@ -99,9 +99,10 @@ static bool is_view(const t3r_runtime *rt, uint32_t v)
 static bool is_state(const t3r_runtime *rt)
 {
     const size_t most_points = T3R_PIXELS_(rt->config.width, rt->config.height) * rt->config.views;
-    return rt->views <= rt->config.views && rt->gaussians <= rt->config.max_gaussians && rt->analysed <= 1 &&
-           rt->has_scene <= 1 && rt->valid_points <= most_points && t3r_is_scene_frame(&rt->frame) &&
-           t3r_is_build(&rt->config, &rt->build) && (rt->config.stream ? is_stream(rt) : rt->next_slot == 0);
+    return rt->views <= rt->config.views && rt->gaussians <= rt->config.max_gaussians &&
+           rt->analysed <= (rt->views > 0) && rt->has_scene <= 1 && rt->valid_points <= most_points &&
+           t3r_is_scene_frame(&rt->frame) && t3r_is_build(&rt->config, &rt->build) &&
+           (rt->config.stream ? is_stream(rt) : rt->next_slot == 0);
 }
 
 bool t3r_is_restored(const t3r_runtime *rt)

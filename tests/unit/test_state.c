@@ -6,6 +6,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "budget/budget.h"
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "state/state.h"
@@ -183,6 +184,15 @@ static void depth_of_nothing(t3r_runtime *rt)
 {
     ((uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_DEPTH))[0] = 0;
 }
+static void analysis_of_nothing(t3r_runtime *rt)
+{
+    rt->views = 0;
+    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    for (uint32_t k = 0; k < rt->config.clusters; k++) {
+        clusters[k].points = clusters[k].texture_q4 = 0;
+    }
+    t3r_rank_clusters(clusters, rt->config.clusters);
+}
 static void wild_valid_points(t3r_runtime *rt)
 {
     rt->valid_points = UINT32_MAX;
@@ -212,10 +222,10 @@ static void wild_head(t3r_runtime *rt)
 static void damaged_copies_are_refused(void **state)
 {
     (void)state;
-    const damage damages[] = {no_focal_length, no_depth_unit,       wild_exponent,    wild_median,
-                              wild_label,      wild_cluster,        greedy_clusters,  order_without_an_end,
-                              wild_gaussian,   label_without_depth, depth_of_nothing, wild_valid_points,
-                              wild_partner,    too_many_views,      no_budget,        wild_head};
+    const damage damages[] = {
+        no_focal_length, no_depth_unit,        wild_exponent,  wild_median,         wild_label,       wild_cluster,
+        greedy_clusters, order_without_an_end, wild_gaussian,  label_without_depth, depth_of_nothing, wild_valid_points,
+        wild_partner,    analysis_of_nothing,  too_many_views, no_budget,           wild_head};
     t3r_scene scene;
     (void)analysed(&scene);
     uint64_t before = hash_of(&scene);
