@@ -1,6 +1,6 @@
-/* The scene's fixed-point frame: the first context camera's centre is the origin, and a
- * power of two brings the median depth into [1, 2) scene units, so that a scene 0.07 units wide and one at map
- * coordinates keep the same relative precision. */
+/* The scene's fixed-point frame: the first context camera's centre is the origin, and a power of two brings the median
+ * depth into [1, 2) scene units. So a scene 0.07 units wide and one at map coordinates keep the same relative
+ * precision. */
 #ifndef T3R_SCENE_FRAME_H
 #define T3R_SCENE_FRAME_H
 

@@ -1,7 +1,7 @@
-/* trim3r: a few posed camera frames to a budgeted set of 3-D Gaussians, and views of it, in integers.
+/* trim3r turns a few posed camera frames into a budgeted set of 3-D Gaussians and draws views of it, in integers.
  *
  * This is the whole interface of the runtime. It has no heap, no floating point, no operating system and no writable
- * globals: the caller supplies one arena, and everything lives in it. The same frames, settings and weights give the
+ * globals: the caller supplies one arena, which holds everything. The same frames, settings and weights give the
  * same bits on every processor. The life of a runtime:
  *
  *     t3r_plan()      how many bytes             t3r_attach()   an arena that was copied, as it was left
@@ -14,7 +14,7 @@
  *     a stream:      empty -- t3r_stream_keyframe() --> scene, and once more for each further keyframe
  *     from a file:   empty -- t3r_scene_begin() --> scene, and t3r_scene_append() for each Gaussian
  *
- * The shortest program. Calls return a t3r_status, which a real program looks at:
+ * The shortest program follows. Calls return a t3r_status, which a real program checks:
  *
  *     static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[T3R_ARENA_BYTES(256, 256, 2, 13107)];
  *     t3r_config config = t3r_default_config(256, 256, 2, 13107);
@@ -77,7 +77,7 @@ typedef enum t3r_status {
     T3R_ERR_EPOCH = -9,     /* a copied arena made by another version, layout or bits epoch */
     T3R_ERR_FULL = -10,     /* no room for another Gaussian in the scene */
     T3R_ERR_WEIGHTS = -11,  /* weights that are foreign, damaged, of another epoch, or too large a head for the arena */
-    T3R_ERR_STEREO = -12    /* no depth can be made of the views: t3r_stereo_pair() says why */
+    T3R_ERR_STEREO = -12    /* no depth can be made of the views: t3r_stereo_pair() has the reason */
 } t3r_status;
 
 /* The stages in the order in which the data passes them. */
@@ -104,16 +104,25 @@ typedef enum t3r_pixel_format {
     T3R_PIXEL_FORMAT_COUNT
 } t3r_pixel_format;
 
-/* One captured instant. The memory stays the caller's and is read only during t3r_add_view(). */
+/* One captured instant. The memory stays the caller's and is read only during the call that takes the frame. */
 typedef struct t3r_frame {
+    /* The format of the colour planes. */
     t3r_pixel_format format;
-    uint32_t width, height;             /* pixels; 2..T3R_MAX_SIDE */
-    const uint8_t *planes[2];           /* plane 1 only for NV12 */
-    uint32_t stride_bytes[2];           /* bytes from row to row, below 2^19 */
-    const uint8_t *depth;               /* Z16: little-endian 16-bit steps along z, 0 = no measurement; NULL = none */
-    uint32_t depth_width, depth_height; /* 2..T3R_MAX_SIDE; registered to the colour image, not always of its size */
+    /* The size of the colour image in pixels, 2..T3R_MAX_SIDE each. */
+    uint32_t width, height;
+    /* The colour planes. planes[1] is read with T3R_PIXEL_NV12 alone. */
+    const uint8_t *planes[2];
+    /* The bytes from row to row of each plane, at least those of a row and below 2^19. */
+    uint32_t stride_bytes[2];
+    /* The depth along z in steps, 16 bits each, little-endian, registered to the colour image; 0 = not measured. NULL =
+     * the frame has no depth. */
+    const uint8_t *depth;
+    /* The size of the depth image in pixels, 2..T3R_MAX_SIDE each. It may differ from that of the colour image. */
+    uint32_t depth_width, depth_height;
+    /* The bytes from row to row of the depth image, at least 2 x depth_width. */
     uint32_t depth_stride_bytes;
-    uint64_t depth_unit_q40; /* world units a step, 1..2^47 - 1; 1 mm in metres is 1099511628 */
+    /* The length of one step of depth in world units, 1..2^47 - 1, in 1/2^40. A millimetre in metres is 1099511628. */
+    uint64_t depth_unit_q40;
 } t3r_frame;
 
 typedef enum t3r_distortion {
@@ -125,19 +134,26 @@ typedef enum t3r_distortion {
 
 /* A calibrated, posed pinhole camera, for the pixel grid of the frame or target it comes with. */
 typedef struct t3r_camera {
-    int32_t fx_q16, fy_q16; /* focal lengths in pixels, [8, 16384) */
-    int32_t cx_q16, cy_q16; /* principal point in pixels, (-16384, 16384) */
+    /* The focal lengths in pixels, from 8 up to, but not including, 16384. */
+    int32_t fx_q16, fy_q16;
+    /* The principal point in pixels, between -16384 and 16384. (0, 0) is the centre of the top-left pixel. */
+    int32_t cx_q16, cy_q16;
+    /* The model of the lens. */
     t3r_distortion distortion;
-    int32_t distortion_q24[5]; /* |p1|, |p2| below 16 */
-    int64_t position_q32[3];   /* camera centre in world units, |x| < 2^62 */
-    int32_t rotation_q30[4];   /* quaternion w x y z, camera to world; any norm in [0.5, 1.5]: normalised inside */
+    /* The coefficients of that model, in its order; p1 and p2 are between -16 and 16. Those that it lacks are ignored.
+     */
+    int32_t distortion_q24[5];
+    /* The camera's centre in world units, each coordinate between -2^62 and 2^62 (in 1/2^32 units). */
+    int64_t position_q32[3];
+    /* The rotation from camera to world, a quaternion w x y z. Its norm is in [0.5, 1.5] and is normalised. */
+    int32_t rotation_q30[4];
 } t3r_camera;
 
 typedef enum t3r_wavelet { T3R_WAVELET_DB2, T3R_WAVELET_HAAR, T3R_WAVELET_CDF53, T3R_WAVELET_COUNT } t3r_wavelet;
 
 /* How the budget Z is spread over the valid points (runtime/SPEC.md, "Budget"). */
 typedef enum t3r_allocation {
-    T3R_ALLOCATE_CONFIGURED, /* in a request: as the configuration says; in a configuration: refused */
+    T3R_ALLOCATE_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
     T3R_ALLOCATE_DENSITY,    /* over SuperClusters by |SC| x Texture(SC)^gamma, inside one by texture density */
     T3R_ALLOCATE_PAPER,      /* GaussianTrim3R eq. 2: lowest texture first, each keeps N % */
     T3R_ALLOCATE_PIXEL,      /* texture density without clusters */
@@ -148,8 +164,8 @@ typedef enum t3r_allocation {
 } t3r_allocation;
 
 typedef enum t3r_head {
-    T3R_HEAD_CONFIGURED, /* in a request: as the configuration says; in a configuration: refused */
-    T3R_HEAD_ANALYTIC,   /* a disc on the surface, as wide as its kept neighbours are apart */
+    T3R_HEAD_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
+    T3R_HEAD_ANALYTIC,   /* a disc on the surface, as wide as its retained neighbours are apart */
     T3R_HEAD_MOMENT,     /* moments of the pruned pixels that lie nearest in position and colour */
     T3R_HEAD_LEARNED,    /* a network sees image, mask and density: t3r_bind_head() */
     T3R_HEAD_COUNT
@@ -158,7 +174,7 @@ typedef enum t3r_head {
 /* Where depth comes from. */
 typedef enum t3r_depth {
     T3R_DEPTH_SENSOR, /* the frames' own */
-    T3R_DEPTH_STEREO, /* the colours of two and more posed views; what depth frames have is not looked at */
+    T3R_DEPTH_STEREO, /* the colours of two and more posed views; the frames' own depth is ignored */
     T3R_DEPTH_COUNT
 } t3r_depth;
 
@@ -167,148 +183,174 @@ typedef enum t3r_pair {
     T3R_PAIR_OK,
     T3R_PAIR_NO_BASELINE, /* both cameras stand in one place and look the same way */
     T3R_PAIR_ROTATION,    /* both cameras stand in one place, but look different ways */
-    T3R_PAIR_OVERLAP,     /* too little is in both pictures */
-    T3R_PAIR_PARALLAX,    /* whatever is in both pictures hardly moves between them */
+    T3R_PAIR_OVERLAP,     /* too little is visible in both pictures */
+    T3R_PAIR_PARALLAX,    /* what is visible in both pictures hardly moves between them */
     T3R_PAIR_SCALE,       /* the baseline in world units leaves no depth unit */
     T3R_PAIR_COUNT
 } t3r_pair;
 
 /* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). They hold for the life of
- * the runtime: no later call changes them. What the default is stands in [brackets]. */
+ * the runtime: no later call changes them. The default is in [brackets]. */
 typedef struct t3r_config {
-    /* The working size: every view is resized to so many pixels, T3R_MIN_SIDE..T3R_MAX_SIDE each, and at least
-     * T3R_STEREO_LEAST_SIDE with depth by stereo. */
+    /* The working size, to which every view is resized, in pixels, T3R_MIN_SIDE..T3R_MAX_SIDE each; with depth by
+     * stereo at least T3R_STEREO_LEAST_SIDE. */
     uint32_t width, height;
     /* The most context views that the arena has room for, 0..T3R_MAX_VIEWS; of a stream, the newest keyframes that it
      * refines on. 0 = an arena that only renders scenes from files. */
     uint32_t views;
     /* The most Gaussians that the arena has room for, 1..T3R_MAX_GAUSSIANS. */
     uint32_t max_gaussians;
-    /* The budget: a scene has as many Gaussians, or as many as there are valid points where these are fewer;
-     * 1..max_gaussians. [max_gaussians] */
+    /* The budget of a scene in Gaussians, 1..max_gaussians. A scene has exactly so many, or as many as there are valid
+     * points where these are fewer. [max_gaussians] */
     uint32_t gaussians;
     /* The largest target that t3r_render() may draw, in pixels, 1..T3R_MAX_SIDE each. [the working size] */
     uint32_t render_width, render_height;
-    /* The wavelet that texture is measured with. [T3R_WAVELET_DB2] */
+    /* The wavelet that measures texture. [T3R_WAVELET_DB2] */
     t3r_wavelet wavelet;
     /* The levels of the wavelet transform that texture is summed over, 1..T3R_MAX_LEVELS. [2] */
     uint32_t wavelet_levels;
     /* The number of SuperClusters, K in GaussianTrim3R, 1..T3R_MAX_CLUSTERS. [T3R_DEFAULT_CLUSTERS] */
     uint32_t clusters;
-    /* The mini-batches of the K-means before every point is assigned, 0..1024; 0 = the seeds are the centres. [24] */
+    /* The number of mini-batches of the K-means before every point is assigned, 0..1024; 0 = the seeds are the centres.
+     * [24] */
     uint32_t cluster_batches;
     /* The weight of r, g, b against x, y, z in the metric of the K-means, 0..1024, in 1/256; 0 = position alone.
      * [256] */
     uint32_t colour_weight_q8;
-    /* How the budget is spread over the valid points. [T3R_ALLOCATE_DENSITY] */
+    /* The allocation of the budget over the valid points. [T3R_ALLOCATE_DENSITY] */
     t3r_allocation allocation;
     /* The percentage of its points that a trimmed SuperCluster keeps with T3R_ALLOCATE_PAPER, 0..100; 0 = none. [10] */
     uint32_t keep_percent;
     /* The exponent of texture in densities, 0..512, in 1/256; 0 = texture does not count. [179, which is 0.7] */
     uint32_t gamma_q8;
-    /* What makes Gaussians of retained points. [T3R_HEAD_ANALYTIC] */
+    /* The head, which makes Gaussians of retained points. [T3R_HEAD_ANALYTIC] */
     t3r_head head;
     /* The working memory of a learned head in bytes a column of the view, 0..T3R_MAX_HEAD_COLUMN_BYTES:
      * t3r_head_column_bytes() returns what a head needs. 0 = two bytes a pixel of the view.
      * [T3R_HEAD_COLUMN_BYTES, enough for nano, small and base with 8-bit activations] */
     uint32_t head_column_bytes;
-    /* The passes of refinement on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS] */
-    uint32_t refinements;
-    /* Where depth comes from. [T3R_DEPTH_SENSOR] */
-    t3r_depth depth;
-    /* Holes in a sensor's depth are filled where measurements bracket them within so many pixels, 0..8; 0 = no hole
-     * is. [4] */
-    uint32_t fill_radius;
-    /* Wider holes of a sensor are bridged where measurements bracket them within so many pixels, 0..255; 0 = no hole
-     * is. [64] */
-    uint32_t bridge_radius;
-    /* 1 = points between surfaces, or in front of what another view measured, are retained last; 0 = like others. [1]
+    /* The number of refinement passes on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS]
      */
+    uint32_t refinements;
+    /* The source of depth. [T3R_DEPTH_SENSOR] */
+    t3r_depth depth;
+    /* The reach of hole filling in pixels, 0..8: holes of a depth sensor are filled where measurements bracket them
+     * within it. 0 = no hole is filled. [4] */
+    uint32_t fill_radius;
+    /* The reach of bridging in pixels, 0..255: wider holes of a depth sensor are bridged where measurements bracket
+     * them within it and no other view measured the surface. 0 = no hole is bridged. [64] */
+    uint32_t bridge_radius;
+    /* 1 = flying pixels are retained last: points between surfaces, or in front of what another view measured. 0 = they
+     * count like others. [1] */
     uint32_t flying;
     /* 1 = small budgets pass over points that another view covers; 0 = every view competes for itself. [1] */
     uint32_t redundancy;
     /* 1 = the colours of all views are brought to their mean exposure; 0 = they stay as they are. [1] */
     uint32_t exposure;
-    /* 1 = the analysis outlives the build, so that t3r_rebuild() and a bounded loss work; 0 = its memory is used again.
+    /* 1 = the analysis outlives the build, which t3r_rebuild() and a bounded loss need; 0 = its memory is used again.
      * [0] */
     uint32_t keep_analysis;
     /* 1 = a map of at most `gaussians` follows a camera with a depth sensor, by t3r_stream_keyframe() alone; 0 = scenes
      * are built of all views at once. Must be 0 without views and with depth by stereo. [0] */
     uint32_t stream;
-    /* The keyframes after which what a stream no longer sees counts half as dense, 0..1024; 0 = nothing fades. [32] */
+    /* The number of keyframes after which what a stream no longer sees counts half as dense, 0..1024; 0 = nothing
+     * fades. [32] */
     uint32_t half_life;
-    /* The tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS: each has a part of the arena for
-     * itself. The number never changes a bit. [1] */
+    /* The number of tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS. Each has a part of the arena
+     * for itself. The number never changes a bit. [1] */
     uint32_t workers;
     /* The seed, any number, of the K-means, of T3R_ALLOCATE_RANDOM and of ties in blue noise. [1] */
     uint32_t seed;
 } t3r_config;
 
-/* What one build shall be. A field that is 0 asks for what the configuration says, so that {0} is the same as NULL. A
- * request holds for its call alone: the next one begins from the configuration again. */
+/* What one build shall be. A field that is 0 leaves the configuration's value, so {0} is the same as NULL. A request
+ * holds for its call alone: the next one begins from the configuration again. */
 typedef struct t3r_request {
     /* The budget of this scene, 1..max_gaussians; 0 = the configuration's. */
     uint32_t gaussians;
-    /* The most that the scene may lose against one of all points, 1..T3R_MAX_LOSS_Q8, in 1/256 dB of PSNR: of at most
-     * the budget, as few Gaussians are made as are predicted to stay below it. 0 = the budget is used up. */
+    /* The most that the scene may lose against one of all points, in 1/256 dB of PSNR, 1..T3R_MAX_LOSS_Q8. As few
+     * Gaussians are made as are predicted to stay below it, and at most the budget. 0 = the budget is used up. */
     uint32_t max_loss_q8;
-    /* How the budget is spread. T3R_ALLOCATE_CONFIGURED (0) = as the configuration says, or by the importance when
-     * there is one, with which no other allocation than T3R_ALLOCATE_GIVEN goes together. */
+    /* The allocation of the budget. T3R_ALLOCATE_CONFIGURED (0) = the configuration's, or T3R_ALLOCATE_GIVEN with an
+     * importance. An importance goes with no other allocation. */
     t3r_allocation allocation;
-    /* What makes Gaussians of the points. T3R_HEAD_CONFIGURED (0) = what the configuration says. */
+    /* The head. T3R_HEAD_CONFIGURED (0) = the configuration's. */
     t3r_head head;
-    /* An importance of each pixel, 0..65535: importance[v] is a plane of the working size for context view v, aligned
-     * for its type and read during the call only. NULL = none. */
+    /* The importance of each pixel, 0..65535. importance[v] is a plane of the working size for context view v, aligned
+     * for its type and read during the call only. NULL = there is none. */
     const uint16_t *const *importance;
-    /* The bytes from row to row of every importance plane: even, at least 2 x width. Not looked at without planes. */
+    /* The bytes from row to row of every importance plane, even and at least 2 x width. Ignored without planes. */
     uint32_t importance_stride_bytes;
 } t3r_request;
 
 /* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */
 typedef struct t3r_scene_frame {
-    int64_t origin_q32[3]; /* world units: the first context camera's centre */
-    int32_t exponent;      /* so chosen that the median depth is in [1, 2) scene units */
+    /* The origin in world units: the first context camera's centre. */
+    int64_t origin_q32[3];
+    /* The exponent of the scene unit, -24..24, with which the median depth is in [1, 2) scene units. */
+    int32_t exponent;
 } t3r_scene_frame;
 
-/* One Gaussian. Its covariance is F F^T with F = factor x 2^factor_exponent, row-major 3x3, in scene
- * units: positive semi-definite by construction and precise over the whole dynamic range. */
+/* One Gaussian. Its covariance is F F^T with F = factor x 2^factor_exponent, row-major 3x3, in scene units: positive
+ * semi-definite by construction, and precise over the whole dynamic range. */
 typedef struct t3r_gaussian {
-    int32_t position_q20[3]; /* mean, scene units */
-    int16_t factor[9];       /* mantissas of F */
-    int8_t factor_exponent;  /* F = factor x 2^factor_exponent; -60..15 */
-    uint8_t view;            /* index of the source view */
-    uint16_t colour_q7[3];   /* r g b, 0..255 in Q7 (0..32640) */
-    uint16_t opacity_q15;    /* 0..32767 */
-    uint8_t confidence;      /* 255 = measured, less = filled or doubtful */
-    uint8_t reserved[3];     /* 0 */
+    /* The mean in scene units, each coordinate -2^30..2^30 (in 1/2^20 units). */
+    int32_t position_q20[3];
+    /* The mantissas of F. */
+    int16_t factor[9];
+    /* The exponent of F, -60..15. */
+    int8_t factor_exponent;
+    /* The index of the context view that it came from; of a stream, its keyframe's number modulo `views`. */
+    uint8_t view;
+    /* The colour r g b in 8-bit levels, 0..32640, in 1/128. */
+    uint16_t colour_q7[3];
+    /* The opacity at the mean, 0..32767, in 1/2^15. */
+    uint16_t opacity_q15;
+    /* The confidence of its depth: 255 = measured, less = filled or doubtful. */
+    uint8_t confidence;
+    /* Unused, 0. */
+    uint8_t reserved[3];
 } t3r_gaussian;
 
-/* A view on the scene in the arena; valid until the next call that builds or edits it. */
+/* The scene in the arena, valid until the next call that builds or edits it. */
 typedef struct t3r_scene {
+    /* The frame in which its Gaussians are. */
     t3r_scene_frame frame;
+    /* The Gaussians, in the arena. */
     const t3r_gaussian *gaussians;
+    /* The number of Gaussians, 0..max_gaussians. */
     uint32_t count;
-    uint32_t valid_points; /* pixels of the context views with a depth before hole filling, measured or matched; 0 of a
-                            * stream */
+    /* The number of valid points: pixels of the context views with a measured or matched depth, holes not counted. 0 =
+     * the scene came from a stream or from a file. */
+    uint32_t valid_points;
 } t3r_scene;
 
-/* Where a render goes. rgb may be NULL when only depth or alpha are wanted. Black background. */
+/* The memory that a render writes. Any of the three pictures may be NULL, which leaves it out. The background is black.
+ */
 typedef struct t3r_target {
-    uint32_t width, height; /* 1..render_width, 1..render_height */
-    uint8_t *rgb;           /* R G B, 3 bytes a pixel */
+    /* The size in pixels, 1..render_width and 1..render_height. */
+    uint32_t width, height;
+    /* The colour picture, R G B, 3 bytes a pixel. */
+    uint8_t *rgb;
+    /* The bytes from row to row of the colour picture, at least 3 x width. */
     uint32_t rgb_stride_bytes;
-    uint32_t *depth_q20; /* camera z, scene units, of the splat at which transmittance falls below 1/2; 0 = none */
-    uint32_t depth_stride_bytes; /* a multiple of 4 */
-    uint16_t *alpha_q15;         /* 1 - transmittance, 0..32767 */
-    uint32_t alpha_stride_bytes; /* a multiple of 2 */
+    /* The depth along z in scene units, that of the splat at which transmittance falls below 1/2; 0 = there is none. */
+    uint32_t *depth_q20;
+    /* The bytes from row to row of the depth picture, a multiple of 4 and at least 4 x width. */
+    uint32_t depth_stride_bytes;
+    /* The alpha, which is 1 - transmittance, 0..32767, in 1/2^15. */
+    uint16_t *alpha_q15;
+    /* The bytes from row to row of the alpha picture, a multiple of 2 and at least 2 x width. */
+    uint32_t alpha_stride_bytes;
 } t3r_target;
 
-/* Optional callbacks, re-bound by t3r_attach(); zero-initialise what is not used. */
+/* Optional callbacks, bound again after t3r_attach(). NULL = not called. */
 typedef struct t3r_hooks {
+    /* The caller's own, handed to each callback. */
     void *user;
     /* Called between bounded pieces of long work (a view, a batch, 64 tiles); a return other than 0 cancels it. */
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
-    /* When set, every stage of t3r_reconstruct(), t3r_rebuild() and t3r_render() is hashed (SPEC, "Hash"). */
+    /* Called with the hash of every stage of t3r_reconstruct(), t3r_rebuild() and t3r_render() (SPEC, "Hash"). */
     void (*stage_hash)(void *user, t3r_stage stage, uint64_t hash);
     /* Runs task(context, index, worker) for each index in 0..count-1, in any order, on any threads, and returns when
      * all are done. `worker` is below t3r_config.workers, and no two tasks that run at the same time have the same one:
@@ -317,18 +359,26 @@ typedef struct t3r_hooks {
                          void *context);
 } t3r_hooks;
 
-/* One line of the plan: a buffer of the arena. */
+/* One buffer of the arena. */
 typedef struct t3r_plan_buffer {
+    /* Its name, as tables spell it. */
     const char *name;
-    size_t offset, bytes; /* within an arena of `bytes` (t3r_plan_info) */
+    /* Its place and size in an arena of t3r_plan_info.bytes, in bytes. */
+    size_t offset, bytes;
+    /* The first and the last stage that use it. */
     t3r_stage first, last;
 } t3r_plan_buffer;
 
+/* What an arena needs. */
 typedef struct t3r_plan_info {
-    size_t min_bytes; /* one byte less is refused */
-    size_t bytes;     /* a view takes one pass, unless most of its splats are many tiles wide */
+    /* The least bytes of an arena: one byte less is refused. */
+    size_t min_bytes;
+    /* The bytes with which a view takes one pass, unless most of its splats are many tiles wide. */
+    size_t bytes;
+    /* The number of buffers, T3R_BUFFER_COUNT. */
     uint32_t buffer_count;
-    t3r_plan_buffer buffers[T3R_BUFFER_COUNT]; /* as laid out in an arena of `bytes` */
+    /* The buffers, as laid out in an arena of `bytes`. */
+    t3r_plan_buffer buffers[T3R_BUFFER_COUNT];
 } t3r_plan_info;
 
 typedef struct t3r_runtime t3r_runtime;
@@ -339,10 +389,10 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
 /* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does. */
 t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan);
 
-/* The inverse: lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, everything
- * else as it is, and the budget `gaussians` along with it. It never raises them: begin with the most that you could
- * use, which is width x height x views. T3R_ERR_ARENA when not even one Gaussian fits, T3R_ERR_CONFIG as t3r_plan():
- * then the configuration is as before. Takes 24 plans. */
+/* The inverse: lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, and the
+ * budget `gaussians` along with it. It never raises them: begin with the most that you could use, which is width x
+ * height x views. Takes 24 plans. T3R_ERR_ARENA: not even one Gaussian fits. T3R_ERR_CONFIG: as t3r_plan(). After both
+ * the configuration is as before. */
 t3r_status t3r_plan_within(size_t bytes, t3r_config *config);
 
 /* The first field of the configuration that is out of range, as text; NULL when all are in range. */
@@ -351,8 +401,8 @@ const char *t3r_config_error(const t3r_config *config);
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
 t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config);
 
-/* Re-binds an arena that was copied or restored from bytes, of the very same size; hooks start empty, no weights are
- * bound, and inner loops are plain C. T3R_ERR_EPOCH when it was made by another version or is damaged. */
+/* Binds an arena that was copied or restored from bytes, of the very same size. There are no hooks and no weights then,
+ * and inner loops are plain C. T3R_ERR_EPOCH: it was made by another version, or is damaged. */
 t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes);
 
 /* Binds callbacks (NULL: none). */
@@ -367,45 +417,48 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 #define T3R_CPU_MVE (1u << 10)     /* Arm Cortex-M */
 #define T3R_CPU_SIMD128 (1u << 16) /* WebAssembly */
 
-/* Chooses the inner loops for a processor that has these T3R_CPU_... features (0, as after t3r_init() and t3r_attach():
- * plain C). The caller warrants that the processor and its operating system have them. No bit of any output changes.
- * A firmware that does not call it links none of the variants. */
+/* Chooses the inner loops for a processor that has these T3R_CPU_... features; 0 = plain C, as after t3r_init() and
+ * t3r_attach(). The processor and its operating system must have them. No bit of any output changes. A firmware that
+ * does not call it links none of the variants. */
 t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features);
 
 /* Binds the weights of the head T3R_HEAD_LEARNED, a whole .t3w file in memory aligned to 16 (NULL: none). Only the
  * pointer is kept: the memory stays the caller's, is read in place, and must not change or go while it is bound. Bind
  * after t3r_init() and again after t3r_attach(). The analysis does not depend on the head, so another may be bound to
- * one that was kept. T3R_ERR_ARGUMENT (misaligned), T3R_ERR_WEIGHTS, T3R_ERR_STATE (no room for views): what was bound
- * stays. */
+ * one that was kept. T3R_ERR_ARGUMENT: misaligned. T3R_ERR_WEIGHTS: t3r_weights_error() has the reason. T3R_ERR_STATE:
+ * the arena has no room for views. After an error what was bound stays. */
 t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 
-/* Why t3r_bind_head() refuses a weight file, as text; NULL when it is sound: then the head is too large for the arena
- * (t3r_head_column_bytes()). */
+/* The reason for which t3r_bind_head() refuses a weight file, as text. NULL when the file is sound: a head that is
+ * refused all the same is too large for the arena (t3r_head_column_bytes()). */
 const char *t3r_weights_error(const void *weights, size_t bytes);
 
-/* The head_column_bytes with which this head works on views of this width, whatever their height: at least 1, 0 when
- * t3r_weights_error() refuses the file or the width is not 1..T3R_MAX_SIDE. The default holds nano, small and base with
- * 8-bit activations; every arena holds heads that need no more than two bytes a pixel. */
+/* The head_column_bytes with which this head works on views of this width, whatever their height, at least 1. 0 =
+ * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds nano, small and base
+ * with 8-bit activations; every arena holds heads that need no more than two bytes a pixel. */
 uint32_t t3r_head_column_bytes(const void *weights, size_t bytes, uint32_t width);
 
 /* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it, and so which file to bind again. */
 uint32_t t3r_head_crc(const t3r_runtime *rt);
 
-/* Takes the next context view: to planes, resized to the working size, undistorted. The camera belongs to the frame's
- * own pixel grid and must also be in range after resizing. On an error no view is added; an analysis that was kept is
- * gone. T3R_ERR_FRAME, T3R_ERR_CAMERA (also when more than half of the picture lies beyond what the lens can show),
- * T3R_ERR_NO_DEPTH (no plane, or not one measurement in it; with T3R_DEPTH_STEREO the frame's depth is ignored, and
- * pixels with r = g = b = 0 show nothing), T3R_ERR_STATE (no room, or there is a scene: t3r_reset()). */
+/* Adds the next context view: converted to planes, resized to the working size, undistorted. The camera belongs to the
+ * frame's own pixel grid and must also be in range after resizing. With T3R_DEPTH_STEREO the frame's depth is ignored,
+ * and pixels with r = g = b = 0 count as empty.
+ *
+ * T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than half of the picture lies beyond what the lens can show.
+ * T3R_ERR_NO_DEPTH: there is no depth plane, or not one measurement in it. T3R_ERR_STATE: there is no room for another
+ * view, or there is a scene already (t3r_reset()). After an error no view is added, and an analysis that was kept is
+ * discarded. */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
-/* Forgets views, analysis and scene; keeps the configuration. Needed before t3r_add_view() once there is a scene. */
+/* Discards views, analysis and scene; the configuration stays. Needed before t3r_add_view() once there is a scene. */
 t3r_status t3r_reset(t3r_runtime *rt);
 
-/* Analyses the views added so far and builds a scene of them, as the request says (NULL: as the configuration says). It
- * has exactly the budget, or all valid points where they are fewer.
+/* Analyses the views added so far and builds a scene of them by the request (NULL: by the configuration alone). It has
+ * exactly the budget, or all valid points where they are fewer.
  *
- * With an importance, those points with depth are retained that have the highest; of equal ones the first in the order
- * of views and rows. Doubtful points and surfaces seen twice then count as any others. Heads see the share of points
+ * With an importance, the points of the highest one are retained; of equal ones the first in the order of views and
+ * rows. Doubtful points and surfaces seen twice then count as any others. Heads see the share of points
  * retained about each pixel.
  *
  * With a bounded loss, as few Gaussians are made as the bound is predicted to allow, at least 1/400 of the points. The
@@ -416,8 +469,8 @@ t3r_status t3r_reset(t3r_runtime *rt);
  * T3R_ERR_ARGUMENT: a field of the request is out of its range. T3R_ERR_STATE: there are no views (by stereo, fewer
  * than two); the learned head has no weights; the allocation is `given` and no importance came; or a bounded loss
  * without keep_analysis and refinements. After these two everything is as it was. T3R_ERR_CAMERA: a view stands more
- * than 1,024 scene units from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() says why.
- * T3R_ERR_CANCELLED. After these three there is no scene, and the views stay. */
+ * than 1,024 scene units from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() has the
+ * reason. T3R_ERR_CANCELLED. After these three there is no scene, and the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
 
 /* Builds another scene of the views analysed last, without analysing them again. Needs keep_analysis; otherwise as
@@ -425,84 +478,97 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scen
  * analysis stays. */
 t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
 
-/* What the analysis found for context view `view` with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO: T3R_PAIR_OK, and
- * the view that most of its depth came from; or why the pair with the most to hope for was refused. Such a view has no
- * depth and adds no points. *partner is `view` where there is none: by sensor, out of range, before an analysis. */
+/* How context view `view` got its depth with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO. T3R_PAIR_OK: *partner is the
+ * view that most of it came from. Any other: the view has no depth and adds no points, and this is the reason for which
+ * the pair with the best prospects was refused. *partner is `view` where there is none: by sensor, out of range, before
+ * an analysis. */
 t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner);
 
 /* What a keyframe did to the map of a stream. */
 typedef struct t3r_stream_report {
-    uint32_t keyframes; /* taken so far, this one too */
-    uint32_t gaussians; /* in the map, at most the configuration's */
+    /* The number of keyframes taken so far, this one too. */
+    uint32_t keyframes;
+    /* The number of Gaussians in the map, at most the configuration's. */
+    uint32_t gaussians;
+    /* The number of Gaussians that the keyframe added. */
     uint32_t added;
-    uint32_t removed; /* of those there were: contradicted by the keyframe, or replaced by what it sees far finer */
-    uint32_t crowded; /* of those there were: dropped for lack of room */
-    uint32_t points;  /* pixels with a depth, filled ones too */
-    uint32_t shown;   /* of these, those that the map showed already */
+    /* The number of earlier Gaussians that the keyframe contradicts, or replaces because it sees them far finer. */
+    uint32_t removed;
+    /* The number of earlier Gaussians discarded for lack of room. */
+    uint32_t crowded;
+    /* The number of the keyframe's pixels with a depth, filled ones too. */
+    uint32_t points;
+    /* The number of these that the map showed already. */
+    uint32_t shown;
 } t3r_stream_report;
 
-/* Streams (t3r_config.stream): takes the next keyframe of a moving camera into the map, the scene in the arena, which
- * holds at most the configuration's `gaussians` over any number of keyframes, in bounded time. Pixels that the map
- * shows already add nothing; the others compete with the Gaussians there are by one score, texture density against blue
- * noise (allocations by SuperClusters count as `pixel`, for the score is to mean the same in every keyframe); who stays
- * grows over the gaps, and refinement on the last `views` keyframes corrects what these see as finely as the Gaussian's
- * own. The map's scale is the first keyframe's; its origin follows the camera by whole scene units, and what falls more
- * than 1,024 scene units behind is forgotten. Which frames are keyframes is the caller's choice. A Gaussian's `view` is
- * its keyframe's number modulo `views`. t3r_render(), t3r_get_scene() and t3r_reset(), which begins anew, work in
- * between; `report` may be NULL and is all 0 unless the keyframe was taken. T3R_ERR_STATE: not an arena for streams,
- * the learned head without weights, or the allocation `given`; T3R_ERR_FRAME; T3R_ERR_CAMERA, also more than 1,024
- * scene units from the origin: all as before. T3R_ERR_NO_DEPTH, a lens that shows too little, T3R_ERR_CANCELLED: the
- * keyframe adds nothing and is not among those that refinement looks at, nor is the one of `views` keyframes ago, and
- * Gaussians that it contradicts may be gone. T3R_ERR_CANCELLED during refinement: it is taken, passes are missing. The
- * map stays valid and within its cap whatever happens. */
+/* Streams (t3r_config.stream): takes the next keyframe of a moving camera into the map, which is the scene in the
+ * arena. The map holds at most the configuration's `gaussians` over any number of keyframes, and a call takes bounded
+ * time. The caller chooses which frames are keyframes. t3r_render() and t3r_get_scene() work in between, and
+ * t3r_reset() begins anew. `report` may be NULL; it is all 0 unless the keyframe was taken.
+ *
+ * Pixels that the map shows already add nothing. The others compete with the Gaussians of the map by one score, texture
+ * density against blue noise. Allocations by SuperClusters count as `pixel`, so that the score means the same in every
+ * keyframe. Gaussians that stay grow over the gaps. Refinement on the last `views` keyframes then corrects those that
+ * these see as finely as the Gaussian's own keyframe.
+ *
+ * The map's scale is the first keyframe's. Its origin follows the camera by whole scene units, and what is more than
+ * 1,024 scene units behind is discarded. A Gaussian's `view` is its keyframe's number modulo `views`.
+ *
+ * T3R_ERR_STATE: the arena is not one for streams, the learned head has no weights, or the allocation is `given`.
+ * T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than 1,024 scene units from the origin. After these three
+ * everything is as before. T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens that shows too little, and T3R_ERR_CANCELLED: the
+ * keyframe adds nothing. Refinement then uses neither it nor the one of `views` keyframes ago, and Gaussians that it
+ * contradicts may be gone. T3R_ERR_CANCELLED during refinement: the keyframe is taken, and passes are missing. The map
+ * stays valid and within its cap after any error. */
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 
-/* How much a picture of width x height by this camera (its distortion is ignored) would have in common with the newest
- * keyframe, Q8, 0..256: the share of that one's points that it would show, or of an 8 x 8 grid over the picture that
- * they fall on, against what they fall on in their own, whichever is less. For choosing keyframes: when it sinks below
- * some 70 %, say, it is time. T3R_ERR_STATE before the first keyframe, T3R_ERR_CAMERA where t3r_stream_keyframe() has
- * it. */
+/* The overlap of a picture of width x height by this camera with the newest keyframe, 0..256, in 1/256. It is the
+ * lesser of two shares. One is of the keyframe's points: those that the picture would show. The other is of the cells
+ * of an 8 x 8 grid over a picture: those that the points fall on here, against those in their own. The camera's
+ * distortion is ignored. It serves to choose keyframes: below some 70 % the next one is due. T3R_ERR_STATE: there is no
+ * keyframe yet. T3R_ERR_CAMERA: as t3r_stream_keyframe(). */
 t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                               uint32_t *overlap_q8);
 
-/* The scene in the arena, after t3r_attach() say. T3R_ERR_STATE when there is none. */
+/* The scene in the arena, for instance after t3r_attach(). T3R_ERR_STATE when there is none. */
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);
 
-/* Starts an empty scene in the given frame (exponent -24..24, |origin| < 2^62) and forgets the views; appends to the
- * scene there is. For scenes that come from files: every field of the Gaussian is checked, |position_q20| <= 2^30. */
+/* For scenes that come from files: the first starts an empty scene in the given frame (exponent -24..24, |origin| <
+ * 2^62) and discards the views, the second appends a Gaussian. Every field of it is checked. */
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame);
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 
-/* Draws the scene in the arena as seen by the camera (its distortion is ignored: targets are pinhole). Without
- * keep_analysis the views are forgotten: their planes are where the raster works. T3R_ERR_CAMERA when the camera stands
- * more than 1,024 scene units from the origin; T3R_ERR_CANCELLED leaves the target part drawn. T3R_ERR_ARGUMENT: sizes or
- * strides out of range, or depth or alpha not aligned for their types. */
+/* Draws the scene in the arena as seen by the camera. Its distortion is ignored: targets are pinhole. Without
+ * keep_analysis the views are discarded, for the raster works where their planes were. T3R_ERR_ARGUMENT: sizes or
+ * strides are out of range, or depth or alpha is not aligned for its type. T3R_ERR_CAMERA: the camera is more than
+ * 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is drawn in part. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);
 
-/* Passes over the scene that the last t3r_render() took: 1 when the arena had room for all. */
+/* The number of passes over the scene that the last t3r_render() took: 1 when the arena had room for all splats. */
 uint32_t t3r_render_passes(const t3r_runtime *rt);
 
-/* The image stage alone, as t3r_add_view() applies it: any frame to 8-bit RGB and Z16 depth of the working
- * size of `rt`, undistorted, into the caller's memory; depth and depth_out may be NULL. For import and
- * for reference pictures. *undistorted gets the camera of the result. T3R_ERR_STATE unless the runtime is empty. */
+/* The image stage alone, as t3r_add_view() applies it: turns any frame into 8-bit RGB and 16-bit depth of the working
+ * size, undistorted, in the caller's memory. depth_out may be NULL, and so may the frame's depth. *undistorted gets the
+ * camera of the result. T3R_ERR_STATE unless the runtime is empty. */
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted);
 
 /* The version of the library, "major.minor.patch". */
 const char *t3r_version(void);
 
-/* A short English sentence for a status; never NULL. */
+/* A short English sentence for a status. Never NULL. */
 const char *t3r_error_text(t3r_status status);
-/* Stable lower-case names, as the command line and the tables spell them; NULL when out of range, and of what is as
- * configured. */
+/* Stable lower-case names, as the command line and the tables spell them. NULL = out of range, or one of the values
+ * ..._CONFIGURED. */
 const char *t3r_stage_name(t3r_stage stage);
 const char *t3r_allocation_name(t3r_allocation allocation);
 const char *t3r_head_name(t3r_head head);
 const char *t3r_depth_name(t3r_depth depth);
 const char *t3r_wavelet_name(t3r_wavelet wavelet);
 const char *t3r_pixel_format_name(t3r_pixel_format format);
-/* Whether two views can be matched, and why not, as text for people; never NULL. */
+/* Whether two views can be matched, and why not, as text for people. Never NULL. */
 const char *t3r_pair_text(t3r_pair pair);
 
 #ifdef __cplusplus

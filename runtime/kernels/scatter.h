@@ -37,9 +37,9 @@ typedef struct t3r_wanted {
     uint16_t counts[T3R_TILE_SIDE][T3R_TILE_SIDE];        /* 65,535, or 0 where a pixel has no depth */
 } t3r_wanted;
 
-/* Exact sums over one splat's pixels in one tile, in the order of T3R_REFINE_MOMENTS_4: x^k y^l stands for the weight
- * C(p + k, k) C(s + l, l), p the columns to the end of the splat's groups and s the rows to `last` that are still to
- * come after the pixel. */
+/* Exact sums over one splat's pixels in one tile, in the order of T3R_REFINE_MOMENTS_4. x^k y^l stands for the weight
+ * C(p + k, k) C(s + l, l). p and s count what comes after the pixel: columns to the end of the splat's groups, and rows
+ * to `last`. */
 typedef struct t3r_tile_sums {
     int64_t gradient[T3R_REFINE_MOMENTS_2];  /* levels^2, Q3 */
     int64_t curvature[T3R_REFINE_MOMENTS_4]; /* levels^2, Q2 */

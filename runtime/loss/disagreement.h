@@ -1,4 +1,4 @@
-/* What two views say of one surface, compared: the error that no number of Gaussians takes away. */
+/* How far two views disagree on the colours of one surface: the error that no number of Gaussians removes. */
 #ifndef T3R_DISAGREEMENT_H
 #define T3R_DISAGREEMENT_H
 
@@ -6,9 +6,9 @@
 
 #include "state/views.h"
 
-/* Mean squared difference of levelled colours a channel, levels^2 Q8, at most 2^24, over the pixels not doubtful that
- * were measured and fall on such a one in the next or the previous view, the last and the first being next to each
- * other, at a depth at most 1/32 off. *pairs, below 2^29: how many they are; 0 of none. */
+/* The mean squared difference of levelled colours a channel, levels^2 Q8, at most 2^24; 0 without pairs. A pair is two
+ * pixels, both measured and not doubtful: the one falls on the other in the next or the previous view, at a depth at
+ * most 1/32 off. The last view and the first are next to each other. *pairs: how many there are, below 2^29. */
 uint32_t t3r_disagreement_q8(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
                              uint32_t *pairs);
 

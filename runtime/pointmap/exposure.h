@@ -8,11 +8,11 @@
 
 #define T3R_GAIN_ONE_Q14 (1u << 14)
 
-/* The gains r, g, b, Q14, at least 1/4 and at most 4, that bring each view to the mean exposure of all. View after
- * view, the median of log2(its level / the level of an earlier view's pixel, levelled), over every second pixel of
- * every second row that falls on a measured pixel of at most 1/64 other depth, all six levels in 16..239. A view with
- * fewer than 256 such pairs keeps gain 1 and levels no other; returned is how many others there are, the first one
- * among them. */
+/* The gains r, g, b, Q14, at least 1/4 and at most 4, that bring each view to the mean exposure of all. View after view
+ * is compared with the earlier ones, already levelled: its gain is the median of log2(its level / the other's) over
+ * pairs of pixels. A pair is every second pixel of every second row that falls on a measured pixel of at most 1/64
+ * other depth, all six levels in 16..239. A view with fewer than 256 pairs keeps gain 1 and levels no other. Returns
+ * the number of other views, the first one among them. */
 uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3]);
 
 /* A colour of the view with that gain, levelled: Q7, held to 255. */

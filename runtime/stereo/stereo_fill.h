@@ -16,9 +16,9 @@
     (T3R_UP_(T3R_STEREO_FILL_CELLS_BYTES) + T3R_UP_(T3R_PIXELS_(width, height) * 4) +                                  \
      T3R_UP_(T3R_PIXELS_(width, height) * 2) + T3R_UP_(T3R_PIXELS_(width, height)))
 
-/* Every pixel of something that has no depth takes that of the pixel to which the way is the shortest, steps of luma
- * counting as length, along the plane that the depths about that pixel lie on; match confidence T3R_STEREO_FILLED. In a
- * view without any depth nothing is filled. */
+/* Fills each pixel that is not empty and has no depth, with match confidence T3R_STEREO_FILLED. It takes the depth of
+ * the nearest pixel that has one, continued along the plane of the depths about that pixel. Steps of luma count as
+ * length of the path there. In a view without any depth nothing is filled. */
 void t3r_stereo_fill(const t3r_view *view, void *work);
 
 #endif

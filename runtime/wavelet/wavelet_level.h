@@ -15,10 +15,11 @@
  *
  * Haar and CDF 5/3 take even samples for lows and odd ones for highs; kernels/wavelet_rows.h has their steps.
  *
- * Why 16 bits suffice. Input: -2048 <= x <= 2032. A coefficient is a linear function of the input; its size is at
- * most 2048 times (2040 times, half the range, where the weights sum to 0, as they do with a high half in either
- * direction) the product, over the two directions, of the sum of absolute weights along one. The largest such
- * sums over all lengths, low half, high half and db2's d1:
+ * Why 16 bits suffice. Input: -2048 <= x <= 2032. A coefficient is a linear function of the input. Its size is at most
+ * 2048 times the product, over the two directions, of the sum of absolute weights along one. It is 2040 times that,
+ * half the range, where the weights sum to 0, as they do with a high half in either direction. These are the largest
+ * such sums over all lengths: of the low half, the high half and db2's d1.
+ *
  *     level    db2 low   high    d1     5/3 low   high    Haar low   high
  *       1       1.268   4.000  2.733     1.500   2.000       1        2
  *       2       1.500   3.402  2.929     1.625   2.500       1        2
