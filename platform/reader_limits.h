@@ -26,7 +26,7 @@
 #define T3R_LIMIT_TRIPLETS 1048576     /* of a folder or a recording */
 #define T3R_LIMIT_POSES 2097152        /* of a trajectory */
 #define T3R_LIMIT_PICTURES 1000000     /* lines of a list of pictures */
-#define T3R_LIMIT_JSON_VALUES 4194304  /* of a JSON text, keys included: 80 bytes of memory each */
+#define T3R_LIMIT_JSON_VALUES 3000000  /* of a JSON text: each takes up to 144 bytes of memory with its key and text */
 #define T3R_LIMIT_JPEG_SCANS 32        /* cameras and programs write 10 or so */
 #define T3R_LIMIT_VIEWS_OF_POINTS 1000 /* pointmaps in a file */
 

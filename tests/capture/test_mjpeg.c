@@ -14,6 +14,7 @@
 #include "capture_adapter.h"
 #include "fake_v4l2.h"
 #include "mjpeg.h"
+#include "reader_limits.h"
 #include "v4l2.h"
 
 enum { WIDTH = 32, HEIGHT = 16 };
@@ -107,6 +108,56 @@ static void pictures_are_decoded_with_and_without_tables(void **state)
     t3r_mjpeg_close(NULL);
 }
 
+/* Progressive, in as many scans as asked: after the means one coefficient of one colour each, by a bit more each time.
+ */
+static void many_scans_are_refused_early(void **state)
+{
+    (void)state;
+    uint8_t rgb[WIDTH * HEIGHT * 3];
+    t3r_mjpeg *decoder = t3r_mjpeg_open();
+    assert_non_null(decoder);
+    for (int scans = 30; scans <= 300; scans += 270) {
+        jpeg_scan_info script[300] = {{.comps_in_scan = 3, .component_index = {0, 1, 2}}};
+        for (int i = 1; i < scans; i++) {
+            int k = (i - 1) / 3;
+            script[i] = (jpeg_scan_info){.comps_in_scan = 1, .component_index = {(i - 1) % 3}};
+            script[i].Ss = script[i].Se = 1 + k % 63;
+            script[i].Ah = k < 63 ? 0 : 10 - k / 63;
+            script[i].Al = 9 - k / 63;
+        }
+        struct jpeg_compress_struct jpeg;
+        struct jpeg_error_mgr errors;
+        unsigned char *memory = NULL;
+        unsigned long bytes = 0;
+        jpeg.err = jpeg_std_error(&errors);
+        jpeg_create_compress(&jpeg);
+        jpeg_mem_dest(&jpeg, &memory, &bytes);
+        jpeg.image_width = WIDTH;
+        jpeg.image_height = HEIGHT;
+        jpeg.input_components = 3;
+        jpeg.in_color_space = JCS_RGB;
+        jpeg_set_defaults(&jpeg);
+        jpeg.num_scans = scans;
+        jpeg.scan_info = script;
+        jpeg_start_compress(&jpeg, TRUE);
+        for (uint32_t y = 0; y < HEIGHT; y++) {
+            uint8_t row[WIDTH * 3] = {0};
+            JSAMPROW rows[1] = {row};
+            jpeg_write_scanlines(&jpeg, rows, 1);
+        }
+        jpeg_finish_compress(&jpeg);
+        jpeg_destroy_compress(&jpeg);
+        const char *wrong = t3r_mjpeg_decode(decoder, memory, bytes, WIDTH, HEIGHT, rgb);
+        if (scans <= T3R_LIMIT_JPEG_SCANS) {
+            assert_null(wrong);
+        } else {
+            assert_string_equal(wrong, "more than 32 scans");
+        }
+        free(memory);
+    }
+    t3r_mjpeg_close(decoder);
+}
+
 static uint32_t fill(void *user, const fake_node *node, uint32_t number, uint8_t *memory)
 {
     (void)user;
@@ -159,6 +210,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_decoded_with_and_without_tables),
+        cmocka_unit_test(many_scans_are_refused_early),
         cmocka_unit_test(a_camera_of_motion_jpeg_is_captured),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

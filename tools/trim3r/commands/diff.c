@@ -242,10 +242,10 @@ static int diff_pictures(const diff_options *o)
     if (p[0].width != p[1].width || p[0].height != p[1].height || p[0].channels != p[1].channels ||
         p[0].bits != p[1].bits) {
         code = cli_error(CLI_BAD_INPUT,
-                         "%" PRIu32 "x%" PRIu32 " with %" PRIu32 " channels of %" PRIu32 " bits and %" PRIu32
-                         "x%" PRIu32 " with %" PRIu32 " of %" PRIu32 " cannot be compared",
-                         p[0].width, p[0].height, p[0].channels, p[0].bits, p[1].width, p[1].height, p[1].channels,
-                         p[1].bits);
+                         "%s: %" PRIu32 "x%" PRIu32 " with %" PRIu32 " channels of %" PRIu32 " bits; %s: %" PRIu32
+                         "x%" PRIu32 " with %" PRIu32 " of %" PRIu32 ": they cannot be compared",
+                         o->path[0], p[0].width, p[0].height, p[0].channels, p[0].bits, o->path[1], p[1].width,
+                         p[1].height, p[1].channels, p[1].bits);
     } else {
         picture_difference d = compare_pictures(&p[0], &p[1]);
         code = print_picture_difference(o, &d);

@@ -289,7 +289,8 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
     };
     t3r_status status = t3r_render(r->runtime, &view->camera, &target);
     if (status != T3R_OK) {
-        return reconstruction_error(status, "viewpoint", &r->config, r->arena_bytes);
+        const char *from = o->pose != NULL ? o->pose : o->trajectory != NULL ? o->trajectory : o->recording;
+        return reconstruction_error(status, from, &r->config, r->arena_bytes);
     }
     *hash = t3r_hash_bytes(*hash, p->rgb, pixels * 3);
     int code = write_picture(o->output, index, count, &(picture){view->width, view->height, 3, 8, p->rgb});

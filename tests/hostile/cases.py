@@ -1,0 +1,332 @@
+"""Hostile files: each a name, what kind of input it is, what writes it, and words that its refusal must say ("" where any
+will do, None where it may also be read)."""
+import json
+import os
+import struct
+import zlib
+
+import formats as f
+
+MIB = 1 << 20
+UNIT = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+CASES = []
+
+
+def case(kind, name, why=""):
+    """The function below gives the file's bytes, or makes a folder at the path that it takes."""
+    def note(make):
+        CASES.append((kind, name, why, make))
+        return make
+    return note
+
+
+def given(kind, name, data, why=""):
+    CASES.append((kind, name, why, lambda: data() if callable(data) else data))
+
+
+# --- recordings ------------------------------------------------------------------------------------------------------
+
+
+def filled(codec, mib, chunks=1):
+    """Chunks of one image each, of that many MiB of zeros."""
+    out = [f.channels()]
+    for _ in range(chunks):
+        head = f.image(10**9, 4096, 4096, data=b"", data_bytes=mib * MIB)
+        start = f.message(4, 10**9, head, 22 + len(head) + mib * MIB)
+        size = len(start) + mib * MIB
+        packed = f.zstd([start, (0, mib * MIB)]) if codec == "zstd" else f.lz4(start, 0, mib * MIB)
+        out.append(f.chunk(codec, packed, size))
+    return f.mcap(*out)
+
+
+given("recording", "zstd-bomb.mcap", lambda: filled("zstd", 128, 32), "may unpack to")
+given("recording", "zstd-below-the-limit.mcap", lambda: filled("zstd", 60, 2), None)
+given("recording", "lz4-bomb.mcap", lambda: filled("lz4", 64, 16), "may unpack to")
+given("recording", "chunk-lies-more.mcap", f.mcap(f.chunk("zstd", f.zstd([b"abc"]), 100 * MIB)), "more than its data can")
+given("recording", "chunk-lies-less.mcap", f.mcap(f.chunk("zstd", f.zstd([(0, 9 * MIB)]), 99)), "longer than")
+given("recording", "chunk-of-2^63.mcap", f.mcap(f.chunk("lz4", b"abcd", 1 << 63)), "may unpack to")
+given("recording", "chunk-uncompressed-lies.mcap", f.mcap(f.chunk("", b"abcd", 1 << 40)), "uncompressed_size")
+given("recording", "chunk-in-chunk.mcap",
+      lambda: f.mcap(f.chunk("", *[(c := f.chunk("", b"", 0)), len(c)])), "may not stand in a chunk")
+given("recording", "chunk-crc.mcap", f.mcap(f.chunk("", f.channels(), len(f.channels()), 7)), "CRC")
+given("recording", "zstd-size-of-2^62.mcap", f.mcap(f.chunk("zstd", f.zstd([b"abc"], 1 << 62), 3)))
+given("recording", "record-of-2^63.mcap", f.mcap(f.record(5, b"", 1 << 63)), "past the file's end")
+given("recording", "record-of-2^64-1.mcap", f.mcap(f.record(0x90, b"", (1 << 64) - 1)), "past the file's end")
+given("recording", "text-of-4-gb.mcap", f.mcap(f.record(3, struct.pack("<HI", 1, 0xFFFFFFFF))), "past the record's end")
+given("recording", "cut.mcap", f.mcap(f.channels(), f.frame(0), f.frame(1), end=False)[:-40], None)
+given("recording", "zeros-behind-a-cut.mcap", f.mcap(f.channels(), f.frame(0), end=False) + bytes(MIB), None)
+given("recording", "no-channel.mcap", f.mcap(f.frame(0)), "channel was not defined")
+given("recording", "65535-channels.mcap",
+      lambda: f.mcap(f.record(3, struct.pack("<H", 1) + f.text(f.TYPES["image"]) + f.text("") + f.text("")),
+                     *[f.record(4, struct.pack("<HH", i, 1) + f.text("/x/image") + f.text("cdr") + f.text(""))
+                       for i in range(65536)]), None)
+given("recording", "million-triplets.mcap",
+      lambda: f.mcap(f.metadata("trim3r_triplets", {"triplets": ";".join(["1,2,0"] * 1500000)})), "more than 1048576")
+given("recording", "image-of-65535.mcap",
+      f.mcap(f.channels(), f.frame(0, image=lambda t: f.image(t, 65535, 65535, data=b"", data_bytes=0))), "4096")
+given("recording", "image-step-of-0.mcap",
+      f.mcap(f.channels(), f.frame(0, image=lambda t: f.image(t, step=0))), "step")
+given("recording", "image-step-of-4-gb.mcap",
+      f.mcap(f.channels(), f.frame(0, image=lambda t: f.image(t, step=0xFFFFFFFF))), "data hold fewer")
+given("recording", "pose-nan.mcap",
+      f.mcap(f.channels(), f.frame(0, pose=lambda t: f.pose(t, (float("nan"), 0, 0))), f.frame(1)), "position.x")
+given("recording", "pose-infinite.mcap",
+      f.mcap(f.channels(), f.frame(0, pose=lambda t: f.pose(t, (0, 0, float("-inf")))), f.frame(1)), "position.z")
+given("recording", "pose-without-rotation.mcap",
+      f.mcap(f.channels(), f.frame(0, pose=lambda t: f.pose(t, rotation=(0, 0, 0, 0))), f.frame(1)), None)
+given("recording", "focal-negative.mcap",
+      f.mcap(f.channels(), f.frame(0, camera_info=lambda t: f.camera_info(t, k=(-9, 0, 8, 0, 40, 8, 0, 0, 1)))), "fx")
+given("recording", "distortion-huge.mcap",
+      f.mcap(f.channels(), f.frame(0, camera_info=lambda t: f.camera_info(t, d=(1e300, 0, 0, 0, 0)))), "D has a coefficient")
+given("recording", "distortion-of-2^32.mcap",
+      f.mcap(f.channels(), f.frame(0, camera_info=lambda t: f.camera_info(t)[:64] + b"\xff" * 8)))
+given("recording", "escapes.mcap",
+      lambda: f.mcap(f.channels(f"/{f.ESCAPE}/"), f.metadata("trim3r", {"clock": f.ESCAPE}), f.frame(0), f.frame(1)), None)
+given("recording", "escapes-in-encoding.mcap",
+      f.mcap(f.channels(f"/{f.ESCAPE}/"), f.frame(0, image=lambda t: f.image(t, encoding=f.ESCAPE))), None)
+given("recording", "escapes-in-lens.mcap",
+      f.mcap(f.channels(), f.frame(0, camera_info=lambda t: f.camera_info(t, d=(1,), model=f.ESCAPE))), "distortion_model")
+given("recording", "escapes-in-schema.mcap",
+      f.mcap(f.record(3, struct.pack("<H", 1) + f.text(f.ESCAPE) + f.text(f.ESCAPE) + f.text(f.ESCAPE)),
+             f.record(4, struct.pack("<HH", 1, 1) + f.text(f.ESCAPE) + f.text(f.ESCAPE) + f.text("")), f.frame(0)[:0]), None)
+given("recording", "escapes-in-compression.mcap", f.mcap(f.chunk(f.ESCAPE, b"", 0)), "not supported")
+
+
+
+# --- files that are none ---------------------------------------------------------------------------------------------
+
+
+@case("path", "pipe.mcap", "empty")
+def lone_pipe(path):
+    os.mkfifo(path)
+
+
+@case("path", "folder.mcap", "Is a directory")
+def lone_folder(path):
+    os.mkdir(path)
+
+
+@case("path", "zeros-of-a-terabyte.mcap", "not an MCAP file")
+def sparse(path):
+    with open(path, "wb") as file:
+        file.truncate(1 << 40)
+
+
+@case("path", "link-to-itself.mcap", "symbolic links")
+def link(path):
+    os.symlink(path, path)
+
+
+given("path", "odd.splat", bytes(1000 * 32 + 7), "not an MCAP file")
+
+
+# --- scenes ----------------------------------------------------------------------------------------------------------
+
+given("scene", "2^31-vertices.ply", f.ply(1 << 31, rows=1), "over the limit")
+given("scene", "2^24-vertices.ply", f.ply(1 << 24, rows=1), "cut off")
+given("scene", "2^64-vertices.ply", f.ply("18446744073709551616", rows=1))
+given("scene", "negative-vertices.ply", f.ply(-1, rows=1), "is no element")
+given("scene", "list-property.ply", f.ply(behind="property list uchar int vertex_indices\n"), "lists are not")
+given("scene", "header-without-end.ply", b"ply\nformat binary_little_endian 1.0\n" + b"comment x\n" * 100000, "no end")
+given("scene", "huge-header-line.ply", b"ply\ncomment " + b"x" * (8 * MIB) + b"\n", "")
+given("scene", "skips-2^37-bytes.ply",
+      f.ply(before="element face 16777216\n" + "".join(f"property double p{i}\n" for i in range(1000))), "cut off")
+given("scene", "nan.ply", f.ply(3, values=[float("nan")] + [0] * 13), "not a finite number")
+given("scene", "far-apart.ply", lambda: f.ply(2, rows=1) + struct.pack("<14f", 3e38, *([0] * 10), 1, 0, 0))
+given("scene", "no-rotation.ply", f.ply(values=[0] * 14), "rotation without length")
+given("scene", "escapes.ply", f.ply(before=f"{f.ESCAPE}\n"), "unknown header line")
+given("scene", "escapes-in-format.ply", b"ply\nformat " + f.ESCAPE.encode() + b"\n", "only binary_little_endian")
+
+
+# --- pictures --------------------------------------------------------------------------------------------------------
+
+given("picture", "1000-scans.jpg", lambda: f.jpeg(1024, 1000), "more than 32 scans")
+given("picture", "32-scans-of-4096.jpg", lambda: f.jpeg(4096, 32), None)
+given("picture", "65535x65535.jpg", lambda: f.jpeg(8)[:166] .replace(struct.pack(">HH", 8, 8), b"\xff\xff\xff\xff"), "")
+given("picture", "cut.jpg", lambda: f.jpeg(512, 4)[:3000], "")
+given("picture", "no-data.jpg", b"\xff\xd8\xff\xd9", "")
+given("picture", "65535x65535.png", f.png(65535, 65535, rows=b"\0"), "")
+given("picture", "2^31.png", f.png(0x7FFFFFFF, 0x7FFFFFFF, rows=b"\0"), "")
+given("picture", "interlaced-bomb.png", lambda: f.png(4096, 4096, 16, 6, 1), None)
+given("picture", "interlaced-cut.png", lambda: f.png(4096, 4096, 8, 2, 1, rows=bytes(1000)), "")
+given("picture", "more-data-than-rows.png", lambda: f.png(16, 16, rows=bytes(64 * MIB)), None)
+given("picture", "texts-of-8-mb.png",
+      lambda: f.png(16, 16, before=f.png_chunk(b"zTXt", b"k\0\0" + zlib.compress(bytes(7 * MIB), 9)) * 900), None)
+given("picture", "profile-of-500-mb.png",
+      lambda: f.png(16, 16, before=f.png_chunk(b"iCCP", b"k\0\0" + zlib.compress(bytes(200 * MIB), 9))), None)
+given("picture", "crc.png", f.png(16, 16, crc=1), "")
+given("picture", "palette-missing.png", f.png(16, 16, colour=3), "")
+
+
+# --- folders ---------------------------------------------------------------------------------------------------------
+
+
+def transforms(path, text):
+    os.makedirs(path)
+    with open(f"{path}/transforms.json", "wb") as file:
+        file.write(text if isinstance(text, bytes) else json.dumps(text).encode())
+    with open(f"{path}/c.png", "wb") as file:
+        file.write(f.png(16, 16))
+    return path
+
+
+def one_frame(**fields):
+    return {"fl_x": 40, "frames": [{"file_path": "c.png", "transform_matrix": UNIT, **fields}]}
+
+
+@case("folder", "20000-keys-4000-frames", "f0.png")
+def many_keys(path):
+    frames = [{"file_path": f"f{i}.png", "transform_matrix": UNIT} for i in range(4000)]
+    return transforms(path, {**{f"x{i}": i for i in range(20000)}, "fl_x": 40, "frames": frames})
+
+
+@case("folder", "frames-with-2900000-keys", "missing")
+def keys_in_frames(path):
+    keys = ",".join(f'"k{i}":"{i}"' for i in range(4000))
+    return transforms(path, ('{"fl_x":40,"frames":[' + ",".join([f'{{"file_path":"no.png",{keys}}}'] * 725) + "]}").encode())
+
+
+@case("folder", "33-million-values", "more than 3000000 values")
+def many_values(path):
+    return transforms(path, b'{"frames":[' + b"0," * (32 * MIB - 50) + b"0]}")
+
+
+@case("folder", "65-mb-of-json", "too large")
+def long_text(path):
+    return transforms(path, b'{"a":"' + b"x" * (65 * MIB) + b'"}')
+
+
+@case("folder", "deep-nesting", "not JSON")
+def deep(path):
+    return transforms(path, b'{"frames":' + b"[" * 1000000)
+
+
+@case("folder", "nan-pose", "not JSON")
+def nan_pose(path):
+    return transforms(path, json.dumps(one_frame(transform_matrix=[[float("nan")] * 4] * 4)).encode())
+
+
+@case("folder", "infinite-pose", "not a finite number")
+def infinite_pose(path):
+    return transforms(path, json.dumps(one_frame()).replace("[1, 0, 0, 0]", "[1, 0, 0, 1e999]").encode())
+
+
+@case("folder", "escapes", "c.png")
+def escaped_names(path):
+    return transforms(path, one_frame(file_path=f"{f.ESCAPE}/c.png"))
+
+
+@case("folder", "escapes-in-model", "camera_model")
+def escaped_model(path):
+    return transforms(path, one_frame(camera_model=f.ESCAPE))
+
+
+@case("folder", "pipe-as-picture", "not a regular file")
+def pipe(path):
+    transforms(path, one_frame(file_path="pipe.png"))
+    os.mkfifo(f"{path}/pipe.png")
+
+
+@case("folder", "pipe-as-list", "")
+def pipe_of_poses(path):
+    os.makedirs(path)
+    os.mkfifo(f"{path}/transforms.json")
+
+
+@case("folder", "device-as-picture", "not a regular file")
+def device(path):
+    return transforms(path, one_frame(file_path="/dev/zero"))
+
+
+@case("folder", "folder-as-picture", "Is a directory")
+def folder_as_picture(path):
+    return transforms(path, one_frame(file_path="."))
+
+
+@case("folder", "links-in-a-circle", "")
+def circle(path):
+    transforms(path, one_frame(file_path="a/a/a/a/a/b/c.png"))
+    os.symlink(".", f"{path}/a")
+    os.symlink("b", f"{path}/b")
+
+
+@case("folder", "tum-escapes", "")
+def tum(path):
+    os.makedirs(path)
+    for name, line in (("rgb.txt", f"1.0 {f.ESCAPE}.png"), ("groundtruth.txt", "1.0 0 0 0 0 0 0 1")):
+        with open(f"{path}/{name}", "w", encoding="utf-8") as file:
+            file.write(line + "\n")
+
+
+@case("folder", "freiburg1-8-million-lines", "more than 1000000 entries")
+def tum_lines(path):
+    os.makedirs(path)
+    with open(f"{path}/rgb.txt", "w", encoding="utf-8") as file:
+        file.write("1 a\n" * 8000000)
+    with open(f"{path}/groundtruth.txt", "w", encoding="utf-8") as file:
+        file.write("1 0 0 0 0 0 0 1\n")
+
+
+# --- arrays ----------------------------------------------------------------------------------------------------------
+
+
+def pointmaps(shape, count=None, byte=0, name="pts3d.npy"):
+    total = count if count is not None else 4
+    for side in shape if count is None else ():
+        total *= side
+    return name, *f.deflated(f.npy_head(shape), byte, total)
+
+
+given("points", "4-gb-of-1000-views.npz", lambda: f.archive([pointmaps((1000, 580, 570, 3), 4 * 10**8)]), "")
+given("points", "400-mb-of-2-views.npz", lambda: f.archive([pointmaps((2, 4096, 4096, 3))]), "may unpack to")
+given("points", "below-the-limit.npz", lambda: f.archive([pointmaps((2, 2300, 2300, 3), byte=63)]), None)
+given("points", "overlapping-entries.npz",
+      lambda: f.archive([pointmaps((2, 900, 900, 3)), pointmaps((2, 900, 900, 3), name="conf.npy")], shared=True), "")
+given("points", "header-of-2^30-squared.npz", lambda: f.archive([pointmaps((1 << 29, 1 << 29, 3), 64)]), "2^30 numbers")
+given("points", "header-lies-more.npz", lambda: f.archive([pointmaps((2, 64, 64, 3), 64)]), "cut off")
+given("points", "header-lies-less.npz", lambda: f.archive([pointmaps((2, 4, 4, 3), 1 << 20)]), "bytes of numbers")
+given("points", "size-lies.npz",
+      lambda: f.archive([(n, d, c, 2 * 64 * 64 * 12 + 128) for n, d, c, _ in [pointmaps((2, 64, 64, 3), 64)]]), "")
+given("points", "crc.npz", lambda: f.archive([(n, d, c ^ 1, s) for n, d, c, s in [pointmaps((2, 64, 64, 3))]]), "CRC")
+given("points", "nan.npz", lambda: f.archive([pointmaps((2, 64, 64, 3), byte=255)]), "not a number")
+given("points", "cut.npz", lambda: f.archive([pointmaps((2, 64, 64, 3))])[:-30], "zip archive")
+given("points", "4-billion-entries.npz", b"PK\5\6" + struct.pack("<HHHHIIH", 0, 0, 65535, 65535, 1 << 31, 0, 0), "zip archive")
+given("points", "escapes.npz", lambda: f.archive([pointmaps((2, 4, 4, 3), name=f.ESCAPE)]), "no array")
+given("points", "cut.npy", f.npy_head((2, 64, 64, 3)) + bytes(99), "cut off")
+given("points", "header-of-4-gb.npy", b"\x93NUMPY\2\0" + struct.pack("<I", 0xFFFFFFF0) + b"{", "cut off in its header")
+given("points", "deep-shape.npy", f.npy_head("(" * 4000 + "1"), "")
+
+
+# --- tables, poses, heads --------------------------------------------------------------------------------------------
+
+given("table", "escapes.csv", lambda: f"scene,psnr,build_ms\n{f.ESCAPE},30,1\n".encode(), "control character")
+given("table", "row-of-9-mb.csv", b"psnr,build_ms\n" + b"9" * (9 * MIB) + b",1\n", "16384 bytes")
+given("table", "900-columns.csv", b",".join([b"psnr"] * 900) + b"\n", "256 cells")
+given("table", "million-rows.csv", lambda: b"psnr,build_ms\n" + b"30,1\n" * 1000000, "")
+given("table", "quote-without-end.csv", b'psnr,build_ms\n"' + b"x\n" * 100000, "")
+given("table", "nan.csv", b"psnr,build_ms\ninf,1\n", "")
+
+given("json", "deep.json", b"[" * 1000000, "not JSON")
+given("json", "8-million-values.json", lambda: b"[" + b"0," * 8000000 + b"0]", "")
+given("json", "escapes.json", lambda: json.dumps({"hash": f.ESCAPE, "fl_x": f.ESCAPE}).encode(), "")
+given("json", "pose-of-1e308.json",
+      json.dumps({"fl_x": 40, "w": 16, "h": 16, "transform_matrix": [[1, 0, 0, 1e308]] + UNIT[1:]}).encode(), "")
+
+given("trajectory", "nan.txt", b"1 nan 0 0 0 0 0 1\n", "")
+given("trajectory", "huge-number.txt", b"9" * (9 * MIB) + b" 0 0 0 0 0 0 1\n", "")
+given("trajectory", "3-million-poses.txt", lambda: b"1 0 0 0 0 0 0 1\n" * 3000000, "more than 2097152 poses")
+given("trajectory", "escapes.txt", f.ESCAPE.encode(), "")
+given("trajectory", "zeros.txt", bytes(MIB), "")
+
+given("head", "header-of-2^63.safetensors", f.safetensors(b"{}", length=1 << 63), "a header of")
+given("head", "million-values.safetensors", lambda: f.safetensors(b'{"a":[' + b"0," * 1000000 + b"0]}"), "a header of")
+given("head", "deep.safetensors", f.safetensors(b"[" * 1000000), "JSON")
+given("head", "tensor-of-2^62.safetensors",
+      f.safetensors({"a": {"dtype": "F32", "shape": [2**31, 2**31], "data_offsets": [0, 2**62]}}), "2^32 elements")
+given("head", "overlapping.safetensors",
+      f.safetensors({n: {"dtype": "F32", "shape": [1], "data_offsets": [0, 4]} for n in "ab"}, bytes(4)), "overlaps")
+given("head", "escapes.safetensors",
+      f.safetensors({f.ESCAPE: {"dtype": "F64", "shape": [1], "data_offsets": [0, 4]}}, bytes(4)), "dtype")
+given("weights", "zeros.t3w", bytes(4096), "")
+given("weights", "says-4-gb.t3w", b"T3RW" + struct.pack("<HHI", 1, 6, 0xFFFFFFFF) + bytes(500), "")
+given("weights", "escapes.t3w", b"T3RW" + f.ESCAPE.encode() * 20, "")

@@ -1,0 +1,185 @@
+"""Every command that reads, over files that were made to hurt it: each is read or refused with one line that names it, in
+3 seconds of the processor and 512 MB, and nothing of its text reaches the terminal raw.
+
+hostile.py TRIM3R [--table]
+"""
+import os
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+
+from cases import CASES
+import formats
+
+SECONDS, MEGABYTES = 3.0, 512
+TRIM3R = os.path.abspath(sys.argv[1])
+TABLE = "--table" in sys.argv[2:]
+RAW = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f]|[\u2028-\u202e\u2066-\u2069]")
+failures = []
+
+
+def commands(kind, path, out):
+    """What reads a file of that kind."""
+    room, scene, pictures = "room.mcap", "room.ply", "pictures"
+    context = ("--context", "0,1", "--gaussians", "20")
+    return {
+        "recording": [("info", path), ("info", "--json", path), ("build", path, *context, "-o", f"{out}.ply"),
+                      ("replay", path, *context), ("eval", path, "--keep", "50"),
+                      ("import", path, "--poses", "estimate", "-o", f"{out}.mcap"),
+                      ("render", scene, path, "--view", "0", "-o", f"{out}.png"),
+                      ("capture", "--source", f"replay:{path}", "--quiet", "-o", f"{out}.mcap"),
+                      ("capture", "--source", f"replay:{room}", "--poses", path, "--quiet", "-o", f"{out}.mcap")],
+        "path": [("info", path), ("build", path, *context, "-o", f"{out}.ply")],
+        "scene": [("info", path), ("render", path, room, "--view", "1", "-o", f"{out}.png"), ("diff", path, scene),
+                  ("eval", room, "--prune", path, "--context", "0,1", "--target", "2", "--keep", "50")],
+        "picture": [("import", pictures, "--intrinsics", "40,40,8,8", "--poses", "estimate", "-o", f"{out}.mcap"),
+                    ("diff", path, "good.png")],
+        "folder": [("import", path, "-o", f"{out}.mcap"),
+                   ("import", path, "--poses", "estimate", "--intrinsics", "40,40,8,8", "-o", f"{out}.mcap")],
+        "points": [("import", "maps", "--pointmaps", path, "-o", f"{out}.mcap")],
+        "table": [("chart", path, "--svg", f"{out}.svg"),
+                  ("eval", room, "--keep", "50", "--csv", path, "--resume")],
+        "json": [("replay", room, *context, "--expect", path), ("render", scene, "--pose", path, "-o", f"{out}.png")],
+        "trajectory": [("render", scene, "--trajectory", path, "--fov", "60", "--size", "64x64", "-o", f"{out}.png"),
+                       ("capture", "--source", f"replay:{room}", "--poses", path, "--quiet", "-o", f"{out}.mcap")],
+        "head": [("quantize", path, "-o", f"{out}.t3w"), ("head-info", path)],
+        "weights": [("head-info", path), ("build", room, *context, "--head", path, "-o", f"{out}.ply")],
+    }[kind]
+
+
+def limit():
+    resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))  # a machine that this test runs on is not to suffer
+    resource.setrlimit(resource.RLIMIT_CPU, (20, 20))
+
+
+def run(command):
+    """Status, output, errors, seconds of the processor, megabytes."""
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        # pylint: disable=subprocess-popen-preexec-fn
+        process = subprocess.Popen([TRIM3R, *command], stdin=subprocess.DEVNULL, stdout=out, stderr=err, preexec_fn=limit)
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        out.seek(0)
+        err.seek(0)
+        return process.returncode, out.read(), err.read(), used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+
+
+def check(condition, what):
+    if not condition:
+        failures.append(what)
+        print("FAILED:", what)
+
+
+def check_run(name, command, why, ended):
+    status, out, err, seconds, megabytes = ended
+    what = f"{name}, {command[0]}"
+    message = err.decode("utf-8", "replace")
+    check(status in (0, 1, 2), f"{what}: exit status {status}")
+    check(seconds <= SECONDS, f"{what}: {seconds:.1f} s")
+    check(megabytes <= MEGABYTES, f"{what}: {megabytes:.0f} MB")
+    for stream, data in (("output", out), ("errors", err)):
+        text = data.decode("utf-8", "replace")
+        check(RAW.search(text) is None, f"{what}: raw {RAW.search(text)} in its {stream}: {text[:200]!r}")
+    if status != 0:
+        lines = message.strip().split("\n")
+        most = 2 if command[0] == "capture" else 1  # what a frame lacks, then what that means
+        check(len(lines) <= most and all(line.startswith(f"trim3r {command[0]}: ") for line in lines),
+              f"{what}: not one line: {message[:300]!r}")
+        check(out == b"", f"{what}: output beside an error: {out[:100]!r}")
+        check(os.path.basename(name) in message or name.split(".")[0] in message, f"{what}: no name in {message!r}")
+        reason = message.strip().rsplit(": ", 1)[-1]
+        check(len(reason) >= 6, f"{what}: no cause in {message!r}")
+
+
+def check_case(kind, name, why, path):
+    """Runs all commands; the worst of each, and the first refusal."""
+    worst, ended = [0.0, 0.0], []
+    refusal = ""
+    for command in commands(kind, path, "out/it"):
+        result = run(command)
+        check_run(name, command, why, result)
+        worst = [max(worst[0], result[3]), max(worst[1], result[4])]
+        ended.append(result[0])
+        message = result[2].decode("utf-8", "replace").strip()
+        refusal = refusal or (message if result[0] != 0 else "")
+    if why is not None:
+        check(0 not in ended[:1], f"{name}: read, but should be refused")
+        check(why in refusal, f"{name}: {refusal!r} does not say {why!r}")
+    return worst, ended, refusal
+
+
+def size_text(path):
+    if not os.path.isdir(path):
+        total = os.lstat(path).st_size
+    else:
+        total = sum(os.lstat(os.path.join(folder, name)).st_size for folder, _, names in os.walk(path) for name in names)
+    return f"{total} B" if total < 4096 else f"{total / 1024:.0f} KB" if total < 4 << 20 else f"{total / (1 << 20):.0f} MB"
+
+
+def make_good():
+    """What hostile files are read beside."""
+    for command in (("room", "-o", "room.mcap", "--frames", "3", "--size", "64x64"),
+                    ("build", "room.mcap", "--context", "0,2", "--gaussians", "40", "-o", "room.ply")):
+        subprocess.run([TRIM3R, *command], check=True, capture_output=True)
+    with open("good.png", "wb") as file:
+        file.write(formats.png(16, 16))
+    os.makedirs("out")
+    os.makedirs("maps")
+    for i in range(2):
+        with open(f"maps/{i}.png", "wb") as file:
+            file.write(formats.png(64, 64))
+    with open("maps/transforms.json", "w", encoding="utf-8") as file:
+        unit = "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
+        frames = ",".join(f'{{"file_path":"{i}.png","transform_matrix":{unit}}}' for i in range(2))
+        file.write(f'{{"fl_x":64,"frames":[{frames}]}}')
+
+
+def place(kind, name, make):
+    """Writes the file; where it lies."""
+    if make.__code__.co_argcount:
+        make(name)
+        return name
+    path = name
+    if kind == "picture":
+        os.makedirs("pictures", exist_ok=True)
+        path = f"pictures/{name}"
+    with open(path, "wb") as file:
+        file.write(make())
+    return path
+
+
+def check_arguments():
+    """Names on the command line, which a shell takes from folders of others."""
+    for name in (f"{formats.ESCAPE}.mcap", "line\nbreak.ply", b"\xff.mcap"):
+        ended = run(("info", name))
+        check(ended[0] == 2 and ended[1] == b"", f"{name!r}: status {ended[0]}")
+        check(RAW.search(ended[2].decode("utf-8", "replace")) is None, f"{name!r}: raw in {ended[2]!r}")
+
+
+def main():
+    rows = []
+    make_good()
+    check_arguments()
+    for kind, name, why, make in CASES:
+        path = place(kind, name, make)
+        size = size_text(path)
+        worst, ended, refusal = check_case(kind, name, why, path)
+        rows.append((name, size, worst, ended, refusal))
+        subprocess.run(["rm", "-rf", path], check=True)
+    if TABLE:
+        print("| input | size | s | MB | exit status | message |\n|---|---:|---:|---:|---|---|")
+        for name, size, worst, ended, refusal in rows:
+            refusal = refusal.split(": ", 1)[-1].replace("|", "\\|")
+            statuses = " ".join(str(status) for status in ended)
+            print(f"| {name} | {size} | {worst[0]:.2f} | {worst[1]:.0f} | {statuses} | {refusal or 'read'} |")
+    else:
+        slowest, largest = max(rows, key=lambda row: row[2][0]), max(rows, key=lambda row: row[2][1])
+        print(f"{len(rows)} files; slowest {slowest[0]}, {slowest[2][0]:.2f} s; largest {largest[0]}, {largest[2][1]:.0f} MB")
+
+
+with tempfile.TemporaryDirectory() as work:
+    os.chdir(work)
+    main()
+sys.exit(1 if failures else 0)
