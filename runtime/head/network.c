@@ -2,6 +2,7 @@
 
 #include "core/fixed.h"
 #include "core/little_endian.h"
+#include "kernels/variants.h"
 
 #define ROW_ALIGN 16u
 #define PERIOD (1 << T3R_MAX_LEVEL) /* image rows after which every layer's progress repeats */
@@ -183,6 +184,12 @@ static uint8_t *row_of(const t3r_node *node, uint32_t y)
     return node->rows + (size_t)(y % node->ring) * node->pitch;
 }
 
+/* Whether the kernels take the activations as they lie in rows of 8 bits: no plain C does. */
+static bool has_narrow_columns(const t3r_network *net)
+{
+    return T3R_VARIANTS_COUNT > 0 && net->column_bytes == 1;
+}
+
 /* The column of the block's pixel i. */
 static uint8_t *column_of(const t3r_network *net, uint32_t i)
 {
@@ -193,7 +200,7 @@ static uint8_t *column_of(const t3r_network *net, uint32_t i)
 static void load(const t3r_network *net, const t3r_node *node, const uint8_t *row, size_t first, uint32_t count,
                  uint8_t *column, uint32_t at)
 {
-    if (net->column_bytes == 1) {
+    if (has_narrow_columns(net)) {
         for (uint32_t i = 0; i < count; i++) {
             column[at + i] = row[first + i];
         }
@@ -216,7 +223,7 @@ static void load(const t3r_network *net, const t3r_node *node, const uint8_t *ro
 static void fill(const t3r_network *net, uint8_t *column, uint32_t at, uint32_t count, int16_t value)
 {
     for (uint32_t i = at; i < at + count; i++) {
-        if (net->column_bytes == 1) {
+        if (has_narrow_columns(net)) {
             ((int8_t *)column)[i] = (int8_t)value;
         } else {
             ((int16_t *)(void *)column)[i] = value;
@@ -274,17 +281,29 @@ static void gather_tap(const t3r_network *net, const window *w, uint32_t source,
     }
 }
 
+/* Whether output column x reads nothing beyond the ends of its rows. */
+static bool is_inside(const window *w, uint32_t x)
+{
+    const int64_t left = (int64_t)w->layer->stride * x - padding(w->layer);
+    return left >= 0 && left + w->layer->kernel <= w->grid_width;
+}
+
+/* Whether the activations under a row of the kernel lie one behind the other. */
+static bool is_plain(const window *w)
+{
+    return sources_of(w->layer) == 1 && w->source[0].coarser == 0;
+}
+
 /* The activations under the kernel of output column x: [kernel][kernel][inputs]. */
 static void gather(const t3r_network *net, const window *w, uint32_t x, uint8_t *column)
 {
     const t3r_layer *layer = w->layer;
     const uint32_t inputs = layer->inputs, run = layer->kernel * inputs;
     const int64_t left = (int64_t)layer->stride * x - padding(layer);
-    const bool inside = left >= 0 && left + layer->kernel <= w->grid_width;
-    const bool plain = sources_of(layer) == 1 && w->source[0].coarser == 0;
+    const bool whole = is_plain(w) && is_inside(w, x);
     uint32_t at = 0;
     for (int32_t ky = 0; ky < layer->kernel; ky++, at += run) {
-        if (plain && inside && w->source[0].row[ky] != NULL) {
+        if (whole && w->source[0].row[ky] != NULL) {
             load(net, w->source[0].node, w->source[0].row[ky], (size_t)left * inputs, run, column, at);
             continue;
         }
@@ -297,6 +316,60 @@ static void gather(const t3r_network *net, const window *w, uint32_t x, uint8_t 
         }
     }
     pad(net, column, at);
+}
+
+/* --- blocks ------------------------------------------------------------------------------------------------------- */
+
+/* `count` columns of so many taps. */
+static t3r_block columns_of(const t3r_network *net, uint32_t taps, uint32_t count)
+{
+    return (t3r_block){.row = (const uint8_t *const *)&net->columns,
+                       .rows = 1,
+                       .run = taps,
+                       .step = net->column_pitch,
+                       .pixels = T3R_MIN(count, net->block)};
+}
+
+/* Whether the kernels can read a layer's rows where they lie. */
+static bool can_read_rows(const t3r_network *net, const window *w)
+{
+    const uint32_t run = (uint32_t)w->layer->kernel * w->layer->inputs;
+    if (!has_narrow_columns(net) || !is_plain(w) || run < T3R_COLUMN_TAPS) {
+        return false;
+    }
+    bool inside = true;
+    for (int32_t ky = 0; ky < w->layer->kernel; ky++) {
+        inside = inside && w->source[0].row[ky] != NULL;
+    }
+    return inside;
+}
+
+/* Output columns x.. that read nothing beyond the ends of their rows, from those rows. */
+static t3r_block rows_of(const window *w, uint32_t x, uint32_t width)
+{
+    const t3r_layer *layer = w->layer;
+    const uint32_t left = layer->stride * x - (uint32_t)padding(layer);
+    return (t3r_block){.row = w->source[0].row,
+                       .first = left * layer->inputs,
+                       .rows = layer->kernel,
+                       .run = layer->kernel * layer->inputs,
+                       .step = layer->stride * layer->inputs,
+                       .pixels = T3R_MIN((w->grid_width - layer->kernel - left) / layer->stride + 1u, width - x)};
+}
+
+/* The output columns from x on that are made together. At the ends of a row whose middle is read in place, those that
+ * read beyond it come alone. */
+static t3r_block next_block(const t3r_network *net, const window *w, uint32_t x, uint32_t width, bool in_place)
+{
+    if (in_place && is_inside(w, x)) {
+        return rows_of(w, x, width);
+    }
+    t3r_block block = columns_of(net, (uint32_t)w->layer->kernel * w->layer->kernel * w->layer->inputs, 0);
+    do {
+        gather(net, w, x + block.pixels, column_of(net, block.pixels));
+        block.pixels++;
+    } while (block.pixels < net->block && x + block.pixels < width && !(in_place && is_inside(w, x + block.pixels)));
+    return block;
 }
 
 /* The layer for its kernel; phase: of a point layer with four. */
@@ -328,11 +401,10 @@ static void make_row(t3r_network *net, uint32_t n)
     const t3r_convolution kernel = convolution_of(net, layer, 0);
     window w = window_at(net, layer, node->made);
     uint8_t *row = row_of(node, node->made);
-    for (uint32_t x = 0; x < node->width; x += net->block) {
-        const t3r_block block = {net->columns, net->column_pitch, T3R_MIN(node->width - x, net->block)};
-        for (uint32_t i = 0; i < block.pixels; i++) {
-            gather(net, &w, x + i, column_of(net, i));
-        }
+    const bool in_place = can_read_rows(net, &w);
+    t3r_block block;
+    for (uint32_t x = 0; x < node->width; x += block.pixels) {
+        block = next_block(net, &w, x, node->width, in_place);
         void *out = row + (size_t)x * node->channels * node->bytes;
         if (layer->kind == T3R_LAYER_CONV) {
             net->kernels->convolve(&kernel, &block, out, node->channels);
@@ -386,10 +458,10 @@ void t3r_network_step(t3r_network *net, int32_t y)
     }
 }
 
-/* The outputs of a point layer at the pixels of a call, int8 or int16. */
+/* The outputs of a point layer at the pixels of a block. */
 typedef union point_outputs {
-    int8_t narrow[T3R_NETWORK_POINTS * T3R_MAX_CHANNELS];
-    int16_t wide[T3R_NETWORK_POINTS * T3R_MAX_CHANNELS];
+    int8_t narrow[2 * T3R_BLOCK_PIXELS * T3R_MAX_CHANNELS];
+    int16_t wide[T3R_BLOCK_PIXELS * T3R_MAX_CHANNELS];
 } point_outputs;
 
 /* The inputs of a point layer at one pixel; `before`: the outputs of the point layer in front of it, a node's row. */
@@ -417,28 +489,35 @@ static void gather_point(const t3r_network *net, uint32_t n, uint32_t x, uint32_
     pad(net, column, at);
 }
 
-void t3r_network_points(const t3r_network *net, uint32_t y, uint32_t count, const uint32_t *x,
-                        const int8_t (*features)[T3R_FEATURES], int16_t (*out)[T3R_HEAD_OUTPUTS])
+/* At most a block of pixels; the first of them is `x`, `features`, `out`. */
+static uint32_t run_points(const t3r_network *net, uint32_t y, uint32_t count, const uint32_t *x,
+                           const int8_t (*features)[T3R_FEATURES], int16_t (*out)[T3R_HEAD_OUTPUTS])
 {
     point_outputs made; /* a layer's inputs are gathered before its outputs are written */
-    const uint32_t bytes = net->header.activation_bits / 8;
+    const size_t made_bytes = (size_t)T3R_MAX_CHANNELS * (net->header.activation_bits / 8);
+    uint32_t pixels = 0;
     for (uint32_t n = net->planes; n < net->header.layers; n++) {
         const t3r_layer *layer = &net->layers[n];
         const t3r_convolution kernel = convolution_of(net, layer, layer->phases == 1 ? 0 : 2 * (y & 1) + (x[0] & 1));
-        const bool is_last = n + 1 == net->header.layers;
-        for (uint32_t first = 0; first < count; first += net->block) {
-            const t3r_block block = {net->columns, net->column_pitch, T3R_MIN(count - first, net->block)};
-            for (uint32_t i = 0; i < block.pixels; i++) {
-                const uint32_t k = first + i;
-                gather_point(net, n, x[k], y, features[k],
-                             (const uint8_t *)made.narrow + (size_t)k * T3R_MAX_CHANNELS * bytes, column_of(net, i));
-            }
-            if (is_last) {
-                net->kernels->convolve(&kernel, &block, out[first], T3R_HEAD_OUTPUTS);
-            } else {
-                net->kernels->convolve(&kernel, &block, made.narrow + (size_t)first * T3R_MAX_CHANNELS * bytes,
-                                       T3R_MAX_CHANNELS);
-            }
+        const t3r_block block = columns_of(net, kernel.taps, count);
+        pixels = block.pixels;
+        for (uint32_t i = 0; i < pixels; i++) {
+            gather_point(net, n, x[i], y, features[i], (const uint8_t *)made.narrow + i * made_bytes,
+                         column_of(net, i));
         }
+        if (n + 1 == net->header.layers) {
+            net->kernels->convolve(&kernel, &block, out[0], T3R_HEAD_OUTPUTS);
+        } else {
+            net->kernels->convolve(&kernel, &block, made.narrow, T3R_MAX_CHANNELS);
+        }
+    }
+    return pixels;
+}
+
+void t3r_network_points(const t3r_network *net, uint32_t y, uint32_t count, const uint32_t *x,
+                        const int8_t (*features)[T3R_FEATURES], int16_t (*out)[T3R_HEAD_OUTPUTS])
+{
+    for (uint32_t i = 0; i < count;) {
+        i += run_points(net, y, count - i, x + i, features + i, out + i);
     }
 }

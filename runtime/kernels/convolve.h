@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#define T3R_BLOCK_PIXELS 4    /* most pixels of a block whose columns are of 16 bits; of 8 bits twice as many */
+#define T3R_BLOCK_PIXELS 4    /* most columns of a block of 16-bit activations; of 8-bit ones twice as many */
 #define T3R_LAYER_OUTPUTS 128 /* most outputs of a layer */
 #define T3R_COLUMN_TAPS 16    /* a column goes on with zeros up to a multiple of so many activations */
 
@@ -25,13 +25,21 @@ typedef struct t3r_convolution {
     uint8_t weight_bits, activation_bits, output_bits; /* 8 or 16 each; 8-bit outputs only of 8-bit activations */
 } t3r_convolution;
 
-/* A block of pixels: the activations under the kernel of each, as [tap], or [place][output] of a depthwise layer.
- * columns, and `pitch` in activations, are aligned to 16 bytes. An activation is int8 or int16, as t3r_kernels says of
- * 8-bit activations; 16-bit ones are int16. Behind the taps stand zeros up to a multiple of T3R_COLUMN_TAPS. */
+/* A block of pixels that follow each other, and the activations under the kernel of each: [tap], or [place][output] of
+ * a depthwise layer. Those of pixel i are `rows` runs of `run` activations, one behind the other: run r begins at
+ * row[r] + first + i x step. They come in one of two ways.
+ *
+ * As columns: gathered, one run a pixel, aligned to 16 bytes as is the step; behind the taps stand zeros up to a
+ * multiple of T3R_COLUMN_TAPS. There are at most T3R_BLOCK_PIXELS, or twice that where activations are of 8 bits.
+ *
+ * As rows: where they lie, any number of pixels, not aligned, in runs of at least T3R_COLUMN_TAPS activations. Nothing
+ * beyond the runs may be read. So come 8-bit activations alone, and only where t3r_kernels wants those in 8 bits.
+ *
+ * An activation is int8 or int16, as t3r_kernels says of 8-bit activations; 16-bit ones are int16. */
 typedef struct t3r_block {
-    const void *columns;
-    uint32_t pitch;
-    uint32_t pixels; /* 1..T3R_BLOCK_PIXELS, or twice that where columns are of 8 bits */
+    const uint8_t *const *row;
+    uint32_t first, rows, run, step; /* in activations */
+    uint32_t pixels;
 } t3r_block;
 
 /* Writes out[pixel x out_pitch + output], int8 or int16 by output_bits, for the block's pixels and all outputs. */

@@ -1,10 +1,7 @@
-/* Which variant of each kernel a processor gets. Rows of a room come from the narrowest instruction set to the widest:
- * the last one that the processor has stays. */
+/* Which variant of each kernel a processor gets. */
 #include "kernels.h"
 
-#include "arm/variants.h"
-#include "wasm/variants.h"
-#include "x86/variants.h"
+#include "variants.h"
 
 #define CHOOSE(entry, features, function)                                                                              \
     if ((cpu & (features)) == (features)) {                                                                            \
@@ -15,7 +12,6 @@ void t3r_kernels_choose(t3r_kernels *table, uint32_t cpu)
 {
     *table = t3r_kernels_c;
     (void)cpu;
-    T3R_X86_VARIANTS(CHOOSE)
-    T3R_ARM_VARIANTS(CHOOSE)
-    T3R_WASM_VARIANTS(CHOOSE)
+    T3R_VARIANTS(CHOOSE)
+    table->column_bytes = table->convolve == t3r_kernels_c.convolve ? 2 : 1;
 }

@@ -55,7 +55,7 @@ typedef struct t3r_kernels {
     t3r_blur_row_kernel *blur_row;
     t3r_blur_column_kernel *blur_column;
     /* head */
-    t3r_convolve_kernel *convolve; /* and depthwise: both read the columns that column_bytes says */
+    t3r_convolve_kernel *convolve; /* and depthwise: a variant replaces both */
     t3r_depthwise_kernel *depthwise;
     /* raster and refine */
     t3r_project_kernel *project;
@@ -66,7 +66,7 @@ typedef struct t3r_kernels {
     t3r_scatter_kernel *scatter;
     t3r_solve_kernel *solve;
 
-    uint32_t column_bytes; /* of an 8-bit activation in the columns that convolve and depthwise read: 1 or 2 */
+    uint32_t column_bytes; /* of an 8-bit activation that convolve and depthwise read: in plain C 2, in variants 1 */
 } t3r_kernels;
 
 /* Plain C: the definition. */

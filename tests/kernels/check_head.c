@@ -3,7 +3,7 @@
 #include "checks.h"
 #include "guarded.h"
 
-enum { TAPS = 330, OUTPUTS = 40 };
+enum { TAPS = 330, OUTPUTS = 40, ROWS = 6 };
 
 static uint32_t bits_of(uint64_t *seed)
 {
@@ -47,6 +47,41 @@ static int64_t requantized(int64_t acc, const t3r_convolution *l, uint32_t outpu
     return sum < -most - 1 ? -most - 1 : sum > most ? most : sum;
 }
 
+/* A block for the layer: columns, or rows where they lie. */
+static t3r_block make_block(const t3r_convolution *l, uint32_t places, uint32_t column_bytes, uint64_t *seed)
+{
+    const uint32_t rows = (uint32_t)unit_between(seed, 1, ROWS);
+    if (column_bytes == 1 && l->activation_bits == 8 && l->taps % rows == 0 && places / rows >= T3R_COLUMN_TAPS &&
+        unit_random(seed) % 2 == 0) {
+        return (t3r_block){.rows = rows,
+                           .run = places / rows,
+                           .step = (uint32_t)unit_between(seed, 1, 70),
+                           .first = (uint32_t)unit_between(seed, 0, 100),
+                           .pixels = (uint32_t)unit_between(seed, 1, 30)};
+    }
+    const uint32_t whole = (places + T3R_COLUMN_TAPS - 1) / T3R_COLUMN_TAPS * T3R_COLUMN_TAPS;
+    return (t3r_block){.rows = 1,
+                       .run = places,
+                       .step = whole + T3R_COLUMN_TAPS * (uint32_t)unit_between(seed, 0, 1),
+                       .pixels = (uint32_t)unit_between(seed, 1, T3R_BLOCK_PIXELS * 2 / column_bytes)};
+}
+
+static void fill_block(const t3r_convolution *l, const t3r_block *block, const uint8_t *rows[ROWS], bool is_large,
+                       uint32_t column_bytes, uint64_t *seed)
+{
+    const bool is_column =
+        block->rows == 1 && block->first == 0 && block->step % T3R_COLUMN_TAPS == 0 && block->step >= block->run;
+    const uint32_t end = block->first + (block->pixels - 1) * block->step + (is_column ? block->step : block->run);
+    for (uint32_t r = 0; r < block->rows; r++) {
+        uint8_t *row = guarded_take((size_t)end * column_bytes, is_column ? 16 : 1);
+        for (uint32_t t = 0; t < end; t++) {
+            int64_t x = is_large ? -((int64_t)1 << (l->activation_bits - 1)) : extreme(seed, l->activation_bits);
+            put(row + t * column_bytes, is_column && t % block->step >= block->run ? 0 : x, column_bytes);
+        }
+        rows[r] = row;
+    }
+}
+
 static const char *check_layer(const t3r_kernels *kernels, uint64_t *seed, bool depthwise)
 {
     t3r_convolution l = {.weight_bits = (uint8_t)bits_of(seed), .activation_bits = (uint8_t)bits_of(seed)};
@@ -57,8 +92,8 @@ static const char *check_layer(const t3r_kernels *kernels, uint64_t *seed, bool 
     l.zero = (int16_t)extreme(seed, l.output_bits);
     const uint32_t weight_bytes = l.weight_bits / 8, wide = l.activation_bits == 16;
     const uint32_t column_bytes = wide ? 2 : kernels->column_bytes, places = l.taps * (depthwise ? l.outputs : 1);
-    const uint32_t pitch = (places + 15) / 16 * 16 + 16 * (uint32_t)unit_between(seed, 0, 1);
-    const uint32_t pixels = (uint32_t)unit_between(seed, 1, T3R_BLOCK_PIXELS * 2 / column_bytes);
+    t3r_block block = make_block(&l, places, column_bytes, seed);
+    const uint32_t pixels = block.pixels;
     const uint32_t behind = unit_random(seed) % 2 ? (uint32_t)unit_between(seed, 0, 40) : 0;
     /* products sum to less than 2^31 in any order, or 2^47: the weights' sizes are bounded together */
     const int64_t most_sum = wide ? (int64_t)1 << 31 : (int64_t)1 << 23;
@@ -85,33 +120,22 @@ static const char *check_layer(const t3r_kernels *kernels, uint64_t *seed, bool 
     l.bias = bias;
     l.multiplier = multiplier;
     l.shift = shift;
-    uint8_t *columns = guarded_take((size_t)pixels * pitch * column_bytes, 16);
-    memset(columns, 0, (size_t)pixels * pitch * column_bytes);
-    for (uint32_t i = 0; i < pixels; i++) {
-        for (uint32_t t = 0; t < places; t++) {
-            const int64_t x = is_large ? -((int64_t)1 << (l.activation_bits - 1)) : extreme(seed, l.activation_bits);
-            int16_t wide_x = (int16_t)x;
-            if (column_bytes == 1) {
-                columns[(size_t)i * pitch + t] = (uint8_t)x;
-            } else {
-                memcpy(columns + ((size_t)i * pitch + t) * 2, &wide_x, 2);
-            }
-        }
-    }
+    const uint8_t *rows[ROWS];
+    block.row = rows;
+    fill_block(&l, &block, rows, is_large, column_bytes, seed);
     const uint32_t out_pitch = l.outputs + (uint32_t)unit_between(seed, 0, 3);
     const uint32_t out_bytes = l.output_bits / 8;
     uint8_t *out = guarded_take(((size_t)(pixels - 1) * out_pitch + l.outputs) * out_bytes, out_bytes);
-    const t3r_block block = {columns, pitch, pixels};
     (depthwise ? kernels->depthwise : kernels->convolve)(&l, &block, out, out_pitch);
     for (uint32_t i = 0; i < pixels; i++) {
         for (uint32_t o = 0; o < l.outputs; o++) {
             int64_t acc = get(bias + (size_t)o * (wide ? 8 : 4), wide ? 8 : 4);
             for (uint32_t t = 0; t < l.taps; t++) {
                 const size_t at = depthwise ? (size_t)t * l.outputs + o : (size_t)o * l.taps + t;
-                const uint8_t *x = columns + ((size_t)i * pitch + (depthwise ? at : t)) * column_bytes;
-                int16_t wide_x;
-                memcpy(&wide_x, x, column_bytes);
-                acc += get(weights + at * weight_bytes, weight_bytes) * (column_bytes == 1 ? (int8_t)*x : wide_x);
+                const uint32_t place = (uint32_t)(depthwise ? at : t);
+                const uint8_t *row = block.row[place / block.run];
+                const uint8_t *x = row + (block.first + (size_t)i * block.step + place % block.run) * column_bytes;
+                acc += get(weights + at * weight_bytes, weight_bytes) * get(x, column_bytes);
             }
             int16_t got;
             const uint8_t *at = out + ((size_t)i * out_pitch + o) * out_bytes;

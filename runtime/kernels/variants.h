@@ -1,0 +1,17 @@
+/* The variants that this build has, of all architectures. */
+#ifndef T3R_KERNEL_VARIANTS_H
+#define T3R_KERNEL_VARIANTS_H
+
+#include "arm/variants.h"
+#include "wasm/variants.h"
+#include "x86/variants.h"
+
+/* X(entry, features, function). Rows of a room come from the narrowest instruction set to the widest: the last one that
+ * the processor has stays. */
+#define T3R_VARIANTS(X) T3R_X86_VARIANTS(X) T3R_ARM_VARIANTS(X) T3R_WASM_VARIANTS(X)
+
+/* How many there are: what serves variants alone can be left out of a build without any. */
+#define T3R_ONE_MORE_(entry, features, function) +1
+enum { T3R_VARIANTS_COUNT = 0 T3R_VARIANTS(T3R_ONE_MORE_) };
+
+#endif
