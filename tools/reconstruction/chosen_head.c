@@ -36,6 +36,25 @@ static t3r_head closed_form_of(const char *text)
     return strcmp(text, "none") == 0 ? T3R_HEAD_ANALYTIC : T3R_HEAD_CONFIGURED;
 }
 
+const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES])
+{
+    size_t length = 0;
+    for (int i = 0; i < SHIPPED; i++) {
+        length += (size_t)snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, "%s, ", shipped[i].name);
+    }
+    length += (size_t)snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, "FILE" FILE_END);
+    for (int head = T3R_HEAD_CONFIGURED + 1; head < T3R_HEAD_COUNT && length < CHOSEN_HEAD_NAMES_BYTES; head++) {
+        if (head != T3R_HEAD_LEARNED) {
+            length += (size_t)snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, ", %s",
+                                       t3r_head_name((t3r_head)head));
+        }
+    }
+    if (length < CHOSEN_HEAD_NAMES_BYTES) {
+        snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, ", none");
+    }
+    return names;
+}
+
 static int shipped_index(const char *text)
 {
     for (int i = 0; i < SHIPPED; i++) {

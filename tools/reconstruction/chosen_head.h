@@ -10,7 +10,7 @@
 #include "trim3r.h"
 
 #define CHOSEN_HEAD_DEFAULT "small"
-#define CHOSEN_HEAD_NAMES "analytic, moment, none, nano, small, base, FILE.t3w"
+#define CHOSEN_HEAD_NAMES_BYTES 256
 
 typedef struct chosen_head {
     t3r_head head;
@@ -24,6 +24,8 @@ typedef struct chosen_head {
     void *owned; /* weights read from a file */
 } chosen_head;
 
+/* "nano, small, base, FILE.t3w, ...": all that --head takes. Returns `names`. */
+const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES]);
 /* Whether the text is one of the names or ends in .t3w. */
 bool chosen_head_is_one(const char *text);
 
@@ -32,8 +34,8 @@ bool chosen_head_is_one(const char *text);
 int chosen_head_open(chosen_head *chosen, const char *text);
 void chosen_head_close(chosen_head *chosen);
 
-/* Has a network be told that every pixel was retained (hidden_mask.h); nothing of a closed form. CLI_OK, or a status
- * after a message; chosen_head_close() is due still. */
+/* Shows a network a mask in which every pixel was retained (hidden_mask.h); does nothing to a closed form. CLI_OK, or a
+ * status after a message; chosen_head_close() is due still. */
 int chosen_head_hide_mask(chosen_head *chosen);
 
 /* Sets the configuration's head, and its head_column_bytes where the head needs more than there are. */

@@ -6,6 +6,7 @@
 
 #include "cli/cli.h"
 #include "cli/option_values.h"
+#include "reconstruction/head_option.h"
 #include "reconstruction/option_names.h"
 #include "reconstruction/settings.h"
 
@@ -19,7 +20,6 @@ enum {
     KEY_AUTO,
     KEY_MAX_LOSS,
     KEY_IMPORTANCE,
-    KEY_HEAD,
     KEY_WORKING,
     KEY_ARENA
 };
@@ -36,10 +36,6 @@ static const struct argp_option settings[] = {
      "importance of each pixel, for --allocate given: a grey picture for each context view, in their order and of the "
      "working size, or a folder with <frame>.png; the brightest points are retained; 8-bit pictures are spread evenly "
      "within a level",
-     0},
-    {"head", KEY_HEAD, "HEAD", 0,
-     "head that makes the Gaussians: a network (nano, small (default), base, or a FILE.t3w), or one without weights "
-     "(analytic, moment, none)",
      0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "iterations of the methods with +finetune, 1..100000 (200)", 0},
@@ -95,15 +91,13 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->config;
         state->child_inputs[1] = &o->processor;
+        state->child_inputs[2] = &o->head;
         return 0;
     case KEY_ITERATIONS:
         o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
         return 0;
     case KEY_IMPORTANCE:
         o->importance = arg;
-        return 0;
-    case KEY_HEAD:
-        o->head = option_head(state, "head", arg);
         return 0;
     case KEY_WORKING:
         option_size(state, "working", arg, T3R_MIN_SIDE, &o->config.width, &o->config.height);
@@ -125,7 +119,8 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child settings_children[] = {{.argp = &settings_argp}, {.argp = &processor_argp}, {0}};
+static const struct argp_child settings_children[] = {
+    {.argp = &settings_argp}, {.argp = &processor_argp}, {.argp = &head_argp}, {0}};
 
 const struct argp reconstruction_settings_argp = {
     .options = settings, .parser = parse_setting, .children = settings_children};

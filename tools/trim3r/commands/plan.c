@@ -10,7 +10,7 @@
 #include "reconstruction/reconstruction_error.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
-#include "reconstruction/option_names.h"
+#include "reconstruction/head_option.h"
 #include "pictures/plan_picture.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/settings.h"
@@ -23,18 +23,7 @@ typedef struct plan_options {
     const char *svg, *head;
 } plan_options;
 
-enum {
-    KEY_SIZE = 0x1000,
-    KEY_VIEWS,
-    KEY_GAUSSIANS,
-    KEY_WITHIN,
-    KEY_RENDER,
-    KEY_HEAD,
-    KEY_KEEP,
-    KEY_SVG,
-    KEY_MARKDOWN,
-    KEY_JSON
-};
+enum { KEY_SIZE = 0x1000, KEY_VIEWS, KEY_GAUSSIANS, KEY_WITHIN, KEY_RENDER, KEY_KEEP, KEY_SVG, KEY_MARKDOWN, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"size", KEY_SIZE, "WxH", 0, "working size of the context views (needed)", 0},
@@ -42,7 +31,6 @@ static const struct argp_option options[] = {
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "budget (needed, or --within)", 0},
     {"within", KEY_WITHIN, "BYTES[K|M]", 0,
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
-    {"head", KEY_HEAD, "HEAD", 0, "head: nano, small (default), base, FILE.t3w, analytic, moment or none", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "keep the analysis after the build, so that the budget can change", 0},
     {"svg", KEY_SVG, "FILE", 0, "picture of the arena to write: stages across, bytes upwards", 0},
@@ -58,6 +46,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = c;
+        state->child_inputs[1] = &o->head;
         return 0;
     case KEY_SIZE:
         option_size(state, "size", arg, T3R_MIN_SIDE, &c->width, &c->height);
@@ -73,9 +62,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_RENDER:
         option_size(state, "render", arg, 1, &c->render_width, &c->render_height);
-        return 0;
-    case KEY_HEAD:
-        o->head = option_head(state, "head", arg);
         return 0;
     case KEY_KEEP:
         c->keep_analysis = 1;
@@ -104,7 +90,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &settings_argp}, {0}};
+static const struct argp_child children[] = {{.argp = &settings_argp}, {.argp = &head_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,

@@ -1,0 +1,11 @@
+/* The option --head of the commands that make Gaussians; its help names every head of the runtime. */
+#ifndef TRIM3R_TOOLS_HEAD_OPTION_H
+#define TRIM3R_TOOLS_HEAD_OPTION_H
+
+#include <argp.h>
+
+/* Each parent's parser hands a const char ** on in state->child_inputs[]: the text becomes one that
+ * chosen_head_is_one(). */
+extern const struct argp head_argp;
+
+#endif
