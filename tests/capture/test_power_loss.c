@@ -65,7 +65,7 @@ static t3r_capture_frame make_frame(uint32_t number)
 static void record_for_ever(const char *path, volatile uint32_t *whole)
 {
     static capture_record record;
-    if (capture_record_begin(&record, path, 0, false, NULL, "test", "monotonic", 1099511628) != 0) {
+    if (capture_record_begin(&record, path, 0, false, "test", "monotonic", 1099511628) != 0) {
         _exit(1);
     }
     for (uint32_t number = 0; number < MOST_FRAMES; number++) {
@@ -151,7 +151,7 @@ static void files_roll_over_within_their_bytes(void **state)
     char first[600];
     snprintf(first, sizeof first, "%s", scratch_path(s, "roll.v1.mcap"));
     const uint64_t most = 100000;
-    assert_int_equal(capture_record_begin(&record, first, most, true, NULL, "test", "monotonic", 1099511628), 0);
+    assert_int_equal(capture_record_begin(&record, first, most, true, "test", "monotonic", 1099511628), 0);
     for (uint32_t i = 0; i < 60; i++) {
         t3r_capture_frame frame = make_frame(i);
         assert_int_equal(capture_record_frame(&record, &frame), 0);
@@ -182,7 +182,7 @@ static void files_roll_over_within_their_bytes(void **state)
 
     /* less than a frame */
     t3r_capture_frame frame = make_frame(0);
-    assert_int_equal(capture_record_begin(&record, first, 20000, false, NULL, "test", "monotonic", 1099511628), 0);
+    assert_int_equal(capture_record_begin(&record, first, 20000, false, "test", "monotonic", 1099511628), 0);
     assert_int_equal(capture_record_frame(&record, &frame), -1);
     assert_non_null(strstr(record.error, "does not hold one frame"));
     assert_int_equal(capture_record_end(&record), 0);
@@ -209,11 +209,11 @@ static void a_full_disk_is_told(void **state)
 {
     (void)state;
     static capture_record record;
-    int begun = capture_record_begin(&record, "/dev/full", 0, false, NULL, "test", "monotonic", 1099511628);
+    int begun = capture_record_begin(&record, "/dev/full", 0, false, "test", "monotonic", 1099511628);
     assert_int_equal(begun, -1);
     assert_non_null(strstr(record.error, "/dev/full: cannot be written"));
     capture_record_end(&record);
-    assert_int_equal(capture_record_begin(&record, "/nowhere/a.mcap", 0, false, NULL, "test", "m", 1099511628), -1);
+    assert_int_equal(capture_record_begin(&record, "/nowhere/a.mcap", 0, false, "test", "m", 1099511628), -1);
     assert_non_null(strstr(record.error, "No such file"));
 }
 

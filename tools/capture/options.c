@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/file_options.h"
 #include "cli/option_values.h"
 
 enum {
@@ -40,8 +41,8 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"source", KEY_SOURCE, "SOURCE", 0, "camera: v4l2:/dev/video0, libcamera:0, opencv:URL or replay:REC.mcap (needed)",
-     0},
+    {"source", KEY_SOURCE, "SOURCE", OPTION_READS | OPTION_FOLDER | OPTION_OR_DEVICE,
+     "camera: v4l2:/dev/video0, libcamera:0, opencv:URL or replay:REC.mcap (needed)", 0},
     {"list", KEY_LIST, NULL, 0, "list the adapters of this build, those that it lacks, and the devices found", 0},
     {"size", KEY_SIZE, "WxH", 0, "size of colour; the nearest that the device has (640x480)", 0},
     {"rate", KEY_RATE, "FPS", 0, "frames a second (the device's)", 0},
@@ -51,7 +52,7 @@ static const struct argp_option options[] = {
      0},
     {"buffers", KEY_BUFFERS, "N", 0, "buffers of a stream, 2..32 (4); more bridge longer builds", 0},
     {"repeat", KEY_REPEAT, "N", 0, "number of times to play a recording (1)", 0},
-    {"depth-source", KEY_DEPTH_SOURCE, "DEVICE", 0,
+    {"depth-source", KEY_DEPTH_SOURCE, "DEVICE", OPTION_READS | OPTION_FOLDER | OPTION_OR_DEVICE,
      "second device of the same adapter, for depth: /dev/video2 with Z16 or Y16; for OpenCV pictures with 16 bits", 0},
     {"depth-size", KEY_DEPTH_SIZE, "WxH", 0, "size of depth (that of colour)", 0},
     {"depth-unit", KEY_DEPTH_UNIT, "METRES", 0, "length of one step of depth (0.001)", 0},
@@ -63,7 +64,7 @@ static const struct argp_option options[] = {
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
      "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels of the captured size, (0, 0) being the centre of the top-left pixel", 0},
     {"fisheye", KEY_FISHEYE, NULL, 0, "read the intrinsics as those of a fisheye lens, with k1,k2,k3,k4 at the end", 0},
-    {"poses", KEY_POSES, "FILE", 0,
+    {"poses", KEY_POSES, "FILE", OPTION_READS,
      "poses over time, camera to world, to interpolate: lines of TUM, a table of EuRoC, or a ROS 2 bag (MCAP) with "
      "PoseStamped or TransformStamped",
      0},
@@ -73,13 +74,14 @@ static const struct argp_option options[] = {
      "within a second of S; S is 0 where the times overlap, else what brings their starts together",
      0},
     {NULL, 0, NULL, 0, "What is written:", 4},
-    {"output", 'o', "REC.mcap", 0, "recording to write; an existing file is overwritten, unless it is being read", 0},
+    {"output", 'o', "REC.mcap", OPTION_WRITES(FILE_RECORDING),
+     "recording to write; an existing file is overwritten, unless it is being read", 0},
     {"max-bytes", KEY_MAX_BYTES, "BYTES[K|M|G]", 0, "most bytes of a file; the next one is REC-1.mcap and so on", 0},
     {"sync", KEY_SYNC, NULL, 0, "write every message to the disk at once: a power loss then costs one message at most",
      0},
     {"frames", KEY_FRAMES, "N", 0, "stop after N frames", 0},
     {"seconds", KEY_SECONDS, "S", 0, "stop after S seconds", 0},
-    {"build", KEY_BUILD, "SCENE.ply", 0,
+    {"build", KEY_BUILD, "SCENE.ply", OPTION_WRITES(FILE_SCENE),
      "scene to write: Gaussians of the context frames (--context, in their order of arrival, 0 and 1) as soon as they "
      "are there",
      0},
@@ -399,5 +401,5 @@ void capture_options_read(int argc, char **argv, capture_options *o)
 {
     *o = (capture_options){.reconnect_seconds = 10};
     reconstruction_defaults(&o->build);
-    argp_parse(&argp, argc, argv, 0, NULL, o);
+    file_options_parse(&argp, argc, argv, o);
 }

@@ -3,9 +3,9 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "capture/capture_camera.h"
+#include "cli/file_guard.h"
 #include "reason.h"
 
 #define MESSAGE_OVERHEAD 1024u /* of a message without its data, and of a camera_info or a pose: below it */
@@ -36,31 +36,12 @@ static int failed(capture_record *record)
     return t3r_reason(record->error, sizeof record->error, "%s: cannot be written", name);
 }
 
-const char *capture_record_would_replace(const char *path, const char *const *spared)
-{
-    struct stat file, other;
-    if (spared == NULL || stat(path, &file) != 0 || !S_ISREG(file.st_mode)) {
-        return NULL;
-    }
-    for (int i = 0; i < CAPTURE_RECORD_SPARED; i++) {
-        if (spared[i] != NULL && stat(spared[i], &other) == 0 && file.st_dev == other.st_dev &&
-            file.st_ino == other.st_ino) {
-            return spared[i];
-        }
-    }
-    return NULL;
-}
-
 static int open_next(capture_record *record)
 {
     char name[400];
     capture_record_name(record->path, record->files, name, sizeof name);
-    const char *read = capture_record_would_replace(name, record->spared);
-    if (read != NULL) {
-        return t3r_reason(record->error, sizeof record->error, "%s: is %s, which is read: it is not overwritten", name,
-                          read);
-    }
-    if (t3r_recording_file_open(&record->file, name, record->sync, record->error, sizeof record->error) != 0) {
+    if (file_guard_write(name, record->error, sizeof record->error) != 0 ||
+        t3r_recording_file_open(&record->file, name, record->sync, record->error, sizeof record->error) != 0) {
         return -1;
     }
     record->files++;
@@ -71,13 +52,12 @@ static int open_next(capture_record *record)
     return 0;
 }
 
-int capture_record_begin(capture_record *record, const char *path, uint64_t max_bytes, bool sync,
-                         const char *const *spared, const char *source, const char *clock, uint64_t depth_unit_q40)
+int capture_record_begin(capture_record *record, const char *path, uint64_t max_bytes, bool sync, const char *source,
+                         const char *clock, uint64_t depth_unit_q40)
 {
     record->path = path;
     record->max_bytes = max_bytes;
     record->sync = sync;
-    record->spared = spared;
     record->files = 0;
     record->bytes = record->frames = 0;
     record->error[0] = '\0';

@@ -10,13 +10,10 @@
 #include "capture.h"
 #include "recording_file.h"
 
-#define CAPTURE_RECORD_SPARED 3
-
 typedef struct capture_record {
     const char *path;   /* of the first file; the n-th after it has -n before its ending */
     uint64_t max_bytes; /* of a file; 0 = no end */
     bool sync;
-    const char *const *spared; /* CAPTURE_RECORD_SPARED paths, NULL = none: files that no file of the record replaces */
     t3r_recording_header header;
     t3r_recording_file file;
     _Alignas(uint64_t) uint8_t recorder[T3R_RECORDER_BYTES];
@@ -26,15 +23,13 @@ typedef struct capture_record {
     char error[512];
 } capture_record;
 
-/* Opens the first file. Texts and paths outlive the record; `spared` may be NULL. 0, or -1 with a reason in
+/* Opens the first file. Texts and paths outlive the record. 0, or -1 with a reason in
  * record->error, as for all. */
-int capture_record_begin(capture_record *record, const char *path, uint64_t max_bytes, bool sync,
-                         const char *const *spared, const char *source, const char *clock, uint64_t depth_unit_q40);
+int capture_record_begin(capture_record *record, const char *path, uint64_t max_bytes, bool sync, const char *source,
+                         const char *clock, uint64_t depth_unit_q40);
 int capture_record_frame(capture_record *record, const t3r_capture_frame *frame);
 int capture_record_event(capture_record *record, const t3r_capture_event *event);
 int capture_record_end(capture_record *record);
-/* The one of the spared paths that names the same regular file as `path`, by link or not; NULL = none. */
-const char *capture_record_would_replace(const char *path, const char *const *spared);
 /* The name of file `number`: "rec.mcap", "rec-1.mcap"... */
 void capture_record_name(const char *path, uint32_t number, char *name, size_t bytes);
 

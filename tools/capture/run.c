@@ -374,7 +374,7 @@ static int begin_record(run_state *s)
     if (s->record == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    if (capture_record_begin(s->record, plan->output, plan->max_bytes, plan->sync, plan->spared, plan->source,
+    if (capture_record_begin(s->record, plan->output, plan->max_bytes, plan->sync, plan->source,
                              t3r_capture_clock(s->capture), t3r_capture_depth_unit_q40(s->capture)) == 0) {
         return CLI_OK;
     }

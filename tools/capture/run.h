@@ -17,7 +17,6 @@ typedef struct capture_plan {
     const char *output;                    /* NULL = no recording */
     uint64_t max_bytes;                    /* of a recording's file; 0 = no end */
     bool sync;                             /* every message to the disk */
-    const char *const *spared;             /* as of capture_record_begin() */
     const trajectory *poses;               /* NULL = the source's own */
     int64_t offset_ns;                     /* their clock less the camera's */
     const t3r_recorded_camera *intrinsics; /* NULL = the source's own; its size is the frames' */

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -129,8 +130,13 @@ static bool start_worker(pool *p, atomic_uint *next)
     if (pipe(ends) != 0) {
         return false;
     }
+    const pid_t caller = getpid();
     pid_t process = fork();
     if (process == 0) {
+        /* with the caller, who may be gone already: nobody would take the work */
+        if (prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || getppid() != caller) {
+            _exit(0);
+        }
         close(ends[0]);
         for (uint32_t w = 0; w < p->running; w++) {
             close(p->workers[w].pipe);
@@ -255,7 +261,7 @@ static void dismiss(pool *p)
     for (uint32_t i = 0; i < p->running; i++) {
         worker *w = &p->workers[i];
         if (w->process > 0) {
-            kill(w->process, SIGKILL);
+            kill(w->process, SIGTERM); /* it removes what is not whole */
             close(w->pipe);
             (void)waitpid(w->process, NULL, 0);
         }

@@ -8,11 +8,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cli/file_guard.h"
+#include "cli/part_files.h"
 #include "reason.h"
 
 static int fail(const whole_file *file, char *error, size_t error_bytes)
 {
     return t3r_reason(error, error_bytes, "%s: %s", file->path, strerror(errno));
+}
+
+/* The part is no more: it was renamed or removed. */
+static void drop_name(whole_file *file)
+{
+    part_files_forget(file->temporary);
+    free(file->temporary);
+    file->temporary = NULL;
 }
 
 int whole_file_begin(whole_file *file, const char *path, char *error, size_t error_bytes)
@@ -25,6 +35,9 @@ int whole_file_begin(whole_file *file, const char *path, char *error, size_t err
         /* the rename would put a file in place of a pipe */
         return t3r_reason(error, error_bytes, "%s: not a regular file", path);
     }
+    if (file_guard_write(path, error, error_bytes) != 0) {
+        return -1;
+    }
     int flags = O_WRONLY | O_CLOEXEC;
     if (!device) {
         size_t bytes = strlen(path) + 32;
@@ -33,7 +46,14 @@ int whole_file_begin(whole_file *file, const char *path, char *error, size_t err
             return fail(file, error, error_bytes);
         }
         snprintf(file->temporary, bytes, "%s.%ld.part", path, (long)getpid());
-        flags |= O_CREAT | O_TRUNC | O_NOFOLLOW;
+        if (!part_files_add(file->temporary)) {
+            free(file->temporary);
+            file->temporary = NULL;
+            return t3r_reason(error, error_bytes, "%s: too many files at a time", path);
+        }
+        /* one left by an earlier process of this number may be a link to another file: it goes, its target stays */
+        unlink(file->temporary);
+        flags |= O_CREAT | O_EXCL | O_NOFOLLOW;
     }
     int descriptor = open(device ? path : file->temporary, flags, 0666);
     file->stream = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
@@ -62,8 +82,7 @@ int whole_file_commit(whole_file *file, uint64_t *bytes, char *error, size_t err
         whole_file_abandon(file);
         return -1;
     }
-    free(file->temporary);
-    file->temporary = NULL;
+    drop_name(file);
     if (bytes != NULL) {
         *bytes = (uint64_t)length;
     }
@@ -78,7 +97,6 @@ void whole_file_abandon(whole_file *file)
     }
     if (file->temporary != NULL) {
         remove(file->temporary);
-        free(file->temporary);
-        file->temporary = NULL;
+        drop_name(file);
     }
 }

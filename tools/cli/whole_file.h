@@ -1,5 +1,6 @@
 /* A file that appears under its name only when it is whole: written next to it first, renamed at the end. A character
- * device (/dev/null, say) is written as it is. */
+ * device (/dev/null, say) is written as it is. What file_guard.h keeps is not replaced, and a signal that ends the
+ * process leaves no part. */
 #ifndef TRIM3R_TOOLS_WHOLE_FILE_H
 #define TRIM3R_TOOLS_WHOLE_FILE_H
 

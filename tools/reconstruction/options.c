@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "cli/option_values.h"
 #include "reconstruction/head_option.h"
 #include "reconstruction/option_names.h"
@@ -32,7 +33,7 @@ static const struct argp_option settings[] = {
      0},
     {"max-loss", KEY_MAX_LOSS, "DB", 0,
      "decibels that --auto may lose on new views, against a scene of all valid points; 0.01..10 (0.5)", 0},
-    {"importance", KEY_IMPORTANCE, "PNG,PNG,...", 0,
+    {"importance", KEY_IMPORTANCE, "PNG,PNG,...", OPTION_READS | OPTION_LIST | OPTION_FOLDER,
      "importance of each pixel, for --allocate given: a grey picture for each context view, in their order and of the "
      "working size, or a folder with <frame>.png; the brightest points are retained; 8-bit pictures are spread evenly "
      "within a level",
@@ -132,8 +133,8 @@ static const struct argp_option budget[] = {
      0},
     {"keep", KEY_KEEP, "P%", 0, "percent of the valid points to retain, rounded half up to a number", 0},
     {"method", KEY_METHOD, "METHOD", 0, METHOD_HELP, 0},
-    {"mask-head", KEY_MASK_HEAD, "HEAD", 0, "head whose unpruned scene a rival with +head ranks (the one of --head)",
-     0},
+    {"mask-head", KEY_MASK_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
+     "head whose unpruned scene a rival with +head ranks (the one of --head)", 0},
     {0},
 };
 

@@ -1,19 +1,15 @@
 #include "scene/colmap_folder.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "pictures/picture.h"
 #include "reason.h"
 #include "cli/whole_file.h"
 
-#define PATH_BYTES 4096
 #define NOWHERE UINT32_MAX
 
 typedef struct observation {
@@ -29,7 +25,7 @@ typedef struct pose {
 } pose;
 
 typedef struct writer {
-    const char *directory;
+    whole_folder *folder;
     const colmap_model *model;
     pose poses[T3R_MAX_VIEWS];
     observation *observed; /* of each Gaussian */
@@ -153,12 +149,9 @@ static void write_points(FILE *file, const writer *w)
 
 static int write_file(const writer *w, const char *name, void (*write)(FILE *file, const writer *w))
 {
-    char path[PATH_BYTES];
     whole_file file;
-    if (snprintf(path, sizeof path, "%s/sparse/0/%s", w->directory, name) >= (int)sizeof path) {
-        return t3r_reason(w->error, w->error_bytes, "%s: the path is too long", w->directory);
-    }
-    if (whole_file_begin(&file, path, w->error, w->error_bytes) != 0) {
+    const char *path = whole_folder_file(w->folder, name, w->error, w->error_bytes);
+    if (path == NULL || whole_file_begin(&file, path, w->error, w->error_bytes) != 0) {
         return -1;
     }
     write(file.stream, w);
@@ -167,66 +160,40 @@ static int write_file(const writer *w, const char *name, void (*write)(FILE *fil
 
 static int write_picture(const writer *w, const colmap_view *view)
 {
-    char path[PATH_BYTES];
+    char name[40];
     picture p = {.width = view->width, .height = view->height, .channels = 3, .bits = 8, .samples = view->rgb};
-    if (snprintf(path, sizeof path, "%s/images/frame_%06" PRIu32 ".png", w->directory, view->frame) >=
-        (int)sizeof path) {
-        return t3r_reason(w->error, w->error_bytes, "%s: the path is too long", w->directory);
-    }
-    return picture_write_png(path, &p, w->error, w->error_bytes);
+    snprintf(name, sizeof name, "images/frame_%06" PRIu32 ".png", view->frame);
+    const char *path = whole_folder_file(w->folder, name, w->error, w->error_bytes);
+    return path == NULL ? -1 : picture_write_png(path, &p, w->error, w->error_bytes);
 }
 
-static int make_folder(const char *directory, const char *name, char *error, size_t error_bytes)
+static int write_all(writer *w)
 {
-    char path[PATH_BYTES];
-    if (snprintf(path, sizeof path, "%s%s", directory, name) >= (int)sizeof path) {
-        return t3r_reason(error, error_bytes, "%s: the path is too long", directory);
+    static const char *const folders[] = {"images", "sparse", "sparse/0"};
+    int failed = 0;
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0] && failed == 0; i++) {
+        failed = whole_folder_make(w->folder, folders[i], w->error, w->error_bytes);
     }
-    if (mkdir(path, 0777) != 0 && errno != EEXIST) {
-        return t3r_reason(error, error_bytes, "%s: %s", path, strerror(errno));
+    for (uint32_t v = 0; v < w->model->view_count && failed == 0; v++) {
+        w->poses[v] = pose_of(w, &w->model->views[v].camera);
+        failed = write_picture(w, &w->model->views[v]);
     }
-    return 0;
+    if (failed == 0) {
+        observe(w);
+        failed = write_file(w, "sparse/0/cameras.txt", write_cameras);
+    }
+    failed = failed == 0 ? write_file(w, "sparse/0/images.txt", write_images) : failed;
+    return failed == 0 ? write_file(w, "sparse/0/points3D.txt", write_points) : failed;
 }
 
-int colmap_folder_begin(const char *directory, char *error, size_t error_bytes)
+int colmap_folder_write(whole_folder *folder, const colmap_model *model, char *error, size_t error_bytes)
 {
-    if (make_folder(directory, "", error, error_bytes) != 0) {
-        return -1;
-    }
-    DIR *folder = opendir(directory);
-    if (folder == NULL) {
-        return t3r_reason(error, error_bytes, "%s: %s", directory, strerror(errno));
-    }
-    bool empty = true;
-    for (const struct dirent *entry; empty && (entry = readdir(folder)) != NULL;) {
-        empty = strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;
-    }
-    closedir(folder);
-    return empty ? 0 : t3r_reason(error, error_bytes, "%s: the folder is not empty", directory);
-}
-
-int colmap_folder_write(const char *directory, const colmap_model *model, char *error, size_t error_bytes)
-{
-    writer w = {.directory = directory, .model = model, .error = error, .error_bytes = error_bytes};
+    writer w = {.folder = folder, .model = model, .error = error, .error_bytes = error_bytes};
     w.observed = malloc(((size_t)model->scene->count + 1) * sizeof *w.observed);
     if (w.observed == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");
     }
-    int failed = 0;
-    static const char *const folders[] = {"/images", "/sparse", "/sparse/0"};
-    for (size_t i = 0; i < sizeof folders / sizeof folders[0] && failed == 0; i++) {
-        failed = make_folder(directory, folders[i], error, error_bytes);
-    }
-    for (uint32_t v = 0; v < model->view_count && failed == 0; v++) {
-        w.poses[v] = pose_of(&w, &model->views[v].camera);
-        failed = write_picture(&w, &model->views[v]);
-    }
-    if (failed == 0) {
-        observe(&w);
-        failed = write_file(&w, "cameras.txt", write_cameras);
-    }
-    failed = failed == 0 ? write_file(&w, "images.txt", write_images) : failed;
-    failed = failed == 0 ? write_file(&w, "points3D.txt", write_points) : failed;
+    int failed = write_all(&w);
     free(w.observed);
     return failed;
 }

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cli/whole_folder.h"
 #include "trim3r.h"
 
 /* A context view as the scene was built from it. */
@@ -28,12 +29,9 @@ typedef struct colmap_model {
     bool sourced; /* a Gaussian's source view is one of `views`: it is observed there, else nowhere */
 } colmap_model;
 
-/* Makes the folder where there is none; one that holds anything is refused: readers prefer what other tools left there
- * (points3D.ply, *.bin). 0, or -1 with "path: why" in error[] (as for the next). */
-int colmap_folder_begin(const char *directory, char *error, size_t error_bytes);
-
 /* Pictures, cameras, poses, and a point for the mean of each Gaussian, with its colour. A point has one observation:
- * where its mean stands in its source view; error 0 then, -1 without one. */
-int colmap_folder_write(const char *directory, const colmap_model *model, char *error, size_t error_bytes);
+ * where its mean stands in its source view; error 0 then, -1 without one. Into a folder that was begun, and is not
+ * committed here; 0, or -1 with "path: why" in error[]. */
+int colmap_folder_write(whole_folder *folder, const colmap_model *model, char *error, size_t error_bytes);
 
 #endif

@@ -1,8 +1,11 @@
 /* trim3r: finds the command and hands over. */
 #include <argp.h>
 #include <errno.h>
+#include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/cli.h"
 #include "text.h"
@@ -90,14 +93,21 @@ static int run(int argc, char **argv)
     return cli_error(CLI_BAD_USAGE, "there is no command '%s'; trim3r --help lists them", argv[1]);
 }
 
+/* At every end of the process, argp's of --help as well: a result that could not be printed is not a success. */
+static void check_output(void)
+{
+    errno = 0;
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        (void)cli_error(CLI_OK, "standard output: %s", strerror(errno != 0 ? errno : EIO));
+        _exit(CLI_BAD_INPUT);
+    }
+}
+
 int main(int argc, char **argv)
 {
     argp_err_exit_status = CLI_BAD_USAGE;
+    signal(SIGXFSZ, SIG_IGN); /* a file too large is an error of write() like any other */
+    atexit(check_output);
     int code = check_arguments(argc, argv);
-    code = code == CLI_OK ? run(argc, argv) : code;
-    /* a result that could not be printed is not a success */
-    if ((fflush(stdout) != 0 || ferror(stdout)) && code == CLI_OK) {
-        code = cli_error(CLI_BAD_INPUT, "standard output: %s", strerror(errno));
-    }
-    return code;
+    return code == CLI_OK ? run(argc, argv) : code;
 }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "cli/part_files.h"
 #include "reconstruction/reconstruction_error.h"
 #include "cli/recorded_frame.h"
 #include "reconstruction/developed_frame.h"
@@ -218,11 +219,16 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     }
     close(file);
     scene_file scene;
+    if (!part_files_add(path)) {
+        unlink(path);
+        return cli_error(CLI_BAD_INPUT, "%s: too many files at a time", path);
+    }
     int failed = scene_file_write(path, &built->scene, 0, NULL, error, sizeof error);
     if (failed == 0) {
         failed = scene_file_read(path, &scene, error, sizeof error);
     }
     unlink(path);
+    part_files_forget(path);
     if (failed != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }

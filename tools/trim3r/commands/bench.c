@@ -15,6 +15,7 @@
 #include "study/bench/bench_stereo.h"
 #include "reconstruction/chosen_head.h"
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
 #include "cli/processor_options.h"
@@ -48,8 +49,9 @@ typedef struct bench_options {
 enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_JSON };
 
 static const struct argp_option options[] = {
-    {"points", KEY_POINTS, "FILE", 0, "points to cluster instead of the room's: raw float32, N x 6", 0},
-    {"head", KEY_HEAD, "HEAD", 0, "network of head_gmac_per_s: nano, small (default), base, or FILE.t3w", 0},
+    {"points", KEY_POINTS, "FILE", OPTION_READS, "points to cluster instead of the room's: raw float32, N x 6", 0},
+    {"head", KEY_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
+     "network of head_gmac_per_s: nano, small (default), base, or FILE.t3w", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0,
      "source of depth of the scenes that are built and drawn: sensor (default), or stereo, from the colours", 0},
     {"stages", KEY_STAGES, "LIST", 0, "rows to time, as kmeans_ms,stereo_ms (all)", 0},
@@ -579,7 +581,7 @@ static void print_results(const workload *w, const bench_options *o, const bool 
 int command_bench(int argc, char **argv)
 {
     bench_options o = {.head = CHOSEN_HEAD_DEFAULT, .runs = 7, .processor = processor_defaults()};
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    file_options_parse(&argp, argc, argv, &o);
 
     bool chosen[STAGE_COUNT];
     int code = choose_stages(o.stages, chosen);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "scene/scene_file.h"
 #include "scene/colmap_folder.h"
 #include "reconstruction/developed_frame.h"
@@ -33,12 +34,13 @@ typedef struct build_options {
 enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_POSES, KEY_JSON };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "SCENE.ply", 0, "scene to write (needed, or --colmap)", 0},
-    {"colmap", KEY_COLMAP, "DIR", 0,
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
+    {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE), "scene to write (needed, or --colmap)", 0},
+    {"colmap", KEY_COLMAP, "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
      "folder, new or empty, to write the start of an outside optimiser into: the context views, and the means and "
      "colours of the Gaussians, as a COLMAP model in text",
      0},
-    {"prune", KEY_PRUNE, "SCENE.ply", 0,
+    {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
      "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names those it "
      "was made of; percents are of its Gaussians",
      0},
@@ -238,7 +240,7 @@ static int build(const build_options *o, const t3r_recording *recording, reconst
 }
 
 static int write_colmap(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
-                        const reconstruction_account *told)
+                        const reconstruction_account *told, whole_folder *folder)
 {
     colmap_view views[T3R_MAX_VIEWS] = {0};
     char error[ERROR_BYTES] = "";
@@ -256,7 +258,8 @@ static int write_colmap(const build_options *o, const t3r_recording *recording, 
                           .local = (o->flags & SCENE_FILE_LOCAL) != 0,
                           .sourced =
                               o->settings.points_of == NULL || method_kind_of(o->settings.method) == METHOD_TRIM3R};
-    if (code == CLI_OK && colmap_folder_write(o->colmap, &model, error, sizeof error) != 0) {
+    if (code == CLI_OK && (colmap_folder_write(folder, &model, error, sizeof error) != 0 ||
+                           whole_folder_commit(folder, error, sizeof error) != 0)) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     for (uint32_t v = 0; v < told->context_count; v++) {
@@ -266,14 +269,14 @@ static int write_colmap(const build_options *o, const t3r_recording *recording, 
 }
 
 static int write_all(const build_options *o, const t3r_recording *recording, const reconstruction *r,
-                     const reconstruction_account *told)
+                     const reconstruction_account *told, whole_folder *folder)
 {
     char note[64], error[ERROR_BYTES] = "";
     note_head(told, note, sizeof note);
     if (o->output != NULL && scene_file_write(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told) : CLI_OK;
+    return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told, folder) : CLI_OK;
 }
 
 static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r,
@@ -312,7 +315,7 @@ int command_build(int argc, char **argv)
 {
     build_options o = {0};
     reconstruction_defaults(&o.settings);
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    file_options_parse(&argp, argc, argv, &o);
 
     char error[ERROR_BYTES] = "";
     t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
@@ -320,7 +323,8 @@ int command_build(int argc, char **argv)
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     int code = CLI_OK;
-    if (o.colmap != NULL && colmap_folder_begin(o.colmap, error, sizeof error) != 0) {
+    whole_folder folder = {0};
+    if (o.colmap != NULL && whole_folder_begin(&folder, o.colmap, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     pose_account accounts[T3R_MAX_VIEWS];
@@ -333,7 +337,7 @@ int command_build(int argc, char **argv)
     reconstruction_account told;
     code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
     if (code == CLI_OK) {
-        code = write_all(&o, recording, &r, &told);
+        code = write_all(&o, recording, &r, &told, &folder);
         if (code == CLI_OK && o.json) {
             print_json(&o, &told, &r, recording, accounts);
         } else if (code == CLI_OK) {
@@ -341,6 +345,7 @@ int command_build(int argc, char **argv)
         }
         reconstruction_close(&r);
     }
+    whole_folder_abandon(&folder); /* unless it was committed */
     t3r_recording_close(recording);
     return code;
 }

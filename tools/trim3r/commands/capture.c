@@ -11,6 +11,8 @@
 #include "capture/result.h"
 #include "capture/run.h"
 #include "cli/cli.h"
+#include "cli/file_options.h"
+#include "cli/part_files.h"
 #include "capture/clock_offset.h"
 #include "source_name.h"
 
@@ -22,15 +24,19 @@
 
 static volatile sig_atomic_t stop;
 
+/* A second signal ends the process. */
 static void on_signal(int signal_number)
 {
+    if (stop != 0) {
+        part_files_end(signal_number);
+    }
     stop = signal_number;
 }
 
-/* Without SA_RESTART: a wait for a frame ends at once. A second signal ends the process. */
+/* Without SA_RESTART: a wait for a frame ends at once. */
 static void watch_signals(void)
 {
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
+    struct sigaction action = {.sa_handler = on_signal};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
@@ -138,7 +144,7 @@ static int estimate_offset(const capture_options *o, const trajectory *poses, cl
 
 /* ---- the run ---- */
 
-static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset, const char *const *spared)
+static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset)
 {
     char error[ERROR_BYTES] = "";
     t3r_capture *capture = t3r_capture_open(o->source, &o->settings, error, sizeof error);
@@ -155,7 +161,6 @@ static int run(const capture_options *o, const trajectory *poses, const clock_of
         .output = o->output,
         .max_bytes = o->max_bytes,
         .sync = o->sync,
-        .spared = spared,
         .poses = poses,
         .offset_ns = offset->offset_ns,
         .intrinsics = o->has_intrinsics ? &o->intrinsics : NULL,
@@ -186,11 +191,6 @@ int command_capture(int argc, char **argv)
     if (o.list) {
         return list();
     }
-    const char *colon = strchr(o.source, ':');
-    const char *const spared[CAPTURE_RECORD_SPARED] = {colon != NULL ? colon + 1 : NULL, o.settings.depth, o.poses};
-    if (o.output != NULL && capture_record_would_replace(o.output, spared) != NULL) {
-        return cli_error(CLI_BAD_USAGE, "-o %s is a file that is read: it would be overwritten", o.output);
-    }
     watch_signals();
     trajectory poses = {0};
     clock_offset offset = {.offset_ns = o.estimate ? 0 : o.offset_ns};
@@ -205,7 +205,7 @@ int command_capture(int argc, char **argv)
     if (code == CLI_OK && stop != 0) {
         code = cli_error(CLI_BAD_INPUT, "stopped before the capture began: nothing was written");
     } else if (code == CLI_OK) {
-        code = run(&o, o.poses != NULL ? &poses : NULL, &offset, spared);
+        code = run(&o, o.poses != NULL ? &poses : NULL, &offset);
     }
     trajectory_free(&poses);
     return code;

@@ -15,6 +15,7 @@
 #include "study/chart/table.h"
 #include "study/chart/view.h"
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "cli/option_values.h"
 #include "cli/whole_file.h"
 #include "cli/word_list.h"
@@ -132,11 +133,12 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
+    OPTION_ARGUMENTS("EVAL.csv", OPTION_READS),
     {NULL, 0, NULL, 0, "What is written:", 1},
-    {"output", 'o', "REPORT.html", 0,
+    {"output", 'o', "REPORT.html", OPTION_WRITES(FILE_PAGE),
      "report to write: every quality against every cost, in one file that fetches nothing", 0},
-    {"svg", KEY_SVG, "FILE", 0, "picture to write: a panel for each cost", 0},
-    {"png", KEY_PNG, "FILE", 0, "the same picture to write, in pixels", 0},
+    {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture to write: a panel for each cost", 0},
+    {"png", KEY_PNG, "FILE", OPTION_WRITES(FILE_PICTURE), "the same picture to write, in pixels", 0},
     {"dark", KEY_DARK, NULL, 0, "draw the PNG on a dark ground", 0},
     {NULL, 0, NULL, 0, "What is shown:", 2},
     {"quality", KEY_QUALITY, "NAME", 0,
@@ -146,7 +148,7 @@ static const struct argp_option argp_options[] = {
      "begins with the first",
      0},
     {"scene", KEY_SCENE, "NAME", 0, "scene to draw, alone (the mean over all); the report begins with it", 0},
-    {"pictures", KEY_PICTURES, "DIR", 0,
+    {"pictures", KEY_PICTURES, "DIR", OPTION_READS | OPTION_FOLDER,
      "folder that eval --images wrote, for the report: one for all tables, or one for each in their order", 0},
     {"picture-mib", KEY_MIB, "N", 0, "most MiB of pictures that the report holds, 1..1024 (48)", 0},
     {0},
@@ -334,7 +336,7 @@ int command_chart(int argc, char **argv)
     if (o.folders == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    file_options_parse(&parser, argc, argv, &o);
     int code = run(&o);
     free(o.folders);
     return code;

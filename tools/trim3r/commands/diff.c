@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "scene/gaussian_shape.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
@@ -24,6 +25,7 @@ typedef struct diff_options {
 enum { KEY_JSON = 0x1000 };
 
 static const struct argp_option options[] = {
+    OPTION_ARGUMENTS("A", OPTION_READS),
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -258,6 +260,6 @@ static int diff_pictures(const diff_options *o)
 int command_diff(int argc, char **argv)
 {
     diff_options o = {0};
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    file_options_parse(&argp, argc, argv, &o);
     return scene_file_is_read(o.path[0]) ? diff_scenes(&o) : diff_pictures(&o);
 }

@@ -8,6 +8,7 @@
 
 #include "study/evaluation/ablation.h"
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "reconstruction/chosen_head.h"
 #include "study/evaluation/settings.h"
 #include "study/evaluation/work.h"
@@ -270,6 +271,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {NULL, 0, NULL, 0, "What is compared:", 1},
     {"context", KEY_CONTEXT, "A,B,...", 0,
      "frames that the scene is made of; one named twice counts once (all triplets that the recording carries)", 0},
@@ -279,12 +281,13 @@ static const struct argp_option argp_options[] = {
     {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points, one row each; with --auto the upper bound (100)",
      0},
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
-    {"prune", KEY_PRUNE, "SCENE.ply", 0,
+    {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
      "scene, made elsewhere of the views of --context, to prune: percents are of its Gaussians; trim3r makes new ones "
      "of points among their means, the rivals keep some; where a view has no depth, the mask is of the means",
      0},
-    {"heads", KEY_HEADS, "H,H,...", 0, "heads to compare, as --head takes them: rows of the method trim3r for each", 0},
-    {"mask-head", KEY_MASK_HEAD, "HEAD", 0,
+    {"heads", KEY_HEADS, "H,H,...", OPTION_READS | OPTION_LIST | OPTION_OR_WORD,
+     "heads to compare, as --head takes them: rows of the method trim3r for each", 0},
+    {"mask-head", KEY_MASK_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
      "head whose unpruned scene rivals with +head rank (the one of --head); so --head can be one that was retrained "
      "for their points",
      0},
@@ -297,13 +300,14 @@ static const struct argp_option argp_options[] = {
     {"size", KEY_SIZE, "WxH", 0, "size to which --planar crops and averages images (256x256)", 0},
     {"from-file", KEY_FROM_FILE, NULL, 0, "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", KEY_CSV, "FILE", 0, "table to write; each row appears when it is made", 0},
-    {"images", KEY_IMAGES, "DIR", 0,
+    {"csv", KEY_CSV, "FILE", OPTION_WRITES(FILE_TABLE), "table to write; each row appears when it is made", 0},
+    {"images", KEY_IMAGES, "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write pictures into: DIR/<target>/<method>_<keep>.png, target.png, mask.png, context_a.png, ...; with "
      "--heads <head> or with --ablate <ablation> is in the name, and settings that are not the default come before "
      "<keep>, as in trim3r_refine-0_10.png; the column picture names each",
      0},
-    {"html", KEY_HTML, "PAGE.html", 0, "page to write, with the pictures side by side; it needs no other file", 0},
+    {"html", KEY_HTML, "PAGE.html", OPTION_WRITES(FILE_PAGE),
+     "page to write, with the pictures side by side; it needs no other file", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout: rows, means over the cases, refused cases", 0},
     {NULL, 0, NULL, 0, "How the work is done:", 3},
     {"jobs", KEY_JOBS, "N", 0,
@@ -473,7 +477,7 @@ int command_eval(int argc, char **argv)
     options o = {.processes = 1};
     reconstruction_defaults(&o.settings);
     o.settings.head = NULL; /* until one is named */
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    file_options_parse(&parser, argc, argv, &o);
     int code = evaluate(&o);
     free(o.heads[0]);
     return code;

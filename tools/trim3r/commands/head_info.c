@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "file_bytes.h"
 #include "float_head.h"
 #include "cli/json_output.h"
@@ -59,6 +60,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
+    OPTION_ARGUMENTS("FILE.t3w", OPTION_READS),
     {"size", KEY_SIZE, "WxH", 0, "size of the view that the work bytes are for (256x256)", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
@@ -248,7 +250,7 @@ static void print_text(const options *o, const head_summary *head)
 int command_head_info(int argc, char **argv)
 {
     options o = {.width = 256, .height = 256};
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    file_options_parse(&parser, argc, argv, &o);
     head_summary head;
     int code = read_head(&o, &head);
     if (code != CLI_OK) {

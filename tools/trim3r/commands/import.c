@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "import/frame.h"
 #include "import/import_pointmaps.h"
 #include "import/poses.h"
@@ -127,7 +128,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    {"output", 'o', "REC.mcap", 0, "recording to write; it appears when it is whole (needed)", 0},
+    OPTION_ARGUMENTS("DIR", OPTION_READS | OPTION_FOLDER),
+    {"output", 'o', "REC.mcap", OPTION_WRITES(FILE_RECORDING),
+     "recording to write; it appears when it is whole (needed)", 0},
     {"size", 's', "WxH", 0,
      "size of the frames: each picture is cropped to the largest centred part of that aspect, then resized, colour by "
      "area average and depth by the pixel at the centre of each box (as the pictures are)",
@@ -142,7 +145,8 @@ static const struct argp_option argp_options[] = {
      "where two of them have it, or of all frames from pointmaps; estimate-colour, from colour alone, without "
      "pointmaps",
      0},
-    {"pointmaps", KEY_POINTMAPS, "FILE.npz", 0, "depth of all frames: one pointmap each, in the frames' order", 0},
+    {"pointmaps", KEY_POINTMAPS, "FILE.npz", OPTION_READS,
+     "depth of all frames: one pointmap each, in the frames' order", 0},
     {"min-confidence", KEY_CONFIDENCE, "C", 0,
      "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
     {"depth-unit", KEY_UNIT, "U", 0,
@@ -456,7 +460,7 @@ int command_import(int argc, char **argv)
 {
     options o = {0};
     o.pointmaps.confidence_least = -HUGE_VAL;
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    file_options_parse(&parser, argc, argv, &o);
     if (is_file(o.directory)) {
         return import_recording(&o);
     }

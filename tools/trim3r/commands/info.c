@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "scene/scene_file.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
@@ -85,8 +86,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap in whose pixels the scales are shown, too", 0},
-    {"svg", KEY_SVG, "FILE", 0, "picture to write: histograms of the scenes' scales", 0},
+    {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture to write: histograms of the scenes' scales", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -253,7 +255,7 @@ static void print_text(const t3r_recording *recording, const frame_summary *s, c
 int command_info(int argc, char **argv)
 {
     options o = {0};
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    file_options_parse(&parser, argc, argv, &o);
     if (o.scene_count > 0) {
         return scene_info(&(scene_info_request){.scenes = o.scenes,
                                                 .scene_count = o.scene_count,

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "reconstruction/reconstruction_error.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
@@ -33,7 +34,7 @@ static const struct argp_option options[] = {
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "keep the analysis after the build, so that the budget can change", 0},
-    {"svg", KEY_SVG, "FILE", 0, "picture of the arena to write: stages across, bytes upwards", 0},
+    {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture of the arena to write: stages across, bytes upwards", 0},
     {"markdown", KEY_MARKDOWN, NULL, 0, "print the table in Markdown", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
@@ -181,7 +182,7 @@ static int lower_budget(t3r_config *config, uint64_t bytes)
 int command_plan(int argc, char **argv)
 {
     plan_options o = {.config = t3r_default_config(0, 0, 2, 0), .head = CHOSEN_HEAD_DEFAULT};
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    file_options_parse(&argp, argc, argv, &o);
 
     t3r_config config = o.config;
     chosen_head head;

@@ -11,6 +11,7 @@
 #include "calibrate.h"
 #include "reconstruction/calibration_input.h"
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "file_bytes.h"
 #include "float_head.h"
 #include "cli/json_output.h"
@@ -110,11 +111,12 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    {NULL, 'o', "OUT", 0,
+    OPTION_ARGUMENTS("HEAD.safetensors", OPTION_READS),
+    {NULL, 'o', "OUT", OPTION_WRITES(FILE_WEIGHTS | FILE_SOURCE),
      "file to write: OUT.t3w, a weight file, or OUT.c, the same as a C array t3r_head_NAME (needed)", 0},
     {"weights", KEY_WEIGHTS, "8|16", 0, "bits of the weights (8)", 0},
     {"activations", KEY_ACTIVATIONS, "8|16", 0, "bits of the activations (8)", 0},
-    {"calibrate", KEY_CALIBRATE, "REC.mcap|IMAGE", 0,
+    {"calibrate", KEY_CALIBRATE, "REC.mcap|IMAGE", OPTION_READS,
      "recording or image on which to measure the ranges that the head lacks; more may follow HEAD, or further "
      "--calibrate",
      0},
@@ -311,7 +313,7 @@ int command_quantize(int argc, char **argv)
     if (o.inputs == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    file_options_parse(&parser, argc, argv, &o);
     float_head head;
     int code = read_head(&o, &head);
     if (code == CLI_OK) {

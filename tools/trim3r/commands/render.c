@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "reconstruction/reconstruction_error.h"
 #include "cli/recorded_frame.h"
 #include "core/hash.h"
@@ -47,18 +48,19 @@ enum {
 };
 
 static const struct argp_option options[] = {
+    OPTION_ARGUMENTS("SCENE.ply", OPTION_READS),
     {NULL, 0, NULL, 0, "Viewpoint:", 1},
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose camera draws", 0},
-    {"pose", KEY_POSE, "FILE", 0, "camera as JSON (below)", 0},
-    {"trajectory", KEY_TRAJECTORY, "FILE", 0,
+    {"pose", KEY_POSE, "FILE", OPTION_READS, "camera as JSON (below)", 0},
+    {"trajectory", KEY_TRAJECTORY, "FILE", OPTION_READS,
      "TUM poses, one numbered picture each; the lens is that of --view, --pose or --fov", 0},
     {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view of a trajectory, with --size", 0},
     {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along (the camera's)", 0},
     {NULL, 0, NULL, 0, "Pictures:", 2},
-    {"output", 'o', "view.png", 0, "picture to write (needed)", 0},
-    {"depth", KEY_DEPTH, "d.png", 0, "depth along z to write, 16 bits, 0 = none", 0},
+    {"output", 'o', "view.png", OPTION_WRITES(FILE_PICTURE), "picture to write (needed)", 0},
+    {"depth", KEY_DEPTH, "d.png", OPTION_WRITES(FILE_PICTURE), "depth along z to write, 16 bits, 0 = none", 0},
     {"depth-unit", KEY_DEPTH_UNIT, "U", 0, "world units in one step of the depth picture (0.001)", 0},
-    {"alpha", KEY_ALPHA, "a.png", 0, "coverage to write, 16 bits, 65535 = opaque", 0},
+    {"alpha", KEY_ALPHA, "a.png", OPTION_WRITES(FILE_PICTURE), "coverage to write, 16 bits, 65535 = opaque", 0},
     {"arena", KEY_ARENA, "BYTES|min|full", 0,
      "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {NULL, 0, NULL, 0, "Other:", PROCESSOR_GROUP + 1},
@@ -364,7 +366,7 @@ int command_render(int argc, char **argv)
 {
     render_options o = {.depth_unit = 0.001};
     reconstruction_defaults(&o.settings);
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    file_options_parse(&argp, argc, argv, &o);
 
     char error[ERROR_BYTES] = "";
     viewpoint_list views;

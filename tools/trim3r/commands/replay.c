@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "reconstruction/reconstruction_error.h"
 #include "cli/recorded_frame.h"
 #include "core/hash.h"
@@ -40,7 +41,8 @@ typedef struct replayed_view {
 enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_HALF_LIFE, KEY_OVERLAP, KEY_IMAGES };
 
 static const struct argp_option options[] = {
-    {"expect", KEY_EXPECT, "HASH|FILE", 0,
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
+    {"expect", KEY_EXPECT, "HASH|FILE", OPTION_READS | OPTION_OR_WORD,
      "expected final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout, fit for --expect", 0},
     {NULL, 0, NULL, 0, "A map that follows the camera:", 5},
@@ -54,7 +56,7 @@ static const struct argp_option options[] = {
     {"at-hand", KEY_AT_HAND, "K", 0, "number of keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
     {"half-life", KEY_HALF_LIFE, "K", 0,
      "number of keyframes that halve the density of what they do not see, 0..1024; 0 = nothing fades (32)", 0},
-    {"images", KEY_IMAGES, "DIR", 0,
+    {"images", KEY_IMAGES, "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
      0},
@@ -317,7 +319,7 @@ int command_replay(int argc, char **argv)
 {
     replay_options o = {0};
     reconstruction_defaults(&o.settings);
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    file_options_parse(&argp, argc, argv, &o);
 
     expectation e;
     int code = expectation_read(&e, o.expect);

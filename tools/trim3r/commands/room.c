@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "core/hash.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
@@ -55,7 +56,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    {"output", 'o', "REC.mcap", 0, "recording to write; it appears when it is whole (needed)", 0},
+    {"output", 'o', "REC.mcap", OPTION_WRITES(FILE_RECORDING),
+     "recording to write; it appears when it is whole (needed)", 0},
     {"size", 's', "WxH", 0, "size of the pictures (256x256)", 0},
     {"frames", KEY_FRAMES, "N", 0, "number of frames along the arc, 1..1000 (6)", 0},
     {"seed", KEY_SEED, "S", 0, "seed of the textures and of the noise (1)", 0},
@@ -155,7 +157,7 @@ static void print_json(const options *o, uint64_t hash, uint64_t bytes)
 int command_room(int argc, char **argv)
 {
     options o = {.width = ROOM_SIDE, .height = ROOM_SIDE, .frames = ROOM_FRAMES, .seed = DEFAULT_SEED};
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    file_options_parse(&parser, argc, argv, &o);
     drawing d = {0};
     uint64_t bytes = 0;
     char error[ERROR_BYTES];

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/file_options.h"
 #include "cli/option_values.h"
 #include "cli/word_list.h"
 #include "reconstruction/option_names.h"
@@ -144,6 +145,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {NULL, 0, NULL, 0, "What is compared:", 1},
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points of the unperturbed frames (10)", 0},
@@ -153,8 +155,9 @@ static const struct argp_option argp_options[] = {
     {"triplets", KEY_TRIPLETS, "N", 0,
      "number of triplets of each recording, spread evenly over those that it carries (1)", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", KEY_CSV, "FILE", 0, "table to write; each row appears when it is made", 0},
-    {"html", KEY_HTML, "PAGE.html", 0, "page to write, with pictures of the worst cases; it needs no other file", 0},
+    {"csv", KEY_CSV, "FILE", OPTION_WRITES(FILE_TABLE), "table to write; each row appears when it is made", 0},
+    {"html", KEY_HTML, "PAGE.html", OPTION_WRITES(FILE_PAGE),
+     "page to write, with pictures of the worst cases; it needs no other file", 0},
     {"worst", KEY_WORST, "N", 0, "number of cases on the page, 1..64, one for each perturbation at most (12)", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout: the rows", 0},
     {0},
@@ -499,7 +502,7 @@ int command_stress(int argc, char **argv)
         o.grade[g] = true;
     }
     reconstruction_defaults(&o.contest.settings);
-    argp_parse(&parser, argc, argv, 0, NULL, &o);
+    file_options_parse(&parser, argc, argv, &o);
     t3r_recording **recordings = calloc((size_t)o.input_count + 1, sizeof(t3r_recording *));
     if (recordings == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");

@@ -1,0 +1,303 @@
+#include "cli/file_options.h"
+
+#include <ctype.h>
+#include <getopt.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "cli/file_guard.h"
+#include "cli/json_output.h"
+#include "cli/word_list.h"
+
+enum { KEY_LISTING = 0x8000, KEY_FORCE, LONG_OPTION = 0x10000 };
+
+/* ---- tables ------------------------------------------------------------------------------------------------------ */
+
+typedef struct option_list {
+    const struct argp_option **items; /* NULL: none yet */
+    uint32_t count;
+} option_list;
+
+static bool ends(const struct argp_option *o)
+{
+    return o->key == 0 && o->name == NULL && o->doc == NULL && o->group == 0;
+}
+
+/* The rows of a table and of its children's, behind those that are there. */
+static void list_options(const struct argp *argp, option_list *list)
+{
+    for (const struct argp_option *o = argp->options; o != NULL && !ends(o); o++) {
+        if (list->items != NULL) {
+            list->items[list->count] = o;
+        }
+        list->count++;
+    }
+    for (const struct argp_child *c = argp->children; c != NULL && c->argp != NULL; c++) {
+        list_options(c->argp, list);
+    }
+}
+
+static void *must(void *memory)
+{
+    if (memory == NULL) {
+        exit(cli_error(CLI_BAD_INPUT, "out of memory"));
+    }
+    return memory;
+}
+
+static option_list all_options(const struct argp *argp)
+{
+    option_list list = {0};
+    list_options(argp, &list);
+    list.items = must(calloc(list.count + 1, sizeof *list.items));
+    list.count = 0;
+    list_options(argp, &list);
+    return list;
+}
+
+static bool has_short(const struct argp_option *o)
+{
+    return o->key > 0 && o->key < 0x80 && isprint(o->key);
+}
+
+/* "-o", or "--csv". */
+static void name_option(const struct argp_option *o, char name[32])
+{
+    if (has_short(o)) {
+        snprintf(name, 32, "-%c", o->key);
+    } else {
+        snprintf(name, 32, "--%s", o->name);
+    }
+}
+
+/* ---- what the command line names --------------------------------------------------------------------------------- */
+
+typedef struct file_list {
+    named_file *items;
+    uint32_t count;
+    bool force;
+} file_list;
+
+static void add_path(file_list *files, const named_file *named, const char *path)
+{
+    if (files->count % 16 == 0) {
+        files->items = must(realloc(files->items, (files->count + 16) * sizeof *files->items));
+    }
+    files->items[files->count] = *named;
+    files->items[files->count++].path = path;
+}
+
+static void add_value(file_list *files, const struct argp_option *o, const char *value)
+{
+    named_file named = {.flags = o->flags};
+    name_option(o, named.option);
+    const char *colon = strchr(value, ':');
+    if ((o->flags & OPTION_WRITES_BIT) != 0) {
+        /* of the same option twice the last one counts */
+        for (uint32_t i = 0; i < files->count; i++) {
+            if (strcmp(files->items[i].option, named.option) == 0) {
+                files->items[i].path = value;
+                return;
+            }
+        }
+    }
+    if ((o->flags & OPTION_LIST) != 0) {
+        for (list_word w = word_first(value); w.text != NULL; w = word_next(w)) {
+            add_path(files, &named, must(strndup(w.text, w.length)));
+        }
+    } else {
+        bool behind = (o->flags & OPTION_OR_DEVICE) != 0 && colon != NULL;
+        add_path(files, &named, behind ? colon + 1 : value);
+    }
+}
+
+static const struct argp_option *arguments_of(const option_list *list)
+{
+    for (uint32_t i = 0; i < list->count; i++) {
+        if (list->items[i]->key == 0 && (list->items[i]->flags & OPTION_READS) != 0) {
+            return list->items[i];
+        }
+    }
+    return NULL;
+}
+
+/* The letters of short options as getopt() wants them. */
+static char *short_options(const option_list *list)
+{
+    char *letters = must(calloc(list->count + 1, 3)), *end = letters;
+    for (uint32_t i = 0; i < list->count; i++) {
+        const struct argp_option *o = list->items[i];
+        if (has_short(o)) {
+            *end++ = (char)o->key;
+            *end = ':';
+            end += o->arg != NULL;
+            *end = '\0';
+        }
+    }
+    return letters;
+}
+
+/* `val` of an option is LONG_OPTION and its place in the list. */
+static struct option *long_options(const option_list *list)
+{
+    static const char *const of_argp[] = {"help", "usage", "HANG", "program-name"};
+    struct option *all = must(calloc(list->count + 5, sizeof *all)), *next = all;
+    for (uint32_t i = 0; i < list->count; i++) {
+        const struct argp_option *o = list->items[i];
+        if (o->name != NULL && (o->flags & OPTION_DOC) == 0) {
+            int takes = o->arg == NULL                          ? no_argument
+                        : (o->flags & OPTION_ARG_OPTIONAL) != 0 ? optional_argument
+                                                                : required_argument;
+            *next++ = (struct option){o->name, takes, NULL, LONG_OPTION + (int)i};
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        *next++ = (struct option){of_argp[i], optional_argument, NULL, '?'};
+    }
+    return all;
+}
+
+static const struct argp_option *option_of(const option_list *list, int got)
+{
+    for (uint32_t i = 0; i < list->count; i++) {
+        if (got == LONG_OPTION + (int)i || (has_short(list->items[i]) && list->items[i]->key == got)) {
+            return list->items[i];
+        }
+    }
+    return NULL;
+}
+
+/* As argp will read the line; false: it will refuse it, or print help. */
+static bool read_line(const option_list *list, int argc, char **argv, file_list *files)
+{
+    char **line = must(calloc((size_t)argc + 1, sizeof *line)), *letters = short_options(list);
+    struct option *longs = long_options(list);
+    memcpy(line, argv, (size_t)argc * sizeof *line);
+    optind = 0;
+    opterr = 0;
+    int got;
+    while ((got = getopt_long(argc, line, letters, longs, NULL)) != -1 && got != '?') {
+        const struct argp_option *o = option_of(list, got);
+        if (o->key == KEY_FORCE) {
+            files->force = true;
+        } else if ((o->flags & (OPTION_READS | OPTION_WRITES_BIT)) != 0 && optarg != NULL) {
+            add_value(files, o, optarg);
+        }
+    }
+    const struct argp_option *arguments = arguments_of(list);
+    for (int i = optind; i < argc && arguments != NULL && got == -1; i++) {
+        add_path(files, &(named_file){.option = "the argument", .flags = arguments->flags}, line[i]);
+    }
+    free(longs);
+    free(letters);
+    free(line);
+    return got == -1;
+}
+
+/* ---- our own options --------------------------------------------------------------------------------------------- */
+
+/* The rows that name files, for the tests. */
+static void print_listing(const option_list *list)
+{
+    cJSON *rows = cJSON_CreateArray();
+    for (uint32_t i = 0; i < list->count; i++) {
+        const struct argp_option *o = list->items[i];
+        if ((o->flags & (OPTION_READS | OPTION_WRITES_BIT)) == 0) {
+            continue;
+        }
+        char name[32] = "";
+        if (o->key != 0) {
+            name_option(o, name);
+        }
+        cJSON *row = cJSON_CreateObject();
+        cJSON_AddStringToObject(row, "option", name);
+        cJSON_AddBoolToObject(row, "reads", (o->flags & OPTION_READS) != 0);
+        cJSON_AddBoolToObject(row, "writes", (o->flags & OPTION_WRITES_BIT) != 0);
+        cJSON_AddBoolToObject(row, "folder", (o->flags & OPTION_FOLDER) != 0);
+        cJSON_AddBoolToObject(row, "list", (o->flags & OPTION_LIST) != 0);
+        cJSON_AddBoolToObject(row, "word", (o->flags & OPTION_OR_WORD) != 0);
+        cJSON_AddBoolToObject(row, "device", (o->flags & OPTION_OR_DEVICE) != 0);
+        cJSON *kinds = cJSON_AddArrayToObject(row, "kinds");
+        for (int k = 0; k < FILE_KINDS; k++) {
+            if ((OPTION_KINDS(o->flags) >> k & 1) != 0) {
+                cJSON_AddItemToArray(kinds, cJSON_CreateString(file_kind_name((file_kind)(1 << k))));
+            }
+        }
+        cJSON_AddItemToArray(rows, row);
+    }
+    json_print(rows);
+}
+
+static error_t parse_listing(int key, char *argument, struct argp_state *state)
+{
+    (void)argument;
+    if (key != KEY_LISTING) {
+        return ARGP_ERR_UNKNOWN;
+    }
+    option_list list = all_options(state->root_argp);
+    print_listing(&list);
+    exit(CLI_OK);
+}
+
+static error_t parse_force(int key, char *argument, struct argp_state *state)
+{
+    (void)argument, (void)state;
+    return key == KEY_FORCE ? 0 : ARGP_ERR_UNKNOWN; /* read_line() has it */
+}
+
+static const struct argp_option listing_options[] = {
+    {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1}, {0}};
+static const struct argp_option force_options[] = {
+    {"force", KEY_FORCE, NULL, 0, "replace a file of another kind than the one to be written, too", -1}, {0}};
+static const struct argp listing_argp = {.options = listing_options, .parser = parse_listing};
+static const struct argp force_argp = {.options = force_options, .parser = parse_force};
+
+/* ---- parsing ----------------------------------------------------------------------------------------------------- */
+
+static bool any_is_written(const struct argp *argp)
+{
+    option_list list = all_options(argp);
+    bool written = false;
+    for (uint32_t i = 0; i < list.count; i++) {
+        written = written || (list.items[i]->flags & OPTION_WRITES_BIT) != 0;
+    }
+    free(list.items);
+    return written;
+}
+
+/* The command's children and our own: from malloc(). */
+static struct argp_child *all_children(const struct argp *argp)
+{
+    uint32_t count = 0;
+    while (argp->children != NULL && argp->children[count].argp != NULL) {
+        count++;
+    }
+    struct argp_child *all = must(calloc(count + 3, sizeof *all));
+    for (uint32_t i = 0; i < count; i++) {
+        all[i] = argp->children[i];
+    }
+    all[count].argp = &listing_argp;
+    all[count + 1].argp = any_is_written(argp) ? &force_argp : NULL;
+    return all;
+}
+
+void file_options_parse(const struct argp *argp, int argc, char **argv, void *input)
+{
+    struct argp whole = *argp;
+    struct argp_child *children = all_children(argp);
+    whole.children = children;
+    option_list list = all_options(&whole);
+    file_list files = {0};
+    if (read_line(&list, argc, argv, &files)) {
+        int code = file_guard_begin(files.items, files.count, files.force); /* keeps them */
+        if (code != CLI_OK) {
+            exit(code);
+        }
+    }
+    free(list.items);
+    argp_parse(&whole, argc, argv, 0, NULL, input);
+    free(children);
+}
