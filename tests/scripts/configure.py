@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""configure.py CMAKE: on a bare system the build says what is missing, all of it at once, and does without the tests."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from common import check, done
+
+CMAKE = sys.argv[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def packages(folder, without):
+    """A folder with what pkg-config finds here, but for some."""
+    path = subprocess.run(["pkg-config", "--variable", "pc_path", "pkg-config"], capture_output=True, text=True,
+                          check=True).stdout.strip()
+    folder.mkdir()
+    for here in path.split(":"):
+        for file in pathlib.Path(here).glob("*.pc") if os.path.isdir(here) else []:
+            if file.stem not in without and not (folder / file.name).exists():
+                (folder / file.name).symlink_to(file)
+    return str(folder)
+
+
+def configure(folder, without, *options):
+    """The exit status and what cmake says."""
+    name = f"build-{len(list(folder.iterdir()))}"
+    environment = {**os.environ, "PKG_CONFIG_LIBDIR": packages(folder / f"{name}-packages", without)}
+    environment.pop("PKG_CONFIG_PATH", None)
+    ended = subprocess.run([CMAKE, "-S", ROOT, "-B", folder / name, "-DT3R_LIBCAMERA=OFF", "-DT3R_OPENCV=OFF", *options],
+                           capture_output=True, text=True, env=environment)
+    return ended.returncode, ended.stdout + ended.stderr
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="trim3r-configure-") as scratch:
+        folder = pathlib.Path(scratch)
+        status, text = configure(folder, ["cmocka"])
+        check(status == 0 and "they need cmocka (Debian: libcmocka-dev)" in text, f"without cmocka: {status} {text}")
+        status, text = configure(folder, ["cmocka"], "-DT3R_TESTS=ON")
+        check(status != 0 and "libcmocka-dev" in text and "-DT3R_TESTS=OFF" in text, f"tests without cmocka: {text}")
+        status, text = configure(folder, ["libzip", "lapacke"])
+        check(status != 0 and "libzip-dev" in text and "liblapacke-dev" in text and "-DT3R_TOOLS=OFF" in text,
+              f"without two libraries: {text}")
+        status, text = configure(folder, ["cmocka", "libzip", "libcjson"], "-DT3R_TOOLS=OFF")
+        check(status == 0, f"the runtime alone: {text}")
+    done()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
