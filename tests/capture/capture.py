@@ -174,7 +174,7 @@ def progress():
 def stops_before_it_begins():
     """Ctrl-C while the clocks' offset is looked for: what there is under the output's name stays."""
     with open("kept.mcap", "wb") as file:
-        file.write(b"of before")
+        file.write(b"\x89MCAP0\r\nof before")
     run("room", "--size", "640x480", "--frames", 2, "-o", "large.mcap")  # so that it takes long
     leader, follower = pty.openpty()
     process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:large.mcap", "--repeat", "4000000000", "--poses",
@@ -192,7 +192,7 @@ def stops_before_it_begins():
         pass
     check(process.wait(60) == 1 and b"stopped before the capture began" in said, said.decode())
     os.close(leader)
-    check(read("kept.mcap") == b"of before", "the output is not touched")
+    check(read("kept.mcap") == b"\x89MCAP0\r\nof before", "the output is not touched")
 
 
 def killed():

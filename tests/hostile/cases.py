@@ -96,7 +96,7 @@ given("recording", "escapes-in-compression.mcap", f.mcap(f.chunk(f.ESCAPE, b"", 
 # --- files that are none ---------------------------------------------------------------------------------------------
 
 
-@case("path", "pipe.mcap", "empty")
+@case("path", "pipe.mcap", "not a regular file")
 def lone_pipe(path):
     os.mkfifo(path)
 
