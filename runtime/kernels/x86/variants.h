@@ -13,8 +13,32 @@
 #define T3R_CPU_X86_VNNI_ (T3R_CPU_AVX2 | T3R_CPU_AVX512 | T3R_CPU_VNNI)
 /* X(entry, features, function): its type is the entry's. */
 #define T3R_X86_VARIANTS(X)                                                                                            \
+    X(packed_row, T3R_CPU_AVX2, t3r_packed_row_avx2)                                                                   \
+    X(nv12_row, T3R_CPU_AVX2, t3r_nv12_row_avx2)                                                                       \
+    X(triple_row, T3R_CPU_AVX2, t3r_triple_row_avx2)                                                                   \
+    X(box_sums, T3R_CPU_AVX2, t3r_box_sums_avx2)                                                                       \
+    X(weigh_row, T3R_CPU_AVX2, t3r_weigh_row_avx2)                                                                     \
+    X(divide_row, T3R_CPU_AVX2, t3r_divide_row_avx2)                                                                   \
+    X(census_row, T3R_CPU_AVX2, t3r_census_row_avx2)                                                                   \
+    X(census_cost, T3R_CPU_AVX2, t3r_census_cost_avx2)                                                                 \
+    X(path_step, T3R_CPU_AVX2, t3r_path_step_avx2)                                                                     \
+    X(luma_row, T3R_CPU_AVX2, t3r_luma_row_avx2)                                                                       \
+    X(split_row, T3R_CPU_AVX2, t3r_split_row_avx2)                                                                     \
+    X(db2_predict, T3R_CPU_AVX2, t3r_db2_predict_avx2)                                                                 \
+    X(db2_update, T3R_CPU_AVX2, t3r_db2_update_avx2)                                                                   \
+    X(add_row, T3R_CPU_AVX2, t3r_add_row_avx2)                                                                         \
+    X(subtract_row, T3R_CPU_AVX2, t3r_subtract_row_avx2)                                                               \
+    X(haar_update, T3R_CPU_AVX2, t3r_haar_update_avx2)                                                                 \
+    X(cdf53_predict, T3R_CPU_AVX2, t3r_cdf53_predict_avx2)                                                             \
+    X(cdf53_update, T3R_CPU_AVX2, t3r_cdf53_update_avx2)                                                               \
+    X(texture_finest, T3R_CPU_AVX2, t3r_texture_finest_avx2)                                                           \
+    X(texture_coarse, T3R_CPU_AVX2, t3r_texture_coarse_avx2)                                                           \
+    X(texture_add, T3R_CPU_AVX2, t3r_texture_add_avx2)                                                                 \
+    X(texture_spread, T3R_CPU_AVX2, t3r_texture_spread_avx2)                                                           \
     X(nearest_begin, T3R_CPU_AVX2, t3r_nearest_begin_avx2)                                                             \
     X(nearest, T3R_CPU_AVX2, t3r_nearest_avx2)                                                                         \
+    X(blur_row, T3R_CPU_AVX2, t3r_blur_row_avx2)                                                                       \
+    X(blur_column, T3R_CPU_AVX2, t3r_blur_column_avx2)                                                                 \
     X(convolve, T3R_CPU_AVX2, t3r_convolve_avx2)                                                                       \
     X(convolve, T3R_CPU_X86_VNNI_, t3r_convolve_vnni)                                                                  \
     X(depthwise, T3R_CPU_AVX2, t3r_depthwise_avx2)                                                                     \
