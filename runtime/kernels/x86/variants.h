@@ -37,6 +37,7 @@
     X(texture_spread, T3R_CPU_AVX2, t3r_texture_spread_avx2)                                                           \
     X(nearest_begin, T3R_CPU_AVX2, t3r_nearest_begin_avx2)                                                             \
     X(nearest, T3R_CPU_AVX2, t3r_nearest_avx2)                                                                         \
+    X(nearest, T3R_CPU_X86_VNNI_, t3r_nearest_vnni)                                                                    \
     X(blur_row, T3R_CPU_AVX2, t3r_blur_row_avx2)                                                                       \
     X(blur_column, T3R_CPU_AVX2, t3r_blur_column_avx2)                                                                 \
     X(convolve, T3R_CPU_AVX2, t3r_convolve_avx2)                                                                       \
