@@ -31,6 +31,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .keep_analysis = 0,
         .stream = 0,
         .half_life = 32,
+        .tile_splats = 0,
         .workers = 1,
         .seed = 1,
     };
@@ -68,6 +69,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
     X("keep_analysis must be 0 or 1", c->keep_analysis, 0, 1)                                                          \
     X("stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo)     \
     X("half_life must be 0..1024", c->half_life, 0, 1024)                                                              \
+    X("tile_splats must be 0..2^24", c->tile_splats, 0, T3R_MAX_GAUSSIANS)                                             \
     X("workers must be 1..16", c->workers, 1, T3R_MAX_WORKERS)
 
 #define BOUNDS(text, value, low, high) {(uint32_t)(value), (low), (high)},

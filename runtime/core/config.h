@@ -9,6 +9,12 @@
 /* t3r_config_error() without its texts. */
 bool t3r_is_config(const t3r_config *config);
 
+/* The most splats that a tile is drawn from. */
+static inline uint32_t t3r_tile_splats_of(const t3r_config *config)
+{
+    return config->tile_splats != 0 ? config->tile_splats : UINT32_MAX;
+}
+
 /* At least the bytes of any arena for fields in range, counted generously and in 64 bits: sums in size_t may wrap. */
 uint64_t t3r_most_arena_bytes(const t3r_config *config);
 

@@ -259,6 +259,9 @@ typedef struct t3r_config {
     /* The number of tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS. Each has a part of the arena
      * for itself. The number never changes a bit. [1] */
     uint32_t workers;
+    /* The most Gaussians that a tile of 16 x 16 pixels is drawn from, the nearest of those that reach into it,
+     * 0..T3R_MAX_GAUSSIANS; 0 = all of them. It bounds the time of a scene that is not trusted. [0] */
+    uint32_t tile_splats;
     /* The seed, any number, of the K-means, of T3R_ALLOCATE_RANDOM and of ties in blue noise. [1] */
     uint32_t seed;
 } t3r_config;
@@ -348,7 +351,8 @@ typedef struct t3r_target {
 typedef struct t3r_hooks {
     /* The caller's own, handed to each callback. */
     void *user;
-    /* Called between bounded pieces of long work (a view, a batch, 64 tiles); a return other than 0 cancels it. */
+    /* Called between bounded pieces of long work: a view, a batch, 64 tiles, 65,536 splats blended into tiles. A return
+     * other than 0 cancels it. */
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
     /* Called with the hash of every stage of t3r_reconstruct(), t3r_rebuild() and t3r_render() (SPEC, "Hash"). */
     void (*stage_hash)(void *user, t3r_stage stage, uint64_t hash);
@@ -375,6 +379,9 @@ typedef struct t3r_plan_info {
     size_t min_bytes;
     /* The bytes with which a view takes one pass, unless most of its splats are many tiles wide. */
     size_t bytes;
+    /* The most splats that one render of the largest target blends into tiles: every Gaussian in every tile, or
+     * tile_splats in each. A scene of surfaces blends a few times max_gaussians. */
+    uint64_t most_blends;
     /* The number of buffers, T3R_BUFFER_COUNT. */
     uint32_t buffer_count;
     /* The buffers, as laid out in an arena of `bytes`. */

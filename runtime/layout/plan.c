@@ -15,6 +15,8 @@ t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
     (void)t3r_lay_out(config, layout.bytes, &layout);
     plan->min_bytes = layout.min_bytes;
     plan->bytes = layout.bytes;
+    plan->most_blends = (uint64_t)T3R_TILES_(config->render_width, config->render_height) *
+                        T3R_MIN(t3r_tile_splats_of(config), config->max_gaussians);
     plan->buffer_count = T3R_BUFFER_COUNT;
     for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
         t3r_plan_buffer *row = &plan->buffers[b];

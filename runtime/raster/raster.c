@@ -15,18 +15,58 @@ typedef struct tile_job {
     uint32_t first;      /* tile of index 0 */
 } tile_job;
 
-/* Tiles drawn between two looks at the progress hook. */
+/* Tiles drawn between two looks at the progress hook, and splats blended into them: a multiple of T3R_STOP_INTERVAL. */
 #define DRAW_CHUNK 64u
+#define DRAW_SPLATS 65536u
+
+static uint32_t list_begin(const tile_job *job, uint32_t tile)
+{
+    return tile == job->pass_first ? 0 : job->bin->table[tile - 1];
+}
 
 static void draw_job(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const tile_job *job = context;
     const t3r_binning *bin = job->bin;
-    uint32_t tile = job->first + index;
-    uint32_t begin = tile == job->pass_first ? 0 : bin->table[tile - 1];
-    t3r_draw_tile(bin->kernels, bin->splats, bin->lists + begin, bin->table[tile] - begin, tile % bin->across,
-                  tile / bin->across, job->target);
+    const uint32_t tile = job->first + index, begin = list_begin(job, tile);
+    t3r_drawn_tile drawn;
+    t3r_draw_begin(&drawn, tile % bin->across, tile / bin->across);
+    t3r_draw_list(&drawn, bin->kernels, bin->splats, bin->lists + begin, t3r_list_length(bin, begin, tile),
+                  job->target);
+    t3r_draw_end(&drawn, job->target);
+}
+
+/* How many tiles from the first on are drawn at once: none when that one is too long. */
+static uint32_t chunk_of(const tile_job *job, uint32_t end)
+{
+    const uint32_t most = T3R_MIN(end - job->first, DRAW_CHUNK);
+    uint32_t tiles = 0;
+    for (uint64_t splats = 0; tiles < most; tiles++) {
+        splats += t3r_list_length(job->bin, list_begin(job, job->first + tiles), job->first + tiles);
+        if (splats > DRAW_SPLATS) {
+            break;
+        }
+    }
+    return tiles;
+}
+
+/* A tile that is too long to be drawn in one go: part after part, with a look at the hook before each. */
+static bool draw_long(const t3r_runtime *rt, const tile_job *job)
+{
+    const t3r_binning *bin = job->bin;
+    const uint32_t tile = job->first, begin = list_begin(job, tile), count = t3r_list_length(bin, begin, tile);
+    t3r_drawn_tile drawn;
+    t3r_draw_begin(&drawn, tile % bin->across, tile / bin->across);
+    for (uint32_t from = 0; from < count && !drawn.stopped; from += DRAW_SPLATS) {
+        if (from > 0 && !t3r_progress(rt, T3R_STAGE_RASTER, tile, bin->tiles)) {
+            return false;
+        }
+        t3r_draw_list(&drawn, bin->kernels, bin->splats, bin->lists + begin + from, T3R_MIN(count - from, DRAW_SPLATS),
+                      job->target);
+    }
+    t3r_draw_end(&drawn, job->target);
+    return true;
 }
 
 /* Whether rows of `row_bytes` can be written there: aligned for their type, all of them. NULL: not wanted. */
@@ -72,12 +112,16 @@ t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const
     *passes = 0;
     for (uint32_t first = 0; first < bin->tiles; ++*passes) {
         uint32_t end = t3r_bin_pass(bin, first);
-        for (uint32_t tile = first; tile < end; tile += DRAW_CHUNK) {
-            if (!t3r_progress(rt, T3R_STAGE_RASTER, tile, bin->tiles)) {
+        for (tile_job job = {bin, target, first, first}; job.first < end;) {
+            if (!t3r_progress(rt, T3R_STAGE_RASTER, job.first, bin->tiles)) {
                 return T3R_ERR_CANCELLED;
             }
-            tile_job job = {bin, target, first, tile};
-            t3r_run_tasks(&workers, T3R_MIN(end - tile, DRAW_CHUNK), draw_job, &job);
+            const uint32_t tiles = chunk_of(&job, end);
+            if (tiles == 0 && !draw_long(rt, &job)) {
+                return T3R_ERR_CANCELLED;
+            }
+            t3r_run_tasks(&workers, tiles, draw_job, &job);
+            job.first += T3R_MAX(tiles, 1u);
         }
         first = end;
     }

@@ -16,13 +16,19 @@ void t3r_bin_count(const t3r_binning *bin)
     for (uint32_t tile = 0; tile < bin->tiles; tile++) {
         bin->table[tile] = 0;
     }
+    /* One more from x0 on, one less behind x1: two steps a row of tiles however wide a splat is */
     for (uint32_t i = 0; i < bin->visible; i++) {
         tile_range range = tiles_of(&bin->splats[bin->order[i]]);
         for (uint32_t y = range.y0; y <= range.y1; y++) {
-            for (uint32_t x = range.x0; x <= range.x1; x++) {
-                bin->table[y * bin->across + x]++;
+            uint32_t *row = bin->table + y * bin->across;
+            row[range.x0]++;
+            if (range.x1 + 1 < bin->across) {
+                row[range.x1 + 1]--; /* wraps, and is whole again in the sum */
             }
         }
+    }
+    for (uint32_t tile = 0; tile < bin->tiles; tile++) {
+        bin->table[tile] += tile % bin->across != 0 ? bin->table[tile - 1] : 0;
     }
 }
 

@@ -1,5 +1,6 @@
 #include "raster_list.h"
 
+#include "core/config.h"
 #include "core/fixed.h"
 #include "state/state.h"
 
@@ -49,6 +50,7 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
         .table = room->table,
         .lists = room->lists,
         .capacity = room->capacity,
+        .most = t3r_tile_splats_of(&rt->config),
     };
     t3r_bin_count(&bin);
     return bin;

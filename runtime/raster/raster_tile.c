@@ -10,11 +10,6 @@
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
 #define LEVEL_MOST 6
 
-typedef struct tile_state {
-    t3r_tile pixels;
-    uint32_t depth_q20[T3R_TILE_SIDE][T3R_TILE_SIDE];
-} tile_state;
-
 /* The least of q + 2 h t + a t^2 for t in [0, length], all Q18 but the length in pixels. */
 static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
 {
@@ -63,7 +58,7 @@ static void place_group(const t3r_splat *s, uint32_t x, uint32_t y, uint32_t gro
 }
 
 /* The splat at which a pixel's transmittance first falls below one half gives it its depth. */
-static void note_depth(tile_state *tile, uint32_t column, uint32_t first, uint32_t last, int32_t z_q20)
+static void note_depth(t3r_drawn_tile *tile, uint32_t column, uint32_t first, uint32_t last, int32_t z_q20)
 {
     for (uint32_t j = first; j <= last; j++) {
         for (uint32_t i = column; i < column + T3R_LANES; i++) {
@@ -115,11 +110,10 @@ void t3r_splat_in_tile(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile
     }
 }
 
-static void blend_splat(const t3r_kernels *kernels, tile_state *tile, const t3r_splat *s, uint32_t left, uint32_t top,
-                        bool with_depth)
+static void blend_splat(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_splat *s, bool with_depth)
 {
     t3r_tile_splat splat;
-    t3r_splat_in_tile(s, left, top, &splat);
+    t3r_splat_in_tile(s, tile->left, tile->top, &splat);
     kernels->blend(&tile->pixels, &splat, NULL);
     for (uint32_t group = 0; group < splat.groups && with_depth; group++) {
         if ((splat.drawn >> group & 1) != 0) {
@@ -146,8 +140,9 @@ static uint8_t byte_of(uint16_t colour_q7)
     return (uint8_t)T3R_MIN(rounded, 255u);
 }
 
-static void write_tile(const tile_state *tile, uint32_t left, uint32_t top, const t3r_target *target)
+void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target)
 {
+    const uint32_t left = tile->left, top = tile->top;
     uint32_t columns = T3R_MIN(target->width - left, (uint32_t)T3R_TILE_SIDE);
     uint32_t rows = T3R_MIN(target->height - top, (uint32_t)T3R_TILE_SIDE);
     for (uint32_t j = 0; j < rows; j++) {
@@ -182,19 +177,24 @@ void t3r_tile_clear(t3r_tile *tile)
     }
 }
 
-void t3r_draw_tile(const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list, uint32_t count,
-                   uint32_t tile_x, uint32_t tile_y, const t3r_target *target)
+void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y)
 {
-    uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
-    bool with_depth = target->depth_q20 != NULL;
-    tile_state tile;
-    memset(tile.depth_q20, 0, sizeof tile.depth_q20);
-    t3r_tile_clear(&tile.pixels);
-    for (uint32_t i = 0; i < count; i++) {
-        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile.pixels)) {
-            break; /* the rest would add nothing: the same pixels, sooner */
+    tile->left = tile_x * T3R_TILE_SIDE;
+    tile->top = tile_y * T3R_TILE_SIDE;
+    tile->stopped = false;
+    memset(tile->depth_q20, 0, sizeof tile->depth_q20);
+    t3r_tile_clear(&tile->pixels);
+}
+
+void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list,
+                   uint32_t count, const t3r_target *target)
+{
+    const bool with_depth = target->depth_q20 != NULL;
+    for (uint32_t i = 0; i < count && !tile->stopped; i++) {
+        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile->pixels)) {
+            tile->stopped = true; /* the rest would add nothing: the same pixels, sooner */
+        } else {
+            blend_splat(tile, kernels, &splats[list[i]], with_depth);
         }
-        blend_splat(kernels, &tile, &splats[list[i]], left, top, with_depth);
     }
-    write_tile(&tile, left, top, target);
 }

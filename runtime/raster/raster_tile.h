@@ -18,7 +18,15 @@ typedef struct t3r_binning {
     uint32_t *table; /* an entry a tile: counts, then list ends as passes open */
     uint32_t *lists;
     uint64_t capacity; /* entries of lists; at least `visible` */
+    uint32_t most;     /* splats that a tile is drawn from, the first of its list */
 } t3r_binning;
+
+/* How many splats of a list that begins at `begin` the tile is drawn from, once its pass is open. */
+static inline uint32_t t3r_list_length(const t3r_binning *binning, uint32_t begin, uint32_t tile)
+{
+    const uint32_t listed = binning->table[tile] - begin;
+    return listed < binning->most ? listed : binning->most;
+}
 
 /* Counts every tile's splats into the table. */
 void t3r_bin_count(const t3r_binning *binning);
@@ -27,11 +35,22 @@ void t3r_bin_count(const t3r_binning *binning);
  * left over. Afterwards table[t] is the end of tile t's list, which starts where tile t - 1's ends (0 for `first`). */
 uint32_t t3r_bin_pass(const t3r_binning *binning, uint32_t first);
 
-/* Draws one tile from its list (front to back) into the target. */
-void t3r_draw_tile(const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list, uint32_t count,
-                   uint32_t tile_x, uint32_t tile_y, const t3r_target *target);
+/* A tile on its way into the target. */
+typedef struct t3r_drawn_tile {
+    t3r_tile pixels;
+    uint32_t depth_q20[T3R_TILE_SIDE][T3R_TILE_SIDE];
+    uint32_t left, top; /* its first pixel in the target */
+    bool stopped;       /* all its pixels are done: whatever is blended now adds nothing */
+} t3r_drawn_tile;
 
-/* The steps of t3r_draw_tile(), for whoever blends a tile along with it. */
+/* Draws one tile: begun empty, its list blended front to back in any number of parts, written into the target. Parts
+ * but the last are a multiple of T3R_STOP_INTERVAL long. */
+void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y);
+void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list,
+                   uint32_t count, const t3r_target *target);
+void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target);
+
+/* The steps of drawing, for whoever blends a tile along with it. */
 
 /* Every so many splats a tile looks whether all its pixels are done. */
 #define T3R_STOP_INTERVAL 16

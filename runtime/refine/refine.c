@@ -108,7 +108,8 @@ static void accumulate_band(void *context, uint32_t index, uint32_t worker)
     view.kept += (size_t)index * view.kept_rows;
     for (uint32_t tile = band->begin; tile < band->end; tile++) {
         const uint32_t from = list_begin(job, tile);
-        t3r_refine_tile(&view, bin->lists + from, bin->table[tile] - from, tile % bin->across, tile / bin->across);
+        t3r_refine_tile(&view, bin->lists + from, t3r_list_length(bin, from, tile), tile % bin->across,
+                        tile / bin->across);
     }
 }
 
@@ -124,8 +125,8 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
     to->pixels[index] = 0;
     for (uint32_t tile = job->bands[index].begin; tile < job->bands[index].end; tile++) {
         const uint32_t from = list_begin(job, tile);
-        to->error[index] += t3r_refine_tile_error(&view, bin->lists + from, bin->table[tile] - from, tile % bin->across,
-                                                  tile / bin->across, &to->pixels[index]);
+        to->error[index] += t3r_refine_tile_error(&view, bin->lists + from, t3r_list_length(bin, from, tile),
+                                                  tile % bin->across, tile / bin->across, &to->pixels[index]);
     }
 }
 

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """heads.py TRIM3R: `--head`: each gives another scene and is named; weights that are refused say why."""
+import json
+import os
+import struct
 import sys
 
-from program import check, expect, expect_json, in_scratch, room, weight_file, write
+from program import HEADS, check, expect, expect_json, in_scratch, room, weight_file, write
 
 
 def heads():
@@ -40,4 +43,28 @@ def heads():
     expect(1, *base, "--head", "absent.t3w", err="absent.t3w")
 
 
-sys.exit(in_scratch(heads))
+def haze_head(path):
+    """The float head small with a last layer that says the same everywhere: faint, and 16 spacings wide."""
+    raw = bytearray(open(os.path.join(HEADS, "small.safetensors"), "rb").read())
+    data = 8 + struct.unpack("<Q", raw[:8])[0]
+    tensors = json.loads(raw[8:data])
+    for name, values in {"layer12.weight": [0] * 180, "layer12.bias": [0, 0, 4, 4, 0, 0.02, 0, 0, 0]}.items():
+        begin, end = tensors[name]["data_offsets"]
+        raw[data + begin : data + end] = struct.pack(f"<{len(values)}f", *values)
+    write(path, bytes(raw))
+
+
+def a_head_that_makes_haze_is_named():
+    recording = room()
+    expect(0, "room", "--size", "32x32", "-o", "tiny.mcap")
+    haze_head("haze.safetensors")
+    expect(0, "quantize", "haze.safetensors", "--calibrate", "tiny.mcap", "--name", "haze", "-o", "haze.t3w")
+    base = ["build", recording, "--keep", 20, "-o", "head.ply"]
+    usual, haze = (expect_json(*base, "--head", head)["tile_lists"] for head in ("small", "haze.t3w"))
+    check(0 < usual["entries"] <= usual["usual"] and usual["widest"] > 0, f"the head small is taken for haze: {usual}")
+    check(haze["entries"] > haze["usual"] and haze["widest"] == 16, f"haze is not seen: {haze}")
+    check("warning" not in expect(0, *base, "--head", "small"), "a warning without a reason")
+    expect(0, *base, "--head", "haze.t3w", out="unusually wide")
+
+
+sys.exit(in_scratch(heads, a_head_that_makes_haze_is_named))

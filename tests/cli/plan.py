@@ -45,6 +45,10 @@ def plan():
     expect(2, "plan", "--size", "16x16", "--within", "9M", "--depth", "stereo", err="stereo")
     for value in ("0", "x", "5X", "-1", ""):
         expect(2, *within, value, err="--within")
+    # every Gaussian in every tile, unless a tile takes fewer
+    check(found["most_blends"] == 16 * 16 * 13107, "the plan does not bound what a view blends")
+    check(expect_json(*base, "--tile-splats", 100)["most_blends"] == 16 * 16 * 100, "--tile-splats bounds nothing")
+    expect(0, *base, out=str(16 * 16 * 13107))
     # the settings are those of build
     check(expect_json(*base, "--refine", 0)["arena_bytes"] <= found["arena_bytes"], "refinement saves bytes")
     expect_json(*base, "--levels", 3, "--bridge-radius", 0, "--allocate", "paper")

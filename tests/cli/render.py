@@ -2,6 +2,7 @@
 """render.py TRIM3R: what `trim3r render` refuses, and what it draws."""
 import json
 import os
+import struct
 import sys
 
 from program import check, expect, expect_full, expect_json, in_scratch, room, write
@@ -24,7 +25,7 @@ def render():
     expect(2, "render", "scene.ply", "--fov", 60, "-o", "v.png", err="--fov")
     expect(2, "render", "scene.ply", recording, "extra", "--view", 1, "-o", "v.png", err="too many")
     for option, values in {"--view": ["x", "-1"], "--size": ["9", "0x9", "5000x5"], "--fov": ["0", "180", "x"],
-                           "--threads": ["0"], "--depth-unit": ["0", "x"], "--arena": ["big"]}.items():
+                           "--max-ms": ["0", "-1", "x"], "--tile-splats": ["-1", "16777217"], "--threads": ["0"], "--depth-unit": ["0", "x"], "--arena": ["big"]}.items():
         for value in values:
             expect(2, "render", "scene.ply", "-o", "v.png", f"{option}={value}", err=option)
     expect(1, "render", "scene.ply", recording, "--view", 99, "-o", "v.png", err="no frame 99")
@@ -57,4 +58,31 @@ def render():
     check(all(os.path.exists(n) for n in ("t_0000.png", "t_0001.png", "f_0001.png")), "numbered pictures are missing")
 
 
-sys.exit(in_scratch(render))
+def haze(path, count):
+    """A .ply of faint Gaussians, each wider than any picture."""
+    names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1",
+             "rot_2", "rot_3"]
+    header = "ply\nformat binary_little_endian 1.0\nelement vertex %d\n" % count
+    header += "".join(f"property float {name}\n" for name in names) + "end_header\n"
+    rows = (struct.pack("<14f", 0, 0, 2 + i / count, 1, 0, -1, -4.5, 2, 2, 2, 1, 0, 0, 0) for i in range(count))
+    with open(path, "wb") as file:
+        file.write(header.encode() + b"".join(rows))
+
+
+def slow_scenes():
+    haze("haze.ply", 20000)
+    here = {**POSE, "transform_matrix": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]}
+    write("here.json", json.dumps({**here, "w": 256, "h": 256}))
+    view = ["render", "haze.ply", "--pose", "here.json", "-o", "haze.png"]
+    expect(1, *view, "--max-ms", 50, err="--max-ms")
+    check(not os.path.exists("haze.png"), "a view that was given up is written")
+    # a bound of the splats in a tile is one of the time, and as wide as the list it changes nothing
+    bounded = expect_json(*view, "--tile-splats", 20)
+    check(bounded["render_ms"] < 1000, f"20 splats a tile take {bounded['render_ms']} ms")
+    small = ["render", "haze.ply", "--pose", "here.json", "--size", "16x16", "-o", "small.png"]
+    whole = expect_json(*small)["hash"]
+    check(expect_json(*small, "--tile-splats", 20000)["hash"] == whole, "all of a list are not the list")
+    check(expect_json(*small, "--tile-splats", 5)["hash"] != whole, "--tile-splats draws them all")
+
+
+sys.exit(in_scratch(render, slow_scenes))

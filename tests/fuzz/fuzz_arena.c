@@ -209,7 +209,7 @@ static void damage_state(t3r_runtime *rt, input *in)
 static void damage_config(t3r_runtime *rt, input *in)
 {
     t3r_config *c = &rt->config;
-    switch (below(in, 14)) {
+    switch (below(in, 15)) {
     case 0:
         c->gaussians = take_number(in, c->max_gaussians);
         break;
@@ -245,6 +245,9 @@ static void damage_config(t3r_runtime *rt, input *in)
         break;
     case 11:
         c->half_life = take_number(in, 1024);
+        break;
+    case 14:
+        c->tile_splats = take_number(in, BUDGET);
         break;
     case 12:
         c->flying = c->redundancy = c->exposure = take_number(in, 2);

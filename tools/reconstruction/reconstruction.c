@@ -57,9 +57,9 @@ uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent)
 
 static int show_progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
 {
-    (void)user;
+    const reconstruction *r = user;
     cli_progress(t3r_stage_name(stage), done, total);
-    return 0;
+    return r->give_up_at > 0 && cli_now() > r->give_up_at;
 }
 
 static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
@@ -490,6 +490,7 @@ static int load(reconstruction *r, const scene_file *scene, uint32_t width, uint
     r->config = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 0, count);
     r->config.render_width = width;
     r->config.render_height = height;
+    r->config.tile_splats = options->config.tile_splats;
     int code = open_arena(r, options);
     if (code != CLI_OK) {
         return code;

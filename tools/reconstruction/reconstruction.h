@@ -79,6 +79,7 @@ typedef struct reconstruction {
                                              when all are used */
     double add_views_seconds;             /* image stage */
     double build_seconds;                 /* t3r_reconstruct() */
+    double give_up_at;                    /* cli_now() at which what runs is cancelled; 0 = never */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* a stage that reports several times: its reports chained */
     bool stage_hashed[T3R_STAGE_COUNT];
 } reconstruction;

@@ -10,8 +10,10 @@
 #include "cli/file_options.h"
 #include "scene/scene_file.h"
 #include "scene/colmap_folder.h"
+#include "scene/tile_lists.h"
 #include "reconstruction/developed_frame.h"
 #include "cli/json_output.h"
+#include "cli/recorded_frame.h"
 #include "cli/option_values.h"
 #include "import/poses_output.h"
 #include "reconstruction/reconstruction.h"
@@ -158,7 +160,7 @@ static void add_unmatched(cJSON *root, const build_options *o, const reconstruct
 }
 
 static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r,
-                       const t3r_recording *recording, const pose_account *accounts)
+                       const t3r_recording *recording, const pose_account *accounts, const tile_lists *lists)
 {
     bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
     cJSON *root = cJSON_CreateObject();
@@ -198,6 +200,10 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     settings_add_json(cJSON_AddObjectToObject(root, "settings"), &o->settings.config);
     json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
     cJSON_AddNumberToObject(root, "build_ms", told->seconds * 1e3);
+    cJSON *listed = cJSON_AddObjectToObject(root, "tile_lists");
+    json_add_integer(listed, "entries", (int64_t)lists->entries);
+    json_add_integer(listed, "usual", (int64_t)lists->usual);
+    json_add_integer(listed, "widest", lists->widest);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
     if (o->poses != POSES_GIVEN) {
         poses_add_json(root, recording, told->context, told->context_count, accounts);
@@ -279,8 +285,36 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
     return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told, folder) : CLI_OK;
 }
 
+/* What the context views cost to draw: of the one whose tiles list most. */
+static int account_for_lists(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
+                             const reconstruction_account *told, tile_lists *most)
+{
+    *most = (tile_lists){0};
+    for (uint32_t v = 0; v < told->context_count; v++) {
+        t3r_capture_frame frame;
+        const int code = recorded_frame_read(recording, o->recording, told->context[v], &frame);
+        if (code != CLI_OK) {
+            return code;
+        }
+        const t3r_camera camera =
+            reconstruction_camera(&frame.camera, frame.frame.width, frame.frame.height, told->width, told->height);
+        const tile_lists lists = tile_lists_of(scene, &camera, told->width, told->height);
+        *most = lists.entries > most->entries ? lists : *most;
+    }
+    return CLI_OK;
+}
+
+static void print_lists(const tile_lists *lists)
+{
+    if (lists->entries > lists->usual) {
+        printf("warning: the Gaussians are unusually wide, the widest %" PRIu32 " tiles: a view lists %" PRIu64
+               " splats in its tiles, %" PRIu64 " are usual; it takes long to draw (--tile-splats)\n",
+               lists->widest, lists->entries, lists->usual);
+    }
+}
+
 static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r,
-                       const pose_account *accounts)
+                       const pose_account *accounts, const tile_lists *lists)
 {
     if (o->poses != POSES_GIVEN) {
         poses_print(told->context, told->context_count, accounts);
@@ -299,6 +333,7 @@ static void print_text(const build_options *o, const reconstruction_account *tol
                    told->context[partner], t3r_pair_text(pair));
         }
     }
+    print_lists(lists);
 }
 
 /* Spells out the default, the first two frames. */
@@ -338,10 +373,14 @@ int command_build(int argc, char **argv)
     code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
     if (code == CLI_OK) {
         code = write_all(&o, recording, &r, &told, &folder);
+        tile_lists lists = {0};
+        if (code == CLI_OK) {
+            code = account_for_lists(&o, recording, &r.scene, &told, &lists);
+        }
         if (code == CLI_OK && o.json) {
-            print_json(&o, &told, &r, recording, accounts);
+            print_json(&o, &told, &r, recording, accounts, &lists);
         } else if (code == CLI_OK) {
-            print_text(&o, &told, &r, accounts);
+            print_text(&o, &told, &r, accounts, &lists);
         }
         reconstruction_close(&r);
     }

@@ -116,6 +116,7 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan)
     json_add_integer(root, "head_column_bytes", config->head_column_bytes);
     json_add_integer(root, "min_bytes", (int64_t)plan->min_bytes);
     json_add_integer(root, "arena_bytes", (int64_t)plan->bytes);
+    json_add_integer(root, "most_blends", (int64_t)plan->most_blends);
     cJSON *buffers = cJSON_AddArrayToObject(root, "buffers");
     for (uint32_t i = 0; i < plan->buffer_count; i++) {
         const t3r_plan_buffer *b = &plan->buffers[i];
@@ -148,6 +149,9 @@ static void print_table(const t3r_plan_info *plan, bool markdown)
     const char *total = markdown ? "| **%s** | **%zu** | | | |\n" : "%-30s %12zu\n";
     printf(total, "arena, at least", plan->min_bytes);
     printf(total, "arena, full speed", plan->bytes);
+    if (!markdown) { /* it has no bytes */
+        printf("\nsplats blended into tiles, at most %" PRIu64 " a view\n", plan->most_blends);
+    }
 }
 
 static int write_svg(const char *path, const t3r_plan_info *plan)

@@ -31,6 +31,7 @@ typedef struct render_options {
     uint32_t width, height;
     double fov_degrees;
     double depth_unit; /* world units a step of the depth picture */
+    double most_ms;    /* of a view; 0 = it may take any time */
     reconstruction_options settings;
 } render_options;
 
@@ -44,6 +45,8 @@ enum {
     KEY_DEPTH_UNIT,
     KEY_ALPHA,
     KEY_ARENA,
+    KEY_MAX_MS,
+    KEY_TILE_SPLATS,
     KEY_JSON
 };
 
@@ -63,6 +66,10 @@ static const struct argp_option options[] = {
     {"alpha", KEY_ALPHA, "a.png", OPTION_WRITES(FILE_PICTURE), "coverage to write, 16 bits, 65535 = opaque", 0},
     {"arena", KEY_ARENA, "BYTES|min|full", 0,
      "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
+    {"max-ms", KEY_MAX_MS, "MS", 0, "give up when a view takes longer (never)", PROCESSOR_GROUP},
+    {"tile-splats", KEY_TILE_SPLATS, "N", 0,
+     "draw a tile of 16 x 16 pixels from its N nearest Gaussians alone, 0..16777216; 0 = from all (0)",
+     PROCESSOR_GROUP},
     {NULL, 0, NULL, 0, "Other:", PROCESSOR_GROUP + 1},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
@@ -135,6 +142,12 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_ARENA:
         reconstruction_parse_arena(state, arg, &o->settings);
+        return 0;
+    case KEY_MAX_MS:
+        o->most_ms = parse_positive(state, "max-ms", arg, 1e9);
+        return 0;
+    case KEY_TILE_SPLATS:
+        o->settings.config.tile_splats = option_number(state, "tile-splats", arg, 0, T3R_MAX_GAUSSIANS);
         return 0;
     case KEY_JSON:
         o->json = true;
@@ -289,7 +302,12 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
         .alpha_q15 = o->alpha != NULL ? p->alpha_q15 : NULL,
         .alpha_stride_bytes = view->width * 2,
     };
+    r->give_up_at = o->most_ms > 0 ? cli_now() + o->most_ms / 1e3 : 0;
     t3r_status status = t3r_render(r->runtime, &view->camera, &target);
+    if (status == T3R_ERR_CANCELLED) {
+        return cli_error(CLI_BAD_INPUT, "view %" PRIu32 " takes longer than %g ms (--max-ms, --tile-splats)", index,
+                         o->most_ms);
+    }
     if (status != T3R_OK) {
         const char *from = o->pose != NULL ? o->pose : o->trajectory != NULL ? o->trajectory : o->recording;
         return reconstruction_error(status, from, &r->config, r->arena_bytes);
