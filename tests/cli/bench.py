@@ -34,6 +34,13 @@ def stages():
     check(matched["build_analytic_ms"] > matched["stereo_ms"] > 0 and matched["refine_ms"] > 0, "builds by stereo")
     check(found["head"] == "small" and found["head_bits"] == "8", "bench does not name the head")
     check(isinstance(found["cpu_flags"], str), "bench lacks cpu_flags")
+    features = set(found["cpu_used"].split())
+    check(set(found["kernels"].values()) <= features | {"c"}, f"kernels of what is not used: {found['kernels']}")
+    plain = expect_json("bench", "--runs", 1, "--stages", "texture_ns_per_pixel", "--cpu-mask", "none")
+    check(set(plain["kernels"].values()) <= {"c"}, f"kernels without features: {plain['kernels']}")
+    check(plain["kernels"].keys() == found["kernels"].keys(), "kernels come and go")
+    if "avx2" in features:
+        check(found["kernels"]["blend"] != "c", f"blend has a variant: {found['kernels']}")
 
 
 sys.exit(in_scratch(points, stages))

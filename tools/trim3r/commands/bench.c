@@ -10,6 +10,7 @@
 #include <time.h>
 
 #include "study/bench/bench_head.h"
+#include "study/bench/bench_kernels.h"
 #include "study/bench/bench_points.h"
 #include "study/bench/bench_refine.h"
 #include "study/bench/bench_stereo.h"
@@ -532,6 +533,38 @@ static void read_cpu_flags(char *flags, size_t flags_bytes)
     }
 }
 
+/* The inner loops by the instruction set of their variants; those that are not named have plain C alone. */
+static void print_kernels(const t3r_kernels *kernels)
+{
+    bench_kernel list[BENCH_KERNELS_MOST];
+    const uint32_t count = bench_kernels_of(kernels, list);
+    bool listed[BENCH_KERNELS_MOST] = {false};
+    printf("%-22s", "kernels");
+    for (uint32_t i = 0; i < count; i++) {
+        if (listed[i]) {
+            continue;
+        }
+        printf("%s %s:", i == 0 ? "" : ";", list[i].set);
+        for (uint32_t k = i; k < count; k++) {
+            if (strcmp(list[k].set, list[i].set) == 0) {
+                printf(" %s", list[k].entry);
+                listed[k] = true;
+            }
+        }
+    }
+    printf("\n");
+}
+
+static void add_kernels(cJSON *root, const t3r_kernels *kernels)
+{
+    bench_kernel list[BENCH_KERNELS_MOST];
+    const uint32_t count = bench_kernels_of(kernels, list);
+    cJSON *object = cJSON_AddObjectToObject(root, "kernels");
+    for (uint32_t i = 0; i < count; i++) {
+        cJSON_AddStringToObject(object, list[i].entry, list[i].set);
+    }
+}
+
 static void print_results(const workload *w, const bench_options *o, const bool chosen[STAGE_COUNT],
                           double times[STAGE_COUNT][MAX_RUNS])
 {
@@ -549,6 +582,7 @@ static void print_results(const workload *w, const bench_options *o, const bool 
             printf("%-22s %9.5f  (%" PRIu32 " points)\n", "kmeans_msd", w->kmeans_msd, w->points.count);
         }
         printf("%-22s %s\n", "cpu_flags", flags);
+        print_kernels(&w->kernels);
         return;
     }
     cJSON *root = cJSON_CreateObject();
@@ -574,6 +608,7 @@ static void print_results(const workload *w, const bench_options *o, const bool 
     json_add_integer(root, "threads", o->processor.threads);
     t3r_cpu_describe(o->processor.cpu, flags_used, sizeof flags_used);
     cJSON_AddStringToObject(root, "cpu_used", flags_used);
+    add_kernels(root, &w->kernels);
     json_add_integer(root, "runs", o->runs);
     json_print(root);
 }

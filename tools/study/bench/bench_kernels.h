@@ -1,0 +1,19 @@
+/* Which variant of each inner loop a table of kernels has. */
+#ifndef TRIM3R_TOOLS_BENCH_KERNELS_H
+#define TRIM3R_TOOLS_BENCH_KERNELS_H
+
+#include <stdint.h>
+
+#include "kernels/kernels.h"
+
+#define BENCH_KERNELS_MOST 64
+
+typedef struct bench_kernel {
+    const char *entry;
+    char set[16]; /* the instruction set of its variant, "c" for plain C */
+} bench_kernel;
+
+/* The entries that have variants in this build, in the table's order; returns their number. */
+uint32_t bench_kernels_of(const t3r_kernels *kernels, bench_kernel list[BENCH_KERNELS_MOST]);
+
+#endif
