@@ -5,18 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "arguments.h"
 #include "core/camera.h"
 #include "stereo/stereo.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
-
-#define REQUIRE(condition)                                                                                             \
-    do {                                                                                                               \
-        if (!(condition)) {                                                                                            \
-            fprintf(stderr, "line %d: not true: %s\n", __LINE__, #condition);                                          \
-            abort();                                                                                                   \
-        }                                                                                                              \
-    } while (0)
 
 /* What the bytes begin with; the rest is repeated for pictures. */
 typedef struct header {
