@@ -4,7 +4,7 @@ import csv
 import os
 import sys
 
-from program import check, expect, expect_full, expect_json, in_scratch, room
+from program import check, expect, expect_full, expect_json, in_scratch, room, run
 
 
 def refused():
@@ -76,9 +76,13 @@ def built():
           "eval --auto does not take what build --auto takes")
     most = expect_json(*auto, "--gaussians", 50, "-o", "most.ply")
     check(most["gaussians"] == 50, "--gaussians is not the most of --auto")
-    text = expect(0, "build", "room.mcap", "--working", "32x32", "--gaussians", 100000, "-o", "all.ply",
-                  out="all valid points are used")
-    check("100000" in text, "the count asked for is not told")
+    for command in (["build", "-o", "all.ply"], ["build", "-o", "all.ply", "--json"], ["replay"]):
+        expect(0, *command, "room.mcap", "--working", "32x32", "--gaussians", 100000,
+               err="--gaussians 100000 is more than the views have: all ")
+    for command in (["build", "-o", "few.ply"], ["eval"], ["replay"], ["stress", "--rows", "noise", "--strengths", "1"]):
+        line = [*command, "room.mcap", "--working", "32x32", "--keep"]
+        expect(0, *line, 0.5, err="warning: --keep 0.5 is 0.5 percent of the points; a share of 0.5 is --keep 50")
+        check("warning" not in run(*line, 1)[2], f"{line}: a warning of 1 %")
     expect(0, "build", "room.mcap", "--working", "32x32", "--gaussians", 9, "--head", "none", "--method", "random",
            "--comments", "-o", "named.ply")
     named = open("named.ply", "rb").read()

@@ -6,6 +6,7 @@ Every output option of every command against every input and every other output,
 """
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -78,6 +79,18 @@ def refused(command, output, other):
         check(printed == "", f"{line} prints {printed}")
         check(before == (open("one.t3w", "rb").read() if os.path.isfile("one.t3w") else None), f"{line} wrote")
         remove(*made)
+
+
+def all_are_named():
+    """No option that takes a file is missing in the tables' listing."""
+    seen = 0
+    for command in commands():
+        listed = {row["option"] for row in table(command)}
+        for short, name, value in re.findall(r"^ +(?:(-\w), )?(?:    )?(--[\w-]+)=(\S+)", expect(0, command, "--help"), flags=re.M):
+            if re.search(r"FILE|DIR|HEAD|PNG|DEVICE|OUT|\.[a-z]{3}", value):
+                seen += 1
+                check({short, name} & listed, f"{command} {name}={value} is in no table of files")
+    check(seen > 30, f"only {seen} options take files")
 
 
 def every_pair():
@@ -190,5 +203,23 @@ def in_folders():
         expect(0, "eval", recording, "--keep", 10, "--images", "pictures", "--csv", "pictures/scores.csv")
 
 
+def names_of_others():
+    """What one command writes as a table, the next one reads: a name that is too long is cut between two characters."""
+    for spare in range(3):
+        name = "x" * spare + "\u00e9" * 110 + ".mcap"
+        os.makedirs("one", exist_ok=True)
+        room(name=f"one/{name}")
+        more = "long" * 20
+        os.makedirs(more, exist_ok=True)
+        room(name=f"{more}/{name}")
+        for command in (["eval", "--keep", 10], ["stress", "--rows", "noise", "--strengths", 1, "--captures", 0]):
+            inputs = [f"{more}/{name}", f"one/{name}"] if command[0] == "eval" else [f"one/{name}"]
+            expect(0, *command, *inputs, "--csv", "names.csv")
+            with open("names.csv", encoding="utf-8") as table:
+                check(name[:90] in table.read(), f"{command}: no name")
+        expect(0, "eval", "--keep", 10, f"{more}/{name}", f"one/{name}", "--csv", "scores.csv")
+        expect(0, "chart", "scores.csv", "-o", "names.html")
+
+
 if __name__ == "__main__":
-    sys.exit(in_scratch(every_pair, to_standard_output, other_kinds, strange_inputs, in_folders))
+    sys.exit(in_scratch(all_are_named, every_pair, to_standard_output, other_kinds, strange_inputs, in_folders, names_of_others))

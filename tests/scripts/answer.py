@@ -20,6 +20,11 @@ WRONG = {  # beside an unknown option
     "stereo_results": [["hololens_b", "--write"]],
 }
 
+for folder, _, names in os.walk(tools):
+    for path in (os.path.join(folder, name) for name in names):
+        with open(path, "rb") as file:
+            check(file.read(2) != b"#!" or os.access(path, os.X_OK), f"{path} is a script that does not start")
+
 need_opencv()
 for name in SCRIPTS:
     script = os.path.join(scripts, name)

@@ -58,6 +58,18 @@ void option_percents(struct argp_state *state, const char *option, const char *t
     }
 }
 
+void option_keep(struct argp_state *state, const char *text, double *percents, uint32_t most, uint32_t *count)
+{
+    option_percents(state, "keep", text, percents, most, count);
+    for (uint32_t i = 0; i < *count; i++) {
+        if (percents[i] < 1) {
+            (void)cli_error(CLI_OK, "warning: --keep %g is %g percent of the points; a share of %g is --keep %g",
+                            percents[i], percents[i], percents[i], percents[i] * 100);
+            return;
+        }
+    }
+}
+
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count)
 {
     if (cli_parse_list_u32(text, frames, T3R_MAX_VIEWS, count) != 0) {

@@ -4,13 +4,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "cli/file_options.h"
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/option_names.h"
 
 enum { KEY_HEAD = 0x1a0 };
 
 static const struct argp_option options[] = {
-    {"head", KEY_HEAD, "HEAD", 0, "head that makes the Gaussians: ", 20},
+    {"head", KEY_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD, "head that makes the Gaussians: ", 20},
     {0},
 };
 

@@ -150,7 +150,7 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
         o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
         return 0;
     case KEY_KEEP:
-        option_percents(state, "keep", arg, &o->keep_percent, 1, &count);
+        option_keep(state, arg, &o->keep_percent, 1, &count);
         return 0;
     case KEY_METHOD:
         o->method = method_named((list_word){arg, strlen(arg)});

@@ -29,6 +29,16 @@ void reconstruction_defaults(reconstruction_options *options)
     };
 }
 
+void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t count)
+{
+    if (options->gaussians > count && !options->automatic) {
+        (void)cli_error(CLI_OK,
+                        "warning: --gaussians %" PRIu32 " is more than the views have: all %" PRIu32
+                        " valid points are used",
+                        options->gaussians, count);
+    }
+}
+
 reconstruction_account reconstruction_told(const reconstruction *r)
 {
     reconstruction_account told = {

@@ -9,6 +9,7 @@
 #include "import/planar_recording.h"
 #include "cli/recorded_frame.h"
 #include "study/evaluation/nearest_views.h"
+#include "text.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
@@ -21,7 +22,7 @@ static void scene_name(const char *path, uint32_t parts, char *name, size_t byte
             break;
         }
     }
-    snprintf(name, bytes, "%s", start);
+    t3r_text_copy(name, bytes, t3r_text_of(start)); /* cut between characters, or no table could be read */
     char *dot = strrchr(name, '.');
     if (dot != NULL && dot != name && strchr(dot, '/') == NULL) {
         *dot = '\0';

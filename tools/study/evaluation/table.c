@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/csv_read.h"
+#include "text.h"
 
 typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */
 
@@ -259,7 +260,10 @@ bool evaluation_glance(const evaluation_row *row, uint32_t index, bool planar, c
 /* Texts to the left, numbers to the right. */
 static void print_cell(FILE *out, const column *c, const char *text)
 {
-    fprintf(out, "%*.*s", c->value < 0 ? -c->width : c->width, c->width - 1, text);
+    char cut[64];
+    size_t room = (size_t)c->width < sizeof cut ? (size_t)c->width : sizeof cut;
+    t3r_text_copy(cut, room, t3r_text_of(text)); /* between characters */
+    fprintf(out, "%*s", c->value < 0 ? -c->width : c->width, cut);
 }
 
 void evaluation_print_header(FILE *out, bool planar)

@@ -322,9 +322,6 @@ static void print_text(const build_options *o, const reconstruction_account *tol
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n",
            o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
            told->seconds * 1e3);
-    if (told->requested > r->scene.count && !o->settings.automatic) {
-        printf("%" PRIu32 " were asked for; all valid points are used\n", told->requested);
-    }
     for (uint32_t v = 0; v < told->context_count; v++) {
         uint32_t partner;
         t3r_pair pair = t3r_stereo_pair(r->runtime, v, &partner);
@@ -372,6 +369,7 @@ int command_build(int argc, char **argv)
     reconstruction_account told;
     code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
     if (code == CLI_OK) {
+        reconstruction_warn_of_budget(&o.settings, r.scene.count);
         code = write_all(&o, recording, &r, &told, &folder);
         tile_lists lists = {0};
         if (code == CLI_OK) {

@@ -214,7 +214,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         o->settings.context_views = option_number(state, "views", arg, 2, T3R_MAX_VIEWS);
         return 0;
     case KEY_KEEP:
-        option_percents(state, "keep", arg, o->keep, MOST_KEEPS, &o->keep_count);
+        option_keep(state, arg, o->keep, MOST_KEEPS, &o->keep_count);
         return 0;
     case KEY_METHODS:
         option_methods(state, "methods", arg, o->methods, &o->method_count);

@@ -16,6 +16,7 @@
 #include "study/stress/measure.h"
 #include "study/stress/report.h"
 #include "study/stress/scene.h"
+#include "text.h"
 
 #define MOST_ROWS 64u
 #define MOST_CAPTURES 64u
@@ -102,7 +103,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         option_methods(state, "methods", arg, c->methods, &c->method_count);
         return 0;
     case KEY_KEEP:
-        option_percents(state, "keep", arg, c->keep, STRESS_KEEPS_MOST, &c->keep_count);
+        option_keep(state, arg, c->keep, STRESS_KEEPS_MOST, &c->keep_count);
         return 0;
     case KEY_ROWS:
         parse_rows(state, o, arg);
@@ -378,7 +379,7 @@ static int stress_room(stress_report *report, const options *o)
 static void case_name(const char *path, char *name, size_t bytes)
 {
     const char *slash = strrchr(path, '/');
-    snprintf(name, bytes, "%s", slash == NULL ? path : slash + 1);
+    t3r_text_copy(name, bytes, t3r_text_of(slash == NULL ? path : slash + 1));
     char *dot = strrchr(name, '.');
     if (dot != NULL && dot != name) {
         *dot = '\0';
