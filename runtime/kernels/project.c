@@ -3,25 +3,11 @@
 #include "project.h"
 
 #include "core/fixed.h"
-
-#define EXTENT_MOST_Q12 (1 << 24) /* a footprint column is held within 4096 px */
-
-/* 1 / z as rn 2^(lz - 62), rn in (2^30, 2^31] */
-typedef struct reciprocal {
-    int64_t rn;
-    int32_t lz;
-} reciprocal;
-
-static reciprocal invert(uint32_t z)
-{
-    int32_t lz = 31 - (int32_t)t3r_msb32(z);
-    uint32_t normal = z << lz;
-    return (reciprocal){(int64_t)((UINT64_C(1) << 62) / normal), lz};
-}
+#include "project_parts.h"
 
 /* One row of T = J W F in pixels, Q12: (f / z) (w - tangent w2) F, with tangent = x / z or y / z. */
-static void footprint_row(const int32_t *w, const int32_t *w2, int32_t tangent_q24, int32_t f_q16, reciprocal inverse,
-                          const t3r_gaussian *g, int32_t row_q12[3])
+static void footprint_row(const int32_t *w, const int32_t *w2, int32_t tangent_q24, int32_t f_q16,
+                          t3r_reciprocal inverse, const t3r_gaussian *g, int32_t row_q12[3])
 {
     int32_t r_q24[3]; /* |w| <= 1 and |tangent| <= 16: below 2^29 */
     for (int i = 0; i < 3; i++) {
@@ -39,7 +25,7 @@ static void footprint_row(const int32_t *w, const int32_t *w2, int32_t tangent_q
         if (shift > 0) {
             pixels = t3r_clamp64(pixels, -((int64_t)1 << 40), (int64_t)1 << 40);
         }
-        row_q12[j] = (int32_t)t3r_clamp64(t3r_scale64(pixels, shift), -EXTENT_MOST_Q12, EXTENT_MOST_Q12);
+        row_q12[j] = (int32_t)t3r_clamp64(t3r_scale64(pixels, shift), -T3R_EXTENT_MOST_Q12, T3R_EXTENT_MOST_Q12);
     }
 }
 
@@ -75,30 +61,23 @@ static void conic_of(const int32_t a_q12[3], const int32_t b_q12[3], t3r_splat *
     uint64_t det = (uint64_t)(m01 * m01) + (uint64_t)(m02 * m02) + (uint64_t)(m12 * m12) +
                    (uint64_t)t3r_round_shift64((aa + bb) * T3R_DILATION_Q24, (uint32_t)(2 * n)) +
                    ((((uint64_t)T3R_DILATION_Q24 * T3R_DILATION_Q24) >> (4 * n)));
-    /* det = normal 2^s, 1 / det = rd 2^(-62 - s) */
-    int32_t s = (int32_t)t3r_msb64(det) - 31;
-    uint32_t normal = (uint32_t)(s >= 0 ? det >> s : det << -s);
-    int64_t rd = (int64_t)((UINT64_C(1) << 62) / normal);
+    const t3r_inverse_determinant inverse = t3r_invert_determinant(det);
+    const int64_t rd = inverse.rd;
     int64_t dilation = t3r_round_shift64(T3R_DILATION_Q24, (uint32_t)(2 * n));
     /* (aa + dilation) <= 2^31.6 and rd <= 2^31: the products stay below 2^63 */
-    int32_t right = 9 + 2 * n + s;
+    int32_t right = 9 + 2 * n + inverse.s;
     splat->a_q30 = to_q30((bb + dilation) * rd, right);
     splat->b_q30 = to_q30(-ab * rd, right);
     splat->c_q30 = to_q30((aa + dilation) * rd, right);
 }
 
-/* Half-width in pixels, Q8, of the box outside of which opacity exp(-q) < 1/255: sqrt(2 L variance), by logarithms,
- * with more than their error (2^-13 of it) added. log_level: log2 of 2 L in Q8. */
 static int64_t half_width_q8(const int32_t row_q12[3], int32_t log_level_q16)
 {
     int64_t variance_q24 = T3R_DILATION_Q24;
     for (int j = 0; j < 3; j++) {
         variance_q24 += (int64_t)row_q12[j] * row_q12[j]; /* at most 3 x 2^48 */
     }
-    /* Q24 times Q8 is Q32, whose root is Q16; below 2^15 px */
-    int32_t log_half_q16 = ((t3r_log2_wide_q16((uint64_t)variance_q24) + log_level_q16) >> 1) - (16 << 16);
-    uint32_t half_q8 = t3r_exp2_q16(log_half_q16) >> 8;
-    return (int64_t)half_q8 + (half_q8 >> 10) + 2;
+    return t3r_half_width_q8((uint64_t)variance_q24, log_level_q16);
 }
 
 /* The inclusive pixels within centre -+ half, clipped to 0..size - 1; false = none */
@@ -120,7 +99,7 @@ static bool clip_range(int32_t centre_q12, int64_t half_q8, uint32_t size, uint1
 /* A Gaussian's mean before a camera. */
 typedef struct seen_mean {
     int64_t z_q20; /* in (T3R_NEAR_Q20, 2^31) */
-    reciprocal inverse;
+    t3r_reciprocal inverse;
     int64_t u_q24, v_q24; /* x / z and y / z, at most 16 and 2^-23 */
 } seen_mean;
 
@@ -141,7 +120,7 @@ static bool see(const t3r_projection *p, const t3r_gaussian *g, seen_mean *seen)
         return false;
     }
     seen->z_q20 = c[2];
-    seen->inverse = invert((uint32_t)c[2]);
+    seen->inverse = t3r_invert((uint32_t)c[2]);
     /* x / z in Q24: |c| < 2^31.8 times rn <= 2^31 stays below 2^63 */
     seen->u_q24 = t3r_round_shift64(c[0] * seen->inverse.rn, (uint32_t)(38 - seen->inverse.lz));
     seen->v_q24 = t3r_round_shift64(c[1] * seen->inverse.rn, (uint32_t)(38 - seen->inverse.lz));
@@ -181,9 +160,7 @@ bool t3r_project(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *spla
     int32_t a_q12[3], b_q12[3];
     footprint(p, g, &seen, a_q12, b_q12);
 
-    /* L = ln 2 (log2(255 opacity_q15) - 15), Q8; ln 2 = 45426 / 65536; 16 / 256 of margin */
-    int64_t level_q8 = ((((int64_t)t3r_log2_q16(255u * g->opacity_q15) - (15 << 16)) * 45426) >> 24) + 16;
-    int32_t log_level_q16 = t3r_log2_q16((uint32_t)(2 * T3R_MAX(level_q8, 16)));
+    const int32_t log_level_q16 = t3r_log_level_q16(g->opacity_q15);
     splat->x_q12 = (int32_t)x_q12;
     splat->y_q12 = (int32_t)y_q12;
     if (!clip_range(splat->x_q12, half_width_q8(a_q12, log_level_q16), p->width, &splat->x0, &splat->x1) ||

@@ -9,6 +9,7 @@
 #if defined(__x86_64__) && defined(__SSE2__)
 #define T3R_X86 1
 #define T3R_AVX2 __attribute__((target("avx2")))
+#define T3R_AVX512 __attribute__((target("avx2,avx512f,avx512bw,avx512dq,avx512vl")))
 #define T3R_VNNI __attribute__((target("avx2,avx512f,avx512bw,avx512dq,avx512vl,avx512vnni")))
 #define T3R_CPU_X86_VNNI_ (T3R_CPU_AVX2 | T3R_CPU_AVX512 | T3R_CPU_VNNI)
 /* X(entry, features, function): its type is the entry's. */
@@ -43,6 +44,7 @@
     X(convolve, T3R_CPU_AVX2, t3r_convolve_avx2)                                                                       \
     X(convolve, T3R_CPU_X86_VNNI_, t3r_convolve_vnni)                                                                  \
     X(depthwise, T3R_CPU_AVX2, t3r_depthwise_avx2)                                                                     \
+    X(project, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_project_avx512)                                                      \
     X(blend, T3R_CPU_AVX2, t3r_blend_avx2)
 #else
 #define T3R_X86_VARIANTS(X)
