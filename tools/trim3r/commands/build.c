@@ -266,7 +266,7 @@ static int write_colmap(const build_options *o, const t3r_recording *recording, 
                               o->settings.points_of == NULL || method_kind_of(o->settings.method) == METHOD_TRIM3R};
     if (code == CLI_OK && (colmap_folder_write(folder, &model, error, sizeof error) != 0 ||
                            whole_folder_commit(folder, error, sizeof error) != 0)) {
-        code = cli_error(CLI_BAD_INPUT, "%s", error);
+        code = cli_error(CLI_BAD_INPUT, "--colmap %s: %s", o->colmap, error);
     }
     for (uint32_t v = 0; v < told->context_count; v++) {
         free(views[v].rgb);
