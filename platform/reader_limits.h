@@ -18,7 +18,6 @@
 #define T3R_LIMIT_TANGENTIAL 16    /* |p1|, |p2| of radial-tangential distortion */
 #define T3R_LIMIT_POSITION_LOG2 30 /* |x|, |y|, |z| below 2^30 world units */
 #define T3R_LIMIT_DEPTH_UNIT 128   /* world units a step: below it, and 2^-40 or more */
-#define T3R_LIMIT_ROTATION_Q1 3    /* |w| ... |z| of a recorded quaternion: 1.5 */
 
 /* ---- of how many ---- */
 

@@ -16,7 +16,7 @@ README_LINES = 200
 STUDY = ROOT / "docs" / "study"
 COPIED = [ROOT / "README.md", ROOT / "docs" / "rivals.md"]  # tables with figures of docs/study/paper.md, by hand
 # read for links and wording alone: formats and figures, not commands
-OTHERS = [ROOT / "runtime" / "DESIGN.md", ROOT / "runtime" / "SPEC.md", ROOT / "quant" / "heads" / "MODEL_CARD.md",
+OTHERS = [ROOT / "SECURITY.md", ROOT / "runtime" / "DESIGN.md", ROOT / "runtime" / "SPEC.md", ROOT / "quant" / "heads" / "MODEL_CARD.md",
           *sorted(STUDY.glob("*.md"))]
 
 

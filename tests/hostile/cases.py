@@ -32,7 +32,7 @@ def filled(codec, mib, chunks=1):
     out = [f.channels()]
     for _ in range(chunks):
         head = f.image(10**9, 4096, 4096, data=b"", data_bytes=mib * MIB)
-        start = f.message(4, 10**9, head, 22 + len(head) + mib * MIB)
+        start = f.message(1, 10**9, head, 22 + len(head) + mib * MIB)
         size = len(start) + mib * MIB
         packed = f.zstd([start, (0, mib * MIB)]) if codec == "zstd" else f.lz4(start, 0, mib * MIB)
         out.append(f.chunk(codec, packed, size))
@@ -54,7 +54,7 @@ given("recording", "record-of-2^63.mcap", f.mcap(f.record(5, b"", 1 << 63)), "pa
 given("recording", "record-of-2^64-1.mcap", f.mcap(f.record(0x90, b"", (1 << 64) - 1)), "past the file's end")
 given("recording", "text-of-4-gb.mcap", f.mcap(f.record(3, struct.pack("<HI", 1, 0xFFFFFFFF))), "past the record's end")
 given("recording", "cut.mcap", f.mcap(f.channels(), f.frame(0), f.frame(1), end=False)[:-40], None)
-given("recording", "zeros-behind-a-cut.mcap", f.mcap(f.channels(), f.frame(0), end=False) + bytes(MIB), None)
+given("recording", "zeros-behind-a-cut.mcap", lambda: f.mcap(f.channels(), f.frame(0), end=False) + bytes(MIB), None)
 given("recording", "no-channel.mcap", f.mcap(f.frame(0)), "channel was not defined")
 given("recording", "65535-channels.mcap",
       lambda: f.mcap(f.record(3, struct.pack("<H", 1) + f.text(f.TYPES["image"]) + f.text("") + f.text("")),
@@ -128,7 +128,7 @@ given("scene", "2^64-vertices.ply", f.ply("18446744073709551616", rows=1))
 given("scene", "negative-vertices.ply", f.ply(-1, rows=1), "is no element")
 given("scene", "list-property.ply", f.ply(behind="property list uchar int vertex_indices\n"), "lists are not")
 given("scene", "header-without-end.ply", b"ply\nformat binary_little_endian 1.0\n" + b"comment x\n" * 100000, "no end")
-given("scene", "huge-header-line.ply", b"ply\ncomment " + b"x" * (8 * MIB) + b"\n", "")
+given("scene", "huge-header-line.ply", lambda: b"ply\ncomment " + b"x" * (8 * MIB) + b"\n", "")
 given("scene", "skips-2^37-bytes.ply",
       f.ply(before="element face 16777216\n" + "".join(f"property double p{i}\n" for i in range(1000))), "cut off")
 given("scene", "nan.ply", f.ply(3, values=[float("nan")] + [0] * 13), "not a finite number")
@@ -297,30 +297,48 @@ given("points", "header-of-4-gb.npy", b"\x93NUMPY\2\0" + struct.pack("<I", 0xFFF
 given("points", "deep-shape.npy", f.npy_head("(" * 4000 + "1"), "")
 
 
+def colliding(count):
+    """Texts that share the low bits of their FNV-1a hashes, by search."""
+    found = {}
+    for i in range(1 << 20):
+        text, value = b"%x" % i, 2166136261
+        for byte in text:
+            value = (value ^ byte) * 16777619 & 0xFFFFFFFF
+        found.setdefault(value & 0x3FF, []).append(text)
+        if len(found[value & 0x3FF]) == count:
+            break
+    return max(found.values(), key=len)
+
+
 # --- tables, poses, heads --------------------------------------------------------------------------------------------
 
 given("table", "escapes.csv", lambda: f"scene,psnr,build_ms\n{f.ESCAPE},30,1\n".encode(), "control character")
-given("table", "row-of-9-mb.csv", b"psnr,build_ms\n" + b"9" * (9 * MIB) + b",1\n", "16384 bytes")
+given("table", "row-of-9-mb.csv", lambda: b"psnr,build_ms\n" + b"9" * (9 * MIB) + b",1\n", "16384 bytes")
 given("table", "900-columns.csv", b",".join([b"psnr"] * 900) + b"\n", "256 cells")
 given("table", "million-rows.csv", lambda: b"psnr,build_ms\n" + b"30,1\n" * 1000000, "")
+given("table", "2-million-texts.csv",
+      lambda: b"method,head,bits,refine,allocate,depth,wavelet,levels,clusters,settings,psnr,build_ms\n" +
+      b"".join(b"%x,%x,%x,%x,%x,%x,%x,%x,%x,%x,30,1\n" % tuple(range(10 * i, 10 * i + 10)) for i in range(180000)), None)
+given("table", "colliding-texts.csv",
+      lambda: b"scene,psnr,build_ms\n" + b"".join(b"%s,30,1\n" % text for text in colliding(400)), "collide")
 given("table", "quote-without-end.csv", b'psnr,build_ms\n"' + b"x\n" * 100000, "")
 given("table", "nan.csv", b"psnr,build_ms\ninf,1\n", "")
 
-given("json", "deep.json", b"[" * 1000000, "not JSON")
+given("json", "deep.json", lambda: b"[" * 1000000, "not JSON")
 given("json", "8-million-values.json", lambda: b"[" + b"0," * 8000000 + b"0]", "")
 given("json", "escapes.json", lambda: json.dumps({"hash": f.ESCAPE, "fl_x": f.ESCAPE}).encode(), "")
 given("json", "pose-of-1e308.json",
       json.dumps({"fl_x": 40, "w": 16, "h": 16, "transform_matrix": [[1, 0, 0, 1e308]] + UNIT[1:]}).encode(), "")
 
 given("trajectory", "nan.txt", b"1 nan 0 0 0 0 0 1\n", "")
-given("trajectory", "huge-number.txt", b"9" * (9 * MIB) + b" 0 0 0 0 0 0 1\n", "")
+given("trajectory", "huge-number.txt", lambda: b"9" * (9 * MIB) + b" 0 0 0 0 0 0 1\n", "")
 given("trajectory", "3-million-poses.txt", lambda: b"1 0 0 0 0 0 0 1\n" * 3000000, "more than 2097152 poses")
 given("trajectory", "escapes.txt", f.ESCAPE.encode(), "")
-given("trajectory", "zeros.txt", bytes(MIB), "")
+given("trajectory", "zeros.txt", lambda: bytes(MIB), "")
 
 given("head", "header-of-2^63.safetensors", f.safetensors(b"{}", length=1 << 63), "a header of")
 given("head", "million-values.safetensors", lambda: f.safetensors(b'{"a":[' + b"0," * 1000000 + b"0]}"), "a header of")
-given("head", "deep.safetensors", f.safetensors(b"[" * 1000000), "JSON")
+given("head", "deep.safetensors", lambda: f.safetensors(b"[" * 1000000), "JSON")
 given("head", "tensor-of-2^62.safetensors",
       f.safetensors({"a": {"dtype": "F32", "shape": [2**31, 2**31], "data_offsets": [0, 2**62]}}), "2^32 elements")
 given("head", "overlapping.safetensors",

@@ -207,7 +207,7 @@ static int read_row(chart_table *table, const csv_reader *reader, const layout *
         return fail(reader, error, error_bytes, "picture", ": a path that leaves its folder");
     }
     if (failed != 0 || chart_texts_number(&table->texts, picture, &row->picture) != 0) {
-        return fail(reader, error, error_bytes, "", "out of memory");
+        return fail(reader, error, error_bytes, "", "out of memory, or its texts collide");
     }
     table->has_pictures |= picture[0] != '\0';
     table->row_count++;

@@ -7,7 +7,7 @@
 
 #include "study/chart/texts.h"
 
-#define CHART_FILE_BYTES_MOST (256u << 20)
+#define CHART_FILE_BYTES_MOST (16u << 20)
 #define CHART_SETTING_BYTES_MOST 160u
 #define CHART_ROWS_MOST 500000u /* of all tables together */
 

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #define FIRST_SLOTS 64u
+#define PROBES_MOST 160u /* with half of the slots free, 80 are the most that a million texts by chance ask for */
 
-/* FNV-1a. Whoever makes its values collide makes a chart slow, no more: tables are bounded. */
+/* FNV-1a. Texts may be made so that its values collide, hence the bound on probes. */
 static uint32_t hash_of(const char *text)
 {
     uint32_t hash = 2166136261u;
@@ -15,11 +16,14 @@ static uint32_t hash_of(const char *text)
     return hash;
 }
 
-/* Where the text is, or where it would be. */
+/* Where the text is, or where it would be; NULL behind PROBES_MOST others. */
 static uint32_t *find(const chart_texts *texts, const char *text)
 {
-    uint32_t mask = texts->slots - 1, i = hash_of(text) & mask;
+    uint32_t mask = texts->slots - 1, i = hash_of(text) & mask, probes = 0;
     while (texts->slot[i] != 0 && strcmp(texts->text[texts->slot[i] - 1], text) != 0) {
+        if (++probes > PROBES_MOST) {
+            return NULL;
+        }
         i = (i + 1) & mask;
     }
     return &texts->slot[i];
@@ -42,7 +46,11 @@ static int grow(chart_texts *texts)
     texts->slots = slots;
     texts->room = slots / 2;
     for (uint32_t i = 0; i < texts->count; i++) {
-        *find(texts, texts->text[i]) = i + 1;
+        uint32_t *place = find(texts, texts->text[i]);
+        if (place == NULL) {
+            return -1;
+        }
+        *place = i + 1;
     }
     return 0;
 }
@@ -53,6 +61,9 @@ int chart_texts_number(chart_texts *texts, const char *text, uint32_t *number)
         return -1;
     }
     uint32_t *slot = find(texts, text);
+    if (slot == NULL) {
+        return -1;
+    }
     if (*slot == 0) {
         char *own = strdup(text);
         if (own == NULL) {

@@ -11,7 +11,7 @@ typedef struct chart_texts {
     uint32_t slots;
 } chart_texts; /* all zeros: none yet */
 
-/* The text's number, added when it is new: 0, or -1 without memory. */
+/* The text's number, added when it is new: 0, or -1 without memory or where too many collide. */
 int chart_texts_number(chart_texts *texts, const char *text, uint32_t *number);
 void chart_texts_free(chart_texts *texts);
 
