@@ -241,67 +241,92 @@ static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
     return malformed(w, T3R_MCAP_CHUNK, place, what);
 }
 
+/* A chunk's fields, and as much of its content as is there. */
+typedef struct chunk {
+    uint64_t unpacked_bytes;
+    uint32_t crc;
+    t3r_text compression;
+    const uint8_t *packed;
+    size_t packed_bytes;
+    bool cut;
+} chunk;
+
+/* Its records, in memory of their own: *unpacked, to be freed also when it fails, and *count of its bytes. NULL, or
+ * what is wrong with the data, which a cut chunk may have; or -1 in *status, the reason given. */
+static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, uint8_t **unpacked, size_t *count,
+                                int *status)
+{
+    if (!t3r_chunk_codec_known(c->compression)) {
+        char name[32], what[96];
+        t3r_text_copy(name, sizeof name, c->compression);
+        snprintf(what, sizeof what, "its compression '%s' is not supported (lz4 and zstd are)", name);
+        *status = malformed(w, T3R_MCAP_CHUNK, place, what);
+        return NULL;
+    }
+    if (check_unpacked(w, place, c->unpacked_bytes) != 0) {
+        *status = -1;
+        return NULL;
+    }
+    uint64_t most = t3r_chunk_codec_most(c->compression, c->packed_bytes);
+    if (c->unpacked_bytes > most && !c->cut) {
+        return "its uncompressed_size is more than its data can hold";
+    }
+    uint64_t room = c->unpacked_bytes < most ? c->unpacked_bytes : most;
+    *unpacked = reserve_chunk(w) == 0 ? malloc(room > 0 ? (size_t)room : 1) : NULL;
+    if (*unpacked == NULL) {
+        *status = malformed(w, T3R_MCAP_CHUNK, place, "out of memory");
+        return NULL;
+    }
+    w->chunks->bytes += room;
+    const char *wrong =
+        t3r_chunk_decompress(c->compression, c->packed, c->packed_bytes, *unpacked, (size_t)room, count);
+    return wrong == NULL && *count != c->unpacked_bytes ? "its data are shorter than its uncompressed_size" : wrong;
+}
+
+static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
+{
+    uint8_t *unpacked = NULL;
+    size_t count = c->packed_bytes;
+    int status = 0;
+    const char *wrong = c->compression.count > 0 ? unpack_chunk(w, c, place, &unpacked, &count, &status) : NULL;
+    const uint8_t *records = unpacked != NULL ? unpacked : c->packed;
+    if (status == 0 && wrong == NULL && !c->cut && c->crc != 0 && c->crc != t3r_crc32(0, records, count)) {
+        wrong = "its CRC does not match its records";
+    }
+    if (status == 0) {
+        status = wrong != NULL && !c->cut ? malformed(w, T3R_MCAP_CHUNK, place, wrong)
+                                          : walk_chunk(w, records, count, place.offset, c->cut);
+    }
+    if (unpacked != NULL && status == T3R_MCAP_KEPT) {
+        w->chunks->data[w->chunks->count++] = unpacked;
+    } else {
+        free(unpacked);
+    }
+    return status < 0 ? -1 : 0;
+}
+
 /* `in` holds the content, or as much of it as a cut file has left. */
 static int read_chunk(walk *w, fields *in, t3r_mcap_place place, bool cut)
 {
     get_u64(in); /* message_start_time */
     get_u64(in); /* message_end_time */
-    uint64_t uncompressed_bytes = get_u64(in);
-    uint32_t crc = get_u32(in);
-    t3r_text compression = get_text(in);
-    uint64_t compressed_bytes = get_u64(in);
+    chunk c = {.unpacked_bytes = get_u64(in), .cut = cut};
+    c.crc = get_u32(in);
+    c.compression = get_text(in);
+    uint64_t packed_bytes = get_u64(in);
     if (in->failed) {
         return cut ? 0 : malformed(w, T3R_MCAP_CHUNK, place, short_fields);
     }
     size_t available = in->count - in->at;
-    if (compressed_bytes > available && !cut) {
+    if (packed_bytes > available && !cut) {
         return malformed(w, T3R_MCAP_CHUNK, place, short_fields);
     }
-    available = compressed_bytes < available ? (size_t)compressed_bytes : available;
-    const uint8_t *data = in->bytes + in->at;
-    uint8_t *own = NULL;
-    const char *wrong = NULL;
-    size_t count = available;
-    if (compression.count == 0) {
-        if (uncompressed_bytes != compressed_bytes) {
-            return malformed(w, T3R_MCAP_CHUNK, place, "uncompressed_size differs from the size of its records");
-        }
-    } else {
-        if (!t3r_chunk_codec_known(compression)) {
-            char name[32], what[96];
-            t3r_text_copy(name, sizeof name, compression);
-            snprintf(what, sizeof what, "its compression '%s' is not supported (lz4 and zstd are)", name);
-            return malformed(w, T3R_MCAP_CHUNK, place, what);
-        }
-        if (check_unpacked(w, place, uncompressed_bytes) != 0) {
-            return -1;
-        }
-        uint64_t most = t3r_chunk_codec_most(compression, available);
-        if (uncompressed_bytes > most && !cut) {
-            return malformed(w, T3R_MCAP_CHUNK, place, "its uncompressed_size is more than its data can hold");
-        }
-        uint64_t room = uncompressed_bytes < most ? uncompressed_bytes : most;
-        data = own = reserve_chunk(w) == 0 ? malloc(room > 0 ? (size_t)room : 1) : NULL;
-        if (own == NULL) {
-            return malformed(w, T3R_MCAP_CHUNK, place, "out of memory");
-        }
-        w->chunks->bytes += room;
-        wrong = t3r_chunk_decompress(compression, in->bytes + in->at, available, own, (size_t)room, &count);
-        if (wrong == NULL && count != uncompressed_bytes) {
-            wrong = "its data are shorter than its uncompressed_size";
-        }
+    if (c.compression.count == 0 && c.unpacked_bytes != packed_bytes) {
+        return malformed(w, T3R_MCAP_CHUNK, place, "uncompressed_size differs from the size of its records");
     }
-    if (wrong == NULL && !cut && crc != 0 && crc != t3r_crc32(0, data, count)) {
-        wrong = "its CRC does not match its records";
-    }
-    int status = wrong != NULL && !cut ? malformed(w, T3R_MCAP_CHUNK, place, wrong)
-                                       : walk_chunk(w, data, count, place.offset, cut);
-    if (own != NULL && status == T3R_MCAP_KEPT) {
-        w->chunks->data[w->chunks->count++] = own;
-    } else {
-        free(own);
-    }
-    return status < 0 ? -1 : 0;
+    c.packed = in->bytes + in->at;
+    c.packed_bytes = packed_bytes < available ? (size_t)packed_bytes : available;
+    return walk_packed(w, &c, place);
 }
 
 /* ---- the file ---- */
