@@ -1,6 +1,7 @@
 /* Every entry of the table of kernels, in plain C and in each variant that this processor has: random and largest
  * values, odd lengths, buffers that lie anywhere beside forbidden pages. A variant that fails is named with its input's
- * seed; `test_kernels ENTRY SEED` runs that one again. */
+ * seed; `test_kernels ENTRY SEED` runs that one again. `test_kernels --rounds N FIRST` tries N seeds from FIRST on of
+ * each, for as long as one likes. */
 #include "checks.h"
 #include "cpu.h"
 #include "guarded.h"
@@ -64,6 +65,8 @@ static any_function *entry_of(const t3r_kernels *kernels, size_t offset)
     return function;
 }
 
+static uint64_t first_seed = 1, rounds = ROUNDS;
+
 typedef struct trial {
     const t3r_kernels *kernels;
     kernel_check *check;
@@ -82,7 +85,7 @@ static const char *run_trial(void *context)
 /* What is wrong with the entry, and the seed; NULL: nothing in all rounds. */
 static const char *judge(const t3r_kernels *kernels, size_t entry, uint64_t *seed)
 {
-    for (*seed = 1; *seed <= ROUNDS; ++*seed) {
+    for (*seed = first_seed; *seed - first_seed < rounds; ++*seed) {
         trial t = {kernels, entries[entry].check, *seed};
         const char *found = guarded_run(run_trial, &t);
         if (found != NULL) {
@@ -258,6 +261,12 @@ static int run_one(const char *name, const char *seed)
 
 int main(int argc, char **argv)
 {
+    const struct CMUnitTest long_tests[] = {cmocka_unit_test(plain_c), cmocka_unit_test(variants)};
+    if (argc == 4 && strcmp(argv[1], "--rounds") == 0) {
+        rounds = strtoull(argv[2], NULL, 10);
+        first_seed = strtoull(argv[3], NULL, 10);
+        return cmocka_run_group_tests_name("kernels, many rounds", long_tests, NULL, NULL);
+    }
     const struct CMUnitTest tests[] = {cmocka_unit_test(plain_c), cmocka_unit_test(variants),
                                        cmocka_unit_test(masks_choose), cmocka_unit_test(wrong_ones_are_found)};
     return argc == 3 ? run_one(argv[1], argv[2]) : cmocka_run_group_tests_name("kernels", tests, NULL, NULL);
