@@ -7,11 +7,12 @@
 
 #define TAPS 64u /* of a step */
 #define PIXELS 4u
+#define FEW 32u /* taps for which adding up a step costs more than shorter vectors do */
 
 /* Modulo 2^32. Without optimisation an intrinsic would take stack for each operand. */
 #define ADDED(a, b) ((__m512i)((__v16su)(a) + (__v16su)(b)))
 
-/* The first `count` of 64 numbers, else zeros. Nothing else is read. */
+/* The numbers where `there` has ones, else zeros. Nothing else is read. */
 static inline T3R_VNNI __m512i load(const void *from, __mmask64 there)
 {
     return _mm512_maskz_loadu_epi8(there, from);
@@ -138,7 +139,7 @@ static __attribute__((noinline)) T3R_VNNI void convolve_four(const t3r_convoluti
 
 T3R_VNNI void t3r_convolve_vnni(const t3r_convolution *layer, const t3r_block *block, void *out, uint32_t out_pitch)
 {
-    if (layer->activation_bits == 16 || layer->weight_bits == 16) {
+    if (layer->activation_bits == 16 || layer->weight_bits == 16 || layer->taps <= FEW) {
         t3r_convolve_avx2(layer, block, out, out_pitch);
         return;
     }
