@@ -67,6 +67,10 @@ void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views, uint32_t first
     report(rt, T3R_STAGE_DEPTH, hash);
 }
 
+/* The pointmap is a function of planes that are hashed whole; to evaluate all of it again would take longer than any
+ * stage before it. */
+#define POINTMAP_STEP 4
+
 void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (no_hook(rt)) {
@@ -75,8 +79,8 @@ void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views, uint32_t fi
     uint64_t hash = hash_frame(rt);
     for (uint32_t v = first; v < end; v++) {
         t3r_pointmap map = t3r_pointmap_of(&views[v], rt->frame.exponent);
-        for (uint32_t y = 0; y < views[v].height; y++) {
-            for (uint32_t x = 0; x < views[v].width; x++) {
+        for (uint32_t y = 0; y < views[v].height; y += POINTMAP_STEP) {
+            for (uint32_t x = 0; x < views[v].width; x += POINTMAP_STEP) {
                 int32_t values[9] = {0};
                 (void)t3r_point(&map, x, y, values);
                 (void)t3r_tangents(&map, x, y, values + 3, values + 6);

@@ -33,6 +33,15 @@ static inline int64_t t3r_scale64(int64_t x, int32_t shift)
     return shift <= -63 ? 0 : t3r_round_shift64(x, (uint32_t)-shift);
 }
 
+/* The same in 32 bits, modulo 2^32: the half is added behind the shift, so that it cannot overflow. */
+static inline int32_t t3r_scale32(int32_t x, int32_t shift)
+{
+    if (shift >= 0) {
+        return shift >= 32 ? 0 : (int32_t)((uint32_t)x << shift);
+    }
+    return ((x >> T3R_MIN(-shift - 1, 31)) + 1) >> 1;
+}
+
 /* (a b) / 2^15, round-half-up: (a b + 2^14) >> 15, in 16-bit steps that a compiler turns into 16-bit lanes (SSSE3
  * pmulhrsw and NEON/MVE sqrdmulh are the same). With a b = 65536 high + low that is 2 high plus the rounded low / 2^15,
  * (low / 2^14 + 1) / 2 rounded down. -32768 x -32768 wraps to -32768; nothing in the runtime multiplies these. */
@@ -67,6 +76,13 @@ static inline uint16_t t3r_mulr_q16(uint16_t a, uint16_t b)
     uint16_t high = (uint16_t)(((uint32_t)a * b) >> 16);
     uint16_t low = (uint16_t)((uint32_t)a * b);
     return (uint16_t)(high + (low >> 15));
+}
+
+/* (a b) / 2^16, rounded down, of numbers that are not negative: one instruction on 16-bit lanes (SSE2 pmulhuw, MVE
+ * vmulh). Less than either of them. */
+static inline uint16_t t3r_mul_q16(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(((uint32_t)a * b) >> 16);
 }
 
 static inline int32_t t3r_clamp32(int32_t x, int32_t low, int32_t high)

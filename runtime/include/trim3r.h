@@ -50,7 +50,7 @@ extern "C" {
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
-#define T3R_BITS_EPOCH 6
+#define T3R_BITS_EPOCH 7
 
 #define T3R_MAX_SIDE 4096u        /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */

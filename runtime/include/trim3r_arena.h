@@ -44,7 +44,7 @@
 #define T3R_HEAD_COLUMN_BYTES 704
 #define T3R_HEAD_KERNEL_BYTES 4096
 #define T3R_CORRECTION_BYTES 20   /* what refinement will change in a Gaussian */
-#define T3R_REFINE_SUMS_BYTES 104 /* what refinement sums over a Gaussian's pixels */
+#define T3R_REFINE_SUMS_BYTES 112 /* what refinement sums over a Gaussian's pixels */
 #define T3R_WANTED_BYTES 4096     /* a tile that refinement compares with its view */
 #define T3R_MAP_RECORD_BYTES 12   /* what a stream notes about a Gaussian of its map */
 #define T3R_TILE_SIDE 16
@@ -186,10 +186,14 @@
 #define T3R_LAST_(shape, stage) (T3R_KEEP_(shape) ? T3R_AT_RASTER : (stage))
 #define T3R_LAST_ANALYSIS_(shape, stage) (T3R_KEEP_(shape) && !T3R_STREAMS_(shape) ? T3R_AT_RASTER : (stage))
 
+/* What is kept of a splat's rows while its tile is drawn: from 129 Gaussians on, sorting leaves as much room. */
+#define T3R_KEPT_LEAST_BYTES 1028
+#define T3R_KEPT_BYTES_(gaussians)                                                                                     \
+    ((size_t)(gaussians)*8 < T3R_KEPT_LEAST_BYTES ? T3R_UP_(T3R_KEPT_LEAST_BYTES) : (size_t)0)
 /* Refinement works in one buffer. First come splats, depth order, tile table and corrections of all Gaussians. Then
  * come the sums of as many Gaussians as there is room for, at least every eighth, and last tile lists. */
 #define T3R_REFINE_FIXED_BYTES_(shape)                                                                                 \
-    (T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_SPLAT_BYTES) +                                                                \
+    (T3R_KEPT_BYTES_(T3R_GAUSSIANS_(shape)) + T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_SPLAT_BYTES) +                       \
      T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_ORDER_BYTES + T3R_SORT_BYTES) +                                               \
      T3R_UP_(T3R_TILES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape)) * 4) +                                                  \
      T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_CORRECTION_BYTES))

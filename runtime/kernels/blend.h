@@ -42,23 +42,32 @@ typedef struct t3r_tile_splat {
     uint8_t x0, x1;      /* columns of the splat's box in the tile, inclusive: what refinement counts */
 } t3r_tile_splat;
 
-/* The weights w that a splat has in eight columns of a row, Q16: what transmittance loses. Those of a splat in a tile
- * are the rows first..last of its first group, then of its second. */
-typedef struct t3r_blend_weights {
-    uint16_t q16[T3R_LANES];
-} t3r_blend_weights;
+/* What a splat was to eight columns of a row when it was blended: its weights w, what transmittance lost, and its
+ * alphas, rounded down to 15 bits and 0 where w is 0. Those of a splat in a tile are the rows first..last of its first
+ * group, then of its second. */
+typedef struct t3r_blended_row {
+    uint16_t weight_q16[T3R_LANES];
+    int16_t alpha_q15[T3R_LANES];
+} t3r_blended_row;
 
-/* Blends a splat behind what the tile holds. weights: room for groups x rows, 0 where a group is not drawn; NULL: not
- * wanted. Nothing is aligned to more than its type. */
-typedef void t3r_blend_kernel(t3r_tile *restrict tile, const t3r_tile_splat *splat,
-                              t3r_blend_weights *restrict weights);
+#define T3R_BLENDED_ROWS_MOST (T3R_TILE_GROUPS * T3R_TILE_SIDE) /* of a splat in a tile */
 
-/* Blends it again by its weights, to the same bits. Of the splat only the colour, columns and rows are read. */
-typedef void t3r_blend_again_kernel(t3r_tile *restrict tile, const t3r_tile_splat *splat,
-                                    const t3r_blend_weights *weights);
+/* Rows of a splat in a tile, of all its groups. */
+static inline uint32_t t3r_rows_of(const t3r_tile_splat *splat)
+{
+    return splat->groups * (splat->last - splat->first + 1u);
+}
+
+/* Blends a splat behind what the tile holds. Nothing is aligned to more than its type. */
+typedef void t3r_blend_kernel(t3r_tile *tile, const t3r_tile_splat *splat);
+
+/* The same, and keeps what it blends: t3r_rows_of() rows, 0 where a group is not drawn. Returns all bits of the
+ * weights: 0 when the splat draws nothing. */
+typedef uint16_t t3r_blend_keep_kernel(t3r_tile *restrict tile, const t3r_tile_splat *splat,
+                                       t3r_blended_row *restrict rows);
 
 t3r_blend_kernel t3r_blend_c;
-t3r_blend_again_kernel t3r_blend_again_c;
+t3r_blend_keep_kernel t3r_blend_keep_c;
 
 /* Alpha in Q16 of one pixel: opacity x exp(-q), at most 0.99, 0 where below 1/255. Exposed for tests. */
 uint16_t t3r_alpha_q16(int32_t q_q17, uint16_t opacity_q16);

@@ -62,7 +62,7 @@ typedef struct t3r_kernels {
     t3r_radix_count_kernel *radix_count;
     t3r_radix_pass_kernel *radix_pass;
     t3r_blend_kernel *blend;
-    t3r_blend_again_kernel *blend_again;
+    t3r_blend_keep_kernel *blend_keep;
     t3r_scatter_kernel *scatter;
     t3r_solve_kernel *solve;
 

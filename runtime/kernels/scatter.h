@@ -2,12 +2,11 @@
 #ifndef T3R_KERNEL_SCATTER_H
 #define T3R_KERNEL_SCATTER_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "blend.h"
 
-/* Monomials e_x^i e_y^j with i + j <= 2, and with i + j <= 4, in the order 1 x y xx xy yy xxx xxy xyy yyy xxxx ... */
+/* Monomials x^i y^j with i + j <= 2, and with i + j <= 4, in the order 1 x y xx xy yy xxx xxy xyy yyy xxxx ... */
 #define T3R_REFINE_MOMENTS_2 6
 #define T3R_REFINE_MOMENTS_4 15
 
@@ -30,30 +29,44 @@ enum t3r_moment {
     T3R_M_Y4
 };
 
-/* A tile as it is when all splats are drawn, and what the view shows beyond it. */
+/* What one Gaussian's pixels add up to, over all views, shifted right by t3r_refine_shift(area). Integers, so the order
+ * of adding does not show. (x, y) are the splat's own coordinates: a pixel's offset from the mean, in deviations. */
+typedef struct t3r_refine_sums {
+    int32_t colour[3];                       /* sum of w r, levels, Q11 */
+    int32_t weight;                          /* sum of w, Q15 */
+    int32_t gradient[T3R_REFINE_MOMENTS_2];  /* sum of (g . r) x^i y^j, levels^2, Q7 */
+    int32_t curvature[T3R_REFINE_MOMENTS_4]; /* sum of |g|^2 x^i y^j, levels^2, Q7 */
+    uint32_t area;                           /* pixels of its boxes in the views added so far, below 2^28 */
+    int16_t right_q15[2], down_q15[2];       /* how x and y change a pixel to the right and down, in this view */
+} t3r_refine_sums;
+
+/* Sums of so many pixels are kept shifted right by ceil(log2 area) - 6, at least 0: 64 pixels' worth at most. */
+static inline uint32_t t3r_refine_shift(uint32_t area)
+{
+    return area <= 64 ? 0 : 26u - (uint32_t)__builtin_clz(area - 1);
+}
+
+/* A tile on its way: first drawn; then, from the last splat to the first, what they are blended over. */
 typedef struct t3r_wanted {
-    t3r_tile drawn;
+    t3r_tile pixels;                                      /* as drawn; on the way back its colours are those behind */
     int16_t residual_q4[3][T3R_TILE_SIDE][T3R_TILE_SIDE]; /* target - drawn, levels: +-4080 */
     uint16_t counts[T3R_TILE_SIDE][T3R_TILE_SIDE];        /* 65,535, or 0 where a pixel has no depth */
 } t3r_wanted;
 
-/* Exact sums over one splat's pixels in one tile, in the order of T3R_REFINE_MOMENTS_4. x^k y^l stands for the weight
- * C(p + k, k) C(s + l, l). p and s count what comes after the pixel: columns to the end of the splat's groups, and rows
- * to `last`. */
-typedef struct t3r_tile_sums {
-    int64_t gradient[T3R_REFINE_MOMENTS_2];  /* levels^2, Q3 */
-    int64_t curvature[T3R_REFINE_MOMENTS_4]; /* levels^2, Q2 */
-    int64_t colour[3];                       /* levels, Q19 */
-    int64_t weight;                          /* Q15 */
-    uint32_t scale;                          /* all of them times 2^scale, curvature 2^(2 scale) */
-    uint32_t last;                           /* of the rows, the last with a weight that counts */
-} t3r_tile_sums;
+/* A splat in its tile. Sums are added up in the fewest bits that hold them: `origin` and the axes modulo 2^16. */
+typedef struct t3r_scatter_splat {
+    const t3r_tile_splat *span; /* of which colour, columns and rows are read */
+    const t3r_blended_row *rows;
+    uint32_t scale;        /* the leading zeros that all weights of the rows share, of 16 bits: 0..15 */
+    int16_t origin_q13[2]; /* x and y of the first pixel of the first group */
+    int16_t right_q13[2], down_q13[2];
+    uint32_t pixels; /* of the splat's box in the tile: bounds what it adds */
+} t3r_scatter_splat;
 
-/* The sums of a splat just blended, whose weights these are. A weight counts in the splat's box and where the pixel
- * does. The scale is the most by which all weights that count stay below 2^16. tile: as it is after the splat. False:
- * no weight counts, and the sums may hold anything. */
-typedef bool t3r_scatter_kernel(const t3r_wanted *want, const t3r_tile *tile, const t3r_tile_splat *splat,
-                                const t3r_blend_weights *weights, t3r_tile_sums *sums);
+/* Takes the splat off the tile: the colours become those that it was blended over, itself included. sums: where its
+ * pixels accumulate, or NULL. Nothing is aligned to more than its type. */
+typedef void t3r_scatter_kernel(t3r_wanted *restrict tile, const t3r_scatter_splat *splat,
+                                t3r_refine_sums *restrict sums);
 t3r_scatter_kernel t3r_scatter_c;
 
 #endif

@@ -5,6 +5,7 @@
 #include "kernels/scatter.h"
 #include "raster/raster_splat.h"
 #include "refine/refine.h"
+#include "refine/refine_tile.h"
 #include "state/state.h"
 #include "stream/stream_map.h"
 #include "superclusters/superclusters.h"
@@ -17,6 +18,7 @@ _Static_assert(sizeof(t3r_cluster_sums) == T3R_CLUSTER_SUMS_BYTES, "trim3r_arena
 _Static_assert(sizeof(t3r_group_counts) == T3R_GROUP_COUNTS_BYTES, "trim3r_arena.h knows the budget's counts");
 _Static_assert(sizeof(t3r_refine_sums) == T3R_REFINE_SUMS_BYTES, "trim3r_arena.h knows refinement's sums");
 _Static_assert(sizeof(t3r_wanted) == T3R_WANTED_BYTES, "trim3r_arena.h knows the compared tile's size");
+_Static_assert(T3R_KEPT_LEAST * sizeof(uint32_t) == T3R_KEPT_LEAST_BYTES, "trim3r_arena.h knows what a splat of a tile keeps");
 _Static_assert(sizeof(t3r_map_record) == T3R_MAP_RECORD_BYTES, "trim3r_arena.h knows the map record's size");
 _Static_assert(sizeof(t3r_correction) == T3R_CORRECTION_BYTES, "trim3r_arena.h knows the correction's size");
 

@@ -114,7 +114,7 @@ static void blend_splat(t3r_drawn_tile *tile, const t3r_kernels *kernels, const 
 {
     t3r_tile_splat splat;
     t3r_splat_in_tile(s, tile->left, tile->top, &splat);
-    kernels->blend(&tile->pixels, &splat, NULL);
+    kernels->blend(&tile->pixels, &splat);
     for (uint32_t group = 0; group < splat.groups && with_depth; group++) {
         if ((splat.drawn >> group & 1) != 0) {
             note_depth(tile, splat.column + group * T3R_LANES, splat.first, splat.last, s->z_q20);

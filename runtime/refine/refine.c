@@ -16,6 +16,8 @@ typedef struct layout {
     uint32_t slice; /* Gaussians whose sums fit */
     t3r_refine_borders borders;
     t3r_wanted *wanted; /* of each band but the first */
+    uint32_t *kept;     /* what bands keep while they draw, of each `kept_words` */
+    uint32_t kept_words;
 } layout;
 
 static layout layout_of(const t3r_runtime *rt)
@@ -28,6 +30,7 @@ static layout layout_of(const t3r_runtime *rt)
     w.room.order = t3r_take(&cut, most * T3R_ORDER_BYTES + T3R_SORT_BYTES);
     w.room.table = t3r_take(&cut, T3R_TILES_(c->width, c->height) * sizeof(uint32_t));
     w.corrections = t3r_take(&cut, most * T3R_CORRECTION_BYTES);
+    w.kept = t3r_take(&cut, T3R_KEPT_BYTES_(most));
     w.slice = (uint32_t)T3R_MIN((t3r_cut_left(&cut) - least_lists) / T3R_REFINE_SUMS_BYTES, most);
     w.sums = t3r_take(&cut, (size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* what is left is a multiple of the alignment */
     w.room.capacity = T3R_MIN((uint64_t)t3r_cut_left(&cut) / sizeof(uint32_t), (uint64_t)UINT32_MAX);
@@ -39,6 +42,16 @@ static layout layout_of(const t3r_runtime *rt)
     w.borders.sums = t3r_buffer_at(rt, T3R_BUFFER_BORDER_SUMS);
     w.borders.index = (void *)(w.borders.sums + (size_t)(c->workers - 1) * w.borders.most);
     w.wanted = t3r_buffer_at(rt, T3R_BUFFER_WANTED);
+
+    w.kept_words = T3R_KEPT_LEAST;
+    if (T3R_KEPT_BYTES_(most) == 0) { /* what sorting needed is enough */
+        const uint32_t words = (uint32_t)(most * T3R_RASTER_SPARE_BYTES / sizeof *w.kept);
+        w.borders.bands = T3R_MIN(w.borders.bands, words / T3R_KEPT_LEAST);
+        w.kept = t3r_raster_spare(&w.room);
+        w.kept_words = words / w.borders.bands;
+    } else {
+        w.borders.bands = 1;
+    }
     return w;
 }
 
@@ -74,6 +87,24 @@ static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
     }
 }
 
+/* |K| <= t / (t^2 + 0.3) < 0.913 for each of T's singular values t. */
+#define AXIS_MOST_Q15 30147
+
+/* The splat's own coordinates: e = K d, K = T^T S^-1 with the first two columns of T, so that d q = -e . step for a
+ * shift by `step` of them. */
+static void set_axes(const t3r_projection *projection, const t3r_gaussian *g, const t3r_splat *s, t3r_refine_sums *sums)
+{
+    int32_t row[2][3];
+    (void)t3r_footprint_rows(projection, g, row[0], row[1]);
+    for (int k = 0; k < 2; k++) {
+        /* S^-1 is the conic doubled: Q29. |T| <= 2^24: the sums stay below 2^56. */
+        int64_t right = t3r_round_shift64((int64_t)row[0][k] * s->a_q30 + (int64_t)row[1][k] * s->b_q30, 26);
+        int64_t down = t3r_round_shift64((int64_t)row[0][k] * s->b_q30 + (int64_t)row[1][k] * s->c_q30, 26);
+        sums->right_q15[k] = (int16_t)t3r_clamp64(right, -AXIS_MOST_Q15, AXIS_MOST_Q15);
+        sums->down_q15[k] = (int16_t)t3r_clamp64(down, -AXIS_MOST_Q15, AXIS_MOST_Q15);
+    }
+}
+
 /* One view on its way: what all its bands share. */
 typedef struct view_job {
     const layout *work;
@@ -105,7 +136,7 @@ static void accumulate_band(void *context, uint32_t index, uint32_t worker)
     view.bands = job->bands;
     view.band = index;
     view.wanted = wanted_of(job->work, index);
-    view.kept += (size_t)index * view.kept_rows;
+    view.kept = job->work->kept + (size_t)index * job->work->kept_words;
     for (uint32_t tile = band->begin; tile < band->end; tile++) {
         const uint32_t from = list_begin(job, tile);
         t3r_refine_tile(&view, bin->lists + from, t3r_list_length(bin, from, tile), tile % bin->across,
@@ -121,6 +152,7 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
     const t3r_binning *bin = job->bin;
     t3r_refine_view view = *job->view;
     view.wanted = wanted_of(job->work, index);
+    view.kept = job->work->kept + (size_t)index * job->work->kept_words;
     to->error[index] = 0;
     to->pixels[index] = 0;
     for (uint32_t tile = job->bands[index].begin; tile < job->bands[index].end; tile++) {
@@ -137,7 +169,12 @@ static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view 
     const t3r_workers workers = t3r_workers_of(rt);
     const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
     const t3r_refine_view view = {
-        .kernels = &rt->kernels, .view = &views[v], .splats = w->room.splats, .gain_q14 = rt->gain_q14[v]};
+        .kernels = &rt->kernels,
+        .view = &views[v],
+        .splats = w->room.splats,
+        .kept_words = w->kept_words,
+        .gain_q14 = rt->gain_q14[v],
+    };
     error_job to = {.job = {.work = w, .view = &view, .bin = &bin}};
     view_job *job = &to.job;
     uint64_t error = 0;
@@ -154,7 +191,7 @@ static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view 
     return error;
 }
 
-/* Gaussians a task widens, solves or applies. */
+/* Gaussians a task begins, solves or applies. */
 #define CHUNK 512u
 
 static uint32_t chunks_of(uint32_t count)
@@ -166,12 +203,13 @@ typedef struct slice_job {
     const t3r_kernels *kernels;
     const layout *work;
     t3r_refine_slice slice;
+    const t3r_projection *projection; /* of the view that is begun */
     t3r_gaussian *scene;
     const t3r_map_record *records; /* NULL: all Gaussians change */
     uint32_t idle_most;
 } slice_job;
 
-static void widen_chunk(void *context, uint32_t index, uint32_t worker)
+static void begin_chunk(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const slice_job *job = context;
@@ -180,6 +218,7 @@ static void widen_chunk(void *context, uint32_t index, uint32_t worker)
         const t3r_splat *splat = &job->work->room.splats[job->slice.first + i];
         if (splat->z_q20 != 0) {
             widen(&job->slice.sums[i], splat);
+            set_axes(job->projection, &job->scene[job->slice.first + i], splat, &job->slice.sums[i]);
         }
     }
 }
@@ -207,26 +246,22 @@ static void apply_chunk(void *context, uint32_t index, uint32_t worker)
 }
 
 /* What one view adds to the sums of the slice. */
-static void accumulate(const t3r_runtime *rt, const slice_job *slice, const t3r_view *views, uint32_t v,
+static void accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t v,
                        const t3r_projection *projection)
 {
     const t3r_workers workers = t3r_workers_of(rt);
     const layout *w = slice->work;
     const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
-    t3r_run_tasks(&workers, chunks_of(slice->slice.count), widen_chunk, (void *)(uintptr_t)slice);
-    const uint32_t kept_rows =
-        (uint32_t)((size_t)rt->config.max_gaussians * T3R_RASTER_SPARE_BYTES / sizeof(t3r_blend_weights));
+    slice->projection = projection;
+    t3r_run_tasks(&workers, chunks_of(slice->slice.count), begin_chunk, slice);
     const t3r_refine_view view = {
         .kernels = &rt->kernels,
         .view = &views[v],
-        .projection = projection,
-        .scene = slice->scene,
         .splats = w->room.splats,
         .slice = slice->slice,
         .borders = &w->borders,
         .across = bin.across,
-        .kept = t3r_raster_spare(&w->room),
-        .kept_rows = kept_rows / w->borders.bands,
+        .kept_words = w->kept_words,
         .gain_q14 = rt->gain_q14[v],
     };
     view_job job = {.work = w, .view = &view, .bin = &bin};
@@ -240,7 +275,7 @@ static void accumulate(const t3r_runtime *rt, const slice_job *slice, const t3r_
 }
 
 /* The sums of a slice over all views. */
-static t3r_status accumulate_views(const t3r_runtime *rt, const slice_job *slice, const t3r_view *views, uint32_t *done,
+static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t *done,
                                    uint32_t total)
 {
     memset(slice->slice.sums, 0, (size_t)slice->slice.count * sizeof *slice->slice.sums);
@@ -263,7 +298,12 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_ma
 {
     const layout w = layout_of(rt);
     const t3r_workers workers = t3r_workers_of(rt);
-    slice_job job = {&rt->kernels, &w, {w.sums, 0, 0}, t3r_buffer_at(rt, T3R_BUFFER_SCENE), records, rt->config.views};
+    slice_job job = {.kernels = &rt->kernels,
+                     .work = &w,
+                     .slice = {w.sums, 0, 0},
+                     .scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE),
+                     .records = records,
+                     .idle_most = rt->config.views};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
     uint32_t total = rt->config.refinements * slices * rt->views, done = 0;
     memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);

@@ -40,8 +40,11 @@ static bool find_crossing(const t3r_binning *bin, const t3r_refine_slice *slice,
         if (band->crossing == most) {
             return false;
         }
-        memset(&sums[band->crossing], 0, sizeof *sums);
-        sums[band->crossing].area = slice->sums[i - slice->first].area; /* the scale in which both are kept */
+        const t3r_refine_sums *own = &slice->sums[i - slice->first];
+        t3r_refine_sums *copy = &sums[band->crossing];
+        *copy = (t3r_refine_sums){.area = own->area, /* the scale in which both are kept */
+                                  .right_q15 = {own->right_q15[0], own->right_q15[1]},
+                                  .down_q15 = {own->down_q15[0], own->down_q15[1]}};
         index[band->crossing++] = i;
     }
     return true;

@@ -5,68 +5,6 @@
 #include "pointmap/exposure.h"
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "refine_moments.h"
-
-/* What one pixel adds at most, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 / 2),
- * and |e|^k exp(-|e|^2 / 2), k <= 2, beside |g| |r| and |e|^k exp(-|e|^2), k <= 4, beside |g|^2 are at most 1. A tile
- * is held to as many times that as the splat's box has pixels there, so that the bound does not hang on roundings. */
-#define MOMENT_MOST_Q7 (195075 * 128)
-
-static t3r_own_axes axes_of(const t3r_refine_view *job, uint32_t index)
-{
-    const t3r_splat *s = &job->splats[index];
-    int32_t row[2][3];
-    (void)t3r_footprint_rows(job->projection, &job->scene[index], row[0], row[1]);
-    t3r_own_axes axes;
-    for (int k = 0; k < 2; k++) {
-        /* S^-1 is the conic doubled: Q29. |T| <= 2^24: the sums stay below 2^56. */
-        int64_t right = t3r_round_shift64((int64_t)row[0][k] * s->a_q30 + (int64_t)row[1][k] * s->b_q30, 21);
-        int64_t down = t3r_round_shift64((int64_t)row[0][k] * s->b_q30 + (int64_t)row[1][k] * s->c_q30, 21);
-        axes.right_q20[k] = (int32_t)t3r_clamp64(right, -T3R_OWN_AXIS_MOST_Q20, T3R_OWN_AXIS_MOST_Q20);
-        axes.down_q20[k] = (int32_t)t3r_clamp64(down, -T3R_OWN_AXIS_MOST_Q20, T3R_OWN_AXIS_MOST_Q20);
-    }
-    return axes;
-}
-
-/* Over `area` pixels a sum is below 2^24.6 area + a half a tile, a tile holding at least a pixel, and area 2^-shift
- * is at most 64: below 2^31. */
-static void add_tile(const t3r_tile_sums *tile, const t3r_own_moments *own, uint32_t pixels, t3r_refine_sums *sums)
-{
-    uint32_t shift = t3r_refine_shift(sums->area), scale = tile->scale;
-    int64_t most = t3r_round_shift64((int64_t)MOMENT_MOST_Q7 * pixels, shift);
-    for (int c = 0; c < 3; c++) {
-        sums->colour[c] += (int32_t)t3r_round_shift64(tile->colour[c], 8 + scale + shift);
-    }
-    sums->weight += (int32_t)t3r_round_shift64(tile->weight, scale + shift);
-    for (int k = 0; k < T3R_REFINE_MOMENTS_2; k++) {
-        int64_t sum = t3r_round_shift64(own->gradient[k], scale + shift);
-        sums->gradient[k] += (int32_t)t3r_clamp64(sum, -most, most);
-    }
-    for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
-        int64_t sum = t3r_round_shift64(own->curvature[k], 2 * scale + shift);
-        sums->curvature[k] += (int32_t)t3r_clamp64(sum, -most, most);
-    }
-}
-
-/* What the pixels of a splat just blended, with these weights, add to its sums. */
-static void scatter(const t3r_refine_view *job, const t3r_wanted *want, const t3r_tile *tile, const t3r_splat *s,
-                    const t3r_tile_splat *splat, uint32_t left, uint32_t top, const t3r_blend_weights *weights)
-{
-    const uint32_t index = (uint32_t)(s - job->splats);
-    t3r_refine_sums *to = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
-    __builtin_prefetch(to, 1); /* needed last, and seldom near the one before */
-    __builtin_prefetch(to->curvature + 8, 1);
-    t3r_tile_sums sums;
-    if (!job->kernels->scatter(want, tile, splat, weights, &sums)) {
-        return;
-    }
-    uint32_t right = left + splat->column + splat->groups * T3R_LANES - 1u, bottom = top + sums.last;
-    uint32_t columns = splat->x1 - splat->x0 + 1u, rows = splat->last - splat->first + 1u;
-    t3r_own_axes axes = axes_of(job, index);
-    t3r_own_moments own;
-    t3r_own_moments_of(&sums, &axes, ((int64_t)right << 12) - s->x_q12, ((int64_t)bottom << 12) - s->y_q12, &own);
-    add_tile(&sums, &own, columns * rows, to);
-}
 
 /* What the drawn tile lacks; columns and rows beyond the image count for nothing. */
 static void compare(const t3r_refine_view *job, uint32_t left, uint32_t top, t3r_wanted *want)
@@ -81,7 +19,7 @@ static void compare(const t3r_refine_view *job, uint32_t left, uint32_t top, t3r
         for (uint32_t i = 0; i < columns; i++) {
             want->counts[j][i] = t3r_has_depth(view->validity[row + i]) ? UINT16_MAX : 0;
             for (int c = 0; c < 3; c++) {
-                int32_t drawn_q7 = T3R_MIN((int32_t)want->drawn.colour_q7[c][j][i], 32640);
+                int32_t drawn_q7 = T3R_MIN((int32_t)want->pixels.colour_q7[c][j][i], 32640);
                 int32_t residual_q7 = t3r_level_q7(view->colour[c][row + i] * 128u, job->gain_q14[c]) - drawn_q7;
                 want->residual_q4[c][j][i] = (int16_t)t3r_round_shift32(residual_q7, 3);
             }
@@ -89,65 +27,108 @@ static void compare(const t3r_refine_view *job, uint32_t left, uint32_t top, t3r
     }
 }
 
-/* Draws the tile; the weights of as many splats as there is room for are kept. Returns how many are drawn before all
- * pixels are done. */
-static uint32_t draw(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t left, uint32_t top,
-                     t3r_tile *tile, uint32_t *kept)
+/* The splats of the list from `begin` on that draw something, as they were blended: from the front of the room on a
+ * word each, its place in the list and the scale of its weights, from the end of the room on their rows, the first
+ * splat's last. */
+typedef struct kept_splats {
+    uint32_t begin, count;
+    uint32_t rows; /* all their rows */
+} kept_splats;
+
+#define SCALE_BITS 4 /* a list has at most 2^24 entries */
+#define ROW_WORDS (uint32_t)(sizeof(t3r_blended_row) / sizeof(uint32_t))
+
+static t3r_blended_row *rows_at(const t3r_refine_view *job, uint32_t rows)
 {
+    return (t3r_blended_row *)(void *)(job->kept + job->kept_words - rows * ROW_WORDS);
+}
+
+/* Draws the list from its first splat to `end`, or until all pixels are done, and keeps the last splats of it: where
+ * the room is full it begins anew. */
+static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32_t end, uint32_t left, uint32_t top,
+                        t3r_tile *tile)
+{
+    kept_splats kept = {0, 0, 0};
     t3r_tile_clear(tile);
-    uint32_t rows = 0, used = 0;
-    bool keeps = true;
-    for (*kept = 0; used < count; used++) {
-        if (used % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(tile)) {
+    for (uint32_t i = 0; i < end; i++) {
+        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(tile)) {
             break;
         }
         t3r_tile_splat splat;
-        t3r_splat_in_tile(&job->splats[list[used]], left, top, &splat);
-        uint32_t more = splat.groups * (splat.last - splat.first + 1u);
-        keeps = keeps && more <= job->kept_rows - rows;
-        job->kernels->blend(tile, &splat, keeps ? job->kept + rows : NULL);
-        rows += keeps ? more : 0;
-        *kept += keeps;
+        t3r_splat_in_tile(&job->splats[list[i]], left, top, &splat);
+        if (splat.drawn == 0) {
+            continue;
+        }
+        const uint32_t more = t3r_rows_of(&splat);
+        if (kept.count + 1 + (kept.rows + more) * ROW_WORDS > job->kept_words) {
+            kept = (kept_splats){i, 0, 0};
+        }
+        const uint16_t bits = job->kernels->blend_keep(tile, &splat, rows_at(job, kept.rows + more));
+        if (bits != 0) {
+            job->kept[kept.count++] = i << SCALE_BITS | (15 - t3r_msb32(bits));
+            kept.rows += more;
+        }
     }
-    return used;
+    return kept;
+}
+
+/* x, y and their changes a pixel of the tile, from the axes in Q15 and the offset of its first pixel from the mean,
+ * Q12. All is modulo 2^16 in the end, so that 32 bits are enough on the way. */
+static void place(const t3r_refine_sums *sums, const t3r_splat *s, uint32_t x, uint32_t y, t3r_scatter_splat *out)
+{
+    const uint32_t dx_q12 = (x << 12) - (uint32_t)s->x_q12, dy_q12 = (y << 12) - (uint32_t)s->y_q12;
+    for (int k = 0; k < 2; k++) {
+        const uint32_t at_q27 = (uint32_t)sums->right_q15[k] * dx_q12 + (uint32_t)sums->down_q15[k] * dy_q12;
+        out->origin_q13[k] = (int16_t)(uint16_t)((at_q27 + (1 << 13)) >> 14);
+        out->right_q13[k] = (int16_t)t3r_round_shift32(sums->right_q15[k], 2);
+        out->down_q13[k] = (int16_t)t3r_round_shift32(sums->down_q15[k], 2);
+    }
+}
+
+/* The kept splats from the last to the first: each accumulates, and is taken off the tile. */
+static void take_off(const t3r_refine_view *job, const uint32_t *list, const kept_splats *kept, uint32_t left,
+                     uint32_t top)
+{
+    uint32_t rows = kept->rows;
+    for (uint32_t i = kept->count; i-- > 0;) {
+        const uint32_t index = list[job->kept[i] >> SCALE_BITS];
+        const t3r_splat *s = &job->splats[index];
+        t3r_tile_splat span;
+        t3r_splat_span(s, left, top, &span);
+        t3r_scatter_splat splat = {
+            .span = &span, .rows = rows_at(job, rows), .scale = job->kept[i] & ((1 << SCALE_BITS) - 1)};
+        rows -= t3r_rows_of(&span);
+        t3r_refine_sums *sums = NULL;
+        if (index - job->slice.first < job->slice.count) { /* unsigned: an index below the slice wraps and fails */
+            sums = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
+            place(sums, s, left + span.column, top + span.first, &splat);
+            splat.pixels = (span.x1 - span.x0 + 1u) * (span.last - span.first + 1u);
+        }
+        job->kernels->scatter(job->wanted, &splat, sums);
+    }
 }
 
 void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y)
 {
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
     t3r_wanted *want = job->wanted;
-    uint32_t kept, used = draw(job, list, count, left, top, &want->drawn, &kept);
+    kept_splats kept = draw(job, list, count, left, top, &want->pixels);
     compare(job, left, top, want);
-
-    t3r_tile tile;
-    t3r_tile_clear(&tile);
-    const t3r_blend_weights *next = job->kept;
-    for (uint32_t i = 0; i < used; i++) {
-        const t3r_splat *s = &job->splats[list[i]];
-        t3r_tile_splat splat;
-        t3r_blend_weights again[T3R_TILE_GROUPS * T3R_TILE_SIDE];
-        const t3r_blend_weights *weights = i < kept ? next : again;
-        if (i < kept) {
-            t3r_splat_span(s, left, top, &splat);
-            job->kernels->blend_again(&tile, &splat, next);
-            next += splat.groups * (splat.last - splat.first + 1u);
-        } else {
-            t3r_splat_in_tile(s, left, top, &splat);
-            job->kernels->blend(&tile, &splat, again);
-        }
-        /* unsigned: an index below the slice wraps and fails the test */
-        if (list[i] - job->slice.first < job->slice.count) {
-            scatter(job, want, &tile, s, &splat, left, top, weights);
-        }
+    memset(want->pixels.colour_q7, 0, sizeof want->pixels.colour_q7); /* behind the last splat it is black */
+    take_off(job, list, &kept, left, top);
+    while (kept.begin > 0) {
+        t3r_tile again;
+        kept = draw(job, list, kept.begin, left, top, &again);
+        take_off(job, list, &kept, left, top);
     }
 }
 
 uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                                uint32_t tile_y, uint32_t *pixels)
 {
-    uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE, kept;
+    uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
     t3r_wanted *want = job->wanted;
-    (void)draw(job, list, count, left, top, &want->drawn, &kept);
+    (void)draw(job, list, count, left, top, &want->pixels);
     compare(job, left, top, want);
     uint64_t error = 0;
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {

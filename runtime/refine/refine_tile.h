@@ -12,8 +12,6 @@
 typedef struct t3r_refine_view {
     const t3r_kernels *kernels;
     const t3r_view *view;
-    const t3r_projection *projection;
-    const t3r_gaussian *scene;
     const t3r_splat *splats;
     t3r_refine_slice slice;
     const t3r_refine_borders *borders;
@@ -21,11 +19,14 @@ typedef struct t3r_refine_view {
     uint32_t band;      /* number of the band that is drawn */
     uint32_t across;    /* tiles a row */
     t3r_wanted *wanted; /* where the tile and what it lacks are held: too large for the stack */
-    t3r_blend_weights
-        *kept; /* room for `kept_rows` rows of weights between a tile's two drawings; 0 will do, but slower */
-    uint32_t kept_rows;
+    uint32_t *kept;     /* room for what is kept of the splats of a tile while it is drawn: T3R_KEPT_LEAST words or
+                           more; the more there is, the less often a full tile is drawn again */
+    uint32_t kept_words;
     const uint16_t *gain_q14; /* of the view's three channels: what it shows is levelled first */
 } t3r_refine_view;
+
+/* A splat's place in the list and its rows. */
+#define T3R_KEPT_LEAST (1 + T3R_BLENDED_ROWS_MOST * (uint32_t)(sizeof(t3r_blended_row) / sizeof(uint32_t)))
 
 /* Accumulates what the tile's pixels lack into the sums of the slice's Gaussians. Pixels without depth count for
  * nothing. */

@@ -1,6 +1,7 @@
 /* Projection, blending, scattering and solving. Plain C is judged in doubles by the tests of the rasterizer and of
  * refinement; here a variant must have its bits, and blending goes pixel by pixel. */
 #include "checks.h"
+#include "core/fixed.h"
 #include "guarded.h"
 
 enum { SIDE = T3R_TILE_SIDE, COUNT = 40 };
@@ -72,20 +73,16 @@ static void any_tile(uint64_t *seed, t3r_tile *tile)
     memset(tile->transmittance_q16, 0xff, sizeof tile->transmittance_q16);
     for (uint64_t i = unit_random(seed) % 12; i > 0; i--) {
         const t3r_tile_splat s = any_splat(seed);
-        t3r_blend_c(tile, &s, NULL);
+        t3r_blend_c(tile, &s);
     }
 }
 
-static uint32_t rows_of(const t3r_tile_splat *s)
+/* One pixel after the other, by the formulas of SPEC.md. Returns all bits of the weights. */
+static uint16_t blend_by_pixels(t3r_tile *tile, const t3r_tile_splat *s, t3r_blended_row *row)
 {
-    return s->groups * (s->last - s->first + 1u);
-}
-
-/* One pixel after the other, by the formulas of SPEC.md. */
-static void blend_by_pixels(t3r_tile *tile, const t3r_tile_splat *s, t3r_blend_weights *weights)
-{
+    uint16_t bits = 0;
     for (uint32_t g = 0; g < s->groups; g++) {
-        for (uint32_t j = s->first; j <= s->last; j++, weights++) {
+        for (uint32_t j = s->first; j <= s->last; j++, row++) {
             for (int64_t i = 0; i < T3R_LANES; i++) {
                 const int64_t y = j, x = s->column + 8 * g + i;
                 const int64_t q = s->group[g].q + i * s->group[g].gx + y * s->group[g].gy + i * i * s->a +
@@ -99,66 +96,87 @@ static void blend_by_pixels(t3r_tile *tile, const t3r_tile_splat *s, t3r_blend_w
                     tile->colour_q7[c][j][x] =
                         (uint16_t)(tile->colour_q7[c][j][x] + ((w * s->colour_q7[c] + 32768) >> 16));
                 }
-                weights->q16[i] = (uint16_t)w;
+                row->weight_q16[i] = (uint16_t)w;
+                row->alpha_q15[i] = (int16_t)(w == 0 ? 0 : alpha >> 1);
+                bits |= (uint16_t)w;
             }
         }
     }
+    return bits;
 }
 
 const char *check_blend(const t3r_kernels *kernels, uint64_t *seed)
 {
     t3r_tile *tile = guarded_take(sizeof *tile, 2), want;
     const t3r_tile_splat s = any_splat(seed);
+    t3r_blended_row rows[T3R_BLENDED_ROWS_MOST];
     any_tile(seed, tile);
     want = *tile;
-    t3r_blend_weights *weights = guarded_take(rows_of(&s) * sizeof *weights, 2), want_weights[2 * SIDE];
-    const bool weighs = unit_random(seed) % 2;
-    kernels->blend(tile, &s, weighs ? weights : NULL);
-    blend_by_pixels(&want, &s, want_weights);
-    if (weighs && !SAME(weights, want_weights, rows_of(&s))) {
-        return "a weight differs";
+    kernels->blend(tile, &s);
+    (void)blend_by_pixels(&want, &s, rows);
+    return SAME(tile, &want, 1) ? NULL : "a pixel differs";
+}
+
+const char *check_blend_keep(const t3r_kernels *kernels, uint64_t *seed)
+{
+    t3r_tile *tile = guarded_take(sizeof *tile, 2), want;
+    const t3r_tile_splat s = any_splat(seed);
+    t3r_blended_row *rows = guarded_take(t3r_rows_of(&s) * sizeof *rows, 2), want_rows[T3R_BLENDED_ROWS_MOST];
+    any_tile(seed, tile);
+    want = *tile;
+    const uint16_t bits = kernels->blend_keep(tile, &s, rows), want_bits = blend_by_pixels(&want, &s, want_rows);
+    if (bits != want_bits) {
+        return "the bits of all weights differ";
+    }
+    if (!SAME(rows, want_rows, t3r_rows_of(&s))) {
+        return "a weight or an alpha differs";
     }
     return SAME(tile, &want, 1) ? NULL : "a pixel differs";
 }
 
-const char *check_blend_again(const t3r_kernels *kernels, uint64_t *seed)
+static void any_place(uint64_t *seed, t3r_scatter_splat *splat)
 {
-    t3r_tile *tile = guarded_take(sizeof *tile, 2), want;
-    const t3r_tile_splat s = any_splat(seed);
-    t3r_blend_weights *weights = guarded_take(rows_of(&s) * sizeof *weights, 2);
-    any_tile(seed, tile);
-    want = *tile;
-    blend_by_pixels(&want, &s, weights);
-    kernels->blend_again(tile, &s, weights);
-    return SAME(tile, &want, 1) ? NULL : "a pixel differs";
+    for (int k = 0; k < 2; k++) {
+        splat->origin_q13[k] = (int16_t)any_value(seed, INT16_MIN, INT16_MAX);
+        splat->right_q13[k] = (int16_t)any_value(seed, -7537, 7537);
+        splat->down_q13[k] = (int16_t)any_value(seed, -7537, 7537);
+    }
+    splat->pixels = (uint32_t)unit_between(seed, 1, 256);
 }
 
 const char *check_scatter(const t3r_kernels *kernels, uint64_t *seed)
 {
-    t3r_tile *tile = guarded_take(sizeof *tile, 2);
-    t3r_wanted *want = guarded_take(sizeof *want, 2);
+    t3r_wanted *tile = guarded_take(sizeof *tile, 2), want;
     const t3r_tile_splat s = any_splat(seed);
-    t3r_blend_weights *weights = guarded_take(rows_of(&s) * sizeof *weights, 2);
-    any_tile(seed, tile);
-    t3r_blend_c(tile, &s, weights);
-    want->drawn = *tile;
-    for (uint64_t i = unit_random(seed) % 8; i > 0; i--) {
-        const t3r_tile_splat behind = any_splat(seed);
-        t3r_blend_c(&want->drawn, &behind, NULL);
+    t3r_blended_row *rows = guarded_take(t3r_rows_of(&s) * sizeof *rows, 2);
+    any_tile(seed, &tile->pixels);
+    const uint16_t bits = t3r_blend_keep_c(&tile->pixels, &s, rows);
+    if (bits == 0) {
+        return NULL; /* such a splat is not kept */
     }
+    t3r_scatter_splat splat = {.span = &s, .rows = rows, .scale = 15 - t3r_msb32(bits)};
+    any_place(seed, &splat);
     const uint64_t one_in = 1 + unit_random(seed) % 6;
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
-        want->counts[i / SIDE][i % SIDE] = unit_random(seed) % one_in == 0 ? UINT16_MAX : 0;
+        tile->counts[i / SIDE][i % SIDE] = unit_random(seed) % one_in == 0 ? UINT16_MAX : 0;
         for (int c = 0; c < 3; c++) {
-            want->residual_q4[c][i / SIDE][i % SIDE] = (int16_t)any_value(seed, -4080, 4080);
+            tile->pixels.colour_q7[c][i / SIDE][i % SIDE] = (uint16_t)any_value(seed, 0, 32640);
+            tile->residual_q4[c][i / SIDE][i % SIDE] = (int16_t)any_value(seed, -4080, 4080);
         }
     }
-    t3r_tile_sums got, expected;
-    const bool counts = kernels->scatter(want, tile, &s, weights, &got);
-    if (counts != t3r_scatter_c(want, tile, &s, weights, &expected)) {
-        return "it says otherwise whether a weight counts";
+    want = *tile;
+    t3r_refine_sums *sums = guarded_take(sizeof *sums, 4), want_sums;
+    memset(sums, 0, sizeof *sums);
+    sums->area = (uint32_t)any_value(seed, 1, (1 << 28) - 1);
+    sums->weight = 7;
+    want_sums = *sums;
+    const bool wanted = unit_random(seed) % 8 != 0;
+    kernels->scatter(tile, &splat, wanted ? sums : NULL);
+    t3r_scatter_c(&want, &splat, wanted ? &want_sums : NULL);
+    if (!SAME(tile, &want, 1)) {
+        return "what is behind differs";
     }
-    return !counts || SAME(&got, &expected, 1) ? NULL : "a sum differs";
+    return SAME(sums, &want_sums, 1) ? NULL : "a sum differs";
 }
 
 const char *check_solve(const t3r_kernels *kernels, uint64_t *seed)
@@ -170,7 +188,7 @@ const char *check_solve(const t3r_kernels *kernels, uint64_t *seed)
     for (uint32_t i = 0; i < count; i++) {
         int32_t *words = (int32_t *)&sums[i];
         const int64_t most = (int64_t)1 << unit_between(seed, 1, 30);
-        for (size_t k = 0; k + 1 < sizeof *sums / 4; k++) {
+        for (size_t k = 0; k < offsetof(t3r_refine_sums, area) / 4; k++) {
             words[k] = (int32_t)any_value(seed, -most, most);
         }
         sums[i].area = (uint32_t)any_value(seed, 1, (1 << 28) - 1);

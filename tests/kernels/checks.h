@@ -17,7 +17,7 @@ kernel_check check_texture_finest, check_texture_coarse, check_texture_add, chec
 kernel_check check_nearest, check_blur_row, check_blur_column;
 kernel_check check_convolve, check_depthwise;
 kernel_check check_project, check_radix_count, check_radix_pass;
-kernel_check check_blend, check_blend_again, check_scatter, check_solve;
+kernel_check check_blend, check_blend_keep, check_scatter, check_solve;
 
 /* 0, 1 and small lengths often, else up to `most`. */
 static inline uint32_t any_length(uint64_t *seed, uint32_t most)

@@ -41,7 +41,7 @@
     X(radix_count, check_radix_count)                                                                                  \
     X(radix_pass, check_radix_pass)                                                                                    \
     X(blend, check_blend)                                                                                              \
-    X(blend_again, check_blend_again)                                                                                  \
+    X(blend_keep, check_blend_keep)                                                                                  \
     X(scatter, check_scatter)                                                                                          \
     X(solve, check_solve)
 
@@ -186,11 +186,11 @@ static void reads_whole_vectors(uint16_t *restrict fine, const uint16_t *restric
     t3r_texture_spread_c(fine, coarse, count);
 }
 
-static void bends_the_opacity(t3r_tile *restrict tile, const t3r_tile_splat *splat, t3r_blend_weights *restrict weights)
+static void bends_the_opacity(t3r_tile *tile, const t3r_tile_splat *splat)
 {
     t3r_tile_splat bent = *splat;
     bent.opacity_q16 = splat->opacity_q16 == 65534 ? 65535 : splat->opacity_q16;
-    t3r_blend_c(tile, &bent, weights);
+    t3r_blend_c(tile, &bent);
 }
 
 static void takes_the_last(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,

@@ -49,10 +49,10 @@ static bench bench_of(const t3r_gaussian *gaussians, uint32_t count, uint32_t si
 
 static uint64_t blended;
 
-static void count_blends(t3r_tile *restrict tile, const t3r_tile_splat *splat, t3r_blend_weights *restrict weights)
+static void count_blends(t3r_tile *tile, const t3r_tile_splat *splat)
 {
     blended++;
-    t3r_blend_c(tile, splat, weights);
+    t3r_blend_c(tile, splat);
 }
 
 static uint64_t blends_of(const t3r_gaussian *gaussians, uint32_t count, uint32_t tile_splats, uint64_t *planned)

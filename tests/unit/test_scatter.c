@@ -1,35 +1,29 @@
-/* Refinement's inner loops: reciprocals over their whole range, blending again by weights, and what eight columns
- * add to a splat's sums against the same in double, up to the largest values there can be. */
+/* Splats taken off a tile: what is behind the first is what was drawn; the largest values that there can be fit; and
+ * the same splats in another scale of brightness, or a tile further, add what they should. */
 #include "unit.h"
 
-#include "kernels/scatter_columns.h"
+#include "kernels/scatter_bits.h"
 
-enum { SIDE = T3R_TILE_SIDE };
-
-static void reciprocals_are_a_little_small(void **state)
-{
-    (void)state;
-    for (uint32_t n = 1 << 15; n < 1 << 16; n++) {
-        uint32_t y = t3r_reciprocal_q31((uint16_t)n);
-        assert_true((uint64_t)n * y < UINT64_C(1) << 31);
-        assert_true((double)y >= 2147483648.0 / n * (1 - 1.0 / 8192));
-    }
-}
+enum { SIDE = T3R_TILE_SIDE, SPLATS = 40 };
 
 static t3r_tile_splat any_splat(uint64_t *seed)
 {
-    t3r_tile_splat lane = {.group = {{.q = (int32_t)unit_between(seed, 0, 6 << 17),
-                                      .gx = (int32_t)unit_between(seed, -(1 << 15), 1 << 15),
-                                      .gy = (int32_t)unit_between(seed, -(1 << 15), 1 << 15)}},
-                           .groups = 1,
-                           .drawn = 1,
-                           .a = (int32_t)unit_between(seed, 0, 1 << 12),
-                           .c = (int32_t)unit_between(seed, 0, 1 << 12),
-                           .opacity_q16 = (uint16_t)unit_between(seed, 300, 65535)};
+    t3r_tile_splat s = {.group = {{.q = (int32_t)unit_between(seed, 0, 6 << 17),
+                                   .gx = (int32_t)unit_between(seed, -(1 << 15), 1 << 15),
+                                   .gy = (int32_t)unit_between(seed, -(1 << 15), 1 << 15)}},
+                        .groups = (uint8_t)unit_between(seed, 1, 2),
+                        .a = (int32_t)unit_between(seed, 0, 1 << 12),
+                        .c = (int32_t)unit_between(seed, 0, 1 << 12),
+                        .opacity_q16 = (uint16_t)unit_between(seed, 300, 65535)};
+    s.group[1] = s.group[0];
+    s.drawn = (uint8_t)((1 << s.groups) - 1);
+    s.column = (uint8_t)(s.groups == 2 ? 0 : unit_between(seed, 0, 8));
+    s.first = (uint8_t)unit_between(seed, 0, 15);
+    s.last = (uint8_t)unit_between(seed, s.first, 15);
     for (int c = 0; c < 3; c++) {
-        lane.colour_q7[c] = (uint16_t)(unit_random(seed) % 8 == 0 ? 32640 : unit_between(seed, 0, 32640));
+        s.colour_q7[c] = (uint16_t)(unit_random(seed) % 8 == 0 ? 32640 : unit_between(seed, 0, 32640));
     }
-    return lane;
+    return s;
 }
 
 static void clear(t3r_tile *tile)
@@ -38,204 +32,111 @@ static void clear(t3r_tile *tile)
     memset(tile->transmittance_q16, 0xff, sizeof tile->transmittance_q16);
 }
 
-static void weights_blend_to_the_same_bits(void **state)
+static t3r_scatter_splat scatter_of(const t3r_tile_splat *span, const t3r_blended_row *rows, uint16_t bits)
+{
+    return (t3r_scatter_splat){.span = span,
+                               .rows = rows,
+                               .scale = 15 - t3r_msb32(bits),
+                               .right_q13 = {700, 0},
+                               .down_q13 = {0, 700},
+                               .origin_q13 = {-5600, -5600},
+                               .pixels = 256};
+}
+
+/* Every layer's colour is mixed over what was behind it: all of them off, that is the picture. */
+static void behind_all_is_the_picture(void **state)
 {
     (void)state;
     uint64_t seed = 3;
+    static t3r_wanted tile;
+    static t3r_blended_row rows[SPLATS][T3R_BLENDED_ROWS_MOST];
     for (int round = 0; round < 200; round++) {
-        t3r_tile drawn, again;
-        clear(&drawn);
-        clear(&again);
-        for (int i = 0; i < 40; i++) {
-            t3r_tile_splat lane = any_splat(&seed);
-            lane.groups = (uint8_t)unit_between(&seed, 1, 2);
-            lane.group[1] = lane.group[0];
-            lane.drawn = (uint8_t)unit_between(&seed, 0, (1 << lane.groups) - 1);
-            lane.column = (uint8_t)(lane.groups == 2 ? 0 : unit_between(&seed, 0, 8));
-            lane.first = (uint8_t)unit_between(&seed, 0, 15);
-            lane.last = (uint8_t)unit_between(&seed, lane.first, 15);
-            size_t rows = (size_t)lane.groups * (lane.last - lane.first + 1u);
-            t3r_blend_weights *weights = unit_array(rows, sizeof *weights);
-            t3r_blend_c(&drawn, &lane, weights);
-            t3r_blend_again_c(&again, &lane, weights);
-            free(weights);
-            assert_memory_equal(&drawn, &again, sizeof drawn);
+        t3r_tile_splat splats[SPLATS];
+        uint16_t bits[SPLATS];
+        clear(&tile.pixels);
+        for (int n = 0; n < SPLATS; n++) {
+            splats[n] = any_splat(&seed);
+            bits[n] = t3r_blend_keep_c(&tile.pixels, &splats[n], rows[n]);
+        }
+        const t3r_tile drawn = tile.pixels;
+        memset(tile.pixels.colour_q7, 0, sizeof tile.pixels.colour_q7);
+        for (int n = SPLATS; n-- > 0;) {
+            const t3r_scatter_splat off = scatter_of(&splats[n], rows[n], (uint16_t)(bits[n] | 1));
+            t3r_scatter_c(&tile, &off, NULL);
+        }
+        for (uint32_t k = 0; k < 3 * SIDE * SIDE; k++) {
+            const int32_t want_q7 = drawn.colour_q7[k / (SIDE * SIDE)][k / SIDE % SIDE][k % SIDE];
+            const int32_t got_q7 = tile.pixels.colour_q7[k / (SIDE * SIDE)][k / SIDE % SIDE][k % SIDE];
+            assert_in_range(got_q7 - want_q7 + 128, 128 - 32, 128 + 64); /* a quarter of a level, half of one */
         }
     }
 }
 
-static void masks_what_does_not_count(void **state)
-{
-    (void)state;
-    uint64_t seed = 4;
-    static t3r_wanted want;
-    for (int round = 0; round < 1000; round++) {
-        uint32_t column = (uint32_t)unit_between(&seed, 0, 8), first = (uint32_t)unit_between(&seed, 0, 15);
-        uint32_t last = (uint32_t)unit_between(&seed, first, 15), top = (uint32_t)unit_between(&seed, 0, 65535);
-        uint16_t inside[T3R_LANES], all = 0;
-        t3r_blend_weights weights[SIDE], masked[SIDE];
-        for (uint32_t i = 0; i < T3R_LANES; i++) {
-            inside[i] = unit_random(&seed) % 2 ? UINT16_MAX : 0;
-            for (uint32_t j = first; j <= last; j++) {
-                weights[j - first].q16[i] = (uint16_t)unit_between(&seed, 0, top);
-                want.counts[j][column + i] = unit_random(&seed) % 2 ? UINT16_MAX : 0;
-            }
-        }
-        uint16_t bits = t3r_mask_weights(&want, inside, column, first, last, weights, masked);
-        for (uint32_t i = 0; i < T3R_LANES; i++) {
-            for (uint32_t j = first; j <= last; j++) {
-                uint16_t w = inside[i] && want.counts[j][column + i] ? weights[j - first].q16[i] : 0;
-                assert_int_equal(masked[j].q16[i], w);
-                all |= w;
-            }
-        }
-        assert_int_equal(bits, all);
-    }
-}
-
-/* C(n + l, l) */
-static double choose(uint32_t n, int l)
-{
-    double c = 1;
-    for (int i = 1; i <= l; i++) {
-        c = c * (n + (uint32_t)i) / i;
-    }
-    return c;
-}
-
-static void near(double got, double want, double by)
-{
-    if (!(fabs(got - want) <= by)) {
-        print_message("%f, expected %f +- %f\n", got, want, by);
-        fail();
-    }
-}
-
-/* A tile in the middle of being drawn: some splats blended, `want` what some more make of it. */
-static void any_tiles(uint64_t *seed, t3r_tile *tile, t3r_wanted *want, t3r_tile_splat *lane,
-                      t3r_blend_weights weights[SIDE])
-{
-    clear(tile);
-    int before = (int)unit_between(seed, 0, 4);
-    for (int i = 0; i < 12; i++) {
-        t3r_tile_splat next = any_splat(seed);
-        next.column = 4;
-        next.last = SIDE - 1;
-        t3r_blend_c(tile, &next, i == before ? weights : NULL);
-        if (i == before) {
-            *lane = next;
-            want->drawn = *tile;
-        }
-    }
-    t3r_tile drawn = *tile;
-    *tile = want->drawn;
-    want->drawn = drawn;
-    for (uint32_t c = 0; c < 3; c++) {
-        for (uint32_t j = 0; j < SIDE; j++) {
-            for (uint32_t i = 0; i < SIDE; i++) {
-                want->residual_q4[c][j][i] = (int16_t)unit_between(seed, -4080, 4080);
-            }
-        }
-    }
-}
-
-/* g is right to half a unit, a share of what is behind for the reciprocal and its unit; the rest follows. */
-static void sums_what_double_sums(void **state)
-{
-    (void)state;
-    uint64_t seed = 5;
-    static t3r_tile tile;
-    static t3r_wanted want;
-    for (int round = 0; round < 2000; round++) {
-        t3r_tile_splat lane;
-        t3r_blend_weights weights[SIDE];
-        any_tiles(&seed, &tile, &want, &lane, weights);
-        uint32_t first = (uint32_t)unit_between(&seed, 0, 15), last = (uint32_t)unit_between(&seed, first, 15);
-        uint32_t most = 1, scale = 0;
-        for (uint32_t j = first; j <= last; j++) {
-            for (uint32_t i = 0; i < T3R_LANES; i++) {
-                most = weights[j].q16[i] > most ? weights[j].q16[i] : most;
-            }
-        }
-        while (most << (scale + 1) < 1 << 16) {
-            scale++;
-        }
-        t3r_scatter_sums sums;
-        t3r_blend_weights scaled[SIDE];
-        memcpy(scaled, weights, sizeof scaled);
-        t3r_scatter_columns(&want, &tile, lane.colour_q7, 4, first, last, scaled, scale, &sums);
-        double factor = 1 << scale;
-        for (uint32_t i = 0; i < T3R_LANES; i++) {
-            double gg[5] = {0}, gg_off[5] = {0}, gr[3] = {0}, gr_off[3] = {0}, wr[3] = {0}, w_all = 0;
-            for (uint32_t j = first; j <= last; j++) {
-                double left = tile.transmittance_q16[j][4 + i], w = weights[j].q16[i] / 65536.0 * factor, square = 0;
-                double square_off = 0.125, product = 0, product_off = 0.0625;
-                for (int c = 0; c < 3; c++) {
-                    double rest = want.drawn.colour_q7[c][j][4 + i] - tile.colour_q7[c][j][4 + i];
-                    double behind = left == 0 ? 0 : rest * 512 / left, r = want.residual_q4[c][j][4 + i] / 16.0;
-                    double g = w * (lane.colour_q7[c] / 128.0 - behind);
-                    double off = 0.5 / 64 + 1.0 / 128 * w + behind / 8192 + 255.0 / 65536;
-                    square += g * g;
-                    square_off += 2 * fabs(g) * off + off * off;
-                    product += g * r;
-                    product_off += fabs(r) * off;
-                    wr[c] += w * r;
-                }
-                w_all += w;
-                for (int l = 0; l < 5; l++) {
-                    gg[l] += square * choose(last - j, l);
-                    gg_off[l] += square_off * choose(last - j, l);
-                }
-                for (int l = 0; l < 3; l++) {
-                    gr[l] += product * choose(last - j, l);
-                    gr_off[l] += product_off * choose(last - j, l);
-                }
-            }
-            for (int l = 0; l < 4; l++) {
-                near(sums.curvature[l][i] / 4.0, gg[l], gg_off[l]);
-            }
-            near((double)sums.curvature_4[i] / 4, gg[4], gg_off[4]);
-            for (int l = 0; l < 3; l++) {
-                near(sums.gradient[l][i] / 8.0, gr[l], gr_off[l]);
-                near(sums.colour[l][i] / 524288.0, wr[l], 255.0 / 32768 * (last - first + 1));
-            }
-            near(sums.weight[i] / 32768.0, w_all, (last - first + 1) / 32768.0);
-        }
-    }
-}
-
-/* White, all of it, on black, and as much missing: the sums hold. */
+/* White on black, all of it, and as much missing: the sums are exact. */
 static void the_most_there_can_be_fits(void **state)
 {
     (void)state;
-    static t3r_tile tile;
-    static t3r_wanted want;
-    t3r_blend_weights weights[SIDE];
-    const uint16_t white[3] = {32640, 32640, 32640};
+    static t3r_wanted tile;
+    static t3r_blended_row rows[T3R_BLENDED_ROWS_MOST];
+    const t3r_tile_splat white = {.groups = 2, .last = SIDE - 1, .colour_q7 = {32640, 32640, 32640}};
     for (int sign = -1; sign <= 1; sign += 2) {
-        for (uint32_t c = 0; c < 3; c++) {
-            for (uint32_t j = 0; j < SIDE; j++) {
-                for (uint32_t i = 0; i < SIDE; i++) {
-                    want.residual_q4[c][j][i] = (int16_t)(sign * 4080);
-                }
-            }
+        memset(&tile, 0, sizeof tile);
+        memset(tile.counts, 0xff, sizeof tile.counts);
+        for (uint32_t k = 0; k < 3 * SIDE * SIDE; k++) {
+            tile.residual_q4[k / (SIDE * SIDE)][k / SIDE % SIDE][k % SIDE] = (int16_t)(sign * 4080);
         }
-        t3r_scatter_sums sums;
-        memset(weights, 0xff, sizeof weights);
-        t3r_scatter_columns(&want, &tile, white, 0, 0, SIDE - 1, weights, 0, &sums);
-        const int64_t g = ((int64_t)32767 * 32640 + 32768) >> 16, square = (3 * g * g + 512) >> 10;
-        const int64_t product = (sign * 3 * g * 4080 + 64) >> 7;
-        static const int64_t times[5] = {16, 136, 816, 3876, 15504};
-        for (uint32_t i = 0; i < T3R_LANES; i++) {
-            for (int l = 0; l < 4; l++) {
-                assert_true(sums.curvature[l][i] == square * times[l]);
-            }
-            assert_true(sums.curvature_4[i] == (uint64_t)(square * times[4]));
-            for (int l = 0; l < 3; l++) {
-                assert_true(sums.gradient[l][i] == product * times[l]);
-                assert_true(sums.colour[l][i] == (int64_t)sign * 16 * 32767 * 4080);
-            }
-            assert_int_equal(sums.weight[i], 16 * 32767);
+        for (uint32_t k = 0; k < T3R_BLENDED_ROWS_MOST * T3R_LANES; k++) {
+            rows[k / T3R_LANES].weight_q16[k % T3R_LANES] = 65535;
+            rows[k / T3R_LANES].alpha_q15[k % T3R_LANES] = T3R_ALPHA_MOST_Q16 >> 1;
+        }
+        t3r_refine_sums sums = {.area = 256};
+        const t3r_scatter_splat splat = {.span = &white, .rows = rows, .origin_q13 = {8192, 8192}, .pixels = 256};
+        t3r_scatter_c(&tile, &splat, &sums);
+        /* 256 pixels, a quarter of them counted (area), each 255^2 x 3 levels^2 but for roundings, at x = y = 1 */
+        const double most = 64.0 * 3 * 255 * 255 * 128;
+        for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
+            assert_true(fabs(sums.curvature[k] / most - 1) < 0.03);
+            assert_true(k >= T3R_REFINE_MOMENTS_2 || fabs(sums.gradient[k] / most * sign - 1) < 0.03);
+        }
+        assert_true(fabs(sums.weight / (64 * 32768.0) - 1) < 0.002);
+        for (int c = 0; c < 3; c++) {
+            assert_true(fabs(sums.colour[c] / (64.0 * 255 * 2048) * sign - 1) < 0.002);
+        }
+    }
+}
+
+/* Weights an eighth of others add an eighth to what is linear in them, and a 64th to what is square. */
+static void faint_splats_keep_their_bits(void **state)
+{
+    (void)state;
+    uint64_t seed = 6;
+    static t3r_wanted tile;
+    static t3r_blended_row rows[T3R_BLENDED_ROWS_MOST], faint[T3R_BLENDED_ROWS_MOST];
+    for (int round = 0; round < 200; round++) {
+        const t3r_tile_splat s = any_splat(&seed);
+        memset(faint, 0, sizeof faint);
+        memset(rows, 0, sizeof rows);
+        uint16_t bits = 0;
+        for (uint32_t k = 0; k < t3r_rows_of(&s) * T3R_LANES; k++) {
+            const uint16_t w = (uint16_t)unit_between(&seed, 0, 4095);
+            rows[k / T3R_LANES].weight_q16[k % T3R_LANES] = (uint16_t)(w * 16);
+            faint[k / T3R_LANES].weight_q16[k % T3R_LANES] = (uint16_t)(w * 2);
+            bits |= (uint16_t)(w * 16);
+        }
+        memset(&tile, 0, sizeof tile);
+        memset(tile.counts, 0xff, sizeof tile.counts);
+        for (uint32_t k = 0; k < 3 * SIDE * SIDE; k++) {
+            tile.residual_q4[k / (SIDE * SIDE)][k / SIDE % SIDE][k % SIDE] = (int16_t)unit_between(&seed, -4080, 4080);
+        }
+        t3r_refine_sums sums = {.area = 64}, less = {.area = 64};
+        t3r_scatter_splat splat = scatter_of(&s, rows, bits);
+        t3r_scatter_c(&tile, &splat, &sums);
+        splat.rows = faint;
+        splat.scale += 3;
+        t3r_scatter_c(&tile, &splat, &less);
+        for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
+            assert_true(fabs(less.curvature[k] - sums.curvature[k] / 64.0) <= 1);
+            assert_true(k >= T3R_REFINE_MOMENTS_2 || fabs(less.gradient[k] - sums.gradient[k] / 8.0) <= 1);
         }
     }
 }
@@ -243,9 +144,9 @@ static void the_most_there_can_be_fits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reciprocals_are_a_little_small), cmocka_unit_test(weights_blend_to_the_same_bits),
-        cmocka_unit_test(masks_what_does_not_count),      cmocka_unit_test(sums_what_double_sums),
+        cmocka_unit_test(behind_all_is_the_picture),
         cmocka_unit_test(the_most_there_can_be_fits),
+        cmocka_unit_test(faint_splats_keep_their_bits),
     };
     return cmocka_run_group_tests_name("scatter", tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 
 #include "intrinsics.h"
 
+#include "core/memory.h"
 #include "kernels/alpha.h"
 
 /* (a b + 2^15) / 2^16 of 16 unsigned bits: the high half and the top bit of the low one. */
@@ -37,14 +38,14 @@ static inline T3R_AVX2 __m256i alpha_of(__m256i upper_q17, __m256i lower_q17, __
 {
     __m256i s = _mm256_packus_epi32(range_left(upper_q17), range_left(lower_q17));
     s = _mm256_permute4x64_epi64(s, 0xd8); /* packing goes by halves of vectors */
-    __m256i p = _mm256_add_epi16(constant(T3R_ALPHA_C3), mulr_q16(s, constant(T3R_ALPHA_C4)));
-    p = _mm256_add_epi16(constant(T3R_ALPHA_C2), mulr_q16(s, p));
-    p = _mm256_add_epi16(constant(T3R_ALPHA_C1), mulr_q16(s, p));
-    p = _mm256_add_epi16(constant(T3R_ALPHA_C0), mulr_q16(s, p));
-    p = mulr_q16(p, p);
-    p = mulr_q16(p, p);
-    p = mulr_q16(p, p);
-    __m256i alpha = _mm256_min_epu16(mulr_q16(p, opacity_q16), constant(T3R_ALPHA_MOST_Q16));
+    __m256i p = _mm256_add_epi16(constant(T3R_ALPHA_C3), _mm256_mulhi_epu16(s, constant(T3R_ALPHA_C4)));
+    p = _mm256_add_epi16(constant(T3R_ALPHA_C2), _mm256_mulhi_epu16(s, p));
+    p = _mm256_add_epi16(constant(T3R_ALPHA_C1), _mm256_mulhi_epu16(s, p));
+    p = _mm256_add_epi16(constant(T3R_ALPHA_C0), _mm256_mulhi_epu16(s, p));
+    p = _mm256_mulhi_epu16(p, p);
+    p = _mm256_mulhi_epu16(p, p);
+    p = _mm256_mulhi_epu16(p, p);
+    __m256i alpha = _mm256_min_epu16(_mm256_mulhi_epu16(p, opacity_q16), constant(T3R_ALPHA_MOST_Q16));
     return _mm256_and_si256(alpha, at_least(alpha, constant(T3R_ALPHA_LEAST_Q16)));
 }
 
@@ -70,8 +71,10 @@ static inline T3R_AVX2 void add_colour(uint16_t *upper, bool two, __m256i w, __m
     store_rows(upper, T3R_TILE_SIDE, two, sum);
 }
 
-static T3R_AVX2 void blend_group(t3r_tile *restrict tile, const t3r_tile_splat *splat, uint32_t group,
-                                 t3r_blend_weights *restrict weights)
+/* rows: where what is blended is kept, or NULL; known where this is inlined. Returns all bits of the weights kept. */
+static inline __attribute__((always_inline)) T3R_AVX2 uint16_t blend_group(t3r_tile *restrict tile,
+                                                                           const t3r_tile_splat *splat, uint32_t group,
+                                                                           t3r_blended_row *restrict rows)
 {
     const uint32_t column = splat->column + group * T3R_LANES;
     const int32_t gx = splat->group[group].gx, gy = splat->group[group].gy, row = splat->first;
@@ -85,6 +88,7 @@ static T3R_AVX2 void blend_group(t3r_tile *restrict tile, const t3r_tile_splat *
     const __m256i opacity = constant(splat->opacity_q16);
     const __m256i red = constant(splat->colour_q7[0]), green = constant(splat->colour_q7[1]);
     const __m256i blue = constant(splat->colour_q7[2]);
+    __m256i any = _mm256_setzero_si256();
     for (uint32_t j = splat->first; j <= splat->last; j += 2) {
         const bool two = j < splat->last;
         const __m256i lower = _mm256_add_epi32(upper, step);
@@ -97,28 +101,46 @@ static T3R_AVX2 void blend_group(t3r_tile *restrict tile, const t3r_tile_splat *
         add_colour(tile->colour_q7[0][j] + column, two, w, red);
         add_colour(tile->colour_q7[1][j] + column, two, w, green);
         add_colour(tile->colour_q7[2][j] + column, two, w, blue);
-        if (weights != NULL) {
-            store_rows(weights[j - splat->first].q16, T3R_LANES, two, w);
+        if (rows != NULL) {
+            t3r_blended_row *kept = rows + (j - splat->first);
+            const __m256i still = _mm256_cmpeq_epi16(w, _mm256_setzero_si256());
+            store_rows(kept->weight_q16, sizeof *kept / 2, two, w);
+            store_rows((uint16_t *)(void *)kept->alpha_q15, sizeof *kept / 2, two,
+                       _mm256_andnot_si256(still, _mm256_srli_epi16(alpha, 1)));
+            any = _mm256_or_si256(any, two ? w : _mm256_zextsi128_si256(_mm256_castsi256_si128(w)));
         }
         step = _mm256_add_epi32(step, bend);
         upper = _mm256_add_epi32(lower, step);
         step = _mm256_add_epi32(step, bend);
     }
+    __m128i bits = _mm_or_si128(_mm256_castsi256_si128(any), _mm256_extracti128_si256(any, 1));
+    bits = _mm_or_si128(bits, _mm_srli_si128(bits, 8));
+    bits = _mm_or_si128(bits, _mm_srli_si128(bits, 4));
+    return (uint16_t)((uint32_t)_mm_cvtsi128_si32(bits) | (uint32_t)_mm_cvtsi128_si32(bits) >> 16);
 }
 
-T3R_AVX2 void t3r_blend_avx2(t3r_tile *restrict tile, const t3r_tile_splat *splat, t3r_blend_weights *restrict weights)
+T3R_AVX2 void t3r_blend_avx2(t3r_tile *tile, const t3r_tile_splat *splat)
 {
-    const uint32_t rows = splat->last - splat->first + 1u;
     for (uint32_t group = 0; group < splat->groups; group++) {
-        t3r_blend_weights *own = weights == NULL ? NULL : weights + group * rows;
         if ((splat->drawn >> group & 1) != 0) {
-            blend_group(tile, splat, group, own);
-        } else if (own != NULL) {
-            for (uint32_t j = 0; j < rows; j++) {
-                _mm_storeu_si128((__m128i *)(void *)own[j].q16, _mm_setzero_si128());
-            }
+            (void)blend_group(tile, splat, group, NULL);
         }
     }
+}
+
+T3R_AVX2 uint16_t t3r_blend_keep_avx2(t3r_tile *restrict tile, const t3r_tile_splat *splat,
+                                      t3r_blended_row *restrict rows)
+{
+    const uint32_t rows_a_group = splat->last - splat->first + 1u;
+    uint16_t bits = 0;
+    for (uint32_t group = 0; group < splat->groups; group++, rows += rows_a_group) {
+        if ((splat->drawn >> group & 1) != 0) {
+            bits |= blend_group(tile, splat, group, rows);
+        } else {
+            memset(rows, 0, rows_a_group * sizeof *rows);
+        }
+    }
+    return bits;
 }
 
 #else

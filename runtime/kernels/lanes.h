@@ -1,0 +1,107 @@
+/* Sixteen unsigned bits a lane, in plain C: eight lanes where the target has vectors, one where it has none.
+ *
+ * Each step is a loop of its own over all lanes, so that a compiler sees 16 bits go in and come out and takes one
+ * vector instruction. In one loop over all steps GCC widens products of products to 32 bits. */
+#ifndef T3R_KERNEL_LANES_H
+#define T3R_KERNEL_LANES_H
+
+#include <stdint.h>
+
+#include "core/fixed.h"
+
+#if defined(__SSE2__) || defined(__ARM_NEON) || defined(__ALTIVEC__) || defined(__wasm_simd128__) || defined(__VX__)
+#define T3R_C_LANES 8
+#else
+#define T3R_C_LANES 1
+#endif
+
+typedef struct t3r_lanes {
+    uint16_t x[T3R_C_LANES];
+} t3r_lanes;
+
+#define T3R_EACH_LANE _Pragma("GCC unroll 1") for (int32_t i = 0; i < T3R_C_LANES; i++)
+
+static inline t3r_lanes t3r_lanes_load(const uint16_t *from)
+{
+    t3r_lanes to;
+    T3R_EACH_LANE
+    {
+        to.x[i] = from[i];
+    }
+    return to;
+}
+
+static inline void t3r_lanes_store(t3r_lanes from, uint16_t *to)
+{
+    T3R_EACH_LANE
+    {
+        to[i] = from.x[i];
+    }
+}
+
+static inline t3r_lanes t3r_lanes_of(uint16_t x)
+{
+    t3r_lanes to;
+    T3R_EACH_LANE
+    {
+        to.x[i] = x;
+    }
+    return to;
+}
+
+static inline t3r_lanes t3r_lanes_mul_q16(t3r_lanes a, t3r_lanes b)
+{
+    T3R_EACH_LANE
+    {
+        a.x[i] = t3r_mul_q16(a.x[i], b.x[i]);
+    }
+    return a;
+}
+
+static inline t3r_lanes t3r_lanes_mulr_q16(t3r_lanes a, t3r_lanes b)
+{
+    T3R_EACH_LANE
+    {
+        a.x[i] = t3r_mulr_q16(a.x[i], b.x[i]);
+    }
+    return a;
+}
+
+static inline t3r_lanes t3r_lanes_add(t3r_lanes a, t3r_lanes b)
+{
+    T3R_EACH_LANE
+    {
+        a.x[i] = (uint16_t)(a.x[i] + b.x[i]);
+    }
+    return a;
+}
+
+static inline t3r_lanes t3r_lanes_subtract(t3r_lanes a, t3r_lanes b)
+{
+    T3R_EACH_LANE
+    {
+        a.x[i] = (uint16_t)(a.x[i] - b.x[i]);
+    }
+    return a;
+}
+
+static inline t3r_lanes t3r_lanes_or(t3r_lanes a, t3r_lanes b)
+{
+    T3R_EACH_LANE
+    {
+        a.x[i] |= b.x[i];
+    }
+    return a;
+}
+
+/* x, or 0 where `of` is below `least`. */
+static inline t3r_lanes t3r_lanes_where_at_least(t3r_lanes x, t3r_lanes of, uint16_t least)
+{
+    T3R_EACH_LANE
+    {
+        x.x[i] = of.x[i] < least ? 0 : x.x[i];
+    }
+    return x;
+}
+
+#endif

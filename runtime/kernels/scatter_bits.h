@@ -1,0 +1,78 @@
+/* How many bits everything takes that scattering sums: shared by plain C and the variants (SPEC.md, "Refinement"). */
+#ifndef T3R_KERNEL_SCATTER_BITS_H
+#define T3R_KERNEL_SCATTER_BITS_H
+
+#include "core/fixed.h"
+#include "scatter.h"
+
+#define T3R_X_FRACTION 13  /* bits of x and y: |x| is below 3.4 wherever a weight is not 0, and held modulo 8 */
+#define T3R_XX_FRACTION 11 /* of their products */
+/* The square times a power, rounded by 15 bits, times another one */
+#define T3R_XXX_FRACTION (T3R_X_FRACTION + T3R_XX_FRACTION - 15)
+#define T3R_XXXX_FRACTION (2 * T3R_XX_FRACTION - 15)
+
+/* The sum of all pixels' |g|^2 takes so many bits, and each of them so many. The same goes for g . r. |x| < 2^14.8 in
+ * its fraction, so that sums of their products stay below 2^31. */
+#define T3R_TERM_BITS 14
+#define T3R_TERM_SUM_BITS 16
+
+/* What one pixel adds at most, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 / 2),
+ * and |e|^k exp(-|e|^2 / 2), k <= 2, beside |g| |r| and |e|^k exp(-|e|^2), k <= 4, beside |g|^2 are at most 1. A tile
+ * is held to as many times that as the splat's box has pixels there, so that the bound does not hang on roundings. */
+#define T3R_MOMENT_MOST_Q7 (195075 * 128)
+
+/* ceil(log2 rows), rows of eight pixels: 0..5 */
+static inline uint32_t t3r_count_bits(uint32_t rows)
+{
+    return rows <= 1 ? 0 : t3r_msb32(rows - 1) + 1;
+}
+
+/* The right shift that brings what has these bits to `bits` of them. */
+static inline uint32_t t3r_shift_to(uint32_t all_bits, uint32_t bits)
+{
+    const uint32_t has = all_bits == 0 ? 0 : t3r_msb32(all_bits) + 1;
+    return has > bits ? has - bits : 0;
+}
+
+/* all_bits: of the sizes of all terms; sum: of the sizes, each less its last 8 bits; rows: of eight pixels. */
+static inline uint32_t t3r_term_shift(uint32_t all_bits, uint32_t sum, uint32_t rows)
+{
+    const uint32_t by_size = t3r_shift_to(all_bits, T3R_TERM_BITS);
+    const uint32_t by_sum = t3r_shift_to(sum + rows * T3R_LANES, T3R_TERM_SUM_BITS - 8);
+    return T3R_MAX(by_size, by_sum);
+}
+
+/* A rounding right shift of 32 bits in two steps, so that adding the half cannot overflow: ((x >> first) + half) >>
+ * half. */
+typedef struct t3r_shift_steps {
+    uint32_t first, half;
+} t3r_shift_steps;
+
+static inline t3r_shift_steps t3r_shift_steps_of(uint32_t shift)
+{
+    return shift == 0 ? (t3r_shift_steps){0, 0} : (t3r_shift_steps){shift - 1, 1};
+}
+
+/* Right shifts from the sums to those of t3r_refine_sums; gradient and curvature of order 0. */
+typedef struct t3r_sum_shifts {
+    int32_t colour, weight, gradient, curvature;
+} t3r_sum_shifts;
+
+static inline t3r_sum_shifts t3r_sum_shifts_of(uint32_t area, uint32_t scale, uint32_t count_bits,
+                                               uint32_t square_shift, uint32_t product_shift)
+{
+    const int32_t fine = (int32_t)(t3r_refine_shift(area) + scale);
+    return (t3r_sum_shifts){
+        .colour = 8 + fine - (int32_t)count_bits, /* from Q19 to Q11 */
+        .weight = fine - (int32_t)count_bits,
+        .gradient = 4 + fine - (int32_t)product_shift,                  /* from Q11 to Q7 */
+        .curvature = 7 + fine + (int32_t)scale - (int32_t)square_shift, /* from Q14 to Q7, of a square */
+    };
+}
+
+static inline int32_t t3r_moment_most(uint32_t area, uint32_t pixels)
+{
+    return t3r_scale32(T3R_MOMENT_MOST_Q7, -(int32_t)t3r_refine_shift(area)) * (int32_t)pixels;
+}
+
+#endif
