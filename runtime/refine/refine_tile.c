@@ -108,6 +108,14 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
     }
 }
 
+/* A function of its own, as its tile is not needed while splats are taken off. */
+static __attribute__((noinline)) kept_splats draw_again(const t3r_refine_view *job, const uint32_t *list, uint32_t end,
+                                                        uint32_t left, uint32_t top)
+{
+    t3r_tile again;
+    return draw(job, list, end, left, top, &again);
+}
+
 void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y)
 {
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
@@ -117,8 +125,7 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
     memset(want->pixels.colour_q7, 0, sizeof want->pixels.colour_q7); /* behind the last splat it is black */
     take_off(job, list, &kept, left, top);
     while (kept.begin > 0) {
-        t3r_tile again;
-        kept = draw(job, list, kept.begin, left, top, &again);
+        kept = draw_again(job, list, kept.begin, left, top);
         take_off(job, list, &kept, left, top);
     }
 }

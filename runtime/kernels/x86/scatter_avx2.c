@@ -11,7 +11,6 @@
 #include "kernels/scatter_bits.h"
 
 #define STEPS_MOST (T3R_BLENDED_ROWS_MOST / 2) /* pairs of rows, of all groups */
-#define SUMS_A_REGISTER 8
 
 /* Squares and products of 16 pixels: the first four columns of both rows, then the last four, as packing takes them. */
 typedef struct step_terms {
@@ -217,6 +216,78 @@ static T3R_AVX2 void take_all_off(off_job *job, const t3r_scatter_splat *splat)
     }
 }
 
+/* The same, with the terms of every pair of rows; returns how many there are. */
+static T3R_AVX2 uint32_t collect_terms(off_job *job, const t3r_scatter_splat *splat, step_terms *terms,
+                                       __m256i sums[GRADIENT])
+{
+    const t3r_tile_splat *span = splat->span;
+    const t3r_blended_row *row = splat->rows;
+    uint32_t steps = 0;
+    for (uint32_t group = 0; group < span->groups; group++) {
+        for (uint32_t j = span->first; j <= span->last; j += 2) {
+            const bool two = j < span->last;
+            take_off(job, row, j, span->column + group * T3R_LANES, two, &terms[steps++], sums);
+            row += two ? 2 : 1;
+        }
+    }
+    return steps;
+}
+
+static T3R_AVX2 void sum_moments(const t3r_scatter_splat *splat, const step_terms *next, uint32_t steps,
+                                 t3r_shift_steps square_by, t3r_shift_steps product_by, __m256i sums[SUMS])
+{
+    const uint32_t groups = splat->span->groups;
+    const __m128i square_first = _mm_cvtsi32_si128((int)square_by.first);
+    const __m128i square_half = _mm_cvtsi32_si128((int)square_by.half);
+    const __m128i product_first = _mm_cvtsi32_si128((int)product_by.first);
+    const __m128i product_half = _mm_cvtsi32_si128((int)product_by.half);
+    const __m256i x_down = _mm256_set1_epi16((int16_t)(uint16_t)(2 * splat->down_q13[0]));
+    const __m256i y_down = _mm256_set1_epi16((int16_t)(uint16_t)(2 * splat->down_q13[1]));
+    for (uint32_t group = 0; group < groups; group++) {
+        __m256i x = first_rows(splat->origin_q13[0], splat->right_q13[0], splat->down_q13[0], group * T3R_LANES);
+        __m256i y = first_rows(splat->origin_q13[1], splat->right_q13[1], splat->down_q13[1], group * T3R_LANES);
+        for (uint32_t at = 0; at < steps / groups; at++, next++) {
+            add_step(x, y, packed_squares(next->square, square_first, square_half),
+                     packed_products(next->product, product_first, product_half), sums + GRADIENT, sums + CURVATURE);
+            x = _mm256_add_epi16(x, x_down);
+            y = _mm256_add_epi16(y, y_down);
+        }
+    }
+}
+
+static T3R_AVX2 void add_sums(const __m256i *sums, const t3r_sum_shifts *by, int32_t most, t3r_refine_sums *to)
+{
+    const int32_t gradient = by->gradient, gradient_1 = gradient + T3R_X_FRACTION;
+    const int32_t gradient_2 = gradient + T3R_XX_FRACTION, curvature = by->curvature;
+    const int32_t curvature_1 = curvature + T3R_X_FRACTION, curvature_2 = curvature + T3R_XX_FRACTION;
+    const int32_t curvature_3 = curvature + T3R_XXX_FRACTION, curvature_4 = curvature + T3R_XXXX_FRACTION;
+    const __m256i held = _mm256_set1_epi32(most),
+                  no_colours = _mm256_setr_epi32(INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX, most, most, most, most);
+    int32_t *place = to->colour;
+    add_scaled(
+        sums,
+        _mm256_setr_epi32(by->colour, by->colour, by->colour, by->weight, gradient, gradient_1, gradient_1, gradient_2),
+        no_colours, place);
+    add_scaled(sums + 8,
+               _mm256_setr_epi32(gradient_2, gradient_2, curvature, curvature_1, curvature_1, curvature_2, curvature_2,
+                                 curvature_2),
+               held, place + 8);
+    add_scaled(sums + 16,
+               _mm256_setr_epi32(curvature_3, curvature_3, curvature_3, curvature_3, curvature_4, curvature_4,
+                                 curvature_4, curvature_4),
+               held, place + 16);
+    const __m256i last[4] = {sums[24], _mm256_setzero_si256(), _mm256_setzero_si256(), _mm256_setzero_si256()};
+    const int32_t sum = t3r_scale32(_mm_cvtsi128_si32(sums_of_four(last)), -curvature_4);
+    to->curvature[T3R_M_Y4] += t3r_clamp32(sum, -most, most);
+}
+
+/* The right shift of terms whose bits and sums of sizes these are. */
+static T3R_AVX2 uint32_t shift_of(__m256i bits, __m256i size_sums, uint32_t rows)
+{
+    const __m256i zero = _mm256_setzero_si256(), four[4] = {size_sums, zero, zero, zero};
+    return t3r_term_shift(any_of(bits), (uint32_t)_mm_cvtsi128_si32(sums_of_four(four)), rows);
+}
+
 T3R_AVX2 void t3r_scatter_avx2(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, t3r_refine_sums *restrict to)
 {
     const t3r_tile_splat *span = splat->span;
@@ -238,65 +309,16 @@ T3R_AVX2 void t3r_scatter_avx2(t3r_wanted *restrict tile, const t3r_scatter_spla
         return;
     }
     step_terms terms[STEPS_MOST];
-    __m256i sums[(SUMS + SUMS_A_REGISTER - 1) / SUMS_A_REGISTER * SUMS_A_REGISTER];
+    __m256i sums[SUMS];
     for (int k = 0; k < SUMS; k++) {
         sums[k] = zero;
     }
-    const t3r_blended_row *row = splat->rows;
-    uint32_t steps = 0;
-    for (uint32_t group = 0; group < span->groups; group++) {
-        for (uint32_t j = span->first; j <= span->last; j += 2) {
-            const bool two = j < span->last;
-            take_off(&job, row, j, span->column + group * T3R_LANES, two, &terms[steps++], sums);
-            row += two ? 2 : 1;
-        }
-    }
-    const __m256i sizes[4] = {job.squares_sum, job.products_sum, zero, zero};
-    const __m128i size_sums = sums_of_four(sizes);
-    const uint32_t squares_sum = (uint32_t)_mm_cvtsi128_si32(size_sums);
-    const uint32_t products_sum = (uint32_t)_mm_extract_epi32(size_sums, 1);
-    const uint32_t square_shift = t3r_term_shift(any_of(job.squares), squares_sum, rows);
-    const uint32_t product_shift = t3r_term_shift(any_of(job.products), products_sum, rows);
-    const t3r_shift_steps square_by = t3r_shift_steps_of(square_shift), product_by = t3r_shift_steps_of(product_shift);
-    const __m128i square_first = _mm_cvtsi32_si128((int)square_by.first),
-                  square_half = _mm_cvtsi32_si128((int)square_by.half);
-    const __m128i product_first = _mm_cvtsi32_si128((int)product_by.first);
-    const __m128i product_half = _mm_cvtsi32_si128((int)product_by.half);
-    const __m256i x_down = _mm256_set1_epi16((int16_t)(uint16_t)(2 * splat->down_q13[0]));
-    const __m256i y_down = _mm256_set1_epi16((int16_t)(uint16_t)(2 * splat->down_q13[1]));
-    const step_terms *next = terms;
-    for (uint32_t group = 0; group < span->groups; group++) {
-        __m256i x = first_rows(splat->origin_q13[0], splat->right_q13[0], splat->down_q13[0], group * T3R_LANES);
-        __m256i y = first_rows(splat->origin_q13[1], splat->right_q13[1], splat->down_q13[1], group * T3R_LANES);
-        for (uint32_t at = 0; at < steps / span->groups; at++, next++) {
-            add_step(x, y, packed_squares(next->square, square_first, square_half),
-                     packed_products(next->product, product_first, product_half), sums + GRADIENT, sums + CURVATURE);
-            x = _mm256_add_epi16(x, x_down);
-            y = _mm256_add_epi16(y, y_down);
-        }
-    }
-
+    const uint32_t steps = collect_terms(&job, splat, terms, sums);
+    const uint32_t square_shift = shift_of(job.squares, job.squares_sum, rows);
+    const uint32_t product_shift = shift_of(job.products, job.products_sum, rows);
+    sum_moments(splat, terms, steps, t3r_shift_steps_of(square_shift), t3r_shift_steps_of(product_shift), sums);
     const t3r_sum_shifts by = t3r_sum_shifts_of(to->area, splat->scale, less, square_shift, product_shift);
-    const int32_t most = t3r_moment_most(to->area, splat->pixels);
-    const __m256i held = _mm256_set1_epi32(most);
-    int32_t *place = to->colour;
-    const __m256i any = _mm256_set_epi32(most, most, most, most, INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX);
-    add_scaled(sums,
-               _mm256_setr_epi32(by.colour, by.colour, by.colour, by.weight, by.gradient, by.gradient + T3R_X_FRACTION,
-                                 by.gradient + T3R_X_FRACTION, by.gradient + T3R_XX_FRACTION),
-               any, place);
-    add_scaled(sums + 8,
-               _mm256_setr_epi32(by.gradient + T3R_XX_FRACTION, by.gradient + T3R_XX_FRACTION, by.curvature,
-                                 by.curvature + T3R_X_FRACTION, by.curvature + T3R_X_FRACTION,
-                                 by.curvature + T3R_XX_FRACTION, by.curvature + T3R_XX_FRACTION,
-                                 by.curvature + T3R_XX_FRACTION),
-               held, place + 8);
-    const int32_t third = by.curvature + T3R_XXX_FRACTION, fourth = by.curvature + T3R_XXXX_FRACTION;
-    add_scaled(sums + 16, _mm256_setr_epi32(third, third, third, third, fourth, fourth, fourth, fourth), held,
-               place + 16);
-    const __m256i last[4] = {sums[24], zero, zero, zero};
-    const int32_t sum = t3r_scale32(_mm_cvtsi128_si32(sums_of_four(last)), -fourth);
-    to->curvature[T3R_M_Y4] += t3r_clamp32(sum, -most, most);
+    add_sums(sums, &by, t3r_moment_most(to->area, splat->pixels), to);
 }
 
 #else
