@@ -79,6 +79,25 @@ static void luma_of(const t3r_view *view, uint8_t *luma)
     }
 }
 
+/* One side of a rectified pair, row by row. */
+typedef struct side_job {
+    const t3r_rectification *rect;
+    uint32_t side, columns;
+    int32_t begin_q16;
+    const uint8_t *luma; /* of the view */
+    uint8_t *out;
+} side_job;
+
+static void rectify_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const side_job *job = context;
+    for (uint32_t y = begin; y < end; y++) {
+        t3r_rectified_row(job->rect, job->side, job->luma, job->begin_q16, y, job->columns,
+                          job->out + (size_t)y * job->columns);
+    }
+}
+
 /* Where a plane's columns begin: the right one's so that `first` is the disparity at its end. */
 static int32_t begin_q16(const t3r_rectification *rect, uint32_t side, int32_t first, uint32_t disparities)
 {
@@ -105,6 +124,27 @@ static uint32_t lanes(uint32_t disparities)
     return (disparities + T3R_PATH_LANES - 1) / T3R_PATH_LANES * T3R_PATH_LANES;
 }
 
+/* A quarter of the size, row by row; each worker has four rows of the full size. */
+typedef struct quarter_job {
+    side_job full;
+    uint8_t *rows;
+} quarter_job;
+
+static void quarter_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    const quarter_job *job = context;
+    const side_job *full = &job->full;
+    const uint32_t columns = QUARTER * full->columns;
+    uint8_t *rows = job->rows + (size_t)worker * QUARTER * columns;
+    for (uint32_t y = begin; y < end; y++) {
+        for (uint32_t i = 0; i < QUARTER; i++) {
+            t3r_rectified_row(full->rect, full->side, full->luma, full->begin_q16, QUARTER * y + i, columns,
+                              rows + (size_t)i * columns);
+        }
+        quarter_row(rows, full->columns, full->out + (size_t)y * full->columns);
+    }
+}
+
 /* What a first look finds: disparities from `first`, at most as many as the settings have, and the match score. */
 typedef struct look {
     int32_t first;
@@ -124,39 +164,39 @@ static uint32_t match_score_of(const uint32_t *histogram, uint32_t count, int32_
     return (uint32_t)T3R_MIN(sum, (uint64_t)UINT32_MAX);
 }
 
-static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectification *rect, const t3r_view views[2],
-                           const planes *full, look *found)
+/* Luma of both views at a quarter of the size. A function of its own: workers' tasks need the stack that its caller's
+ * histogram takes. */
+static __attribute__((noinline)) void fill_quarter(const t3r_stereo_settings *settings, const t3r_rectification *rect,
+                                                   const t3r_view views[2], const planes *full, const planes *p,
+                                                   uint32_t count)
 {
     const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
-    const int32_t base = rect->least_disparity;
-    const uint32_t wanted = (uint32_t)(rect->most_disparity - base) / QUARTER + 1;
-    /* As many as there are columns at most, nor more than the work has room for. */
-    const uint32_t room = T3R_MIN(T3R_MIN(rect->width, T3R_PATH_MOST), QUARTER * settings->disparities);
-    const uint32_t count = lanes(T3R_MIN(wanted, room));
-    const planes p = divide_quarter(full, width, height, count);
     for (uint32_t side = 0; side < 2; side++) {
         const uint32_t columns = side == 0 ? width : (uint32_t)T3R_MATCH_RIGHT(width, count);
-        const int32_t begin = begin_q16(rect, side, base, QUARTER * (count - 1) + 1);
-        uint8_t *luma = full->work, *rows = full->side[side].luma;
-        luma_of(&views[side], luma);
-        for (uint32_t y = 0; y < height; y++) {
-            for (uint32_t i = 0; i < QUARTER; i++) {
-                t3r_rectified_row(rect, side, luma, begin, QUARTER * y + i, QUARTER * columns,
-                                  rows + (size_t)i * QUARTER * columns);
-            }
-            quarter_row(rows, columns, p.side[side].luma + (size_t)y * columns);
-        }
+        quarter_job job = {
+            .full = {.rect = rect,
+                     .side = side,
+                     .columns = columns,
+                     .begin_q16 = begin_q16(rect, side, rect->least_disparity, QUARTER * (count - 1) + 1),
+                     .luma = full->work,
+                     .out = p->side[side].luma},
+            .rows = full->side[side].luma};
+        luma_of(&views[side], full->work);
+        const bool fits = settings->workers.count <= full->pixels[side] / (QUARTER * QUARTER * (size_t)columns);
+        const t3r_workers alone = {NULL, 1};
+        t3r_run_rows(fits ? &settings->workers : &alone, height, quarter_rows, &job);
     }
-    const t3r_match match = match_of(&p, settings, width, height, count);
-    t3r_match_pair(&match);
-    t3r_match_agree(&match);
-    (void)t3r_match_speckles(&match, 0);
+}
 
+/* The range of disparities that the first look trusts, and what it is worth. */
+static __attribute__((noinline)) t3r_pair judge(const t3r_stereo_settings *settings, const planes *p, uint32_t pixels,
+                                                uint32_t count, int32_t base, look *found)
+{
     uint32_t histogram[T3R_PATH_MOST] = {0}, trusted = 0, shown = 0;
-    for (size_t i = 0; i < (size_t)width * height; i++) {
-        shown += p.side[0].luma[i] != 0;
-        if (p.side[0].confidence[i] != 0) {
-            histogram[T3R_MIN(p.side[0].disparity[i] >> T3R_DISPARITY_BITS, (int)count - 1)]++;
+    for (size_t i = 0; i < pixels; i++) {
+        shown += p->side[0].luma[i] != 0;
+        if (p->side[0].confidence[i] != 0) {
+            histogram[T3R_MIN(p->side[0].disparity[i] >> T3R_DISPARITY_BITS, (int)count - 1)]++;
             trusted++;
         }
     }
@@ -190,6 +230,24 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
     const int32_t last = base + (int32_t)(QUARTER * (high + 1)) + MARGIN - 1;
     found->disparities = T3R_MIN(lanes((uint32_t)(last - found->first + 1)), settings->disparities);
     return T3R_PAIR_OK;
+}
+
+static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectification *rect, const t3r_view views[2],
+                           const planes *full, look *found)
+{
+    const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
+    const int32_t base = rect->least_disparity;
+    const uint32_t wanted = (uint32_t)(rect->most_disparity - base) / QUARTER + 1;
+    /* As many as there are columns at most, nor more than the work has room for. */
+    const uint32_t room = T3R_MIN(T3R_MIN(rect->width, T3R_PATH_MOST), QUARTER * settings->disparities);
+    const uint32_t count = lanes(T3R_MIN(wanted, room));
+    const planes p = divide_quarter(full, width, height, count);
+    fill_quarter(settings, rect, views, full, &p, count);
+    const t3r_match match = match_of(&p, settings, width, height, count);
+    t3r_match_pair(&match);
+    t3r_match_agree(&match);
+    (void)t3r_match_speckles(&match, 0);
+    return judge(settings, &p, width * height, count, base, found);
 }
 
 t3r_pair t3r_stereo_match_score(const t3r_stereo_settings *settings, const t3r_camera cameras[2],
@@ -231,15 +289,18 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
         found.disparity[side] = full.side[side].disparity;
         found.confidence[side] = full.side[side].confidence;
         luma_of(&views[side], full.work);
-        for (uint32_t y = 0; y < rect.height; y++) {
-            t3r_rectified_row(&rect, side, full.work, found.begin_q16[side], y, columns,
-                              full.side[side].luma + (size_t)y * columns);
-        }
+        side_job job = {.rect = &rect,
+                        .side = side,
+                        .columns = columns,
+                        .begin_q16 = found.begin_q16[side],
+                        .luma = full.work,
+                        .out = full.side[side].luma};
+        t3r_run_rows(&settings->workers, rect.height, rectify_rows, &job);
     }
     t3r_match_all(&match, settings->fill != 0);
     pair = t3r_stereo_unit(&found, views, depth_unit_q40);
     for (uint32_t side = 0; side < 2 && pair == T3R_PAIR_OK; side++) {
-        t3r_stereo_to_view(&found, side, &views[side]);
+        t3r_stereo_to_view(&found, side, &views[side], &settings->workers);
     }
     return pair;
 }

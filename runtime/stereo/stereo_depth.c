@@ -152,16 +152,26 @@ t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uin
     return T3R_PAIR_OK;
 }
 
-void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3r_view *view)
+typedef struct view_job {
+    const t3r_stereo_planes *planes;
+    uint32_t side;
+    const t3r_view *view;
+} view_job;
+
+static void view_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
-    for (uint32_t v = 0; v < view->height; v++) {
+    (void)worker;
+    const view_job *job = context;
+    const t3r_stereo_planes *planes = job->planes;
+    const t3r_view *view = job->view;
+    for (uint32_t v = begin; v < end; v++) {
         for (uint32_t u = 0; u < view->width; u++) {
             const size_t at = (size_t)v * view->width + u;
             distance s;
             view->depth[at] = 0;
             view->match_confidence[at] = T3R_STEREO_NONE;
             const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
-            if (shown && see(planes, side, u, v, &s)) {
+            if (shown && see(planes, job->side, u, v, &s)) {
                 /* 2^22 x 2^25 x 2^6 */
                 int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
                 view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
@@ -170,4 +180,11 @@ void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3
             }
         }
     }
+}
+
+void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3r_view *view,
+                        const t3r_workers *workers)
+{
+    view_job job = {planes, side, view};
+    t3r_run_rows(workers, view->height, view_rows, &job);
 }

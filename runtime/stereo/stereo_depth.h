@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "core/workers.h"
 #include "rectify.h"
 #include "state/views.h"
 
@@ -25,7 +26,8 @@ typedef struct t3r_stereo_planes {
  * T3R_PAIR_SCALE. */
 t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uint64_t *depth_unit_q40);
 
-/* Fills depth and match confidence of a view; after t3r_stereo_unit(). */
-void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3r_view *view);
+/* Fills depth and match confidence of a view, whose rows the workers share; after t3r_stereo_unit(). */
+void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3r_view *view,
+                        const t3r_workers *workers);
 
 #endif

@@ -31,7 +31,12 @@ void t3r_stereo_clear(const t3r_view *views, uint32_t count)
 static t3r_stereo_settings stereo_settings(const t3r_runtime *rt)
 {
     return (t3r_stereo_settings){
-        .kernels = &rt->kernels, .disparities = T3R_STEREO_DISPARITIES, .paths = T3R_STEREO_PATHS, .fill = 0};
+        .kernels = &rt->kernels,
+        .disparities = T3R_STEREO_DISPARITIES,
+        .paths = T3R_STEREO_PATHS,
+        .fill = 0,
+        .workers = t3r_workers_of(rt),
+    };
 }
 
 /* First looks at all pairs; of two views there is nothing to choose. */
@@ -164,6 +169,38 @@ static bool settle(t3r_runtime *rt, const survey *s)
     return any;
 }
 
+typedef struct fill_job {
+    const t3r_runtime *rt;
+    const t3r_view *views;
+    uint32_t first; /* view of the task of index 0 */
+    size_t bytes;   /* of each task's work */
+} fill_job;
+
+static void finish_view(void *context, uint32_t index, uint32_t worker)
+{
+    (void)worker;
+    const fill_job *job = context;
+    const t3r_view *view = &job->views[job->first + index];
+    if (job->rt->config.fill_radius > 0) {
+        uint8_t *work = t3r_buffer_at(job->rt, T3R_BUFFER_STEREO_WORK);
+        t3r_stereo_fill(view, work + index * job->bytes);
+    }
+    t3r_stereo_marks(view, T3R_STEREO_SURE);
+}
+
+/* As many views at once as their work fits where pairs had theirs. */
+static void finish_views(const t3r_runtime *rt, const t3r_view *views)
+{
+    const uint32_t width = rt->config.width, height = rt->config.height;
+    const t3r_workers workers = t3r_workers_of(rt);
+    fill_job job = {.rt = rt, .views = views, .bytes = T3R_STEREO_FILL_BYTES(width, height)};
+    const size_t room = T3R_STEREO_WORK_BYTES(width, height, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS) / job.bytes;
+    const uint32_t round = t3r_is_parallel(&workers) ? (uint32_t)T3R_MIN(room, rt->views) : 1;
+    for (job.first = 0; job.first < rt->views; job.first += round) {
+        t3r_run_tasks(&workers, T3R_MIN(round, rt->views - job.first), finish_view, &job);
+    }
+}
+
 t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views)
 {
     survey s;
@@ -178,11 +215,8 @@ t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views)
     if (status == T3R_OK && !settle(rt, &s)) {
         status = T3R_ERR_STEREO;
     }
-    for (uint32_t v = 0; v < rt->views && status == T3R_OK; v++) {
-        if (rt->config.fill_radius > 0) {
-            t3r_stereo_fill(&views[v], t3r_buffer_at(rt, T3R_BUFFER_STEREO_WORK));
-        }
-        t3r_stereo_marks(&views[v], T3R_STEREO_SURE);
+    if (status == T3R_OK) {
+        finish_views(rt, views);
     }
     return status;
 }

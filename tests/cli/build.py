@@ -78,7 +78,7 @@ def built():
     check(most["gaussians"] == 50, "--gaussians is not the most of --auto")
     for command in (["build", "-o", "all.ply"], ["build", "-o", "all.ply", "--json"], ["replay"]):
         expect(0, *command, "room.mcap", "--working", "32x32", "--gaussians", 100000,
-               err="--gaussians 100000 is more than the views have: all ")
+               err="100000 Gaussians are more than the views have: all ")
     for command in (["build", "-o", "few.ply"], ["eval"], ["replay"], ["stress", "--rows", "noise", "--strengths", "1"]):
         line = [*command, "room.mcap", "--working", "32x32", "--keep"]
         expect(0, *line, 0.5, err="warning: --keep 0.5 is 0.5 percent of the points; a share of 0.5 is --keep 50")

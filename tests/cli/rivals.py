@@ -29,7 +29,7 @@ def rivals():
     check(not vertices("tuned.ply") & vertices("rival.ply"), "fine-tuning leaves Gaussians as they are")
     expect(0, "render", "tuned.ply", recording, "--view", 1, "-o", "tuned.png")
     expect(0, *small, "--gaussians", 100000, "--method", "eagles", "-o", "all.ply",
-           err="--gaussians 100000 is more than the views have")
+           err="100000 Gaussians are more than the views have")
     expect(2, "replay", recording, "--method", "pup", err="floats")
 
     prune = ["build", recording, "--context", "0,2", "--working", "32x32", "--prune", "whole.ply"]

@@ -29,13 +29,13 @@ void reconstruction_defaults(reconstruction_options *options)
     };
 }
 
-void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t count)
+void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t requested, uint32_t count)
 {
-    if (options->gaussians > count && !options->automatic) {
+    if (requested > count && !options->automatic) {
         (void)cli_error(CLI_OK,
-                        "warning: --gaussians %" PRIu32 " is more than the views have: all %" PRIu32
+                        "warning: %" PRIu32 " Gaussians are more than the views have: all %" PRIu32
                         " valid points are used",
-                        options->gaussians, count);
+                        requested, count);
     }
 }
 

@@ -96,8 +96,8 @@ typedef struct reconstruction_account {
 } reconstruction_account;
 
 reconstruction_account reconstruction_told(const reconstruction *r);
-/* A word on stderr when a number of Gaussians was asked for that the views cannot give. */
-void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t count);
+/* A word on stderr when more Gaussians were requested than the `count` that the views give. */
+void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t requested, uint32_t count);
 
 /* The budget for a share of the points: rounded half up, at least 1. */
 uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent);

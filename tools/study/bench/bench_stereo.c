@@ -22,7 +22,12 @@ size_t bench_stereo_bytes(uint32_t width, uint32_t height, uint32_t paths)
 bool bench_stereo_paths_run(t3r_runtime *runtime, uint32_t paths, void *work)
 {
     const t3r_stereo_settings settings = {
-        .kernels = &runtime->kernels, .disparities = T3R_STEREO_DISPARITIES, .paths = paths, .fill = 0};
+        .kernels = &runtime->kernels,
+        .disparities = T3R_STEREO_DISPARITIES,
+        .paths = paths,
+        .fill = 0,
+        .workers = t3r_workers_of(runtime),
+    };
     t3r_view views[T3R_MAX_VIEWS];
     uint64_t unit_q40;
     t3r_views_of(runtime, views);

@@ -369,7 +369,7 @@ int command_build(int argc, char **argv)
     reconstruction_account told;
     code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
     if (code == CLI_OK) {
-        reconstruction_warn_of_budget(&o.settings, r.scene.count);
+        reconstruction_warn_of_budget(&o.settings, told.requested, r.scene.count);
         code = write_all(&o, recording, &r, &told, &folder);
         tile_lists lists = {0};
         if (code == CLI_OK) {

@@ -288,7 +288,7 @@ static int replay(const replay_options *o, const t3r_recording *recording, const
     if (code != CLI_OK) {
         return code;
     }
-    reconstruction_warn_of_budget(&o->settings, r.scene.count);
+    reconstruction_warn_of_budget(&o->settings, r.requested, r.scene.count);
     replayed_view view = {0};
     code = draw_target(recording, o->recording, &r, &view);
     if (code == CLI_OK) {
