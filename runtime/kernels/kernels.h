@@ -20,6 +20,7 @@
 #include "project.h"
 #include "radix.h"
 #include "scatter.h"
+#include "seed.h"
 #include "solve.h"
 #include "wavelet_rows.h"
 
@@ -50,6 +51,8 @@ typedef struct t3r_kernels {
     t3r_texture_add_kernel *texture_add;
     t3r_texture_spread_kernel *texture_spread;
     /* superclusters and budget */
+    t3r_sample_potential_kernel *sample_potential;
+    t3r_sample_approach_kernel *sample_approach;
     t3r_nearest_begin_kernel *nearest_begin; /* and nearest: a variant replaces both */
     t3r_nearest_kernel *nearest;
     t3r_blur_row_kernel *blur_row;

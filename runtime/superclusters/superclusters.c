@@ -2,8 +2,8 @@
 
 #include "core/fixed.h"
 #include "core/memory.h"
+#include "seeding.h"
 
-#define CENTRE_FRACTION 8 /* a centre has so many bits more than a feature, so that small steps are not lost */
 #define BLOCK 64u         /* points gathered at a time */
 #define TASK_POINTS 512u  /* points a task labels */
 #define WEIGHT_MOST 2048u /* a centre forgets what lies further back, so that late batches still move it */
@@ -14,117 +14,11 @@ static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint
     for (uint32_t k = 0; k < count; k++) {
         int32_t norm = 0; /* at most 6 x 15000^2 < 2^31 */
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-            int16_t c = (int16_t)t3r_round_shift32(clusters[k].centre_q19[d], CENTRE_FRACTION);
+            int16_t c = (int16_t)t3r_round_shift32(clusters[k].centre_q19[d], T3R_CENTRE_FRACTION);
             centres->feature_q11[d][k] = c;
             norm += c * c;
         }
         centres->half_norm[k] = norm / 2;
-    }
-}
-
-/* --- seeding: k-means++ (Arthur and Vassilvitskii 2007), the best of a few draws a centre ------------------------ */
-
-/* Valid points spread evenly over the source, at most T3R_CLUSTER_SAMPLE; returns how many. */
-static uint32_t draw_sample(const t3r_point_source *source, t3r_cluster_work *work)
-{
-    uint32_t strata = T3R_MIN(source->points, T3R_CLUSTER_SAMPLE), count = 0;
-    for (uint32_t s = 0; s < strata; s++) {
-        uint32_t first = (uint32_t)((uint64_t)s * source->points / strata);
-        uint32_t end = (uint32_t)((uint64_t)(s + 1) * source->points / strata);
-        uint32_t jitter = t3r_mix32(s) % (end - first);
-        int16_t feature[T3R_DIMENSIONS];
-        for (uint32_t i = 0; i < end - first; i++) {
-            uint32_t index = first + (jitter + i) % (end - first);
-            if (source->features(source->context, index, feature)) {
-                for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-                    work->u.seeding.feature_q11[d][count] = feature[d];
-                }
-                count++;
-                break;
-            }
-        }
-    }
-    return count;
-}
-
-/* Squared distance of sample point i from c in Q20: at most 6 x 30000^2 / 4 < 2^31. */
-static inline uint32_t distance_of(const t3r_cluster_work *work, const int16_t c[T3R_DIMENSIONS], uint32_t i)
-{
-    uint32_t sum = 0;
-    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-        int32_t e = work->u.seeding.feature_q11[d][i] - c[d];
-        sum += (uint32_t)(e * e) >> 2;
-    }
-    return sum;
-}
-
-static void sample_point(const t3r_cluster_work *work, uint32_t index, int16_t c[T3R_DIMENSIONS])
-{
-    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-        c[d] = work->u.seeding.feature_q11[d][index];
-    }
-}
-
-/* Sum of the distances if the sample point became a centre. */
-static uint64_t potential_with(const t3r_cluster_work *work, uint32_t count, uint32_t index)
-{
-    int16_t c[T3R_DIMENSIONS];
-    sample_point(work, index, c);
-    uint64_t sum = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t distance = distance_of(work, c, i);
-        sum += T3R_MIN(distance, work->u.seeding.distance[i]);
-    }
-    return sum;
-}
-
-/* The sample point at a random place of the running sum of distances. */
-static uint32_t draw_far(const t3r_cluster_work *work, uint32_t count, uint64_t potential, uint32_t random)
-{
-    /* potential < 2^31 x 2^12, of which the place is a 2^-20 step */
-    uint64_t place = (potential >> 20) * (random >> 12) + (((potential & 0xfffff) * (random >> 12)) >> 20);
-    uint64_t sum = 0;
-    for (uint32_t i = 0; i + 1 < count; i++) {
-        sum += work->u.seeding.distance[i];
-        if (sum > place) {
-            return i;
-        }
-    }
-    return count - 1;
-}
-
-static void seed(const t3r_cluster_settings *settings, uint32_t count, t3r_cluster *clusters, t3r_cluster_work *work)
-{
-    uint32_t random = t3r_mix32(settings->seed + 0x9e3779b9u);
-    uint32_t chosen = random % count;
-    uint64_t potential = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        work->u.seeding.distance[i] = UINT32_MAX;
-    }
-    for (uint32_t k = 0; k < settings->clusters; k++) {
-        if (k > 0) {
-            uint64_t best = UINT64_MAX;
-            for (uint32_t trial = 0; trial < T3R_CLUSTER_TRIALS; trial++) {
-                random = t3r_mix32(random + 0x9e3779b9u);
-                uint32_t candidate = draw_far(work, count, potential, random);
-                uint64_t with = potential_with(work, count, candidate);
-                if (with < best) {
-                    best = with;
-                    chosen = candidate;
-                }
-            }
-        }
-        int16_t c[T3R_DIMENSIONS];
-        sample_point(work, chosen, c);
-        for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-            clusters[k].centre_q19[d] = c[d] * (1 << CENTRE_FRACTION);
-        }
-        potential = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            uint32_t distance = distance_of(work, c, i);
-            work->u.seeding.distance[i] = T3R_MIN(distance, work->u.seeding.distance[i]);
-            potential += work->u.seeding.distance[i];
-        }
     }
 }
 
@@ -257,7 +151,7 @@ static void run_batch(means_job *job, uint32_t batch, t3r_cluster *clusters)
         uint32_t *weight = &job->work->u.means.weight[k];
         int64_t before = *weight, after = before + points;
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-            int64_t sum = clusters[k].centre_q19[d] * before + (sums->sum[k][d] * (1 << CENTRE_FRACTION));
+            int64_t sum = clusters[k].centre_q19[d] * before + (sums->sum[k][d] * (1 << T3R_CENTRE_FRACTION));
             clusters[k].centre_q19[d] = (int32_t)t3r_round_div64(sum, after);
         }
         *weight = T3R_MIN((uint32_t)after, WEIGHT_MOST);
@@ -307,7 +201,7 @@ static uint32_t assign(means_job *job, t3r_cluster *clusters, uint32_t done, uin
         all_valid += points;
         clusters[k].points = points;
         for (uint32_t d = 0; d < T3R_DIMENSIONS && points > 0; d++) {
-            clusters[k].centre_q19[d] = (int32_t)t3r_round_div64(sums->sum[k][d] * (1 << CENTRE_FRACTION), points);
+            clusters[k].centre_q19[d] = (int32_t)t3r_round_div64(sums->sum[k][d] * (1 << T3R_CENTRE_FRACTION), points);
         }
     }
     return all_valid;
@@ -318,10 +212,7 @@ uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_set
 {
     memset(clusters, 0, settings->clusters * sizeof *clusters);
     uint32_t total = settings->batches + source->points / T3R_CLUSTER_BATCH;
-    uint32_t sample = draw_sample(source, work);
-    if (sample > 0) {
-        seed(settings, sample, clusters, work);
-    }
+    t3r_seed_centres(source, settings, clusters, &work->u.sample);
     memset(work->u.means.weight, 0, sizeof work->u.means.weight);
     means_job job = {.kernels = settings->kernels,
                      .source = source,

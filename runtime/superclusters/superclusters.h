@@ -11,9 +11,9 @@
 #include "trim3r.h"
 #include "state/views.h"
 
-#define T3R_CLUSTER_SAMPLE 2560u /* points of the seeding subsample */
-#define T3R_CLUSTER_BATCH 4096u  /* points of a mini-batch */
-#define T3R_CLUSTER_TRIALS 4u    /* draws for a new centre, of which the best is taken */
+#define T3R_CLUSTER_BATCH 4096u /* points of a mini-batch */
+#define T3R_CLUSTER_TRIALS 4u   /* draws for a new centre, of which the best is taken */
+#define T3R_CENTRE_FRACTION 8   /* a centre has so many bits more than a feature, so that small steps are not lost */
 
 /* Where points come from: `index` below `points` to its six features, Q11 within +-T3R_FEATURE_MOST; false = the
  * point is not valid and gets T3R_NO_LABEL. */
@@ -49,10 +49,7 @@ typedef struct t3r_cluster_sums {
 typedef struct t3r_cluster_work {
     t3r_centres centres;
     union {
-        struct {
-            int16_t feature_q11[T3R_DIMENSIONS][T3R_CLUSTER_SAMPLE];
-            uint32_t distance[T3R_CLUSTER_SAMPLE]; /* squared, Q20 */
-        } seeding;
+        t3r_sample sample;
         struct {
             t3r_neighbours neighbours;
             t3r_cluster_sums sums;             /* of worker 0, in the end of all */

@@ -1,8 +1,61 @@
-/* The nearest centre, and the radix sort. */
+/* The sample of k-means++, the nearest centre, and the radix sort. */
 #include "checks.h"
 #include "guarded.h"
 
 enum { POINTS = 70, KEYS = 600 };
+
+/* The points first..end - 1 of a sample, and what a centre more makes of them. The others are anything. */
+typedef struct sample_case {
+    t3r_sample *sample;
+    uint32_t first, end;
+    int16_t *centre;
+    int32_t want[T3R_CLUSTER_SAMPLE]; /* the distances then */
+    uint64_t sum;
+} sample_case;
+
+static void make_sample(sample_case *c, uint64_t *seed, bool from_the_first)
+{
+    c->sample = guarded_take(sizeof *c->sample, 4);
+    c->centre = guarded_take(T3R_DIMENSIONS * sizeof *c->centre, 2);
+    memset(c->sample, 0x7f, sizeof *c->sample);
+    const uint32_t count = any_length(seed, T3R_CLUSTER_SAMPLE);
+    c->first = from_the_first ? 0 : (uint32_t)any_value(seed, 0, T3R_CLUSTER_SAMPLE - count);
+    c->end = c->first + count;
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        c->centre[d] = (int16_t)any_value(seed, -T3R_FEATURE_MOST, T3R_FEATURE_MOST);
+    }
+    memcpy(c->want, c->sample->distance_q20, sizeof c->want);
+    c->sum = 0;
+    for (uint32_t i = c->first; i < c->end; i++) {
+        int64_t distance = 0;
+        for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+            const int64_t p = any_value(seed, -T3R_FEATURE_MOST, T3R_FEATURE_MOST);
+            c->sample->feature_q11[d][i] = (int16_t)p;
+            distance += (p - c->centre[d]) * (p - c->centre[d]) / 4;
+        }
+        const int64_t before = any_value(seed, 0, INT32_MAX);
+        c->sample->distance_q20[i] = (int32_t)before;
+        c->want[i] = (int32_t)(distance < before ? distance : before);
+        c->sum += (uint64_t)c->want[i];
+    }
+}
+
+const char *check_sample_potential(const t3r_kernels *kernels, uint64_t *seed)
+{
+    static sample_case c;
+    make_sample(&c, seed, true);
+    return kernels->sample_potential(c.sample, c.end, c.centre) == c.sum ? NULL : "the sum differs";
+}
+
+const char *check_sample_approach(const t3r_kernels *kernels, uint64_t *seed)
+{
+    static sample_case c;
+    make_sample(&c, seed, false);
+    if (kernels->sample_approach(c.sample, c.first, c.end, c.centre) != c.sum) {
+        return "the sum differs";
+    }
+    return SAME(c.sample->distance_q20, c.want, T3R_CLUSTER_SAMPLE) ? NULL : "a distance differs";
+}
 
 const char *check_nearest(const t3r_kernels *kernels, uint64_t *seed)
 {

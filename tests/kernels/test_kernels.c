@@ -31,6 +31,8 @@
     X(texture_coarse, check_texture_coarse)                                                                            \
     X(texture_add, check_texture_add)                                                                                  \
     X(texture_spread, check_texture_spread)                                                                            \
+    X(sample_potential, check_sample_potential)                                                                        \
+    X(sample_approach, check_sample_approach)                                                                          \
     X(nearest_begin, check_nearest)                                                                                    \
     X(nearest, check_nearest)                                                                                          \
     X(blur_row, check_blur_row)                                                                                        \

@@ -29,6 +29,10 @@
 #define t3r_path_step_c t3r_path_step_avx2
 #include "kernels/path_step.c"
 
+#define t3r_sample_potential_c t3r_sample_potential_avx2
+#define t3r_sample_approach_c t3r_sample_approach_avx2
+#include "kernels/seed.c"
+
 #define t3r_luma_row_c t3r_luma_row_avx2
 #define t3r_split_row_c t3r_split_row_avx2
 #define t3r_db2_predict_c t3r_db2_predict_avx2

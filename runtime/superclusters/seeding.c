@@ -1,0 +1,115 @@
+#include "seeding.h"
+
+#include "core/fixed.h"
+#include "core/memory.h"
+
+#define PART 256u /* points of the sample whose distances are summed up, so that a draw passes them in one step */
+#define PARTS (T3R_CLUSTER_SAMPLE / PART)
+
+/* Valid points spread evenly over the source, at most T3R_CLUSTER_SAMPLE; returns how many. */
+static uint32_t draw_sample(const t3r_point_source *source, t3r_sample *sample)
+{
+    uint32_t strata = T3R_MIN(source->points, T3R_CLUSTER_SAMPLE), count = 0;
+    for (uint32_t s = 0; s < strata; s++) {
+        uint32_t first = (uint32_t)((uint64_t)s * source->points / strata);
+        uint32_t end = (uint32_t)((uint64_t)(s + 1) * source->points / strata);
+        uint32_t jitter = t3r_mix32(s) % (end - first);
+        int16_t feature[T3R_DIMENSIONS];
+        for (uint32_t i = 0; i < end - first; i++) {
+            uint32_t index = first + (jitter + i) % (end - first);
+            if (source->features(source->context, index, feature)) {
+                for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+                    sample->feature_q11[d][count] = feature[d];
+                }
+                sample->distance_q20[count] = INT32_MAX;
+                count++;
+                break;
+            }
+        }
+    }
+    return count;
+}
+
+static void sample_point(const t3r_sample *sample, uint32_t index, int16_t c[T3R_DIMENSIONS])
+{
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        c[d] = sample->feature_q11[d][index];
+    }
+}
+
+/* One worker alone: what a centre takes is less than it costs to hand its parts to others. */
+typedef struct seeding {
+    const t3r_kernels *kernels;
+    t3r_sample *sample;
+    uint32_t count, parts;     /* of the sample */
+    uint64_t potential[PARTS]; /* sums of a part's distances */
+} seeding;
+
+static void add_centre(seeding *s, const int16_t centre[T3R_DIMENSIONS])
+{
+    for (uint32_t part = 0; part < s->parts; part++) {
+        const uint32_t first = part * PART;
+        s->potential[part] = s->kernels->sample_approach(s->sample, first, T3R_MIN(first + PART, s->count), centre);
+    }
+}
+
+/* The sample point at a random place of the running sum of distances: by the sums of the parts, then in one part. */
+static uint32_t draw_far(const seeding *s, uint32_t random)
+{
+    uint64_t potential = 0;
+    for (uint32_t part = 0; part < s->parts; part++) {
+        potential += s->potential[part];
+    }
+    /* potential < 2^31 x 2^12, of which the place is a 2^-20 step */
+    uint64_t place = (potential >> 20) * (random >> 12) + (((potential & 0xfffff) * (random >> 12)) >> 20);
+    uint64_t sum = 0;
+    uint32_t part = 0;
+    while (part + 1 < s->parts && sum + s->potential[part] <= place) {
+        sum += s->potential[part++];
+    }
+    for (uint32_t i = part * PART; i + 1 < s->count; i++) {
+        sum += (uint32_t)s->sample->distance_q20[i];
+        if (sum > place) {
+            return i;
+        }
+    }
+    return s->count - 1;
+}
+
+/* Of a few draws the one with which the sum of all distances is least, the earlier one among equals. */
+static void choose_centre(const seeding *s, uint32_t *random, int16_t centre[T3R_DIMENSIONS])
+{
+    uint64_t least = UINT64_MAX;
+    for (uint32_t trial = 0; trial < T3R_CLUSTER_TRIALS; trial++) {
+        int16_t candidate[T3R_DIMENSIONS];
+        *random = t3r_mix32(*random + 0x9e3779b9u);
+        sample_point(s->sample, draw_far(s, *random), candidate);
+        const uint64_t with = s->kernels->sample_potential(s->sample, s->count, candidate);
+        if (with < least) {
+            least = with;
+            memcpy(centre, candidate, sizeof candidate);
+        }
+    }
+}
+
+void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
+                      t3r_sample *sample)
+{
+    seeding s = {.kernels = settings->kernels, .sample = sample, .count = draw_sample(source, sample)};
+    if (s.count == 0) {
+        return;
+    }
+    s.parts = (s.count + PART - 1) / PART;
+    uint32_t random = t3r_mix32(settings->seed + 0x9e3779b9u);
+    int16_t centre[T3R_DIMENSIONS];
+    sample_point(sample, random % s.count, centre);
+    for (uint32_t k = 0; k < settings->clusters; k++) {
+        if (k > 0) {
+            choose_centre(&s, &random, centre);
+        }
+        add_centre(&s, centre);
+        for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+            clusters[k].centre_q19[d] = centre[d] * (1 << T3R_CENTRE_FRACTION);
+        }
+    }
+}

@@ -1,0 +1,12 @@
+/* The first centres of the K-means: k-means++ (Arthur and Vassilvitskii 2007) on a sample of the points, the best of a
+ * few draws a centre. */
+#ifndef T3R_SEEDING_H
+#define T3R_SEEDING_H
+
+#include "superclusters.h"
+
+/* Places the settings' number of centres on points of the source. Without a valid point it leaves them as they are. */
+void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
+                      t3r_sample *sample);
+
+#endif
