@@ -45,14 +45,13 @@ class Trial:
 
 
 # in a job: capture, replay and look; what is left is .live, .replay and .info of the name that comes first. $through
-# may have a command that runs another; $to a pipe for the recording, which the process $reader empties into a.mcap
+# may have a command that runs another
 RECORD = """
 record() {
     name=$1
     shift
-    $through trim3r capture --hash --json --quiet -o ${to:-a.mcap} "$@" > out/$name.live 2> out/$name.told
+    $through trim3r capture --hash --json --quiet -o a.mcap "$@" > out/$name.live 2> out/$name.told
     status=$?
-    [ -z "$reader" ] || wait $reader
     trim3r capture --source replay:a.mcap --hash --json > out/$name.replay
     trim3r info --json a.mcap > out/$name.info
 }

@@ -81,13 +81,16 @@ camera="--source libcamera:0 --size {WIDTH}x{HEIGHT} --format YUYV"
 trim3r capture --list > out/libcamera.list
 keep libcamera $camera --frames 30 --stall 1500
 # which it does not where udevd is on the other side of a container's wall; there the camera leaves once while its
-# images are waited for, and once while they are not: the recording goes through a pipe that is not emptied before
+# images are waited for, and once while they are not: the program is stopped after its first images until then
 through="unshare -n"
 keep unheard $camera --frames 10 --stall 1500
-to=pipe
-mkfifo pipe
-(for i in $(seq 100); do [ -z "$(ls /sys/class/video4linux)" ] && break; sleep 0.1; done; cat > a.mcap) < pipe &
-reader=$!
+size() {
+    cat a.mcap* 2> /dev/null | wc -c
+}
+(for i in $(seq 300); do [ $(size) -gt 30000 ] && break; sleep 0.1; done
+    kill -STOP $(pidof trim3r)
+    for i in $(seq 100); do [ -z "$(ls /sys/class/video4linux)" ] && break; sleep 0.1; done
+    kill -CONT $(pidof trim3r)) &
 keep unseen $camera --frames 10 --stall 1500
 """
 
