@@ -60,7 +60,7 @@ typedef struct t3r_scatter_splat {
     uint32_t scale;        /* the leading zeros that all weights of the rows share, of 16 bits: 0..15 */
     int16_t origin_q13[2]; /* x and y of the first pixel of the first group */
     int16_t right_q13[2], down_q13[2];
-    uint32_t pixels; /* of the splat's box in the tile: bounds what it adds */
+    uint32_t pixels; /* of the splat's box in the tile, at most the area of the sums: bounds what it adds */
 } t3r_scatter_splat;
 
 /* Takes the splat off the tile: the colours become those that it was blended over, itself included. sums: where its

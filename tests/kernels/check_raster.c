@@ -167,7 +167,7 @@ const char *check_scatter(const t3r_kernels *kernels, uint64_t *seed)
     want = *tile;
     t3r_refine_sums *sums = guarded_take(sizeof *sums, 4), want_sums;
     memset(sums, 0, sizeof *sums);
-    sums->area = (uint32_t)any_value(seed, 1, (1 << 28) - 1);
+    sums->area = (uint32_t)any_value(seed, splat.pixels, (1 << 28) - 1);
     sums->weight = 7;
     want_sums = *sums;
     const bool wanted = unit_random(seed) % 8 != 0;

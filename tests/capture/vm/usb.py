@@ -84,10 +84,7 @@ keep libcamera $camera --frames 30 --stall 1500
 # images are waited for, and once while they are not: the program is stopped after its first images until then
 through="unshare -n"
 keep unheard $camera --frames 10 --stall 1500
-size() {
-    cat a.mcap* 2> /dev/null | wc -c
-}
-(for i in $(seq 300); do [ $(size) -gt 30000 ] && break; sleep 0.1; done
+(for i in $(seq 300); do [ $(cat a.mcap* 2> /dev/null | wc -c) -gt 30000 ] && break; sleep 0.1; done
     kill -STOP $(pidof trim3r)
     for i in $(seq 100); do [ -z "$(ls /sys/class/video4linux)" ] && break; sleep 0.1; done
     kill -CONT $(pidof trim3r)) &
