@@ -128,7 +128,7 @@ static void faint_splats_keep_their_bits(void **state)
         for (uint32_t k = 0; k < 3 * SIDE * SIDE; k++) {
             tile.residual_q4[k / (SIDE * SIDE)][k / SIDE % SIDE][k % SIDE] = (int16_t)unit_between(&seed, -4080, 4080);
         }
-        t3r_refine_sums sums = {.area = 64}, less = {.area = 64};
+        t3r_refine_sums sums = {.area = 256}, less = {.area = 256};
         t3r_scatter_splat splat = scatter_of(&s, rows, bits);
         t3r_scatter_c(&tile, &splat, &sums);
         splat.rows = faint;

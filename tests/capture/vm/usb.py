@@ -174,7 +174,7 @@ if MODULE:
     trial.check("libcamera:0" in trial.text("libcamera.list"), trial.text("libcamera.list"))
     faults("libcamera", "was unplugged|takes no buffers", "no image for", "the library calls it failed",
            starts_late=True)
-    for name, stream, words in (("unheard", 3, "no image for|takes no buffers"), ("unseen", 5, "takes no buffers")):
+    for name, stream, words in (("unheard", 3, "no image for|takes no buffers"), ("unseen", 5, "no image for|takes no buffers")):
         live = trial.recorded(name, 10)
         missing, others = account(name, yuyv, stream, starts_late=True)
         trial.check(live["reopened"] == 1 and re.search(words, lost(others)[0]), f"{name}: {missing} {others}")
