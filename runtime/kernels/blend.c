@@ -42,7 +42,7 @@ uint16_t t3r_alpha_q16(int32_t q_q17, uint16_t opacity_q16)
     return alphas_of(q, opacity_q16).x[0];
 }
 
-/* Lanes of a row: what is blended, and transmittance before it. */
+/* Lanes of a row, as they are blended. */
 typedef struct blended {
     t3r_lanes weight, alpha;
 } blended;

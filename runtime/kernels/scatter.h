@@ -53,7 +53,7 @@ typedef struct t3r_wanted {
     uint16_t counts[T3R_TILE_SIDE][T3R_TILE_SIDE];        /* 65,535, or 0 where a pixel has no depth */
 } t3r_wanted;
 
-/* A splat in its tile. Sums are added up in the fewest bits that hold them: `origin` and the axes modulo 2^16. */
+/* A splat in its tile. Its coordinates count modulo 2^16: they matter only where a weight is not 0, and fit there. */
 typedef struct t3r_scatter_splat {
     const t3r_tile_splat *span; /* of which colour, columns and rows are read */
     const t3r_blended_row *rows;
@@ -63,8 +63,8 @@ typedef struct t3r_scatter_splat {
     uint32_t pixels; /* of the splat's box in the tile, at most the area of the sums: bounds what it adds */
 } t3r_scatter_splat;
 
-/* Takes the splat off the tile: the colours become those that it was blended over, itself included. sums: where its
- * pixels accumulate, or NULL. Nothing is aligned to more than its type. */
+/* Takes the splat off the tile: the colours behind it become those behind the splat before it, which are its own mixed
+ * over them. sums: where its pixels accumulate, or NULL. Nothing is aligned to more than its type. */
 typedef void t3r_scatter_kernel(t3r_wanted *restrict tile, const t3r_scatter_splat *splat,
                                 t3r_refine_sums *restrict sums);
 t3r_scatter_kernel t3r_scatter_c;

@@ -2,6 +2,7 @@
  * poses lie within the limits. No picture is opened. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "import/tum_rgbd.h"
@@ -15,7 +16,7 @@ enum { LISTS = sizeof names / sizeof names[0] };
 /* Lists as links in a folder of this process's own. */
 static void make_folder(char folder[64], const uint8_t *data, size_t size, int descriptors[LISTS])
 {
-    snprintf(folder, 64, "/tmp/fuzz_tum.XXXXXX");
+    snprintf(folder, 64, "%s/fuzz_tum.XXXXXX", P_tmpdir);
     if (mkdtemp(folder) == NULL) {
         abort();
     }
