@@ -111,7 +111,7 @@ t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const
     const t3r_workers workers = t3r_workers_of(rt);
     *passes = 0;
     for (uint32_t first = 0; first < bin->tiles; ++*passes) {
-        uint32_t end = t3r_bin_pass(bin, first);
+        uint32_t end = t3r_bin_pass(&workers, bin, first);
         for (tile_job job = {bin, target, first, first}; job.first < end;) {
             if (!t3r_progress(rt, T3R_STAGE_RASTER, job.first, bin->tiles)) {
                 return T3R_ERR_CANCELLED;

@@ -1,35 +1,58 @@
+/* Tile lists. A task counts or fills a band of tiles of its own: it looks at every splat's tiles, four bytes in depth
+ * order, and takes those in its band. */
 #include "core/fixed.h"
 #include "raster_tile.h"
 
-typedef struct tile_range {
-    uint32_t x0, y0, x1, y1;
-} tile_range;
+/* Fewer splats are one band: they are looked through before another worker has begun. */
+#define SPLATS_A_BAND 4096u
 
-static tile_range tiles_of(const t3r_splat *splat)
+typedef struct bin_job {
+    const t3r_binning *bin;
+    uint32_t begin, end; /* rows of tiles that are counted, or tiles whose lists are filled */
+    uint32_t bands;
+} bin_job;
+
+static void run_bands(const t3r_workers *workers, bin_job *job, t3r_task *task)
 {
-    return (tile_range){splat->x0 / T3R_TILE_SIDE, splat->y0 / T3R_TILE_SIDE, splat->x1 / T3R_TILE_SIDE,
-                        splat->y1 / T3R_TILE_SIDE};
+    const uint32_t most = t3r_is_parallel(workers) ? workers->count : 1;
+    job->bands = T3R_MIN(most, T3R_MIN(job->end - job->begin, job->bin->visible / SPLATS_A_BAND + 1));
+    t3r_run_tasks(workers, job->bands, task, job);
 }
 
-void t3r_bin_count(const t3r_binning *bin)
+/* One more from x0 on, one less behind x1: two steps a row of tiles however wide a splat is. */
+static void count_band(void *context, uint32_t index, uint32_t worker)
 {
-    for (uint32_t tile = 0; tile < bin->tiles; tile++) {
+    (void)worker;
+    const bin_job *job = context;
+    const t3r_binning *bin = job->bin;
+    const uint32_t across = bin->across;
+    const t3r_share rows = t3r_share_of(job->end, index, job->bands);
+    for (uint32_t tile = rows.begin * across; tile < rows.end * across; tile++) {
         bin->table[tile] = 0;
     }
-    /* One more from x0 on, one less behind x1: two steps a row of tiles however wide a splat is */
     for (uint32_t i = 0; i < bin->visible; i++) {
-        tile_range range = tiles_of(&bin->splats[bin->order[i]]);
-        for (uint32_t y = range.y0; y <= range.y1; y++) {
-            uint32_t *row = bin->table + y * bin->across;
-            row[range.x0]++;
-            if (range.x1 + 1 < bin->across) {
-                row[range.x1 + 1]--; /* wraps, and is whole again in the sum */
+        const t3r_tile_span span = bin->spans[i];
+        const uint32_t y0 = T3R_MAX(span.y0, rows.begin), y1 = T3R_MIN(span.y1 + 1u, rows.end);
+        for (uint32_t y = y0; y < y1; y++) {
+            uint32_t *row = bin->table + y * across;
+            row[span.x0]++;
+            if (span.x1 + 1u < across) {
+                row[span.x1 + 1]--; /* wraps, and is whole again in the sum */
             }
         }
     }
-    for (uint32_t tile = 0; tile < bin->tiles; tile++) {
-        bin->table[tile] += tile % bin->across != 0 ? bin->table[tile - 1] : 0;
+    for (uint32_t y = rows.begin; y < rows.end; y++) {
+        uint32_t *row = bin->table + y * across;
+        for (uint32_t x = 1; x < across; x++) {
+            row[x] += row[x - 1];
+        }
     }
+}
+
+void t3r_bin_count(const t3r_workers *workers, const t3r_binning *bin)
+{
+    bin_job job = {bin, 0, bin->tiles / bin->across, 0};
+    run_bands(workers, &job, count_band);
 }
 
 /* Turns the counts of the tiles that fit into the places where their lists start. */
@@ -46,22 +69,32 @@ static uint32_t open_lists(const t3r_binning *bin, uint32_t first)
     return end;
 }
 
-uint32_t t3r_bin_pass(const t3r_binning *bin, uint32_t first)
+static void fill_band(void *context, uint32_t index, uint32_t worker)
 {
-    uint32_t end = open_lists(bin, first);
-    uint32_t first_row = first / bin->across, last_row = (end - 1) / bin->across;
+    (void)worker;
+    const bin_job *job = context;
+    const t3r_binning *bin = job->bin;
+    const t3r_share tiles = t3r_share_of(job->end - job->begin, index, job->bands);
+    const uint32_t across = bin->across, first = job->begin + tiles.begin, last = job->begin + tiles.end - 1;
+    const uint32_t first_row = first / across, last_row = last / across;
     for (uint32_t i = 0; i < bin->visible; i++) {
-        uint32_t index = bin->order[i];
-        tile_range range = tiles_of(&bin->splats[index]);
-        uint32_t y0 = T3R_MAX(range.y0, first_row), y1 = T3R_MIN(range.y1, last_row);
+        const t3r_tile_span span = bin->spans[i];
+        const uint32_t y0 = T3R_MAX(span.y0, first_row), y1 = T3R_MIN(span.y1, last_row);
         for (uint32_t y = y0; y <= y1; y++) {
-            /* the pass begins and ends within a row of tiles */
-            uint32_t x0 = y == first_row ? T3R_MAX(range.x0, first % bin->across) : range.x0;
-            uint32_t x1 = y == last_row ? T3R_MIN(range.x1, (end - 1) % bin->across) : range.x1;
+            /* the band begins and ends within a row of tiles */
+            const uint32_t x0 = y == first_row ? T3R_MAX(span.x0, first % across) : span.x0;
+            const uint32_t x1 = y == last_row ? T3R_MIN(span.x1, last % across) : span.x1;
+            uint32_t *row = bin->table + y * across;
             for (uint32_t x = x0; x <= x1; x++) {
-                bin->lists[bin->table[y * bin->across + x]++] = index;
+                bin->lists[row[x]++] = bin->order[i];
             }
         }
     }
-    return end;
+}
+
+uint32_t t3r_bin_pass(const t3r_workers *workers, const t3r_binning *bin, uint32_t first)
+{
+    bin_job job = {bin, first, open_lists(bin, first), 0};
+    run_bands(workers, &job, fill_band);
+    return job.end;
 }

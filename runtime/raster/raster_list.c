@@ -12,6 +12,8 @@ typedef struct project_job {
     const t3r_gaussian *gaussians;
     uint32_t count;
     t3r_splat *splats;
+    uint32_t *depths;
+    t3r_tile_span *spans;
 } project_job;
 
 static void project_chunk(void *context, uint32_t index, uint32_t worker)
@@ -20,6 +22,10 @@ static void project_chunk(void *context, uint32_t index, uint32_t worker)
     const project_job *job = context;
     uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
     job->kernels->project(job->projection, job->gaussians + first, end - first, job->splats + first);
+    for (uint32_t i = first; i < end; i++) {
+        job->depths[i] = (uint32_t)job->splats[i].z_q20;
+        job->spans[i] = t3r_span_of(&job->splats[i]);
+    }
 }
 
 t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_raster_room *room)
@@ -29,21 +35,31 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
     uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};
     uint32_t *indices[2] = {keys[1] + most, keys[1] + 2 * (size_t)most};
 
-    project_job projecting = {&rt->kernels, projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, room->splats};
+    /* until they are needed, lists hold spans, and the sort's other side depths */
+    t3r_tile_span *all_spans = (t3r_tile_span *)(void *)room->lists;
+    uint32_t *depths = keys[1];
+    project_job projecting = {&rt->kernels, projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, room->splats,
+                              depths,       all_spans};
     const t3r_workers workers = t3r_workers_of(rt);
     t3r_run_tasks(&workers, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
     uint32_t visible = 0;
     for (uint32_t i = 0; i < count; i++) {
-        keys[0][visible] = (uint32_t)room->splats[i].z_q20;
+        keys[0][visible] = depths[i];
         indices[0][visible] = i;
-        visible += room->splats[i].z_q20 != 0;
+        visible += depths[i] != 0;
     }
-    t3r_order(&rt->kernels, keys, indices, visible, histogram);
+    const uint32_t side = t3r_order(&rt->kernels, keys, indices, visible, histogram);
+    const uint32_t *order = indices[side];
+    t3r_tile_span *spans = (t3r_tile_span *)(void *)indices[side ^ 1];
+    for (uint32_t i = 0; i < visible; i++) {
+        spans[i] = all_spans[order[i]];
+    }
 
     t3r_binning bin = {
         .kernels = &rt->kernels,
         .splats = room->splats,
-        .order = indices[0],
+        .order = order,
+        .spans = spans,
         .visible = visible,
         .across = (projection->width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE,
         .tiles = (uint32_t)T3R_TILES_(projection->width, projection->height),
@@ -52,6 +68,6 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
         .capacity = room->capacity,
         .most = t3r_tile_splats_of(&rt->config),
     };
-    t3r_bin_count(&bin);
+    t3r_bin_count(&workers, &bin);
     return bin;
 }

@@ -2,6 +2,7 @@
 #ifndef T3R_RASTER_SPLAT_H
 #define T3R_RASTER_SPLAT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "kernels/kernels.h"
@@ -11,9 +12,9 @@
 t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
                                t3r_projection *projection);
 
-/* Sorts `count` (key, index) pairs by key, stable: four passes of a byte. Both sides hold `count` entries; the
- * result is in keys[0] and indices[0]. histogram: 4 x 256 counts. */
-void t3r_order(const t3r_kernels *kernels, uint32_t *keys[2], uint32_t *indices[2], uint32_t count,
-               uint32_t *histogram);
+/* Sorts `count` (key, index) pairs of side 0 by key, stable: a pass for each byte in which keys differ. Both sides hold
+ * `count` entries; returns the side on which the result is. histogram: 4 x 256 counts. */
+uint32_t t3r_order(const t3r_kernels *kernels, uint32_t *keys[2], uint32_t *indices[2], uint32_t count,
+                   uint32_t *histogram);
 
 #endif

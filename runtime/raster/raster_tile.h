@@ -5,14 +5,27 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "core/workers.h"
 #include "kernels/kernels.h"
 #include "raster_splat.h"
+
+/* The tiles that a splat's box reaches, inclusive: T3R_MAX_SIDE is 256 tiles. */
+typedef struct t3r_tile_span {
+    uint8_t x0, y0, x1, y1;
+} t3r_tile_span;
+
+static inline t3r_tile_span t3r_span_of(const t3r_splat *splat)
+{
+    return (t3r_tile_span){(uint8_t)(splat->x0 / T3R_TILE_SIDE), (uint8_t)(splat->y0 / T3R_TILE_SIDE),
+                           (uint8_t)(splat->x1 / T3R_TILE_SIDE), (uint8_t)(splat->y1 / T3R_TILE_SIDE)};
+}
 
 /* The splats in depth order, and the tiles of the target. */
 typedef struct t3r_binning {
     const t3r_kernels *kernels;
     const t3r_splat *splats;
     const uint32_t *order;
+    const t3r_tile_span *spans; /* in that order, too */
     uint32_t visible;
     uint32_t across, tiles;
     uint32_t *table; /* an entry a tile: counts, then list ends as passes open */
@@ -29,11 +42,11 @@ static inline uint32_t t3r_list_length(const t3r_binning *binning, uint32_t begi
 }
 
 /* Counts every tile's splats into the table. */
-void t3r_bin_count(const t3r_binning *binning);
+void t3r_bin_count(const t3r_workers *workers, const t3r_binning *binning);
 
 /* Fills the lists of as many tiles from `first` on as there is room for, at least one; returns the first tile
  * left over. Afterwards table[t] is the end of tile t's list, which starts where tile t - 1's ends (0 for `first`). */
-uint32_t t3r_bin_pass(const t3r_binning *binning, uint32_t first);
+uint32_t t3r_bin_pass(const t3r_workers *workers, const t3r_binning *binning, uint32_t first);
 
 /* A tile on its way into the target. */
 typedef struct t3r_drawn_tile {

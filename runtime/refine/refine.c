@@ -179,7 +179,7 @@ static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view 
     view_job *job = &to.job;
     uint64_t error = 0;
     while (job->begin < bin.tiles) {
-        uint32_t end = t3r_bin_pass(&bin, job->begin);
+        uint32_t end = t3r_bin_pass(&workers, &bin, job->begin);
         uint32_t bands = t3r_refine_bands(&bin, job->begin, end, &view.slice, &w->borders, job->bands);
         t3r_run_tasks(&workers, bands, measure_band, &to);
         for (uint32_t b = 0; b < bands; b++) {
@@ -266,7 +266,7 @@ static void accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *
     };
     view_job job = {.work = w, .view = &view, .bin = &bin};
     while (job.begin < bin.tiles) {
-        uint32_t end = t3r_bin_pass(&bin, job.begin);
+        uint32_t end = t3r_bin_pass(&workers, &bin, job.begin);
         uint32_t bands = t3r_refine_bands(&bin, job.begin, end, &view.slice, &w->borders, job.bands);
         t3r_run_tasks(&workers, bands, accumulate_band, &job);
         t3r_refine_join(job.bands, bands, &w->borders, &view.slice);

@@ -8,6 +8,8 @@ enum { ACROSS = 7, DOWN = 6, TILES = ACROSS * DOWN, SPLATS = 300 };
 
 static t3r_splat splats[SPLATS];
 static uint32_t order[SPLATS], table[TILES], lists[TILES * SPLATS];
+static t3r_tile_span spans[SPLATS];
+static const t3r_workers alone = {NULL, 1};
 static t3r_refine_sums own[SPLATS], border_sums[(T3R_MAX_WORKERS - 1) * SPLATS];
 static uint32_t border_index[(T3R_MAX_WORKERS - 1) * SPLATS];
 
@@ -31,6 +33,7 @@ static t3r_binning bin_splats(uint64_t capacity)
 {
     t3r_binning bin = {.splats = splats,
                        .order = order,
+                       .spans = spans,
                        .across = ACROSS,
                        .tiles = TILES,
                        .table = table,
@@ -38,10 +41,11 @@ static t3r_binning bin_splats(uint64_t capacity)
                        .capacity = capacity};
     for (uint32_t i = 0; i < SPLATS; i++) {
         if (splats[i].z_q20 != 0) {
+            spans[bin.visible] = t3r_span_of(&splats[i]);
             order[bin.visible++] = i;
         }
     }
-    t3r_bin_count(&bin);
+    t3r_bin_count(&alone, &bin);
     return bin;
 }
 
@@ -85,7 +89,7 @@ static void every_share_counts_once(void **state)
         }
         for (uint32_t begin = 0, end; begin < TILES; begin = end) {
             t3r_refine_band bands[T3R_MAX_WORKERS];
-            end = t3r_bin_pass(&bin, begin);
+            end = t3r_bin_pass(&alone, &bin, begin);
             const uint32_t count = t3r_refine_bands(&bin, begin, end, &slice, &borders, bands);
             assert_in_range(count, 1, borders.bands);
             assert_true(borders.most == SPLATS ? count == borders.bands || count == end - begin : true);
