@@ -7,6 +7,8 @@ static const char *const cut_short = "its compressed data are cut short";
 static const char *const too_long = "its data are longer than its uncompressed_size";
 static const char *const no_memory = "out of memory";
 
+#define WINDOW_LOG_MOST 26 /* 64 MiB beside the output, which frames that say their size do without */
+
 bool t3r_chunk_codec_known(t3r_text compression)
 {
     return t3r_text_is(compression, "lz4") || t3r_text_is(compression, "zstd");
@@ -22,7 +24,8 @@ uint64_t t3r_chunk_codec_most(t3r_text compression, size_t in_bytes)
 static const char *decompress_zstd(const uint8_t *in, size_t in_bytes, uint8_t *out, size_t room, size_t *produced)
 {
     ZSTD_DStream *stream = ZSTD_createDStream();
-    if (stream == NULL) {
+    if (stream == NULL || ZSTD_isError(ZSTD_DCtx_setParameter(stream, ZSTD_d_windowLogMax, WINDOW_LOG_MOST))) {
+        ZSTD_freeDStream(stream);
         return no_memory;
     }
     ZSTD_inBuffer input = {in, in_bytes, 0};

@@ -177,9 +177,15 @@ static int read_attachment(walk *w, fields *in, t3r_mcap_place place)
 
 /* ---- chunks ---- */
 
+static int count_message(walk *w)
+{
+    w->chunks->bytes += T3R_LIMIT_MESSAGE_BYTES;
+    return w->chunks->bytes <= t3r_limit_unpacked_whole(w->limit) ? 0 : -1;
+}
+
 /* The records of a chunk; one that reaches past the end is an error, or, in a chunk that was cut, the end. 0,
  * T3R_MCAP_KEPT once the visitor keeps any of them, or -1. */
-static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chunk_offset, bool cut)
+static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chunk_offset, bool cut, bool packed)
 {
     t3r_mcap_place place = {0, true, chunk_offset};
     int kept = 0;
@@ -211,6 +217,9 @@ static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chun
             return -1;
         }
         kept |= status;
+        if (packed && status == T3R_MCAP_KEPT && count_message(w) != 0) {
+            return malformed(w, opcode, place, "the chunks unpack to more messages than such a file may have");
+        }
         at += T3R_MCAP_RECORD_HEAD_BYTES + (size_t)length;
     }
     return kept;
@@ -228,15 +237,14 @@ static int reserve_chunk(walk *w)
 /* What a chunk of that many bytes may not become, or 0: asked before memory is. */
 static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
 {
-    uint64_t most = t3r_limit_unpacked(w->limit), all = w->chunks->bytes;
-    most = most < T3R_MCAP_MAX_CHUNKS_BYTES ? most : T3R_MCAP_MAX_CHUNKS_BYTES;
-    if (bytes <= T3R_MCAP_MAX_CHUNK_BYTES && bytes <= most - all) {
+    const uint64_t most = t3r_limit_unpacked_whole(w->limit), all = w->chunks->bytes;
+    if (all <= most && bytes <= most - all) {
         return 0;
     }
-    char what[160];
+    char what[200];
     snprintf(what, sizeof what,
              "it unpacks to %" PRIu64 " bytes, those before it to %" PRIu64 ": a file of %" PRIu64
-             " may unpack to %" PRIu64,
+             " may unpack to %" PRIu64 "; one without compression is read at any size",
              bytes, all, w->limit, most);
     return malformed(w, T3R_MCAP_CHUNK, place, what);
 }
@@ -295,7 +303,7 @@ static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
     }
     if (status == 0) {
         status = wrong != NULL && !c->cut ? malformed(w, T3R_MCAP_CHUNK, place, wrong)
-                                          : walk_chunk(w, records, count, place.offset, c->cut);
+                                          : walk_chunk(w, records, count, place.offset, c->cut, unpacked != NULL);
     }
     if (unpacked != NULL && status == T3R_MCAP_KEPT) {
         w->chunks->data[w->chunks->count++] = unpacked;

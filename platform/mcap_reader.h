@@ -13,9 +13,6 @@
 
 #include "text.h"
 
-#define T3R_MCAP_MAX_CHUNK_BYTES ((uint64_t)1 << 30)  /* a chunk, decompressed */
-#define T3R_MCAP_MAX_CHUNKS_BYTES ((uint64_t)1 << 32) /* all chunks of a file, decompressed */
-
 /* Where a record starts. */
 typedef struct t3r_mcap_place {
     uint64_t offset; /* in the file, or in the chunk's decompressed data */
@@ -58,7 +55,7 @@ typedef struct t3r_mcap_visitor {
 typedef struct t3r_mcap_chunks {
     uint8_t **data;
     size_t count, capacity;
-    uint64_t bytes; /* decompressed so far, kept or not */
+    uint64_t bytes; /* decompressed so far, kept or not, and what a visitor needs for messages that it keeps */
 } t3r_mcap_chunks;
 void t3r_mcap_chunks_free(t3r_mcap_chunks *chunks);
 

@@ -38,11 +38,25 @@
 #define T3R_LIMIT_UNPACKED_FREE (UINT64_C(128) << 20)
 #define T3R_LIMIT_UNPACKED_RATIO 32
 
+/* A recording with compressed chunks, which is read whole, is held to this many bytes in memory, its own among them.
+ * Each message in those chunks counts for more than its data: its entry in the index, once more while that is sorted,
+ * and what links it to its frame. */
+#define T3R_LIMIT_UNPACKED_WHOLE (UINT64_C(320) << 20)
+#define T3R_LIMIT_MESSAGE_BYTES 160
+
 static inline uint64_t t3r_limit_unpacked(uint64_t packed_bytes)
 {
     return packed_bytes > (UINT64_MAX - T3R_LIMIT_UNPACKED_FREE) / T3R_LIMIT_UNPACKED_RATIO
                ? UINT64_MAX
                : T3R_LIMIT_UNPACKED_FREE + T3R_LIMIT_UNPACKED_RATIO * packed_bytes;
+}
+
+/* Of a file that stays in memory as a whole, packed and unpacked. */
+static inline uint64_t t3r_limit_unpacked_whole(uint64_t packed_bytes)
+{
+    const uint64_t left = packed_bytes < T3R_LIMIT_UNPACKED_WHOLE ? T3R_LIMIT_UNPACKED_WHOLE - packed_bytes : 0;
+    const uint64_t most = t3r_limit_unpacked(packed_bytes);
+    return most < left ? most : left;
 }
 
 #endif

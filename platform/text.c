@@ -48,12 +48,18 @@ static bool is_control(const unsigned char *s, size_t length)
             ((s[1] == 0x80 && s[2] >= 0xa8 && s[2] <= 0xae) || (s[1] == 0x81 && s[2] >= 0xa6 && s[2] <= 0xa9)));
 }
 
-bool t3r_text_is_clean(t3r_text text)
+size_t t3r_text_character(t3r_text text)
 {
     const unsigned char *s = (const unsigned char *)text.chars;
+    const size_t length = text.count > 0 ? sequence_bytes(s, text.count) : 0;
+    return length > 0 && !is_control(s, length) ? length : 0;
+}
+
+bool t3r_text_is_clean(t3r_text text)
+{
     for (size_t at = 0, length; at < text.count; at += length) {
-        length = sequence_bytes(s + at, text.count - at);
-        if (length == 0 || is_control(s + at, length)) {
+        length = t3r_text_character((t3r_text){text.chars + at, text.count - at});
+        if (length == 0) {
             return false;
         }
     }

@@ -18,6 +18,8 @@ bool t3r_text_same(t3r_text a, t3r_text b);
 /* Text of others is data: a terminal, a page or a table must not obey it. Clean text is UTF-8 without control
  * characters (C0, DEL, C1, line separators, changes of direction). */
 bool t3r_text_is_clean(t3r_text text);
+/* Bytes of the clean character at the front, 0 where there is none. */
+size_t t3r_text_character(t3r_text text);
 /* Makes a string clean in its place: each byte of what may not stand there becomes '?'. */
 void t3r_text_clean(char *text);
 /* Copies what fits, whole characters alone, cleans and terminates it; room > 0. */

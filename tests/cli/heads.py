@@ -65,6 +65,9 @@ def a_head_that_makes_haze_is_named():
     check(haze["entries"] > haze["usual"] and haze["widest"] == 16, f"haze is not seen: {haze}")
     check("warning" not in expect(0, *base, "--head", "small"), "a warning without a reason")
     expect(0, *base, "--head", "haze.t3w", out="unusually wide")
+    few = [*base, "--head", "haze.t3w", "--tile-splats", 40]
+    check(expect_json(*few)["tile_lists"]["entries"] == 16 * 40, "--tile-splats leaves more than it draws")
+    check("warning" not in expect(0, *few), "a warning of what --tile-splats has cut off")
 
 
 sys.exit(in_scratch(heads, a_head_that_makes_haze_is_named))

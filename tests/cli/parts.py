@@ -115,6 +115,52 @@ def by_a_signal():
     check(ignored.wait(timeout=60) == 0 and os.path.exists("done.mcap"), "a signal that is ignored ended the command")
 
 
+# Lines that make rows for long, beside a table that is there.
+ROWS = {
+    "eval": ["eval", "room.mcap", "--keep", "60,50,40", "--methods", "trim3r,pup+finetune", "--finetune-iterations",
+             "2000", "--csv", "rows.csv"],
+    "stress": ["stress", "room.mcap", "--working", "256x256", "--csv", "rows.csv"],
+}
+
+
+def until_a_row_is_made(line, beside):
+    """Starts it and waits for the second line of the table that it writes, beside the one that is there or in its place."""
+    running = subprocess.Popen([TRIM3R, *line], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               preexec_fn=as_usual)
+    end = time.monotonic() + 60
+    while running.poll() is None and time.monotonic() < end:
+        made = parts() if beside else ["rows.csv"]
+        if made and open(made[0], encoding="utf-8").read().count("\n") > 1:
+            break
+        time.sleep(0.005)
+    check(running.poll() is None, f"{line}: it ended before it was interrupted")
+    return running
+
+
+def an_older_table():
+    """It stands until the new one is whole; where there is none, rows appear as they are made."""
+    for what, line in ROWS.items():
+        write("rows.csv", "")
+        running = until_a_row_is_made(line, False)
+        check(parts() == [], f"{what}: rows beside an empty table: {parts()}")
+        running.send_signal(signal.SIGINT)
+        running.wait(timeout=60)
+        table = open("rows.csv", encoding="utf-8").read()
+        check(table.count("\n") > 1, f"{what}: an interrupted run leaves {table!r}")
+        running = until_a_row_is_made(line, True)
+        check(parts() != [], f"{what}: nothing is written beside the older table")
+        running.send_signal(signal.SIGINT)
+        running.wait(timeout=60)
+        check(open("rows.csv", encoding="utf-8").read() == table and parts() == [], f"{what}: the older table is lost")
+    # refused cases leave it, rows of any kind replace it
+    expect(1, "eval", "room.mcap", "--keep", 10, "--context", "0,5", "--target", 1, "--depth", "stereo", "--working",
+           "32x32", "--csv", "rows.csv")
+    check(open("rows.csv", encoding="utf-8").read() == table and parts() == [], "a refusal replaced the older table")
+    expect(0, "eval", "room.mcap", "--keep", 10, "--csv", "rows.csv")
+    table = open("rows.csv", encoding="utf-8").read()
+    check(table.startswith("scene,context,target,method") and parts() == [], f"no new table: {table}")
+
+
 def left_by_the_killed():
     """A killed process leaves a part; it stands in nobody's way."""
     line = [TRIM3R, *LONG["a folder that was there"]]
@@ -130,4 +176,4 @@ def left_by_the_killed():
 
 
 if __name__ == "__main__":
-    sys.exit(in_scratch(prepare, on_a_full_disk, to_a_full_terminal, by_a_signal, left_by_the_killed))
+    sys.exit(in_scratch(prepare, on_a_full_disk, to_a_full_terminal, by_a_signal, an_older_table, left_by_the_killed))

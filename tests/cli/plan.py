@@ -49,6 +49,11 @@ def plan():
     check(found["most_blends"] == 16 * 16 * 13107, "the plan does not bound what a view blends")
     check(expect_json(*base, "--tile-splats", 100)["most_blends"] == 16 * 16 * 100, "--tile-splats bounds nothing")
     expect(0, *base, out=str(16 * 16 * 13107))
+    # threads take no less, and full speed for several takes more
+    one, four = expect_json(*base, "--threads", 1), expect_json(*base, "--threads", 4)
+    check(one == found and four["threads"] == 4 and one["arena_bytes"] < four["arena_bytes"],
+          f"--threads 4: {four['arena_bytes']} bytes, {one['arena_bytes']} with one")
+    expect(2, *base, "--threads", 17, err="--threads")
     # the settings are those of build
     check(expect_json(*base, "--refine", 0)["arena_bytes"] <= found["arena_bytes"], "refinement saves bytes")
     expect_json(*base, "--levels", 3, "--bridge-radius", 0, "--allocate", "paper")

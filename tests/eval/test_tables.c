@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "cli/csv.h"
+#include "cli/csv_read.h"
 #include "study/evaluation/table.h"
 #include "pictures/html_page.h"
 
@@ -65,6 +66,31 @@ static void write_awkward(csv_table *table, const void *data)
     csv_end_row(table);
     csv_cell(table, "next");
     csv_end_row(table);
+}
+
+static void write_unclean(csv_table *table, const void *data)
+{
+    (void)data;
+    csv_cell(table, "\x1b[31mred");
+    csv_cell(table, "tab\there");
+    csv_cell(table, "half \xc3");
+    csv_cell(table, "gr\xc3\xbc\xc3\x9f\x7f");
+    csv_cell(table, "\xe2\x80\xae");
+    csv_end_row(table);
+}
+
+static void test_csv_is_read_whatever_its_cells_were(void **state)
+{
+    (void)state;
+    char *text = csv_text(write_unclean, NULL), error[256] = "";
+    assert_string_equal(text, "?[31mred,tab\there,half ?,gr\xc3\xbc\xc3\x9f?,???\n");
+    csv_reader *reader = malloc(sizeof *reader);
+    assert_non_null(reader);
+    csv_reader_open(reader, "table", text, strlen(text));
+    assert_int_equal(csv_reader_next(reader, error, sizeof error), 1);
+    assert_int_equal(reader->cell_count, 5);
+    free(reader);
+    free(text);
 }
 
 static void test_csv_quotes_what_needs_it(void **state)
@@ -204,11 +230,9 @@ static void test_page_escapes_and_embeds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_csv_quotes_what_needs_it),
-        cmocka_unit_test(test_columns_and_empty_cells),
-        cmocka_unit_test(test_json_of_a_row),
-        cmocka_unit_test(test_means_group_by_settings),
-        cmocka_unit_test(test_page_escapes_and_embeds),
+        cmocka_unit_test(test_csv_quotes_what_needs_it), cmocka_unit_test(test_csv_is_read_whatever_its_cells_were),
+        cmocka_unit_test(test_columns_and_empty_cells),  cmocka_unit_test(test_json_of_a_row),
+        cmocka_unit_test(test_means_group_by_settings),  cmocka_unit_test(test_page_escapes_and_embeds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,7 +27,7 @@ def given(kind, name, data, why=""):
 # --- recordings ------------------------------------------------------------------------------------------------------
 
 
-def filled(codec, mib, chunks=1):
+def filled(codec, mib, chunks=1, others=()):
     """Chunks of one image each, of that many MiB of zeros."""
     out = [f.channels()]
     for _ in range(chunks):
@@ -36,12 +36,28 @@ def filled(codec, mib, chunks=1):
         size = len(start) + mib * MIB
         packed = f.zstd([start, (0, mib * MIB)]) if codec == "zstd" else f.lz4(start, 0, mib * MIB)
         out.append(f.chunk(codec, packed, size))
-    return f.mcap(*out)
+    return f.mcap(*out, *others)
+
+
+def attachment(mib):
+    """What no frame needs: bytes that let chunks unpack to more."""
+    return f.record(9, struct.pack("<QQ", 0, 0) + f.text("a") + f.text("b") + struct.pack("<Q", mib * MIB) + bytes(mib * MIB) +
+                    struct.pack("<I", 0))
+
+
+def poses(count):
+    """A chunk of as many poses, each the same bytes."""
+    unit = f.message(4, 10**9, f.pose(10**9))
+    return f.mcap(f.channels(), attachment(6), f.chunk("lz4", f.lz4_repeated(unit, count), len(unit) * count))
 
 
 given("recording", "zstd-bomb.mcap", lambda: filled("zstd", 128, 32), "may unpack to")
 given("recording", "zstd-below-the-limit.mcap", lambda: filled("zstd", 60, 2), None)
 given("recording", "lz4-bomb.mcap", lambda: filled("lz4", 64, 16), "may unpack to")
+given("recording", "zstd-bomb-of-14-mb.mcap", lambda: filled("zstd", 63, 8, [attachment(14)]), "may unpack to")
+given("recording", "zstd-300-mb-of-14-mb.mcap", lambda: filled("zstd", 60, 5, [attachment(14)]), None)
+given("recording", "lz4-two-million-poses.mcap", lambda: poses(2000000), "more messages than")
+given("recording", "lz4-million-poses.mcap", lambda: poses(1000000), None)
 given("recording", "chunk-lies-more.mcap", f.mcap(f.chunk("zstd", f.zstd([b"abc"]), 100 * MIB)), "more than its data can")
 given("recording", "chunk-lies-less.mcap", f.mcap(f.chunk("zstd", f.zstd([(0, 9 * MIB)]), 99)), "longer than")
 given("recording", "chunk-of-2^63.mcap", f.mcap(f.chunk("lz4", b"abcd", 1 << 63)), "may unpack to")

@@ -115,6 +115,22 @@ def lz4(head, byte, count):
     return out + struct.pack("<I", 0)
 
 
+def lz4_repeated(unit, times):
+    """An LZ4 frame of as many times the same bytes, at least 19 of them."""
+    out = struct.pack("<I", 0x184D2204) + b"\x40\x70"
+    out += bytes([xxh32(b"\x40\x70") >> 8 & 255])
+    while times:
+        some = min(times, (4 << 20) // len(unit))
+        data = unit * some
+        if some > 2:
+            literals, match = len(unit) - 15, len(unit) * (some - 1) - 5 - 19
+            data = b"\xff" + b"\xff" * (literals // 255) + bytes([literals % 255]) + unit + struct.pack("<H", len(unit))
+            data += b"\xff" * (match // 255) + bytes([match % 255]) + b"\x50" + unit[-5:]
+        out += struct.pack("<I", len(data) | (0 if some > 2 else 0x80000000)) + data
+        times -= some
+    return out + struct.pack("<I", 0)
+
+
 def xxh32(data):
     """xxHash of fewer than 16 bytes."""
     mask, p1, p2, p3, p5 = 0xFFFFFFFF, 2654435761, 2246822519, 3266489917, 374761393

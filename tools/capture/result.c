@@ -57,7 +57,9 @@ static void print_json(const capture_options *o, const char *name, const t3r_cap
     cJSON_AddNumberToObject(root, "rate", rate_of(a));
     add_times(root, "latency_ms", &a->latency);
     add_times(root, "frame_ms", &a->work);
+    add_times(root, "record_ms", &a->recording);
     add_times(root, "build_ms", &a->building);
+    add_times(root, "write_ms", &a->writing);
     if (o->hash) {
         json_add_hash(root, "frames_hash", a->frames_hash);
     }
@@ -105,6 +107,9 @@ static void print_text(const capture_options *o, const char *name, const t3r_cap
         printf("latency:  %.1f ms, worst %.1f ms\n", mean(&a->latency), a->latency.worst_ms);
     }
     printf("a frame:  %.2f ms, worst %.2f ms\n", mean(&a->work), a->work.worst_ms);
+    if (a->recording.count > 0) {
+        printf("recorded: %.2f ms, worst %.2f ms\n", mean(&a->recording), a->recording.worst_ms);
+    }
     if (o->output != NULL) {
         printf("%s: %" PRIu64 " bytes in %" PRIu32 " file%s\n", o->output, a->bytes, a->files,
                a->files == 1 ? "" : "s");
@@ -112,9 +117,9 @@ static void print_text(const capture_options *o, const char *name, const t3r_cap
     if (a->builds > 0) {
         hash_text(a->scene_hash, text);
         printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, %" PRIu32
-               " builds of %.1f ms (worst %.1f), arena %zu bytes, hash %s\n",
+               " builds of %.1f ms (worst %.1f), written in %.1f ms, arena %zu bytes, hash %s\n",
                o->scene, a->gaussians, a->valid_points, a->builds, mean(&a->building), a->building.worst_ms,
-               a->arena_bytes, text);
+               mean(&a->writing), a->arena_bytes, text);
     }
     if (o->hash) {
         hash_text(a->frames_hash, text);

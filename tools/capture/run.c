@@ -197,10 +197,12 @@ static int open_build(run_state *s, const t3r_capture_frame *frame)
 static int write_scene(run_state *s)
 {
     char error[512] = "";
+    const double start = cli_now();
     if (s->plan->scene != NULL &&
         scene_file_write(s->plan->scene, &s->build.r.scene, s->plan->scene_flags, NULL, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
+    add_time(&s->account->writing, (cli_now() - start) * 1e3);
     return CLI_OK;
 }
 
@@ -273,6 +275,9 @@ static int handle(run_state *s, t3r_capture_frame *frame)
     double start = cli_now();
     if (code == CLI_OK && s->record != NULL && capture_record_frame(s->record, frame) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", s->record->error);
+    }
+    if (s->record != NULL) {
+        add_time(&a->recording, (cli_now() - start) * 1e3);
     }
     if (code == CLI_OK && plan->build != NULL) {
         code = plan->every > 0 ? build_repeatedly(s, frame) : build_chosen(s, frame);

@@ -41,11 +41,11 @@ typedef struct capture_account {
     uint64_t frames, failed, unposed;
     uint32_t width, height;
     t3r_pixel_format format;
-    double seconds;         /* from the first frame to the last */
-    capture_times latency;  /* from a frame's stamp until all was done with it; where its clock is the system's */
-    capture_times work;     /* recording and building a frame */
-    capture_times building; /* of these the builds */
-    uint64_t frames_hash;   /* FNV-1a over what was delivered, in order */
+    double seconds;        /* from the first frame to the last */
+    capture_times latency; /* from a frame's stamp until all was done with it; where its clock is the system's */
+    capture_times work;    /* recording and building a frame */
+    capture_times recording, building, writing; /* of these: into the recording; a scene; its file */
+    uint64_t frames_hash;                       /* FNV-1a over what was delivered, in order */
     uint32_t files;
     uint64_t bytes;
     uint32_t builds, gaussians, valid_points;

@@ -23,7 +23,7 @@ processor_options processor_defaults(void)
     return (processor_options){.threads = 1, .cpu = t3r_cpu_features()};
 }
 
-static uint32_t parse_threads(struct argp_state *state, const char *text)
+uint32_t option_threads(struct argp_state *state, const char *text)
 {
     if (strcmp(text, "all") == 0) {
         const long processors = sysconf(_SC_NPROCESSORS_ONLN);
@@ -46,7 +46,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     processor_options *o = state->input;
     switch (key) {
     case KEY_THREADS:
-        o->threads = parse_threads(state, arg);
+        o->threads = option_threads(state, arg);
         return 0;
     case KEY_CPU_MASK:
         o->cpu = parse_mask(state, arg);

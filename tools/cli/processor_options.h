@@ -15,6 +15,9 @@ typedef struct processor_options {
 /* One thread, every vector extension of this processor. */
 processor_options processor_defaults(void);
 
+/* The value of --threads: a number, or the processors of this machine for `all`. */
+uint32_t option_threads(struct argp_state *state, const char *text);
+
 /* --threads, --cpu-mask. Each parent's parser hands a processor_options * on in state->child_inputs[]. */
 extern const struct argp processor_argp;
 

@@ -1,6 +1,5 @@
 #include "study/evaluation/report.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,12 +40,10 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
     }
     int code = to->page != NULL ? open_page(report) : CLI_OK;
     if (code == CLI_OK && to->csv != NULL) {
-        report->csv.file = fopen(to->csv, to->resume ? "a" : "w");
-        if (report->csv.file == NULL || (to->resume && fseek(report->csv.file, 0, SEEK_END) != 0)) {
-            return cli_error(CLI_BAD_INPUT, "%s: %s", to->csv, strerror(errno));
-        }
-        if (!to->resume || ftell(report->csv.file) == 0) {
-            evaluation_csv_header(&report->csv);
+        bool is_new;
+        code = csv_file_open(&report->csv, to->csv, to->resume, &is_new);
+        if (code == CLI_OK && is_new) {
+            evaluation_csv_header(&report->csv.table);
         }
     }
     if (code == CLI_OK && !to->json && !to->ablate) {
@@ -148,8 +145,8 @@ int evaluation_report_row(evaluation_report *report, bool known, const evaluatio
     if (known) {
         return CLI_OK;
     }
-    if (report->csv.file != NULL) {
-        evaluation_csv_row(&report->csv, row);
+    if (report->csv.table.file != NULL) {
+        evaluation_csv_row(&report->csv.table, row);
     }
     if (report->page != NULL) {
         evaluation_page_render(report->page, views, row, render);
@@ -298,16 +295,12 @@ static int finish(evaluation_report *report)
 int evaluation_report_close(evaluation_report *report, int code)
 {
     cli_progress_end();
+    const bool is_whole = code == CLI_OK && report->row_count > 0;
     if (code == CLI_OK) {
         code = finish(report);
     }
-    if (report->csv.file != NULL) {
-        bool failed = ferror(report->csv.file) != 0;
-        failed |= fclose(report->csv.file) != 0;
-        if (failed && code == CLI_OK) {
-            code = cli_error(CLI_BAD_INPUT, "%s: %s", report->to.csv, strerror(errno));
-        }
-    }
+    const int closed = csv_file_close(&report->csv, is_whole);
+    code = code == CLI_OK ? closed : code;
     whole_file_abandon(&report->page_file);
     html_page_free(report->page);
     cJSON_Delete(report->refused);

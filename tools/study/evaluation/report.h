@@ -4,7 +4,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "cli/csv.h"
+#include "cli/csv_file.h"
 #include "study/evaluation/evaluation.h"
 #include "study/evaluation/resume.h"
 #include "study/evaluation/settings.h"
@@ -23,7 +23,7 @@ typedef struct evaluation_outputs {
 
 typedef struct evaluation_report {
     evaluation_outputs to;
-    csv_table csv;
+    csv_file csv;
     html_page *page;
     whole_file page_file;
     evaluation_row *rows; /* room for all */

@@ -1,6 +1,5 @@
 #include "study/stress/report.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,11 +26,11 @@ int stress_report_open(stress_report *report, const stress_outputs *to, const st
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     if (to->csv != NULL) {
-        report->csv.file = fopen(to->csv, "w");
-        if (report->csv.file == NULL) {
-            return cli_error(CLI_BAD_INPUT, "%s: %s", to->csv, strerror(errno));
+        bool is_new;
+        if (csv_file_open(&report->csv, to->csv, false, &is_new) != CLI_OK) {
+            return CLI_BAD_INPUT;
         }
-        stress_csv_header(&report->csv);
+        stress_csv_header(&report->csv.table);
     }
     return CLI_OK;
 }
@@ -55,8 +54,8 @@ int stress_report_cell(stress_report *report, const stress_row *rows, const uint
     uint32_t count = stress_row_count(report->contest);
     memcpy(report->rows + report->row_count, rows, count * sizeof *rows);
     report->row_count += count;
-    for (uint32_t i = 0; i < count && report->csv.file != NULL; i++) {
-        stress_csv_row(&report->csv, &rows[i]);
+    for (uint32_t i = 0; i < count && report->csv.table.file != NULL; i++) {
+        stress_csv_row(&report->csv.table, &rows[i]);
     }
     show_progress(report);
     if (report->to.page != NULL && !stress_album_offer(&report->album, rows, renders, plain, c, report->contest, p)) {
@@ -108,16 +107,12 @@ int stress_report_close(stress_report *report, int code)
     if (isatty(STDERR_FILENO)) {
         fputs("\r\033[K", stderr);
     }
+    const bool is_whole = code == CLI_OK; /* whatever the rows say */
     if (code == CLI_OK) {
         code = finish(report);
     }
-    if (report->csv.file != NULL) {
-        bool failed = ferror(report->csv.file) != 0;
-        failed |= fclose(report->csv.file) != 0;
-        if (failed && code == CLI_OK) {
-            code = cli_error(CLI_BAD_INPUT, "%s: %s", report->to.csv, strerror(errno));
-        }
-    }
+    const int closed = csv_file_close(&report->csv, is_whole);
+    code = code == CLI_OK ? closed : code;
     whole_file_abandon(&report->page_file);
     stress_album_free(&report->album);
     free(report->rows);

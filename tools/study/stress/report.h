@@ -2,7 +2,7 @@
 #ifndef TRIM3R_TOOLS_STRESS_REPORT_H
 #define TRIM3R_TOOLS_STRESS_REPORT_H
 
-#include "cli/csv.h"
+#include "cli/csv_file.h"
 #include "study/stress/measure.h"
 #include "study/stress/page.h"
 #include "cli/whole_file.h"
@@ -16,7 +16,7 @@ typedef struct stress_outputs {
 typedef struct stress_report {
     stress_outputs to;
     const stress_contest *contest;
-    csv_table csv;
+    csv_file csv;
     whole_file page_file;
     stress_album album;
     stress_row *rows; /* room for all */

@@ -15,6 +15,7 @@
 #include "cli/json_output.h"
 #include "cli/recorded_frame.h"
 #include "cli/option_values.h"
+#include "cli/work_times.h"
 #include "import/poses_output.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/settings.h"
@@ -160,7 +161,8 @@ static void add_unmatched(cJSON *root, const build_options *o, const reconstruct
 }
 
 static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r,
-                       const t3r_recording *recording, const pose_account *accounts, const tile_lists *lists)
+                       const t3r_recording *recording, const pose_account *accounts, const tile_lists *lists,
+                       const work_times *times)
 {
     bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
     cJSON *root = cJSON_CreateObject();
@@ -199,7 +201,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     }
     settings_add_json(cJSON_AddObjectToObject(root, "settings"), &o->settings.config);
     json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
-    cJSON_AddNumberToObject(root, "build_ms", told->seconds * 1e3);
+    work_times_add_json(root, times);
     cJSON *listed = cJSON_AddObjectToObject(root, "tile_lists");
     json_add_integer(listed, "entries", (int64_t)lists->entries);
     json_add_integer(listed, "usual", (int64_t)lists->usual);
@@ -298,7 +300,10 @@ static int account_for_lists(const build_options *o, const t3r_recording *record
         }
         const t3r_camera camera =
             reconstruction_camera(&frame.camera, frame.frame.width, frame.frame.height, told->width, told->height);
-        const tile_lists lists = tile_lists_of(scene, &camera, told->width, told->height);
+        tile_lists lists;
+        if (!tile_lists_of(scene, &camera, told->width, told->height, o->settings.config.tile_splats, &lists)) {
+            return cli_error(CLI_BAD_INPUT, "out of memory");
+        }
         *most = lists.entries > most->entries ? lists : *most;
     }
     return CLI_OK;
@@ -314,14 +319,15 @@ static void print_lists(const tile_lists *lists)
 }
 
 static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r,
-                       const pose_account *accounts, const tile_lists *lists)
+                       const pose_account *accounts, const tile_lists *lists, const work_times *times)
 {
+    char text[WORK_TIMES_BYTES];
     if (o->poses != POSES_GIVEN) {
         poses_print(told->context, told->context_count, accounts);
     }
-    printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes, %.1f ms\n",
+    printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes; %s\n",
            o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
-           told->seconds * 1e3);
+           work_times_text(times, text));
     for (uint32_t v = 0; v < told->context_count; v++) {
         uint32_t partner;
         t3r_pair pair = t3r_stereo_pair(r->runtime, v, &partner);
@@ -350,10 +356,13 @@ int command_build(int argc, char **argv)
     file_options_parse(&argp, argc, argv, &o);
 
     char error[ERROR_BYTES] = "";
+    work_times times;
+    work_times_begin(&times);
     t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
     if (recording == NULL) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
+    work_times_end(&times, WORK_READ);
     int code = CLI_OK;
     whole_folder folder = {0};
     if (o.colmap != NULL && whole_folder_begin(&folder, o.colmap, error, sizeof error) != 0) {
@@ -364,21 +373,25 @@ int command_build(int argc, char **argv)
         name_context(&o.settings, recording);
         code = recording_estimate_poses(recording, o.recording, o.settings.context, o.settings.context_count, o.poses,
                                         accounts);
+        work_times_end(&times, WORK_POSES);
     }
     reconstruction r;
     reconstruction_account told;
     code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
     if (code == CLI_OK) {
         reconstruction_warn_of_budget(&o.settings, told.requested, r.scene.count);
+        times.seconds[WORK_BUILD] = told.seconds; /* without what was opened for it */
+        work_times_pass(&times);
         code = write_all(&o, recording, &r, &told, &folder);
+        work_times_end(&times, WORK_WRITE);
         tile_lists lists = {0};
         if (code == CLI_OK) {
             code = account_for_lists(&o, recording, &r.scene, &told, &lists);
         }
         if (code == CLI_OK && o.json) {
-            print_json(&o, &told, &r, recording, accounts, &lists);
+            print_json(&o, &told, &r, recording, accounts, &lists, &times);
         } else if (code == CLI_OK) {
-            print_text(&o, &told, &r, accounts, &lists);
+            print_text(&o, &told, &r, accounts, &lists, &times);
         }
         reconstruction_close(&r);
     }

@@ -300,7 +300,8 @@ static const struct argp_option argp_options[] = {
     {"size", KEY_SIZE, "WxH", 0, "size to which --planar crops and averages images (256x256)", 0},
     {"from-file", KEY_FROM_FILE, NULL, 0, "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", KEY_CSV, "FILE", OPTION_WRITES(FILE_TABLE), "table to write; each row appears when it is made", 0},
+    {"csv", KEY_CSV, "FILE", OPTION_WRITES(FILE_TABLE),
+     "table to write; each row appears when it is made, or without --resume all at the end where a table stands", 0},
     {"images", KEY_IMAGES, "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write pictures into: DIR/<target>/<method>_<keep>.png, target.png, mask.png, context_a.png, ...; with "
      "--heads <head> or with --ablate <ablation> is in the name, and settings that are not the default come before "

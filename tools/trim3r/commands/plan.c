@@ -11,6 +11,7 @@
 #include "reconstruction/reconstruction_error.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
+#include "cli/processor_options.h"
 #include "reconstruction/head_option.h"
 #include "pictures/plan_picture.h"
 #include "reconstruction/reconstruction.h"
@@ -24,7 +25,18 @@ typedef struct plan_options {
     const char *svg, *head;
 } plan_options;
 
-enum { KEY_SIZE = 0x1000, KEY_VIEWS, KEY_GAUSSIANS, KEY_WITHIN, KEY_RENDER, KEY_KEEP, KEY_SVG, KEY_MARKDOWN, KEY_JSON };
+enum {
+    KEY_SIZE = 0x1000,
+    KEY_VIEWS,
+    KEY_GAUSSIANS,
+    KEY_WITHIN,
+    KEY_RENDER,
+    KEY_KEEP,
+    KEY_THREADS,
+    KEY_SVG,
+    KEY_MARKDOWN,
+    KEY_JSON
+};
 
 static const struct argp_option options[] = {
     {"size", KEY_SIZE, "WxH", 0, "working size of the context views (needed)", 0},
@@ -34,6 +46,8 @@ static const struct argp_option options[] = {
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP, NULL, 0, "keep the analysis after the build, so that the budget can change", 0},
+    {"threads", KEY_THREADS, "N|all", 0,
+     "number of threads that share the arena's work, 1..16, or all: one for each processor (1)", 0},
     {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture of the arena to write: stages across, bytes upwards", 0},
     {"markdown", KEY_MARKDOWN, NULL, 0, "print the table in Markdown", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
@@ -66,6 +80,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_KEEP:
         c->keep_analysis = 1;
+        return 0;
+    case KEY_THREADS:
+        c->workers = option_threads(state, arg);
         return 0;
     case KEY_SVG:
         o->svg = arg;
@@ -112,6 +129,7 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan)
     json_add_integer(root, "views", config->views);
     json_add_integer(root, "gaussians", config->gaussians);
     json_add_integer(root, "clusters", config->clusters);
+    json_add_integer(root, "threads", config->workers);
     cJSON_AddStringToObject(root, "depth", t3r_depth_name(config->depth));
     json_add_integer(root, "head_column_bytes", config->head_column_bytes);
     json_add_integer(root, "min_bytes", (int64_t)plan->min_bytes);

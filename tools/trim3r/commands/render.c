@@ -15,6 +15,7 @@
 #include "core/hash.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
+#include "cli/work_times.h"
 #include "pictures/picture.h"
 #include "reconstruction/reconstruction.h"
 #include "import/viewpoint.h"
@@ -289,7 +290,7 @@ typedef struct planes {
 } planes;
 
 static int render_one(const render_options *o, reconstruction *r, const viewpoint *view, uint32_t index, uint32_t count,
-                      const planes *p, uint64_t *hash)
+                      const planes *p, uint64_t *hash, work_times *times)
 {
     size_t pixels = (size_t)view->width * view->height;
     t3r_target target = {
@@ -303,7 +304,9 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
         .alpha_stride_bytes = view->width * 2,
     };
     r->give_up_at = o->most_ms > 0 ? cli_now() + o->most_ms / 1e3 : 0;
+    work_times_pass(times);
     t3r_status status = t3r_render(r->runtime, &view->camera, &target);
+    work_times_end(times, WORK_DRAW);
     if (status == T3R_ERR_CANCELLED) {
         return cli_error(CLI_BAD_INPUT, "view %" PRIu32 " takes longer than %g ms (--max-ms, --tile-splats)", index,
                          o->most_ms);
@@ -325,10 +328,11 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
         }
         code = write_picture(o->alpha, index, count, &grey);
     }
+    work_times_end(times, WORK_WRITE);
     return code;
 }
 
-static int render_all(const render_options *o, const scene_file *scene, const viewpoint_list *views)
+static int render_all(const render_options *o, const scene_file *scene, const viewpoint_list *views, work_times *times)
 {
     uint32_t width = 1, height = 1;
     size_t pixels = 1;
@@ -346,14 +350,14 @@ static int render_all(const render_options *o, const scene_file *scene, const vi
     }
     planes p = {malloc(pixels * 3), malloc(pixels * 4), malloc(pixels * 2), malloc(pixels * 2)};
     uint64_t hash = T3R_HASH_START;
-    double start = cli_now();
     if (p.rgb == NULL || p.depth_q20 == NULL || p.alpha_q15 == NULL || p.grey == NULL) {
         code = cli_error(CLI_BAD_INPUT, "out of memory");
     }
     for (uint32_t i = 0; i < views->count && code == CLI_OK; i++) {
-        code = render_one(o, &r, &views->items[i], i, views->count, &p, &hash);
+        code = render_one(o, &r, &views->items[i], i, views->count, &p, &hash, times);
     }
-    double milliseconds = (cli_now() - start) * 1e3 / views->count;
+    times->seconds[WORK_DRAW] /= views->count;
+    times->seconds[WORK_WRITE] /= views->count;
     cli_progress_end();
     if (code == CLI_OK && o->json) {
         cJSON *root = cJSON_CreateObject();
@@ -364,13 +368,15 @@ static int render_all(const render_options *o, const scene_file *scene, const vi
         json_add_integer(root, "gaussians", scene->count);
         json_add_integer(root, "arena_bytes", (int64_t)r.arena_bytes);
         json_add_integer(root, "passes", t3r_render_passes(r.runtime));
-        cJSON_AddNumberToObject(root, "render_ms", milliseconds);
+        work_times_add_json(root, times);
         json_add_hash(root, "hash", hash);
         json_print(root);
     } else if (code == CLI_OK) {
-        printf("%s: %" PRIu32 " view%s of %" PRIu32 " Gaussians, %" PRIu32 " pass%s, %.1f ms each\n", o->output,
-               views->count, views->count == 1 ? "" : "s", scene->count, t3r_render_passes(r.runtime),
-               t3r_render_passes(r.runtime) == 1 ? "" : "es", milliseconds);
+        char text[WORK_TIMES_BYTES];
+        printf("%s: %" PRIu32 " view%s of %" PRIu32 " Gaussians, %" PRIu32 " pass%s; %s%s\n", o->output, views->count,
+               views->count == 1 ? "" : "s", scene->count, t3r_render_passes(r.runtime),
+               t3r_render_passes(r.runtime) == 1 ? "" : "es", work_times_text(times, text),
+               views->count == 1 ? "" : " a view");
     }
     free(p.grey);
     free(p.alpha_q15);
@@ -389,12 +395,15 @@ int command_render(int argc, char **argv)
     char error[ERROR_BYTES] = "";
     viewpoint_list views;
     scene_file scene = {0};
+    work_times times;
+    work_times_begin(&times);
     int code = choose_viewpoints(&o, &views);
     if (code == CLI_OK && scene_file_read(o.scene, &scene, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
+    work_times_end(&times, WORK_READ);
     if (code == CLI_OK) {
-        code = render_all(&o, &scene, &views);
+        code = render_all(&o, &scene, &views, &times);
     }
     scene_file_free(&scene);
     viewpoint_list_free(&views);

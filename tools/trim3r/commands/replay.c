@@ -9,6 +9,7 @@
 
 #include "cli/cli.h"
 #include "cli/file_options.h"
+#include "cli/work_times.h"
 #include "reconstruction/reconstruction_error.h"
 #include "cli/recorded_frame.h"
 #include "core/hash.h"
@@ -36,6 +37,7 @@ typedef struct replayed_view {
     uint64_t *tiles; /* a hash for each 16x16 tile, row-major */
     uint32_t tile_columns, tile_count;
     uint64_t hash; /* of the whole run */
+    work_times times;
 } replayed_view;
 
 enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_HALF_LIFE, KEY_OVERLAP, KEY_IMAGES };
@@ -218,7 +220,9 @@ static int draw_target(const t3r_recording *recording, const char *path, reconst
         reconstruction_camera(&frame.camera, frame.frame.width, frame.frame.height, view->width, view->height);
     t3r_target target = {
         .width = view->width, .height = view->height, .rgb = view->rgb, .rgb_stride_bytes = view->width * 3};
+    work_times_pass(&view->times);
     t3r_status status = t3r_render(r->runtime, &camera, &target);
+    work_times_end(&view->times, WORK_DRAW);
     cli_progress_end();
     if (status != T3R_OK) {
         return reconstruction_error(status, path, &r->config, r->arena_bytes);
@@ -245,6 +249,7 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
         cJSON_AddStringToObject(root, "head_crc", r->head.crc);
     }
     json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
+    work_times_add_json(root, &view->times);
     cJSON *stages = cJSON_AddObjectToObject(root, "stages");
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         if (r->stage_hashed[stage]) {
@@ -264,13 +269,13 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
 
 static void print_text(const replay_options *o, const reconstruction *r, const replayed_view *view)
 {
-    char text[HASH_TEXT_BYTES];
+    char text[HASH_TEXT_BYTES], text_of_times[WORK_TIMES_BYTES];
     printf("%s: context", o->recording);
     for (uint32_t v = 0; v < r->context_count; v++) {
         printf("%s%" PRIu32, v == 0 ? " " : ",", r->context[v]);
     }
-    printf(", view %" PRIu32 ", %" PRIu32 " Gaussians, head %s, arena %zu bytes\n", view->frame, r->scene.count,
-           r->head.name, r->arena_bytes);
+    printf(", view %" PRIu32 ", %" PRIu32 " Gaussians, head %s, arena %zu bytes; %s\n", view->frame, r->scene.count,
+           r->head.name, r->arena_bytes, work_times_text(&view->times, text_of_times));
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         if (r->stage_hashed[stage]) {
             hash_text(r->stage_hash[stage], text);
@@ -281,7 +286,8 @@ static void print_text(const replay_options *o, const reconstruction *r, const r
     printf("%-14s %s\n", "final", text);
 }
 
-static int replay(const replay_options *o, const t3r_recording *recording, const expectation *e)
+static int replay(const replay_options *o, const t3r_recording *recording, const expectation *e,
+                  const work_times *reading)
 {
     reconstruction r;
     int code = reconstruction_build(&r, recording, o->recording, &o->settings);
@@ -289,7 +295,8 @@ static int replay(const replay_options *o, const t3r_recording *recording, const
         return code;
     }
     reconstruction_warn_of_budget(&o->settings, r.requested, r.scene.count);
-    replayed_view view = {0};
+    replayed_view view = {.times = *reading};
+    view.times.seconds[WORK_BUILD] = r.add_views_seconds + r.build_seconds;
     code = draw_target(recording, o->recording, &r, &view);
     if (code == CLI_OK) {
         char difference[128];
@@ -326,13 +333,16 @@ int command_replay(int argc, char **argv)
     int code = expectation_read(&e, o.expect);
     if (code == CLI_OK) {
         char error[ERROR_BYTES] = "";
+        work_times times;
+        work_times_begin(&times);
         t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
         if (recording == NULL) {
             code = cli_error(CLI_BAD_INPUT, "%s", error);
         } else {
+            work_times_end(&times, WORK_READ);
             warn_of_epoch(&o, recording);
             code = o.streams ? replay_stream(&o.stream, recording, o.recording, &o.settings, &e)
-                             : replay(&o, recording, &e);
+                             : replay(&o, recording, &e, &times);
             t3r_recording_close(recording);
         }
     }
