@@ -20,6 +20,7 @@ typedef struct walk {
     uint64_t limit;    /* records end here: at the end magic, or where a cut file ends */
     bool cut;          /* the file has no end magic */
     uint64_t data_end; /* where the summary starts; 0 while in the data section */
+    bool damaged;      /* a chunk of a cut file is not what was written: reading ends in front of it */
     char *error;
     size_t error_bytes;
 } walk;
@@ -301,7 +302,8 @@ static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
     if (status == 0 && wrong == NULL && !c->cut && c->crc != 0 && c->crc != t3r_crc32(0, records, count)) {
         wrong = "its CRC does not match its records";
     }
-    if (status == 0) {
+    w->damaged = status == 0 && wrong != NULL && w->cut && !c->cut;
+    if (status == 0 && !w->damaged) {
         status = wrong != NULL && !c->cut ? malformed(w, T3R_MCAP_CHUNK, place, wrong)
                                           : walk_chunk(w, records, count, place.offset, c->cut, unpacked != NULL);
     }
@@ -487,6 +489,10 @@ int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *vi
         fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
         if (read_record(&w, opcode, &in, place) < 0) {
             return -1;
+        }
+        if (w.damaged) {
+            *end = (t3r_mcap_end){true, at};
+            return 0;
         }
         at += T3R_MCAP_RECORD_HEAD_BYTES + length;
         if (opcode == T3R_MCAP_FOOTER) {

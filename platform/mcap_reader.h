@@ -2,8 +2,8 @@
  * schema, channel, message and metadata record handed to a visitor. Knows records, not what they are about.
  *
  * A file that does not end with MCAP's magic was cut off: it is read up to its last whole record (and, inside a chunk
- * that was cut, up to the last whole record there). In one that does end with it, a record that reaches past
- * the end is an error. */
+ * that was cut, up to the last whole record there). A chunk in it whose CRC is wrong ends it, too: a file system may
+ * leave zeros where a file was cut. In a file that does end with the magic, both are errors. */
 #ifndef T3R_PLATFORM_MCAP_READER_H
 #define T3R_PLATFORM_MCAP_READER_H
 

@@ -8,7 +8,7 @@ void t3r_mcap_put_raw(t3r_mcap_writer *writer, const void *bytes, size_t count)
     if (writer->failed || count == 0) {
         return;
     }
-    writer->failed = writer->sink.write(writer->sink.user, bytes, count) != 0;
+    writer->failed = writer->sink.write != NULL && writer->sink.write(writer->sink.user, bytes, count) != 0;
     writer->crc = t3r_crc32(writer->crc, bytes, count);
     writer->offset += count;
 }
@@ -142,5 +142,5 @@ static int append(void *user, const void *bytes, size_t count)
 
 t3r_sink t3r_mcap_record_sink(t3r_mcap_writer *writer)
 {
-    return (t3r_sink){append, writer};
+    return (t3r_sink){.write = append, .user = writer};
 }

@@ -1,7 +1,8 @@
 /* MCAP records through a sink: no heap, one pass, a running CRC-32. Knows records, not what they are about.
  *
  * A record is opened with its exact content size and then filled field by field; t3r_mcap_begin(), schema,
- * channel and metadata do both. Once the sink has failed, `failed` is set and nothing more is written. */
+ * channel and metadata do both. Once the sink has failed, `failed` is set and nothing more is written. Without
+ * sink.write the bytes are only counted and summed. */
 #ifndef T3R_PLATFORM_MCAP_WRITER_H
 #define T3R_PLATFORM_MCAP_WRITER_H
 

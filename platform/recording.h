@@ -93,13 +93,25 @@ typedef struct t3r_recorded_pose {
 uint32_t t3r_recording_pose_count(const t3r_recording *recording, uint32_t stream);
 t3r_recorded_pose t3r_recording_pose(const t3r_recording *recording, uint32_t stream, uint32_t index);
 
-/* ---- writing: no heap, one pass, unchunked, uncompressed, CRC-checked ------------------------------- */
+/* ---- writing: no heap, one pass, CRC-checked -------------------------------------------------------------- */
 
 typedef struct t3r_sink {
     /* Appends count bytes; 0 = done. */
     int (*write)(void *user, const void *bytes, size_t count);
     void *user;
+    /* `count` of the bytes that were appended, from `offset` on; 0 = done. NULL: they cannot be read back. */
+    int (*read)(void *user, uint64_t offset, void *bytes, size_t count);
 } t3r_sink;
+
+/* Compresses the records of a chunk, which write() hands over piece by piece between begin() and end(). Each returns 0
+ * when done; what end() lends is valid until the next begin(). chunk_packer.h has them. */
+typedef struct t3r_chunk_packer {
+    const char *name; /* as MCAP names it: "zstd", "lz4" */
+    int (*begin)(void *user);
+    int (*write)(void *user, const void *bytes, size_t count);
+    int (*end)(void *user, const uint8_t **bytes, size_t *count);
+    void *user;
+} t3r_chunk_packer;
 
 /* The camera as the file holds it: doubles, straight from the source. */
 typedef struct t3r_recorded_camera {
@@ -142,6 +154,10 @@ typedef struct t3r_recording_header {
     /* Called with the sink's `user` behind each whole message, so that it can be put out of harm's way; 0 = done.
      * NULL = not called. */
     int (*message_end)(void *user);
+    /* Messages alone, for writers that need little and readers from front to back. Otherwise, where the sink can be
+     * read back, the messages of a frame are a chunk, and a summary has the index that readers seek by. */
+    bool unchunked;
+    const t3r_chunk_packer *packer; /* of the chunks; outlives the recorder. NULL: they are not compressed */
 } t3r_recording_header;
 
 /* 0, or -1 once the sink has failed; also -1, and nothing written, for an argument outside its range: a frame's
@@ -160,12 +176,12 @@ typedef enum t3r_recorder_level {
     T3R_RECORDER_ERROR = 40
 } t3r_recorder_level;
 int t3r_recorder_event(t3r_recorder *recorder, int64_t stamp_ns, t3r_recorder_level level, const char *text);
-/* Bytes of the recording so far, and the most that t3r_recorder_end() adds. */
+/* Bytes of the recording so far, and the most that t3r_recorder_end() adds behind one more frame or event. */
 uint64_t t3r_recorder_offset(const t3r_recorder *recorder);
-#define T3R_RECORDER_END_BYTES 16384u
+uint64_t t3r_recorder_end_bytes(const t3r_recorder *recorder);
 int t3r_recorder_end(t3r_recorder *recorder);
 
-/* A sink that appends to a stdio stream. */
+/* A sink that appends to a stdio stream, and reads it back where it is a file open for both. */
 t3r_sink t3r_file_sink(FILE *file);
 
 #endif

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "reason.h"
@@ -11,7 +12,7 @@ int t3r_recording_file_open(t3r_recording_file *file, const char *path, bool syn
 {
     file->held = 0;
     file->sync = sync;
-    file->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    file->fd = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     return file->fd >= 0 ? 0 : t3r_reason(error, error_bytes, "%s: %s", path, strerror(errno));
 }
 
@@ -52,9 +53,27 @@ static int append(void *user, const void *bytes, size_t count)
     return 0;
 }
 
+static int read_back(void *user, uint64_t offset, void *bytes, size_t count)
+{
+    t3r_recording_file *file = user;
+    if (flush(file) != 0) {
+        return -1;
+    }
+    for (size_t got = 0; got < count;) {
+        ssize_t some = pread(file->fd, (uint8_t *)bytes + got, count - got, (off_t)(offset + got));
+        if (some == 0 || (some < 0 && errno != EINTR)) {
+            return -1;
+        }
+        got += some > 0 ? (size_t)some : 0;
+    }
+    return 0;
+}
+
 t3r_sink t3r_recording_file_sink(t3r_recording_file *file)
 {
-    return (t3r_sink){append, file};
+    struct stat about;
+    bool regular = fstat(file->fd, &about) == 0 && S_ISREG(about.st_mode);
+    return (t3r_sink){append, file, regular ? read_back : NULL};
 }
 
 int t3r_recording_file_message_end(void *user)

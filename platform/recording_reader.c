@@ -68,8 +68,9 @@ static int on_schema(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_
 /* Schema names come as "package/msg/Type", from older writers as "package/Type". */
 static t3r_ros_type type_of(t3r_text name)
 {
-    static const char *const old_names[T3R_ROS_TYPE_COUNT] = {
-        "sensor_msgs/Image", "sensor_msgs/CameraInfo", "geometry_msgs/PoseStamped", "geometry_msgs/TransformStamped"};
+    static const char *const old_names[T3R_ROS_TYPE_COUNT] = {"sensor_msgs/Image", "sensor_msgs/CameraInfo",
+                                                              "geometry_msgs/PoseStamped",
+                                                              "geometry_msgs/TransformStamped", "tf2_msgs/TFMessage"};
     uint32_t type = 0;
     while (type < T3R_ROS_TYPE_COUNT && !t3r_text_is(name, t3r_ros_names[type]) &&
            !t3r_text_is(name, old_names[type])) {
@@ -173,7 +174,7 @@ static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mc
     t3r_stream *stream = &x->recording->streams[x->stream_of[message->channel] - 1];
     int kept = 0;
     int64_t log_ns = (int64_t)(message->log_ns < MAX_LOG_NS ? message->log_ns : MAX_LOG_NS);
-    if (stream->type != T3R_ROS_TYPE_COUNT) {
+    if (stream->type != T3R_ROS_TYPE_COUNT && stream->type != T3R_ROS_TF) {
         int64_t stamp_ns = 0;
         bool usable = false;
         const char *wrong = inspect(x->recording, stream, message, &stamp_ns, &usable);

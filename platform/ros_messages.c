@@ -160,6 +160,15 @@ void t3r_ros_write_pose(t3r_cdr_writer *out, const t3r_ros_pose *pose)
     put_f64s(out, pose->rotation_f64, 4);
 }
 
+void t3r_ros_write_tf(t3r_cdr_writer *out, const t3r_ros_pose *pose)
+{
+    t3r_cdr_put_u32(out, 1); /* transforms */
+    put_header(out, &pose->header);
+    t3r_cdr_put_string(out, pose->child_frame_id);
+    put_f64s(out, pose->position_f64, 3);
+    put_f64s(out, pose->rotation_f64, 4);
+}
+
 void t3r_ros_write_log(t3r_cdr_writer *out, const t3r_ros_log *log)
 {
     put_stamp(out, log->stamp_ns);

@@ -11,12 +11,13 @@
 
 #define T3R_ROS_MAX_D 16u /* most distortion coefficients of any model in use are 14 */
 
-/* Messages that trim3r reads; the first three are the ones that it writes. */
+/* Messages that trim3r reads; IMAGE, CAMERA_INFO, POSE and TF are those that it writes. */
 typedef enum t3r_ros_type {
     T3R_ROS_IMAGE,
     T3R_ROS_CAMERA_INFO,
     T3R_ROS_POSE,
     T3R_ROS_TRANSFORM,
+    T3R_ROS_TF,
     T3R_ROS_TYPE_COUNT
 } t3r_ros_type;
 
@@ -82,6 +83,8 @@ typedef struct t3r_ros_log {
 void t3r_ros_write_image_head(t3r_cdr_writer *out, const t3r_ros_image *image);
 void t3r_ros_write_camera_info(t3r_cdr_writer *out, const t3r_ros_camera_info *info);
 void t3r_ros_write_pose(t3r_cdr_writer *out, const t3r_ros_pose *pose);
+/* tf2_msgs/msg/TFMessage of this one transform, child to frame. */
+void t3r_ros_write_tf(t3r_cdr_writer *out, const t3r_ros_pose *pose);
 void t3r_ros_write_log(t3r_cdr_writer *out, const t3r_ros_log *log);
 
 #endif

@@ -18,13 +18,17 @@
           "float64 z 0\n"                                                                                              \
           "float64 w 1\n"
 
+#define TRANSFORM                                                                                                      \
+    RULER "MSG: geometry_msgs/Transform\n"                                                                             \
+          "geometry_msgs/Vector3 translation\n"                                                                        \
+          "geometry_msgs/Quaternion rotation\n" RULER "MSG: geometry_msgs/Vector3\n" XYZ QUATERNION
+
 #define XYZ "float64 x\nfloat64 y\nfloat64 z\n"
 
 const char *const t3r_ros_names[T3R_ROS_TYPE_COUNT] = {
-    [T3R_ROS_IMAGE] = "sensor_msgs/msg/Image",
-    [T3R_ROS_CAMERA_INFO] = "sensor_msgs/msg/CameraInfo",
-    [T3R_ROS_POSE] = "geometry_msgs/msg/PoseStamped",
-    [T3R_ROS_TRANSFORM] = "geometry_msgs/msg/TransformStamped",
+    [T3R_ROS_IMAGE] = "sensor_msgs/msg/Image",        [T3R_ROS_CAMERA_INFO] = "sensor_msgs/msg/CameraInfo",
+    [T3R_ROS_POSE] = "geometry_msgs/msg/PoseStamped", [T3R_ROS_TRANSFORM] = "geometry_msgs/msg/TransformStamped",
+    [T3R_ROS_TF] = "tf2_msgs/msg/TFMessage",
 };
 
 const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT] = {
@@ -57,9 +61,11 @@ const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT] = {
                      "geometry_msgs/Quaternion orientation\n" RULER "MSG: geometry_msgs/Point\n" XYZ QUATERNION,
     [T3R_ROS_TRANSFORM] = "std_msgs/Header header\n"
                           "string child_frame_id\n"
-                          "geometry_msgs/Transform transform\n" HEADER RULER "MSG: geometry_msgs/Transform\n"
-                          "geometry_msgs/Vector3 translation\n"
-                          "geometry_msgs/Quaternion rotation\n" RULER "MSG: geometry_msgs/Vector3\n" XYZ QUATERNION,
+                          "geometry_msgs/Transform transform\n" HEADER TRANSFORM,
+    [T3R_ROS_TF] = "geometry_msgs/TransformStamped[] transforms\n" RULER "MSG: geometry_msgs/TransformStamped\n"
+                   "std_msgs/Header header\n"
+                   "string child_frame_id\n"
+                   "geometry_msgs/Transform transform\n" HEADER TRANSFORM,
 };
 
 const char *const t3r_ros_log_name = "rcl_interfaces/msg/Log";

@@ -241,7 +241,7 @@ def refusals():
             ("v4l2:/dev/null", ("--depth-size", "64x48"), "--depth-size belongs to --depth-source"),
             ("v4l2:/dev/null", ("--depth-unit", "0.001"), "--depth-unit belongs to"),
             ("v4l2:/dev/null", ("--pair", "5"), "--pair belongs to"),
-            ("v4l2:/dev/null", ("--sync",), "--sync belong to -o")):
+            ("v4l2:/dev/null", ("--sync",), "belong to -o")):
         run("capture", "--source", source, "--hash", *options, expect=2, words=words)
     run("capture", "--source", "v4l2:/dev/null", "--hash", "--depth-source", "/dev/null", "--pair", 5, "--depth-size",
         "64x48", "--depth-unit", 0.001, "--size", "64x48", "--rate", 30, "--format", "GREY", "--buffers", 3, "--stall",

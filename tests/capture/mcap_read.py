@@ -2,16 +2,23 @@
 import struct
 
 
+def whole_records(data, at):
+    """(opcode, content) of whole records from `at` on, those of chunks that are not compressed among them."""
+    while at + 9 <= len(data) and data[at:at + 8] != b"\x89MCAP0\r\n":
+        opcode, size = struct.unpack_from("<BQ", data, at)
+        content = data[at + 9:at + 9 + size]
+        if opcode == 0x06:
+            assert content[28:32] == bytes(4), "compressed"
+            yield from whole_records(content, 40)
+        elif at + 9 + size <= len(data):
+            yield opcode, content
+        at += 9 + size
+
+
 def records(data):
     """(opcode, content) of whole records; a file may be cut off."""
     assert data[:8] == b"\x89MCAP0\r\n"
-    at = 8
-    while at + 9 <= len(data):
-        opcode, size = struct.unpack_from("<BQ", data, at)
-        if data[at:at + 8] == b"\x89MCAP0\r\n" or at + 9 + size > len(data):
-            return
-        yield opcode, data[at + 9:at + 9 + size]
-        at += 9 + size
+    return whole_records(data, 8)
 
 
 def text(data, at):

@@ -1,5 +1,5 @@
-/* A recording whose process is killed, 200 times at random moments: every message that was whole is there, and the
- * frames read back are those that were written. Files that roll over keep within their bytes. */
+/* A recording whose process is killed, 200 times at random moments, however it stores its messages: every frame that
+ * was whole is there, and those read back are those that were written. Files that roll over keep within their bytes. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -22,6 +22,8 @@
 enum { WIDTH = 48, HEIGHT = 32, KILLS = 200, MOST_FRAMES = 4000 };
 
 static uint8_t pixels[HEIGHT][WIDTH][3], depth[HEIGHT][WIDTH][2];
+
+static const recording_options stored; /* chunks, not compressed */
 
 static uint8_t value_of(uint32_t frame, size_t i)
 {
@@ -62,10 +64,10 @@ static t3r_capture_frame make_frame(uint32_t number)
 }
 
 /* In the child: records without end, telling what is whole. */
-static void record_for_ever(const char *path, volatile uint32_t *whole)
+static void record_for_ever(const char *path, const recording_options *how, volatile uint32_t *whole)
 {
     static capture_record record;
-    if (capture_record_begin(&record, path, 0, false, "test", "monotonic", 1099511628) != 0) {
+    if (capture_record_begin(&record, path, 0, false, "test", "monotonic", 1099511628, how) != 0) {
         _exit(1);
     }
     for (uint32_t number = 0; number < MOST_FRAMES; number++) {
@@ -106,13 +108,17 @@ static void a_killed_process_loses_at_most_the_message_it_was_writing(void **sta
     assert_true((const void *)whole != MAP_FAILED);
     uint32_t random = 12345, cut = 0;
     uint64_t frames = 0;
+    static const recording_options ways[] = {{.unchunked = true},
+                                             {.unchunked = false},
+                                             {.compression = T3R_COMPRESSION_ZSTD},
+                                             {.compression = T3R_COMPRESSION_LZ4}};
     for (int kill_number = 0; kill_number < KILLS; kill_number++) {
         const char *path = scratch_path(s, "cut.mcap");
         *whole = 0;
         pid_t child = fork();
         assert_true(child >= 0);
         if (child == 0) {
-            record_for_ever(path, whole);
+            record_for_ever(path, &ways[kill_number % 4], whole);
         }
         while (*whole == 0) { /* until the first frame is there: the header, too, takes its time */
             nanosleep(&(struct timespec){0, 50000}, NULL);
@@ -151,7 +157,7 @@ static void files_roll_over_within_their_bytes(void **state)
     char first[600];
     snprintf(first, sizeof first, "%s", scratch_path(s, "roll.v1.mcap"));
     const uint64_t most = 100000;
-    assert_int_equal(capture_record_begin(&record, first, most, true, "test", "monotonic", 1099511628), 0);
+    assert_int_equal(capture_record_begin(&record, first, most, true, "test", "monotonic", 1099511628, &stored), 0);
     for (uint32_t i = 0; i < 60; i++) {
         t3r_capture_frame frame = make_frame(i);
         assert_int_equal(capture_record_frame(&record, &frame), 0);
@@ -182,7 +188,7 @@ static void files_roll_over_within_their_bytes(void **state)
 
     /* less than a frame */
     t3r_capture_frame frame = make_frame(0);
-    assert_int_equal(capture_record_begin(&record, first, 20000, false, "test", "monotonic", 1099511628), 0);
+    assert_int_equal(capture_record_begin(&record, first, 20000, false, "test", "monotonic", 1099511628, &stored), 0);
     assert_int_equal(capture_record_frame(&record, &frame), -1);
     assert_non_null(strstr(record.error, "does not hold one frame"));
     assert_int_equal(capture_record_end(&record), 0);
@@ -209,11 +215,11 @@ static void a_full_disk_is_told(void **state)
 {
     (void)state;
     static capture_record record;
-    int begun = capture_record_begin(&record, "/dev/full", 0, false, "test", "monotonic", 1099511628);
+    int begun = capture_record_begin(&record, "/dev/full", 0, false, "test", "monotonic", 1099511628, &stored);
     assert_int_equal(begun, -1);
     assert_non_null(strstr(record.error, "/dev/full: cannot be written"));
     capture_record_end(&record);
-    assert_int_equal(capture_record_begin(&record, "/nowhere/a.mcap", 0, false, "test", "m", 1099511628), -1);
+    assert_int_equal(capture_record_begin(&record, "/nowhere/a.mcap", 0, false, "test", "m", 1099511628, &stored), -1);
     assert_non_null(strstr(record.error, "No such file"));
 }
 

@@ -424,7 +424,9 @@ static void a_repeated_recording_ends_with_its_clock(void **state)
                                          .planes = {&rgb[0][0][0][0]},
                                          .stride_bytes = {WIDTH * 3}}};
     static capture_record record;
-    assert_int_equal(capture_record_begin(&record, recording, 0, false, "test", "monotonic", 1099511628), 0);
+    assert_int_equal(
+        capture_record_begin(&record, recording, 0, false, "test", "monotonic", 1099511628, &(recording_options){0}),
+        0);
     for (int i = 0; i < 2; i++) {
         frame.stamp_ns = frame.depth_stamp_ns = 1000 + i * span_ns;
         assert_int_equal(capture_record_frame(&record, &frame), 0);

@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 def room(path, side, frames):
     """The built-in recording, and the samples of its colour and depth images."""
-    run(TRIM3R, "room", "--size", f"{side}x{side}", "--frames", frames, "-o", path)
+    run(TRIM3R, "room", "--size", f"{side}x{side}", "--frames", frames, "--unchunked", "-o", path)
     with open(path, "rb") as file:
         found = list(mcap_read.messages(file.read()))
     colours, depths = ([message for topic, _, message in found if topic.endswith(name)]
@@ -24,6 +24,6 @@ def room(path, side, frames):
 
 
 def without_crc(data):
-    """The CRC of the data section stands in the record DataEnd, opcode 15, four bytes long; 0: there is none."""
+    """Of a recording without chunks. The CRC of the data section stands in the record DataEnd, opcode 15, four bytes long; 0: there is none."""
     at = data.rindex(b"\x0f" + (4).to_bytes(8, "little"))
     return data[:at + 9] + bytes(4) + data[at + 13:]

@@ -80,7 +80,7 @@ def test_good_folder():
     check(abs(info["depth_unit"] - 0.002) < 1e-9, "info's depth unit")
     check(info["pairing"]["with_pose"] == 3 and info["pairing"]["with_intrinsics"] == 3, "info's pairing")
     topics = {s["topic"]: s["messages"] for s in info["streams"]}
-    check(topics == {f"/camera/{t}": 3 for t in ("image", "depth", "camera_info", "pose")}, f"streams: {topics}")
+    check(topics == {t: 3 for t in ("/camera/image", "/camera/depth", "/camera/camera_info", "/camera/pose", "/tf")}, f"streams: {topics}")
     check(info["streams"][0]["last_ns"] == 2 * 10**9 // 30, "stamps 1/30 s apart")
     status, out, _ = run("info", target)
     check(status == 0 and "--context 0,2 --target 1" in out and "3 frames" in out, "info as text")

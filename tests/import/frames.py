@@ -1,9 +1,14 @@
 """Frames of a recording as arrays, and pictures as files: what the scripts of this folder share. Needs numpy."""
 
+import os
 import struct
+import sys
 import zlib
 
 import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "capture"))
+import mcap_read  # noqa: E402
 
 
 class Cdr:
@@ -65,22 +70,14 @@ def matrix(q, t):
 
 
 def read(path):
-    """{topic: [message, ...]} of an unchunked recording."""
+    """{topic: [message, ...]} of a recording without compression."""
     with open(path, "rb") as file:
         data = file.read()
-    at, topics, out = 8, {}, {}
-    readers = {"image": image, "depth": image, "pose": pose, "camera_info": intrinsics}
-    while at < len(data) - 8:
-        op, length = struct.unpack_from("<BQ", data, at)
-        body = data[at + 9:at + 9 + length]
-        at += 9 + length
-        if op == 4:
-            number, _, size = struct.unpack_from("<HHI", body)
-            topics[number] = body[8:8 + size].decode().split("/")[-1]
-        elif op == 5:
-            name = topics[struct.unpack_from("<H", body)[0]]
-            if name in readers:
-                out.setdefault(name, []).append(readers[name](body[22:]))
+    out, readers = {}, {"image": image, "depth": image, "pose": pose, "camera_info": intrinsics}
+    for topic, _, message in mcap_read.messages(data):
+        name = topic.split("/")[-1]
+        if name in readers:
+            out.setdefault(name, []).append(readers[name](message))
     return out
 
 

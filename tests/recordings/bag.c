@@ -38,9 +38,19 @@ static int append(void *user, const void *data, size_t count)
     return 0;
 }
 
+static int read_back(void *user, uint64_t offset, void *data, size_t count)
+{
+    const bag_bytes *bytes = user;
+    if (offset > bytes->count || bytes->count - offset < count) {
+        return -1;
+    }
+    memcpy(data, bytes->data + offset, count);
+    return 0;
+}
+
 t3r_sink bag_sink(bag_bytes *bytes)
 {
-    return (t3r_sink){append, bytes};
+    return (t3r_sink){append, bytes, read_back};
 }
 
 /* ---- CDR ---- */

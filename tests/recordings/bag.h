@@ -10,7 +10,7 @@
 #include "mcap_writer.h"
 #include "recording.h"
 
-/* Bytes that grow. As a sink: `room_left` bytes fit, then it fails. */
+/* Bytes that grow. As a sink: `room_left` bytes fit, then it fails; what fitted can be read back. */
 typedef struct bag_bytes {
     uint8_t *data;
     size_t count, capacity;

@@ -1,13 +1,21 @@
 // A file of ours, read by MCAP's reference reader: every record checked, every message decoded by its own schema text.
-//   node read_ours.mjs ENCODING FILE
+// Chunked files are read once more by the reader that seeks by the index.
+//   node read_ours.mjs none|zstd|lz4|unchunked ENCODING FILE
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
+import * as zstd from "@foxglove/wasm-zstd";
+import lz4 from "lz4js";
 import * as sample from "./sample.mjs";
 
-const [encoding, path] = process.argv.slice(2);
+await zstd.isLoaded;
+const decompressHandlers = {
+  zstd: (data, bytes) => zstd.decompress(data, Number(bytes)),
+  lz4: (data) => Uint8Array.from(lz4.decompress(data)),
+};
+const [storage, encoding, path] = process.argv.slice(2);
 const bytes = readFileSync(path);
 
 const identity = [1, 0, 0, 0, 1, 0, 0, 0, 1];
@@ -34,15 +42,34 @@ const expected = {
   "/camera/pose": (f) => ({
     header: header(f, "world"), pose: { position: sample.position(f), orientation: sample.orientation(f) },
   }),
+  "/tf": (f) => ({
+    transforms: [{
+      header: header(f, "world"), child_frame_id: "camera",
+      transform: { translation: sample.position(f), rotation: sample.orientation(f) },
+    }],
+  }),
 };
 
 // nanosec is called nsec by the reader of ROS 2 messages
 const plain = (message) => {
+  if (message.transforms) return { transforms: message.transforms.map(plain) };
   const { sec, nsec, nanosec } = message.header.stamp;
   return { ...message, header: { ...message.header, stamp: { sec, nanosec: nanosec ?? nsec } } };
 };
 
-const reader = new McapStreamReader({ validateCrcs: true });
+// One message against the sample's; `list` holds those of its topic before it.
+function check(record, channel, schema, list) {
+  const f = channel.topic === "/camera/depth" && list.length === 1 ? 2 : list.length;
+  const text = new TextDecoder().decode(schema.data);
+  const decoded = new MessageReader(parse(text, { ros2: true })).readMessage(record.data);
+  assert.deepEqual(plain(decoded), expected[channel.topic](f), `${channel.topic} of frame ${f}`);
+  assert.equal(record.logTime, sample.stampNs(f));
+  assert.equal(record.publishTime, sample.stampNs(f));
+  assert.equal(record.sequence, list.length);
+  list.push(decoded);
+}
+
+const reader = new McapStreamReader({ validateCrcs: true, decompressHandlers });
 reader.append(bytes);
 const seen = { messages: {}, metadata: {}, schemas: new Map(), channels: new Map(), order: [] };
 let inSummary = false;
@@ -54,7 +81,7 @@ for (let record; (record = reader.nextRecord()); ) {
       break;
     case "Schema":
       assert.equal(record.encoding, "ros2msg");
-      seen.schemas.set(record.id, { name: record.name, text: new TextDecoder().decode(record.data) });
+      seen.schemas.set(record.id, record);
       break;
     case "Channel":
       assert.equal(record.messageEncoding, "cdr");
@@ -64,14 +91,7 @@ for (let record; (record = reader.nextRecord()); ) {
     case "Message": {
       const channel = seen.channels.get(record.channelId);
       const list = (seen.messages[channel.topic] ??= []);
-      const f = channel.topic === "/camera/depth" && list.length === 1 ? 2 : list.length;
-      const schema = seen.schemas.get(channel.schemaId);
-      const decoded = new MessageReader(parse(schema.text, { ros2: true })).readMessage(record.data);
-      assert.deepEqual(plain(decoded), expected[channel.topic](f), `${channel.topic} of frame ${f}`);
-      assert.equal(record.logTime, sample.stampNs(f));
-      assert.equal(record.publishTime, sample.stampNs(f));
-      assert.equal(record.sequence, list.length);
-      list.push(decoded);
+      check(record, channel, seen.schemas.get(channel.schemaId), list);
       seen.order.push(channel.topic);
       break;
     }
@@ -84,7 +104,7 @@ for (let record; (record = reader.nextRecord()); ) {
       break;
     case "Statistics":
       assert.ok(inSummary);
-      assert.equal(record.messageCount, BigInt(4 * sample.FRAMES - 1));
+      assert.equal(record.messageCount, BigInt(5 * sample.FRAMES - 1));
       assert.equal(record.channelMessageCounts.get(1), BigInt(sample.FRAMES - 1));
       assert.equal(record.messageStartTime, sample.stampNs(0));
       assert.equal(record.messageEndTime, sample.stampNs(sample.FRAMES - 1));
@@ -109,6 +129,7 @@ const indexed = await McapIndexedReader.Initialize({
     size: async () => BigInt(bytes.length),
     read: async (offset, length) => bytes.subarray(Number(offset), Number(offset + length)),
   },
+  decompressHandlers,
 });
 assert.equal(indexed.statistics.metadataCount, 2);
 assert.deepEqual([...indexed.channelsById.values()].map((channel) => channel.topic), Object.keys(expected));
@@ -116,4 +137,22 @@ assert.deepEqual(indexed.metadataIndexes.map((index) => index.name), ["trim3r", 
 for await (const metadata of indexed.readMetadata({ name: "trim3r_triplets" })) {
   assert.equal(metadata.metadata.get("triplets"), sample.TRIPLETS);
 }
-console.log(`${encoding}: ${seen.order.length} messages as written`);
+const found = Object.fromEntries(Object.keys(expected).map((topic) => [topic, []]));
+for await (const message of indexed.readMessages({ validateCrcs: true })) {
+  const channel = indexed.channelsById.get(message.channelId);
+  check(message, channel, indexed.schemasById.get(channel.schemaId), found[channel.topic]);
+}
+const chunked = storage !== "unchunked";
+assert.equal(indexed.statistics.chunkCount, chunked ? sample.FRAMES : 0);
+assert.equal(indexed.chunkIndexes.length, chunked ? sample.FRAMES : 0);
+for (const topic of Object.keys(expected)) { // a reader that seeks finds what stands in chunks
+  assert.equal(found[topic].length, chunked ? seen.messages[topic].length : 0, topic);
+}
+const first = sample.stampNs(1);
+let later = 0;
+for await (const message of indexed.readMessages({ startTime: first, topics: ["/tf"] })) {
+  assert.ok(message.logTime >= first);
+  later++;
+}
+assert.equal(later, chunked ? sample.FRAMES - 1 : 0);
+console.log(`${storage}, ${encoding}: ${seen.order.length} messages as written`);

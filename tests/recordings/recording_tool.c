@@ -1,6 +1,6 @@
-/* For the tests' scripts: `recording_tool sample FORMAT FILE` writes the sample recording (sample.h), `recording_tool
- * dump FILE` prints what the reader makes of a recording as JSON, `recording_tool seeds FOLDER` writes a fuzzer's
- * seeds. Fixed-point numbers that may not fit a double are strings. */
+/* For the tests' scripts: `recording_tool sample STORAGE FORMAT FILE` writes the sample recording (sample.h),
+ * `recording_tool dump FILE` prints what the reader makes of a recording as JSON, `recording_tool seeds FOLDER` writes
+ * a fuzzer's seeds. Fixed-point numbers that may not fit a double are strings. */
 #include <cjson/cJSON.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -11,19 +11,23 @@
 #include "sample.h"
 #include "seeds.h"
 
-static int write_sample(const char *encoding, const char *path)
+static int write_sample(const char *stored, const char *encoding, const char *path)
 {
     t3r_pixel_format format;
     if (!t3r_pixel_format_of(t3r_text_of(encoding), &format)) {
         fprintf(stderr, "recording_tool: no format %s\n", encoding);
         return 2;
     }
-    FILE *file = fopen(path, "wb");
+    uint32_t storage = 0;
+    while (storage < SAMPLE_STORAGES && strcmp(sample_storages[storage], stored) != 0) {
+        storage++;
+    }
+    FILE *file = storage < SAMPLE_STORAGES ? fopen(path, "w+b") : NULL;
     if (file == NULL) {
         perror(path);
         return 1;
     }
-    int failed = sample_write(t3r_file_sink(file), format);
+    int failed = sample_write(t3r_file_sink(file), format, storage);
     failed |= fclose(file);
     return failed != 0;
 }
@@ -142,8 +146,8 @@ static int dump(const char *path)
 
 int main(int argc, char **argv)
 {
-    if (argc == 4 && strcmp(argv[1], "sample") == 0) {
-        return write_sample(argv[2], argv[3]);
+    if (argc == 5 && strcmp(argv[1], "sample") == 0) {
+        return write_sample(argv[2], argv[3], argv[4]);
     }
     if (argc == 3 && strcmp(argv[1], "dump") == 0) {
         return dump(argv[2]);
@@ -151,6 +155,6 @@ int main(int argc, char **argv)
     if (argc == 3 && strcmp(argv[1], "seeds") == 0) {
         return seeds_write(argv[2]) != 0;
     }
-    fputs("usage: recording_tool sample FORMAT FILE | dump FILE | seeds FOLDER\n", stderr);
+    fputs("usage: recording_tool sample STORAGE FORMAT FILE | dump FILE | seeds FOLDER\n", stderr);
     return 2;
 }

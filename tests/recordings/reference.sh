@@ -22,8 +22,10 @@ fi
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 for encoding in rgb8 bgr8 mono8 yuv422_yuy2 yuv422 nv12; do
-    "$tool" sample $encoding "$scratch/ours.mcap"
-    node "$build/read_ours.mjs" $encoding "$scratch/ours.mcap"
+    for storage in none zstd lz4 unchunked; do
+        "$tool" sample $storage $encoding "$scratch/ours.mcap"
+        node "$build/read_ours.mjs" $storage $encoding "$scratch/ours.mcap"
+    done
 done
 for packing in none lz4 zstd unchunked; do
     for encoding in rgb8 nv12; do

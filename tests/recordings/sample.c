@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "chunk_packer.h"
 #include "pixel_layout.h"
 
 #define PADDING 5u /* bytes behind each row in memory, not to be recorded */
@@ -51,8 +52,12 @@ t3r_triplet sample_triplet(uint32_t index)
     return index == 0 ? (t3r_triplet){{0, 2}, 1} : (t3r_triplet){{1, 0}, 2};
 }
 
-int sample_write(t3r_sink sink, t3r_pixel_format format)
+const char *const sample_storages[SAMPLE_STORAGES] = {"none", "zstd", "lz4", "unchunked"};
+
+int sample_write(t3r_sink sink, t3r_pixel_format format, uint32_t storage)
 {
+    const t3r_chunk_packer *packer =
+        t3r_chunk_packer_open(storage == SAMPLE_UNCHUNKED ? T3R_COMPRESSION_NONE : (t3r_compression)storage);
     uint64_t state[T3R_RECORDER_BYTES / 8];
     t3r_recorder *recorder = (t3r_recorder *)state;
     const t3r_triplet triplets[] = {sample_triplet(0), sample_triplet(1)};
@@ -63,6 +68,8 @@ int sample_write(t3r_sink sink, t3r_pixel_format format)
         .depth_unit = 0.0002,
         .triplets = triplets,
         .triplet_count = 2,
+        .unchunked = storage == SAMPLE_UNCHUNKED,
+        .packer = packer,
     };
     int failed = t3r_recorder_begin(recorder, sink, &header);
     for (uint32_t f = 0; f < SAMPLE_FRAMES; f++) {
@@ -93,5 +100,6 @@ int sample_write(t3r_sink sink, t3r_pixel_format format)
         failed |= t3r_recorder_frame(recorder, &frame);
     }
     failed |= t3r_recorder_end(recorder);
+    t3r_chunk_packer_close(packer);
     return failed != 0 ? -1 : 0;
 }

@@ -17,7 +17,11 @@ t3r_recorded_camera sample_camera(uint32_t frame);
 int64_t sample_stamp(uint32_t frame);
 t3r_triplet sample_triplet(uint32_t index); /* 0: {0, 2; 1}, 1: {1, 0; 2} */
 
+/* How its messages are stored: in chunks by their compression, or without chunks. */
+enum { SAMPLE_NONE, SAMPLE_ZSTD, SAMPLE_LZ4, SAMPLE_UNCHUNKED, SAMPLE_STORAGES };
+extern const char *const sample_storages[SAMPLE_STORAGES]; /* "none", "zstd", "lz4", "unchunked" */
+
 /* Writes it with the images in this format. 0, or -1 when the sink failed. */
-int sample_write(t3r_sink sink, t3r_pixel_format format);
+int sample_write(t3r_sink sink, t3r_pixel_format format, uint32_t storage);
 
 #endif

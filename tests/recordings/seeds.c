@@ -79,11 +79,20 @@ int seeds_write(const char *folder)
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
         bag_bytes bytes;
         bag_bytes_start(&bytes);
-        failed |= sample_write(bag_sink(&bytes), formats[i]);
+        failed |= sample_write(bag_sink(&bytes), formats[i], SAMPLE_UNCHUNKED);
         char cut[16];
         snprintf(cut, sizeof cut, "%s_cut", names[i]);
         failed |= save(folder, names[i], bytes.data, bytes.count);
         failed |= save(folder, cut, bytes.data, bytes.count * 6 / 10);
+        bag_bytes_free(&bytes);
+    }
+    for (uint32_t storage = 0; storage < SAMPLE_UNCHUNKED; storage++) {
+        bag_bytes bytes;
+        bag_bytes_start(&bytes);
+        char name[16];
+        snprintf(name, sizeof name, "ours_%s", sample_storages[storage]);
+        failed |= sample_write(bag_sink(&bytes), T3R_PIXEL_RGB24, storage);
+        failed |= save(folder, name, bytes.data, bytes.count);
         bag_bytes_free(&bytes);
     }
     bag_bytes content = records();

@@ -11,16 +11,17 @@
 
 #include "bag.h"
 #include "capture.h"
+#include "chunk_packer.h"
 #include "fixed_double.h"
 #include "mcap_reader.h"
 #include "pixel_layout.h"
 #include "sample.h"
 
-static bag_bytes sample(t3r_pixel_format format)
+static bag_bytes sample(t3r_pixel_format format, uint32_t storage)
 {
     bag_bytes bytes;
     bag_bytes_start(&bytes);
-    assert_int_equal(sample_write(bag_sink(&bytes), format), 0);
+    assert_int_equal(sample_write(bag_sink(&bytes), format, storage), 0);
     return bytes;
 }
 
@@ -103,16 +104,17 @@ static void check_readable(const t3r_recording *recording, uint32_t frames, t3r_
 static void round_trip_of_every_format(void **state)
 {
     (void)state;
-    for (uint32_t format = 0; format < T3R_PIXEL_FORMAT_COUNT; format++) {
-        bag_bytes bytes = sample((t3r_pixel_format)format);
+    for (uint32_t i = 0; i < T3R_PIXEL_FORMAT_COUNT * SAMPLE_STORAGES; i++) {
+        uint32_t format = i / SAMPLE_STORAGES;
+        bag_bytes bytes = sample((t3r_pixel_format)format, i % SAMPLE_STORAGES);
         t3r_recording *recording = parse(bytes.data, bytes.count);
         check_readable(recording, SAMPLE_FRAMES, (t3r_pixel_format)format);
         assert_string_equal(t3r_recording_note(recording), "");
         assert_string_equal(t3r_recording_clock(recording), "synthetic");
         assert_int_equal(t3r_recording_bits_epoch(recording), T3R_BITS_EPOCH);
         assert_int_equal(t3r_recording_triplet_count(recording), 2);
-        for (uint32_t i = 0; i < 2; i++) {
-            t3r_triplet expected = sample_triplet(i), found = t3r_recording_triplet(recording, i);
+        for (uint32_t t = 0; t < 2; t++) {
+            t3r_triplet expected = sample_triplet(t), found = t3r_recording_triplet(recording, t);
             assert_memory_equal(&found, &expected, sizeof found);
         }
         t3r_pairing_info pairing = t3r_recording_pairing(recording);
@@ -122,13 +124,15 @@ static void round_trip_of_every_format(void **state)
         assert_int_equal(pairing.with_intrinsics, SAMPLE_FRAMES);
         assert_int_equal(pairing.worst_depth_gap_ns, 0);
         assert_int_equal(pairing.worst_pose_gap_ns, 0);
-        static const char *const topics[] = {"/camera/image", "/camera/depth", "/camera/camera_info", "/camera/pose"};
-        static const uint64_t messages[] = {SAMPLE_FRAMES, SAMPLE_FRAMES - 1, SAMPLE_FRAMES, SAMPLE_FRAMES};
-        assert_int_equal(t3r_recording_stream_count(recording), 4);
-        for (uint32_t i = 0; i < 4; i++) {
-            t3r_stream_info stream = t3r_recording_stream(recording, i);
-            assert_string_equal(stream.topic, topics[i]);
-            assert_int_equal(stream.messages, messages[i]);
+        static const char *const topics[] = {"/camera/image", "/camera/depth", "/camera/camera_info", "/camera/pose",
+                                             "/tf"};
+        static const uint64_t messages[] = {SAMPLE_FRAMES, SAMPLE_FRAMES - 1, SAMPLE_FRAMES, SAMPLE_FRAMES,
+                                            SAMPLE_FRAMES};
+        assert_int_equal(t3r_recording_stream_count(recording), 5);
+        for (uint32_t t = 0; t < 5; t++) {
+            t3r_stream_info stream = t3r_recording_stream(recording, t);
+            assert_string_equal(stream.topic, topics[t]);
+            assert_int_equal(stream.messages, messages[t]);
             assert_int_equal(stream.first_ns, sample_stamp(0));
             assert_int_equal(stream.last_ns, sample_stamp(SAMPLE_FRAMES - 1));
         }
@@ -140,7 +144,7 @@ static void round_trip_of_every_format(void **state)
 static void frame_out_of_range_is_refused(void **state)
 {
     (void)state;
-    bag_bytes bytes = sample(T3R_PIXEL_RGB24);
+    bag_bytes bytes = sample(T3R_PIXEL_RGB24, SAMPLE_NONE);
     t3r_recording *recording = parse(bytes.data, bytes.count);
     t3r_capture_frame frame;
     char error[256] = "";
@@ -155,8 +159,8 @@ static void frame_out_of_range_is_refused(void **state)
 typedef struct ends {
     const uint8_t *base;
     uint32_t messages;
-    size_t end[16];
-    uint32_t images[16]; /* frames whole once this message is */
+    size_t end[20];
+    uint32_t images[20]; /* frames whole once this message is */
 } ends;
 
 static int no_schema(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_place place)
@@ -181,23 +185,22 @@ static int note_message(void *user, const t3r_mcap_message_record *message, t3r_
 {
     (void)place;
     ends *e = user;
-    assert_true(e->messages < 16);
+    assert_true(e->messages < 20);
     e->end[e->messages] = (size_t)(message->data + message->bytes - e->base);
     e->images[e->messages] = (e->messages > 0 ? e->images[e->messages - 1] : 0) + (message->channel == 0);
     e->messages++;
     return 0;
 }
 
-static void cut_anywhere_reads_the_whole_messages(void **state)
+static void check_cuts(uint32_t storage)
 {
-    (void)state;
-    bag_bytes bytes = sample(T3R_PIXEL_YUYV);
+    bag_bytes bytes = sample(T3R_PIXEL_YUYV, storage);
     ends e = {.base = bytes.data};
     const t3r_mcap_visitor visitor = {&e, no_schema, no_channel, note_message, no_metadata};
     t3r_mcap_chunks chunks = {0};
     t3r_mcap_end end;
     assert_int_equal(t3r_mcap_read(bytes.data, bytes.count, &visitor, &chunks, &end, NULL, 0), 0);
-    assert_int_equal(e.messages, 4 * SAMPLE_FRAMES - 1);
+    assert_int_equal(e.messages, 5 * SAMPLE_FRAMES - 1);
     t3r_mcap_chunks_free(&chunks);
     uint32_t whole = 0, cut_with_all_messages = 0;
     for (size_t count = 0; count < bytes.count; count++) {
@@ -230,10 +233,41 @@ static void cut_anywhere_reads_the_whole_messages(void **state)
     bag_bytes_free(&bytes);
 }
 
+static void cut_anywhere_reads_the_whole_messages(void **state)
+{
+    (void)state;
+    check_cuts(SAMPLE_UNCHUNKED);
+    check_cuts(SAMPLE_NONE);
+}
+
+/* Of a chunk that was cut, whatever could be unpacked. */
+static void cut_anywhere_reads_what_can_be_unpacked(void **state)
+{
+    (void)state;
+    for (uint32_t storage = SAMPLE_ZSTD; storage <= SAMPLE_LZ4; storage++) {
+        bag_bytes bytes = sample(T3R_PIXEL_YUYV, storage);
+        uint32_t frames = 0;
+        for (size_t count = 8; count < bytes.count; count++) {
+            uint8_t *cut = malloc(count);
+            memcpy(cut, bytes.data, count);
+            t3r_recording *recording = parse(cut, count);
+            uint32_t found = t3r_recording_frame_count(recording);
+            assert_true(found >= frames);
+            frames = found;
+            assert_non_null(strstr(t3r_recording_note(recording), "cut off"));
+            check_readable(recording, found, T3R_PIXEL_YUYV);
+            t3r_recording_close(recording);
+            free(cut);
+        }
+        assert_int_equal(frames, SAMPLE_FRAMES);
+        bag_bytes_free(&bytes);
+    }
+}
+
 static void zeros_behind_a_cut_are_no_records(void **state)
 {
     (void)state;
-    bag_bytes bytes = sample(T3R_PIXEL_GREY);
+    bag_bytes bytes = sample(T3R_PIXEL_GREY, SAMPLE_NONE);
     size_t kept = bytes.count / 2;
     memset(bytes.data + kept, 0, bytes.count - kept);
     t3r_recording *recording = parse(bytes.data, bytes.count);
@@ -242,12 +276,11 @@ static void zeros_behind_a_cut_are_no_records(void **state)
     bag_bytes_free(&bytes);
 }
 
-static void every_changed_byte_is_noticed(void **state)
+static void check_changes(uint32_t storage)
 {
-    (void)state;
-    bag_bytes bytes = sample(T3R_PIXEL_RGB24);
+    bag_bytes bytes = sample(T3R_PIXEL_RGB24, storage);
     for (size_t i = 0; i < bytes.count; i++) {
-        for (uint32_t way = 0; way < 2; way++) {
+        for (uint32_t way = 0; way < (storage == SAMPLE_NONE ? 2 : 1); way++) {
             uint8_t change = (uint8_t)(way == 0 ? 1u << i % 8 : 0xff);
             bytes.data[i] = (uint8_t)(bytes.data[i] ^ change);
             char error[256] = "";
@@ -260,6 +293,14 @@ static void every_changed_byte_is_noticed(void **state)
         }
     }
     bag_bytes_free(&bytes);
+}
+
+static void every_changed_byte_is_noticed(void **state)
+{
+    (void)state;
+    for (uint32_t storage = 0; storage < SAMPLE_STORAGES; storage++) {
+        check_changes(storage);
+    }
 }
 
 static void foreign_and_empty_files_are_refused(void **state)
@@ -290,16 +331,100 @@ static void foreign_and_empty_files_are_refused(void **state)
 static void a_failing_sink_fails_the_recorder(void **state)
 {
     (void)state;
-    bag_bytes bytes = sample(T3R_PIXEL_NV12);
-    size_t count = bytes.count;
-    bag_bytes_free(&bytes);
-    for (size_t room = 0; room <= count; room++) {
-        bag_bytes_start(&bytes);
-        bytes.room_left = room;
-        assert_int_equal(sample_write(bag_sink(&bytes), T3R_PIXEL_NV12), room < count ? -1 : 0);
-        assert_true(bytes.count <= room);
+    for (uint32_t storage = 0; storage < SAMPLE_STORAGES; storage++) {
+        bag_bytes bytes = sample(T3R_PIXEL_NV12, storage);
+        size_t count = bytes.count;
         bag_bytes_free(&bytes);
+        for (size_t room = 0; room <= count; room++) {
+            bag_bytes_start(&bytes);
+            bytes.room_left = room;
+            assert_int_equal(sample_write(bag_sink(&bytes), T3R_PIXEL_NV12, storage), room < count ? -1 : 0);
+            assert_true(bytes.count <= room);
+            bag_bytes_free(&bytes);
+        }
     }
+}
+
+/* A sink that cannot be read back gets what --unchunked writes. */
+static void without_reading_back_there_are_no_chunks(void **state)
+{
+    (void)state;
+    bag_bytes plain = sample(T3R_PIXEL_RGB24, SAMPLE_UNCHUNKED), written;
+    bag_bytes_start(&written);
+    t3r_sink sink = bag_sink(&written);
+    sink.read = NULL;
+    assert_int_equal(sample_write(sink, T3R_PIXEL_RGB24, SAMPLE_NONE), 0);
+    assert_int_equal(written.count, plain.count);
+    assert_memory_equal(written.data, plain.data, plain.count);
+    bag_bytes_free(&plain);
+    bag_bytes_free(&written);
+}
+
+/* One that fails to give back what it took fails the recorder. */
+static int read_nothing(void *user, uint64_t offset, void *data, size_t count)
+{
+    (void)user, (void)offset;
+    memset(data, 0, count);
+    return 0;
+}
+
+static void a_sink_that_lies_fails_the_recorder(void **state)
+{
+    (void)state;
+    bag_bytes written;
+    bag_bytes_start(&written);
+    t3r_sink sink = bag_sink(&written);
+    sink.read = read_nothing;
+    assert_int_equal(sample_write(sink, T3R_PIXEL_RGB24, SAMPLE_NONE), -1);
+    bag_bytes_free(&written);
+}
+
+static void the_same_frames_give_the_same_bytes(void **state)
+{
+    (void)state;
+    for (uint32_t storage = 0; storage < SAMPLE_STORAGES; storage++) {
+        bag_bytes one = sample(T3R_PIXEL_NV12, storage), two = sample(T3R_PIXEL_NV12, storage);
+        assert_int_equal(one.count, two.count);
+        assert_memory_equal(one.data, two.data, one.count);
+        bag_bytes_free(&one);
+        bag_bytes_free(&two);
+    }
+}
+
+/* What packs to less than a reader takes from so small a file is stored as it is. */
+static void a_flat_picture_stays_readable(void **state)
+{
+    (void)state;
+    enum { SIDE = 1024 };
+    uint8_t *grey = calloc(SIDE, SIDE);
+    bag_bytes bytes;
+    bag_bytes_start(&bytes);
+    uint64_t memory[T3R_RECORDER_BYTES / 8];
+    t3r_recorder *recorder = (t3r_recorder *)memory;
+    const t3r_chunk_packer *packer = t3r_chunk_packer_open(T3R_COMPRESSION_ZSTD);
+    const t3r_recording_header header = {
+        .camera = "c", .source = "", .clock = "synthetic", .depth_unit = 0.001, .packer = packer};
+    assert_int_equal(t3r_recorder_begin(recorder, bag_sink(&bytes), &header), 0);
+    for (uint32_t f = 0; f < 200; f++) { /* more than T3R_LIMIT_UNPACKED_FREE */
+        const t3r_recorded_frame frame = {.stamp_ns = f,
+                                          .format = T3R_PIXEL_GREY,
+                                          .width = SIDE,
+                                          .height = SIDE,
+                                          .planes = {grey},
+                                          .stride_bytes = {SIDE},
+                                          .unposed = true,
+                                          .uncalibrated = true};
+        assert_int_equal(t3r_recorder_frame(recorder, &frame), 0);
+    }
+    uint64_t most = t3r_recorder_offset(recorder) + t3r_recorder_end_bytes(recorder);
+    assert_int_equal(t3r_recorder_end(recorder), 0);
+    assert_true(t3r_recorder_offset(recorder) <= most);
+    t3r_recording *recording = parse(bytes.data, bytes.count);
+    assert_int_equal(t3r_recording_frame_count(recording), 200);
+    t3r_recording_close(recording);
+    t3r_chunk_packer_close(packer);
+    bag_bytes_free(&bytes);
+    free(grey);
 }
 
 static void the_recorder_refuses_bad_arguments(void **state)
@@ -371,7 +496,7 @@ static void replay_hands_out_the_frames(void **state)
     assert_true(descriptor >= 0);
     FILE *file = fdopen(descriptor, "wb");
     assert_non_null(file);
-    assert_int_equal(sample_write(t3r_file_sink(file), T3R_PIXEL_UYVY), 0);
+    assert_int_equal(sample_write(t3r_file_sink(file), T3R_PIXEL_UYVY, SAMPLE_NONE), 0);
     assert_int_equal(fclose(file), 0);
     char error[256] = "";
     t3r_capture *capture = t3r_replay_open(path, error, sizeof error);
@@ -410,7 +535,7 @@ static void a_set_pose_wins(void **state)
     (void)state;
     static const int64_t position_q32[3] = {INT64_C(5) << 40, -7, 0};
     static const int32_t rotation_q30[4] = {3, 1 << 29, -5, 1 << 28};
-    bag_bytes bytes = sample(T3R_PIXEL_RGB24);
+    bag_bytes bytes = sample(T3R_PIXEL_RGB24, SAMPLE_NONE);
     t3r_recording *recording = parse(bytes.data, bytes.count);
     t3r_capture_frame frame;
     char error[256] = "";
@@ -432,10 +557,15 @@ int main(void)
         cmocka_unit_test(round_trip_of_every_format),
         cmocka_unit_test(frame_out_of_range_is_refused),
         cmocka_unit_test(cut_anywhere_reads_the_whole_messages),
+        cmocka_unit_test(cut_anywhere_reads_what_can_be_unpacked),
         cmocka_unit_test(zeros_behind_a_cut_are_no_records),
         cmocka_unit_test(every_changed_byte_is_noticed),
         cmocka_unit_test(foreign_and_empty_files_are_refused),
         cmocka_unit_test(a_failing_sink_fails_the_recorder),
+        cmocka_unit_test(without_reading_back_there_are_no_chunks),
+        cmocka_unit_test(a_sink_that_lies_fails_the_recorder),
+        cmocka_unit_test(the_same_frames_give_the_same_bytes),
+        cmocka_unit_test(a_flat_picture_stays_readable),
         cmocka_unit_test(the_recorder_refuses_bad_arguments),
         cmocka_unit_test(replay_hands_out_the_frames),
         cmocka_unit_test(a_set_pose_wins),

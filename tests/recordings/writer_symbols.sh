@@ -7,7 +7,7 @@ compiler=$1
 source=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-files="recording_writer mcap_writer cdr ros_messages ros_schemas pixel_layout fixed_camera fixed_double fixed_text text crc32"
+files="recording_writer recorder_chunk recorder_messages recorder_summary mcap_chunk_writer mcap_writer cdr ros_messages ros_schemas pixel_layout fixed_camera fixed_double fixed_text text crc32"
 for file in $files; do
     "$compiler" -std=gnu11 -O2 -fno-stack-protector -I "$source/platform" -I "$source/runtime/include" \
         -c "$source/platform/$file.c" -o "$scratch/$file.o"

@@ -242,8 +242,9 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--every and --context exclude each other");
     } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL)) {
         argp_error(state, "--clock-offset and --pose-topic belong to --poses");
-    } else if ((o->max_bytes > 0 || o->sync) && o->output == NULL) {
-        argp_error(state, "--max-bytes and --sync belong to -o");
+    } else if ((o->max_bytes > 0 || o->sync || o->stored.unchunked || o->stored.compression != T3R_COMPRESSION_NONE) &&
+               o->output == NULL) {
+        argp_error(state, "--max-bytes, --sync, --compression and --unchunked belong to -o");
     } else if (o->fisheye && !o->has_intrinsics) {
         argp_error(state, "--fisheye belongs to --intrinsics");
     }
@@ -272,6 +273,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->build;
         state->child_inputs[1] = &o->build;
+        state->child_inputs[2] = &o->stored;
         return 0;
     case KEY_SOURCE:
         o->source = arg;
@@ -376,6 +378,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 static const struct argp_child children[] = {{&reconstruction_budget_argp, 0, "Views and budget of --build:", 10},
                                              {&reconstruction_settings_argp, 0, NULL, 0},
+                                             {&recording_argp, 0, NULL, 0},
                                              {0}};
 static const struct argp argp = {
     .options = options,
@@ -393,7 +396,8 @@ static const struct argp argp = {
         "Poses are known after the capture as a rule: record first, then add them from the recording as above. "
         "Devices may come back under another name: those of /dev/v4l/by-id do not.\n\n"
         "Every frame that is not recorded is counted under its cause and reported on the topic /camera/events, as is "
-        "every pair of colour and depth. A process that is killed loses at most the message that it was writing.",
+        "every pair of colour and depth. A process that is killed loses at most the message that it was writing, with "
+        "--compression the frame.",
     .children = children,
 };
 

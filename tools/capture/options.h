@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "capture.h"
+#include "cli/recording_options.h"
 #include "reconstruction/reconstruction.h"
 
 typedef struct capture_options {
@@ -16,6 +17,7 @@ typedef struct capture_options {
     bool has_offset, estimate, has_centre;
     int64_t offset_ns; /* given; of an estimate its centre */
     const char *scene;
+    recording_options stored; /* how the recording stores messages */
     bool list, json, sync, hash, local, quiet;
     uint32_t every;
     uint64_t max_bytes, frames;

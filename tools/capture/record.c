@@ -8,7 +8,7 @@
 #include "cli/file_guard.h"
 #include "reason.h"
 
-#define MESSAGE_OVERHEAD 1024u /* of a message without its data, and of a camera_info or a pose: below it */
+#define MESSAGE_OVERHEAD 1024u /* of a message without its data, of a camera_info or a pose, of a chunk: below it */
 #define EVENT_BYTES 2048u
 #define MOST_STAMP_NS ((int64_t)1000000000 << 31)
 
@@ -53,7 +53,7 @@ static int open_next(capture_record *record)
 }
 
 int capture_record_begin(capture_record *record, const char *path, uint64_t max_bytes, bool sync, const char *source,
-                         const char *clock, uint64_t depth_unit_q40)
+                         const char *clock, uint64_t depth_unit_q40, const recording_options *how)
 {
     record->path = path;
     record->max_bytes = max_bytes;
@@ -73,6 +73,9 @@ int capture_record_begin(capture_record *record, const char *path, uint64_t max_
     if (strlen(path) > 380) {
         return t3r_reason(record->error, sizeof record->error, "the recording's name has more than 380 bytes");
     }
+    if (recording_options_apply(how, &record->header) != 0) {
+        return t3r_reason(record->error, sizeof record->error, "out of memory");
+    }
     return open_next(record);
 }
 
@@ -88,7 +91,8 @@ static int end_file(capture_record *record)
 static int make_room(capture_record *record, uint64_t bytes)
 {
     if (record->max_bytes == 0 ||
-        t3r_recorder_offset(recorder_of(record)) + bytes + T3R_RECORDER_END_BYTES <= record->max_bytes) {
+        t3r_recorder_offset(recorder_of(record)) + bytes + t3r_recorder_end_bytes(recorder_of(record)) <=
+            record->max_bytes) {
         return 0;
     }
     if (record->frames == 0) {
@@ -104,7 +108,7 @@ static uint64_t frame_bytes(const t3r_frame *f)
     uint64_t rows = f->height + (f->format == T3R_PIXEL_NV12 ? f->height / 2 : 0);
     uint64_t depth = f->depth != NULL ? (uint64_t)f->depth_width * f->depth_height * 2 : 0;
     /* a row without padding is no longer than its stride */
-    return (uint64_t)f->stride_bytes[0] * rows + depth + 4 * MESSAGE_OVERHEAD;
+    return (uint64_t)f->stride_bytes[0] * rows + depth + 6 * MESSAGE_OVERHEAD;
 }
 
 int capture_record_frame(capture_record *record, const t3r_capture_frame *frame)
@@ -151,5 +155,8 @@ int capture_record_event(capture_record *record, const t3r_capture_event *event)
 
 int capture_record_end(capture_record *record)
 {
-    return record->file.fd < 0 ? 0 : end_file(record);
+    int status = record->file.fd < 0 ? 0 : end_file(record);
+    t3r_chunk_packer_close(record->header.packer);
+    record->header.packer = NULL;
+    return status;
 }

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "capture.h"
+#include "cli/recording_options.h"
 #include "recording_file.h"
 
 typedef struct capture_record {
@@ -26,7 +27,7 @@ typedef struct capture_record {
 /* Opens the first file. Texts and paths outlive the record. 0, or -1 with a reason in
  * record->error, as for all. */
 int capture_record_begin(capture_record *record, const char *path, uint64_t max_bytes, bool sync, const char *source,
-                         const char *clock, uint64_t depth_unit_q40);
+                         const char *clock, uint64_t depth_unit_q40, const recording_options *how);
 int capture_record_frame(capture_record *record, const t3r_capture_frame *frame);
 int capture_record_event(capture_record *record, const t3r_capture_event *event);
 int capture_record_end(capture_record *record);

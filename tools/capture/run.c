@@ -380,10 +380,12 @@ static int begin_record(run_state *s)
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
     if (capture_record_begin(s->record, plan->output, plan->max_bytes, plan->sync, plan->source,
-                             t3r_capture_clock(s->capture), t3r_capture_depth_unit_q40(s->capture)) == 0) {
+                             t3r_capture_clock(s->capture), t3r_capture_depth_unit_q40(s->capture),
+                             &plan->stored) == 0) {
         return CLI_OK;
     }
     int code = cli_error(CLI_BAD_INPUT, "%s", s->record->error);
+    capture_record_end(s->record);
     free(s->record);
     s->record = NULL;
     return code;

@@ -17,6 +17,7 @@ typedef struct capture_plan {
     const char *output;                    /* NULL = no recording */
     uint64_t max_bytes;                    /* of a recording's file; 0 = no end */
     bool sync;                             /* every message to the disk */
+    recording_options stored;              /* how messages are stored */
     const trajectory *poses;               /* NULL = the source's own */
     int64_t offset_ns;                     /* their clock less the camera's */
     const t3r_recorded_camera *intrinsics; /* NULL = the source's own; its size is the frames' */

@@ -38,7 +38,7 @@ int whole_file_begin(whole_file *file, const char *path, char *error, size_t err
     if (file_guard_write(path, error, error_bytes) != 0) {
         return -1;
     }
-    int flags = O_WRONLY | O_CLOEXEC;
+    int flags = (device ? O_WRONLY : O_RDWR) | O_CLOEXEC; /* a recording's index is made of what was written */
     if (!device) {
         size_t bytes = strlen(path) + 32;
         file->temporary = malloc(bytes);
@@ -56,7 +56,7 @@ int whole_file_begin(whole_file *file, const char *path, char *error, size_t err
         flags |= O_CREAT | O_EXCL | O_NOFOLLOW;
     }
     int descriptor = open(device ? path : file->temporary, flags, 0666);
-    file->stream = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
+    file->stream = descriptor >= 0 ? fdopen(descriptor, device ? "wb" : "w+b") : NULL;
     if (file->stream == NULL) {
         fail(file, error, error_bytes);
         if (descriptor >= 0) {

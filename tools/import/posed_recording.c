@@ -87,8 +87,8 @@ static double depth_unit_of(const t3r_recording *recording)
     return 0.001;
 }
 
-int posed_recording_write(const t3r_recording *recording, const char *source, FILE *stream, char *error,
-                          size_t error_bytes)
+int posed_recording_write(const t3r_recording *recording, const char *source, const recording_options *stored,
+                          FILE *stream, char *error, size_t error_bytes)
 {
     uint32_t frames = t3r_recording_frame_count(recording), count = t3r_recording_triplet_count(recording);
     t3r_triplet *triplets = malloc((count + 1) * sizeof *triplets);
@@ -103,6 +103,9 @@ int posed_recording_write(const t3r_recording *recording, const char *source, FI
                                    .depth_unit = depth_unit_of(recording),
                                    .triplets = triplets,
                                    .triplet_count = count};
+    if (status == 0 && recording_options_apply(stored, &header) != 0) {
+        status = t3r_reason(error, error_bytes, "out of memory");
+    }
     if (status == 0 && t3r_recorder_begin(recorder, t3r_file_sink(stream), &header) != 0) {
         status = t3r_reason(error, error_bytes, "cannot be written");
     }
@@ -113,6 +116,7 @@ int posed_recording_write(const t3r_recording *recording, const char *source, FI
     if (status == 0 && t3r_recorder_end(recorder) != 0) {
         status = t3r_reason(error, error_bytes, "cannot be written");
     }
+    t3r_chunk_packer_close(header.packer);
     free(recorder);
     free(triplets);
     return status;

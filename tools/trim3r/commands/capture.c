@@ -161,6 +161,7 @@ static int run(const capture_options *o, const trajectory *poses, const clock_of
         .output = o->output,
         .max_bytes = o->max_bytes,
         .sync = o->sync,
+        .stored = o->stored,
         .poses = poses,
         .offset_ns = offset->offset_ns,
         .intrinsics = o->has_intrinsics ? &o->intrinsics : NULL,

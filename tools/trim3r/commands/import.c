@@ -15,6 +15,7 @@
 #include "import/poses.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
+#include "cli/recording_options.h"
 #include "import/posed_folder.h"
 #include "import/posed_recording.h"
 #include "import/poses_output.h"
@@ -35,6 +36,7 @@ typedef struct options {
     poses_source poses;
     pointmap_options pointmaps;
     bool json;
+    recording_options stored;
 } options;
 
 /* What is written: the folder's frames with what is made of them. */
@@ -86,6 +88,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->stored;
+        return 0;
     case 's':
         option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
@@ -157,8 +162,11 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
+static const struct argp_child children[] = {{&recording_argp, 0, NULL, 0}, {0}};
+
 static const struct argp parser = {
     .options = argp_options,
+    .children = children,
     .parser = parse_option,
     .args_doc = "DIR",
     .doc = "Turn a posed folder into a recording.\v"
@@ -239,17 +247,11 @@ static int write_frame(t3r_recorder *recorder, const options *o, material *m, ui
     return status;
 }
 
-static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, material *m, const char *source,
-                        totals *t, char *error)
+static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, material *m,
+                        const t3r_recording_header *header, totals *t, char *error)
 {
     const posed_folder *folder = &m->folder;
-    t3r_recording_header header = {.camera = "camera",
-                                   .source = source,
-                                   .clock = "synthetic",
-                                   .depth_unit = folder->depth_unit,
-                                   .triplets = folder->triplets,
-                                   .triplet_count = folder->triplet_count};
-    if (t3r_recorder_begin(recorder, t3r_file_sink(stream), &header) != 0) {
+    if (t3r_recorder_begin(recorder, t3r_file_sink(stream), header) != 0) {
         return t3r_reason(error, ERROR_BYTES, "%s: cannot be written", o->output);
     }
     for (uint32_t i = 0; i < folder->frame_count; i++) {
@@ -269,17 +271,24 @@ static int write_recording(const options *o, material *m, totals *t, char *error
     whole_file file;
     char *source = source_name(o->directory, m->folder.kind);
     t3r_recorder *recorder = malloc(t3r_recorder_bytes());
+    t3r_recording_header header = {.camera = "camera",
+                                   .source = source,
+                                   .clock = "synthetic",
+                                   .depth_unit = m->folder.depth_unit,
+                                   .triplets = m->folder.triplets,
+                                   .triplet_count = m->folder.triplet_count};
     int status = -1;
-    if (source == NULL || recorder == NULL) {
+    if (source == NULL || recorder == NULL || recording_options_apply(&o->stored, &header) != 0) {
         t3r_reason(error, ERROR_BYTES, "out of memory");
     } else if (whole_file_begin(&file, o->output, error, ERROR_BYTES) == 0) {
-        status = write_frames(recorder, file.stream, o, m, source, t, error);
+        status = write_frames(recorder, file.stream, o, m, &header, t, error);
         if (status == 0) {
             status = whole_file_commit(&file, &t->bytes, error, ERROR_BYTES);
         } else {
             whole_file_abandon(&file);
         }
     }
+    t3r_chunk_packer_close(header.packer);
     free(recorder);
     free(source);
     return status;
@@ -387,7 +396,7 @@ static int write_posed(const options *o, const t3r_recording *recording, totals 
     if (source == NULL) {
         t3r_reason(error, sizeof error, "out of memory");
     } else if (whole_file_begin(&file, o->output, error, sizeof error) == 0) {
-        status = posed_recording_write(recording, source, file.stream, reason, sizeof reason);
+        status = posed_recording_write(recording, source, &o->stored, file.stream, reason, sizeof reason);
         if (status == 0) {
             status = whole_file_commit(&file, &t->bytes, error, sizeof error);
         } else {

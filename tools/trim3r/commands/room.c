@@ -10,6 +10,7 @@
 #include "core/hash.h"
 #include "cli/json_output.h"
 #include "cli/option_values.h"
+#include "cli/recording_options.h"
 #include "reason.h"
 #include "recording.h"
 #include "room/room.h"
@@ -22,6 +23,7 @@ typedef struct options {
     const char *output;
     uint32_t width, height, frames, seed;
     bool json;
+    recording_options stored;
 } options;
 
 enum { KEY_FRAMES = 0x100, KEY_SEED, KEY_JSON };
@@ -30,6 +32,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->stored;
+        return 0;
     case 's':
         option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
@@ -65,8 +70,11 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
+static const struct argp_child children[] = {{&recording_argp, 0, NULL, 0}, {0}};
+
 static const struct argp parser = {
     .options = argp_options,
+    .children = children,
     .parser = parse_option,
     .doc = "Write the built-in recording: a furnished room, ray-cast in integers, with exact depth and poses. The same "
            "options give the same frames on every processor.\v"
@@ -81,16 +89,10 @@ typedef struct drawing {
     uint64_t hash;
 } drawing;
 
-static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, drawing *d)
+static int write_frames(t3r_recorder *recorder, const t3r_recording_header *header, FILE *stream, const options *o,
+                        drawing *d)
 {
-    t3r_triplet triplets[ROOM_MAX_TRIPLETS];
-    t3r_recording_header header = {.camera = "camera",
-                                   .source = "the built-in room",
-                                   .clock = "synthetic",
-                                   .depth_unit = 0.001,
-                                   .triplets = triplets,
-                                   .triplet_count = room_triplets(o->frames, triplets)};
-    if (t3r_recorder_begin(recorder, t3r_file_sink(stream), &header) != 0) {
+    if (t3r_recorder_begin(recorder, t3r_file_sink(stream), header) != 0) {
         return -1;
     }
     size_t pixels = (size_t)o->width * o->height;
@@ -118,15 +120,22 @@ static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, 
 static int write_recording(const options *o, drawing *d, uint64_t *bytes, char *error)
 {
     whole_file file;
+    t3r_triplet triplets[ROOM_MAX_TRIPLETS];
+    t3r_recording_header header = {.camera = "camera",
+                                   .source = "the built-in room",
+                                   .clock = "synthetic",
+                                   .depth_unit = 0.001,
+                                   .triplets = triplets,
+                                   .triplet_count = room_triplets(o->frames, triplets)};
     t3r_recorder *recorder = malloc(t3r_recorder_bytes());
     d->rgb = malloc((size_t)o->width * o->height * 3);
     d->depth = malloc((size_t)o->width * o->height * sizeof *d->depth);
     d->hash = T3R_HASH_START;
     int status = -1;
-    if (recorder == NULL || d->rgb == NULL || d->depth == NULL) {
+    if (recorder == NULL || d->rgb == NULL || d->depth == NULL || recording_options_apply(&o->stored, &header) != 0) {
         t3r_reason(error, ERROR_BYTES, "out of memory");
     } else if (whole_file_begin(&file, o->output, error, ERROR_BYTES) == 0) {
-        status = write_frames(recorder, file.stream, o, d);
+        status = write_frames(recorder, &header, file.stream, o, d);
         if (status == 0) {
             status = whole_file_commit(&file, bytes, error, ERROR_BYTES);
         } else {
@@ -134,6 +143,7 @@ static int write_recording(const options *o, drawing *d, uint64_t *bytes, char *
             whole_file_abandon(&file);
         }
     }
+    t3r_chunk_packer_close(header.packer);
     free(recorder);
     free(d->rgb);
     free(d->depth);
