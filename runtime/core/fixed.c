@@ -1,8 +1,9 @@
 /* Square root, logarithm and power of two (SPEC, "Fixed-point functions"). */
 #include "fixed.h"
 
-/* log2(1 + i / 128), nearest */
-static const uint32_t log2_q20[129] = {
+#include "fixed_tables.h"
+
+const uint32_t t3r_log2_table_q20[129] = {
     0,      11773,  23454,  35047,   46551,   57968,   69300,   80547,   91711,   102794,  113796,  124719,  135563,
     146330, 157021, 167637, 178179,  188648,  199045,  209372,  219628,  229815,  239934,  249985,  259971,  269891,
     279746, 289537, 299266, 308932,  318537,  328082,  337566,  346991,  356359,  365668,  374920,  384117,  393257,
@@ -15,8 +16,7 @@ static const uint32_t log2_q20[129] = {
     982136, 988298, 994435, 1000547, 1006635, 1012698, 1018737, 1024752, 1030743, 1036711, 1042655, 1048576,
 };
 
-/* 2^(i / 128), nearest */
-static const uint32_t exp2_q20[129] = {
+const uint32_t t3r_exp2_table_q20[129] = {
     1048576, 1054270, 1059994, 1065750, 1071537, 1077355, 1083205, 1089087, 1095000, 1100946, 1106924, 1112935, 1118978,
     1125054, 1131163, 1137305, 1143480, 1149689, 1155932, 1162209, 1168519, 1174864, 1181244, 1187658, 1194106, 1200590,
     1207109, 1213664, 1220254, 1226880, 1233542, 1240240, 1246974, 1253745, 1260553, 1267397, 1274279, 1281198, 1288155,
@@ -42,13 +42,13 @@ int32_t t3r_log2_q16(uint32_t x)
     uint32_t index = (mantissa >> 24) & 127;
     uint32_t fraction_q16 = (mantissa >> 8) & 0xffff;
 
-    return (int32_t)(exponent << 16) + t3r_round_shift32((int32_t)interpolate(&log2_q20[index], fraction_q16), 4);
+    return (int32_t)(exponent << 16) + t3r_round_shift32((int32_t)interpolate(&t3r_log2_table_q20[index], fraction_q16), 4);
 }
 
 uint32_t t3r_exp2_q16(int32_t x_q16)
 {
     uint32_t fraction = (uint32_t)x_q16 & 0xffff;
-    uint32_t mantissa_q20 = interpolate(&exp2_q20[fraction >> 9], (fraction & 511) << 7);
+    uint32_t mantissa_q20 = interpolate(&t3r_exp2_table_q20[fraction >> 9], (fraction & 511) << 7);
     int32_t exponent = x_q16 >> 16;
 
     /* Q20 to Q16 and times 2^exponent; below 2^21 x 2^10 */

@@ -6,11 +6,10 @@
 
 enum { SIDE = T3R_TILE_SIDE, COUNT = 40 };
 
-const char *check_project(const t3r_kernels *kernels, uint64_t *seed)
+/* Rows of a rotation, a camera's centre and its lens. */
+static t3r_projection any_projection(uint64_t *seed)
 {
-    const uint32_t count = any_length(seed, COUNT);
-    t3r_projection p = {.world_to_camera_q30 = {1 << 30, 0, 0, 0, 1 << 30, 0, 0, 0, 1 << 30},
-                        .fx_q16 = (int32_t)any_value(seed, 1 << 16, 1 << 28),
+    t3r_projection p = {.fx_q16 = (int32_t)any_value(seed, 1 << 16, 1 << 28),
                         .fy_q16 = (int32_t)any_value(seed, 1 << 16, 1 << 28),
                         .cx_q16 = (int32_t)any_value(seed, -(1 << 24), 1 << 24),
                         .cy_q16 = (int32_t)any_value(seed, -(1 << 24), 1 << 24),
@@ -18,19 +17,55 @@ const char *check_project(const t3r_kernels *kernels, uint64_t *seed)
                         .limit_y_q24 = (int32_t)any_value(seed, 1 << 20, 16 << 24),
                         .width = (uint32_t)unit_between(seed, 1, 4096),
                         .height = (uint32_t)unit_between(seed, 1, 4096)};
+    double w = 1, x = 0, y = 0, z = 0;
+    if (unit_random(seed) % 4 != 0) {
+        w = (double)unit_between(seed, 1, 1000);
+        x = (double)unit_between(seed, -300, 300);
+        y = (double)unit_between(seed, -300, 300);
+        z = (double)unit_between(seed, -300, 300);
+    }
+    const double norm = (double)(1 << 30) / (w * w + x * x + y * y + z * z);
+    const double rows[9] = {
+        w * w + x * x - y * y - z * z, 2 * (x * y - w * z),           2 * (x * z + w * y),
+        2 * (x * y + w * z),           w * w - x * x + y * y - z * z, 2 * (y * z - w * x),
+        2 * (x * z - w * y),           2 * (y * z + w * x),           w * w - x * x - y * y + z * z};
+    const int64_t reach = unit_random(seed) % 4 == 0 ? 1 << 30 : 1 << 20;
+    for (int i = 0; i < 9; i++) {
+        p.world_to_camera_q30[i] = (int32_t)(rows[i] * norm);
+        p.centre_q20[i / 3] = (int32_t)any_value(seed, -reach, reach);
+    }
+    return p;
+}
+
+/* One as scenes have it, in units about as large as the scene; with each bit of `unusual` less so: a mean anywhere, any
+ * size, a needle. */
+static t3r_gaussian any_gaussian(uint64_t *seed, const t3r_projection *p, uint64_t unusual)
+{
+    const bool anywhere = (unusual & 1) != 0, any_size = (unusual & 2) != 0, needle = (unusual & 4) != 0;
+    t3r_gaussian g = {.opacity_q15 = (uint16_t)any_value(seed, anywhere ? 0 : 129, 32767),
+                      .factor_exponent = (int8_t)any_value(seed, any_size ? -60 : -24, any_size ? 15 : -14)};
+    const int64_t reach = anywhere ? (int64_t)1 << unit_between(seed, 20, 31) : 1 << 20;
+    for (int k = 0; k < 3; k++) {
+        const int64_t ahead = (int64_t)p->world_to_camera_q30[6 + k] >> 8; /* up to 4 units before the camera */
+        const int64_t at = p->centre_q20[k] + ahead + any_value(seed, -reach, reach);
+        g.position_q20[k] = (int32_t)t3r_clamp64(at, -(1 << 30), 1 << 30);
+        g.colour_q7[k] = (uint16_t)any_value(seed, 0, 32640);
+    }
+    const int64_t most = any_size ? 32767 : unit_between(seed, 1, 32767);
+    for (int k = 0; k < 9; k++) {
+        g.factor[k] = (int16_t)(needle && k % 3 != 0 ? 0 : any_value(seed, -most - 1, most));
+    }
+    return g;
+}
+
+const char *check_project(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = any_length(seed, COUNT);
+    const t3r_projection p = any_projection(seed);
     t3r_gaussian *g = guarded_take(count * sizeof *g, _Alignof(t3r_gaussian));
     t3r_splat *splats = guarded_take(count * sizeof *splats, _Alignof(t3r_splat)), want[COUNT];
-    memset(g, 0, count * sizeof *g);
     for (uint32_t i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) {
-            g[i].position_q20[k] = (int32_t)any_value(seed, k == 2 ? -(1 << 20) : -(1 << 21), 1 << 23);
-            g[i].colour_q7[k] = (uint16_t)any_value(seed, 0, 32640);
-        }
-        for (int k = 0; k < 9; k++) {
-            g[i].factor[k] = (int16_t)any_value(seed, -32768, 32767);
-        }
-        g[i].factor_exponent = (int8_t)any_value(seed, -60, 15);
-        g[i].opacity_q15 = (uint16_t)any_value(seed, 0, 32767);
+        g[i] = any_gaussian(seed, &p, unit_random(seed) % 8);
     }
     kernels->project(&p, g, count, splats);
     t3r_project_c(&p, g, count, want);

@@ -1,0 +1,519 @@
+/* Projection of eight Gaussians at a time: project.c step by step, with its bounds. Where a number of project.c has 64
+ * bits and that of a usual Gaussian 32, this is the usual one's; the others are marked, and plain C projects them. */
+#include "variants.h"
+
+#ifdef T3R_X86
+
+#include "intrinsics.h"
+
+#include <stddef.h>
+
+#include "core/fixed_tables.h"
+#include "kernels/project_parts.h"
+
+#define LANES 8
+
+typedef __m256i lanes; /* of 32 bits */
+
+/* 64 bits of each lane: of lanes 0, 2, 4, 6 and of 1, 3, 5, 7. */
+typedef struct wide {
+    __m256i even, odd;
+} wide;
+
+static inline T3R_AVX2 lanes all(int32_t x)
+{
+    return _mm256_set1_epi32(x);
+}
+
+static inline T3R_AVX2 lanes add(lanes a, lanes b)
+{
+    return _mm256_add_epi32(a, b);
+}
+
+static inline T3R_AVX2 lanes subtract(lanes a, lanes b)
+{
+    return _mm256_sub_epi32(a, b);
+}
+
+/* Modulo 2^32. */
+static inline T3R_AVX2 lanes multiply(lanes a, lanes b)
+{
+    return _mm256_mullo_epi32(a, b);
+}
+
+static inline T3R_AVX2 lanes held(lanes x, lanes bound)
+{
+    return _mm256_max_epi32(_mm256_min_epi32(x, bound), subtract(all(0), bound));
+}
+
+/* All bits where a >= b, of unsigned numbers. */
+static inline T3R_AVX2 lanes at_least(lanes a, lanes b)
+{
+    return _mm256_cmpeq_epi32(_mm256_max_epu32(a, b), a);
+}
+
+static inline T3R_AVX2 __m256i odd_of(lanes x)
+{
+    return _mm256_srli_epi64(x, 32);
+}
+
+static inline T3R_AVX2 wide widened(lanes x)
+{
+    return (wide){_mm256_and_si256(x, _mm256_set1_epi64x(UINT32_MAX)), odd_of(x)};
+}
+
+static inline T3R_AVX2 wide product(lanes a, lanes b)
+{
+    return (wide){_mm256_mul_epi32(a, b), _mm256_mul_epi32(odd_of(a), odd_of(b))};
+}
+
+static inline T3R_AVX2 wide unsigned_product(lanes a, lanes b)
+{
+    return (wide){_mm256_mul_epu32(a, b), _mm256_mul_epu32(odd_of(a), odd_of(b))};
+}
+
+static inline T3R_AVX2 wide sum(wide a, wide b)
+{
+    return (wide){_mm256_add_epi64(a.even, b.even), _mm256_add_epi64(a.odd, b.odd)};
+}
+
+static inline T3R_AVX2 wide difference(wide a, wide b)
+{
+    return (wide){_mm256_sub_epi64(a.even, b.even), _mm256_sub_epi64(a.odd, b.odd)};
+}
+
+static inline T3R_AVX2 wide all_wide(int64_t x)
+{
+    return (wide){_mm256_set1_epi64x(x), _mm256_set1_epi64x(x)};
+}
+
+/* a signed, b unsigned */
+static inline T3R_AVX2 wide mixed_product(lanes a, lanes b)
+{
+    const lanes beyond = _mm256_and_si256(a, _mm256_srai_epi32(b, 31)); /* b read as signed lacks 2^32 there */
+    const wide more = {_mm256_slli_epi64(beyond, 32), _mm256_blend_epi32(beyond, all(0), 0x55)};
+    return sum(product(a, b), more);
+}
+
+/* The low and the high halves. */
+static inline T3R_AVX2 lanes low_of(wide x)
+{
+    return _mm256_blend_epi32(x.even, _mm256_slli_epi64(x.odd, 32), 0xaa);
+}
+
+static inline T3R_AVX2 lanes high_of(wide x)
+{
+    return _mm256_blend_epi32(odd_of(x.even), x.odd, 0xaa);
+}
+
+/* Unsigned shifts: of the result only what bits had is right. */
+static inline T3R_AVX2 wide right(wide x, int shift)
+{
+    return (wide){_mm256_srli_epi64(x.even, shift), _mm256_srli_epi64(x.odd, shift)};
+}
+
+static inline T3R_AVX2 wide right_by(wide x, wide shift)
+{
+    return (wide){_mm256_srlv_epi64(x.even, shift.even), _mm256_srlv_epi64(x.odd, shift.odd)};
+}
+
+static inline T3R_AVX2 wide left_by(wide x, wide shift)
+{
+    return (wide){_mm256_sllv_epi64(x.even, shift.even), _mm256_sllv_epi64(x.odd, shift.odd)};
+}
+
+/* x / 2^shift, round-half-up, whose double 32 bits hold; shift >= 1, |x| < 2^62. Sets the highest bit of *beyond where
+ * they do not. A shift of 63 and more gives 0. */
+static inline T3R_AVX2 lanes round_shift(wide x, lanes shift, lanes *beyond)
+{
+    const wide bias = all_wide(INT64_MIN), less = widened(subtract(shift, all(1)));
+    const wide doubled = difference(right_by(sum(x, bias), less), right_by(bias, less));
+    const wide room = sum(doubled, all_wide(INT64_C(1) << 31));
+    const lanes high = high_of(room); /* its or its opposite's highest bit is set unless it is 0 */
+    *beyond = _mm256_or_si256(*beyond, _mm256_or_si256(high, subtract(all(0), high)));
+    return _mm256_srai_epi32(add(low_of(doubled), all(1)), 1);
+}
+
+/* The same where nothing is beyond. */
+static inline T3R_AVX2 lanes round_shift_within(wide x, lanes shift)
+{
+    lanes beyond = all(0);
+    return round_shift(x, shift, &beyond);
+}
+
+/* x / 2^shift of a number that is not negative, round-half-up; shift 0..62. */
+static inline T3R_AVX2 wide round_shift_positive(wide x, wide shift)
+{
+    return right_by(sum(x, right(left_by(all_wide(1), shift), 1)), shift);
+}
+
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far. */
+static inline T3R_AVX2 lanes normal_of(lanes x, lanes *by)
+{
+    *by = all(0);
+    for (int step = 16; step > 0; step >>= 1) {
+        const lanes shift = _mm256_and_si256(_mm256_cmpgt_epi32(all(1 << (31 - step)), x), all(step));
+        x = _mm256_sllv_epi32(x, shift);
+        *by = add(*by, shift);
+    }
+    return x;
+}
+
+/* floor(2^62 / normal), normal in 2^31..2^32 - 1: a parabola to 1 %, Newton's step to 14 bits and twice the rest over
+ * the divisor. The last is off by one at most, as trying all divisors shows. */
+static inline T3R_AVX2 lanes inverted(lanes normal)
+{
+    const wide one = all_wide(INT64_C(1) << 62);
+    const lanes x = _mm256_srli_epi32(normal, 17); /* Q15, 1/2..1 */
+    /* 140 / 33 - x (64 / 11 - x 256 / 99), Q14 */
+    const lanes slope = subtract(all(95325), _mm256_srli_epi32(multiply(x, all(42367)), 15));
+    lanes y = subtract(all(69508), _mm256_srli_epi32(multiply(x, slope), 15));
+    const lanes lack = _mm256_srai_epi32(subtract(all(1 << 29), multiply(x, y)), 14);
+    y = add(y, _mm256_srai_epi32(multiply(y, lack), 15));
+    lanes quotient = _mm256_slli_epi32(y, 16);
+    wide rest = difference(one, unsigned_product(normal, quotient)); /* below 2^49 */
+    quotient = add(quotient, _mm256_srai_epi32(multiply(y, _mm256_srai_epi32(high_of(rest), 2)), 12));
+    rest = difference(one, unsigned_product(normal, quotient)); /* below 2^38 */
+    quotient = add(quotient, _mm256_srai_epi32(multiply(y, low_of(right(rest, 22))), 24));
+    rest = difference(one, unsigned_product(normal, quotient));
+    const lanes high = high_of(rest), is_more = _mm256_cmpgt_epi32(high, all(0)),
+                is_there = _mm256_and_si256(_mm256_cmpeq_epi32(high, all(0)), at_least(low_of(rest), normal));
+    return subtract(add(quotient, _mm256_srai_epi32(high, 31)), _mm256_or_si256(is_more, is_there));
+}
+
+/* Two neighbours in the table. */
+static inline T3R_AVX2 __m128i pair_at(const uint32_t *table, const uint32_t *index)
+{
+    return _mm_loadl_epi64((const __m128i *)(const void *)&table[*index]);
+}
+
+/* Between an entry of the table and the next. Loads one by one take less time than a gather. */
+static inline T3R_AVX2 lanes interpolated(const uint32_t *table, lanes index, lanes fraction_q16)
+{
+    uint32_t at[LANES];
+    _mm256_storeu_si256((__m256i *)(void *)at, index);
+    /* 0, 2 | 4, 6 and 1, 3 | 5, 7 */
+    const __m128i even = _mm_unpacklo_epi64(pair_at(table, at), pair_at(table, at + 2));
+    const __m128i odd = _mm_unpacklo_epi64(pair_at(table, at + 1), pair_at(table, at + 3));
+    const __m128i more_even = _mm_unpacklo_epi64(pair_at(table, at + 4), pair_at(table, at + 6));
+    const __m128i more_odd = _mm_unpacklo_epi64(pair_at(table, at + 5), pair_at(table, at + 7));
+    const wide pair = {_mm256_inserti128_si256(_mm256_castsi128_si256(even), more_even, 1),
+                       _mm256_inserti128_si256(_mm256_castsi128_si256(odd), more_odd, 1)};
+    const lanes entry = low_of(pair), step = subtract(high_of(pair), entry);
+    return add(entry, _mm256_srli_epi32(add(multiply(step, fraction_q16), all(0x8000)), 16));
+}
+
+/* The logarithm's fraction, Q16, of a number whose bit 30 is the highest. */
+static inline T3R_AVX2 lanes log_fraction_q16(lanes normal)
+{
+    const lanes index = _mm256_and_si256(_mm256_srli_epi32(normal, 23), all(127));
+    const lanes fraction_q16 = _mm256_and_si256(_mm256_srli_epi32(normal, 7), all(0xffff));
+    const lanes log_q20 = interpolated(t3r_log2_table_q20, index, fraction_q16);
+    return _mm256_srli_epi32(add(log_q20, all(8)), 4);
+}
+
+/* t3r_log2_q16(), x below 2^31 */
+static inline T3R_AVX2 lanes log_q16(lanes x)
+{
+    lanes by;
+    const lanes normal = normal_of(x, &by);
+    return add(_mm256_slli_epi32(subtract(all(30), by), 16), log_fraction_q16(normal));
+}
+
+/* t3r_log2_wide_q16(), x in 1..2^52 - 1: by sevens down to 24 bits and more, all that the table reads */
+static inline T3R_AVX2 lanes log_wide_q16(wide x)
+{
+    const lanes above = low_of(right(x, 31));
+    const lanes sevens = add(add(_mm256_cmpgt_epi32(above, all(0)), _mm256_cmpgt_epi32(above, all(127))),
+                             _mm256_cmpgt_epi32(above, all(16383)));
+    const lanes down = subtract(sevens, _mm256_slli_epi32(sevens, 3));
+    return add(log_q16(low_of(right_by(x, widened(down)))), _mm256_slli_epi32(down, 16));
+}
+
+/* t3r_exp2_q16(); a count beyond 31 gives 0, so that of the two shifts one does nothing, or both the same */
+static inline T3R_AVX2 lanes exp_q16(lanes x_q16)
+{
+    const lanes index = _mm256_srli_epi32(_mm256_and_si256(x_q16, all(0xffff)), 9);
+    const lanes fraction_q16 = _mm256_slli_epi32(_mm256_and_si256(x_q16, all(511)), 7);
+    const lanes mantissa_q20 = interpolated(t3r_exp2_table_q20, index, fraction_q16);
+    const lanes up = subtract(_mm256_srai_epi32(x_q16, 16), all(4)), down = subtract(all(0), up);
+    const lanes half = _mm256_srli_epi32(_mm256_sllv_epi32(all(1), down), 1);
+    return _mm256_or_si256(_mm256_sllv_epi32(mantissa_q20, up), _mm256_srlv_epi32(add(mantissa_q20, half), down));
+}
+
+/* t3r_log_level_q16() */
+static inline T3R_AVX2 lanes log_level_q16(lanes opacity_q15)
+{
+    const lanes log = subtract(log_q16(multiply(opacity_q15, all(255))), all(15 << 16));
+    const lanes level_q8 = add(low_of(right(unsigned_product(log, all(45426)), 24)), all(16));
+    return log_q16(_mm256_slli_epi32(level_q8, 1));
+}
+
+/* Words 0..7 of eight records to a vector a word, or back. */
+static inline T3R_AVX2 void transpose(lanes v[8])
+{
+    lanes t[8], u[8];
+    for (int i = 0; i < 8; i += 2) {
+        t[i] = _mm256_unpacklo_epi32(v[i], v[i + 1]);
+        t[i + 1] = _mm256_unpackhi_epi32(v[i], v[i + 1]);
+    }
+    for (int i = 0; i < 8; i += 4) {
+        u[i] = _mm256_unpacklo_epi64(t[i], t[i + 2]);
+        u[i + 1] = _mm256_unpackhi_epi64(t[i], t[i + 2]);
+        u[i + 2] = _mm256_unpacklo_epi64(t[i + 1], t[i + 3]);
+        u[i + 3] = _mm256_unpackhi_epi64(t[i + 1], t[i + 3]);
+    }
+    for (int i = 0; i < 4; i++) {
+        v[i] = _mm256_permute2x128_si256(u[i], u[i + 4], 0x20);
+        v[i + 4] = _mm256_permute2x128_si256(u[i], u[i + 4], 0x31);
+    }
+}
+
+/* Eight Gaussians by field. */
+typedef struct eight {
+    lanes position[3], factor[9], exponent, colours[2]; /* red and green, blue and opacity */
+} eight;
+
+_Static_assert(offsetof(t3r_gaussian, factor) == 12 && offsetof(t3r_gaussian, factor_exponent) == 30 &&
+                   offsetof(t3r_gaussian, colour_q7) == 32 && offsetof(t3r_gaussian, opacity_q15) == 38,
+               "a Gaussian's first ten words");
+
+static inline T3R_AVX2 void take(const t3r_gaussian *gaussians, eight *e)
+{
+    lanes word[8], pair[4];
+    for (int i = 0; i < LANES; i++) {
+        word[i] = _mm256_loadu_si256((const __m256i *)(const void *)&gaussians[i]);
+    }
+    transpose(word);
+    for (int k = 0; k < 3; k++) {
+        e->position[k] = word[k];
+    }
+    for (int k = 0; k < 9; k++) {
+        const lanes two = word[3 + k / 2];
+        e->factor[k] = _mm256_srai_epi32(k % 2 == 0 ? _mm256_slli_epi32(two, 16) : two, 16);
+    }
+    e->exponent = _mm256_srai_epi32(_mm256_slli_epi32(word[7], 8), 24);
+    for (int i = 0; i < 4; i++) { /* 0 and 4, 1 and 5, 2 and 6, 3 and 7 */
+        const __m128i lower = _mm_loadl_epi64((const __m128i *)(const void *)gaussians[i].colour_q7);
+        const __m128i upper = _mm_loadl_epi64((const __m128i *)(const void *)gaussians[i + 4].colour_q7);
+        pair[i] = _mm256_inserti128_si256(_mm256_castsi128_si256(lower), upper, 1);
+    }
+    const lanes a = _mm256_unpacklo_epi32(pair[0], pair[1]), b = _mm256_unpacklo_epi32(pair[2], pair[3]);
+    e->colours[0] = _mm256_unpacklo_epi64(a, b);
+    e->colours[1] = _mm256_unpackhi_epi64(a, b);
+}
+
+/* Means before the camera, and whether they are seen; of those that are not, some that harms no step. */
+typedef struct means {
+    lanes z_q20, rn, lz, u_q24, v_q24, are_seen;
+    lanes beyond; /* the highest bit: of a lane that needs more than 32 bits */
+} means;
+
+static inline T3R_AVX2 means see(const t3r_projection *p, const eight *e)
+{
+    lanes c[3], beyond = all(0), by;
+    for (int i = 0; i < 3; i++) {
+        const int32_t *w = p->world_to_camera_q30 + 3 * i;
+        int64_t constant = INT64_C(1) << 29;
+        for (int k = 0; k < 3; k++) {
+            constant -= (int64_t)w[k] * p->centre_q20[k];
+        }
+        wide at_q50 = all_wide(constant);
+        for (int k = 0; k < 3; k++) {
+            at_q50 = sum(at_q50, product(e->position[k], all(w[k])));
+        }
+        c[i] = low_of(right(at_q50, 30));
+        const lanes high = high_of(at_q50); /* its three highest bits are the same where 32 hold c */
+        beyond = _mm256_or_si256(beyond, _mm256_xor_si256(high, _mm256_slli_epi32(high, 1)));
+        beyond = _mm256_or_si256(beyond, _mm256_xor_si256(high, _mm256_slli_epi32(high, 2)));
+    }
+    const lanes aside = _mm256_slli_epi32(_mm256_min_epu32(c[2], all(1 << 27)), 4);
+    means m;
+    m.are_seen = _mm256_and_si256(_mm256_cmpgt_epi32(c[2], all(T3R_NEAR_Q20)),
+                                  _mm256_cmpgt_epi32(_mm256_srli_epi32(e->colours[1], 16), all(128)));
+    m.are_seen = _mm256_and_si256(m.are_seen, at_least(aside, _mm256_abs_epi32(c[0])));
+    m.are_seen = _mm256_and_si256(m.are_seen, at_least(aside, _mm256_abs_epi32(c[1])));
+    m.beyond = beyond;
+    m.z_q20 = _mm256_blendv_epi8(all(1 << 20), c[2], m.are_seen);
+    const lanes normal = _mm256_slli_epi32(normal_of(m.z_q20, &by), 1);
+    m.lz = add(by, all(1));
+    m.rn = inverted(normal);
+    const lanes shift = subtract(all(38), m.lz);
+    m.u_q24 = round_shift_within(mixed_product(_mm256_and_si256(c[0], m.are_seen), m.rn), shift);
+    m.v_q24 = round_shift_within(mixed_product(_mm256_and_si256(c[1], m.are_seen), m.rn), shift);
+    return m;
+}
+
+/* footprint_row() */
+static inline T3R_AVX2 void row_of(const int32_t *w, const int32_t *w2, lanes tangent_q24, int32_t f_q16, means *m,
+                                   const eight *e, lanes row_q12[3])
+{
+    lanes r_q24[3]; /* at most 17 x 2^24 */
+    for (int i = 0; i < 3; i++) {
+        /* w - round(along) rounded once more by 6 is floor(w + 2^5 - along + (2^-1 - 2^-24)) by 6 */
+        const int64_t constant = (int64_t)w[i] * (1 << 24) + (1 << 29) + (1 << 23) - 1;
+        r_q24[i] = low_of(right(difference(all_wide(constant), product(tangent_q24, all(w2[i]))), 30));
+    }
+    const lanes scale = low_of(right(sum(unsigned_product(m->rn, all(f_q16)), all_wide(1 << 29)), 30));
+    const lanes shift = subtract(all(26), add(e->exponent, m->lz));
+    m->beyond = _mm256_or_si256(m->beyond, subtract(shift, all(1)));
+    for (int j = 0; j < 3; j++) {
+        wide along = all_wide(1 << 13);
+        for (int k = 0; k < 3; k++) {
+            along = sum(along, product(r_q24[k], e->factor[3 * k + j]));
+        }
+        /* 3 x 17 x 2^24 x 2^15 / 2^14 < 2^31, times scale < 2^31 */
+        const wide pixels = product(low_of(right(along, 14)), scale);
+        row_q12[j] = held(round_shift(pixels, shift, &m->beyond), all(T3R_EXTENT_MOST_Q12));
+    }
+}
+
+static inline T3R_AVX2 wide dot(const lanes a[3], const lanes b[3])
+{
+    return sum(sum(product(a[0], b[0]), product(a[1], b[1])), product(a[2], b[2]));
+}
+
+/* The inclusive pixels within centre -+ half, clipped to 0..size - 1. A centre beyond 2^18 px is as far out as one
+ * there: no box is as wide. */
+typedef struct ranges {
+    lanes low, high;
+} ranges;
+
+static inline T3R_AVX2 ranges clipped(lanes centre_q12, const lanes row_q12[3], lanes level_q16, uint32_t size)
+{
+    const wide variance_q24 = sum(dot(row_q12, row_q12), all_wide(T3R_DILATION_Q24));
+    const lanes log_half_q16 =
+        subtract(_mm256_srai_epi32(add(log_wide_q16(variance_q24), level_q16), 1), all(16 << 16));
+    const lanes half_q8 = _mm256_srli_epi32(exp_q16(log_half_q16), 8);
+    const lanes half_q12 = _mm256_slli_epi32(add(add(half_q8, _mm256_srli_epi32(half_q8, 10)), all(2)), 4);
+    const lanes centre = held(centre_q12, all(1 << 30));
+    const lanes first = _mm256_srai_epi32(add(subtract(centre, half_q12), all(4095)), 12);
+    return (ranges){_mm256_max_epi32(first, all(0)),
+                    _mm256_min_epi32(_mm256_srai_epi32(add(centre, half_q12), 12), all((int32_t)size - 1))};
+}
+
+static inline T3R_AVX2 lanes squares(const lanes a[3])
+{
+    return add(add(multiply(a[0], a[0]), multiply(a[1], a[1])), multiply(a[2], a[2]));
+}
+
+/* x y - z w, below 2^31 but for its sign: squared, nothing shows of it */
+static inline T3R_AVX2 wide squared_minor(lanes x, lanes y, lanes z, lanes w)
+{
+    const lanes minor = subtract(multiply(x, y), multiply(z, w));
+    return product(minor, minor);
+}
+
+/* conic_of(), and what of it is beyond 32 bits */
+static inline T3R_AVX2 void conic_of(const lanes a_q12[3], const lanes b_q12[3], lanes conic_q30[3], lanes *beyond)
+{
+    lanes largest = all(1), a[3], b[3], by;
+    for (int j = 0; j < 3; j++) {
+        largest = _mm256_max_epi32(largest, _mm256_abs_epi32(a_q12[j]));
+        largest = _mm256_max_epi32(largest, _mm256_abs_epi32(b_q12[j]));
+    }
+    (void)normal_of(largest, &by);
+    const lanes n = _mm256_max_epi32(subtract(all(16), by), all(0)), twice = add(n, n);
+    const lanes half = _mm256_srli_epi32(_mm256_sllv_epi32(all(1), n), 1);
+    for (int j = 0; j < 3; j++) {
+        a[j] = _mm256_srav_epi32(add(a_q12[j], half), n);
+        b[j] = _mm256_srav_epi32(add(b_q12[j], half), n);
+    }
+    const lanes aa = squares(a), bb = squares(b);
+    /* With both below 2^31 so is ab, and their sum below 2^32. */
+    *beyond = _mm256_or_si256(*beyond, _mm256_or_si256(aa, bb));
+    const lanes ab = add(add(multiply(a[0], b[0]), multiply(a[1], b[1])), multiply(a[2], b[2]));
+    const wide trace = unsigned_product(add(aa, bb), all(T3R_DILATION_Q24));
+    const wide dilations = all_wide((int64_t)T3R_DILATION_Q24 * T3R_DILATION_Q24);
+    wide det = sum(round_shift_positive(trace, widened(twice)), right_by(dilations, widened(add(twice, twice))));
+    det = sum(det, squared_minor(a[0], b[1], a[1], b[0]));
+    det = sum(det, squared_minor(a[0], b[2], a[2], b[0]));
+    det = sum(det, squared_minor(a[1], b[2], a[2], b[1]));
+    const lanes high = high_of(det); /* below 2^31, as det <= aa bb + ... */
+    *beyond = _mm256_or_si256(*beyond, _mm256_cmpeq_epi32(high, all(0)));
+    (void)normal_of(_mm256_max_epi32(high, all(1)), &by);
+    const lanes s = subtract(all(31), by); /* 1..31 */
+    const lanes rd = inverted(low_of(right_by(det, widened(s))));
+    const lanes dilation = low_of(round_shift_positive(all_wide(T3R_DILATION_Q24), widened(twice)));
+    const lanes shift = add(add(twice, s), all(9));
+    /* a, c <= 1 / 0.6 and |b| less */
+    const wide a_q = unsigned_product(add(bb, dilation), rd), c_q = unsigned_product(add(aa, dilation), rd);
+    conic_q30[0] = low_of(round_shift_positive(a_q, widened(shift)));
+    conic_q30[2] = low_of(round_shift_positive(c_q, widened(shift)));
+    conic_q30[1] = round_shift_within(mixed_product(subtract(all(0), ab), rd), shift);
+}
+
+/* The centre in pixels, Q12, as 32 bits hold it. */
+static inline T3R_AVX2 lanes centre_of(lanes tangent_q24, int32_t f_q16, int32_t c_q16)
+{
+    return low_of(right(sum(product(tangent_q24, all(f_q16)), all_wide((int64_t)c_q16 * (1 << 24) + (1 << 27))), 28));
+}
+
+_Static_assert(offsetof(t3r_splat, a_q30) == 8 && offsetof(t3r_splat, z_q20) == 20 &&
+                   offsetof(t3r_splat, colour_q7) == 24 && offsetof(t3r_splat, opacity_q15) == 30 &&
+                   offsetof(t3r_splat, x0) == 32 && offsetof(t3r_splat, y0) == 34 && offsetof(t3r_splat, x1) == 36,
+               "a splat's ten words");
+
+/* Eight splats; returns a bit each of those that plain C has to project. */
+static __attribute__((noinline)) T3R_AVX2 uint32_t project_eight(const t3r_projection *p, const t3r_gaussian *gaussians,
+                                                                 t3r_splat *splats)
+{
+    const int32_t *w = p->world_to_camera_q30;
+    lanes a_q12[3], b_q12[3], word[8];
+    eight e;
+    take(gaussians, &e);
+    means m = see(p, &e);
+    const lanes opacity_q15 = _mm256_blendv_epi8(all(129), _mm256_srli_epi32(e.colours[1], 16), m.are_seen);
+    row_of(w, w + 6, held(m.u_q24, all(p->limit_x_q24)), p->fx_q16, &m, &e, a_q12);
+    row_of(w + 3, w + 6, held(m.v_q24, all(p->limit_y_q24)), p->fy_q16, &m, &e, b_q12);
+    word[0] = centre_of(m.u_q24, p->fx_q16, p->cx_q16);
+    word[1] = centre_of(m.v_q24, p->fy_q16, p->cy_q16);
+    const lanes level_q16 = log_level_q16(opacity_q15);
+    const ranges x = clipped(word[0], a_q12, level_q16, p->width), y = clipped(word[1], b_q12, level_q16, p->height);
+    const lanes are_out = _mm256_or_si256(_mm256_cmpgt_epi32(x.low, x.high), _mm256_cmpgt_epi32(y.low, y.high));
+    conic_of(a_q12, b_q12, word + 2, &m.beyond);
+    word[5] = _mm256_andnot_si256(are_out, _mm256_and_si256(m.z_q20, m.are_seen));
+    word[6] = e.colours[0];
+    word[7] = e.colours[1];
+    transpose(word);
+    const lanes first = _mm256_or_si256(x.low, _mm256_slli_epi32(y.low, 16));
+    const lanes last = _mm256_or_si256(x.high, _mm256_slli_epi32(y.high, 16));
+    const lanes boxes[2] = {_mm256_unpacklo_epi32(first, last), _mm256_unpackhi_epi32(first, last)};
+    for (int i = 0; i < LANES; i++) {
+        _mm256_storeu_si256((__m256i *)(void *)&splats[i], word[i]);
+    }
+    for (int half = 0; half < 2; half++) { /* 0, 1 and 4, 5; 2, 3 and 6, 7 */
+        const __m128i lower = _mm256_castsi256_si128(boxes[half]), upper = _mm256_extracti128_si256(boxes[half], 1);
+        t3r_splat *s = splats + 2 * half;
+        _mm_storel_epi64((__m128i *)(void *)&s[0].x0, lower);
+        _mm_storel_epi64((__m128i *)(void *)&s[1].x0, _mm_unpackhi_epi64(lower, lower));
+        _mm_storel_epi64((__m128i *)(void *)&s[4].x0, upper);
+        _mm_storel_epi64((__m128i *)(void *)&s[5].x0, _mm_unpackhi_epi64(upper, upper));
+    }
+    return (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(m.beyond));
+}
+
+static void project_scalar(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *splat)
+{
+    if (!t3r_project(p, g, splat)) {
+        splat->z_q20 = 0;
+    }
+}
+
+void t3r_project_avx2(const t3r_projection *p, const t3r_gaussian *gaussians, uint32_t count, t3r_splat *splats)
+{
+    uint32_t i = 0;
+    for (; i + LANES <= count; i += LANES) {
+        for (uint32_t beyond = project_eight(p, gaussians + i, splats + i); beyond != 0; beyond &= beyond - 1) {
+            const uint32_t lane = i + (uint32_t)__builtin_ctz(beyond);
+            project_scalar(p, &gaussians[lane], &splats[lane]);
+        }
+    }
+    for (; i < count; i++) {
+        project_scalar(p, &gaussians[i], &splats[i]);
+    }
+}
+
+#else
+typedef int t3r_no_project_avx2; /* a file may not be empty */
+#endif
