@@ -122,8 +122,8 @@ static inline T3R_AVX2 wide left_by(wide x, wide shift)
     return (wide){_mm256_sllv_epi64(x.even, shift.even), _mm256_sllv_epi64(x.odd, shift.odd)};
 }
 
-/* x / 2^shift, round-half-up, whose double 32 bits hold; shift >= 1, |x| < 2^62. Sets the highest bit of *beyond where
- * they do not. A shift of 63 and more gives 0. */
+/* x / 2^shift, round-half-up, twice of which 32 bits hold; shift >= 1, |x| < 2^62. Sets the highest bit of *beyond
+ * where they do not. A shift of 63 and more gives 0. */
 static inline T3R_AVX2 lanes round_shift(wide x, lanes shift, lanes *beyond)
 {
     const wide bias = all_wide(INT64_MIN), less = widened(subtract(shift, all(1)));
@@ -404,8 +404,15 @@ static inline T3R_AVX2 wide squared_minor(lanes x, lanes y, lanes z, lanes w)
     return product(minor, minor);
 }
 
-/* conic_of(), and what of it is beyond 32 bits */
-static inline T3R_AVX2 void conic_of(const lanes a_q12[3], const lanes b_q12[3], lanes conic_q30[3], lanes *beyond)
+/* The covariance less its dilation, Q(24 - 2n), and its determinant, dilated, as conic_of() has them. */
+typedef struct covariances {
+    lanes twice; /* 2 n */
+    lanes aa, bb, ab;
+    lanes determinant, s; /* 32 bits of it, times 2^s */
+} covariances;
+
+/* Marks what of them is beyond 32 bits. */
+static inline T3R_AVX2 covariances covariance_of(const lanes a_q12[3], const lanes b_q12[3], lanes *beyond)
 {
     lanes largest = all(1), a[3], b[3], by;
     for (int j = 0; j < 3; j++) {
@@ -413,34 +420,42 @@ static inline T3R_AVX2 void conic_of(const lanes a_q12[3], const lanes b_q12[3],
         largest = _mm256_max_epi32(largest, _mm256_abs_epi32(b_q12[j]));
     }
     (void)normal_of(largest, &by);
-    const lanes n = _mm256_max_epi32(subtract(all(16), by), all(0)), twice = add(n, n);
+    const lanes n = _mm256_max_epi32(subtract(all(16), by), all(0));
     const lanes half = _mm256_srli_epi32(_mm256_sllv_epi32(all(1), n), 1);
     for (int j = 0; j < 3; j++) {
         a[j] = _mm256_srav_epi32(add(a_q12[j], half), n);
         b[j] = _mm256_srav_epi32(add(b_q12[j], half), n);
     }
-    const lanes aa = squares(a), bb = squares(b);
+    covariances c;
+    c.twice = add(n, n);
+    c.aa = squares(a);
+    c.bb = squares(b);
     /* With both below 2^31 so is ab, and their sum below 2^32. */
-    *beyond = _mm256_or_si256(*beyond, _mm256_or_si256(aa, bb));
-    const lanes ab = add(add(multiply(a[0], b[0]), multiply(a[1], b[1])), multiply(a[2], b[2]));
-    const wide trace = unsigned_product(add(aa, bb), all(T3R_DILATION_Q24));
+    *beyond = _mm256_or_si256(*beyond, _mm256_or_si256(c.aa, c.bb));
+    c.ab = add(add(multiply(a[0], b[0]), multiply(a[1], b[1])), multiply(a[2], b[2]));
     const wide dilations = all_wide((int64_t)T3R_DILATION_Q24 * T3R_DILATION_Q24);
-    wide det = sum(round_shift_positive(trace, widened(twice)), right_by(dilations, widened(add(twice, twice))));
+    wide det = right_by(dilations, widened(add(c.twice, c.twice)));
+    det = sum(det, round_shift_positive(unsigned_product(add(c.aa, c.bb), all(T3R_DILATION_Q24)), widened(c.twice)));
     det = sum(det, squared_minor(a[0], b[1], a[1], b[0]));
     det = sum(det, squared_minor(a[0], b[2], a[2], b[0]));
     det = sum(det, squared_minor(a[1], b[2], a[2], b[1]));
-    const lanes high = high_of(det); /* below 2^31, as det <= aa bb + ... */
+    const lanes high = high_of(det); /* below 2^31: by Lagrange the squares sum to at most aa bb */
     *beyond = _mm256_or_si256(*beyond, _mm256_cmpeq_epi32(high, all(0)));
     (void)normal_of(_mm256_max_epi32(high, all(1)), &by);
-    const lanes s = subtract(all(31), by); /* 1..31 */
-    const lanes rd = inverted(low_of(right_by(det, widened(s))));
-    const lanes dilation = low_of(round_shift_positive(all_wide(T3R_DILATION_Q24), widened(twice)));
-    const lanes shift = add(add(twice, s), all(9));
-    /* a, c <= 1 / 0.6 and |b| less */
-    const wide a_q = unsigned_product(add(bb, dilation), rd), c_q = unsigned_product(add(aa, dilation), rd);
-    conic_q30[0] = low_of(round_shift_positive(a_q, widened(shift)));
-    conic_q30[2] = low_of(round_shift_positive(c_q, widened(shift)));
-    conic_q30[1] = round_shift_within(mixed_product(subtract(all(0), ab), rd), shift);
+    c.s = subtract(all(31), by); /* 1..31 */
+    c.determinant = low_of(right_by(det, widened(c.s)));
+    return c;
+}
+
+/* conic_of(); rd = floor(2^62 / determinant). a, c <= 1 / 0.6, and |b| less */
+static inline T3R_AVX2 void conic_of(const covariances *c, lanes rd, lanes conic_q30[3])
+{
+    const lanes dilation = low_of(round_shift_positive(all_wide(T3R_DILATION_Q24), widened(c->twice)));
+    const lanes shift = add(add(c->twice, c->s), all(9));
+    const wide first = unsigned_product(add(c->bb, dilation), rd), last = unsigned_product(add(c->aa, dilation), rd);
+    conic_q30[0] = low_of(round_shift_positive(first, widened(shift)));
+    conic_q30[1] = round_shift_within(mixed_product(subtract(all(0), c->ab), rd), shift);
+    conic_q30[2] = low_of(round_shift_positive(last, widened(shift)));
 }
 
 /* The centre in pixels, Q12, as 32 bits hold it. */
@@ -471,7 +486,8 @@ static __attribute__((noinline)) T3R_AVX2 uint32_t project_eight(const t3r_proje
     const lanes level_q16 = log_level_q16(opacity_q15);
     const ranges x = clipped(word[0], a_q12, level_q16, p->width), y = clipped(word[1], b_q12, level_q16, p->height);
     const lanes are_out = _mm256_or_si256(_mm256_cmpgt_epi32(x.low, x.high), _mm256_cmpgt_epi32(y.low, y.high));
-    conic_of(a_q12, b_q12, word + 2, &m.beyond);
+    const covariances c = covariance_of(a_q12, b_q12, &m.beyond);
+    conic_of(&c, inverted(c.determinant), word + 2);
     word[5] = _mm256_andnot_si256(are_out, _mm256_and_si256(m.z_q20, m.are_seen));
     word[6] = e.colours[0];
     word[7] = e.colours[1];
