@@ -19,6 +19,7 @@
 #include "path_step.h"
 #include "project.h"
 #include "radix.h"
+#include "ray_row.h"
 #include "scatter.h"
 #include "seed.h"
 #include "solve.h"
@@ -33,6 +34,7 @@ typedef struct t3r_kernels {
     t3r_weigh_row_kernel *weigh_row;
     t3r_divide_row_kernel *divide_row;
     /* stereo */
+    t3r_ray_row_kernel *ray_row;
     t3r_census_row_kernel *census_row;
     t3r_census_cost_kernel *census_cost;
     t3r_path_step_kernel *path_step;

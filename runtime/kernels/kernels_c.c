@@ -7,6 +7,7 @@ const t3r_kernels t3r_kernels_c = {
     .box_sums = t3r_box_sums_c,
     .weigh_row = t3r_weigh_row_c,
     .divide_row = t3r_divide_row_c,
+    .ray_row = t3r_ray_row_c,
     .census_row = t3r_census_row_c,
     .census_cost = t3r_census_cost_c,
     .path_step = t3r_path_step_c,

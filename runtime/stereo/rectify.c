@@ -20,7 +20,9 @@
 /* Places along each side of a picture at which its extent is measured */
 #define BORDER_STEPS 32
 /* Rays of a view up to 16 to the side of 1 ahead, as the pointmap has it */
-#define RAY_MOST_Q24 (16 * ONE_Q24)
+#define RAY_MOST 16
+/* A ray of a plane is at most so steep. */
+#define PLACE_MOST 4
 
 static int64_t dot(const int64_t a[3], const int64_t b[3])
 {
@@ -113,10 +115,10 @@ static void turn(const int32_t rotation_q30[9], int64_t axes[3][3], int32_t turn
 /* A view's pixel as a ray in the rectified frame, Q24; z = 1 in the view. */
 static void ray_of(const t3r_rectified_view *view, int32_t u_q16, int32_t v_q16, int64_t ray_q24[3])
 {
-    int64_t x = t3r_round_div64(((int64_t)u_q16 - view->cx_q16) * ONE_Q24, view->fx_q16);
-    int64_t y = t3r_round_div64(((int64_t)v_q16 - view->cy_q16) * ONE_Q24, view->fy_q16);
-    const int64_t camera[3] = {t3r_clamp64(x, -RAY_MOST_Q24, RAY_MOST_Q24), t3r_clamp64(y, -RAY_MOST_Q24, RAY_MOST_Q24),
-                               ONE_Q24};
+    const int64_t most = RAY_MOST * ONE_Q24;
+    const int64_t x = t3r_round_div64(((int64_t)u_q16 - view->cx_q16) * ONE_Q24, view->fx_q16);
+    const int64_t y = t3r_round_div64(((int64_t)v_q16 - view->cy_q16) * ONE_Q24, view->fy_q16);
+    const int64_t camera[3] = {t3r_clamp64(x, -most, most), t3r_clamp64(y, -most, most), ONE_Q24};
     for (int i = 0; i < 3; i++) {
         const int64_t axis[3] = {view->turn_q30[i], view->turn_q30[3 + i], view->turn_q30[6 + i]};
         ray_q24[i] = t3r_round_shift64(dot(camera, axis), 30);
@@ -143,7 +145,8 @@ static bool project(bool polar, const int64_t ray[3], int64_t at_q24[2], int64_t
 {
     if (!polar) {
         /* |ray| <= 2^28.6 */
-        if (ray[2] < ONE_Q24 / 64 || t3r_abs64(ray[0]) > 4 * ray[2] || t3r_abs64(ray[1]) > 4 * ray[2]) {
+        if (ray[2] < ONE_Q24 / 64 || t3r_abs64(ray[0]) > PLACE_MOST * ray[2] ||
+            t3r_abs64(ray[1]) > PLACE_MOST * ray[2]) {
             return false;
         }
         at_q24[0] = t3r_round_div64(ray[0] * ONE_Q24, ray[2]);
@@ -361,7 +364,9 @@ t3r_pair t3r_rectify(const t3r_camera *first, const t3r_camera *second, uint32_t
     }
     rect->polar = !fits_plane(rect, 0) || !fits_plane(rect, 1);
     choose_scale(rect);
-    return frame_plane(rect, disparities);
+    pair = frame_plane(rect, disparities);
+    rect->column_scale = t3r_divisor_of((uint32_t)T3R_MAX(rect->scale_q16[0], 1));
+    return pair;
 }
 
 bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u_q16, int32_t v_q16,
@@ -379,4 +384,46 @@ bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u
     }
     *across_q24 = (int32_t)flat; /* at most 2^28.6 */
     return true;
+}
+
+/* In planes, of rays up to 4 to the side: kernels/ray_row.h has their z below 2^27. */
+static bool places_in_plane(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view, uint32_t u,
+                            uint32_t v, uint32_t count, t3r_ray_places *places)
+{
+    const t3r_rectified_view *from = &rect->view[view];
+    const t3r_divisor fx = t3r_divisor_of((uint32_t)from->fx_q16), fy = t3r_divisor_of((uint32_t)from->fy_q16);
+    const int64_t y = t3r_divide_q24(&fy, ((int64_t)v << 16) - from->cy_q16, RAY_MOST);
+    t3r_ray_map map = {.steepest = PLACE_MOST,
+                       .scale_q16 = {rect->scale_q16[0], rect->scale_q16[1]},
+                       .offset_q16 = {0, -rect->first_q16[1]}};
+    int32_t x_q24[T3R_RAYS] = {0}, none[T3R_RAYS] = {0};
+    int64_t most = t3r_abs64(y);
+    for (uint32_t i = 0; i < count; i++) {
+        x_q24[i] = t3r_divide_q24(&fx, ((int64_t)(u + i) << 16) - from->cx_q16, RAY_MOST);
+        most = T3R_MAX(most, t3r_abs64(x_q24[i]));
+    }
+    if (most > 4 * ONE_Q24) {
+        return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        map.turn_q30[i] = from->turn_q30[i];
+        map.base_q54[i] = y * from->turn_q30[3 + i] + ONE_Q24 * from->turn_q30[6 + i];
+    }
+    kernels->ray_row(&map, x_q24, none, (count + 15) & ~15u, places);
+    return true;
+}
+
+void t3r_rectified_places(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view, uint32_t u,
+                          uint32_t v, uint32_t count, t3r_ray_places *places)
+{
+    if (!rect->polar && places_in_plane(kernels, rect, view, u, v, count, places)) {
+        return;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        int32_t place[2] = {0, 0}, across_q24 = 0;
+        (void)t3r_rectified_place(rect, view, (int32_t)((u + i) << 16), (int32_t)(v << 16), place, &across_q24);
+        places->x_q16[i] = place[0];
+        places->y_q16[i] = place[1];
+        places->z_q24[i] = across_q24;
+    }
 }

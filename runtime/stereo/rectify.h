@@ -15,6 +15,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/divisor.h"
+#include "core/workers.h"
+#include "kernels/kernels.h"
 #include "trim3r.h"
 
 #define T3R_RECTIFIED_LEAST 32u /* least width and height */
@@ -31,6 +34,7 @@ typedef struct t3r_rectification {
     int32_t scale_q16[2];                    /* pixels a unit of column and of row */
     int32_t first_q16[2];                    /* where column 0 and row 0 of the first view's plane stand, pixels */
     int32_t least_disparity, most_disparity; /* between which any pixel of both pictures must be, whole pixels */
+    t3r_divisor column_scale;                /* scale_q16[0] */
     t3r_rectified_view view[2];
     uint32_t baseline_q31; /* length: baseline_q31 2^(baseline_exponent - 31) in Q32 world units */
     int32_t baseline_exponent;
@@ -54,9 +58,13 @@ t3r_column t3r_rectified_column(const t3r_rectification *rect, int32_t x_q16);
 bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u_q16, int32_t v_q16,
                          int32_t place_q16[2], int32_t *across_q24);
 
-/* `count` pixels of row `row` of a plane of `view`, whose first column is at x_q16: luma 1..255, 0 where the view shows
- * nothing. luma: the view's own plane, 0 where it shows nothing. */
-void t3r_rectified_row(const t3r_rectification *rect, uint32_t view, const uint8_t *luma, int32_t x_q16, uint32_t row,
-                       uint32_t count, uint8_t *out);
+/* The same of `count` pixels (u.., v) of a view, up to T3R_RAYS: places->z_q24 is how far, 0 = nowhere. */
+void t3r_rectified_places(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view, uint32_t u,
+                          uint32_t v, uint32_t count, t3r_ray_places *places);
+
+/* `count` pixels of each of the rows of a plane of `view`, whose first column is at x_q16, one row behind the other:
+ * luma 1..255, 0 where the view shows nothing. luma: the view's own plane, 0 where it shows nothing. */
+void t3r_rectified_rows(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view, const uint8_t *luma,
+                        int32_t x_q16, t3r_share rows, uint32_t count, uint8_t *out);
 
 #endif

@@ -6,9 +6,7 @@
 
 t3r_column t3r_rectified_column(const t3r_rectification *rect, int32_t x_q16)
 {
-    /* |x| < 2^31, scale at least 2^16 or so: held to 4 */
-    int64_t at = t3r_round_div64((int64_t)x_q16 * ONE_Q24, T3R_MAX(rect->scale_q16[0], 1));
-    at = t3r_clamp64(at, -4 * ONE_Q24, 4 * ONE_Q24);
+    const int64_t at = t3r_divide_q24(&rect->column_scale, x_q16, 4);
     if (!rect->polar) {
         return (t3r_column){(int32_t)at, (int32_t)ONE_Q24};
     }
@@ -33,58 +31,70 @@ static void row_direction(const t3r_rectification *rect, uint32_t row, int64_t e
     e_q24[1] = sector == 0 ? one : sector == 1 ? -slant : sector == -1 ? slant : -one;
 }
 
-/* f x / z + c in Q16; false when it cannot be in any picture. |x|, |z| < 2^30, z > 0. */
-static bool to_pixel(int64_t x, int64_t z, int32_t f_q16, int32_t c_q16, int64_t *pixel_q16)
-{
-    if (t3r_abs64(x) > 16 * z) {
-        return false;
-    }
-    *pixel_q16 = t3r_round_shift64(t3r_round_div64(x * ONE_Q24, z) * f_q16, 24) + c_q16;
-    return true;
-}
-
 /* Bilinear, as the undistortion has it: position to Q8, held to the picture, one rounding; 1..255. */
-static uint8_t sample(const uint8_t *luma, int32_t width, int32_t height, int64_t u_q16, int64_t v_q16)
+static inline uint8_t sample(const uint8_t *luma, int32_t width, int32_t height, int32_t u_q16, int32_t v_q16)
 {
-    int32_t u = (int32_t)t3r_clamp64(t3r_round_shift64(u_q16, 8), 0, (int64_t)(width - 1) << 8);
-    int32_t v = (int32_t)t3r_clamp64(t3r_round_shift64(v_q16, 8), 0, (int64_t)(height - 1) << 8);
-    int32_t x = u >> 8, y = v >> 8, fx = u & 255, fy = v & 255;
-    int32_t right = T3R_MIN(x + 1, width - 1), below = T3R_MIN(y + 1, height - 1);
+    const int32_t u = t3r_clamp32(t3r_round_shift32(u_q16, 8), 0, (width - 1) << 8);
+    const int32_t v = t3r_clamp32(t3r_round_shift32(v_q16, 8), 0, (height - 1) << 8);
+    const int32_t x = u >> 8, y = v >> 8, fx = u & 255, fy = v & 255;
+    const int32_t right = T3R_MIN(x + 1, width - 1), below = T3R_MIN(y + 1, height - 1);
     const uint8_t *a = luma + (size_t)y * (size_t)width, *b = luma + (size_t)below * (size_t)width;
-    int32_t sum = (256 - fy) * ((256 - fx) * a[x] + fx * a[right]) + fy * ((256 - fx) * b[x] + fx * b[right]);
-    return (uint8_t)T3R_MAX(t3r_round_shift32(sum, 16), 1);
+    const int32_t top = 256 * a[x] + fx * (a[right] - a[x]), bottom = 256 * b[x] + fx * (b[right] - b[x]);
+    return (uint8_t)T3R_MAX(t3r_round_shift32(256 * top + fy * (bottom - top), 16), 1);
 }
 
-void t3r_rectified_row(const t3r_rectification *rect, uint32_t view, const uint8_t *luma, int32_t x_q16, uint32_t row,
-                       uint32_t count, uint8_t *out)
+/* A row's rays, seen by the view: what kernels/ray_row.h makes places of. */
+static void map_row(const t3r_rectification *rect, const t3r_rectified_view *v, uint32_t row, t3r_ray_map *map)
+{
+    int64_t e[2];
+    row_direction(rect, row, e);
+    for (int i = 0; i < 3; i++) {
+        /* |e| below 2^26.1 in planes, 2^24 elsewhere: there the direction is a unit vector's */
+        const int64_t direction = t3r_round_shift64(e[0] * v->turn_q30[3 * i + 1] + e[1] * v->turn_q30[3 * i + 2], 24);
+        map->turn_q30[i] = v->turn_q30[3 * i];
+        map->slope_q30[i] = rect->polar ? (int32_t)direction : 0;
+        map->base_q54[i] = rect->polar ? 0 : direction * ONE_Q24;
+    }
+}
+
+/* Columns from x_q16 on, as the rays' a and b; 0 where there is no ray, and behind the last. */
+static void take_columns(const t3r_rectification *rect, int64_t x_q16, uint32_t count, int32_t a_q24[T3R_RAYS],
+                         int32_t b_q24[T3R_RAYS])
+{
+    for (uint32_t i = 0; i < T3R_RAYS; i++) {
+        const t3r_column c = t3r_rectified_column(rect, (int32_t)(x_q16 + (int64_t)i * 65536));
+        const bool any = i < count && c.b_q24 > 0;
+        a_q24[i] = any ? c.a_q24 : 0;
+        b_q24[i] = any && rect->polar ? c.b_q24 : 0; /* a plane's b is in the map's base */
+    }
+}
+
+void t3r_rectified_rows(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view, const uint8_t *luma,
+                        int32_t x_q16, t3r_share rows, uint32_t count, uint8_t *out)
 {
     const t3r_rectified_view *v = &rect->view[view];
     const int32_t width = (int32_t)rect->view_width, height = (int32_t)rect->view_height;
-    int64_t e[2], direction[3];
-    row_direction(rect, row, e);
-    for (int i = 0; i < 3; i++) {
-        /* |e| below 2^26.1 */
-        direction[i] = t3r_round_shift64(e[0] * v->turn_q30[3 * i + 1] + e[1] * v->turn_q30[3 * i + 2], 24);
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        const t3r_column column = t3r_rectified_column(rect, (int32_t)((int64_t)x_q16 + (int64_t)i * 65536));
-        int64_t ray[3], u_q16, v_q16;
-        out[i] = 0;
-        if (column.b_q24 <= 0) {
-            continue;
-        }
-        for (int axis = 0; axis < 3; axis++) {
-            /* |a| <= 2^26, |turn| <= 2^30, b <= 2^24, |direction| < 2^32.1: below 2^57.3 */
-            ray[axis] =
-                t3r_round_shift64((int64_t)column.a_q24 * v->turn_q30[3 * axis] + column.b_q24 * direction[axis], 30);
-        }
-        if (ray[2] < ONE_Q24 / 64 || !to_pixel(ray[0], ray[2], v->fx_q16, v->cx_q16, &u_q16) ||
-            !to_pixel(ray[1], ray[2], v->fy_q16, v->cy_q16, &v_q16)) {
-            continue;
-        }
-        const int64_t x = t3r_round_shift64(u_q16, 16), y = t3r_round_shift64(v_q16, 16);
-        if (x >= 0 && y >= 0 && x < width && y < height && luma[y * width + x] != 0) {
-            out[i] = sample(luma, width, height, u_q16, v_q16);
+    t3r_ray_map map = {.steepest = 16, .scale_q16 = {v->fx_q16, v->fy_q16}, .offset_q16 = {v->cx_q16, v->cy_q16}};
+    for (uint32_t first = 0; first < count; first += T3R_RAYS) {
+        const uint32_t columns = T3R_MIN(count - first, T3R_RAYS);
+        int32_t a_q24[T3R_RAYS], b_q24[T3R_RAYS];
+        take_columns(rect, x_q16 + (int64_t)first * 65536, columns, a_q24, b_q24);
+        for (uint32_t row = rows.begin; row < rows.end; row++) {
+            uint8_t *to = out + (size_t)(row - rows.begin) * count + first;
+            t3r_ray_places places;
+            map_row(rect, v, row, &map);
+            kernels->ray_row(&map, a_q24, b_q24, (columns + 15) & ~15u, &places);
+            for (uint32_t i = 0; i < columns; i++) {
+                /* positions far outside are held to 32 bits, and as far outside */
+                const int32_t u = places.x_q16[i], w = places.y_q16[i];
+                const uint32_t x = (uint32_t)(((u >> 15) + 1) >> 1), y = (uint32_t)(((w >> 15) + 1) >> 1);
+                const bool seen = places.z_q24[i] != 0 && x < (uint32_t)width && y < (uint32_t)height &&
+                                  luma[y * (uint32_t)width + x] != 0;
+                to[i] = 0;
+                if (seen) {
+                    to[i] = sample(luma, width, height, u, w);
+                }
+            }
         }
     }
 }

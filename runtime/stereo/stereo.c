@@ -81,6 +81,7 @@ static void luma_of(const t3r_view *view, uint8_t *luma)
 
 /* One side of a rectified pair, row by row. */
 typedef struct side_job {
+    const t3r_kernels *kernels;
     const t3r_rectification *rect;
     uint32_t side, columns;
     int32_t begin_q16;
@@ -92,10 +93,8 @@ static void rectify_rows(void *context, uint32_t begin, uint32_t end, uint32_t w
 {
     (void)worker;
     const side_job *job = context;
-    for (uint32_t y = begin; y < end; y++) {
-        t3r_rectified_row(job->rect, job->side, job->luma, job->begin_q16, y, job->columns,
-                          job->out + (size_t)y * job->columns);
-    }
+    t3r_rectified_rows(job->kernels, job->rect, job->side, job->luma, job->begin_q16, (t3r_share){begin, end},
+                       job->columns, job->out + (size_t)begin * job->columns);
 }
 
 /* Where a plane's columns begin: the right one's so that `first` is the disparity at its end. */
@@ -137,10 +136,8 @@ static void quarter_rows(void *context, uint32_t begin, uint32_t end, uint32_t w
     const uint32_t columns = QUARTER * full->columns;
     uint8_t *rows = job->rows + (size_t)worker * QUARTER * columns;
     for (uint32_t y = begin; y < end; y++) {
-        for (uint32_t i = 0; i < QUARTER; i++) {
-            t3r_rectified_row(full->rect, full->side, full->luma, full->begin_q16, QUARTER * y + i, columns,
-                              rows + (size_t)i * columns);
-        }
+        t3r_rectified_rows(full->kernels, full->rect, full->side, full->luma, full->begin_q16,
+                           (t3r_share){QUARTER * y, QUARTER * (y + 1)}, columns, rows);
         quarter_row(rows, full->columns, full->out + (size_t)y * full->columns);
     }
 }
@@ -174,7 +171,8 @@ static __attribute__((noinline)) void fill_quarter(const t3r_stereo_settings *se
     for (uint32_t side = 0; side < 2; side++) {
         const uint32_t columns = side == 0 ? width : (uint32_t)T3R_MATCH_RIGHT(width, count);
         quarter_job job = {
-            .full = {.rect = rect,
+            .full = {.kernels = settings->kernels,
+                     .rect = rect,
                      .side = side,
                      .columns = columns,
                      .begin_q16 = begin_q16(rect, side, rect->least_disparity, QUARTER * (count - 1) + 1),
@@ -289,7 +287,8 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
         found.disparity[side] = full.side[side].disparity;
         found.confidence[side] = full.side[side].confidence;
         luma_of(&views[side], full.work);
-        side_job job = {.rect = &rect,
+        side_job job = {.kernels = settings->kernels,
+                        .rect = &rect,
                         .side = side,
                         .columns = columns,
                         .begin_q16 = found.begin_q16[side],
@@ -298,9 +297,9 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
         t3r_run_rows(&settings->workers, rect.height, rectify_rows, &job);
     }
     t3r_match_all(&match, settings->fill != 0);
-    pair = t3r_stereo_unit(&found, views, depth_unit_q40);
+    pair = t3r_stereo_unit(settings->kernels, &found, views, depth_unit_q40);
     for (uint32_t side = 0; side < 2 && pair == T3R_PAIR_OK; side++) {
-        t3r_stereo_to_view(&found, side, &views[side], &settings->workers);
+        t3r_stereo_to_view(settings->kernels, &found, side, &views[side], &settings->workers);
     }
     return pair;
 }

@@ -67,11 +67,12 @@ static bool look_up(const t3r_stereo_planes *planes, uint32_t side, const int32_
     return true;
 }
 
-static bool see(const t3r_stereo_planes *planes, uint32_t side, uint32_t u, uint32_t v, distance *s)
+/* What is at a view's pixel, given its place. */
+static bool see(const t3r_stereo_planes *planes, uint32_t side, const t3r_ray_places *places, uint32_t i, distance *s)
 {
-    int32_t place[2], across_q24, k_q7;
-    if (!t3r_rectified_place(planes->rect, side, (int32_t)(u << 16), (int32_t)(v << 16), place, &across_q24) ||
-        !look_up(planes, side, place, &k_q7, &s->confidence)) {
+    const int32_t place[2] = {places->x_q16[i], places->y_q16[i]}, across_q24 = places->z_q24[i];
+    int32_t k_q7;
+    if (across_q24 == 0 || !look_up(planes, side, place, &k_q7, &s->confidence)) {
         return false;
     }
     /* k is below 2^8, first and columns below 2^15 */
@@ -92,16 +93,21 @@ static bool see(const t3r_stereo_planes *planes, uint32_t side, uint32_t u, uint
     return true;
 }
 
-t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uint64_t *depth_unit_q40)
+t3r_pair t3r_stereo_unit(const t3r_kernels *kernels, t3r_stereo_planes *planes, const t3r_view views[2],
+                         uint64_t *depth_unit_q40)
 {
     const t3r_rectification *rect = planes->rect;
     uint32_t histogram[BINS] = {0}, sampled = 0, matched = 0, still = 0;
     for (uint32_t side = 0; side < 2; side++) {
         for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
+            t3r_ray_places places;
             for (uint32_t u = 0; u < views[side].width; u += SAMPLING) {
                 distance s;
+                if (u % T3R_RAYS == 0) {
+                    t3r_rectified_places(kernels, rect, side, u, v, T3R_MIN(views[side].width - u, T3R_RAYS), &places);
+                }
                 sampled++;
-                if (!see(planes, side, u, v, &s) || s.confidence < T3R_STEREO_SURE) {
+                if (!see(planes, side, &places, u % T3R_RAYS, &s) || s.confidence < T3R_STEREO_SURE) {
                     continue;
                 }
                 matched++;
@@ -153,6 +159,7 @@ t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uin
 }
 
 typedef struct view_job {
+    const t3r_kernels *kernels;
     const t3r_stereo_planes *planes;
     uint32_t side;
     const t3r_view *view;
@@ -165,13 +172,18 @@ static void view_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     const t3r_stereo_planes *planes = job->planes;
     const t3r_view *view = job->view;
     for (uint32_t v = begin; v < end; v++) {
+        t3r_ray_places places;
         for (uint32_t u = 0; u < view->width; u++) {
             const size_t at = (size_t)v * view->width + u;
             distance s;
+            if (u % T3R_RAYS == 0) {
+                t3r_rectified_places(job->kernels, planes->rect, job->side, u, v, T3R_MIN(view->width - u, T3R_RAYS),
+                                     &places);
+            }
             view->depth[at] = 0;
             view->match_confidence[at] = T3R_STEREO_NONE;
             const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
-            if (shown && see(planes, job->side, u, v, &s)) {
+            if (shown && see(planes, job->side, &places, u % T3R_RAYS, &s)) {
                 /* 2^22 x 2^25 x 2^6 */
                 int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
                 view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
@@ -182,9 +194,9 @@ static void view_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     }
 }
 
-void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3r_view *view,
-                        const t3r_workers *workers)
+void t3r_stereo_to_view(const t3r_kernels *kernels, const t3r_stereo_planes *planes, uint32_t side,
+                        const t3r_view *view, const t3r_workers *workers)
 {
-    view_job job = {planes, side, view};
+    view_job job = {kernels, planes, side, view};
     t3r_run_rows(workers, view->height, view_rows, &job);
 }

@@ -24,10 +24,11 @@ typedef struct t3r_stereo_planes {
 /* The depth unit with which 63 of 64 surely matched pixels are nearer than 60,000 steps. T3R_PAIR_OVERLAP: less than
  * 1/25 matched surely; T3R_PAIR_PARALLAX: three of four of these less than half a pixel from where infinity is;
  * T3R_PAIR_SCALE. */
-t3r_pair t3r_stereo_unit(t3r_stereo_planes *planes, const t3r_view views[2], uint64_t *depth_unit_q40);
+t3r_pair t3r_stereo_unit(const t3r_kernels *kernels, t3r_stereo_planes *planes, const t3r_view views[2],
+                         uint64_t *depth_unit_q40);
 
 /* Fills depth and match confidence of a view, whose rows the workers share; after t3r_stereo_unit(). */
-void t3r_stereo_to_view(const t3r_stereo_planes *planes, uint32_t side, const t3r_view *view,
-                        const t3r_workers *workers);
+void t3r_stereo_to_view(const t3r_kernels *kernels, const t3r_stereo_planes *planes, uint32_t side,
+                        const t3r_view *view, const t3r_workers *workers);
 
 #endif

@@ -60,22 +60,20 @@ static void begin(const filling *f)
 }
 
 /* Pixel `to` takes what pixel `from` has, if the way by it is shorter. */
-static void offer(const filling *f, size_t to, size_t from, uint32_t step)
+static inline void offer(const filling *f, size_t to, size_t from, uint32_t step)
 {
     const int32_t level = t3r_abs32((int32_t)f->luma[to] - f->luma[from]);
-    const uint32_t cost = f->cost[from] + step + LEVEL * (uint32_t)level;
-    if (cost < f->cost[to]) {
-        f->cost[to] = (uint16_t)cost;
-        f->source[to] = f->source[from];
-    }
+    const uint32_t cost = f->cost[from] + step + LEVEL * (uint32_t)level, own = f->cost[to];
+    const uint32_t source = f->source[cost < own ? from : to];
+    f->cost[to] = (uint16_t)T3R_MIN(cost, own);
+    f->source[to] = source;
 }
 
-/* One row, from the row before it on the sweep and along itself both ways. */
-static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
+/* Pixels from..end - 1 of a row, a hole, from the row before it on the sweep and along themselves both ways. */
+static void sweep_hole(const filling *f, size_t row, size_t before, uint32_t from, uint32_t end, bool first)
 {
     const uint32_t width = f->view->width;
-    const size_t row = (size_t)y * width, before = down ? row - width : row + width; /* unused of the first */
-    for (uint32_t x = 0; x < width && !first; x++) {
+    for (uint32_t x = from; x < end && !first; x++) {
         offer(f, row + x, before + x, STRAIGHT);
         if (x > 0) {
             offer(f, row + x, before + x - 1, DIAGONAL);
@@ -84,19 +82,38 @@ static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
             offer(f, row + x, before + x + 1, DIAGONAL);
         }
     }
-    for (uint32_t x = 1; x < width; x++) {
+    for (uint32_t x = T3R_MAX(from, 1); x < end; x++) {
         offer(f, row + x, row + x - 1, STRAIGHT);
     }
-    for (uint32_t x = width - 1; x-- > 0;) {
+    for (uint32_t x = T3R_MIN(end, width - 1); x-- > from;) {
         offer(f, row + x, row + x + 1, STRAIGHT);
+    }
+}
+
+/* One row. What has depth costs nothing and takes nothing, so that each hole of the row is on its own. */
+static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
+{
+    const uint32_t width = f->view->width;
+    const size_t row = (size_t)y * width, before = down ? row - width : row + width; /* unused of the first */
+    const uint16_t *cost = f->cost + row;
+    for (uint32_t x = 0; x < width; x++) {
+        const uint32_t from = x;
+        while (x < width && cost[x] != 0) {
+            x++;
+        }
+        if (x > from) {
+            sweep_hole(f, row, before, from, x, first);
+        }
     }
 }
 
 /* ---- slopes ------------------------------------------------------------------------------------------------------ */
 
+/* 2^30 / depth, round-half-up, of a depth that is not 0 */
 static int64_t inverse_q30(uint16_t depth)
 {
-    return T3R_MIN(t3r_round_div64(INT64_C(1) << 30, depth), (int64_t)INVERSE_MOST);
+    const uint32_t twice = 2 * (uint32_t)depth;
+    return T3R_MIN(((UINT32_C(1) << 31) + depth) / twice, (uint32_t)INVERSE_MOST);
 }
 
 static size_t cell_of(const filling *f, uint32_t x, uint32_t y)
@@ -104,28 +121,45 @@ static size_t cell_of(const filling *f, uint32_t x, uint32_t y)
     return (size_t)(y / f->cell) * f->columns + x / f->cell;
 }
 
+/* Adds `count` pixels of a row of a cell, the first of them x0 right of its middle, all y below it. */
+static void sum_row(sums *s, const uint16_t *depth, uint32_t count, int32_t x0, int64_t y)
+{
+    /* at most 2^9 pixels, |x| at most 2^8, i at most 2^24 */
+    int32_t n = 0, x = 0, xx = 0;
+    int64_t i = 0, xi = 0;
+    for (uint32_t u = 0; u < count; u++) {
+        if (depth[u] != 0) {
+            const int32_t at = x0 + (int32_t)u;
+            const int64_t inverse = inverse_q30(depth[u]);
+            n++;
+            x += at;
+            xx += at * at;
+            i += inverse;
+            xi += at * inverse;
+        }
+    }
+    /* at most 2^18 pixels a cell: sums of x i below 2^50 */
+    s->n += n;
+    s->x += x;
+    s->y += n * y;
+    s->i += i;
+    s->xx += xx;
+    s->xy += x * y;
+    s->yy += n * y * y;
+    s->xi += xi;
+    s->yi += i * y;
+}
+
 static void sum_cells(const filling *f)
 {
     const t3r_view *view = f->view;
+    const int32_t middle = (int32_t)f->cell / 2;
     memset(f->sums, 0, (size_t)f->columns * f->rows * sizeof *f->sums);
     for (uint32_t v = 0; v < view->height; v++) {
-        for (uint32_t u = 0; u < view->width; u++) {
-            const uint16_t depth = view->depth[(size_t)v * view->width + u];
-            if (depth != 0) {
-                /* at most 2^18 pixels a cell, |x|, |y| at most 2^8: sums of x i below 2^50 */
-                sums *s = &f->sums[cell_of(f, u, v)];
-                const int64_t x = (int64_t)(u % f->cell) - f->cell / 2, y = (int64_t)(v % f->cell) - f->cell / 2;
-                const int64_t i = inverse_q30(depth);
-                s->n++;
-                s->x += x;
-                s->y += y;
-                s->i += i;
-                s->xx += x * x;
-                s->xy += x * y;
-                s->yy += y * y;
-                s->xi += x * i;
-                s->yi += y * i;
-            }
+        const uint16_t *depth = view->depth + (size_t)v * view->width;
+        for (uint32_t u = 0; u < view->width; u += f->cell) {
+            sum_row(&f->sums[cell_of(f, u, v)], depth + u, T3R_MIN(f->cell, view->width - u), -middle,
+                    (int32_t)(v % f->cell) - middle);
         }
     }
 }
@@ -204,7 +238,7 @@ static void finish(const filling *f)
     for (uint32_t v = 0; v < view->height; v++) {
         for (uint32_t u = 0; u < view->width; u++) {
             const size_t i = (size_t)v * view->width + u;
-            if (f->cost[i] == UINT16_MAX || f->source[i] == i) {
+            if (f->cost[i] == UINT16_MAX || f->cost[i] == 0) {
                 continue; /* nothing to take, or its own */
             }
             if (shows(view, i)) {

@@ -1,8 +1,64 @@
-/* Census, its costs, and the paths' step. */
+/* Places of rays, census, its costs, and the paths' step. */
 #include "checks.h"
+#include "core/fixed.h"
 #include "guarded.h"
 
 enum { MOST = 500 };
+
+/* A map of rays whose coordinates stay below 2^27, whatever a and b below their own `most` are. */
+static t3r_ray_map any_map(uint64_t *seed, int64_t most_a, int64_t most_b)
+{
+    t3r_ray_map map = {.steepest = unit_random(seed) % 2 ? 16 : 4};
+    for (int i = 0; i < 2; i++) {
+        const int64_t most = (INT64_C(1) << unit_between(seed, 3, 30)) - 1;
+        map.scale_q16[i] = (int32_t)any_value(seed, 0, most);
+        map.offset_q16[i] = (int32_t)any_value(seed, -most, most);
+    }
+    for (int i = 0; i < 3; i++) {
+        /* a third of 2^57 for each of the three products; z as a rule much smaller, or x and y */
+        const int64_t share = (INT64_C(1) << 57) / 3 >> unit_between(seed, 0, 12);
+        const int64_t turn = T3R_MIN(share / most_a, 1 << 30), slope = T3R_MIN(share / most_b, 1 << 30);
+        map.turn_q30[i] = (int32_t)any_value(seed, -turn, turn);
+        map.slope_q30[i] = (int32_t)any_value(seed, -slope, slope);
+        map.base_q54[i] = any_value(seed, i == 2 ? share / 2 : -share, share);
+    }
+    return map;
+}
+
+const char *check_ray_row(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = 16 * (uint32_t)unit_between(seed, 1, T3R_RAYS / 16);
+    const int64_t most_a = INT64_C(1) << unit_between(seed, 1, 28), most_b = INT64_C(1) << unit_between(seed, 0, 24);
+    const t3r_ray_map map = any_map(seed, most_a, most_b);
+    int32_t *a = guarded_take(count * 4, 4), *b = guarded_take(count * 4, 4);
+    t3r_ray_places *places = guarded_take(sizeof *places, 4);
+    for (uint32_t i = 0; i < count; i++) {
+        a[i] = (int32_t)any_value(seed, -most_a, most_a);
+        b[i] = (int32_t)any_value(seed, -most_b, most_b);
+    }
+    kernels->ray_row(&map, a, b, count, places);
+    for (uint32_t i = 0; i < count; i++) {
+        int64_t ray[3], want[2] = {0, 0};
+        for (int k = 0; k < 3; k++) {
+            const int64_t sum = (int64_t)a[i] * map.turn_q30[k] + (int64_t)b[i] * map.slope_q30[k] + map.base_q54[k];
+            ray[k] = t3r_round_shift64(sum, 30);
+        }
+        const int64_t z = ray[2], most = map.steepest * z;
+        const bool any = z >= 1 << 18 && t3r_abs64(ray[0]) <= most && t3r_abs64(ray[1]) <= most;
+        for (int k = 0; k < 2 && any; k++) {
+            const int64_t at = t3r_round_div64(ray[k] * (1 << 24), z);
+            want[k] =
+                t3r_clamp64(t3r_round_shift64(at * map.scale_q16[k], 24) + map.offset_q16[k], INT32_MIN, INT32_MAX);
+        }
+        if (places->z_q24[i] != (any ? z : 0)) {
+            return "a ray differs";
+        }
+        if (places->x_q16[i] != want[0] || places->y_q16[i] != want[1]) {
+            return "a place differs";
+        }
+    }
+    return NULL;
+}
 
 const char *check_census_row(const t3r_kernels *kernels, uint64_t *seed)
 {

@@ -15,6 +15,7 @@
     X(box_sums, check_box_sums)                                                                                        \
     X(weigh_row, check_weigh_row)                                                                                      \
     X(divide_row, check_divide_row)                                                                                    \
+    X(ray_row, check_ray_row)                                                                                          \
     X(census_row, check_census_row)                                                                                    \
     X(census_cost, check_census_cost)                                                                                  \
     X(path_step, check_path_step)                                                                                      \
@@ -43,7 +44,7 @@
     X(radix_count, check_radix_count)                                                                                  \
     X(radix_pass, check_radix_pass)                                                                                    \
     X(blend, check_blend)                                                                                              \
-    X(blend_keep, check_blend_keep)                                                                                  \
+    X(blend_keep, check_blend_keep)                                                                                    \
     X(scatter, check_scatter)                                                                                          \
     X(solve, check_solve)
 

@@ -1,6 +1,7 @@
 /* Fixed-point functions over their domain, against double. */
 #include "unit.h"
 
+#include "core/divisor.h"
 #include "core/fixed.h"
 #include "kernels/wavelet_rows.h"
 
@@ -108,10 +109,33 @@ static void small_product(void **state)
     }
 }
 
+/* What division gives, for every sign and size, about all boundaries. */
+static void divisor(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    for (int turn = 0; turn < 200000; turn++) {
+        const uint32_t most = UINT32_C(1) << unit_between(&seed, 0, 30);
+        const uint32_t d = turn % 4 == 0 ? most : (uint32_t)unit_between(&seed, 1, most);
+        const uint32_t limit = turn % 2 == 0 ? 4 : 16;
+        const t3r_divisor by = t3r_divisor_of(d);
+        const int64_t largest = T3R_MIN((int64_t)limit * d + 2, UINT32_MAX);
+        const int64_t k = unit_between(&seed, 0, (int64_t)limit << 25); /* half steps */
+        const int64_t x = turn % 3 == 0 ? unit_between(&seed, -largest, largest)
+                                        : T3R_MIN(largest, ((k * d) >> 25) + unit_between(&seed, 0, 1));
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const int64_t held = (int64_t)limit << 24;
+            const int64_t want = t3r_clamp64(t3r_round_div64(sign * x * (1 << 24), d), -held, held);
+            assert_int_equal(t3r_divide_q24(&by, sign * x, limit), want);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(square_root), cmocka_unit_test(logarithm),
                                        cmocka_unit_test(power),       cmocka_unit_test(division),
-                                       cmocka_unit_test(shifts),      cmocka_unit_test(small_product)};
+                                       cmocka_unit_test(shifts),      cmocka_unit_test(small_product),
+                                       cmocka_unit_test(divisor)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -159,9 +159,10 @@ static void identity(void **state)
     assert_int_equal(rect.height, H);
     for (uint32_t side = 0; side < 2; side++) {
         for (uint32_t y = 0; y < H; y++) {
-            t3r_rectified_row(&rect, side, luma, rect.first_q16[0], y, W, out);
+            const t3r_share row = {y, y + 1};
+            t3r_rectified_rows(&t3r_kernels_c, &rect, side, luma, rect.first_q16[0], row, W, out);
             assert_memory_equal(out, luma + y * W, W);
-            t3r_rectified_row(&rect, side, luma, rect.first_q16[0] - (5 << 16), y, W, out);
+            t3r_rectified_rows(&t3r_kernels_c, &rect, side, luma, rect.first_q16[0] - (5 << 16), row, W, out);
             assert_memory_equal(out + 5, luma + y * W, W - 5);
             for (int x = 0; x < 5; x++) {
                 assert_int_equal(out[x], 0);
@@ -191,9 +192,8 @@ static void sampled(void **state)
                 luma[i] = (uint8_t)(2 * (along ? i / W : i % W) + 20);
             }
             uint8_t *plane = unit_array((size_t)rect.width * rect.height, 1);
-            for (uint32_t y = 0; y < rect.height; y++) {
-                t3r_rectified_row(&rect, 0, luma, rect.first_q16[0], y, rect.width, plane + y * rect.width);
-            }
+            t3r_rectified_rows(&t3r_kernels_c, &rect, 0, luma, rect.first_q16[0], (t3r_share){0, rect.height},
+                               rect.width, plane);
             int looked = 0;
             for (int v = 1; v < H - 1; v++) {
                 for (int u = 1; u < W - 1; u++) {
@@ -289,10 +289,18 @@ static void anything(void **state)
         check_size(&rect, 48, 40, 16);
         assert_true(rect.least_disparity >= 0 && rect.most_disparity > rect.least_disparity);
         for (uint32_t side = 0; side < 2; side++) {
-            int32_t place[2], across;
-            t3r_rectified_row(&rect, side, luma, rect.first_q16[0], (uint32_t)unit_random(&seed) % rect.height,
-                              rect.width, row);
-            (void)t3r_rectified_place(&rect, side, 5 << 16, 7 << 16, place, &across);
+            const uint32_t y = (uint32_t)unit_random(&seed) % rect.height, v = (uint32_t)unit_random(&seed) % 40;
+            t3r_rectified_rows(&t3r_kernels_c, &rect, side, luma, rect.first_q16[0], (t3r_share){y, y + 1}, rect.width,
+                               row);
+            t3r_ray_places places;
+            t3r_rectified_places(&t3r_kernels_c, &rect, side, 3, v, 45, &places);
+            for (int i = 0; i < 45; i++) {
+                int32_t place[2] = {0, 0}, across = 0;
+                (void)t3r_rectified_place(&rect, side, (3 + i) << 16, (int32_t)v << 16, place, &across);
+                assert_int_equal(places.x_q16[i], place[0]);
+                assert_int_equal(places.y_q16[i], place[1]);
+                assert_int_equal(places.z_q24[i], across);
+            }
         }
     }
     print_message("%d of 20000 can be matched\n", matched);

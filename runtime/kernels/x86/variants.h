@@ -22,6 +22,8 @@
     X(divide_row, T3R_CPU_AVX2, t3r_divide_row_avx2)                                                                   \
     X(census_row, T3R_CPU_AVX2, t3r_census_row_avx2)                                                                   \
     X(census_cost, T3R_CPU_AVX2, t3r_census_cost_avx2)                                                                 \
+    X(ray_row, T3R_CPU_AVX2, t3r_ray_row_avx2)                                                                         \
+    X(ray_row, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_ray_row_avx512)                                                      \
     X(path_step, T3R_CPU_AVX2, t3r_path_step_avx2)                                                                     \
     X(luma_row, T3R_CPU_AVX2, t3r_luma_row_avx2)                                                                       \
     X(split_row, T3R_CPU_AVX2, t3r_split_row_avx2)                                                                     \

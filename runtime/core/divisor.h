@@ -1,0 +1,36 @@
+/* Division of many numbers by one: by its reciprocal, with the quotient that division gives. */
+#ifndef T3R_DIVISOR_H
+#define T3R_DIVISOR_H
+
+#include <stdint.h>
+
+#include "fixed.h"
+
+typedef struct t3r_divisor {
+    uint32_t d, reciprocal, shift; /* reciprocal: 2^(shift + 24) / d, from 2^31 on */
+} t3r_divisor;
+
+/* d: 1 up to 2^30 */
+static inline t3r_divisor t3r_divisor_of(uint32_t d)
+{
+    const uint32_t bits = t3r_msb32(d) + 1;
+    const uint64_t reciprocal = (UINT64_C(1) << (31 + bits)) / d;
+    return (t3r_divisor){d, (uint32_t)T3R_MIN(reciprocal, (uint64_t)UINT32_MAX), 7 + bits};
+}
+
+/* x / d in Q24, round-half-up, held to +-limit; |x| below 2^32, limit at most 16 */
+static inline int32_t t3r_divide_q24(const t3r_divisor *by, int64_t x, uint32_t limit)
+{
+    const uint64_t size = (uint64_t)t3r_abs64(x);
+    if (size >= (uint64_t)limit * by->d) {
+        return (x < 0 ? -1 : 1) * (int32_t)(limit << 24);
+    }
+    /* At most 1 too small: by 2^-3 through the reciprocal, by less than 1 as it is rounded down, and a half is still to
+     * be added: that of d, of d - 1 where x is negative. The rest is below 2 d. */
+    uint32_t q = (uint32_t)((size * by->reciprocal) >> by->shift);
+    const uint32_t rest = ((uint32_t)size << 24) + ((by->d - (x < 0)) >> 1) - q * by->d;
+    q += rest >= by->d;
+    return x < 0 ? -(int32_t)q : (int32_t)q;
+}
+
+#endif

@@ -1,0 +1,107 @@
+/* ray_row in 32-bit lanes of any number. The file that includes this defines TARGET, LANES and the intrinsics of its
+ * instruction set behind multiply(), multiply_signed() and join(). A quotient x / z is made of z's reciprocal and
+ * mended by its remainder. */
+#ifndef T3R_RAY_LANES_H
+#define T3R_RAY_LANES_H
+
+#include <stdint.h>
+
+typedef int32_t lanes __attribute__((vector_size(LANES * sizeof(int32_t))));
+typedef uint32_t ulanes __attribute__((vector_size(LANES * sizeof(int32_t))));
+typedef uint64_t pairs __attribute__((vector_size(LANES * sizeof(int32_t))));
+
+/* The even lanes' products, and those of all whose upper halves are taken. join(): even lanes of one, odd ones of the
+ * other. */
+static inline TARGET pairs multiply(ulanes a, ulanes b);
+static inline TARGET pairs multiply_signed(lanes a, lanes b);
+static inline TARGET lanes join(pairs even, pairs odd);
+
+/* What is lost and gained below 2^32 by three steps of Newton's: the reciprocal is lowered by it, and so never above.
+ */
+#define NEWTON_ERROR 3
+
+static inline TARGET pairs odd(lanes x)
+{
+    return (pairs)x >> 32;
+}
+
+static inline TARGET ulanes high(ulanes a, ulanes b)
+{
+    return (ulanes)join(multiply(a, b) >> 32, multiply((ulanes)odd((lanes)a), (ulanes)odd((lanes)b)));
+}
+
+/* Below 2^27 in size: of its 64 bits a logical shift leaves enough. */
+static inline TARGET lanes coordinate(const t3r_ray_map *map, int axis, lanes a, lanes b)
+{
+    const uint64_t base = (uint64_t)map->base_q54[axis] + (UINT64_C(1) << 29);
+    const lanes turn = (lanes){0} + map->turn_q30[axis], slope = (lanes){0} + map->slope_q30[axis];
+    const pairs even = multiply_signed(a, turn) + multiply_signed(b, slope) + base;
+    const pairs uneven = multiply_signed((lanes)odd(a), turn) + multiply_signed((lanes)odd(b), slope) + base;
+    return join(even >> 30, uneven << 2);
+}
+
+/* 2^58 / d within 2^-27 of itself and never above it, d from 2^26 on and below 2^27: three steps of Newton's, from a
+ * line that is within 0.086. */
+static inline TARGET ulanes reciprocal(ulanes d)
+{
+    const ulanes q32 = d << 5; /* 1/2..1; its reciprocal is in Q31 */
+    ulanes r = UINT32_C(1963258542) - q32;
+    for (int step = 0; step < 3; step++) {
+        r = high(r, -high(q32, r)) << 1;
+    }
+    return r - NEWTON_ERROR;
+}
+
+static inline TARGET lanes size_of(lanes x)
+{
+    const lanes sign = x >> 31;
+    return (x ^ sign) - sign;
+}
+
+/* x / z in Q24, round-half-up, |x| at most 16 z; inverse: of z 2^shift. */
+static inline TARGET lanes divide(lanes x, lanes z, ulanes shift, ulanes inverse)
+{
+    const lanes sign = x >> 31, size = (x ^ sign) - sign;
+    /* 0 to 3 too small: less than 2^28 2^-27 by the reciprocal, less than 1 by rounding down, a half as it is rounded
+     */
+    lanes q = (lanes)(high((ulanes)size << shift, inverse) >> 2);
+    /* what is left of size 2^24 and half of z, or half of z - 1 where x is negative: 0 up to 4 z */
+    lanes rest = (lanes)(((ulanes)size << 24) + (ulanes)((z + sign) >> 1) - (ulanes)q * (ulanes)z);
+    const lanes two = rest >= 2 * z;
+    q -= 2 * two;
+    rest -= 2 * z & two;
+    q -= rest >= z;
+    return (q ^ sign) - sign;
+}
+
+/* Q24 to a place, held to 32 bits: these are bits 24..55 where the upper nine are alike. */
+static inline TARGET lanes place(lanes at, int32_t scale, int32_t offset)
+{
+    const uint64_t base = (uint64_t)((int64_t)offset * (1 << 24) + (1 << 23));
+    const pairs even = multiply_signed(at, (lanes){0} + scale) + base;
+    const pairs uneven = multiply_signed((lanes)odd(at), (lanes){0} + scale) + base;
+    const lanes upper = join(even >> 32, uneven), sign = upper >> 31, fits = (upper >> 23) == sign;
+    return (join(even >> 24, uneven << 8) & fits) | (~fits & (sign ^ INT32_MAX));
+}
+
+static inline TARGET void ray_block(const t3r_ray_map *map, lanes a, lanes b, lanes *u, lanes *v, lanes *shown)
+{
+    const int32_t least = 1 << 18;
+    const lanes x = coordinate(map, 0, a, b), y = coordinate(map, 1, a, b), z = coordinate(map, 2, a, b);
+    const lanes most = z * map->steepest;
+    const lanes any = (z >= least) & (size_of(x) <= most) & (size_of(y) <= most);
+    const lanes by = (z & any) | (~any & least);
+    ulanes d = (ulanes)by, shift = (ulanes){0};
+    for (uint32_t step = 4; step > 0; step >>= 1) { /* below 2^22, 2^24, 2^25 */
+        const ulanes up = (ulanes)((lanes)d < 1 << (step == 4 ? 22 : step == 2 ? 24 : 25)) & step;
+        d <<= up;
+        shift += up;
+    }
+    const ulanes up = (ulanes)((lanes)d < 1 << 26) & 1;
+    const ulanes inverse = reciprocal(d << up);
+    *u = any & place(divide(x & any, by, shift + up, inverse), map->scale_q16[0], map->offset_q16[0]);
+    *v = any & place(divide(y & any, by, shift + up, inverse), map->scale_q16[1], map->offset_q16[1]);
+    *shown = z & any;
+}
+
+#endif
