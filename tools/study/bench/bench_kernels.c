@@ -40,3 +40,33 @@ uint32_t bench_kernels_of(const t3r_kernels *kernels, bench_kernel list[BENCH_KE
     T3R_VARIANTS(ADD)
     return count;
 }
+
+void bench_kernels_print(const t3r_kernels *kernels, FILE *out)
+{
+    bench_kernel list[BENCH_KERNELS_MOST];
+    const uint32_t count = bench_kernels_of(kernels, list);
+    bool listed[BENCH_KERNELS_MOST] = {false};
+    for (uint32_t i = 0; i < count; i++) {
+        if (listed[i]) {
+            continue;
+        }
+        fprintf(out, "%s %s:", i == 0 ? "" : ";", list[i].set);
+        for (uint32_t k = i; k < count; k++) {
+            if (strcmp(list[k].set, list[i].set) == 0) {
+                fprintf(out, " %s", list[k].entry);
+                listed[k] = true;
+            }
+        }
+    }
+    fputc('\n', out);
+}
+
+void bench_kernels_add_json(cJSON *root, const t3r_kernels *kernels)
+{
+    bench_kernel list[BENCH_KERNELS_MOST];
+    const uint32_t count = bench_kernels_of(kernels, list);
+    cJSON *object = cJSON_AddObjectToObject(root, "kernels");
+    for (uint32_t i = 0; i < count; i++) {
+        cJSON_AddStringToObject(object, list[i].entry, list[i].set);
+    }
+}

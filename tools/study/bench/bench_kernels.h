@@ -3,6 +3,9 @@
 #define TRIM3R_TOOLS_BENCH_KERNELS_H
 
 #include <stdint.h>
+#include <stdio.h>
+
+#include <cjson/cJSON.h>
 
 #include "kernels/kernels.h"
 
@@ -15,5 +18,10 @@ typedef struct bench_kernel {
 
 /* The entries that have variants in this build, in the table's order; returns their number. */
 uint32_t bench_kernels_of(const t3r_kernels *kernels, bench_kernel list[BENCH_KERNELS_MOST]);
+
+/* A line: the entries by the instruction set of their variants. Those that are not named have plain C alone. */
+void bench_kernels_print(const t3r_kernels *kernels, FILE *out);
+/* An object "kernels": the set of each entry. */
+void bench_kernels_add_json(cJSON *root, const t3r_kernels *kernels);
 
 #endif

@@ -3,17 +3,15 @@
 
 #include <argp.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "study/bench/bench_head.h"
+#include "study/bench/bench_against.h"
 #include "study/bench/bench_kernels.h"
-#include "study/bench/bench_points.h"
-#include "study/bench/bench_refine.h"
-#include "study/bench/bench_stereo.h"
+#include "study/bench/bench_stages.h"
+#include "study/bench/cpu_flags.h"
 #include "reconstruction/chosen_head.h"
 #include "cli/cli.h"
 #include "cli/file_options.h"
@@ -23,31 +21,18 @@
 #include "cli/word_list.h"
 #include "cpu.h"
 #include "reconstruction/option_names.h"
-#include "reconstruction/reconstruction.h"
-#include "room/room.h"
-#include "wavelet/wavelet.h"
 
-#define SIDE 256u
-#define VIEWS 2u
-#define POINTS (SIDE * SIDE * VIEWS)
-#define TRIMMED_TO 13107u /* 10 % of them */
-#define REFINEMENTS 4u
-#define SEED 1u
-#define MORE_PATHS 8u /* of stereo, beside the four of the pipeline */
-#define WAVELET_WIDTH 1280u
-#define WAVELET_HEIGHT 720u
-#define MAX_RUNS 101u
-#define ERROR_BYTES 512
+#define MAX_RUNS BENCH_TURNS_MOST
+#define PATH_BYTES 4200
 
 typedef struct bench_options {
-    const char *points, *head, *stages;
-    t3r_depth depth;
+    bench_settings settings;
+    const char *stages, *against;
     uint32_t runs;
-    processor_options processor;
     bool json;
 } bench_options;
 
-enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_JSON };
+enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_AGAINST, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", OPTION_READS, "points to cluster instead of the room's: raw float32, N x 6", 0},
@@ -57,6 +42,8 @@ static const struct argp_option options[] = {
      "source of depth of the scenes that are built and drawn: sensor (default), or stereo, from the colours", 0},
     {"stages", KEY_STAGES, "LIST", 0, "rows to time, as kmeans_ms,stereo_ms (all)", 0},
     {"runs", KEY_RUNS, "N", 0, "number of timed runs of each stage, 1..101 (7)", 0},
+    {"against", KEY_AGAINST, "BINARY", OPTION_READS,
+     "another trim3r, to run its bench and this one's in --runs turns: how many times as fast each stage is", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -66,22 +53,25 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     bench_options *o = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
-        state->child_inputs[0] = &o->processor;
+        state->child_inputs[0] = &o->settings.processor;
         return 0;
     case KEY_POINTS:
-        o->points = arg;
+        o->settings.points = arg;
         return 0;
     case KEY_HEAD:
-        o->head = option_head(state, "head", arg);
+        o->settings.head = option_head(state, "head", arg);
         return 0;
     case KEY_DEPTH:
-        o->depth = option_depth(state, "depth", arg);
+        o->settings.depth = option_depth(state, "depth", arg);
         return 0;
     case KEY_STAGES:
         o->stages = arg;
         return 0;
     case KEY_RUNS:
         o->runs = option_number(state, "runs", arg, 1, MAX_RUNS);
+        return 0;
+    case KEY_AGAINST:
+        o->against = arg;
         return 0;
     case KEY_JSON:
         o->json = true;
@@ -100,328 +90,46 @@ static const struct argp argp = {
     .parser = parse,
     .doc =
         "Time the stages on two 256x256 views of the built-in room (131,072 points): the median of interleaved runs, "
-        "with "
-        "the least and the most beside; processor time of one thread, or with more of them elapsed time."
+        "with the least and the most beside, and the median for each pixel, point or pair; processor time of one "
+        "thread, or with more of them elapsed time."
         "\vExamples:\n"
         "  trim3r bench\n"
         "  trim3r bench --head base\n"
         "  trim3r bench --depth stereo\n"
         "  trim3r bench --json --runs 21\n"
-        "  trim3r bench --points cloud.f32 --stages kmeans_ms --json\n\n"
+        "  trim3r bench --points cloud.f32 --stages kmeans_ms --json\n"
+        "  trim3r bench --against ../older/trim3r --runs 15\n\n"
         "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of the "
         "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
         "255; a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
         "multiply-accumulates of a head's layers a second of the whole head stage, every point kept. refine_ms: one "
         "refinement pass over both views, 13,107 Gaussians. stereo_ms: depth of both views from their colours, holes "
         "filled, with the four paths that --depth stereo takes; stereo_8_paths_ms: with eight. build_analytic_ms and "
-        "build_small_ms have it in them with --depth stereo.",
+        "build_small_ms have it in them with --depth stereo. A blended pair is a pixel and a splat that is drawn "
+        "there, "
+        "whole groups of eight columns. machine_gmac_per_s: 10^9 multiply-adds of 8-bit numbers a second, by the "
+        "widest "
+        "instruction that --cpu-mask leaves, all in registers. machine_copy_gb_per_s: 10^9 bytes a second, read and "
+        "written, of 64 MiB that are copied.\n\n"
+        "--against: the programs take turns, and each turn gives a ratio of times. Its median comes with the least and "
+        "the most. Above 1, this program is the faster one. Stages that one of them lacks are named.",
     .children = children,
 };
 
-/* ---- the work ---------------------------------------------------------------------------------------------------- */
+/* ---- the rows -------------------------------------------------------------------------------------------------- */
 
-/* What the stages work on, each built before the first of them that needs it. */
-typedef enum scene_kind { FULL, TRIMMED, LEARNED, REFINED, MATCHED, HEADED, SCENES, NO_SCENE = SCENES } scene_kind;
-
-static const struct {
-    uint32_t gaussians;
-    enum { ANALYTIC, SMALL, MEASURED } head; /* the closed form; `small`; the one that --head names */
-    bool keep;                               /* the analysis, to run a stage alone again */
-    uint32_t refinements;
-    bool stereo; /* whatever --depth says */
-} scene_settings[SCENES] = {
-    [FULL] = {POINTS, ANALYTIC, false, REFINEMENTS, false},
-    [TRIMMED] = {TRIMMED_TO, ANALYTIC, false, REFINEMENTS, false},
-    [LEARNED] = {TRIMMED_TO, SMALL, false, REFINEMENTS, false},
-    [REFINED] = {TRIMMED_TO, ANALYTIC, true, 1, false},
-    [MATCHED] = {TRIMMED_TO, ANALYTIC, true, 0, true},
-    [HEADED] = {POINTS, MEASURED, true, 0, false},
-};
-
-typedef struct scene_bench {
-    t3r_runtime *runtime;
-    void *arena;
-} scene_bench;
-
-typedef struct workload {
-    uint8_t *rgb[VIEWS];
-    uint16_t *depth[VIEWS];
-    t3r_depth source; /* of the scenes' depth */
-    t3r_camera camera[VIEWS];
-    t3r_camera viewpoint;
-    scene_bench scene[SCENES];
-    t3r_gaussian *start; /* what each measured pass of refinement begins with: its scene as it was built */
-    void *stereo_work;   /* of a pair matched with eight paths */
-    chosen_head small, measured;
-    t3r_threads *threads;
-    uint32_t cpu; /* features that kernels may use */
-    t3r_kernels kernels;
-    uint8_t *view; /* where renders go */
-    uint8_t *wavelet_rgb;
-    uint8_t *wavelet_planes;
-    int16_t *wavelet_plane, *wavelet_work;
-    uint16_t *texture;
-    bench_points points;
-    double kmeans_msd;
-} workload;
-
-static t3r_status build(workload *w, t3r_runtime *runtime)
+/* Which rows are timed, of a comma-separated list of keys; NULL: all. */
+static int choose_stages(const char *list, bool chosen[BENCH_STAGES_MOST])
 {
-    t3r_scene scene;
-    t3r_status status = t3r_reset(runtime);
-    for (uint32_t v = 0; v < VIEWS && status == T3R_OK; v++) {
-        t3r_frame frame = {
-            .format = T3R_PIXEL_RGB24,
-            .width = SIDE,
-            .height = SIDE,
-            .planes = {w->rgb[v]},
-            .stride_bytes = {3 * SIDE},
-            .depth = (const uint8_t *)w->depth[v], /* little-endian hosts: the bench compares times, not bits */
-            .depth_width = SIDE,
-            .depth_height = SIDE,
-            .depth_stride_bytes = 2 * SIDE,
-            .depth_unit_q40 = ROOM_DEPTH_UNIT_Q40,
-        };
-        status = t3r_add_view(runtime, &frame, &w->camera[v]);
-    }
-    return status == T3R_OK ? t3r_reconstruct(runtime, NULL, &scene) : status;
-}
-
-static t3r_status open_scene(workload *w, scene_kind kind)
-{
-    scene_bench *s = &w->scene[kind];
-    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, scene_settings[kind].gaussians);
-    const chosen_head *heads[] = {[ANALYTIC] = NULL, [SMALL] = &w->small, [MEASURED] = &w->measured};
-    const chosen_head *head = heads[scene_settings[kind].head];
-    config.depth = scene_settings[kind].stereo ? T3R_DEPTH_STEREO : w->source;
-    config.keep_analysis = scene_settings[kind].keep;
-    config.refinements = scene_settings[kind].refinements;
-    if (head != NULL) {
-        chosen_head_configure(head, &config);
-    }
-    t3r_plan_info plan;
-    config.workers = w->threads != NULL ? t3r_threads_count(w->threads) : 1;
-    t3r_status status = t3r_plan(&config, &plan);
-    if (status != T3R_OK || posix_memalign(&s->arena, T3R_ARENA_ALIGN, plan.bytes) != 0) {
-        s->arena = NULL;
-        return T3R_ERR_ARENA;
-    }
-    status = t3r_init(&s->runtime, s->arena, plan.bytes, &config);
-    t3r_hooks hooks = {.user = w->threads, .parallel_for = w->threads != NULL ? t3r_threads_run : NULL};
-    if (status == T3R_OK) {
-        (void)t3r_set_cpu(s->runtime, w->cpu);
-        status = t3r_set_hooks(s->runtime, &hooks);
-    }
-    if (status == T3R_OK && head != NULL) {
-        status = t3r_bind_head(s->runtime, head->weights, head->bytes);
-    }
-    return status == T3R_OK ? build(w, s->runtime) : status;
-}
-
-static t3r_status keep_start(workload *w)
-{
-    t3r_scene scene;
-    t3r_status status = t3r_get_scene(w->scene[REFINED].runtime, &scene);
-    if (status != T3R_OK) {
-        return status;
-    }
-    w->start = malloc(TRIMMED_TO * sizeof *w->start);
-    if (w->start == NULL) {
-        return T3R_ERR_ARENA;
-    }
-    memcpy(w->start, scene.gaussians, scene.count * sizeof *w->start);
-    return T3R_OK;
-}
-
-static t3r_status draw(workload *w, t3r_runtime *runtime)
-{
-    t3r_target target = {.width = SIDE, .height = SIDE, .rgb = w->view, .rgb_stride_bytes = 3 * SIDE};
-    return t3r_render(runtime, &w->viewpoint, &target);
-}
-
-static void close_workload(workload *w)
-{
-    for (uint32_t v = 0; v < VIEWS; v++) {
-        free(w->rgb[v]);
-        free(w->depth[v]);
-    }
-    for (int kind = 0; kind < SCENES; kind++) {
-        free(w->scene[kind].arena);
-    }
-    free(w->start);
-    free(w->stereo_work);
-    chosen_head_close(&w->small);
-    chosen_head_close(&w->measured);
-    free(w->view);
-    free(w->wavelet_rgb);
-    free(w->wavelet_planes);
-    free(w->wavelet_plane);
-    free(w->wavelet_work);
-    free(w->texture);
-    bench_points_free(&w->points);
-    t3r_threads_stop(w->threads);
-}
-
-static bool allocate(workload *w)
-{
-    size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
-    bool ok = true;
-    for (uint32_t v = 0; v < VIEWS; v++) {
-        w->rgb[v] = malloc((size_t)SIDE * SIDE * 3);
-        w->depth[v] = malloc((size_t)SIDE * SIDE * 2);
-        ok = ok && w->rgb[v] != NULL && w->depth[v] != NULL;
-    }
-    w->view = malloc((size_t)SIDE * SIDE * 3);
-    w->wavelet_rgb = malloc(pixels * 3);
-    w->wavelet_planes = malloc(pixels * 3);
-    w->wavelet_plane = malloc(pixels * sizeof *w->wavelet_plane);
-    w->wavelet_work = malloc(T3R_WAVELET_ROW_BYTES(WAVELET_WIDTH));
-    w->texture = malloc(pixels * sizeof *w->texture);
-    if (posix_memalign(&w->stereo_work, T3R_ARENA_ALIGN, bench_stereo_bytes(SIDE, SIDE, MORE_PATHS)) != 0) {
-        w->stereo_work = NULL;
-    }
-    return ok && w->view != NULL && w->wavelet_rgb != NULL && w->wavelet_planes != NULL && w->wavelet_plane != NULL &&
-           w->wavelet_work != NULL && w->texture != NULL && w->stereo_work != NULL;
-}
-
-static int open_heads(workload *w, const bench_options *o)
-{
-    int code = chosen_head_open(&w->small, "small");
-    if (code == CLI_OK) {
-        code = chosen_head_open(&w->measured, o->head);
-    }
-    if (code == CLI_OK && w->measured.weights == NULL) {
-        code = cli_error(CLI_BAD_USAGE, "--head %s: a network is measured; nano, small, base, FILE.t3w", o->head);
-    }
-    return code;
-}
-
-static int open_workload(workload *w, const bench_options *o)
-{
-    int code = open_heads(w, o);
-    if (code != CLI_OK) {
-        return code;
-    }
-    char error[ERROR_BYTES] = "";
-    if (o->points != NULL && bench_points_read(&w->points, o->points, error, sizeof error)) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
-    }
-    if (!allocate(w)) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    w->cpu = o->processor.cpu;
-    t3r_kernels_choose(&w->kernels, o->processor.cpu);
-    if (o->processor.threads > 1 && (w->threads = t3r_threads_start(o->processor.threads)) == NULL) {
-        return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", o->processor.threads);
-    }
-    /* context views 0 and 2, seen from view 1 between them */
-    for (uint32_t v = 0; v < VIEWS; v++) {
-        room_camera(2 * v, SIDE, SIDE, &w->camera[v]);
-        room_frame(2 * v, SIDE, SIDE, SEED, w->rgb[v], w->depth[v]);
-    }
-    room_camera(1, SIDE, SIDE, &w->viewpoint);
-    room_frame(0, WAVELET_WIDTH, WAVELET_HEIGHT, SEED, w->wavelet_rgb, NULL);
-    size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
-    for (size_t i = 0; i < pixels * 3; i++) {
-        w->wavelet_planes[i % 3 * pixels + i / 3] = w->wavelet_rgb[i];
-    }
-    if (o->points == NULL &&
-        bench_points_unproject(&w->points, VIEWS, SIDE, SIDE, w->rgb, w->depth, w->camera, error, sizeof error)) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
-    }
-    return CLI_OK;
-}
-
-/* ---- the stages -------------------------------------------------------------------------------------------------- */
-
-static bool run_raster_full(workload *w)
-{
-    return draw(w, w->scene[FULL].runtime) == T3R_OK;
-}
-
-static bool run_raster_trimmed(workload *w)
-{
-    return draw(w, w->scene[TRIMMED].runtime) == T3R_OK;
-}
-
-static bool run_build(workload *w)
-{
-    return build(w, w->scene[TRIMMED].runtime) == T3R_OK;
-}
-
-static bool run_build_learned(workload *w)
-{
-    return build(w, w->scene[LEARNED].runtime) == T3R_OK;
-}
-
-static bool run_head(workload *w)
-{
-    return bench_head_run(w->scene[HEADED].runtime);
-}
-
-static bool run_refine(workload *w)
-{
-    return bench_refine_run(w->scene[REFINED].runtime, w->start);
-}
-
-static bool run_stereo(workload *w)
-{
-    return bench_stereo_run(w->scene[MATCHED].runtime);
-}
-
-static bool run_stereo_8_paths(workload *w)
-{
-    return bench_stereo_paths_run(w->scene[MATCHED].runtime, MORE_PATHS, w->stereo_work);
-}
-
-static bool run_kmeans(workload *w)
-{
-    return bench_points_cluster(&w->points, w->cpu);
-}
-
-static bool run_texture(workload *w)
-{
-    size_t pixels = (size_t)WAVELET_WIDTH * WAVELET_HEIGHT;
-    const uint8_t *colour[3] = {w->wavelet_planes, w->wavelet_planes + pixels, w->wavelet_planes + 2 * pixels};
-    t3r_wavelet_texture(&w->kernels, colour, WAVELET_WIDTH, WAVELET_HEIGHT, 2, T3R_WAVELET_DB2, w->texture,
-                        w->wavelet_plane, w->wavelet_work);
-    return true;
-}
-
-#define MILLISECONDS 1e3
-#define NANOSECONDS_A_PIXEL (1e9 / ((double)WAVELET_WIDTH * WAVELET_HEIGHT))
-
-static const struct {
-    const char *key;
-    bool (*run)(workload *w);
-    double unit; /* per second; 0: 10^9 multiply-accumulates of the head a second */
-    scene_kind scene;
-} stages[] = {
-    {"raster_131k_ms", run_raster_full, MILLISECONDS, FULL},
-    {"raster_13k_ms", run_raster_trimmed, MILLISECONDS, TRIMMED},
-    {"refine_ms", run_refine, MILLISECONDS, REFINED},
-    {"stereo_ms", run_stereo, MILLISECONDS, MATCHED},
-    {"stereo_8_paths_ms", run_stereo_8_paths, MILLISECONDS, MATCHED},
-    {"kmeans_ms", run_kmeans, MILLISECONDS, NO_SCENE},
-    {"texture_ns_per_pixel", run_texture, NANOSECONDS_A_PIXEL, NO_SCENE},
-    {"build_analytic_ms", run_build, MILLISECONDS, TRIMMED},
-    {"build_small_ms", run_build_learned, MILLISECONDS, LEARNED},
-    {"head_gmac_per_s", run_head, 0, HEADED},
-};
-enum { STAGE_COUNT = sizeof stages / sizeof stages[0] };
-
-/* Which stages are timed, of a comma-separated list of keys; NULL: all. */
-static int choose_stages(const char *list, bool chosen[STAGE_COUNT])
-{
-    for (int s = 0; s < STAGE_COUNT; s++) {
-        chosen[s] = list == NULL;
+    for (int s = 0; s < BENCH_STAGES_MOST; s++) {
+        chosen[s] = list == NULL && bench_stages[s].key != NULL;
     }
     for (list_word w = word_first(list); w.text != NULL; w = word_next(w)) {
         int s = 0;
-        while (s < STAGE_COUNT && !word_is(w, stages[s].key)) {
+        while (bench_stages[s].key != NULL && !word_is(w, bench_stages[s].key)) {
             s++;
         }
-        if (s == STAGE_COUNT) {
+        if (bench_stages[s].key == NULL) {
             return cli_error(CLI_BAD_USAGE, "--stages: no row is called '%.*s'; see trim3r bench", (int)w.length,
                              w.text);
         }
@@ -430,33 +138,29 @@ static int choose_stages(const char *list, bool chosen[STAGE_COUNT])
     return CLI_OK;
 }
 
-/* Whether the points have their clusters afterwards. */
-static bool clusters(const bool chosen[STAGE_COUNT])
-{
-    bool any = false;
-    for (int s = 0; s < STAGE_COUNT; s++) {
-        any = any || (chosen[s] && stages[s].run == run_kmeans);
-    }
-    return any;
-}
+/* A row, once it is timed. */
+typedef struct row {
+    const bench_stage *stage; /* NULL: it is not chosen */
+    double items;             /* that a run handles; 0 = they are not counted */
+    double seconds[MAX_RUNS]; /* sorted in the end */
+} row;
 
-static int open_scenes(workload *w, const bool chosen[STAGE_COUNT])
+static int open_rows(bench_work *w, const bool chosen[BENCH_STAGES_MOST], row rows[BENCH_STAGES_MOST])
 {
-    t3r_status status = T3R_OK;
-    for (int s = 0; s < STAGE_COUNT && status == T3R_OK; s++) {
-        scene_kind kind = stages[s].scene;
-        if (!chosen[s] || kind == NO_SCENE || w->scene[kind].arena != NULL) {
+    for (int s = 0; s < BENCH_STAGES_MOST; s++) {
+        if (!chosen[s]) {
             continue;
         }
-        status = open_scene(w, kind);
-        if (status == T3R_OK && kind == REFINED) {
-            status = keep_start(w);
+        const t3r_status status = bench_work_open_scene(w, bench_stages[s].scene);
+        if (status != T3R_OK) {
+            return cli_error(CLI_BAD_INPUT, "the built-in room: %s", t3r_error_text(status));
         }
+        rows[s].stage = &bench_stages[s];
     }
-    return status == T3R_OK ? CLI_OK : cli_error(CLI_BAD_INPUT, "the built-in room: %s", t3r_error_text(status));
+    return CLI_OK;
 }
 
-static double seconds(clockid_t clock)
+static double seconds_of(clockid_t clock)
 {
     struct timespec now;
     clock_gettime(clock, &now);
@@ -469,173 +173,191 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double median(const double *sorted, uint32_t count)
-{
-    return (sorted[(count - 1) / 2] + sorted[count / 2]) / 2;
-}
-
-/* Round after round through all stages, so that a slow moment of the machine hits each alike; the first is not counted.
+/* Round after round through all rows, so that a slow moment of the machine hits each alike; the first is not counted.
  */
-static int time_stages(workload *w, const bench_options *o, const bool chosen[STAGE_COUNT],
-                       double times[STAGE_COUNT][MAX_RUNS])
+static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGES_MOST])
 {
-    const double giga_macs = bench_head_macs(w->measured.weights, SIDE, SIDE, VIEWS) / 1e9;
-    clockid_t clock = o->processor.threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
+    clockid_t clock = o->settings.processor.threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
     for (uint32_t run = 0; run <= o->runs; run++) {
-        for (int s = 0; s < STAGE_COUNT; s++) {
-            if (!chosen[s]) {
+        for (uint32_t s = 0; s < BENCH_STAGES_MOST; s++) {
+            const bench_stage *stage = rows[s].stage;
+            if (stage == NULL) {
                 continue;
             }
-            double start = seconds(clock);
-            if (!stages[s].run(w)) {
-                return cli_error(CLI_BAD_INPUT, "%s: the stage failed", stages[s].key);
+            double start = seconds_of(clock);
+            if (!stage->run(w)) {
+                return cli_error(CLI_BAD_INPUT, "%s: the stage failed", stage->key);
             }
             if (run > 0) {
-                double taken = seconds(clock) - start;
-                times[s][run - 1] = stages[s].unit > 0 ? taken * stages[s].unit : giga_macs / taken;
+                rows[s].seconds[run - 1] = seconds_of(clock) - start;
             }
-            cli_progress(stages[s].key, run * STAGE_COUNT + (uint32_t)s, (o->runs + 1) * STAGE_COUNT);
+            cli_progress(stage->key, run * BENCH_STAGES_MOST + s, (o->runs + 1) * BENCH_STAGES_MOST);
         }
     }
     cli_progress_end();
-    for (int s = 0; s < STAGE_COUNT; s++) {
-        qsort(times[s], o->runs, sizeof times[s][0], compare_doubles);
+    for (uint32_t s = 0; s < BENCH_STAGES_MOST; s++) {
+        qsort(rows[s].seconds, o->runs, sizeof rows[s].seconds[0], compare_doubles);
+        rows[s].items = rows[s].stage != NULL && rows[s].stage->items != NULL ? rows[s].stage->items(w) : 0;
     }
     return CLI_OK;
 }
 
-/* The processor's vector extensions, as the system names them; "" where it names none. */
-static void read_cpu_flags(char *flags, size_t flags_bytes)
+/* ---- what is printed --------------------------------------------------------------------------------------------- */
+
+typedef struct figures {
+    double median, least, most; /* in the row's unit */
+    double each_ns;             /* of an item, at the median */
+} figures;
+
+static figures figures_of(const row *r, uint32_t runs)
 {
-    static const char *const families[] = {"sse", "ssse", "avx", "fma", "asimd", "neon", "sve", "mve"};
-    flags[0] = '\0';
-    char line[8192];
-    FILE *file = fopen("/proc/cpuinfo", "r");
-    while (file != NULL && fgets(line, sizeof line, file) != NULL) {
-        if (strncmp(line, "flags", 5) != 0 && strncmp(line, "Features", 8) != 0) {
-            continue;
-        }
-        size_t length = 0;
-        char *rest = NULL;
-        for (char *word = strtok_r(line, " \t\n:", &rest); word != NULL; word = strtok_r(NULL, " \t\n:", &rest)) {
-            for (size_t i = 0; i < sizeof families / sizeof families[0]; i++) {
-                if (strncmp(word, families[i], strlen(families[i])) == 0 && length + strlen(word) + 2 < flags_bytes) {
-                    length +=
-                        (size_t)snprintf(flags + length, flags_bytes - length, "%s%s", length == 0 ? "" : " ", word);
-                    break;
-                }
-            }
-        }
-        break;
-    }
-    if (file != NULL) {
-        fclose(file);
-    }
+    const double median = (r->seconds[(runs - 1) / 2] + r->seconds[runs / 2]) / 2;
+    const double first = bench_stage_figure(r->stage, r->seconds[0], r->items);
+    const double last = bench_stage_figure(r->stage, r->seconds[runs - 1], r->items);
+    return (figures){
+        .median = bench_stage_figure(r->stage, median, r->items),
+        .least = first < last ? first : last, /* a rate is highest where the time is least */
+        .most = first < last ? last : first,
+        .each_ns = r->items > 0 ? median * 1e9 / r->items : 0,
+    };
 }
 
-/* The inner loops by the instruction set of their variants; those that are not named have plain C alone. */
-static void print_kernels(const t3r_kernels *kernels)
+/* Whether the points have their clusters. */
+static bool are_clustered(const row rows[BENCH_STAGES_MOST])
 {
-    bench_kernel list[BENCH_KERNELS_MOST];
-    const uint32_t count = bench_kernels_of(kernels, list);
-    bool listed[BENCH_KERNELS_MOST] = {false};
+    for (int s = 0; s < BENCH_STAGES_MOST; s++) {
+        if (rows[s].stage != NULL && strcmp(rows[s].stage->key, "kmeans_ms") == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void print_text(const bench_work *w, const bench_options *o, const row rows[BENCH_STAGES_MOST])
+{
+    char flags[CPU_FLAGS_BYTES];
+    for (int s = 0; s < BENCH_STAGES_MOST; s++) {
+        const bench_stage *stage = rows[s].stage;
+        if (stage == NULL) {
+            continue;
+        }
+        const figures f = figures_of(&rows[s], o->runs);
+        char spread[40];
+        snprintf(spread, sizeof spread, "(%.3f to %.3f)", f.least, f.most);
+        printf("%-22s %9.3f  ", stage->key, f.median);
+        if (stage->each != NULL) {
+            printf("%-22s %9.3f %s\n", spread, f.each_ns, stage->each);
+        } else {
+            printf("%s\n", spread);
+        }
+    }
+    if (are_clustered(rows)) {
+        printf("%-22s %9.5f  (%" PRIu32 " points)\n", "kmeans_msd", bench_points_mean_squared_distance(&w->points),
+               w->points.count);
+    }
+    cpu_flags(flags);
+    printf("%-22s %s\n", "cpu_flags", flags);
     printf("%-22s", "kernels");
-    for (uint32_t i = 0; i < count; i++) {
-        if (listed[i]) {
-            continue;
-        }
-        printf("%s %s:", i == 0 ? "" : ";", list[i].set);
-        for (uint32_t k = i; k < count; k++) {
-            if (strcmp(list[k].set, list[i].set) == 0) {
-                printf(" %s", list[k].entry);
-                listed[k] = true;
-            }
-        }
-    }
-    printf("\n");
+    bench_kernels_print(&w->kernels, stdout);
 }
 
-static void add_kernels(cJSON *root, const t3r_kernels *kernels)
+static void print_json(const bench_work *w, const bench_options *o, const row rows[BENCH_STAGES_MOST])
 {
-    bench_kernel list[BENCH_KERNELS_MOST];
-    const uint32_t count = bench_kernels_of(kernels, list);
-    cJSON *object = cJSON_AddObjectToObject(root, "kernels");
-    for (uint32_t i = 0; i < count; i++) {
-        cJSON_AddStringToObject(object, list[i].entry, list[i].set);
-    }
-}
-
-static void print_results(const workload *w, const bench_options *o, const bool chosen[STAGE_COUNT],
-                          double times[STAGE_COUNT][MAX_RUNS])
-{
-    char flags[1024], flags_used[64];
-    read_cpu_flags(flags, sizeof flags);
-    if (!o->json) {
-        for (int s = 0; s < STAGE_COUNT; s++) {
-            if (!chosen[s]) {
-                continue;
-            }
-            printf("%-22s %9.3f  (%.3f to %.3f)\n", stages[s].key, median(times[s], o->runs), times[s][0],
-                   times[s][o->runs - 1]);
-        }
-        if (clusters(chosen)) {
-            printf("%-22s %9.5f  (%" PRIu32 " points)\n", "kmeans_msd", w->kmeans_msd, w->points.count);
-        }
-        printf("%-22s %s\n", "cpu_flags", flags);
-        print_kernels(&w->kernels);
-        return;
-    }
+    char flags[CPU_FLAGS_BYTES], flags_used[64], key[64];
     cJSON *root = cJSON_CreateObject();
-    for (int s = 0; s < STAGE_COUNT; s++) {
-        if (!chosen[s]) {
+    for (int s = 0; s < BENCH_STAGES_MOST; s++) {
+        const bench_stage *stage = rows[s].stage;
+        if (stage == NULL) {
             continue;
         }
-        char key[64];
-        cJSON_AddNumberToObject(root, stages[s].key, median(times[s], o->runs));
-        snprintf(key, sizeof key, "%s_min", stages[s].key);
-        cJSON_AddNumberToObject(root, key, times[s][0]);
-        snprintf(key, sizeof key, "%s_max", stages[s].key);
-        cJSON_AddNumberToObject(root, key, times[s][o->runs - 1]);
+        const figures f = figures_of(&rows[s], o->runs);
+        cJSON_AddNumberToObject(root, stage->key, f.median);
+        snprintf(key, sizeof key, "%s_min", stage->key);
+        cJSON_AddNumberToObject(root, key, f.least);
+        snprintf(key, sizeof key, "%s_max", stage->key);
+        cJSON_AddNumberToObject(root, key, f.most);
+        if (stage->each_key != NULL) {
+            cJSON_AddNumberToObject(root, stage->each_key, f.each_ns);
+        }
     }
-    if (clusters(chosen)) {
-        cJSON_AddNumberToObject(root, "kmeans_msd", w->kmeans_msd);
+    if (are_clustered(rows)) {
+        cJSON_AddNumberToObject(root, "kmeans_msd", bench_points_mean_squared_distance(&w->points));
         json_add_integer(root, "kmeans_points", w->points.count);
     }
     cJSON_AddStringToObject(root, "head", w->measured.name);
     cJSON_AddStringToObject(root, "head_bits", w->measured.bits);
-    cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->depth));
+    cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.depth));
+    cpu_flags(flags);
     cJSON_AddStringToObject(root, "cpu_flags", flags);
-    json_add_integer(root, "threads", o->processor.threads);
-    t3r_cpu_describe(o->processor.cpu, flags_used, sizeof flags_used);
+    json_add_integer(root, "threads", o->settings.processor.threads);
+    t3r_cpu_describe(o->settings.processor.cpu, flags_used, sizeof flags_used);
     cJSON_AddStringToObject(root, "cpu_used", flags_used);
-    add_kernels(root, &w->kernels);
+    bench_kernels_add_json(root, &w->kernels);
     json_add_integer(root, "runs", o->runs);
     json_print(root);
 }
 
+/* ---- the runs ---------------------------------------------------------------------------------------------------- */
+
+static int run_alone(const bench_options *o, const bool chosen[BENCH_STAGES_MOST])
+{
+    bench_work w;
+    row *rows = calloc(BENCH_STAGES_MOST, sizeof *rows);
+    if (rows == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    int code = bench_work_open(&w, &o->settings);
+    code = code == CLI_OK ? open_rows(&w, chosen, rows) : code;
+    code = code == CLI_OK ? time_rows(&w, o, rows) : code;
+    if (code == CLI_OK && o->json) {
+        print_json(&w, o, rows);
+    } else if (code == CLI_OK) {
+        print_text(&w, o, rows);
+    }
+    bench_work_close(&w);
+    free(rows);
+    return code;
+}
+
+/* Both get the options that are not the default. */
+static int run_against(const bench_options *o, const bool chosen[BENCH_STAGES_MOST])
+{
+    char points[PATH_BYTES], head[PATH_BYTES], depth[32], threads[32], mask[64];
+    bench_contest contest = {.other = o->against, .chosen = chosen, .turns = o->runs, .json = o->json};
+    const bench_settings *s = &o->settings;
+    const processor_options usual = processor_defaults();
+    if (s->points != NULL) {
+        snprintf(points, sizeof points, "--points=%s", s->points);
+        contest.passed[contest.passed_count++] = points;
+    }
+    if (strcmp(s->head, CHOSEN_HEAD_DEFAULT) != 0) {
+        snprintf(head, sizeof head, "--head=%s", s->head);
+        contest.passed[contest.passed_count++] = head;
+    }
+    if (s->depth != T3R_DEPTH_SENSOR) {
+        snprintf(depth, sizeof depth, "--depth=%s", t3r_depth_name(s->depth));
+        contest.passed[contest.passed_count++] = depth;
+    }
+    if (s->processor.threads != usual.threads) {
+        snprintf(threads, sizeof threads, "--threads=%" PRIu32, s->processor.threads);
+        contest.passed[contest.passed_count++] = threads;
+    }
+    if (s->processor.cpu != usual.cpu) {
+        snprintf(mask, sizeof mask, "--cpu-mask=0x%" PRIx32, s->processor.cpu);
+        contest.passed[contest.passed_count++] = mask;
+    }
+    return bench_against(&contest);
+}
+
 int command_bench(int argc, char **argv)
 {
-    bench_options o = {.head = CHOSEN_HEAD_DEFAULT, .runs = 7, .processor = processor_defaults()};
+    bench_options o = {.settings = {.head = CHOSEN_HEAD_DEFAULT, .processor = processor_defaults()}, .runs = 7};
     file_options_parse(&argp, argc, argv, &o);
 
-    bool chosen[STAGE_COUNT];
+    bool chosen[BENCH_STAGES_MOST];
     int code = choose_stages(o.stages, chosen);
     if (code != CLI_OK) {
         return code;
     }
-    workload w = {.source = o.depth};
-    double times[STAGE_COUNT][MAX_RUNS] = {0};
-    code = open_workload(&w, &o);
-    if (code == CLI_OK) {
-        code = open_scenes(&w, chosen);
-    }
-    if (code == CLI_OK) {
-        code = time_stages(&w, &o, chosen, times);
-    }
-    if (code == CLI_OK) {
-        w.kmeans_msd = clusters(chosen) ? bench_points_mean_squared_distance(&w.points) : 0;
-        print_results(&w, &o, chosen, times);
-    }
-    close_workload(&w);
-    return code;
+    return o.against != NULL ? run_against(&o, chosen) : run_alone(&o, chosen);
 }
