@@ -28,6 +28,7 @@ LINES = {
     "diff": (["scene.ply", "scene.ply"], []),
     "plan": ([*SIZE, "--gaussians", "9", "--svg", "out.svg"], ["out.svg"]),
     "bench": (["--runs", "1", "--stages", "texture_ns_per_pixel"], []),
+    "doctor": ([], []),
     "quantize": ([os.path.join(HEADS, "small.safetensors"), "--calibrate", "room.mcap", "-o", "out.t3w"], ["out.t3w"]),
     "head-info": ([os.path.join(HEADS, "small.safetensors")], []),
 }

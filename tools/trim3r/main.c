@@ -30,6 +30,7 @@ static const struct {
     {"diff", command_diff, "compare two scenes or two views"},
     {"plan", command_plan, "list an arena's buffers and bytes before anything runs"},
     {"bench", command_bench, "time each stage on this machine"},
+    {"doctor", command_doctor, "list what this machine and this build have, and check their bits"},
     {"quantize", command_quantize, "turn a trained head into integers: a weight file or a C source"},
     {"head-info", command_head_info, "show a head's layers, multiply-accumulates and bytes"},
 };

@@ -13,6 +13,7 @@ int command_eval(int argc, char **argv);
 int command_stress(int argc, char **argv);
 int command_replay(int argc, char **argv);
 int command_diff(int argc, char **argv);
+int command_doctor(int argc, char **argv);
 int command_plan(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_room(int argc, char **argv);
