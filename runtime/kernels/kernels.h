@@ -17,6 +17,7 @@
 #include "image_rows.h"
 #include "nearest.h"
 #include "path_step.h"
+#include "place.h"
 #include "project.h"
 #include "radix.h"
 #include "ray_row.h"
@@ -66,6 +67,7 @@ typedef struct t3r_kernels {
     t3r_project_kernel *project;
     t3r_radix_count_kernel *radix_count;
     t3r_radix_pass_kernel *radix_pass;
+    t3r_place_kernel *place;
     t3r_blend_kernel *blend;
     t3r_blend_keep_kernel *blend_keep;
     t3r_scatter_kernel *scatter;

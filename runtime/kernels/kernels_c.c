@@ -35,6 +35,7 @@ const t3r_kernels t3r_kernels_c = {
     .project = t3r_project_c,
     .radix_count = t3r_radix_count_c,
     .radix_pass = t3r_radix_pass_c,
+    .place = t3r_place_c,
     .blend = t3r_blend_c,
     .blend_keep = t3r_blend_keep_c,
     .scatter = t3r_scatter_c,

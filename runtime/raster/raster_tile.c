@@ -3,121 +3,18 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 
-/* A splat centred at most this far from a tile needs no test against its columns: within 24 + 16 px of the centre,
- * along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6), and Q17 holds
- * 16,383. */
-#define SMALL_SPLAT 24
-/* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
-#define LEVEL_MOST 6
-
-/* The least of q + 2 h t + a t^2 for t in [0, length], all Q18 but the length in pixels. */
-static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
-{
-    int64_t t_q8 = h >= 0 ? 0 : length << 8;
-    if (h < 0 && a > 0) {
-        t_q8 = T3R_MIN((-h * 256) / a, t_q8);
-    }
-    return q + ((h * t_q8) >> 7) + ((a * t_q8 * t_q8) >> 16);
-}
-
-/* Whether a large splat's quadratic falls below LEVEL_MOST anywhere on eight columns of a tile (pixel centres). It is
- * convex, so unless the centre lies inside, its least value is on an edge. Within its box a splat is at most
- * 2^14.6 px away: half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
-static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
-{
-    const int64_t width = T3R_LANES - 1, height = T3R_TILE_SIDE - 1;
-    int64_t left = ((int64_t)x << 12) - s->x_q12, top = ((int64_t)y << 12) - s->y_q12;
-    int64_t right = left + (width << 12), bottom = top + (height << 12);
-    if (left <= 0 && right >= 0 && top <= 0 && bottom >= 0) {
-        return true;
-    }
-    int64_t a = s->a_q30 >> 12, c = s->c_q30 >> 12;
-    int64_t least = INT64_MAX;
-    for (int corner = 0; corner < 2; corner++) { /* top left, then bottom right */
-        int64_t dx = corner == 0 ? left : right, dy = corner == 0 ? top : bottom;
-        int64_t hx = (s->a_q30 * dx + s->b_q30 * dy) >> 24, hy = (s->b_q30 * dx + s->c_q30 * dy) >> 24;
-        int64_t q = (hx * dx + hy * dy) >> 12;
-        int64_t sign = corner == 0 ? 1 : -1;
-        least = T3R_MIN(least, least_along(q, sign * hx, a, width));
-        least = T3R_MIN(least, least_along(q, sign * hy, c, height));
-    }
-    return least < (int64_t)LEVEL_MOST << 18;
-}
-
-/* The quadratic about the group's first pixel. With the columns touched it is below 885 there (the root of 6 and the
- * group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.3; the centre is less than 2^14.6
- * px away: the two products of q sum to less than 2^62.8. */
-static void place_group(const t3r_splat *s, uint32_t x, uint32_t y, uint32_t group, t3r_tile_splat *out)
-{
-    int64_t dx = ((int64_t)x << 12) - s->x_q12, dy = ((int64_t)y << 12) - s->y_q12;
-    int64_t hx_q30 = t3r_round_shift64(s->a_q30 * dx + s->b_q30 * dy, 12);
-    int64_t hy_q30 = t3r_round_shift64(s->b_q30 * dx + s->c_q30 * dy, 12);
-    out->group[group].q = (int32_t)t3r_round_shift64(hx_q30 * dx + hy_q30 * dy, 25);
-    out->group[group].gx = (int32_t)t3r_round_shift64(hx_q30, 12);
-    out->group[group].gy = (int32_t)t3r_round_shift64(hy_q30, 12);
-}
-
 /* The splat at which a pixel's transmittance first falls below one half gives it its depth. */
-static void note_depth(t3r_drawn_tile *tile, uint32_t column, uint32_t first, uint32_t last, int32_t z_q20)
+static void note_depth(t3r_drawn_tile *tile, const t3r_tile_splat *splat, int32_t z_q20)
 {
-    for (uint32_t j = first; j <= last; j++) {
-        for (uint32_t i = column; i < column + T3R_LANES; i++) {
-            uint32_t *depth = &tile->depth_q20[j][i];
-            if (*depth == 0 && tile->pixels.transmittance_q16[j][i] < T3R_HALF_Q16) {
-                *depth = (uint32_t)z_q20;
+    for (uint32_t group = 0; group < splat->groups; group++) {
+        const uint32_t column = splat->column + group * T3R_LANES;
+        for (uint32_t j = splat->first; j <= splat->last && (splat->drawn >> group & 1) != 0; j++) {
+            for (uint32_t i = column; i < column + T3R_LANES; i++) {
+                uint32_t *depth = &tile->depth_q20[j][i];
+                if (*depth == 0 && tile->pixels.transmittance_q16[j][i] < T3R_HALF_Q16) {
+                    *depth = (uint32_t)z_q20;
+                }
             }
-        }
-    }
-}
-
-/* Whether a centre lies within SMALL_SPLAT pixels of the tile, along one axis. */
-static bool is_near(int32_t centre_q12, uint32_t tile)
-{
-    int32_t offset = centre_q12 - (int32_t)(tile << 12);
-    return offset >= -(SMALL_SPLAT << 12) && offset <= (SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12;
-}
-
-void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
-{
-    const uint32_t x0 = T3R_MAX(s->x0, left) - left, x1 = T3R_MIN(s->x1, left + T3R_TILE_SIDE - 1) - left;
-    const bool wide = x1 - x0 >= T3R_LANES;
-    for (int i = 0; i < 3; i++) {
-        out->colour_q7[i] = s->colour_q7[i];
-    }
-    out->column = (uint8_t)(wide ? 0 : T3R_MIN(x0, (uint32_t)T3R_TILE_SIDE - T3R_LANES));
-    out->groups = wide ? T3R_TILE_GROUPS : 1;
-    out->first = (uint8_t)(T3R_MAX(s->y0, top) - top);
-    out->last = (uint8_t)(T3R_MIN(s->y1, top + T3R_TILE_SIDE - 1) - top);
-    out->x0 = (uint8_t)x0;
-    out->x1 = (uint8_t)x1;
-}
-
-void t3r_splat_in_tile(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
-{
-    const bool small = is_near(s->x_q12, left) && is_near(s->y_q12, top);
-    t3r_splat_span(s, left, top, out);
-    out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
-    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12);
-    out->c = t3r_round_shift32(s->c_q30 >> 1, 12);
-    out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
-    out->drawn = 0;
-    for (uint32_t group = 0; group < out->groups; group++) {
-        const uint32_t x = left + out->column + group * T3R_LANES;
-        if (small || touches(s, x, top)) {
-            place_group(s, x, top, group, out);
-            out->drawn |= (uint8_t)(1 << group);
-        }
-    }
-}
-
-static void blend_splat(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_splat *s, bool with_depth)
-{
-    t3r_tile_splat splat;
-    t3r_splat_in_tile(s, tile->left, tile->top, &splat);
-    kernels->blend(&tile->pixels, &splat);
-    for (uint32_t group = 0; group < splat.groups && with_depth; group++) {
-        if ((splat.drawn >> group & 1) != 0) {
-            note_depth(tile, splat.column + group * T3R_LANES, splat.first, splat.last, s->z_q20);
         }
     }
 }
@@ -186,15 +83,38 @@ void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y)
     t3r_tile_clear(&tile->pixels);
 }
 
+/* Splats that are placed at once. */
+#define PLACE_SPLATS T3R_STOP_INTERVAL
+_Static_assert(PLACE_SPLATS % T3R_PLACED == 0, "the room for what is placed");
+
+/* A tile's splats lie anywhere in memory: those that are placed next are on their way while others are blended. */
+static void fetch(const t3r_splat *splats, const uint32_t *list, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        __builtin_prefetch(&splats[list[i]]);
+        __builtin_prefetch(&splats[list[i]].y1);
+    }
+}
+
 void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list,
                    uint32_t count, const t3r_target *target)
 {
     const bool with_depth = target->depth_q20 != NULL;
+    t3r_tile_splat placed[PLACE_SPLATS];
     for (uint32_t i = 0; i < count && !tile->stopped; i++) {
-        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile->pixels)) {
+        const uint32_t at = i % PLACE_SPLATS;
+        if (at == 0) {
+            const uint32_t next = T3R_MIN(count - i, 2 * PLACE_SPLATS);
+            fetch(splats, list + i + PLACE_SPLATS, next > PLACE_SPLATS ? next - PLACE_SPLATS : 0);
+            kernels->place(splats, list + i, T3R_MIN(count - i, PLACE_SPLATS), tile->left, tile->top, placed);
+        }
+        if (at == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile->pixels)) {
             tile->stopped = true; /* the rest would add nothing: the same pixels, sooner */
         } else {
-            blend_splat(tile, kernels, &splats[list[i]], with_depth);
+            kernels->blend(&tile->pixels, &placed[at]);
+            if (with_depth) {
+                note_depth(tile, &placed[at], splats[list[i]].z_q20);
+            }
         }
     }
 }

@@ -71,10 +71,4 @@ void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target);
 void t3r_tile_clear(t3r_tile *tile);
 bool t3r_tile_stopped(const t3r_tile *tile);
 
-/* A splat in the coordinates of the tile at (left, top), which it overlaps: any eight columns when its
- * box is no wider there, else both halves of the tile. A half on which it draws nothing is not marked as drawn. */
-void t3r_splat_in_tile(const t3r_splat *splat, uint32_t left, uint32_t top, t3r_tile_splat *out);
-/* Its columns, rows, box and colour alone: all that scattering reads. */
-void t3r_splat_span(const t3r_splat *splat, uint32_t left, uint32_t top, t3r_tile_splat *out);
-
 #endif

@@ -50,20 +50,24 @@ static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32
 {
     kept_splats kept = {0, 0, 0};
     t3r_tile_clear(tile);
+    t3r_tile_splat placed[T3R_STOP_INTERVAL];
     for (uint32_t i = 0; i < end; i++) {
-        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(tile)) {
+        const uint32_t at = i % T3R_STOP_INTERVAL;
+        if (at == 0) {
+            job->kernels->place(job->splats, list + i, T3R_MIN(end - i, T3R_STOP_INTERVAL), left, top, placed);
+        }
+        if (at == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(tile)) {
             break;
         }
-        t3r_tile_splat splat;
-        t3r_splat_in_tile(&job->splats[list[i]], left, top, &splat);
-        if (splat.drawn == 0) {
+        const t3r_tile_splat *splat = &placed[at];
+        if (splat->drawn == 0) {
             continue;
         }
-        const uint32_t more = t3r_rows_of(&splat);
+        const uint32_t more = t3r_rows_of(splat);
         if (kept.count + 1 + (kept.rows + more) * ROW_WORDS > job->kept_words) {
             kept = (kept_splats){i, 0, 0};
         }
-        const uint16_t bits = job->kernels->blend_keep(tile, &splat, rows_at(job, kept.rows + more));
+        const uint16_t bits = job->kernels->blend_keep(tile, splat, rows_at(job, kept.rows + more));
         if (bits != 0) {
             job->kept[kept.count++] = i << SCALE_BITS | (15 - t3r_msb32(bits));
             kept.rows += more;

@@ -77,6 +77,60 @@ const char *check_project(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
+/* Splats that reach one tile of a view: each is projected until it does. */
+static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], uint32_t *left, uint32_t *top)
+{
+    const t3r_projection p = any_projection(seed);
+    uint32_t count = 0;
+    for (uint32_t tries = 0; tries < 20 * COUNT && count < COUNT; tries++) {
+        const t3r_gaussian g = any_gaussian(seed, &p, unit_random(seed) % 4 == 0 ? unit_random(seed) % 8 : 0);
+        t3r_splat *s = &splats[count];
+        if (!t3r_project(&p, &g, s)) {
+            continue;
+        }
+        if (count == 0) {
+            *left = (uint32_t)unit_between(seed, s->x0, s->x1) / SIDE * SIDE;
+            *top = (uint32_t)unit_between(seed, s->y0, s->y1) / SIDE * SIDE;
+        }
+        count += s->x0 < *left + SIDE && s->x1 >= *left && s->y0 < *top + SIDE && s->y1 >= *top;
+    }
+    return count;
+}
+
+const char *check_place(const t3r_kernels *kernels, uint64_t *seed)
+{
+    t3r_splat reach[COUNT];
+    uint32_t left, top;
+    const uint32_t splats_count = any_splats(seed, reach, &left, &top);
+    if (splats_count == 0) {
+        return NULL;
+    }
+    const uint32_t count = any_length(seed, COUNT), room = (count + T3R_PLACED - 1) / T3R_PLACED * T3R_PLACED;
+    t3r_splat *splats = guarded_take(splats_count * sizeof *splats, _Alignof(t3r_splat));
+    uint32_t *list = guarded_take(count * sizeof *list, _Alignof(uint32_t));
+    t3r_tile_splat *placed = guarded_take(room * sizeof *placed, _Alignof(t3r_tile_splat)), want[COUNT];
+    memcpy(splats, reach, splats_count * sizeof *splats);
+    for (uint32_t i = 0; i < count; i++) {
+        list[i] = (uint32_t)(unit_random(seed) % splats_count);
+    }
+    kernels->place(splats, list, count, left, top, placed);
+    t3r_place_c(splats, list, count, left, top, want);
+    for (uint32_t i = 0; i < count; i++) {
+        const t3r_tile_splat *s = &placed[i], *w = &want[i];
+        if (s->a != w->a || s->b != w->b || s->c != w->c || s->opacity_q16 != w->opacity_q16 ||
+            !SAME(s->colour_q7, w->colour_q7, 3) || s->column != w->column || s->groups != w->groups ||
+            s->drawn != w->drawn || s->first != w->first || s->last != w->last || s->x0 != w->x0 || s->x1 != w->x1) {
+            return "a splat differs";
+        }
+        for (uint32_t g = 0; g < w->groups; g++) {
+            if ((w->drawn >> g & 1) != 0 && !SAME(&s->group[g], &w->group[g], 1)) {
+                return "a splat's quadratic differs";
+            }
+        }
+    }
+    return NULL;
+}
+
 static t3r_tile_splat any_splat(uint64_t *seed)
 {
     t3r_tile_splat s = {.a = (int32_t)any_value(seed, 0, 218453), /* 1 / 0.6 in Q17 */

@@ -18,7 +18,7 @@ kernel_check check_sample_potential, check_sample_approach, check_nearest;
 kernel_check check_blur_row, check_blur_column;
 kernel_check check_convolve, check_depthwise;
 kernel_check check_project, check_radix_count, check_radix_pass;
-kernel_check check_blend, check_blend_keep, check_scatter, check_solve;
+kernel_check check_place, check_blend, check_blend_keep, check_scatter, check_solve;
 
 /* 0, 1 and small lengths often, else up to `most`. */
 static inline uint32_t any_length(uint64_t *seed, uint32_t most)

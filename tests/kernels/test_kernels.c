@@ -43,6 +43,7 @@
     X(project, check_project)                                                                                          \
     X(radix_count, check_radix_count)                                                                                  \
     X(radix_pass, check_radix_pass)                                                                                    \
+    X(place, check_place)                                                                                              \
     X(blend, check_blend)                                                                                              \
     X(blend_keep, check_blend_keep)                                                                                    \
     X(scatter, check_scatter)                                                                                          \

@@ -4,87 +4,16 @@
 
 #ifdef T3R_X86
 
-#include "intrinsics.h"
+#include "lanes_avx2.h"
 
 #include <stddef.h>
 
 #include "core/fixed_tables.h"
 #include "kernels/project_parts.h"
 
-#define LANES 8
-
-typedef __m256i lanes; /* of 32 bits */
-
-/* 64 bits of each lane: of lanes 0, 2, 4, 6 and of 1, 3, 5, 7. */
-typedef struct wide {
-    __m256i even, odd;
-} wide;
-
-static inline T3R_AVX2 lanes all(int32_t x)
-{
-    return _mm256_set1_epi32(x);
-}
-
-static inline T3R_AVX2 lanes add(lanes a, lanes b)
-{
-    return _mm256_add_epi32(a, b);
-}
-
-static inline T3R_AVX2 lanes subtract(lanes a, lanes b)
-{
-    return _mm256_sub_epi32(a, b);
-}
-
-/* Modulo 2^32. */
-static inline T3R_AVX2 lanes multiply(lanes a, lanes b)
-{
-    return _mm256_mullo_epi32(a, b);
-}
-
 static inline T3R_AVX2 lanes held(lanes x, lanes bound)
 {
     return _mm256_max_epi32(_mm256_min_epi32(x, bound), subtract(all(0), bound));
-}
-
-/* All bits where a >= b, of unsigned numbers. */
-static inline T3R_AVX2 lanes at_least(lanes a, lanes b)
-{
-    return _mm256_cmpeq_epi32(_mm256_max_epu32(a, b), a);
-}
-
-static inline T3R_AVX2 __m256i odd_of(lanes x)
-{
-    return _mm256_srli_epi64(x, 32);
-}
-
-static inline T3R_AVX2 wide widened(lanes x)
-{
-    return (wide){_mm256_and_si256(x, _mm256_set1_epi64x(UINT32_MAX)), odd_of(x)};
-}
-
-static inline T3R_AVX2 wide product(lanes a, lanes b)
-{
-    return (wide){_mm256_mul_epi32(a, b), _mm256_mul_epi32(odd_of(a), odd_of(b))};
-}
-
-static inline T3R_AVX2 wide unsigned_product(lanes a, lanes b)
-{
-    return (wide){_mm256_mul_epu32(a, b), _mm256_mul_epu32(odd_of(a), odd_of(b))};
-}
-
-static inline T3R_AVX2 wide sum(wide a, wide b)
-{
-    return (wide){_mm256_add_epi64(a.even, b.even), _mm256_add_epi64(a.odd, b.odd)};
-}
-
-static inline T3R_AVX2 wide difference(wide a, wide b)
-{
-    return (wide){_mm256_sub_epi64(a.even, b.even), _mm256_sub_epi64(a.odd, b.odd)};
-}
-
-static inline T3R_AVX2 wide all_wide(int64_t x)
-{
-    return (wide){_mm256_set1_epi64x(x), _mm256_set1_epi64x(x)};
 }
 
 /* a signed, b unsigned */
@@ -93,23 +22,6 @@ static inline T3R_AVX2 wide mixed_product(lanes a, lanes b)
     const lanes beyond = _mm256_and_si256(a, _mm256_srai_epi32(b, 31)); /* b read as signed lacks 2^32 there */
     const wide more = {_mm256_slli_epi64(beyond, 32), _mm256_blend_epi32(beyond, all(0), 0x55)};
     return sum(product(a, b), more);
-}
-
-/* The low and the high halves. */
-static inline T3R_AVX2 lanes low_of(wide x)
-{
-    return _mm256_blend_epi32(x.even, _mm256_slli_epi64(x.odd, 32), 0xaa);
-}
-
-static inline T3R_AVX2 lanes high_of(wide x)
-{
-    return _mm256_blend_epi32(odd_of(x.even), x.odd, 0xaa);
-}
-
-/* Unsigned shifts: of the result only what bits had is right. */
-static inline T3R_AVX2 wide right(wide x, int shift)
-{
-    return (wide){_mm256_srli_epi64(x.even, shift), _mm256_srli_epi64(x.odd, shift)};
 }
 
 static inline T3R_AVX2 wide right_by(wide x, wide shift)
@@ -122,36 +34,29 @@ static inline T3R_AVX2 wide left_by(wide x, wide shift)
     return (wide){_mm256_sllv_epi64(x.even, shift.even), _mm256_sllv_epi64(x.odd, shift.odd)};
 }
 
-/* x / 2^shift, round-half-up, twice of which 32 bits hold; shift >= 1, |x| < 2^62. Sets the highest bit of *beyond
- * where they do not. A shift of 63 and more gives 0. */
-static inline T3R_AVX2 lanes round_shift(wide x, lanes shift, lanes *beyond)
+/* x / 2^shift, round-half-up, of 64 bits, twice of which 32 bits hold; shift 1..33. */
+static inline T3R_AVX2 lanes round_shift(wide x, lanes shift)
 {
-    const wide bias = all_wide(INT64_MIN), less = widened(subtract(shift, all(1)));
-    const wide doubled = difference(right_by(sum(x, bias), less), right_by(bias, less));
-    const wide room = sum(doubled, all_wide(INT64_C(1) << 31));
-    const lanes high = high_of(room); /* its or its opposite's highest bit is set unless it is 0 */
-    *beyond = _mm256_or_si256(*beyond, _mm256_or_si256(high, subtract(all(0), high)));
-    return _mm256_srai_epi32(add(low_of(doubled), all(1)), 1);
+    return _mm256_srai_epi32(add(low_of(right_by(x, widened(subtract(shift, all(1))))), all(1)), 1);
 }
 
-/* The same where nothing is beyond. */
-static inline T3R_AVX2 lanes round_shift_within(wide x, lanes shift)
+/* The same of numbers that are not negative; shift 1..63. */
+static inline T3R_AVX2 lanes round_shift_positive(wide x, lanes shift)
 {
-    lanes beyond = all(0);
-    return round_shift(x, shift, &beyond);
+    return _mm256_srli_epi32(add(low_of(right_by(x, widened(subtract(shift, all(1))))), all(1)), 1);
 }
 
-/* x / 2^shift of a number that is not negative, round-half-up; shift 0..62. */
-static inline T3R_AVX2 wide round_shift_positive(wide x, wide shift)
+/* The same of signed ones, |x| < 2^62, from their upper halves; shift 33 and more. */
+static inline T3R_AVX2 lanes round_shift_far(wide x, lanes shift)
 {
-    return right_by(sum(x, right(left_by(all_wide(1), shift), 1)), shift);
+    return _mm256_srai_epi32(add(_mm256_srav_epi32(high_of(x), subtract(shift, all(33))), all(1)), 1);
 }
 
-/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far. */
-static inline T3R_AVX2 lanes normal_of(lanes x, lanes *by)
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far, below twice the first step. */
+static inline T3R_AVX2 lanes normal_of(lanes x, int first_step, lanes *by)
 {
     *by = all(0);
-    for (int step = 16; step > 0; step >>= 1) {
+    for (int step = first_step; step > 0; step >>= 1) {
         const lanes shift = _mm256_and_si256(_mm256_cmpgt_epi32(all(1 << (31 - step)), x), all(step));
         x = _mm256_sllv_epi32(x, shift);
         *by = add(*by, shift);
@@ -212,22 +117,22 @@ static inline T3R_AVX2 lanes log_fraction_q16(lanes normal)
     return _mm256_srli_epi32(add(log_q20, all(8)), 4);
 }
 
-/* t3r_log2_q16(), x below 2^31 */
-static inline T3R_AVX2 lanes log_q16(lanes x)
+/* t3r_log2_q16(), x in 2^(31 - 2 first_step)..2^31 - 1 */
+static inline T3R_AVX2 lanes log_q16(lanes x, int first_step)
 {
     lanes by;
-    const lanes normal = normal_of(x, &by);
+    const lanes normal = normal_of(x, first_step, &by);
     return add(_mm256_slli_epi32(subtract(all(30), by), 16), log_fraction_q16(normal));
 }
 
-/* t3r_log2_wide_q16(), x in 1..2^52 - 1: by sevens down to 24 bits and more, all that the table reads */
+/* t3r_log2_wide_q16(), x in 2^15..2^52 - 1: by sevens down to 24 bits and more, all that the table reads */
 static inline T3R_AVX2 lanes log_wide_q16(wide x)
 {
     const lanes above = low_of(right(x, 31));
     const lanes sevens = add(add(_mm256_cmpgt_epi32(above, all(0)), _mm256_cmpgt_epi32(above, all(127))),
                              _mm256_cmpgt_epi32(above, all(16383)));
     const lanes down = subtract(sevens, _mm256_slli_epi32(sevens, 3));
-    return add(log_q16(low_of(right_by(x, widened(down)))), _mm256_slli_epi32(down, 16));
+    return add(log_q16(low_of(right_by(x, widened(down))), 8), _mm256_slli_epi32(down, 16));
 }
 
 /* t3r_exp2_q16(); a count beyond 31 gives 0, so that of the two shifts one does nothing, or both the same */
@@ -241,32 +146,13 @@ static inline T3R_AVX2 lanes exp_q16(lanes x_q16)
     return _mm256_or_si256(_mm256_sllv_epi32(mantissa_q20, up), _mm256_srlv_epi32(add(mantissa_q20, half), down));
 }
 
-/* t3r_log_level_q16() */
+/* t3r_log_level_q16() of more than 128: 255 of it have 16 to 23 bits, and levels 5 to 12; eight times as much, or 2^18,
+ * is normal by a few steps */
 static inline T3R_AVX2 lanes log_level_q16(lanes opacity_q15)
 {
-    const lanes log = subtract(log_q16(multiply(opacity_q15, all(255))), all(15 << 16));
+    const lanes log = subtract(log_q16(multiply(opacity_q15, all(255 << 8)), 4), all(23 << 16));
     const lanes level_q8 = add(low_of(right(unsigned_product(log, all(45426)), 24)), all(16));
-    return log_q16(_mm256_slli_epi32(level_q8, 1));
-}
-
-/* Words 0..7 of eight records to a vector a word, or back. */
-static inline T3R_AVX2 void transpose(lanes v[8])
-{
-    lanes t[8], u[8];
-    for (int i = 0; i < 8; i += 2) {
-        t[i] = _mm256_unpacklo_epi32(v[i], v[i + 1]);
-        t[i + 1] = _mm256_unpackhi_epi32(v[i], v[i + 1]);
-    }
-    for (int i = 0; i < 8; i += 4) {
-        u[i] = _mm256_unpacklo_epi64(t[i], t[i + 2]);
-        u[i + 1] = _mm256_unpackhi_epi64(t[i], t[i + 2]);
-        u[i + 2] = _mm256_unpacklo_epi64(t[i + 1], t[i + 3]);
-        u[i + 3] = _mm256_unpackhi_epi64(t[i + 1], t[i + 3]);
-    }
-    for (int i = 0; i < 4; i++) {
-        v[i] = _mm256_permute2x128_si256(u[i], u[i + 4], 0x20);
-        v[i + 4] = _mm256_permute2x128_si256(u[i], u[i + 4], 0x31);
-    }
+    return subtract(log_q16(_mm256_slli_epi32(level_q8, 1 + 18), 4), all(18 << 16));
 }
 
 /* Eight Gaussians by field. */
@@ -323,24 +209,24 @@ static inline T3R_AVX2 means see(const t3r_projection *p, const eight *e)
             at_q50 = sum(at_q50, product(e->position[k], all(w[k])));
         }
         c[i] = low_of(right(at_q50, 30));
-        const lanes high = high_of(at_q50); /* its three highest bits are the same where 32 hold c */
-        beyond = _mm256_or_si256(beyond, _mm256_xor_si256(high, _mm256_slli_epi32(high, 1)));
-        beyond = _mm256_or_si256(beyond, _mm256_xor_si256(high, _mm256_slli_epi32(high, 2)));
+        /* 32 bits hold c where its three highest bits are the same */
+        beyond = _mm256_or_si256(beyond, add(high_of(at_q50), all(1 << 29)));
     }
+    beyond = _mm256_or_si256(beyond, _mm256_slli_epi32(beyond, 1));
     const lanes aside = _mm256_slli_epi32(_mm256_min_epu32(c[2], all(1 << 27)), 4);
     means m;
     m.are_seen = _mm256_and_si256(_mm256_cmpgt_epi32(c[2], all(T3R_NEAR_Q20)),
                                   _mm256_cmpgt_epi32(_mm256_srli_epi32(e->colours[1], 16), all(128)));
     m.are_seen = _mm256_and_si256(m.are_seen, at_least(aside, _mm256_abs_epi32(c[0])));
     m.are_seen = _mm256_and_si256(m.are_seen, at_least(aside, _mm256_abs_epi32(c[1])));
-    m.beyond = beyond;
     m.z_q20 = _mm256_blendv_epi8(all(1 << 20), c[2], m.are_seen);
-    const lanes normal = _mm256_slli_epi32(normal_of(m.z_q20, &by), 1);
+    const lanes normal = _mm256_slli_epi32(normal_of(m.z_q20, 8, &by), 1);
     m.lz = add(by, all(1));
+    m.beyond = _mm256_or_si256(beyond, subtract(m.lz, all(5))); /* farther than 2^27 */
     m.rn = inverted(normal);
     const lanes shift = subtract(all(38), m.lz);
-    m.u_q24 = round_shift_within(mixed_product(_mm256_and_si256(c[0], m.are_seen), m.rn), shift);
-    m.v_q24 = round_shift_within(mixed_product(_mm256_and_si256(c[1], m.are_seen), m.rn), shift);
+    m.u_q24 = round_shift(mixed_product(_mm256_and_si256(c[0], m.are_seen), m.rn), shift);
+    m.v_q24 = round_shift(mixed_product(_mm256_and_si256(c[1], m.are_seen), m.rn), shift);
     return m;
 }
 
@@ -356,7 +242,7 @@ static inline T3R_AVX2 void row_of(const int32_t *w, const int32_t *w2, lanes ta
     }
     const lanes scale = low_of(right(sum(unsigned_product(m->rn, all(f_q16)), all_wide(1 << 29)), 30));
     const lanes shift = subtract(all(26), add(e->exponent, m->lz));
-    m->beyond = _mm256_or_si256(m->beyond, subtract(shift, all(1)));
+    m->beyond = _mm256_or_si256(m->beyond, subtract(shift, all(33))); /* wider than about a quarter of z */
     for (int j = 0; j < 3; j++) {
         wide along = all_wide(1 << 13);
         for (int k = 0; k < 3; k++) {
@@ -364,7 +250,7 @@ static inline T3R_AVX2 void row_of(const int32_t *w, const int32_t *w2, lanes ta
         }
         /* 3 x 17 x 2^24 x 2^15 / 2^14 < 2^31, times scale < 2^31 */
         const wide pixels = product(low_of(right(along, 14)), scale);
-        row_q12[j] = held(round_shift(pixels, shift, &m->beyond), all(T3R_EXTENT_MOST_Q12));
+        row_q12[j] = held(round_shift_far(pixels, shift), all(T3R_EXTENT_MOST_Q12));
     }
 }
 
@@ -414,13 +300,14 @@ typedef struct covariances {
 /* Marks what of them is beyond 32 bits. */
 static inline T3R_AVX2 covariances covariance_of(const lanes a_q12[3], const lanes b_q12[3], lanes *beyond)
 {
-    lanes largest = all(1), a[3], b[3], by;
+    lanes largest = all(0), a[3], b[3], by;
     for (int j = 0; j < 3; j++) {
         largest = _mm256_max_epi32(largest, _mm256_abs_epi32(a_q12[j]));
         largest = _mm256_max_epi32(largest, _mm256_abs_epi32(b_q12[j]));
     }
-    (void)normal_of(largest, &by);
-    const lanes n = _mm256_max_epi32(subtract(all(16), by), all(0));
+    /* below 2^14 as 2^14: n is 0..10 */
+    (void)normal_of(_mm256_slli_epi32(_mm256_max_epi32(largest, all(1 << 14)), 6), 8, &by);
+    const lanes n = subtract(all(10), by);
     const lanes half = _mm256_srli_epi32(_mm256_sllv_epi32(all(1), n), 1);
     for (int j = 0; j < 3; j++) {
         a[j] = _mm256_srav_epi32(add(a_q12[j], half), n);
@@ -435,27 +322,32 @@ static inline T3R_AVX2 covariances covariance_of(const lanes a_q12[3], const lan
     c.ab = add(add(multiply(a[0], b[0]), multiply(a[1], b[1])), multiply(a[2], b[2]));
     const wide dilations = all_wide((int64_t)T3R_DILATION_Q24 * T3R_DILATION_Q24);
     wide det = right_by(dilations, widened(add(c.twice, c.twice)));
-    det = sum(det, round_shift_positive(unsigned_product(add(c.aa, c.bb), all(T3R_DILATION_Q24)), widened(c.twice)));
+    const wide twice = widened(c.twice), half_unit = right(left_by(all_wide(1), twice), 1);
+    const wide trace = unsigned_product(add(c.aa, c.bb), all(T3R_DILATION_Q24));
+    det = sum(det, right_by(sum(trace, half_unit), twice));
     det = sum(det, squared_minor(a[0], b[1], a[1], b[0]));
     det = sum(det, squared_minor(a[0], b[2], a[2], b[0]));
     det = sum(det, squared_minor(a[1], b[2], a[2], b[1]));
     const lanes high = high_of(det); /* below 2^31: by Lagrange the squares sum to at most aa bb */
     *beyond = _mm256_or_si256(*beyond, _mm256_cmpeq_epi32(high, all(0)));
-    (void)normal_of(_mm256_max_epi32(high, all(1)), &by);
+    (void)normal_of(_mm256_max_epi32(high, all(1)), 16, &by);
     c.s = subtract(all(31), by); /* 1..31 */
     c.determinant = low_of(right_by(det, widened(c.s)));
     return c;
 }
 
-/* conic_of(); rd = floor(2^62 / determinant). a, c <= 1 / 0.6, and |b| less */
+/* conic_of(); rd = floor(2^62 / determinant). a, c <= 1 / 0.6, and |b| less: twice that is below 2^32. */
 static inline T3R_AVX2 void conic_of(const covariances *c, lanes rd, lanes conic_q30[3])
 {
-    const lanes dilation = low_of(round_shift_positive(all_wide(T3R_DILATION_Q24), widened(c->twice)));
+    const lanes half = _mm256_srli_epi32(_mm256_sllv_epi32(all(1), c->twice), 1);
+    const lanes dilation = _mm256_srlv_epi32(add(all(T3R_DILATION_Q24), half), c->twice);
     const lanes shift = add(add(c->twice, c->s), all(9));
-    const wide first = unsigned_product(add(c->bb, dilation), rd), last = unsigned_product(add(c->aa, dilation), rd);
-    conic_q30[0] = low_of(round_shift_positive(first, widened(shift)));
-    conic_q30[1] = round_shift_within(mixed_product(subtract(all(0), c->ab), rd), shift);
-    conic_q30[2] = low_of(round_shift_positive(last, widened(shift)));
+    conic_q30[0] = round_shift_positive(unsigned_product(add(c->bb, dilation), rd), shift);
+    conic_q30[2] = round_shift_positive(unsigned_product(add(c->aa, dilation), rd), shift);
+    /* a half of -ab rounds up: of ab > 0 it is one less, and then its opposite */
+    const lanes less = _mm256_srli_epi32(_mm256_cmpgt_epi32(c->ab, all(0)), 31);
+    const wide size = difference(unsigned_product(_mm256_abs_epi32(c->ab), rd), widened(less));
+    conic_q30[1] = _mm256_sign_epi32(round_shift_positive(size, shift), subtract(all(0), c->ab));
 }
 
 /* The centre in pixels, Q12, as 32 bits hold it. */

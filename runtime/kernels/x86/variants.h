@@ -49,6 +49,7 @@
     X(convolve, T3R_CPU_X86_VNNI_, t3r_convolve_vnni)                                                                  \
     X(depthwise, T3R_CPU_AVX2, t3r_depthwise_avx2)                                                                     \
     X(project, T3R_CPU_AVX2, t3r_project_avx2)                                                                         \
+    X(place, T3R_CPU_AVX2, t3r_place_avx2)                                                                             \
     X(blend, T3R_CPU_AVX2, t3r_blend_avx2)                                                                             \
     X(blend_keep, T3R_CPU_AVX2, t3r_blend_keep_avx2)                                                                   \
     X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)
