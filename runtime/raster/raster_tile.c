@@ -84,8 +84,8 @@ void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y)
 }
 
 /* Splats that are placed at once. */
-#define PLACE_SPLATS T3R_STOP_INTERVAL
-_Static_assert(PLACE_SPLATS % T3R_PLACED == 0, "the room for what is placed");
+#define PLACE_SPLATS T3R_PLACED
+_Static_assert(T3R_STOP_INTERVAL % PLACE_SPLATS == 0, "a part of a list ends with a batch");
 
 /* A tile's splats lie anywhere in memory: those that are placed next are on their way while others are blended. */
 static void fetch(const t3r_splat *splats, const uint32_t *list, uint32_t count)
@@ -108,7 +108,7 @@ void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_s
             fetch(splats, list + i + PLACE_SPLATS, next > PLACE_SPLATS ? next - PLACE_SPLATS : 0);
             kernels->place(splats, list + i, T3R_MIN(count - i, PLACE_SPLATS), tile->left, tile->top, placed);
         }
-        if (at == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile->pixels)) {
+        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile->pixels)) {
             tile->stopped = true; /* the rest would add nothing: the same pixels, sooner */
         } else {
             kernels->blend(&tile->pixels, &placed[at]);

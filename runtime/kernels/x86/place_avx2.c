@@ -77,16 +77,24 @@ static inline T3R_AVX2 wide half_gradient(lanes a, lanes dx, lanes b, lanes dy)
     return sum(sum(product(a, dx), product(b, dy)), all_wide(1 << 11));
 }
 
-/* The rounded half-gradient times a distance: its 18 upper bits and its 20 lower ones apart. */
-static inline T3R_AVX2 wide along(wide gradient, lanes distance)
+/* Of the low halves of 64-bit lanes. */
+static inline T3R_AVX2 wide half_product(wide a, wide b)
 {
-    const wide low_bits = all_wide((1 << 20) - 1), shifted = right(gradient, 12);
-    const wide upper = right(gradient, 32), odd = {distance, odd_of(distance)};
-    const __m256i even = _mm256_slli_epi64(_mm256_mul_epi32(upper.even, odd.even), 20);
-    const __m256i other = _mm256_slli_epi64(_mm256_mul_epi32(upper.odd, odd.odd), 20);
-    const __m256i even_low = _mm256_mul_epi32(_mm256_and_si256(shifted.even, low_bits.even), odd.even);
-    const __m256i odd_low = _mm256_mul_epi32(_mm256_and_si256(shifted.odd, low_bits.odd), odd.odd);
-    return (wide){_mm256_add_epi64(even, even_low), _mm256_add_epi64(other, odd_low)};
+    return (wide){_mm256_mul_epi32(a.even, b.even), _mm256_mul_epi32(a.odd, b.odd)};
+}
+
+/* The rounded half-gradient times a distance: its 18 upper bits and its 20 lower ones apart. */
+static inline T3R_AVX2 wide along(wide gradient, wide distance)
+{
+    const wide upper = half_product(right(gradient, 32), distance);
+    const __m256i low_bits = _mm256_set1_epi64x((1 << 20) - 1);
+    wide lower = right(gradient, 12);
+    lower.even = _mm256_and_si256(lower.even, low_bits);
+    lower.odd = _mm256_and_si256(lower.odd, low_bits);
+    lower = half_product(lower, distance);
+    lower.even = _mm256_add_epi64(lower.even, _mm256_slli_epi64(upper.even, 20));
+    lower.odd = _mm256_add_epi64(lower.odd, _mm256_slli_epi64(upper.odd, 20));
+    return lower;
 }
 
 /* What place_group() of plain C does: q, gx and gy about the pixel that is dx and dy from the centre. */
@@ -94,8 +102,8 @@ static inline T3R_AVX2 void place_group(const eight *e, lanes dx, lanes dy, lane
 {
     const wide hx = half_gradient(e->a_q30, dx, e->b_q30, dy), hy = half_gradient(e->b_q30, dx, e->c_q30, dy);
     /* rounded by 12 twice: floor(floor(h / 2^12 + 1/2) / 2^12 + 1/2) = floor(h / 2^24 + 2^-13 + 1/2) */
-    const wide half = all_wide(1 << 23);
-    group[0] = low_of(right(sum(sum(along(hx, dx), along(hy, dy)), all_wide(1 << 24)), 25));
+    const wide half = all_wide(1 << 23), across = {dx, odd_of(dx)}, down = {dy, odd_of(dy)};
+    group[0] = low_of(right(sum(sum(along(hx, across), along(hy, down)), all_wide(1 << 24)), 25));
     group[1] = low_of(right(sum(hx, half), 24));
     group[2] = low_of(right(sum(hy, half), 24));
 }
@@ -118,47 +126,72 @@ _Static_assert(sizeof(t3r_tile_splat) == 52 && offsetof(t3r_tile_splat, a) == 24
                    offsetof(t3r_tile_splat, first) == 47 && offsetof(t3r_tile_splat, x1) == 50,
                "thirteen words");
 
+/* A splat's columns and rows in the tile. */
+typedef struct spans {
+    lanes x0, y0, x1, y1, column, is_wide;
+} spans;
+
+static inline T3R_AVX2 spans spans_of(const eight *e, uint32_t left, uint32_t top)
+{
+    const lanes low_half = all(0xffff);
+    spans s;
+    s.x0 = from_of(_mm256_and_si256(e->first, low_half), left);
+    s.y0 = from_of(_mm256_srli_epi32(e->first, 16), top);
+    s.x1 = to_of(_mm256_and_si256(e->last, low_half), left);
+    s.y1 = to_of(_mm256_srli_epi32(e->last, 16), top);
+    s.is_wide = _mm256_cmpgt_epi32(subtract(s.x1, s.x0), all(T3R_LANES - 1));
+    s.column = _mm256_andnot_si256(s.is_wide, _mm256_min_epi32(s.x0, all(T3R_TILE_SIDE - T3R_LANES)));
+    return s;
+}
+
+/* The groups, a and b: the first eight words. */
+static inline T3R_AVX2 void store_groups(const eight *e, const spans *s, uint32_t left, uint32_t top,
+                                         t3r_tile_splat placed[LANES])
+{
+    const lanes dx = subtract(_mm256_slli_epi32(add(s->column, all((int32_t)left)), 12), e->x_q12);
+    const lanes dy = subtract(all((int32_t)(top << 12)), e->y_q12);
+    lanes word[8];
+    place_group(e, dx, dy, word);
+    if (_mm256_testz_si256(s->is_wide, s->is_wide)) {
+        word[3] = word[4] = word[5] = all(0);
+    } else {
+        place_group(e, add(dx, all(T3R_LANES << 12)), dy, word + 3);
+    }
+    word[6] = rounded_q18(_mm256_srai_epi32(e->a_q30, 1));
+    word[7] = rounded_q18(e->b_q30);
+    transpose(word);
+    for (int i = 0; i < LANES; i++) {
+        _mm256_storeu_si256((__m256i *)(void *)&placed[i], word[i]);
+    }
+}
+
+/* The other five words. */
+static inline T3R_AVX2 void store_rest(const eight *e, const spans *s, t3r_tile_splat placed[LANES])
+{
+    const lanes opacity_q16 = _mm256_slli_epi32(_mm256_srli_epi32(e->colours[1], 16), 1);
+    const lanes groups = subtract(all(1), s->is_wide), drawn = subtract(groups, s->is_wide); /* 1 and 1, or 2 and 3 */
+    lanes word[5];
+    word[0] = rounded_q18(_mm256_srai_epi32(e->c_q30, 1));
+    word[1] = _mm256_or_si256(opacity_q16, _mm256_slli_epi32(e->colours[0], 16));
+    word[2] = _mm256_or_si256(_mm256_srli_epi32(e->colours[0], 16), _mm256_slli_epi32(e->colours[1], 16));
+    word[3] = _mm256_or_si256(s->column, _mm256_slli_epi32(groups, 8));
+    word[3] = _mm256_or_si256(word[3], _mm256_slli_epi32(drawn, 16));
+    word[3] = _mm256_or_si256(word[3], _mm256_slli_epi32(s->y0, 24));
+    word[4] = _mm256_or_si256(s->y1, _mm256_slli_epi32(s->x0, 8));
+    word[4] = _mm256_or_si256(word[4], _mm256_slli_epi32(s->x1, 16));
+    store_words(word, placed, offsetof(t3r_tile_splat, c));
+    store_words(word + 1, placed, offsetof(t3r_tile_splat, opacity_q16)); /* three of them once more, and the last */
+}
+
 /* Returns a bit each of those that plain C has to place. */
 static T3R_AVX2 uint32_t place_eight(const t3r_splat *splats, const uint32_t list[LANES], uint32_t left, uint32_t top,
                                      t3r_tile_splat placed[LANES])
 {
     eight e;
     take(splats, list, &e);
-    const lanes low_half = all(0xffff);
-    const lanes x0 = from_of(_mm256_and_si256(e.first, low_half), left),
-                y0 = from_of(_mm256_srli_epi32(e.first, 16), top);
-    const lanes x1 = to_of(_mm256_and_si256(e.last, low_half), left), y1 = to_of(_mm256_srli_epi32(e.last, 16), top);
-    const lanes is_wide = _mm256_cmpgt_epi32(subtract(x1, x0), all(T3R_LANES - 1));
-    const lanes column = _mm256_andnot_si256(is_wide, _mm256_min_epi32(x0, all(T3R_TILE_SIDE - T3R_LANES)));
-    const lanes dx = subtract(_mm256_slli_epi32(add(column, all((int32_t)left)), 12), e.x_q12);
-    const lanes dy = subtract(all((int32_t)(top << 12)), e.y_q12);
-    lanes word[8];
-    place_group(&e, dx, dy, word);
-    if (_mm256_testz_si256(is_wide, is_wide)) {
-        word[3] = word[4] = word[5] = all(0);
-    } else {
-        place_group(&e, add(dx, all(T3R_LANES << 12)), dy, word + 3);
-    }
-    word[6] = rounded_q18(_mm256_srai_epi32(e.a_q30, 1));
-    word[7] = rounded_q18(e.b_q30);
-    transpose(word);
-    for (int i = 0; i < LANES; i++) {
-        _mm256_storeu_si256((__m256i *)(void *)&placed[i], word[i]);
-    }
-    /* twice the opacity, and the colours behind it */
-    const lanes opacity = _mm256_slli_epi32(_mm256_srli_epi32(e.colours[1], 16), 1);
-    const lanes groups = subtract(all(1), is_wide), drawn = subtract(groups, is_wide); /* 1 and 1, or 2 and 3 */
-    lanes bytes = _mm256_or_si256(column, _mm256_slli_epi32(groups, 8));
-    bytes = _mm256_or_si256(bytes, _mm256_slli_epi32(drawn, 16));
-    const lanes more[5] = {
-        rounded_q18(_mm256_srai_epi32(e.c_q30, 1)),
-        _mm256_or_si256(opacity, _mm256_slli_epi32(e.colours[0], 16)),
-        _mm256_or_si256(_mm256_srli_epi32(e.colours[0], 16), _mm256_slli_epi32(e.colours[1], 16)),
-        _mm256_or_si256(bytes, _mm256_slli_epi32(y0, 24)),
-        _mm256_or_si256(y1, _mm256_or_si256(_mm256_slli_epi32(x0, 8), _mm256_slli_epi32(x1, 16))),
-    };
-    store_words(more, placed, offsetof(t3r_tile_splat, c));
-    store_words(more + 1, placed, offsetof(t3r_tile_splat, opacity_q16)); /* three of them once more, and the last */
+    const spans s = spans_of(&e, left, top);
+    store_groups(&e, &s, left, top, placed);
+    store_rest(&e, &s, placed);
     const lanes is_small = _mm256_and_si256(near(e.x_q12, left), near(e.y_q12, top));
     return ~(uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(is_small)) & 255u;
 }
