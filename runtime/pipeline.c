@@ -124,7 +124,7 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
         if (!pointmap_step(rt, v)) {
             return T3R_ERR_CANCELLED;
         }
-        t3r_bridge_lend(views, rt->views, v, rt->frame.exponent);
+        t3r_bridge_lend(views, rt->views, v, rt->frame.exponent, &work);
     }
     if (radius > 0) {
         t3r_status status = each_view(rt, views, bridge_view, T3R_STAGE_POINTMAP, rt->views, POINTMAP_STEPS(rt));
@@ -165,7 +165,8 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
         if (!pointmap_step(rt, 4 * rt->views)) {
             return T3R_ERR_CANCELLED;
         }
-        t3r_exposure_gains(views, rt->views, rt->frame.exponent, rt->gain_q14);
+        const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
+        t3r_exposure_gains(views, rt->views, rt->frame.exponent, rt->gain_q14, &work);
     }
     return T3R_OK;
 }

@@ -28,17 +28,8 @@ t3r_status t3r_pose_in_scene(const t3r_camera *camera, const t3r_scene_frame *fr
 t3r_depth_scale t3r_depth_scale_of(uint64_t depth_unit_q40, int32_t exponent)
 {
     int32_t msb = (int32_t)t3r_msb64(depth_unit_q40);
-    t3r_depth_scale scale = {(uint32_t)(msb >= 31 ? depth_unit_q40 >> (msb - 31) : depth_unit_q40 << (31 - msb)), 0};
-    /* unit = mantissa 2^(msb - 31) in Q40; Q20 scene units: 2^(-20 - exponent) of that */
-    scale.shift = 20 + exponent - (msb - 31);
-    return scale;
-}
-
-int32_t t3r_depth_q20(t3r_depth_scale scale, uint16_t raw)
-{
-    int64_t product = (int64_t)raw * scale.mantissa; /* below 2^48 */
-    if (scale.shift < -14) {
-        return product == 0 ? 0 : T3R_POSITION_MOST_Q20 - 1;
-    }
-    return (int32_t)T3R_MIN(t3r_scale64(product, -scale.shift), (int64_t)T3R_POSITION_MOST_Q20 - 1);
+    uint32_t mantissa = (uint32_t)(msb >= 31 ? depth_unit_q40 >> (msb - 31) : depth_unit_q40 << (31 - msb));
+    /* unit = mantissa 2^(msb - 31) in Q40; Q20 scene units: 2^(-20 - exponent) of that. To the left every product but 0
+     * is held anyway, and from 2^62 on every one rounds to 0. */
+    return (t3r_depth_scale){mantissa, (uint32_t)t3r_clamp32(20 + exponent - (msb - 31), 0, 62)};
 }

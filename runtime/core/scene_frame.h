@@ -6,6 +6,7 @@
 
 #include <stdint.h>
 
+#include "fixed.h"
 #include "trim3r.h"
 
 #define T3R_POSITION_MOST_Q20 (1 << 30) /* 1024 scene units */
@@ -24,11 +25,15 @@ t3r_status t3r_pose_in_scene(const t3r_camera *camera, const t3r_scene_frame *fr
 /* A depth step of a view in scene units: depth_q20 = (raw x mantissa) / 2^shift, rounded. */
 typedef struct t3r_depth_scale {
     uint32_t mantissa; /* 2^31..2^32 - 1 */
-    int32_t shift;
+    uint32_t shift;    /* 0..62 */
 } t3r_depth_scale;
 t3r_depth_scale t3r_depth_scale_of(uint64_t depth_unit_q40, int32_t exponent);
 
 /* The depth of a raw step, Q20, held at T3R_POSITION_MOST_Q20 - 1. */
-int32_t t3r_depth_q20(t3r_depth_scale scale, uint16_t raw);
+static inline int32_t t3r_depth_q20(t3r_depth_scale scale, uint16_t raw)
+{
+    int64_t z = t3r_round_shift64((int64_t)raw * scale.mantissa, scale.shift); /* a product below 2^48 */
+    return (int32_t)T3R_MIN(z, (int64_t)T3R_POSITION_MOST_Q20 - 1);
+}
 
 #endif

@@ -18,6 +18,7 @@
 #include "nearest.h"
 #include "path_step.h"
 #include "place.h"
+#include "points.h"
 #include "project.h"
 #include "radix.h"
 #include "ray_row.h"
@@ -34,6 +35,9 @@ typedef struct t3r_kernels {
     t3r_box_sums_kernel *box_sums;
     t3r_weigh_row_kernel *weigh_row;
     t3r_divide_row_kernel *divide_row;
+    /* pointmap */
+    t3r_unproject_kernel *unproject;
+    t3r_locate_kernel *locate;
     /* stereo */
     t3r_ray_row_kernel *ray_row;
     t3r_census_row_kernel *census_row;

@@ -24,32 +24,91 @@ static uint16_t step_at(t3r_depth_scale scale, int32_t z_q20)
     return (uint16_t)high;
 }
 
-/* Of several points that fall on a pixel the nearest stays. */
-static void lend(const t3r_view *to, const t3r_projected_pixel *projected, t3r_depth_scale scale)
+/* Whether a pixel takes what another view measured. */
+static bool takes_depth(const t3r_view *view, size_t pixel)
 {
-    uint8_t *validity = &to->validity[projected->pixel];
-    bool empty = !t3r_has_depth(*validity);
-    if (!empty && !t3r_is_lent(*validity)) {
-        return;
-    }
-    uint16_t step = step_at(scale, projected->z_q20);
-    if (step != 0 && (empty || step < to->depth[projected->pixel])) {
-        to->depth[projected->pixel] = step;
-        *validity = t3r_marked(T3R_BRIDGED, T3R_MARK_LENT);
+    return !t3r_has_depth(view->validity[pixel]) || t3r_is_lent(view->validity[pixel]);
+}
+
+/* Of several points that fall on a pixel the nearest stays. */
+static void lend(const t3r_pointmap *to, size_t pixel, int32_t z_q20)
+{
+    const t3r_view *view = to->view;
+    uint16_t step = step_at(to->scale, z_q20);
+    if (step != 0 && (!t3r_has_depth(view->validity[pixel]) || step < view->depth[pixel])) {
+        view->depth[pixel] = step;
+        view->validity[pixel] = t3r_marked(T3R_BRIDGED, T3R_MARK_LENT);
     }
 }
 
-void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent)
+typedef struct lend_job {
+    t3r_pointmap from, to;
+    const t3r_kernels *kernels;
+    uint32_t *place; /* of each pixel of `from` where it lends its depth, or T3R_NO_PIXEL */
+} lend_job;
+
+static void find_borrowers(const lend_job *job, t3r_points *points, const t3r_unprojection *from)
 {
-    t3r_pointmap to = t3r_pointmap_of(&views[v], exponent);
-    for (uint32_t w = 0; w < count; w++) {
-        t3r_pointmap from = t3r_pointmap_of(&views[w], exponent);
-        for (uint32_t y = 0; y < views[w].height && w != v; y++) {
+    const t3r_pinhole to = t3r_pinhole_of(job->to.view);
+    t3r_places places;
+    job->kernels->unproject(from, points);
+    job->kernels->locate(&to, points, &places);
+    for (uint32_t i = 0; i < points->count; i++) {
+        if (places.pixel[i] != T3R_NO_PIXEL && takes_depth(job->to.view, places.pixel[i])) {
+            job->place[(size_t)points->v[i] * job->from.view->width + points->u[i]] = places.pixel[i];
+        }
+    }
+    points->count = 0;
+}
+
+/* Several pixels may fall on one, so nothing is lent before all are found. */
+static void find_borrowing_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const lend_job *job = context;
+    const t3r_view *view = job->from.view;
+    const t3r_unprojection from = t3r_unprojection_of(&job->from);
+    t3r_points points = {0};
+    for (uint32_t y = begin; y < end; y++) {
+        for (uint32_t x = 0; x < view->width; x++) {
+            const size_t pixel = (size_t)y * view->width + x;
+            job->place[pixel] = T3R_NO_PIXEL;
+            if (t3r_is_reliable(view->validity[pixel])) {
+                t3r_add_pixel(&points, view, x, y);
+            }
+            if (t3r_is_full(&points)) {
+                find_borrowers(job, &points, &from);
+            }
+        }
+        find_borrowers(job, &points, &from);
+    }
+}
+
+static bool has_holes(const t3r_view *view)
+{
+    const size_t pixels = (size_t)view->width * view->height;
+    size_t pixel = 0;
+    while (pixel < pixels && !takes_depth(view, pixel)) {
+        pixel++;
+    }
+    return pixel < pixels;
+}
+
+void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, const t3r_pointmap_work *work)
+{
+    for (uint32_t w = 0; w < count && has_holes(&views[v]); w++) {
+        lend_job job = {t3r_pointmap_of(&views[w], exponent), t3r_pointmap_of(&views[v], exponent), work->kernels,
+                        work->pixels};
+        if (w == v) {
+            continue;
+        }
+        t3r_run_rows(&work->workers, views[w].height, find_borrowing_rows, &job);
+        for (uint32_t y = 0; y < views[w].height; y++) {
             for (uint32_t x = 0; x < views[w].width; x++) {
                 t3r_projected_pixel projected;
-                if (t3r_is_reliable(views[w].validity[(size_t)y * views[w].width + x]) &&
-                    t3r_reproject(&from, x, y, &to, &projected)) {
-                    lend(&views[v], &projected, to.scale);
+                if (job.place[(size_t)y * views[w].width + x] != T3R_NO_PIXEL &&
+                    t3r_reproject(&job.from, x, y, &job.to, &projected)) {
+                    lend(&job.to, projected.pixel, projected.z_q20);
                 }
             }
         }

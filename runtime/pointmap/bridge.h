@@ -17,7 +17,8 @@
  * view: three steps, so that a caller may pause between any two views. `settled` has a bit set for each view whose
  * bridges stand already: this view's must agree with them. Per pixel at most 22 steps for each other view and
  * 8 x radius. */
-void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent);
+void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent,
+                     const t3r_pointmap_work *work);
 void t3r_bridge_view(const t3r_view *view, uint32_t radius);
 uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled,
                            const t3r_pointmap_work *work);

@@ -28,33 +28,78 @@ static bool well_exposed(const t3r_view *view, size_t pixel)
     return true;
 }
 
-static bool is_pair(const t3r_pointmap *from, size_t pixel, const t3r_pointmap *to,
-                    const t3r_projected_pixel *projected)
+static bool is_pair(const t3r_pointmap *from, size_t pixel, const t3r_pointmap *to, size_t place, int32_t z_q20)
 {
-    if (!t3r_is_reliable(to->view->validity[projected->pixel])) {
+    if (!t3r_is_reliable(to->view->validity[place])) {
         return false;
     }
-    int32_t there = t3r_depth_q20(to->scale, to->view->depth[projected->pixel]);
-    return 64 * t3r_abs64((int64_t)projected->z_q20 - there) <= T3R_MIN(projected->z_q20, there) &&
-           well_exposed(from->view, pixel) && well_exposed(to->view, projected->pixel);
+    int32_t there = t3r_depth_q20(to->scale, to->view->depth[place]);
+    return 64 * t3r_abs64((int64_t)z_q20 - there) <= T3R_MIN(z_q20, there) && well_exposed(from->view, pixel) &&
+           well_exposed(to->view, place);
+}
+
+typedef struct pairs_job {
+    t3r_pointmap from, to;
+    const t3r_kernels *kernels;
+    uint32_t *partner; /* of each pixel asked, row after row: where `to` has it, or T3R_NO_PIXEL */
+} pairs_job;
+
+static uint32_t asked(uint32_t side)
+{
+    return (side + STEP - 1) / STEP;
+}
+
+static void find_partners(const pairs_job *job, t3r_points *points, const t3r_unprojection *from)
+{
+    const t3r_pinhole to = t3r_pinhole_of(job->to.view);
+    const uint32_t width = job->from.view->width;
+    t3r_places places;
+    job->kernels->unproject(from, points);
+    job->kernels->locate(&to, points, &places);
+    for (uint32_t i = 0; i < points->count; i++) {
+        const uint32_t u = points->u[i], v = points->v[i], place = places.pixel[i];
+        if (place != T3R_NO_PIXEL && is_pair(&job->from, (size_t)v * width + u, &job->to, place, places.z_q20[i])) {
+            job->partner[(size_t)(v / STEP) * asked(width) + u / STEP] = place;
+        }
+    }
+    points->count = 0;
+}
+
+static void pair_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const pairs_job *job = context;
+    const t3r_view *view = job->from.view;
+    const t3r_unprojection from = t3r_unprojection_of(&job->from);
+    t3r_points points = {0};
+    for (uint32_t row = begin; row < end; row++) {
+        for (uint32_t column = 0; column < asked(view->width); column++) {
+            job->partner[(size_t)row * asked(view->width) + column] = T3R_NO_PIXEL;
+            if (t3r_is_reliable(view->validity[(size_t)row * STEP * view->width + column * STEP])) {
+                t3r_add_pixel(&points, view, column * STEP, row * STEP);
+            }
+            if (t3r_is_full(&points)) {
+                find_partners(job, &points, &from);
+            }
+        }
+        find_partners(job, &points, &from);
+    }
 }
 
 /* Levels of `from` over those of `to`, whose own are level_q8 above the first view's. */
-static void compare(const t3r_pointmap *from, const t3r_pointmap *to, const int32_t level_q8[3], ratios *r)
+static void compare(const pairs_job *job, const int32_t level_q8[3], const int32_t log_q16[LEVEL_MOST + 1], ratios *r)
 {
-    const t3r_view *view = from->view;
-    for (uint32_t y = 0; y < view->height; y += STEP) {
-        for (uint32_t x = 0; x < view->width; x += STEP) {
-            size_t pixel = (size_t)y * view->width + x;
-            t3r_projected_pixel projected;
-            if (!t3r_is_reliable(view->validity[pixel]) || !t3r_reproject(from, x, y, to, &projected) ||
-                !is_pair(from, pixel, to, &projected)) {
+    const t3r_view *from = job->from.view, *to = job->to.view;
+    for (uint32_t row = 0; row < asked(from->height); row++) {
+        for (uint32_t column = 0; column < asked(from->width); column++) {
+            const uint32_t place = job->partner[(size_t)row * asked(from->width) + column];
+            if (place == T3R_NO_PIXEL) {
                 continue;
             }
+            const size_t pixel = (size_t)row * STEP * from->width + column * STEP;
             for (int c = 0; c < 3; c++) {
-                int32_t log_q16 =
-                    t3r_log2_q16(view->colour[c][pixel]) - t3r_log2_q16(to->view->colour[c][projected.pixel]);
-                r->bin[c][t3r_clamp32(t3r_round_shift32(log_q16, 8) + level_q8[c] + BINS / 2, 0, BINS - 1)]++;
+                int32_t ratio_q16 = log_q16[from->colour[c][pixel]] - log_q16[to->colour[c][place]];
+                r->bin[c][t3r_clamp32(t3r_round_shift32(ratio_q16, 8) + level_q8[c] + BINS / 2, 0, BINS - 1)]++;
             }
             r->count++;
         }
@@ -74,20 +119,26 @@ static int32_t median_q8(const uint32_t bin[BINS], uint32_t count)
     return BINS / 2 - 1;
 }
 
-uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3])
+uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
+                            const t3r_pointmap_work *work)
 {
     int32_t level_q8[T3R_MAX_VIEWS][3] = {{0}};
     int32_t sum_q8[3] = {0};
     bool linked[T3R_MAX_VIEWS] = {true};
     int32_t links = 1;
+    int32_t log_q16[LEVEL_MOST + 1] = {0};
+    for (uint32_t level = LEVEL_LEAST; level <= LEVEL_MOST; level++) {
+        log_q16[level] = t3r_log2_q16(level);
+    }
     for (uint32_t v = 1; v < count; v++) {
         ratios r;
         memset(&r, 0, sizeof r);
-        t3r_pointmap from = t3r_pointmap_of(&views[v], exponent);
         for (uint32_t w = 0; w < v; w++) {
             if (linked[w]) {
-                t3r_pointmap to = t3r_pointmap_of(&views[w], exponent);
-                compare(&from, &to, level_q8[w], &r);
+                pairs_job job = {t3r_pointmap_of(&views[v], exponent), t3r_pointmap_of(&views[w], exponent),
+                                 work->kernels, work->pixels};
+                t3r_run_rows(&work->workers, asked(views[v].height), pair_rows, &job);
+                compare(&job, level_q8[w], log_q16, &r);
             }
         }
         linked[v] = r.count >= PAIRS_LEAST;

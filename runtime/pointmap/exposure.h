@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "pointmap_work.h"
 #include "state/views.h"
 
 #define T3R_GAIN_ONE_Q14 (1u << 14)
@@ -13,7 +14,8 @@
  * pairs of pixels. A pair is every second pixel of every second row that falls on a measured pixel of at most 1/64
  * other depth, all six levels in 16..239. A view with fewer than 256 pairs keeps gain 1 and levels no other. Returns
  * the number of other views, the first one among them. */
-uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3]);
+uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
+                            const t3r_pointmap_work *work);
 
 /* A colour of the view with that gain, levelled: Q7, held to 255. */
 static inline uint16_t t3r_level_q7(uint32_t colour_q7, uint16_t gain_q14)

@@ -2,8 +2,8 @@
 
 #include "depth/depth.h"
 #include "core/fixed.h"
+#include "kernels/points_parts.h"
 
-#define RAY_MOST_Q24 (16 << 24)
 /* Farthest neighbour whose depth enters the slope */
 #define REACH 2
 /* tan 80 degrees, Q4 */
@@ -14,8 +14,8 @@ t3r_pointmap t3r_pointmap_of(const t3r_view *view, int32_t exponent)
     return (t3r_pointmap){
         .view = view,
         .scale = t3r_depth_scale_of(view->depth_unit_q40, exponent),
-        .inverse_fx_q32 = ((int64_t)1 << 48) / view->fx_q16,
-        .inverse_fy_q32 = ((int64_t)1 << 48) / view->fy_q16,
+        .inverse_fx_q32 = (int32_t)(((int64_t)1 << 48) / view->fx_q16),
+        .inverse_fy_q32 = (int32_t)(((int64_t)1 << 48) / view->fy_q16),
     };
 }
 
@@ -28,11 +28,8 @@ void t3r_pointmaps_of(const t3r_view *views, uint32_t count, int32_t exponent, t
 
 void t3r_ray_q24(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t ray_q24[2])
 {
-    /* |u - c| < 2^15 and 1 / f <= 1/8: below 2^31 x 2^29 */
-    int64_t x = t3r_round_shift64((((int64_t)u << 16) - map->view->cx_q16) * map->inverse_fx_q32, 24);
-    int64_t y = t3r_round_shift64((((int64_t)v << 16) - map->view->cy_q16) * map->inverse_fy_q32, 24);
-    ray_q24[0] = (int32_t)t3r_clamp64(x, -RAY_MOST_Q24, RAY_MOST_Q24);
-    ray_q24[1] = (int32_t)t3r_clamp64(y, -RAY_MOST_Q24, RAY_MOST_Q24);
+    ray_q24[0] = t3r_ray_along_q24(u, map->view->cx_q16, map->inverse_fx_q32);
+    ray_q24[1] = t3r_ray_along_q24(v, map->view->cy_q16, map->inverse_fy_q32);
 }
 
 /* R v for a camera-frame vector, Q24 in and out: |v| <= 2^30 sqrt 3, so the sums stay below 2^61. */
@@ -50,16 +47,9 @@ bool t3r_point(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t point_q2
     if (!t3r_has_depth(view->validity[pixel])) {
         return false;
     }
-    int64_t z = t3r_depth_q20(map->scale, view->depth[pixel]);
     int32_t ray[2];
     t3r_ray_q24(map, u, v, ray);
-    int64_t camera[3] = {ray[0], ray[1], 1 << 24}, direction[3];
-    to_scene(view->pose.rotation_q30, camera, direction);
-    for (int i = 0; i < 3; i++) {
-        /* |direction| <= 2^28.6 and z < 2^30 */
-        int64_t x = view->pose.position_q20[i] + t3r_round_shift64(direction[i] * z, 24);
-        point_q20[i] = (int32_t)t3r_clamp64(x, -T3R_POSITION_MOST_Q20, T3R_POSITION_MOST_Q20);
-    }
+    t3r_point_along(&view->pose, ray, t3r_depth_q20(map->scale, view->depth[pixel]), point_q20);
     return true;
 }
 

@@ -13,7 +13,7 @@
 typedef struct t3r_pointmap {
     const t3r_view *view;
     t3r_depth_scale scale;
-    int64_t inverse_fx_q32, inverse_fy_q32;
+    int32_t inverse_fx_q32, inverse_fy_q32; /* at most 2^29 */
 } t3r_pointmap;
 
 t3r_pointmap t3r_pointmap_of(const t3r_view *view, int32_t exponent);

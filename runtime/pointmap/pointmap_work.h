@@ -7,11 +7,12 @@
 typedef struct t3r_pointmap_work {
     t3r_workers workers;
     uint32_t *pixels; /* one a pixel of a view */
+    const t3r_kernels *kernels;
 } t3r_pointmap_work;
 
 static inline t3r_pointmap_work t3r_pointmap_work_of(const t3r_runtime *rt)
 {
-    return (t3r_pointmap_work){t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_POINTMAP_WORK)};
+    return (t3r_pointmap_work){t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_POINTMAP_WORK), &rt->kernels};
 }
 
 #endif

@@ -19,26 +19,52 @@ static bool same_surface_q20(int32_t a, int32_t b)
     return 32 * t3r_abs64((int64_t)a - b) <= T3R_MIN(a, b);
 }
 
-static bool covers(const t3r_pointmap *from, uint32_t x, uint32_t y, const t3r_pointmap *to, bool earlier,
-                   t3r_projected_pixel *projected)
+/* Whether what `to` has at the pixel is the surface of a point that `from` has at depth z. */
+static bool covers(const t3r_pointmap *from, int32_t z_q20, const t3r_pointmap *to, uint32_t pixel,
+                   int32_t projected_z_q20, bool earlier)
 {
-    if (!t3r_reproject(from, x, y, to, projected)) {
-        return false;
-    }
-    uint8_t validity = to->view->validity[projected->pixel];
+    uint8_t validity = to->view->validity[pixel];
     if (!t3r_is_measured(validity) || t3r_is_covered(validity) || t3r_is_doubtful(validity)) {
         return false;
     }
-    int32_t there = t3r_depth_q20(to->scale, to->view->depth[projected->pixel]);
-    int32_t z = t3r_depth_q20(from->scale, from->view->depth[(size_t)y * from->view->width + x]);
-    return same_surface_q20(projected->z_q20, there) && fine_enough(from->view, z, to->view, projected->z_q20, earlier);
+    int32_t there = t3r_depth_q20(to->scale, to->view->depth[pixel]);
+    return same_surface_q20(projected_z_q20, there) &&
+           fine_enough(from->view, z_q20, to->view, projected_z_q20, earlier);
 }
 
 typedef struct covered_job {
     t3r_pointmap maps[T3R_MAX_VIEWS];
     uint32_t count, v;
+    const t3r_kernels *kernels;
     uint32_t *witness; /* of each pixel the one that covers it: view x pixels of a view + pixel + 1, or 0 */
 } covered_job;
+
+/* Of the points those that another view covers, the first that does; then there are none. */
+static void find_covered(const covered_job *job, t3r_points *points, const t3r_unprojection *unprojection)
+{
+    const t3r_pointmap *from = &job->maps[job->v];
+    const t3r_view *view = from->view;
+    const uint32_t pixels = view->width * view->height;
+    job->kernels->unproject(unprojection, points);
+    for (uint32_t w = 0; w < job->count; w++) {
+        if (w == job->v) {
+            continue;
+        }
+        const t3r_pinhole other = t3r_pinhole_of(job->maps[w].view);
+        t3r_places places;
+        job->kernels->locate(&other, points, &places);
+        for (uint32_t i = 0; i < points->count; i++) {
+            const size_t pixel = (size_t)points->v[i] * view->width + points->u[i];
+            if (places.pixel[i] != T3R_NO_PIXEL && job->witness[pixel] == 0 &&
+                covers(from, t3r_depth_q20(from->scale, points->depth[i]), &job->maps[w], places.pixel[i],
+                       places.z_q20[i], w < job->v)) {
+                view->validity[pixel] = t3r_marked(view->validity[pixel], T3R_MARK_COVERED);
+                job->witness[pixel] = w * pixels + places.pixel[i] + 1; /* at most 2^4 x 2^24 */
+            }
+        }
+    }
+    points->count = 0;
+}
 
 /* Marks what is covered. The witnesses lie in other views, where another task may mark the same byte: later. */
 static void mark_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
@@ -46,20 +72,20 @@ static void mark_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     (void)worker;
     const covered_job *job = context;
     const t3r_view *view = job->maps[job->v].view;
-    const uint32_t pixels = view->width * view->height;
+    const t3r_unprojection from = t3r_unprojection_of(&job->maps[job->v]);
+    t3r_points points = {0};
     for (uint32_t y = begin; y < end; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
             const size_t pixel = (size_t)y * view->width + x;
             job->witness[pixel] = 0;
-            for (uint32_t w = 0; w < job->count && job->witness[pixel] == 0; w++) {
-                t3r_projected_pixel projected;
-                if (w != job->v && t3r_is_known(view->validity[pixel]) &&
-                    covers(&job->maps[job->v], x, y, &job->maps[w], w < job->v, &projected)) {
-                    view->validity[pixel] = t3r_marked(view->validity[pixel], T3R_MARK_COVERED);
-                    job->witness[pixel] = w * pixels + (uint32_t)projected.pixel + 1; /* at most 2^4 x 2^24 */
-                }
+            if (t3r_is_known(view->validity[pixel])) {
+                t3r_add_pixel(&points, view, x, y);
+            }
+            if (t3r_is_full(&points)) {
+                find_covered(job, &points, &from);
             }
         }
+        find_covered(job, &points, &from);
     }
 }
 
@@ -67,13 +93,14 @@ uint32_t t3r_mark_covered(const t3r_view *views, uint32_t count, uint32_t v, int
                           const t3r_pointmap_work *work)
 {
     const uint32_t pixels = views[v].width * views[v].height;
-    covered_job job = {.count = count, .v = v, .witness = work->pixels};
+    covered_job job = {.count = count, .v = v, .kernels = work->kernels, .witness = work->pixels};
     t3r_pointmaps_of(views, count, exponent, job.maps);
     t3r_run_rows(&work->workers, views[v].height, mark_rows, &job);
     uint32_t marked = 0;
     for (uint32_t i = 0; i < pixels; i++) {
         if (job.witness[i] != 0) {
-            uint8_t *witness = &views[(job.witness[i] - 1) / pixels].validity[(job.witness[i] - 1) % pixels];
+            uint32_t w = (job.witness[i] - 1) / pixels;
+            uint8_t *witness = &views[w].validity[job.witness[i] - 1 - w * pixels];
             *witness = t3r_marked(*witness, T3R_MARK_WITNESS);
             marked++;
         }

@@ -113,7 +113,7 @@ static bool is_measured_anywhere(const t3r_view *view)
  * keyframe is to look like is the mean of its neighbours on the way, and the map changes along with the camera's
  * exposure.
  */
-static void level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
+static void level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_t slot, const t3r_pointmap_work *work)
 {
     const uint32_t before = (slot + rt->config.views - 1) % rt->config.views;
     for (int c = 0; c < 3; c++) {
@@ -124,7 +124,7 @@ static void level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_t slot
     }
     const t3r_view pair[2] = {views[before], views[slot]};
     uint16_t gain_q14[2][3];
-    if (t3r_exposure_gains(pair, 2, rt->frame.exponent, gain_q14) == 2) {
+    if (t3r_exposure_gains(pair, 2, rt->frame.exponent, gain_q14, work) == 2) {
         memcpy(rt->gain_q14[before], gain_q14[0], sizeof gain_q14[0]);
         memcpy(rt->gain_q14[slot], gain_q14[1], sizeof gain_q14[1]);
     }
@@ -148,7 +148,7 @@ static t3r_status compare_keyframes(t3r_runtime *rt, const t3r_view *views, uint
         return T3R_ERR_CANCELLED;
     }
     if (rt->config.bridge_radius > 0) {
-        t3r_bridge_lend(views, rt->views, slot, rt->frame.exponent);
+        t3r_bridge_lend(views, rt->views, slot, rt->frame.exponent, &work);
         t3r_bridge_view(&views[slot], rt->config.bridge_radius);
         (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent, ~(1u << slot), &work);
     }
@@ -158,7 +158,7 @@ static t3r_status compare_keyframes(t3r_runtime *rt, const t3r_view *views, uint
     if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 1, 2)) {
         return T3R_ERR_CANCELLED;
     }
-    level_keyframe(rt, views, slot);
+    level_keyframe(rt, views, slot, &work);
     return T3R_OK;
 }
 

@@ -15,6 +15,8 @@
     X(box_sums, check_box_sums)                                                                                        \
     X(weigh_row, check_weigh_row)                                                                                      \
     X(divide_row, check_divide_row)                                                                                    \
+    X(unproject, check_unproject)                                                                                      \
+    X(locate, check_locate)                                                                                            \
     X(ray_row, check_ray_row)                                                                                          \
     X(census_row, check_census_row)                                                                                    \
     X(census_cost, check_census_cost)                                                                                  \

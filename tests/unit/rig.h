@@ -54,7 +54,7 @@ static inline void place_view(rig *s, int v, double x, double z, double plane)
 
 /* Views compared by one worker. */
 static uint32_t compared[PIXELS];
-static const t3r_pointmap_work alone = {{NULL, 1}, compared};
+static const t3r_pointmap_work alone = {{NULL, 1}, compared, &t3r_kernels_c};
 
 /* Two cameras 8 pixels of disparity apart on a plane at 2. */
 static inline rig *pair_new(void)

@@ -27,7 +27,7 @@ static uint32_t bridge(rig *s, uint32_t views, uint32_t radius)
 {
     uint32_t bridged = 0;
     for (uint32_t v = 0; v < views; v++) {
-        t3r_bridge_lend(s->view, views, v, 0);
+        t3r_bridge_lend(s->view, views, v, 0, &alone);
     }
     for (uint32_t v = 0; v < views; v++) {
         t3r_bridge_view(&s->view[v], radius);
@@ -235,7 +235,7 @@ static void nearest_lent(void **state)
     rig *s = pair_new();
     forget(s, 0, 20 * W + 40); /* the plane's point from 8 pixels to the left, one at 1 from 16 */
     s->depth[1][20 * W + 24] = UNIT;
-    t3r_bridge_lend(s->view, PAIR, 0, 0);
+    t3r_bridge_lend(s->view, PAIR, 0, 0, &alone);
     assert_int_equal(s->validity[0][20 * W + 40], T3R_BRIDGED | T3R_MARK_LENT);
     assert_int_equal(s->depth[0][20 * W + 40], UNIT);
     free(s);

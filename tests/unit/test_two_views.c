@@ -314,7 +314,7 @@ static void gain_recovered(void **state)
         paint(s, 0, 0, one);
         paint(s, 1, 8, other[turn]);
         uint16_t gain_q14[2][3];
-        t3r_exposure_gains(s->view, 2, 0, gain_q14);
+        t3r_exposure_gains(s->view, 2, 0, gain_q14, &alone);
         for (int c = 0; c < 3; c++) {
             double ratio = gain_of(gain_q14[0], c) / gain_of(gain_q14[1], c);
             assert_true(fabs(ratio / other[turn][c] - 1) < 0.01);
@@ -335,11 +335,11 @@ static void unlinked_views_stay(void **state)
     paint(s, 1, 8, dark);
     paint(s, 2, 0, dark);
     uint16_t with[3][3], without[2][3], by_itself[3][3];
-    t3r_exposure_gains(s->view, 3, 0, with);
-    t3r_exposure_gains(s->view, 2, 0, without);
+    t3r_exposure_gains(s->view, 3, 0, with, &alone);
+    t3r_exposure_gains(s->view, 2, 0, without, &alone);
     assert_memory_equal(with, without, sizeof without);
     place_view(s, 1, 0, 0, 8);
-    t3r_exposure_gains(s->view, 3, 0, by_itself);
+    t3r_exposure_gains(s->view, 3, 0, by_itself, &alone);
     for (int c = 0; c < 3; c++) {
         assert_int_equal(with[2][c], T3R_GAIN_ONE_Q14);
         for (int v = 0; v < 3; v++) {
@@ -555,7 +555,7 @@ static void levelled_before_they_are_compared(void **state)
     paint_sure(s, 0, 0, same);
     paint_sure(s, 1, 8, darker);
     uint16_t gain_q14[VIEWS][3];
-    t3r_exposure_gains(s->view, 2, 0, gain_q14);
+    t3r_exposure_gains(s->view, 2, 0, gain_q14, &alone);
     uint32_t pairs;
     assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs) < 2 * 256);
     for (int c = 0; c < 3; c++) {

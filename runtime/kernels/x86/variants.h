@@ -20,6 +20,10 @@
     X(box_sums, T3R_CPU_AVX2, t3r_box_sums_avx2)                                                                       \
     X(weigh_row, T3R_CPU_AVX2, t3r_weigh_row_avx2)                                                                     \
     X(divide_row, T3R_CPU_AVX2, t3r_divide_row_avx2)                                                                   \
+    X(unproject, T3R_CPU_AVX2, t3r_unproject_avx2)                                                                     \
+    X(unproject, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_unproject_avx512)                                                  \
+    X(locate, T3R_CPU_AVX2, t3r_locate_avx2)                                                                           \
+    X(locate, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_locate_avx512)                                                        \
     X(census_row, T3R_CPU_AVX2, t3r_census_row_avx2)                                                                   \
     X(census_cost, T3R_CPU_AVX2, t3r_census_cost_avx2)                                                                 \
     X(ray_row, T3R_CPU_AVX2, t3r_ray_row_avx2)                                                                         \
