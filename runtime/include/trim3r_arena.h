@@ -38,6 +38,7 @@
 #define T3R_CLUSTER_BYTES 56         /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
 #define T3R_GROUP_COUNTS_BYTES 4096  /* what the budget counts by SuperCluster */
+#define T3R_RATIO_BINS 512           /* of a histogram of exposure */
 #define T3R_CLUSTER_SUMS_BYTES 26624 /* sums of each worker but the first */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
  * heads nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
@@ -231,8 +232,8 @@
     X(with, STEREO_WORK, "stereo work",                                                                                \
       T3R_STEREO_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_VIEWS_(shape), T3R_STEREO_(shape)), T3R_AT_DEPTH,   \
       T3R_AT_DEPTH)                                                                                                    \
-    X(with, POINTMAP_WORK, "comparison of views", T3R_BUILDS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_POINTMAP,   \
-      T3R_AT_POINTMAP)                                                                                                 \
+    X(with, POINTMAP_WORK, "comparison of views",                                                                      \
+      T3R_BUILDS_(shape) * (T3R_VIEW_PIXELS_(shape) + 3 * T3R_RATIO_BINS) * 4, T3R_AT_POINTMAP, T3R_AT_POINTMAP)       \
     X(with, TEXTURE, "texture planes", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_WAVELET,                                \
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
     X(with, WAVELET_WORK, "wavelet work",                                                                              \

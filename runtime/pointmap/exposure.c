@@ -10,13 +10,7 @@
 #define LEVEL_LEAST 16
 #define LEVEL_MOST 239
 #define PAIRS_LEAST 256
-#define BINS 512 /* log2 of a ratio in Q8, -1..1 */
-
-/* The ratios of a view's levels to those of the views before it. */
-typedef struct ratios {
-    uint32_t bin[3][BINS];
-    uint32_t count;
-} ratios;
+#define BINS T3R_RATIO_BINS /* log2 of a ratio in Q8, -1..1 */
 
 static bool well_exposed(const t3r_view *view, size_t pixel)
 {
@@ -86,9 +80,14 @@ static void pair_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     }
 }
 
-/* Levels of `from` over those of `to`, whose own are level_q8 above the first view's. */
-static void compare(const pairs_job *job, const int32_t level_q8[3], const int32_t log_q16[LEVEL_MOST + 1], ratios *r)
+/* Adds the levels of `from` over those of `to`, whose own are level_q8 above the first view's; returns the pairs. */
+static uint32_t compare(const pairs_job *job, const int16_t level_q8[3], uint32_t bin[3][BINS])
 {
+    int32_t log_q16[LEVEL_MOST + 1] = {0};
+    for (uint32_t level = LEVEL_LEAST; level <= LEVEL_MOST; level++) {
+        log_q16[level] = t3r_log2_q16(level);
+    }
+    uint32_t pairs = 0;
     const t3r_view *from = job->from.view, *to = job->to.view;
     for (uint32_t row = 0; row < asked(from->height); row++) {
         for (uint32_t column = 0; column < asked(from->width); column++) {
@@ -99,11 +98,12 @@ static void compare(const pairs_job *job, const int32_t level_q8[3], const int32
             const size_t pixel = (size_t)row * STEP * from->width + column * STEP;
             for (int c = 0; c < 3; c++) {
                 int32_t ratio_q16 = log_q16[from->colour[c][pixel]] - log_q16[to->colour[c][place]];
-                r->bin[c][t3r_clamp32(t3r_round_shift32(ratio_q16, 8) + level_q8[c] + BINS / 2, 0, BINS - 1)]++;
+                bin[c][t3r_clamp32(t3r_round_shift32(ratio_q16, 8) + level_q8[c] + BINS / 2, 0, BINS - 1)]++;
             }
-            r->count++;
+            pairs++;
         }
     }
+    return pairs;
 }
 
 /* The least ratio that at least half of the pairs do not exceed, log2 in Q8 */
@@ -122,29 +122,25 @@ static int32_t median_q8(const uint32_t bin[BINS], uint32_t count)
 uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
                             const t3r_pointmap_work *work)
 {
-    int32_t level_q8[T3R_MAX_VIEWS][3] = {{0}};
+    int16_t level_q8[T3R_MAX_VIEWS][3] = {{0}};
     int32_t sum_q8[3] = {0};
     bool linked[T3R_MAX_VIEWS] = {true};
     int32_t links = 1;
-    int32_t log_q16[LEVEL_MOST + 1] = {0};
-    for (uint32_t level = LEVEL_LEAST; level <= LEVEL_MOST; level++) {
-        log_q16[level] = t3r_log2_q16(level);
-    }
     for (uint32_t v = 1; v < count; v++) {
-        ratios r;
-        memset(&r, 0, sizeof r);
+        uint32_t pairs = 0;
+        memset(work->ratios, 0, 3 * sizeof *work->ratios);
         for (uint32_t w = 0; w < v; w++) {
             if (linked[w]) {
                 pairs_job job = {t3r_pointmap_of(&views[v], exponent), t3r_pointmap_of(&views[w], exponent),
                                  work->kernels, work->pixels};
                 t3r_run_rows(&work->workers, asked(views[v].height), pair_rows, &job);
-                compare(&job, level_q8[w], log_q16, &r);
+                pairs += compare(&job, level_q8[w], work->ratios);
             }
         }
-        linked[v] = r.count >= PAIRS_LEAST;
+        linked[v] = pairs >= PAIRS_LEAST;
         links += linked[v];
         for (int c = 0; c < 3 && linked[v]; c++) {
-            level_q8[v][c] = median_q8(r.bin[c], r.count);
+            level_q8[v][c] = (int16_t)median_q8(work->ratios[c], pairs);
             sum_q8[c] += level_q8[v][c];
         }
     }

@@ -6,13 +6,20 @@
 
 typedef struct t3r_pointmap_work {
     t3r_workers workers;
-    uint32_t *pixels; /* one a pixel of a view */
+    uint32_t *pixels;                   /* one a pixel of a view */
+    uint32_t (*ratios)[T3R_RATIO_BINS]; /* of exposure: three histograms */
     const t3r_kernels *kernels;
 } t3r_pointmap_work;
 
 static inline t3r_pointmap_work t3r_pointmap_work_of(const t3r_runtime *rt)
 {
-    return (t3r_pointmap_work){t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_POINTMAP_WORK), &rt->kernels};
+    uint32_t *pixels = t3r_buffer_at(rt, T3R_BUFFER_POINTMAP_WORK);
+    return (t3r_pointmap_work){
+        .workers = t3r_workers_of(rt),
+        .pixels = pixels,
+        .ratios = (uint32_t(*)[T3R_RATIO_BINS])(pixels + (size_t)rt->config.width * rt->config.height),
+        .kernels = &rt->kernels,
+    };
 }
 
 #endif

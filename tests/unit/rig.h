@@ -53,8 +53,8 @@ static inline void place_view(rig *s, int v, double x, double z, double plane)
 }
 
 /* Views compared by one worker. */
-static uint32_t compared[PIXELS];
-static const t3r_pointmap_work alone = {{NULL, 1}, compared, &t3r_kernels_c};
+static uint32_t compared[PIXELS], ratios[3][T3R_RATIO_BINS];
+static const t3r_pointmap_work alone = {{NULL, 1}, compared, ratios, &t3r_kernels_c};
 
 /* Two cameras 8 pixels of disparity apart on a plane at 2. */
 static inline rig *pair_new(void)
