@@ -1,5 +1,4 @@
-/* Recordings: MCAP files of ROS 2 messages (sensor_msgs/msg/Image, sensor_msgs/msg/CameraInfo,
- * geometry_msgs/msg/PoseStamped or TransformStamped; CDR). Host side: this reader uses the heap. */
+/* Recordings: MCAP files of ROS 2 messages in CDR. Host side: this reader uses the heap. */
 #ifndef T3R_PLATFORM_RECORDING_H
 #define T3R_PLATFORM_RECORDING_H
 
@@ -9,6 +8,7 @@
 #include <stdio.h>
 
 #include "capture.h"
+#include "text.h"
 
 typedef struct t3r_triplet {
     uint32_t context[2];
@@ -18,16 +18,19 @@ typedef struct t3r_triplet {
 /* ---- reading ------------------------------------------------------------------------------------- */
 
 /* What is read, from files of any writer:
- *   colour  the first sensor_msgs/Image topic in rgb8, bgr8, mono8, yuv422_yuy2 (yuyv), yuv422 (uyvy) or nv12 (Y plane,
- *           then UV, rows of `step` bytes)
+ *   colour  the first sensor_msgs/Image topic in rgb8, bgr8, yuv422_yuy2 (yuyv), yuv422 (uyvy) or nv12 (Y plane, then
+ *           UV, rows of `step` bytes), else the first sensor_msgs/CompressedImage topic, else the first in mono8
  *   depth   16UC1 or mono16: steps of the unit in metadata "trim3r", else of 0.001; 32FC1 metres become steps of
  *           that unit: to Q40, then divided, both round-half-even; NaN, infinity, nothing, what lies behind the
  *           camera or beyond 65535 steps is 0
  *   intrinsics  sensor_msgs/CameraInfo: K and D; plumb_bob, equidistant, and rational_polynomial when its terms beyond
  *           the fifth are 0; all D zero and not equidistant is T3R_DISTORTION_NONE
- *   pose    geometry_msgs/PoseStamped or TransformStamped (child to frame): camera to world
+ *   pose    geometry_msgs/PoseStamped, TransformStamped (child to frame), PoseWithCovarianceStamped or
+ *           nav_msgs/Odometry: camera to world
  * Depth, intrinsics and pose come from the topic below the colour topic's prefix ("/camera/"), else from the only one
- * in the file. Depth and pose pair with the colour image of the same header.stamp, else the nearest within 20 ms,
+ * in the file. Of several depth topics those with the longest beginning in common with the colour topic count, of these
+ * the first one in colour's frame, else the first; not compressed before compressed. A t3r_recording_choice names
+ * topics instead. Depth and pose pair with the colour image of the same header.stamp, else the nearest within 20 ms,
  * unless that has the very stamp of another colour image;
  * intrinsics hold from their stamp on, the first ones also before. A stamp of 0 means the log time.
  *
@@ -41,6 +44,31 @@ typedef struct t3r_recording t3r_recording;
 t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_bytes);
 /* The same from memory, which must outlive the recording (the fuzzers' way in). */
 t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes);
+
+/* Topics by their names; NULL: as above. */
+typedef struct t3r_recording_choice {
+    const char *colour, *depth, *pose, *camera_info;
+    const char *depth_camera_info; /* NULL: of another prefix than colour's, the one below depth's */
+    int64_t pair_ns;               /* depth and pose are at most so far from colour; 0: 20 ms */
+} t3r_recording_choice;
+/* Fails also where a name is not that of such a topic. */
+t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_choice *choice, char *error,
+                                         size_t error_bytes);
+
+/* What a sensor_msgs/CompressedImage holds: rows without gaps of RGB24 or GREY, or of Z16 in the recording's unit. */
+typedef struct t3r_decoded_image {
+    uint32_t width, height;
+    t3r_pixel_format format; /* of colour */
+    const uint8_t *rows;     /* the decoder's; valid until it decodes the next image of that kind */
+} t3r_decoded_image;
+/* Decodes `count` bytes in the format that the message names. 0, or -1 with a reason. Without a decoder, frames with
+ * such images are refused: a recording that is replayed is the same everywhere, so import decodes them first. */
+typedef struct t3r_image_decoder {
+    int (*decode)(void *user, t3r_text format, const uint8_t *bytes, size_t count, bool depth, uint64_t unit_q40,
+                  t3r_decoded_image *out, char *error, size_t error_bytes);
+    void *user;
+} t3r_image_decoder;
+void t3r_recording_set_decoder(t3r_recording *recording, t3r_image_decoder decoder);
 void t3r_recording_close(t3r_recording *recording);
 
 uint32_t t3r_recording_frame_count(const t3r_recording *recording);
@@ -64,13 +92,45 @@ const char *t3r_recording_note(const t3r_recording *recording);
 /* The bits epoch that the recording was written in; 0 = not written by trim3r. */
 uint32_t t3r_recording_bits_epoch(const t3r_recording *recording);
 
+/* What a stream is read for. */
+typedef enum t3r_stream_use {
+    T3R_USE_NONE,
+    T3R_USE_COLOUR,
+    T3R_USE_DEPTH,
+    T3R_USE_CAMERA_INFO,
+    T3R_USE_DEPTH_CAMERA_INFO,
+    T3R_USE_POSE,
+    T3R_USE_TRANSFORMS, /* by import alone */
+    T3R_USE_COUNT
+} t3r_stream_use;
+/* "", "colour", "depth", ... */
+extern const char *const t3r_stream_use_names[T3R_USE_COUNT];
+
 typedef struct t3r_stream_info {
+    t3r_stream_use use;
+    const char *unused; /* why it is not read; "" where it is */
+    bool compressed;    /* its images are files (JPEG, PNG) */
     const char *topic, *schema;
     uint64_t messages;
     int64_t first_ns, last_ns; /* log times */
 } t3r_stream_info;
 uint32_t t3r_recording_stream_count(const t3r_recording *recording);
 t3r_stream_info t3r_recording_stream(const t3r_recording *recording, uint32_t index);
+/* The first stream read for that; T3R_NO_STREAM where there is none. */
+#define T3R_NO_STREAM SIZE_MAX
+size_t t3r_recording_stream_for(const t3r_recording *recording, t3r_stream_use use);
+
+/* The messages of a stream of a type that trim3r reads (ros_messages.h), in the order of their stamps where it is read,
+ * else in the file's. */
+typedef struct t3r_recorded_message {
+    const uint8_t *data; /* whole: it was read once already */
+    size_t bytes;
+    int64_t stamp_ns;
+} t3r_recorded_message;
+uint32_t t3r_recording_message_count(const t3r_recording *recording, size_t stream);
+t3r_recorded_message t3r_recording_message(const t3r_recording *recording, size_t stream, uint32_t index);
+/* The message of that stream that frame `index` is read from, or NULL data. */
+t3r_recorded_message t3r_recording_frame_message(const t3r_recording *recording, uint32_t index, t3r_stream_use use);
 /* How depth, pose and camera_info were paired to the colour images, counted. */
 typedef struct t3r_pairing_info {
     uint32_t frames, with_depth, with_pose, with_intrinsics;
@@ -89,7 +149,7 @@ typedef struct t3r_recorded_pose {
     double rotation[4]; /* w x y z */
 } t3r_recorded_pose;
 /* Poses of stream `stream`, in the order of their stamps where it is the stream that poses the frames, else in the
- * file's; 0 when its type is none of PoseStamped and TransformStamped. */
+ * file's; 0 when its type is no pose. */
 uint32_t t3r_recording_pose_count(const t3r_recording *recording, uint32_t stream);
 t3r_recorded_pose t3r_recording_pose(const t3r_recording *recording, uint32_t stream, uint32_t index);
 

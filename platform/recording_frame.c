@@ -38,10 +38,43 @@ static const char *rows_error(const t3r_ros_image *image, uint32_t row_bytes, ui
     return (uint64_t)image->step * rows > image->data_bytes ? "data hold fewer than step x rows bytes" : NULL;
 }
 
+/* A compressed image by the recording's decoder, whose sides are checked as those of others are. */
+static int decode(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message, bool depth,
+                  t3r_decoded_image *out)
+{
+    const t3r_image_decoder *decoder = &r->recording->decoder;
+    t3r_ros_compressed image;
+    const char *wrong = t3r_ros_read_compressed(message->data, message->bytes, &image);
+    char what[160];
+    if (wrong == NULL && decoder->decode == NULL) {
+        wrong = "compressed images are decoded by trim3r import";
+    }
+    if (wrong == NULL && decoder->decode(decoder->user, image.format, image.data, image.data_bytes, depth,
+                                         r->recording->depth_unit_q40, out, what, sizeof what) != 0) {
+        wrong = what;
+    }
+    if (wrong == NULL) {
+        wrong = t3r_pixel_size_error(depth ? T3R_PIXEL_GREY : out->format, out->width, out->height);
+    }
+    return wrong == NULL ? 0 : fail(r, stream, message, "", wrong);
+}
+
 static int read_colour(const reading *r, t3r_frame *frame)
 {
     const t3r_stream *stream = &r->recording->streams[r->recording->colour];
     const t3r_indexed_message *message = &stream->messages[r->index];
+    if (stream->compressed) {
+        t3r_decoded_image decoded;
+        if (decode(r, stream, message, false, &decoded) != 0) {
+            return -1;
+        }
+        frame->format = decoded.format;
+        frame->width = decoded.width;
+        frame->height = decoded.height;
+        frame->planes[0] = decoded.rows;
+        frame->stride_bytes[0] = t3r_pixel_row_bytes(decoded.format, decoded.width);
+        return 0;
+    }
     t3r_ros_image image;
     const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
     if (wrong == NULL && !t3r_pixel_format_of(image.encoding, &frame->format)) {
@@ -102,6 +135,18 @@ static int read_depth(const reading *r, size_t link, t3r_frame *frame)
 {
     const t3r_stream *stream = &r->recording->streams[r->recording->depth];
     const t3r_indexed_message *message = &stream->messages[link];
+    frame->depth_unit_q40 = r->recording->depth_unit_q40;
+    if (stream->compressed) {
+        t3r_decoded_image decoded;
+        if (decode(r, stream, message, true, &decoded) != 0) {
+            return -1;
+        }
+        frame->depth_width = decoded.width;
+        frame->depth_height = decoded.height;
+        frame->depth = decoded.rows;
+        frame->depth_stride_bytes = decoded.width * 2;
+        return 0;
+    }
     t3r_ros_image image;
     const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
     if (wrong != NULL) {
@@ -120,7 +165,6 @@ static int read_depth(const reading *r, size_t link, t3r_frame *frame)
     }
     frame->depth_width = image.width;
     frame->depth_height = image.height;
-    frame->depth_unit_q40 = r->recording->depth_unit_q40;
     if (!metres && !image.is_bigendian) {
         frame->depth = image.data;
         frame->depth_stride_bytes = image.step;
@@ -233,8 +277,7 @@ static int read_pose(const reading *r, size_t link, t3r_camera *camera)
     const t3r_stream *stream = &r->recording->streams[r->recording->pose];
     const t3r_indexed_message *message = &stream->messages[link];
     t3r_ros_pose pose;
-    const char *wrong = stream->type == T3R_ROS_POSE ? t3r_ros_read_pose(message->data, message->bytes, &pose)
-                                                     : t3r_ros_read_transform(message->data, message->bytes, &pose);
+    const char *wrong = t3r_ros_read_pose(stream->type, message->data, message->bytes, &pose);
     if (wrong != NULL) {
         return fail(r, stream, message, "", wrong);
     }

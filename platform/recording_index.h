@@ -10,8 +10,8 @@
 #include "ros_messages.h"
 
 #define T3R_NO_MESSAGE SIZE_MAX
-#define T3R_NO_STREAM SIZE_MAX
 #define T3R_NOTE_BYTES 512
+#define T3R_UNUSED_BYTES 128
 
 typedef struct t3r_indexed_message {
     const uint8_t *data;
@@ -26,7 +26,8 @@ typedef enum t3r_stream_role {
     T3R_STREAM_COLOUR,
     T3R_STREAM_DEPTH,
     T3R_STREAM_CAMERA_INFO,
-    T3R_STREAM_POSE
+    T3R_STREAM_POSE,
+    T3R_STREAM_TF
 } t3r_stream_role;
 
 /* A channel. Messages are kept for the types that trim3r reads; others are counted. */
@@ -36,6 +37,10 @@ typedef struct t3r_stream {
     uint16_t schema_id;
     t3r_ros_type type; /* T3R_ROS_TYPE_COUNT = none that trim3r reads */
     t3r_stream_role role;
+    bool compressed, mono; /* of images */
+    t3r_text frame_id, child_frame_id; /* of its first message that is kept; point into the file's bytes */
+    t3r_stream_use use;
+    char unused[T3R_UNUSED_BYTES]; /* why it is not read */
     uint64_t count;
     int64_t first_ns, last_ns;
     t3r_indexed_message *messages;
@@ -44,7 +49,7 @@ typedef struct t3r_stream {
 
 /* Indices into the messages of the streams chosen; T3R_NO_MESSAGE = none. */
 typedef struct t3r_frame_links {
-    size_t depth, pose, camera_info;
+    size_t depth, pose, camera_info, depth_camera_info;
 } t3r_frame_links;
 
 /* What t3r_recording_set_pose() gave a frame. */
@@ -60,7 +65,9 @@ struct t3r_recording {
 
     t3r_stream *streams;
     size_t stream_count, stream_capacity;
-    size_t colour, depth, pose, camera_info; /* the streams chosen, or T3R_NO_STREAM */
+    size_t colour, depth, pose, camera_info, depth_camera_info; /* the streams chosen, or T3R_NO_STREAM */
+    int64_t pair_ns;
+    t3r_image_decoder decoder; /* decode NULL: none */
 
     t3r_frame_links *links;  /* one a message of the colour stream */
     uint8_t **depth_z16;     /* one a message of the depth stream: its samples as Z16 once asked for, when the file
@@ -79,7 +86,15 @@ struct t3r_recording {
 /* Adds a remark to the note. */
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Chooses the streams and links each colour image to its companions. 0, or -1 when memory is out. */
+/* recording_inspect.c: reads a message of a known type; its stamp, and on the stream what the first ones say of it: role,
+ * frames. NULL, or what is wrong. *usable: it may belong to a frame. */
+const char *t3r_recording_inspect(t3r_recording *recording, t3r_stream *stream, const uint8_t *bytes, size_t count,
+                                  int64_t *stamp_ns, bool *usable);
+
+/* recording_choice.c: chooses the streams. 0, or -1 with a reason where a topic that was named is not there. */
+int t3r_recording_choose(t3r_recording *recording, const t3r_recording_choice *choice, char *error, size_t error_bytes);
+
+/* recording_pairing.c: links each colour image to its companions. 0, or -1 when memory is out. */
 int t3r_recording_pair(t3r_recording *recording);
 
 #endif

@@ -1,62 +1,8 @@
-/* Which streams make up the frames, and which messages belong to one instant. */
+/* Which messages belong to one instant. */
 #include "recording_index.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#define NEAR_NS 20000000 /* messages of one instant that do not share a stamp are at most this far apart */
-
-/* ---- choosing streams ---- */
-
-/* Bytes of the topic up to and with its last slash: the camera's prefix. */
-static size_t prefix_bytes(const char *topic)
-{
-    const char *slash = strrchr(topic, '/');
-    return slash == NULL ? 0 : (size_t)(slash - topic) + 1;
-}
-
-static size_t choose_colour(const t3r_recording *recording)
-{
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        if (recording->streams[i].role == T3R_STREAM_COLOUR) {
-            return i;
-        }
-    }
-    return T3R_NO_STREAM;
-}
-
-/* The first stream of this role below the camera's prefix, else the only one of this role in the file. */
-static size_t choose_companion(const t3r_recording *recording, t3r_stream_role role)
-{
-    const char *camera = recording->streams[recording->colour].topic;
-    size_t prefix = prefix_bytes(camera);
-    size_t only = T3R_NO_STREAM, count = 0;
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        const t3r_stream *stream = &recording->streams[i];
-        if (stream->role == role) {
-            if (prefix > 1 && strncmp(stream->topic, camera, prefix) == 0) {
-                return i;
-            }
-            only = i;
-            count++;
-        }
-    }
-    return count == 1 ? only : T3R_NO_STREAM;
-}
-
-static void remark_unused(t3r_recording *recording)
-{
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        const t3r_stream *stream = &recording->streams[i];
-        bool chosen =
-            i == recording->colour || i == recording->depth || i == recording->pose || i == recording->camera_info;
-        if (stream->role != T3R_STREAM_OTHER && !chosen) {
-            t3r_recording_remark(recording, "%s is not used", stream->topic);
-        }
-    }
-}
-
-/* ---- pairing ---- */
 
 static int by_stamp(const void *left, const void *right)
 {
@@ -116,10 +62,10 @@ static int64_t *sorted_stamps(const t3r_stream *colour)
     return stamps;
 }
 
-/* The nearest within NEAR_NS that no other colour image has a better claim to, being of its very stamp; widens
+/* The nearest within near_ns that no other colour image has a better claim to, being of its very stamp; widens
  * *worst_ns to its distance. */
 static size_t pair_near(const t3r_stream *stream, int64_t stamp, const int64_t *taken, size_t taken_count,
-                        int64_t *worst_ns)
+                        int64_t near_ns, int64_t *worst_ns)
 {
     size_t found = nearest(stream, stamp);
     if (found == T3R_NO_MESSAGE) {
@@ -127,7 +73,7 @@ static size_t pair_near(const t3r_stream *stream, int64_t stamp, const int64_t *
     }
     int64_t gap = stream->messages[found].stamp_ns - stamp;
     gap = gap < 0 ? -gap : gap;
-    if (gap > NEAR_NS ||
+    if (gap > near_ns ||
         (gap > 0 && bsearch(&stream->messages[found].stamp_ns, taken, taken_count, sizeof *taken, by_value) != NULL)) {
         return T3R_NO_MESSAGE;
     }
@@ -148,24 +94,17 @@ static size_t pair_standing(const t3r_stream *stream, int64_t stamp)
 
 int t3r_recording_pair(t3r_recording *recording)
 {
-    recording->colour = choose_colour(recording);
-    recording->depth = recording->pose = recording->camera_info = T3R_NO_STREAM;
     if (recording->colour == T3R_NO_STREAM) {
-        t3r_recording_remark(recording, "holds no colour images in a format that can be read");
         return 0;
     }
-    recording->depth = choose_companion(recording, T3R_STREAM_DEPTH);
-    recording->pose = choose_companion(recording, T3R_STREAM_POSE);
-    recording->camera_info = choose_companion(recording, T3R_STREAM_CAMERA_INFO);
-    remark_unused(recording);
-
     static const t3r_stream none = {0};
     const t3r_stream *colour = &recording->streams[recording->colour];
-    const t3r_stream *depth = &none, *pose = &none, *camera_info = &none;
+    const t3r_stream *depth = &none, *pose = &none, *camera_info = &none, *depth_info = &none;
     const struct {
         size_t index;
         const t3r_stream **stream;
-    } companions[] = {{recording->depth, &depth}, {recording->pose, &pose}, {recording->camera_info, &camera_info}};
+    } companions[] = {{recording->depth, &depth}, {recording->pose, &pose}, {recording->camera_info, &camera_info},
+                      {recording->depth_camera_info, &depth_info}};
     for (size_t i = 0; i < sizeof companions / sizeof companions[0]; i++) {
         if (companions[i].index != T3R_NO_STREAM) {
             t3r_stream *stream = &recording->streams[companions[i].index];
@@ -187,9 +126,10 @@ int t3r_recording_pair(t3r_recording *recording)
     for (size_t i = 0; i < colour->kept; i++) {
         t3r_frame_links *links = &recording->links[i];
         int64_t stamp = colour->messages[i].stamp_ns;
-        links->depth = pair_near(depth, stamp, taken, colour->kept, &pairing->worst_depth_gap_ns);
-        links->pose = pair_near(pose, stamp, taken, colour->kept, &pairing->worst_pose_gap_ns);
+        links->depth = pair_near(depth, stamp, taken, colour->kept, recording->pair_ns, &pairing->worst_depth_gap_ns);
+        links->pose = pair_near(pose, stamp, taken, colour->kept, recording->pair_ns, &pairing->worst_pose_gap_ns);
         links->camera_info = pair_standing(camera_info, stamp);
+        links->depth_camera_info = pair_standing(depth_info, stamp);
         pairing->with_depth += links->depth != T3R_NO_MESSAGE;
         pairing->with_pose += links->pose != T3R_NO_MESSAGE;
         pairing->with_intrinsics += links->camera_info != T3R_NO_MESSAGE;

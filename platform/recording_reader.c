@@ -18,6 +18,7 @@
 #define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
 #define MAX_DEPTH_UNIT_Q40 ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40)
 #define MAX_LOG_NS ((uint64_t)1 << 62)
+#define DEFAULT_PAIR_NS 20000000 /* messages of one instant that do not share a stamp are at most this far apart */
 
 /* State of one pass over the records. */
 typedef struct indexing {
@@ -65,15 +66,20 @@ static int on_schema(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_
     return T3R_MCAP_KEPT;
 }
 
+static bool is_named(t3r_text name, const char *full)
+{
+    size_t package = (size_t)(strchr(full, '/') - full);
+    size_t type = strlen(full) - package - 4; /* behind "/msg" */
+    return t3r_text_is(name, full) ||
+           (name.count == package + type && memcmp(name.chars, full, package) == 0 &&
+            memcmp(name.chars + package, full + package + 4, type) == 0);
+}
+
 /* Schema names come as "package/msg/Type", from older writers as "package/Type". */
 static t3r_ros_type type_of(t3r_text name)
 {
-    static const char *const old_names[T3R_ROS_TYPE_COUNT] = {"sensor_msgs/Image", "sensor_msgs/CameraInfo",
-                                                              "geometry_msgs/PoseStamped",
-                                                              "geometry_msgs/TransformStamped", "tf2_msgs/TFMessage"};
     uint32_t type = 0;
-    while (type < T3R_ROS_TYPE_COUNT && !t3r_text_is(name, t3r_ros_names[type]) &&
-           !t3r_text_is(name, old_names[type])) {
+    while (type < T3R_ROS_TYPE_COUNT && !is_named(name, t3r_ros_names[type])) {
         type++;
     }
     return (t3r_ros_type)type;
@@ -115,56 +121,6 @@ static int on_channel(void *user, const t3r_mcap_channel_record *channel, t3r_mc
 
 /* ---- messages ---- */
 
-static t3r_stream_role role_of_image(t3r_recording *recording, const t3r_stream *stream, t3r_text encoding)
-{
-    t3r_pixel_format format;
-    if (t3r_pixel_format_of(encoding, &format)) {
-        return T3R_STREAM_COLOUR;
-    }
-    if (t3r_text_is(encoding, "16UC1") || t3r_text_is(encoding, "mono16") || t3r_text_is(encoding, "32FC1")) {
-        return T3R_STREAM_DEPTH;
-    }
-    char name[32];
-    t3r_text_copy(name, sizeof name, encoding);
-    t3r_recording_remark(recording, "%s: its encoding '%s' is not supported", stream->topic, name);
-    return T3R_STREAM_OTHER;
-}
-
-/* Parses a message of a known type; *stamp_ns and the stream's role from it. NULL, or what is wrong. *usable: it may
- * be paired to an image. */
-static const char *inspect(t3r_recording *recording, t3r_stream *stream, const t3r_mcap_message_record *message,
-                           int64_t *stamp_ns, bool *usable)
-{
-    *usable = true;
-    const char *wrong = NULL;
-    if (stream->type == T3R_ROS_IMAGE) {
-        t3r_ros_image image;
-        wrong = t3r_ros_read_image(message->data, message->bytes, &image);
-        if (wrong == NULL) {
-            *stamp_ns = image.header.stamp_ns;
-            stream->role = stream->count == 0 ? role_of_image(recording, stream, image.encoding) : stream->role;
-            *usable = stream->role != T3R_STREAM_OTHER;
-        }
-    } else if (stream->type == T3R_ROS_CAMERA_INFO) {
-        t3r_ros_camera_info info;
-        wrong = t3r_ros_read_camera_info(message->data, message->bytes, &info);
-        if (wrong == NULL) {
-            *stamp_ns = info.header.stamp_ns;
-            stream->role = T3R_STREAM_CAMERA_INFO;
-            *usable = info.k_f64[0] << 1 != 0; /* K[0] = 0: uncalibrated */
-        }
-    } else {
-        t3r_ros_pose pose;
-        wrong = stream->type == T3R_ROS_POSE ? t3r_ros_read_pose(message->data, message->bytes, &pose)
-                                             : t3r_ros_read_transform(message->data, message->bytes, &pose);
-        if (wrong == NULL) {
-            *stamp_ns = pose.header.stamp_ns;
-            stream->role = T3R_STREAM_POSE;
-        }
-    }
-    return wrong;
-}
-
 static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mcap_place place)
 {
     indexing *x = user;
@@ -174,10 +130,10 @@ static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mc
     t3r_stream *stream = &x->recording->streams[x->stream_of[message->channel] - 1];
     int kept = 0;
     int64_t log_ns = (int64_t)(message->log_ns < MAX_LOG_NS ? message->log_ns : MAX_LOG_NS);
-    if (stream->type != T3R_ROS_TYPE_COUNT && stream->type != T3R_ROS_TF) {
+    if (stream->type != T3R_ROS_TYPE_COUNT) {
         int64_t stamp_ns = 0;
         bool usable = false;
-        const char *wrong = inspect(x->recording, stream, message, &stamp_ns, &usable);
+        const char *wrong = t3r_recording_inspect(x->recording, stream, message->data, message->bytes, &stamp_ns, &usable);
         if (wrong != NULL) {
             char what[128];
             snprintf(what, sizeof what, "%s (%.64s)", wrong, stream->topic);
@@ -307,7 +263,8 @@ static void remark_cut(t3r_recording *recording, const t3r_mcap_end *end)
                          messages);
 }
 
-static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
+static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t count, const t3r_recording_choice *choice,
+                       char *error, size_t error_bytes)
 {
     indexing x = {.recording = recording, .error = error, .error_bytes = error_bytes};
     x.schema_of = calloc(IDS, sizeof *x.schema_of);
@@ -323,6 +280,10 @@ static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t co
     if (status == 0 && end.cut) {
         remark_cut(recording, &end);
     }
+    recording->pair_ns = choice->pair_ns > 0 ? choice->pair_ns : DEFAULT_PAIR_NS;
+    if (status == 0) {
+        status = t3r_recording_choose(recording, choice, error, error_bytes);
+    }
     if (status == 0 && t3r_recording_pair(recording) != 0) {
         status = t3r_reason(error, error_bytes, "out of memory");
     }
@@ -332,24 +293,32 @@ static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t co
     return status;
 }
 
-t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
+static t3r_recording *parse(const uint8_t *bytes, size_t count, const t3r_recording_choice *choice, char *error,
+                            size_t error_bytes)
 {
     t3r_recording *recording = calloc(1, sizeof *recording);
     if (recording == NULL) {
         t3r_reason(error, error_bytes, "out of memory");
         return NULL;
     }
-    recording->colour = recording->depth = recording->pose = recording->camera_info = T3R_NO_STREAM;
+    recording->colour = recording->depth = recording->pose = T3R_NO_STREAM;
+    recording->camera_info = recording->depth_camera_info = T3R_NO_STREAM;
     recording->depth_unit_q40 = DEFAULT_DEPTH_UNIT_Q40;
     memcpy(recording->clock, "unknown", sizeof "unknown");
-    if (index_bytes(recording, bytes, count, error, error_bytes) != 0) {
+    if (index_bytes(recording, bytes, count, choice, error, error_bytes) != 0) {
         t3r_recording_close(recording);
         return NULL;
     }
     return recording;
 }
 
-t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_bytes)
+t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
+{
+    return parse(bytes, count, &(t3r_recording_choice){0}, error, error_bytes);
+}
+
+t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_choice *choice, char *error,
+                                         size_t error_bytes)
 {
     size_t count;
     uint8_t *bytes = t3r_file_bytes_checked(path, SIZE_MAX, t3r_mcap_magic_error, &count, error, error_bytes);
@@ -357,7 +326,7 @@ t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_by
         return NULL;
     }
     char what[256];
-    t3r_recording *recording = t3r_recording_parse(bytes, count, what, sizeof what);
+    t3r_recording *recording = parse(bytes, count, choice, what, sizeof what);
     if (recording == NULL) {
         t3r_reason(error, error_bytes, "%s: %s", path, what);
         free(bytes);
@@ -365,6 +334,11 @@ t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_by
     }
     recording->file = bytes;
     return recording;
+}
+
+t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_bytes)
+{
+    return t3r_recording_open_chosen(path, &(t3r_recording_choice){0}, error, error_bytes);
 }
 
 void t3r_recording_close(t3r_recording *recording)
@@ -390,97 +364,4 @@ void t3r_recording_close(t3r_recording *recording)
     t3r_mcap_chunks_free(&recording->chunks);
     free(recording->file);
     free(recording);
-}
-
-/* ---- what it says ---- */
-
-uint32_t t3r_recording_frame_count(const t3r_recording *recording)
-{
-    return recording->pairing.frames;
-}
-
-uint32_t t3r_recording_triplet_count(const t3r_recording *recording)
-{
-    return recording->triplet_count;
-}
-
-t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index)
-{
-    return index < recording->triplet_count ? recording->triplets[index] : (t3r_triplet){{0, 0}, 0};
-}
-
-const char *t3r_recording_note(const t3r_recording *recording)
-{
-    return recording->note;
-}
-
-uint32_t t3r_recording_bits_epoch(const t3r_recording *recording)
-{
-    return recording->bits_epoch;
-}
-
-uint32_t t3r_recording_stream_count(const t3r_recording *recording)
-{
-    return (uint32_t)recording->stream_count;
-}
-
-t3r_stream_info t3r_recording_stream(const t3r_recording *recording, uint32_t index)
-{
-    if (index >= recording->stream_count) {
-        return (t3r_stream_info){"", "", 0, 0, 0};
-    }
-    const t3r_stream *stream = &recording->streams[index];
-    return (t3r_stream_info){stream->topic, stream->schema, stream->count, stream->first_ns, stream->last_ns};
-}
-
-t3r_pairing_info t3r_recording_pairing(const t3r_recording *recording)
-{
-    return recording->pairing;
-}
-
-const char *t3r_recording_clock(const t3r_recording *recording)
-{
-    return recording->clock;
-}
-
-uint64_t t3r_recording_depth_unit_q40(const t3r_recording *recording)
-{
-    return recording->depth_unit_q40;
-}
-
-uint32_t t3r_recording_pose_count(const t3r_recording *recording, uint32_t stream)
-{
-    if (stream >= recording->stream_count) {
-        return 0;
-    }
-    const t3r_stream *s = &recording->streams[stream];
-    return s->type == T3R_ROS_POSE || s->type == T3R_ROS_TRANSFORM ? (uint32_t)s->kept : 0;
-}
-
-static double double_of_bits(uint64_t bits)
-{
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-t3r_recorded_pose t3r_recording_pose(const t3r_recording *recording, uint32_t stream, uint32_t index)
-{
-    const t3r_stream *s = &recording->streams[stream];
-    const t3r_indexed_message *message = &s->messages[index];
-    t3r_recorded_pose out = {.stamp_ns = message->stamp_ns};
-    t3r_ros_pose pose = {0};
-    /* read once already when it was indexed */
-    if (s->type == T3R_ROS_POSE) {
-        t3r_ros_read_pose(message->data, message->bytes, &pose);
-    } else {
-        t3r_ros_read_transform(message->data, message->bytes, &pose);
-    }
-    for (uint32_t i = 0; i < 3; i++) {
-        out.position[i] = double_of_bits(pose.position_f64[i]);
-    }
-    for (uint32_t i = 0; i < 4; i++) {
-        out.rotation[(i + 1) % 4] = double_of_bits(pose.rotation_f64[i]); /* x y z w to w x y z */
-    }
-    return out;
 }

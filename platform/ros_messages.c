@@ -4,12 +4,8 @@
 
 static const char *const bad_encapsulation = "the encapsulation is not plain CDR";
 
-static const char *get_header(t3r_cdr_reader *in, const uint8_t *bytes, size_t count, t3r_ros_header *header)
+static const char *get_header(t3r_cdr_reader *in, t3r_ros_header *header)
 {
-    t3r_cdr_open(in, bytes, count);
-    if (in->failed) {
-        return bad_encapsulation;
-    }
     int32_t seconds = (int32_t)t3r_cdr_get_u32(in);
     uint32_t nanoseconds = t3r_cdr_get_u32(in);
     header->stamp_ns = (int64_t)seconds * NS_PER_S + nanoseconds;
@@ -18,6 +14,13 @@ static const char *get_header(t3r_cdr_reader *in, const uint8_t *bytes, size_t c
         return "header is malformed or cut short";
     }
     return nanoseconds < NS_PER_S ? NULL : "header.stamp.nanosec is over 999999999";
+}
+
+/* A message that begins with its header. */
+static const char *open_message(t3r_cdr_reader *in, const uint8_t *bytes, size_t count, t3r_ros_header *header)
+{
+    t3r_cdr_open(in, bytes, count);
+    return in->failed ? bad_encapsulation : get_header(in, header);
 }
 
 static void get_f64s(t3r_cdr_reader *in, uint64_t *values, uint32_t count)
@@ -30,7 +33,7 @@ static void get_f64s(t3r_cdr_reader *in, uint64_t *values, uint32_t count)
 const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image)
 {
     t3r_cdr_reader in;
-    const char *wrong = get_header(&in, bytes, count, &image->header);
+    const char *wrong = open_message(&in, bytes, count, &image->header);
     if (wrong != NULL) {
         return wrong;
     }
@@ -49,7 +52,7 @@ const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image
 const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros_camera_info *info)
 {
     t3r_cdr_reader in;
-    const char *wrong = get_header(&in, bytes, count, &info->header);
+    const char *wrong = open_message(&in, bytes, count, &info->header);
     if (wrong != NULL) {
         return wrong;
     }
@@ -77,30 +80,73 @@ const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros
     return in.failed ? "D, K, R, P, binning or roi is cut short" : NULL;
 }
 
-static const char *get_pose(t3r_cdr_reader *in, t3r_ros_pose *pose)
-{
-    get_f64s(in, pose->position_f64, 3);
-    get_f64s(in, pose->rotation_f64, 4);
-    return in->failed ? "position or orientation is cut short" : NULL;
-}
-
-const char *t3r_ros_read_pose(const uint8_t *bytes, size_t count, t3r_ros_pose *pose)
+const char *t3r_ros_read_compressed(const uint8_t *bytes, size_t count, t3r_ros_compressed *image)
 {
     t3r_cdr_reader in;
-    const char *wrong = get_header(&in, bytes, count, &pose->header);
-    pose->child_frame_id = (t3r_text){"", 0};
-    return wrong != NULL ? wrong : get_pose(&in, pose);
-}
-
-const char *t3r_ros_read_transform(const uint8_t *bytes, size_t count, t3r_ros_pose *pose)
-{
-    t3r_cdr_reader in;
-    const char *wrong = get_header(&in, bytes, count, &pose->header);
+    const char *wrong = open_message(&in, bytes, count, &image->header);
     if (wrong != NULL) {
         return wrong;
     }
-    pose->child_frame_id = t3r_cdr_get_string(&in);
-    return in.failed ? "child_frame_id is malformed or cut short" : get_pose(&in, pose);
+    image->format = t3r_cdr_get_string(&in);
+    image->data = t3r_cdr_get_bytes(&in, &image->data_bytes);
+    return in.failed ? "format or data is cut short" : NULL;
+}
+
+/* ---- poses ---- */
+
+/* The fields in their order: h header, c child_frame_id, p position and rotation; what stands behind is not read. */
+static const char *const pose_fields[T3R_ROS_TYPE_COUNT] = {
+    [T3R_ROS_POSE] = "hp",
+    [T3R_ROS_TRANSFORM] = "hcp",
+    [T3R_ROS_ODOMETRY] = "hcp",
+    [T3R_ROS_POSE_COVARIANCE] = "hp",
+};
+
+bool t3r_ros_is_pose(t3r_ros_type type)
+{
+    return type < T3R_ROS_TYPE_COUNT && pose_fields[type] != NULL;
+}
+
+static const char *get_fields(t3r_cdr_reader *in, const char *fields, t3r_ros_pose *pose)
+{
+    const char *wrong = NULL;
+    pose->child_frame_id = (t3r_text){"", 0};
+    for (; *fields != '\0' && wrong == NULL; fields++) {
+        if (*fields == 'h') {
+            wrong = get_header(in, &pose->header);
+        } else if (*fields == 'c') {
+            pose->child_frame_id = t3r_cdr_get_string(in);
+            wrong = in->failed ? "child_frame_id is malformed or cut short" : NULL;
+        } else {
+            get_f64s(in, pose->position_f64, 3);
+            get_f64s(in, pose->rotation_f64, 4);
+            wrong = in->failed ? "position or orientation is cut short" : NULL;
+        }
+    }
+    return wrong;
+}
+
+const char *t3r_ros_read_pose(t3r_ros_type type, const uint8_t *bytes, size_t count, t3r_ros_pose *pose)
+{
+    t3r_cdr_reader in;
+    t3r_cdr_open(&in, bytes, count);
+    return in.failed ? bad_encapsulation : get_fields(&in, pose_fields[type], pose);
+}
+
+const char *t3r_ros_open_tf(const uint8_t *bytes, size_t count, t3r_ros_tf *tf)
+{
+    t3r_cdr_open(&tf->in, bytes, count);
+    if (tf->in.failed) {
+        return bad_encapsulation;
+    }
+    tf->left = t3r_cdr_get_u32(&tf->in);
+    return tf->in.failed ? "transforms is cut short" : NULL;
+}
+
+const char *t3r_ros_next_tf(t3r_ros_tf *tf, t3r_ros_pose *transform)
+{
+    tf->left--;
+    return get_fields(&tf->in, pose_fields[T3R_ROS_TRANSFORM], transform);
 }
 
 static void put_stamp(t3r_cdr_writer *out, int64_t stamp_ns)

@@ -18,12 +18,15 @@ typedef enum t3r_ros_type {
     T3R_ROS_POSE,
     T3R_ROS_TRANSFORM,
     T3R_ROS_TF,
+    T3R_ROS_ODOMETRY,
+    T3R_ROS_POSE_COVARIANCE,
+    T3R_ROS_COMPRESSED_IMAGE,
     T3R_ROS_TYPE_COUNT
 } t3r_ros_type;
 
 /* "sensor_msgs/msg/Image" ... */
 extern const char *const t3r_ros_names[T3R_ROS_TYPE_COUNT];
-/* The message and all that it refers to, as MCAP's schema encoding "ros2msg" wants it. */
+/* The message and all that it refers to, as MCAP's schema encoding "ros2msg" wants it; of those that trim3r writes. */
 extern const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT];
 
 /* What only the recorder writes: lines of text. */
@@ -45,6 +48,14 @@ typedef struct t3r_ros_image {
     uint32_t data_bytes;
 } t3r_ros_image;
 
+/* sensor_msgs/msg/CompressedImage: a file, JPEG or PNG, behind a header of its own where format says compressedDepth. */
+typedef struct t3r_ros_compressed {
+    t3r_ros_header header;
+    t3r_text format;
+    const uint8_t *data;
+    uint32_t data_bytes;
+} t3r_ros_compressed;
+
 typedef struct t3r_ros_camera_info {
     t3r_ros_header header;
     uint32_t height, width;
@@ -57,10 +68,10 @@ typedef struct t3r_ros_camera_info {
     bool roi_rectify;
 } t3r_ros_camera_info;
 
-/* geometry_msgs/msg/PoseStamped, or TransformStamped (child to frame_id). */
+/* What all messages of a pose have in common: from the child's frame to header.frame_id. */
 typedef struct t3r_ros_pose {
     t3r_ros_header header;
-    t3r_text child_frame_id; /* of a transform, else empty */
+    t3r_text child_frame_id; /* of TransformStamped and Odometry, else empty */
     uint64_t position_f64[3];
     uint64_t rotation_f64[4]; /* x y z w */
 } t3r_ros_pose;
@@ -68,8 +79,18 @@ typedef struct t3r_ros_pose {
 /* NULL, or which field is malformed or cut short. Texts and data point into the message. */
 const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image);
 const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros_camera_info *info);
-const char *t3r_ros_read_pose(const uint8_t *bytes, size_t count, t3r_ros_pose *pose);
-const char *t3r_ros_read_transform(const uint8_t *bytes, size_t count, t3r_ros_pose *pose);
+const char *t3r_ros_read_compressed(const uint8_t *bytes, size_t count, t3r_ros_compressed *image);
+/* Of PoseStamped, TransformStamped, Odometry and PoseWithCovarianceStamped, for which t3r_ros_is_pose() holds. */
+const char *t3r_ros_read_pose(t3r_ros_type type, const uint8_t *bytes, size_t count, t3r_ros_pose *pose);
+bool t3r_ros_is_pose(t3r_ros_type type);
+
+/* The transforms of a TFMessage, one after the other: open, then next while `left`. */
+typedef struct t3r_ros_tf {
+    t3r_cdr_reader in;
+    uint32_t left;
+} t3r_ros_tf;
+const char *t3r_ros_open_tf(const uint8_t *bytes, size_t count, t3r_ros_tf *tf);
+const char *t3r_ros_next_tf(t3r_ros_tf *tf, t3r_ros_pose *transform);
 
 /* rcl_interfaces/msg/Log without file, function and line. */
 typedef struct t3r_ros_log {

@@ -153,6 +153,8 @@ static cJSON *streams_json(const t3r_recording *recording)
         json_add_integer(item, "messages", (int64_t)info.messages);
         json_add_integer(item, "first_ns", info.first_ns);
         json_add_integer(item, "last_ns", info.last_ns);
+        cJSON_AddStringToObject(item, "use", t3r_stream_use_names[info.use]);
+        cJSON_AddStringToObject(item, "unused", info.unused);
         cJSON_AddItemToArray(list, item);
     }
     return list;
@@ -214,7 +216,11 @@ static void print_streams(const t3r_recording *recording)
         if (info.messages > 0) {
             printf(", %.3f s to %.3f s", (double)info.first_ns * 1e-9, (double)info.last_ns * 1e-9);
         }
-        putchar('\n');
+        if (info.use != T3R_USE_NONE) {
+            printf("; %s\n", t3r_stream_use_names[info.use]);
+        } else {
+            printf("; not used: %s\n", info.unused);
+        }
     }
 }
 
