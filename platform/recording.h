@@ -87,6 +87,13 @@ int t3r_recording_set_pose(t3r_recording *recording, uint32_t index, const int64
 uint32_t t3r_recording_triplet_count(const t3r_recording *recording);
 t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index);
 
+/* Where a file that was cut off stops, and the messages before that place. */
+typedef struct t3r_recording_cut {
+    bool cut;
+    uint64_t offset, file_bytes; /* offset: what is behind it is lost */
+    uint64_t messages;
+} t3r_recording_cut;
+t3r_recording_cut t3r_recording_cut_of(const t3r_recording *recording);
 /* "" or a remark such as "cut off after 12 of its messages". */
 const char *t3r_recording_note(const t3r_recording *recording);
 /* The bits epoch that the recording was written in; 0 = not written by trim3r. */

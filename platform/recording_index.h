@@ -62,6 +62,8 @@ typedef struct t3r_set_pose {
 struct t3r_recording {
     uint8_t *file; /* owned, or NULL */
     t3r_mcap_chunks chunks;
+    uint64_t file_bytes;
+    t3r_mcap_end cut;
 
     t3r_stream *streams;
     size_t stream_count, stream_capacity;

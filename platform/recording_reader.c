@@ -66,20 +66,10 @@ static int on_schema(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_
     return T3R_MCAP_KEPT;
 }
 
-static bool is_named(t3r_text name, const char *full)
-{
-    size_t package = (size_t)(strchr(full, '/') - full);
-    size_t type = strlen(full) - package - 4; /* behind "/msg" */
-    return t3r_text_is(name, full) ||
-           (name.count == package + type && memcmp(name.chars, full, package) == 0 &&
-            memcmp(name.chars + package, full + package + 4, type) == 0);
-}
-
-/* Schema names come as "package/msg/Type", from older writers as "package/Type". */
 static t3r_ros_type type_of(t3r_text name)
 {
     uint32_t type = 0;
-    while (type < T3R_ROS_TYPE_COUNT && !is_named(name, t3r_ros_names[type])) {
+    while (type < T3R_ROS_TYPE_COUNT && !t3r_ros_is_named((t3r_ros_type)type, name)) {
         type++;
     }
     return (t3r_ros_type)type;
@@ -255,12 +245,8 @@ static void check_triplets(t3r_recording *recording)
 
 static void remark_cut(t3r_recording *recording, const t3r_mcap_end *end)
 {
-    uint64_t messages = 0;
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        messages += recording->streams[i].count;
-    }
     t3r_recording_remark(recording, "cut off at byte %" PRIu64 ", after %" PRIu64 " of its messages", end->cut_offset,
-                         messages);
+                         t3r_recording_cut_of(recording).messages);
 }
 
 static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t count, const t3r_recording_choice *choice,
@@ -277,6 +263,8 @@ static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t co
     free(x.schemas);
     free(x.schema_of);
     free(x.stream_of);
+    recording->file_bytes = count;
+    recording->cut = status == 0 ? end : (t3r_mcap_end){0};
     if (status == 0 && end.cut) {
         remark_cut(recording, &end);
     }

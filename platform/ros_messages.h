@@ -26,6 +26,8 @@ typedef enum t3r_ros_type {
 
 /* "sensor_msgs/msg/Image" ... */
 extern const char *const t3r_ros_names[T3R_ROS_TYPE_COUNT];
+/* Whether a schema is that message's: "package/msg/Type", from older writers "package/Type". */
+bool t3r_ros_is_named(t3r_ros_type type, t3r_text name);
 /* The message and all that it refers to, as MCAP's schema encoding "ros2msg" wants it; of those that trim3r writes. */
 extern const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT];
 

@@ -276,31 +276,50 @@ static int read_jpeg(FILE *file, const char *path, bool header_only, picture *ou
 
 /* ---- either ---------------------------------------------------------------------------------------------------- */
 
-static int read_either(const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+static int read_stream(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
 {
     static const uint8_t png_magic[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t jpeg_magic[3] = {0xff, 0xd8, 0xff};
+    uint8_t magic[8] = {0};
+    size_t got = fread(magic, 1, sizeof magic, file);
+    if (ferror(file)) {
+        return fail(error, error_bytes, path, strerror(errno));
+    }
+    if (got == 0) {
+        return fail(error, error_bytes, path, "the file is empty");
+    }
+    if (fseek(file, 0, SEEK_SET) != 0) {
+        return fail(error, error_bytes, path, "not a seekable file");
+    }
+    if (memcmp(magic, png_magic, sizeof png_magic) == 0) {
+        return read_png(file, path, header_only, out, error, error_bytes);
+    }
+    if (memcmp(magic, jpeg_magic, sizeof jpeg_magic) == 0) {
+        return read_jpeg(file, path, header_only, out, error, error_bytes);
+    }
+    return fail(error, error_bytes, path, "neither PNG nor JPEG");
+}
+
+static int read_either(const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+{
     memset(out, 0, sizeof *out);
     FILE *file = t3r_file_open(path, error, error_bytes);
     if (file == NULL) {
         return -1;
     }
-    uint8_t magic[8] = {0};
-    size_t got = fread(magic, 1, sizeof magic, file);
-    int status;
-    if (ferror(file)) {
-        status = fail(error, error_bytes, path, strerror(errno));
-    } else if (got == 0) {
-        status = fail(error, error_bytes, path, "the file is empty");
-    } else if (fseek(file, 0, SEEK_SET) != 0) {
-        status = fail(error, error_bytes, path, "not a seekable file");
-    } else if (memcmp(magic, png_magic, sizeof png_magic) == 0) {
-        status = read_png(file, path, header_only, out, error, error_bytes);
-    } else if (memcmp(magic, jpeg_magic, sizeof jpeg_magic) == 0) {
-        status = read_jpeg(file, path, header_only, out, error, error_bytes);
-    } else {
-        status = fail(error, error_bytes, path, "neither PNG nor JPEG");
+    int status = read_stream(file, path, header_only, out, error, error_bytes);
+    fclose(file);
+    return status;
+}
+
+int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes)
+{
+    memset(out, 0, sizeof *out);
+    FILE *file = count > 0 ? fmemopen((void *)(uintptr_t)bytes, count, "rb") : NULL; /* read alone */
+    if (file == NULL) {
+        return t3r_reason(error, error_bytes, count > 0 ? "out of memory" : "the picture is empty");
     }
+    int status = read_stream(file, "picture", false, out, error, error_bytes);
     fclose(file);
     return status;
 }

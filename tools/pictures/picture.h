@@ -15,6 +15,8 @@ typedef struct picture {
 /* 0, or -1 with "what, where" in error[]. Sizes over T3R_MAX_SIDE are refused. PNG palettes and alpha become RGB;
  * a 16-bit grey PNG stays 16 bits. */
 int picture_read(const char *path, picture *out, char *error, size_t error_bytes);
+/* The same of a file's bytes in memory; "what" in error[]. */
+int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes);
 /* The sides of a picture as its header gives them, nothing decoded; errors as above. */
 int picture_size(const char *path, uint32_t *width, uint32_t *height, char *error, size_t error_bytes);
 int picture_write_png(const char *path, const picture *in, char *error, size_t error_bytes);

@@ -17,11 +17,10 @@
 #include "cli/option_values.h"
 #include "cli/recording_options.h"
 #include "import/posed_folder.h"
-#include "import/posed_recording.h"
 #include "import/poses_output.h"
 #include "reason.h"
 #include "recording.h"
-#include "import/recording_poses.h"
+#include "import/recording_import.h"
 #include "trim3r.h"
 #include "cli/whole_file.h"
 
@@ -36,6 +35,7 @@ typedef struct options {
     poses_source poses;
     pointmap_options pointmaps;
     bool json;
+    bag_options bag;
     recording_options stored;
 } options;
 
@@ -89,7 +89,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     options *o = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
-        state->child_inputs[0] = &o->stored;
+        state->child_inputs[0] = &o->bag;
+        state->child_inputs[1] = &o->stored;
         return 0;
     case 's':
         option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
@@ -162,14 +163,14 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
-static const struct argp_child children[] = {{&recording_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&bag_argp, 0, NULL, 0}, {&recording_argp, 0, NULL, 0}, {0}};
 
 static const struct argp parser = {
     .options = argp_options,
     .children = children,
     .parser = parse_option,
-    .args_doc = "DIR",
-    .doc = "Turn a posed folder into a recording.\v"
+    .args_doc = "DIR\nBAG.mcap",
+    .doc = "Turn a posed folder, or a bag of ROS 2, into a recording. A recording that was cut off is mended.\v"
            "DIR holds one of\n"
            "  transforms.json (instant-ngp, NeRFCapture, nerfstudio): camera_model OPENCV\n"
            "    or OPENCV_FISHEYE, depth_path with integer_depth_scale, trim3r_triplets\n"
@@ -192,14 +193,20 @@ static const struct argp parser = {
            "of which some are in the folder's world and others in that of the points.\n"
            "\n"
            "Estimated poses are rounded into the recording: what is made of it later is the same everywhere. With them "
-           "DIR may "
-           "also be a recording, which is then written once more.\n\n"
+           "DIR may also be a bag or a recording.\n"
+           "\n"
+           "Of a bag (MCAP) the frames are written anew: compressed images (JPEG, PNG, compressedDepth) decoded, poses "
+           "interpolated between two of their topic or composed of /tf and /tf_static, depth of another camera "
+           "registered to colour. A recording that lost its end is read as far as it goes. Topics that were not used "
+           "are named with the reason.\n\n"
            "Examples:\n"
            "  trim3r import scene --size 256x256 -o scene.mcap\n"
            "  trim3r import rgbd_dataset_freiburg1_desk -o desk.mcap\n"
            "  trim3r import desk --intrinsics 525,525,319.5,239.5 -o desk.mcap\n"
            "  trim3r import photos --intrinsics 900,900,640,480 --poses estimate -o p.mcap\n"
-           "  trim3r import photos --pointmaps dust3r.npz --min-confidence 3 -o p.mcap",
+           "  trim3r import photos --pointmaps dust3r.npz --min-confidence 3 -o p.mcap\n"
+           "  trim3r import bag.mcap --fixed-frame map -o rec.mcap\n"
+           "  trim3r import broken.mcap -o whole.mcap",
 };
 
 /* The folder's own name: what the recording says it was made from. */
@@ -386,76 +393,27 @@ static int prepare(const options *o, material *m, char *error)
     return 0;
 }
 
-/* ---- a recording once more -------------------------------------------------------------------------------------- */
-
-static int write_posed(const options *o, const t3r_recording *recording, totals *t)
-{
-    whole_file file;
-    char error[ERROR_BYTES] = "", reason[ERROR_BYTES / 2] = "", *source = source_name(o->directory, "recording");
-    int status = -1;
-    if (source == NULL) {
-        t3r_reason(error, sizeof error, "out of memory");
-    } else if (whole_file_begin(&file, o->output, error, sizeof error) == 0) {
-        status = posed_recording_write(recording, source, &o->stored, file.stream, reason, sizeof reason);
-        if (status == 0) {
-            status = whole_file_commit(&file, &t->bytes, error, sizeof error);
-        } else {
-            whole_file_abandon(&file);
-            t3r_reason(error, sizeof error, "%.400s: %s", o->output, reason);
-        }
-    }
-    cli_progress_end();
-    free(source);
-    return status == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
-}
-
-static int estimate_all(t3r_recording *recording, const options *o, uint32_t count, pose_account *accounts)
-{
-    uint32_t *frames = malloc((count + 1) * sizeof *frames);
-    if (frames == NULL || accounts == NULL || count == 0) {
-        free(frames);
-        return cli_error(CLI_BAD_INPUT, "%s: %s", o->directory, count == 0 ? "no frames" : "out of memory");
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        frames[i] = i;
-    }
-    int code = recording_estimate_poses(recording, o->directory, frames, count, o->poses, accounts);
-    free(frames);
-    return code;
-}
+/* ---- a recording or a bag --------------------------------------------------------------------------------------- */
 
 static int import_recording(const options *o)
 {
-    char error[ERROR_BYTES] = "";
-    if (o->poses == POSES_GIVEN || o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL ||
+    if (o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL ||
         pointmap_option(&o->pointmaps) != NULL) {
-        return cli_error(CLI_BAD_USAGE, "%s is a recording: --poses estimate is all that import does to one",
+        return cli_error(CLI_BAD_USAGE, "%s is a recording: --size, --intrinsics and pointmaps belong to folders",
                          o->directory);
     }
-    t3r_recording *recording = t3r_recording_open(o->directory, error, sizeof error);
-    if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+    char *source = source_name(o->directory, "recording");
+    if (source == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    uint32_t count = t3r_recording_frame_count(recording);
-    pose_account *accounts = calloc(count + 1, sizeof *accounts);
-    totals t = {0};
-    int code = estimate_all(recording, o, count, accounts);
-    code = code == CLI_OK ? write_posed(o, recording, &t) : code;
-    if (code == CLI_OK && o->json) {
-        cJSON *json = cJSON_CreateObject();
-        cJSON_AddNumberToObject(json, "frames", count);
-        json_add_integer(json, "bytes", (int64_t)t.bytes);
-        cJSON *poses = cJSON_AddArrayToObject(json, "poses");
-        for (uint32_t i = 0; i < count; i++) {
-            cJSON_AddItemToArray(poses, pose_account_json(NULL, i, accounts));
-        }
-        json_print(json);
-    } else if (code == CLI_OK) {
-        printf("%s: %u frames, %llu bytes\n", o->output, count, (unsigned long long)t.bytes);
-        poses_print(NULL, count, accounts);
-    }
-    free(accounts);
-    t3r_recording_close(recording);
+    int code = recording_import(&(recording_import_request){.input = o->directory,
+                                                            .output = o->output,
+                                                            .source = source,
+                                                            .poses = o->poses,
+                                                            .bag = &o->bag,
+                                                            .stored = &o->stored,
+                                                            .json = o->json});
+    free(source);
     return code;
 }
 
@@ -472,6 +430,9 @@ int command_import(int argc, char **argv)
     file_options_parse(&parser, argc, argv, &o);
     if (is_file(o.directory)) {
         return import_recording(&o);
+    }
+    if (o.bag.given != NULL) {
+        return cli_error(CLI_BAD_USAGE, "%s is for bags and recordings, and %s is none", o.bag.given, o.directory);
     }
     material m = {0};
     totals t = {0};

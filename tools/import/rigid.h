@@ -1,0 +1,20 @@
+/* Rigid transforms in doubles: from a child's frame to its parent's. */
+#ifndef TRIM3R_TOOLS_RIGID_H
+#define TRIM3R_TOOLS_RIGID_H
+
+typedef struct rigid {
+    double position[3];
+    double rotation[4]; /* unit quaternion w x y z */
+} rigid;
+
+extern const rigid rigid_identity;
+
+/* outer after inner: from inner's child to outer's parent. */
+rigid rigid_compose(const rigid *outer, const rigid *inner);
+rigid rigid_inverse(const rigid *transform);
+/* At t of the way from a to b, 0..1: the straight line between the positions, the arc between the rotations (slerp), on
+ * the shorter way. */
+rigid rigid_between(const rigid *a, const rigid *b, double t);
+void rigid_apply(const rigid *transform, const double point[3], double out[3]);
+
+#endif
