@@ -83,8 +83,8 @@ static size_t choose_depth(const t3r_recording *recording)
         size_t best = NO_STREAM;
         uint32_t best_rank = 0;
         for (size_t i = 0; colour->topic[prefix - 1] == '/' && i < recording->stream_count; i++) {
-            bool candidate = has_role(recording, i, T3R_STREAM_DEPTH) &&
-                             is_below(&recording->streams[i], colour, prefix);
+            bool candidate =
+                has_role(recording, i, T3R_STREAM_DEPTH) && is_below(&recording->streams[i], colour, prefix);
             if (candidate && depth_rank(recording, i) > best_rank) {
                 best = i;
                 best_rank = depth_rank(recording, i);
@@ -129,7 +129,8 @@ static int find_named(const t3r_recording *recording, const char *topic, t3r_str
     if (topic == NULL) {
         return 0;
     }
-    return t3r_reason(error, error_bytes, there ? "topic %s holds no %s" : "there is no topic %s (for %s)", topic, what);
+    return t3r_reason(error, error_bytes, there ? "topic %s holds no %s" : "there is no topic %s (for %s)", topic,
+                      what);
 }
 
 /* ---- uses, and why not ---- */

@@ -37,7 +37,7 @@ typedef struct t3r_stream {
     uint16_t schema_id;
     t3r_ros_type type; /* T3R_ROS_TYPE_COUNT = none that trim3r reads */
     t3r_stream_role role;
-    bool compressed, mono; /* of images */
+    bool compressed, mono;             /* of images */
     t3r_text frame_id, child_frame_id; /* of its first message that is kept; point into the file's bytes */
     t3r_stream_use use;
     char unused[T3R_UNUSED_BYTES]; /* why it is not read */
@@ -88,8 +88,8 @@ struct t3r_recording {
 /* Adds a remark to the note. */
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* recording_inspect.c: reads a message of a known type; its stamp, and on the stream what the first ones say of it: role,
- * frames. NULL, or what is wrong. *usable: it may belong to a frame. */
+/* recording_inspect.c: reads a message of a known type; its stamp, and on the stream what the first ones say of it:
+ * role, frames. NULL, or what is wrong. *usable: it may belong to a frame. */
 const char *t3r_recording_inspect(t3r_recording *recording, t3r_stream *stream, const uint8_t *bytes, size_t count,
                                   int64_t *stamp_ns, bool *usable);
 

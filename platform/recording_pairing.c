@@ -103,7 +103,9 @@ int t3r_recording_pair(t3r_recording *recording)
     const struct {
         size_t index;
         const t3r_stream **stream;
-    } companions[] = {{recording->depth, &depth}, {recording->pose, &pose}, {recording->camera_info, &camera_info},
+    } companions[] = {{recording->depth, &depth},
+                      {recording->pose, &pose},
+                      {recording->camera_info, &camera_info},
                       {recording->depth_camera_info, &depth_info}};
     for (size_t i = 0; i < sizeof companions / sizeof companions[0]; i++) {
         if (companions[i].index != T3R_NO_STREAM) {

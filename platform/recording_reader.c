@@ -123,7 +123,8 @@ static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mc
     if (stream->type != T3R_ROS_TYPE_COUNT) {
         int64_t stamp_ns = 0;
         bool usable = false;
-        const char *wrong = t3r_recording_inspect(x->recording, stream, message->data, message->bytes, &stamp_ns, &usable);
+        const char *wrong =
+            t3r_recording_inspect(x->recording, stream, message->data, message->bytes, &stamp_ns, &usable);
         if (wrong != NULL) {
             char what[128];
             snprintf(what, sizeof what, "%s (%.64s)", wrong, stream->topic);

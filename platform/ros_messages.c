@@ -6,11 +6,15 @@
 
 bool t3r_ros_is_named(t3r_ros_type type, t3r_text name)
 {
-    const char *full = t3r_ros_names[type];
-    size_t package = (size_t)(strchr(full, '/') - full), rest = strlen(full) - package - 4; /* behind "/msg" */
-    return t3r_text_is(name, full) ||
-           (name.count == package + rest && memcmp(name.chars, full, package) == 0 &&
-            memcmp(name.chars + package, full + package + 4, rest) == 0);
+    t3r_text full = t3r_text_of(t3r_ros_names[type]);
+    size_t package = 0;
+    while (full.chars[package] != '/') {
+        package++;
+    }
+    size_t rest = full.count - package - 4; /* behind "/msg" */
+    return t3r_text_same(name, full) ||
+           (name.count == package + rest && memcmp(name.chars, full.chars, package) == 0 &&
+            memcmp(name.chars + package, full.chars + package + 4, rest) == 0);
 }
 
 static const char *const bad_encapsulation = "the encapsulation is not plain CDR";

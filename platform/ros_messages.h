@@ -50,7 +50,8 @@ typedef struct t3r_ros_image {
     uint32_t data_bytes;
 } t3r_ros_image;
 
-/* sensor_msgs/msg/CompressedImage: a file, JPEG or PNG, behind a header of its own where format says compressedDepth. */
+/* sensor_msgs/msg/CompressedImage: a file, JPEG or PNG, behind a header of its own where format says compressedDepth.
+ */
 typedef struct t3r_ros_compressed {
     t3r_ros_header header;
     t3r_text format;

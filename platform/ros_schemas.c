@@ -26,8 +26,10 @@
 #define XYZ "float64 x\nfloat64 y\nfloat64 z\n"
 
 const char *const t3r_ros_names[T3R_ROS_TYPE_COUNT] = {
-    [T3R_ROS_IMAGE] = "sensor_msgs/msg/Image",        [T3R_ROS_CAMERA_INFO] = "sensor_msgs/msg/CameraInfo",
-    [T3R_ROS_POSE] = "geometry_msgs/msg/PoseStamped", [T3R_ROS_TRANSFORM] = "geometry_msgs/msg/TransformStamped",
+    [T3R_ROS_IMAGE] = "sensor_msgs/msg/Image",
+    [T3R_ROS_CAMERA_INFO] = "sensor_msgs/msg/CameraInfo",
+    [T3R_ROS_POSE] = "geometry_msgs/msg/PoseStamped",
+    [T3R_ROS_TRANSFORM] = "geometry_msgs/msg/TransformStamped",
     [T3R_ROS_TF] = "tf2_msgs/msg/TFMessage",
     [T3R_ROS_ODOMETRY] = "nav_msgs/msg/Odometry",
     [T3R_ROS_POSE_COVARIANCE] = "geometry_msgs/msg/PoseWithCovarianceStamped",

@@ -73,8 +73,8 @@ static int read_transforms(bag_frames *b, char *error, size_t error_bytes)
 {
     for (uint32_t s = 0; s < t3r_recording_stream_count(b->recording); s++) {
         t3r_stream_info info = t3r_recording_stream(b->recording, s);
-        bool transforms = strcmp(info.schema, "tf2_msgs/msg/TFMessage") == 0 ||
-                          strcmp(info.schema, "tf2_msgs/TFMessage") == 0;
+        bool transforms =
+            strcmp(info.schema, "tf2_msgs/msg/TFMessage") == 0 || strcmp(info.schema, "tf2_msgs/TFMessage") == 0;
         uint32_t count = transforms ? t3r_recording_message_count(b->recording, s) : 0;
         for (uint32_t i = 0; i < count; i++) {
             t3r_recorded_message message = t3r_recording_message(b->recording, s, i);
@@ -92,7 +92,8 @@ static t3r_ros_type pose_type(const char *schema)
 {
     t3r_text name = t3r_text_of(schema);
     uint32_t type = 0;
-    while (type < T3R_ROS_TYPE_COUNT && !(t3r_ros_is_pose((t3r_ros_type)type) && t3r_ros_is_named((t3r_ros_type)type, name))) {
+    while (type < T3R_ROS_TYPE_COUNT &&
+           !(t3r_ros_is_pose((t3r_ros_type)type) && t3r_ros_is_named((t3r_ros_type)type, name))) {
         type++;
     }
     return (t3r_ros_type)type;
@@ -146,7 +147,8 @@ int bag_frames_open(bag_frames *b, const t3r_recording *recording, const bag_fra
                     size_t error_bytes)
 {
     *b = (bag_frames){.recording = recording, .options = *options, .pose_parent = {"", 0}, .pose_child = {"", 0}};
-    b->camera = options->camera_frame != NULL ? transform_tree_name(t3r_text_of(options->camera_frame)) : frame_of(recording, T3R_USE_COLOUR);
+    b->camera = options->camera_frame != NULL ? transform_tree_name(t3r_text_of(options->camera_frame))
+                                              : frame_of(recording, T3R_USE_COLOUR);
     if (b->camera.count == 0) {
         b->camera = frame_of(recording, T3R_USE_CAMERA_INFO);
     }
@@ -186,7 +188,12 @@ static bool pose_of_tree(bag_frames *b, int64_t stamp_ns, rigid *out)
     if (camera == TRANSFORM_NO_FRAME) {
         return false;
     }
-    t3r_text to = b->fixed.count > 0 ? b->fixed : t3r_text_of(b->tree.frames[transform_tree_root(&b->tree, camera)].name);
+    if (b->fixed.count == 0 && !transform_tree_moves(&b->tree, camera)) { /* a rig's own frames are no poses */
+        remark(b, "no pose topic was chosen, and transforms stand still", b->camera, (t3r_text){"its root", 8});
+        return false;
+    }
+    t3r_text to =
+        b->fixed.count > 0 ? b->fixed : t3r_text_of(b->tree.frames[transform_tree_root(&b->tree, camera)].name);
     if (t3r_text_same(to, b->camera) || !lookup(b, to, b->camera, stamp_ns, out)) {
         remark(b, "at some times there is no transform", b->camera, to);
         return false;

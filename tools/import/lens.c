@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STEPS 20      /* of the inverse: each brings a usual lens nearer by a factor of three or more */
-#define MARGIN 1.05   /* around the picture */
-#define WIDEST 100.0  /* radius in units of the focal length: 89.4 degrees off the axis */
+#define STEPS 20     /* of the inverse: each brings a usual lens nearer by a factor of three or more */
+#define MARGIN 1.05  /* around the picture */
+#define WIDEST 100.0 /* radius in units of the focal length: 89.4 degrees off the axis */
 
 static void distort(const lens *l, const double in[2], double out[2])
 {
@@ -16,8 +16,7 @@ static void distort(const lens *l, const double in[2], double out[2])
         out[1] = y * scale + d[2] * (r2 + 2 * y * y) + 2 * d[3] * x * y;
     } else {
         double r = sqrt(r2), angle = atan(r), a2 = angle * angle;
-        double scale =
-            r > 0 ? angle * (1 + a2 * (d[0] + a2 * (d[1] + a2 * (d[2] + a2 * d[3])))) / r : 1;
+        double scale = r > 0 ? angle * (1 + a2 * (d[0] + a2 * (d[1] + a2 * (d[2] + a2 * d[3])))) / r : 1;
         out[0] = x * scale;
         out[1] = y * scale;
     }
@@ -84,8 +83,8 @@ static double number(uint64_t f64)
 const char *lens_of_info(const t3r_ros_camera_info *info, lens *out)
 {
     bool equidistant = t3r_text_is(info->distortion_model, "equidistant");
-    bool rational = t3r_text_is(info->distortion_model, "plumb_bob") ||
-                    t3r_text_is(info->distortion_model, "rational_polynomial");
+    bool rational =
+        t3r_text_is(info->distortion_model, "plumb_bob") || t3r_text_is(info->distortion_model, "rational_polynomial");
     uint32_t used = 0;
     *out = (lens){.width = info->width,
                   .height = info->height,

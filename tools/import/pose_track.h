@@ -15,7 +15,7 @@ typedef struct pose_track {
         int64_t stamp_ns;
         size_t order; /* of two at one time the later one counts */
         rigid pose;
-    } *items;
+    } * items;
     size_t count, capacity;
     bool standing; /* holds at all times */
 } pose_track;

@@ -61,8 +61,9 @@ static int write_frame(t3r_recorder *recorder, const t3r_recording *recording, u
     if (frame.stamp_ns < 0) {
         return t3r_reason(error, error_bytes, "frame %u: its stamp is before 1970", index);
     }
-    return t3r_recorder_frame(recorder, &out) == 0 ? 0
-                                                   : t3r_reason(error, error_bytes, "frame %u cannot be written", index);
+    return t3r_recorder_frame(recorder, &out) == 0
+               ? 0
+               : t3r_reason(error, error_bytes, "frame %u cannot be written", index);
 }
 
 int posed_recording_write(const t3r_recording *recording, const char *source, const recording_options *stored,

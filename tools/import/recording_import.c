@@ -67,11 +67,14 @@ static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
     if (!cut.cut) {
         text[0] = '\0';
     } else if (cut.offset == cut.file_bytes) {
-        snprintf(text, bytes, "the end and its index alone: the file stops at byte %" PRIu64 ", behind %" PRIu64
-                 " whole messages", cut.offset, cut.messages);
+        snprintf(text, bytes,
+                 "the end and its index alone: the file stops at byte %" PRIu64 ", behind %" PRIu64 " whole messages",
+                 cut.offset, cut.messages);
     } else {
-        snprintf(text, bytes, "what stood behind %" PRIu64 " whole messages: the file is cut or damaged from byte %" PRIu64
-                 " of %" PRIu64 " on", cut.messages, cut.offset, cut.file_bytes);
+        snprintf(text, bytes,
+                 "what stood behind %" PRIu64 " whole messages: the file is cut or damaged from byte %" PRIu64
+                 " of %" PRIu64 " on",
+                 cut.messages, cut.offset, cut.file_bytes);
     }
 }
 
@@ -85,8 +88,7 @@ static cJSON *topics_json(const t3r_recording *recording, bool used)
             cJSON_AddStringToObject(item, "topic", info.topic);
             cJSON_AddStringToObject(item, "schema", info.schema);
             json_add_integer(item, "messages", (int64_t)info.messages);
-            cJSON_AddStringToObject(item, used ? "use" : "unused",
-                                    used ? t3r_stream_use_names[info.use] : info.unused);
+            cJSON_AddStringToObject(item, used ? "use" : "unused", used ? t3r_stream_use_names[info.use] : info.unused);
             cJSON_AddItemToArray(list, item);
         }
     }
@@ -180,7 +182,8 @@ static int import_opened(const recording_import_request *r, t3r_recording *recor
     if (bag_frames_open(&frames, recording, &how, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s: %s", r->input, error);
     } else if (r->poses != POSES_GIVEN) {
-        code = accounts == NULL ? cli_error(CLI_BAD_INPUT, "out of memory") : estimate_all(recording, r, count, accounts);
+        code =
+            accounts == NULL ? cli_error(CLI_BAD_INPUT, "out of memory") : estimate_all(recording, r, count, accounts);
     }
     code = code == CLI_OK ? write_new(r, recording, &frames, &totals) : code;
     if (code == CLI_OK && r->json) {

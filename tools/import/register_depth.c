@@ -87,7 +87,8 @@ static void draw(const target *t, const double from[2], const double to[2], doub
 bool register_depth(const t3r_frame *frame, const lens *depth, const lens *colour, const rigid *from_depth,
                     uint8_t *out)
 {
-    target t = {.colour = colour, .from_depth = from_depth, .unit = ldexp((double)frame->depth_unit_q40, -40), .out = out};
+    target t = {
+        .colour = colour, .from_depth = from_depth, .unit = ldexp((double)frame->depth_unit_q40, -40), .out = out};
     register_depth_size(frame, &t.width, &t.height);
     t.scale[0] = t.width / (double)frame->width;
     t.scale[1] = t.height / (double)frame->height;
@@ -95,7 +96,7 @@ bool register_depth(const t3r_frame *frame, const lens *depth, const lens *colou
     t.widest[1] = 4 + 2.0 * t.height / frame->depth_height;
     memset(out, 0, (size_t)t.width * t.height * 2);
     /* the corners of a row's squares: those above, then those below */
-    double (*rays)[2] = malloc(2 * (size_t)(frame->depth_width + 1) * sizeof *rays);
+    double(*rays)[2] = malloc(2 * (size_t)(frame->depth_width + 1) * sizeof *rays);
     if (rays == NULL) {
         return false;
     }

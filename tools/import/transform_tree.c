@@ -104,6 +104,15 @@ uint32_t transform_tree_root(const transform_tree *tree, uint32_t frame)
     return frame;
 }
 
+bool transform_tree_moves(const transform_tree *tree, uint32_t frame)
+{
+    bool moves = false;
+    for (; tree->frames[frame].parent != TRANSFORM_NO_FRAME; frame = tree->frames[frame].parent) {
+        moves = moves || !tree->frames[frame].track.standing;
+    }
+    return moves;
+}
+
 static uint32_t depth_of(const transform_tree *tree, uint32_t frame)
 {
     uint32_t depth = 0;

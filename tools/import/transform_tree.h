@@ -38,6 +38,8 @@ const char *transform_tree_finish(transform_tree *tree);
 /* TRANSFORM_NO_FRAME where there is none of that name. */
 uint32_t transform_tree_find(const transform_tree *tree, t3r_text name);
 uint32_t transform_tree_root(const transform_tree *tree, uint32_t frame);
+/* Whether anything between a frame and its root changes over time. */
+bool transform_tree_moves(const transform_tree *tree, uint32_t frame);
 /* From `frame` to `to` at that time; false where they are not connected then. */
 bool transform_tree_lookup(const transform_tree *tree, uint32_t to, uint32_t frame, int64_t stamp_ns, int64_t near_ns,
                            rigid *out);

@@ -10,6 +10,7 @@
 #include "cli/file_options.h"
 #include "scene/scene_file.h"
 #include "cli/json_output.h"
+#include "import/bag_pictures.h"
 #include "cli/option_values.h"
 #include "recording.h"
 #include "scene/scene_info.h"
@@ -115,10 +116,22 @@ static const char *distortion_name(t3r_distortion distortion)
     return distortion == T3R_DISTORTION_NONE ? "none" : distortion == T3R_DISTORTION_RADTAN ? "radtan" : "fisheye";
 }
 
+/* Of compressed images the first is decoded, as a sample. */
+static uint32_t frames_to_see(const t3r_recording *recording)
+{
+    uint32_t count = t3r_recording_frame_count(recording);
+    for (uint32_t i = 0; i < t3r_recording_stream_count(recording); i++) {
+        t3r_stream_info info = t3r_recording_stream(recording, i);
+        count = info.compressed && info.use != T3R_USE_NONE && count > 1 ? 1 : count;
+    }
+    return count;
+}
+
 static int summarise(const t3r_recording *recording, frame_summary *out, char *error)
 {
     *out = (frame_summary){0};
-    for (uint32_t i = 0; i < t3r_recording_frame_count(recording); i++) {
+    uint32_t count = frames_to_see(recording);
+    for (uint32_t i = 0; i < count; i++) {
         t3r_capture_frame f;
         if (t3r_recording_frame(recording, i, &f, error, ERROR_BYTES) != T3R_CAPTURE_FRAME) {
             return -1;
@@ -275,6 +288,8 @@ int command_info(int argc, char **argv)
     if (recording == NULL) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
+    bag_pictures pictures = {0};
+    t3r_recording_set_decoder(recording, bag_pictures_decoder(&pictures));
     frame_summary summary;
     int status = CLI_OK;
     if (summarise(recording, &summary, error) != 0) {
@@ -285,5 +300,6 @@ int command_info(int argc, char **argv)
         print_text(recording, &summary, o.recording);
     }
     t3r_recording_close(recording);
+    bag_pictures_free(&pictures);
     return status;
 }
