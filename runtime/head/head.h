@@ -21,7 +21,8 @@ typedef struct t3r_head_input {
     const t3r_budget_settings *settings;
     const t3r_cluster *clusters;
     const void *weights; /* of `learned`, checked; NULL for the others */
-    void *work;          /* two bytes a pixel; `learned`: t3r_head_learned_work_bytes() */
+    void *work;          /* two bytes a pixel; `learned`: at least t3r_head_learned_work_bytes() */
+    size_t work_bytes;
     bool unadapted;      /* the head takes every point for retained, spacing 1 */
 } t3r_head_input;
 

@@ -10,7 +10,7 @@
 #define OPACITY_MOST_Q15 32440 /* 0.99 */
 #define COLOUR_MOST_Q7 (255 << 7)
 
-/* The work: the network's, then the outputs of a row. */
+/* The work: the outputs of a row, then the network's. */
 static size_t outputs_bytes(uint32_t width)
 {
     return (size_t)width * T3R_HEAD_OUTPUTS * sizeof(int16_t);
@@ -101,11 +101,11 @@ static uint32_t lift_row(const t3r_head_input *input, uint32_t y, const int16_t 
 uint32_t t3r_head_learned(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out)
 {
     const t3r_view *view = input->map.view;
-    t3r_cut cut = t3r_cut_of(input->work, t3r_head_learned_work_bytes(input->weights, view->width));
-    void *network_work = t3r_take(&cut, t3r_network_work_bytes(input->weights, view->width));
+    t3r_cut cut = t3r_cut_of(input->work, input->work_bytes);
     int16_t(*outputs)[T3R_HEAD_OUTPUTS] = t3r_take(&cut, outputs_bytes(view->width));
     t3r_network network;
-    t3r_network_begin(&network, input->kernels, input->weights, view->width, view->height, begin, network_work);
+    t3r_network_begin(&network, input->kernels, input->weights, view->width, view->height, begin, cut.at,
+                      t3r_cut_left(&cut));
     uint32_t count = 0;
     for (int32_t y = t3r_network_first(&network); y < (int32_t)end; y++) {
         while (t3r_network_wants_features(&network, y)) {

@@ -20,6 +20,18 @@ typedef struct band_job {
     band bands[T3R_MAX_WORKERS]; /* of one round */
 } band_job;
 
+/* A worker's share of what lies between here and the scene: at least what the plan gives it. */
+static size_t work_bytes(const t3r_runtime *rt)
+{
+    const size_t room = rt->offset[T3R_BUFFER_SCENE] - rt->offset[T3R_BUFFER_HEAD_WORK];
+    return room / rt->config.workers / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
+}
+
+static void *work_of(const t3r_runtime *rt, uint32_t worker)
+{
+    return (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK) + worker * work_bytes(rt);
+}
+
 t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
                                  const t3r_budget_settings *settings)
 {
@@ -30,16 +42,10 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
         .settings = settings,
         .clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
         .weights = rt->weights,
-        .work = t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK),
+        .work = work_of(rt, 0),
+        .work_bytes = work_bytes(rt),
         .unadapted = rt->ablation.unadapted != 0,
     };
-}
-
-static void *work_of(const t3r_runtime *rt, uint32_t worker)
-{
-    const t3r_config *c = &rt->config;
-    const size_t bytes = T3R_UP_(T3R_HEAD_WORK_(c->width, c->height, c->head_column_bytes));
-    return (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_HEAD_WORK) + worker * bytes;
 }
 
 /* Colours brought to the mean exposure. */

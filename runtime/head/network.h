@@ -4,7 +4,7 @@
  * plane. Point layers are evaluated at single pixels of the row just completed. All of it works on weights that
  * t3r_weights_check() passed.
  *
- *     t3r_network_begin(net, weights, width, height, first row of the band, work);
+ *     t3r_network_begin(net, kernels, weights, width, height, first row of the band, work, work_bytes);
  *     for (y = t3r_network_first(net); y < end of the band; y++) {
  *         while (t3r_network_wants_features(net, y)) { fill t3r_network_feature_row(net, &row) }
  *         t3r_network_step(net, y);
@@ -20,7 +20,7 @@
 #include "kernels/kernels.h"
 #include "weights.h"
 
-#define T3R_NETWORK_POINTS (2 * T3R_BLOCK_PIXELS) /* most points a call: they share the weights' loads */
+#define T3R_NETWORK_POINTS 8 /* most points a call: they share the weights' loads */
 
 /* What layers read: the features (node 0), or what plane layer n makes (node n). */
 typedef struct t3r_node {
@@ -44,20 +44,20 @@ typedef struct t3r_network {
     uint32_t planes; /* layers before the first point layer */
     t3r_layer layers[T3R_MAX_LAYERS];
     t3r_node nodes[T3R_MAX_LAYERS + 1];
-    uint8_t *columns;      /* a block's, column_pitch activations each: those under a kernel */
+    uint8_t *columns;      /* a block's, column_pitch int16 activations each: those under a kernel */
     uint32_t column_pitch; /* a multiple of 16 */
-    uint32_t column_bytes; /* of an activation there: as the kernels ask for */
-    uint32_t block;        /* pixels of a block */
+    uint8_t *strips;       /* the rows under a kernel, where layers are packed; else NULL */
+    uint8_t *packed[T3R_MAX_LAYERS];
 } t3r_network;
 
 /* Bytes of work for images of this width and any height; SIZE_MAX when that is more than can be counted. */
 size_t t3r_network_work_bytes(const void *weights, uint32_t width);
 
 /* Prepares a pass over the rows of an image from row `begin` (below the height) on. Rows above it that its kernels read
- * are made, too, so that a band has the bits of the whole image. work: t3r_network_work_bytes() bytes, aligned to 16.
- */
+ * are made, too, so that a band has the bits of the whole image. work: at least t3r_network_work_bytes() bytes, aligned
+ * to 16. With more of them the layers are packed, where the kernels take packed layers. */
 void t3r_network_begin(t3r_network *net, const t3r_kernels *kernels, const void *weights, uint32_t width,
-                       uint32_t height, uint32_t begin, void *work);
+                       uint32_t height, uint32_t begin, void *work, size_t work_bytes);
 
 /* The first step, at most `begin`: above the band, so that rows at its top are made at the same pace as below. */
 int32_t t3r_network_first(const t3r_network *net);

@@ -218,7 +218,7 @@
  *
  * Buffers come in the order of their first stage. `scene` and nothing else is laid from the arena's end, so lifetimes
  * nest, and a stage needs the sum over its live buffers. `tile lists` and `refinement work` grow: with more bytes than
- * these least ones they save passes. */
+ * these least ones they save passes. `head work` may go on up to the scene. */
 #define T3R_BUFFERS(X, with, shape)                                                                                    \
     X(with, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                            \
     X(with, MAP_RECORDS, "map records", T3R_STREAMS_(shape) * T3R_GAUSSIANS_(shape) * T3R_MAP_RECORD_BYTES,            \

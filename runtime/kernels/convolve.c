@@ -133,8 +133,8 @@ static void finish(const t3r_convolution *layer, uint32_t output, const t3r_requ
 
 void t3r_convolve_c(const t3r_convolution *layer, const t3r_block *block, void *out, uint32_t out_pitch)
 {
-    const int16_t *first = (const int16_t *)(const void *)block->row[0]; /* columns */
-    const uint32_t last = block->pixels - 1;                             /* behind the last pixel, the last again */
+    const int16_t *first = block->x;
+    const uint32_t last = block->pixels - 1; /* behind the last pixel, the last again */
     four_columns x = {first, first + (size_t)T3R_MIN(1, last) * block->step,
                       first + (size_t)T3R_MIN(2, last) * block->step, first + (size_t)T3R_MIN(3, last) * block->step};
     for (uint32_t output = 0; output < layer->outputs; output++) {
@@ -187,7 +187,7 @@ void t3r_depthwise_c(const t3r_convolution *layer, const t3r_block *block, void 
     int32_t sum[T3R_LAYER_OUTPUTS];
     int64_t wide[T3R_LAYER_OUTPUTS];
     for (uint32_t i = 0; i < block->pixels; i++) {
-        const int16_t *column = (const int16_t *)(const void *)block->row[0] + (size_t)i * block->step;
+        const int16_t *column = (const int16_t *)block->x + (size_t)i * block->step;
         if (is_wide) {
             depthwise_w16_wide(column, w16, taps, channels, wide);
         } else if (layer->weight_bits == 16) {

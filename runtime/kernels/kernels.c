@@ -13,5 +13,5 @@ void t3r_kernels_choose(t3r_kernels *table, uint32_t cpu)
     *table = t3r_kernels_c;
     (void)cpu;
     T3R_VARIANTS(CHOOSE)
-    table->column_bytes = table->convolve == t3r_kernels_c.convolve ? 2 : 1;
+    table->strip_bytes = T3R_STRIP_BYTES(cpu);
 }

@@ -65,8 +65,10 @@ typedef struct t3r_kernels {
     t3r_blur_row_kernel *blur_row;
     t3r_blur_column_kernel *blur_column;
     /* head */
-    t3r_convolve_kernel *convolve; /* and depthwise: a variant replaces both */
+    t3r_convolve_kernel *convolve;
     t3r_depthwise_kernel *depthwise;
+    t3r_pack_layer_kernel *pack_layer; /* and convolve_packed: NULL in plain C, which takes layers as they lie */
+    t3r_convolve_packed_kernel *convolve_packed;
     /* raster and refine */
     t3r_project_kernel *project;
     t3r_radix_count_kernel *radix_count;
@@ -77,7 +79,7 @@ typedef struct t3r_kernels {
     t3r_scatter_kernel *scatter;
     t3r_solve_kernel *solve;
 
-    uint32_t column_bytes; /* of an 8-bit activation that convolve and depthwise read: in plain C 2, in variants 1 */
+    uint32_t strip_bytes; /* of an activation that convolve_packed reads: 2 are an int16, 1 is a byte less -128 */
 } t3r_kernels;
 
 /* Plain C: the definition. */

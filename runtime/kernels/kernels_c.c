@@ -42,5 +42,5 @@ const t3r_kernels t3r_kernels_c = {
     .blend_keep = t3r_blend_keep_c,
     .scatter = t3r_scatter_c,
     .solve = t3r_solve_c,
-    .column_bytes = 2,
+    .strip_bytes = 2,
 };

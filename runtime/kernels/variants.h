@@ -10,6 +10,8 @@
  * the processor has stays. */
 #define T3R_VARIANTS(X) T3R_X86_VARIANTS(X) T3R_ARM_VARIANTS(X) T3R_WASM_VARIANTS(X)
 
+#define T3R_STRIP_BYTES(cpu) T3R_X86_STRIP_BYTES(cpu)
+
 /* How many there are: what serves variants alone can be left out of a build without any. */
 #define T3R_ONE_MORE_(entry, features, function) +1
 enum { T3R_VARIANTS_COUNT = 0 T3R_VARIANTS(T3R_ONE_MORE_) };

@@ -27,7 +27,7 @@ static void run(const uint8_t *file, uint32_t width, uint32_t height)
     }
     void *work = malloc(bytes);
     t3r_network net;
-    t3r_network_begin(&net, &t3r_kernels_c, file, width, height, 0, work);
+    t3r_network_begin(&net, &t3r_kernels_c, file, width, height, 0, work, bytes);
     for (int32_t y = t3r_network_first(&net); y < (int32_t)height; y++) {
         while (t3r_network_wants_features(&net, y)) {
             uint32_t row;

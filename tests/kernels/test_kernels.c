@@ -42,6 +42,8 @@
     X(blur_column, check_blur_column)                                                                                  \
     X(convolve, check_convolve)                                                                                        \
     X(depthwise, check_depthwise)                                                                                      \
+    X(pack_layer, check_convolve_packed)                                                                               \
+    X(convolve_packed, check_convolve_packed)                                                                          \
     X(project, check_project)                                                                                          \
     X(radix_count, check_radix_count)                                                                                  \
     X(radix_pass, check_radix_pass)                                                                                    \
@@ -62,7 +64,7 @@ static const struct {
     ENTRIES(ROW)};
 enum { ENTRIES_COUNT = sizeof entries / sizeof entries[0], ROUNDS = 400 };
 
-_Static_assert(offsetof(t3r_kernels, column_bytes) == ENTRIES_COUNT * sizeof(any_function *), "no entry is left out");
+_Static_assert(offsetof(t3r_kernels, strip_bytes) == ENTRIES_COUNT * sizeof(any_function *), "no entry is left out");
 
 static any_function *entry_of(const t3r_kernels *kernels, size_t offset)
 {
@@ -160,14 +162,13 @@ static void masks_choose(void **state)
     t3r_kernels_choose(&one, features);                                                                                \
     assert_true(one.entry == (function));                                                                              \
     assert_true(t3r_kernels_c.entry != (function));                                                                    \
-    assert_true((one.convolve == t3r_convolve_c) == (one.depthwise == t3r_depthwise_c));                               \
+    assert_true((one.pack_layer == NULL) == (one.convolve_packed == NULL));                                            \
     assert_true((one.nearest == t3r_nearest_c) == (one.nearest_begin == t3r_nearest_begin_c));
     T3R_VARIANTS(CHOSEN)
     (void)one;
 }
 
-/* --- variants that are wrong
- * ------------------------------------------------------------------------------------------ */
+/* --- variants that are wrong -------------------------------------------------------------------------------------- */
 
 static void rounds_down(const uint16_t *const rows[T3R_BLUR_TAPS], uint32_t width, uint16_t *restrict out)
 {

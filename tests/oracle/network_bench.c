@@ -18,10 +18,10 @@ static double seconds(void)
 
 static int8_t features[SIDE][SIDE * T3R_FEATURES];
 
-static void run(const void *weights, void *work, uint32_t every)
+static void run(const void *weights, void *work, size_t work_bytes, uint32_t every)
 {
     t3r_network net;
-    t3r_network_begin(&net, &t3r_kernels_c, weights, SIDE, SIDE, 0, work);
+    t3r_network_begin(&net, &t3r_kernels_c, weights, SIDE, SIDE, 0, work, work_bytes);
     for (int32_t y = t3r_network_first(&net); y < SIDE; y++) {
         while (t3r_network_wants_features(&net, y)) {
             uint32_t row;
@@ -59,7 +59,7 @@ static void measure(const char *name, const made_layer *shape, uint32_t layers, 
     for (int round = 0; round < ROUNDS; round++) {
         for (int k = 0; k < 2; k++) {
             double start = seconds();
-            run(weights, work, k == 0 ? 1 : 10);
+            run(weights, work, work_bytes, k == 0 ? 1 : 10);
             double took = seconds() - start;
             best[k] = took < best[k] ? took : best[k];
         }

@@ -99,7 +99,7 @@ int main(int argc, char **argv)
     }
     memset(work, 0xa5, work_bytes);
     t3r_network net;
-    t3r_network_begin(&net, &t3r_kernels_c, weights, width, height, 0, work);
+    t3r_network_begin(&net, &t3r_kernels_c, weights, width, height, 0, work, work_bytes);
     for (int32_t y = t3r_network_first(&net); y < (int32_t)height; y++) {
         uint32_t before[T3R_MAX_LAYERS + 1], feature_row;
         for (uint32_t n = 0; n <= net.planes; n++) {

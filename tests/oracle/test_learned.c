@@ -150,6 +150,7 @@ static void bands_give_the_whole_view(void **state)
         input.unadapted = round % 3 == 1;
         input.weights = weights;
         input.work = aligned_alloc(16, (work_bytes + 15) / 16 * 16);
+        input.work_bytes = work_bytes;
         memset(input.work, 0x5a, work_bytes);
         const uint32_t count = head(&input, 0, H, whole);
         assert_true(count > 100);

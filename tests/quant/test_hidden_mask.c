@@ -57,10 +57,11 @@ static void nothing_pruned(void)
 /* The outputs at every pixel. */
 static void run(const uint8_t *file, int16_t (*out)[T3R_HEAD_OUTPUTS])
 {
-    void *work = malloc(t3r_network_work_bytes(file, W));
+    const size_t work_bytes = t3r_network_work_bytes(file, W);
+    void *work = malloc(work_bytes);
     assert_non_null(work);
     t3r_network net;
-    t3r_network_begin(&net, &t3r_kernels_c, file, W, H, 0, work);
+    t3r_network_begin(&net, &t3r_kernels_c, file, W, H, 0, work, work_bytes);
     for (int32_t y = t3r_network_first(&net); y < H; y++) {
         while (t3r_network_wants_features(&net, y)) {
             uint32_t row;

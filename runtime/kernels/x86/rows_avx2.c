@@ -18,6 +18,10 @@
 #define t3r_census_cost_c t3r_census_cost_avx2
 #include "kernels/census.c"
 
+#define t3r_convolve_c t3r_convolve_avx2
+#define t3r_depthwise_c t3r_depthwise_avx2
+#include "kernels/convolve.c"
+
 #define t3r_packed_row_c t3r_packed_row_avx2
 #define t3r_nv12_row_c t3r_nv12_row_avx2
 #define t3r_triple_row_c t3r_triple_row_avx2

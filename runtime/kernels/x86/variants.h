@@ -50,15 +50,21 @@
     X(blur_row, T3R_CPU_AVX2, t3r_blur_row_avx2)                                                                       \
     X(blur_column, T3R_CPU_AVX2, t3r_blur_column_avx2)                                                                 \
     X(convolve, T3R_CPU_AVX2, t3r_convolve_avx2)                                                                       \
-    X(convolve, T3R_CPU_X86_VNNI_, t3r_convolve_vnni)                                                                  \
     X(depthwise, T3R_CPU_AVX2, t3r_depthwise_avx2)                                                                     \
+    X(pack_layer, T3R_CPU_AVX2, t3r_pack_layer_avx2)                                                                   \
+    X(pack_layer, T3R_CPU_X86_VNNI_, t3r_pack_layer_vnni)                                                              \
+    X(convolve_packed, T3R_CPU_AVX2, t3r_convolve_packed_avx2)                                                         \
+    X(convolve_packed, T3R_CPU_X86_VNNI_, t3r_convolve_packed_vnni)                                                    \
     X(project, T3R_CPU_AVX2, t3r_project_avx2)                                                                         \
     X(place, T3R_CPU_AVX2, t3r_place_avx2)                                                                             \
     X(blend, T3R_CPU_AVX2, t3r_blend_avx2)                                                                             \
     X(blend_keep, T3R_CPU_AVX2, t3r_blend_keep_avx2)                                                                   \
     X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)
+/* Of an activation that convolve_packed of these features reads. */
+#define T3R_X86_STRIP_BYTES(cpu) (((cpu) & T3R_CPU_X86_VNNI_) == T3R_CPU_X86_VNNI_ ? 1u : 2u)
 #else
 #define T3R_X86_VARIANTS(X)
+#define T3R_X86_STRIP_BYTES(cpu) 2u
 #endif
 
 #define T3R_DECLARE_(entry, features, function) __attribute__((visibility("hidden"))) t3r_##entry##_kernel function;

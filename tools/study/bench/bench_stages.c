@@ -4,6 +4,7 @@
 
 #include "study/bench/bench_head.h"
 #include "study/bench/bench_limits.h"
+#include "study/bench/bench_network.h"
 #include "study/bench/bench_pairs.h"
 #include "study/bench/bench_refine.h"
 #include "study/bench/bench_stereo.h"
@@ -35,6 +36,11 @@ static bool run_build_learned(bench_work *w)
 static bool run_head(bench_work *w)
 {
     return bench_head_run(w->scene[BENCH_HEADED].runtime);
+}
+
+static bool run_network(bench_work *w)
+{
+    return bench_network_run(w->scene[BENCH_NETWORKED].runtime, w->features);
 }
 
 static bool run_refine(bench_work *w)
@@ -152,6 +158,7 @@ const bench_stage bench_stages[BENCH_STAGES_MOST + 1] = {
     {"build_analytic_ms", run_build, BENCH_TRIMMED, pixels, "ns a pixel", "build_analytic_ns_per_pixel"},
     {"build_small_ms", run_build_learned, BENCH_LEARNED, pixels, "ns a pixel", "build_small_ns_per_pixel"},
     {"head_gmac_per_s", run_head, BENCH_HEADED, macs_of_head, "ns a multiply-accumulate", "head_ns_per_mac"},
+    {"network_ms", run_network, BENCH_NETWORKED, pixels, "ns a pixel", "network_ns_per_pixel"},
     {"machine_gmac_per_s", run_multiply_adds, BENCH_NO_SCENE, multiply_adds, NULL, NULL},
     {"machine_copy_gb_per_s", run_copy, BENCH_NO_SCENE, bytes_copied, NULL, NULL},
 };

@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "room/room.h"
 #include "study/bench/bench_limits.h"
+#include "study/bench/bench_network.h"
 #include "study/bench/bench_stereo.h"
 #include "wavelet/wavelet.h"
 
@@ -27,6 +28,7 @@ static const struct {
     [BENCH_REFINED] = {BENCH_TRIMMED_TO, ANALYTIC, true, 1, false},
     [BENCH_MATCHED] = {BENCH_TRIMMED_TO, ANALYTIC, true, 0, true},
     [BENCH_HEADED] = {BENCH_POINTS, MEASURED, true, 0, false},
+    [BENCH_NETWORKED] = {BENCH_TRIMMED_TO, MEASURED, true, 0, false},
 };
 
 t3r_status bench_work_build(bench_work *w, bench_scene kind)
@@ -97,6 +99,17 @@ static t3r_status keep_start(bench_work *w)
     return T3R_OK;
 }
 
+static t3r_status keep_features(bench_work *w)
+{
+    const t3r_runtime *runtime = w->scene[BENCH_NETWORKED].runtime;
+    w->features = malloc(bench_network_bytes(runtime));
+    if (w->features == NULL) {
+        return T3R_ERR_ARENA;
+    }
+    bench_network_features(runtime, w->features);
+    return T3R_OK;
+}
+
 t3r_status bench_work_draw(bench_work *w, bench_scene kind)
 {
     t3r_target target = {.width = BENCH_SIDE, .height = BENCH_SIDE, .rgb = w->view, .rgb_stride_bytes = 3 * BENCH_SIDE};
@@ -113,6 +126,7 @@ void bench_work_close(bench_work *w)
         free(w->scene[kind].arena);
     }
     free(w->start);
+    free(w->features);
     free(w->stereo_work);
     chosen_head_close(&w->small);
     chosen_head_close(&w->measured);
@@ -208,6 +222,12 @@ t3r_status bench_work_open_scene(bench_work *w, bench_scene kind)
     if (kind == BENCH_NO_SCENE || w->scene[kind].arena != NULL) {
         return T3R_OK;
     }
-    const t3r_status status = open_scene(w, kind);
-    return status == T3R_OK && kind == BENCH_REFINED ? keep_start(w) : status;
+    t3r_status status = open_scene(w, kind);
+    if (status == T3R_OK && kind == BENCH_REFINED) {
+        status = keep_start(w);
+    }
+    if (status == T3R_OK && kind == BENCH_NETWORKED) {
+        status = keep_features(w);
+    }
+    return status;
 }

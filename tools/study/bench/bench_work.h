@@ -27,13 +27,14 @@ typedef enum bench_scene {
     BENCH_REFINED,
     BENCH_MATCHED,
     BENCH_HEADED,
+    BENCH_NETWORKED,
     BENCH_SCENES,
     BENCH_NO_SCENE = BENCH_SCENES
 } bench_scene;
 
 typedef struct bench_settings {
     const char *points; /* a file of points to cluster in the place of the room's; NULL = none */
-    const char *head;   /* of BENCH_HEADED */
+    const char *head;   /* of BENCH_HEADED and BENCH_NETWORKED */
     t3r_depth depth;    /* of the scenes */
     processor_options processor;
 } bench_settings;
@@ -50,6 +51,7 @@ typedef struct bench_work {
     } scene[BENCH_SCENES];
     t3r_gaussian *start; /* what each measured pass of refinement begins with: its scene as it was built */
     void *stereo_work;   /* of a pair matched with eight paths */
+    int8_t *features;    /* that the network alone runs on */
     chosen_head small, measured;
     t3r_threads *threads;
     uint32_t cpu; /* features that kernels may use */

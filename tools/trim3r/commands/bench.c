@@ -37,7 +37,7 @@ enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_AGAIN
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", OPTION_READS, "points to cluster instead of the room's: raw float32, N x 6", 0},
     {"head", KEY_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
-     "network of head_gmac_per_s: nano, small (default), base, or FILE.t3w", 0},
+     "network of head_gmac_per_s and network_ms: nano, small (default), base, or FILE.t3w", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0,
      "source of depth of the scenes that are built and drawn: sensor (default), or stereo, from the colours", 0},
     {"stages", KEY_STAGES, "LIST", 0, "rows to time, as kmeans_ms,stereo_ms (all)", 0},
@@ -102,7 +102,8 @@ static const struct argp argp = {
         "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of the "
         "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
         "255; a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
-        "multiply-accumulates of a head's layers a second of the whole head stage, every point kept. refine_ms: one "
+        "multiply-accumulates of a head's layers a second of the whole head stage, every point kept. network_ms: the "
+        "layers of --head alone, over both views, 13,107 points kept. refine_ms: one "
         "refinement pass over both views, 13,107 Gaussians. stereo_ms: depth of both views from their colours, holes "
         "filled, with the four paths that --depth stereo takes; stereo_8_paths_ms: with eight. build_analytic_ms and "
         "build_small_ms have it in them with --depth stereo. A blended pair is a pixel and a splat that is drawn "

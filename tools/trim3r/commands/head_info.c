@@ -87,7 +87,7 @@ static const struct argp parser = {
 static void measure_work(head_summary *head, const uint8_t *file, uint32_t width, uint32_t height)
 {
     t3r_network network;
-    t3r_network_begin(&network, &t3r_kernels_c, file, width, height, 0, NULL);
+    t3r_network_begin(&network, &t3r_kernels_c, file, width, height, 0, NULL, 0);
     for (uint32_t n = 0; n <= network.planes; n++) {
         head->work_bytes[n] = network.nodes[n].pitch * network.nodes[n].ring;
     }
