@@ -14,6 +14,8 @@
 #include <time.h>
 
 #include "core/camera.h"
+#include "cpu.h"
+#include "kernels/kernels.h"
 #include "stereo/match_clean.h"
 #include "stereo/stereo.h"
 
@@ -42,13 +44,15 @@ static double milliseconds(void)
 
 static int match(uint32_t width, uint32_t height, uint32_t disparities, uint32_t paths, int rounds)
 {
+    t3r_kernels kernels;
+    t3r_kernels_choose(&kernels, t3r_cpu_features());
     const size_t left = (size_t)width * height, right = T3R_MATCH_RIGHT(width, disparities) * height;
     uint8_t *luma[2] = {allocate(left), allocate(right)};
     const t3r_match m = {
         .width = width,
         .height = height,
         .disparities = disparities,
-        .kernels = &t3r_kernels_c,
+        .kernels = &kernels,
         .paths = paths,
         .p1 = T3R_STEREO_P1,
         .p2 = T3R_STEREO_P2,
