@@ -6,77 +6,59 @@
 #include "variants.h"
 
 #define LANES 8
+#define T3R_LANES_TARGET T3R_AVX2
+#define OF_LANES(instruction) _mm256_##instruction
+#define ALL_64 _mm256_set1_epi64x
 
 typedef __m256i lanes; /* of 32 bits */
 
-/* 64 bits of each lane: of lanes 0, 2, 4, 6 and of 1, 3, 5, 7. */
-typedef struct wide {
-    __m256i even, odd;
-} wide;
-
-static inline T3R_AVX2 lanes all(int32_t x)
+static inline T3R_AVX2 lanes both(lanes a, lanes b)
 {
-    return _mm256_set1_epi32(x);
+    return _mm256_and_si256(a, b);
 }
 
-static inline T3R_AVX2 lanes add(lanes a, lanes b)
+static inline T3R_AVX2 lanes either(lanes a, lanes b)
 {
-    return _mm256_add_epi32(a, b);
+    return _mm256_or_si256(a, b);
 }
 
-static inline T3R_AVX2 lanes subtract(lanes a, lanes b)
+static inline T3R_AVX2 lanes different(lanes a, lanes b)
 {
-    return _mm256_sub_epi32(a, b);
+    return _mm256_xor_si256(a, b);
 }
 
-/* Modulo 2^32. */
-static inline T3R_AVX2 lanes multiply(lanes a, lanes b)
+#include "lanes_operations.h"
+
+/* All bits where a is greater, or equal; else none. */
+static inline T3R_AVX2 lanes greater(lanes a, lanes b)
 {
-    return _mm256_mullo_epi32(a, b);
+    return _mm256_cmpgt_epi32(a, b);
 }
 
-/* All bits where a >= b, of unsigned numbers. */
+static inline T3R_AVX2 lanes equal(lanes a, lanes b)
+{
+    return _mm256_cmpeq_epi32(a, b);
+}
+
+/* a >= b, of unsigned numbers */
 static inline T3R_AVX2 lanes at_least(lanes a, lanes b)
 {
-    return _mm256_cmpeq_epi32(_mm256_max_epu32(a, b), a);
+    return equal(_mm256_max_epu32(a, b), a);
 }
 
-static inline T3R_AVX2 __m256i odd_of(lanes x)
+/* b where the mask has all bits, else a */
+static inline T3R_AVX2 lanes chosen(lanes mask, lanes b, lanes a)
 {
-    return _mm256_srli_epi64(x, 32);
+    return _mm256_blendv_epi8(a, b, mask);
 }
 
-static inline T3R_AVX2 wide widened(lanes x)
+/* a bit of each lane's sign */
+static inline T3R_AVX2 uint32_t signs_of(lanes x)
 {
-    return (wide){_mm256_and_si256(x, _mm256_set1_epi64x(UINT32_MAX)), odd_of(x)};
+    return (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(x));
 }
 
-static inline T3R_AVX2 wide product(lanes a, lanes b)
-{
-    return (wide){_mm256_mul_epi32(a, b), _mm256_mul_epi32(odd_of(a), odd_of(b))};
-}
-
-static inline T3R_AVX2 wide unsigned_product(lanes a, lanes b)
-{
-    return (wide){_mm256_mul_epu32(a, b), _mm256_mul_epu32(odd_of(a), odd_of(b))};
-}
-
-static inline T3R_AVX2 wide sum(wide a, wide b)
-{
-    return (wide){_mm256_add_epi64(a.even, b.even), _mm256_add_epi64(a.odd, b.odd)};
-}
-
-static inline T3R_AVX2 wide difference(wide a, wide b)
-{
-    return (wide){_mm256_sub_epi64(a.even, b.even), _mm256_sub_epi64(a.odd, b.odd)};
-}
-
-static inline T3R_AVX2 wide all_wide(int64_t x)
-{
-    return (wide){_mm256_set1_epi64x(x), _mm256_set1_epi64x(x)};
-}
-
-/* The low and the high halves. */
+/* The low and the high halves of 64 bits. */
 static inline T3R_AVX2 lanes low_of(wide x)
 {
     return _mm256_blend_epi32(x.even, _mm256_slli_epi64(x.odd, 32), 0xaa);
@@ -87,30 +69,26 @@ static inline T3R_AVX2 lanes high_of(wide x)
     return _mm256_blend_epi32(odd_of(x.even), x.odd, 0xaa);
 }
 
-/* Unsigned shifts: of the result only what bits had is right. */
-static inline T3R_AVX2 wide right(wide x, int shift)
+/* Two neighbours in the table. */
+static inline T3R_AVX2 __m128i pair_at(const uint32_t *table, const uint32_t *index)
 {
-    return (wide){_mm256_srli_epi64(x.even, shift), _mm256_srli_epi64(x.odd, shift)};
+    return _mm_loadl_epi64((const __m128i *)(const void *)&table[*index]);
 }
 
-/* Words 0..7 of eight records to a vector a word, or back. */
-static inline T3R_AVX2 void transpose(lanes v[8])
+/* Entries 0..127 of a table of 129, and those after them. Loads one by one take no more time than a gather. */
+static inline T3R_AVX2 void look_up(const uint32_t *table, lanes index, lanes *entry, lanes *next)
 {
-    lanes t[8], u[8];
-    for (int i = 0; i < 8; i += 2) {
-        t[i] = _mm256_unpacklo_epi32(v[i], v[i + 1]);
-        t[i + 1] = _mm256_unpackhi_epi32(v[i], v[i + 1]);
-    }
-    for (int i = 0; i < 8; i += 4) {
-        u[i] = _mm256_unpacklo_epi64(t[i], t[i + 2]);
-        u[i + 1] = _mm256_unpackhi_epi64(t[i], t[i + 2]);
-        u[i + 2] = _mm256_unpacklo_epi64(t[i + 1], t[i + 3]);
-        u[i + 3] = _mm256_unpackhi_epi64(t[i + 1], t[i + 3]);
-    }
-    for (int i = 0; i < 4; i++) {
-        v[i] = _mm256_permute2x128_si256(u[i], u[i + 4], 0x20);
-        v[i + 4] = _mm256_permute2x128_si256(u[i], u[i + 4], 0x31);
-    }
+    uint32_t at[LANES];
+    _mm256_storeu_si256((__m256i *)(void *)at, index);
+    /* 0, 2 | 4, 6 and 1, 3 | 5, 7 */
+    const __m128i even = _mm_unpacklo_epi64(pair_at(table, at), pair_at(table, at + 2));
+    const __m128i odd = _mm_unpacklo_epi64(pair_at(table, at + 1), pair_at(table, at + 3));
+    const __m128i more_even = _mm_unpacklo_epi64(pair_at(table, at + 4), pair_at(table, at + 6));
+    const __m128i more_odd = _mm_unpacklo_epi64(pair_at(table, at + 5), pair_at(table, at + 7));
+    const wide pair = {_mm256_inserti128_si256(_mm256_castsi128_si256(even), more_even, 1),
+                       _mm256_inserti128_si256(_mm256_castsi128_si256(odd), more_odd, 1)};
+    *entry = low_of(pair);
+    *next = high_of(pair);
 }
 
 #endif

@@ -9,6 +9,7 @@
 #include "core/fixed.h"
 #include "kernels/place.h"
 #include "lanes_avx2.h"
+#include "records.h"
 
 /* Eight splats by field. */
 typedef struct eight {

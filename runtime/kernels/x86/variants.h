@@ -12,6 +12,13 @@
 #define T3R_AVX512 __attribute__((target("avx2,avx512f,avx512bw,avx512dq,avx512vl")))
 #define T3R_VNNI __attribute__((target("avx2,avx512f,avx512bw,avx512dq,avx512vl,avx512vnni")))
 #define T3R_CPU_X86_VNNI_ (T3R_CPU_AVX2 | T3R_CPU_AVX512 | T3R_CPU_VNNI)
+/* Without optimization each step of projection has a frame of vectors of 64 bytes: 20 KiB of stack. */
+#ifdef __OPTIMIZE__
+#define T3R_X86_OPTIMIZED 1
+#define T3R_X86_OPTIMIZED_(X) X(project, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_project_avx512)
+#else
+#define T3R_X86_OPTIMIZED_(X)
+#endif
 /* X(entry, features, function): its type is the entry's. */
 #define T3R_X86_VARIANTS(X)                                                                                            \
     X(packed_row, T3R_CPU_AVX2, t3r_packed_row_avx2)                                                                   \
@@ -56,12 +63,13 @@
     X(convolve_packed, T3R_CPU_AVX2, t3r_convolve_packed_avx2)                                                         \
     X(convolve_packed, T3R_CPU_X86_VNNI_, t3r_convolve_packed_vnni)                                                    \
     X(project, T3R_CPU_AVX2, t3r_project_avx2)                                                                         \
+    T3R_X86_OPTIMIZED_(X)                                                                                              \
     X(place, T3R_CPU_AVX2, t3r_place_avx2)                                                                             \
     X(blend, T3R_CPU_AVX2, t3r_blend_avx2)                                                                             \
     X(blend_keep, T3R_CPU_AVX2, t3r_blend_keep_avx2)                                                                   \
     X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)
 /* Of an activation that convolve_packed of these features reads. */
-#define T3R_X86_STRIP_BYTES(cpu) (((cpu) & T3R_CPU_X86_VNNI_) == T3R_CPU_X86_VNNI_ ? 1u : 2u)
+#define T3R_X86_STRIP_BYTES(cpu) (((cpu)&T3R_CPU_X86_VNNI_) == T3R_CPU_X86_VNNI_ ? 1u : 2u)
 #else
 #define T3R_X86_VARIANTS(X)
 #define T3R_X86_STRIP_BYTES(cpu) 2u

@@ -1,0 +1,92 @@
+/* Sixteen numbers of 32 bits, and of 64 where a product has them: in vectors of AVX-512. */
+#ifndef T3R_KERNELS_X86_LANES_AVX512_H
+#define T3R_KERNELS_X86_LANES_AVX512_H
+
+#include "intrinsics.h"
+#include "variants.h"
+
+#define LANES 16
+#define T3R_LANES_TARGET T3R_AVX512
+#define OF_LANES(instruction) _mm512_##instruction
+#define ALL_64 _mm512_set1_epi64
+
+typedef __m512i lanes; /* of 32 bits */
+
+static inline T3R_AVX512 lanes both(lanes a, lanes b)
+{
+    return _mm512_and_si512(a, b);
+}
+
+static inline T3R_AVX512 lanes either(lanes a, lanes b)
+{
+    return _mm512_or_si512(a, b);
+}
+
+static inline T3R_AVX512 lanes different(lanes a, lanes b)
+{
+    return _mm512_xor_si512(a, b);
+}
+
+#include "lanes_operations.h"
+
+/* All bits where a is greater, or equal; else none. */
+static inline T3R_AVX512 lanes greater(lanes a, lanes b)
+{
+    return _mm512_movm_epi32(_mm512_cmpgt_epi32_mask(a, b));
+}
+
+static inline T3R_AVX512 lanes equal(lanes a, lanes b)
+{
+    return _mm512_movm_epi32(_mm512_cmpeq_epi32_mask(a, b));
+}
+
+/* a >= b, of unsigned numbers */
+static inline T3R_AVX512 lanes at_least(lanes a, lanes b)
+{
+    return _mm512_movm_epi32(_mm512_cmpge_epu32_mask(a, b));
+}
+
+/* b where the mask has all bits, else a */
+static inline T3R_AVX512 lanes chosen(lanes mask, lanes b, lanes a)
+{
+    return _mm512_mask_blend_epi32(_mm512_movepi32_mask(mask), a, b);
+}
+
+/* a bit of each lane's sign */
+static inline T3R_AVX512 uint32_t signs_of(lanes x)
+{
+    return _mm512_movepi32_mask(x);
+}
+
+/* The low and the high halves of 64 bits. */
+static inline T3R_AVX512 lanes low_of(wide x)
+{
+    return _mm512_mask_shuffle_epi32(x.even, 0xaaaa, x.odd, _MM_PERM_CCAA);
+}
+
+static inline T3R_AVX512 lanes high_of(wide x)
+{
+    return _mm512_mask_shuffle_epi32(x.odd, 0x5555, x.even, _MM_PERM_DDBB);
+}
+
+/* Entries 0..127 of a table: of four pairs of vectors each, two bits of the index say which. */
+static inline T3R_AVX512 lanes entry_of(const uint32_t *table, lanes index)
+{
+    lanes found[4];
+    for (int i = 0; i < 4; i++) {
+        const lanes lower = _mm512_loadu_si512(table + 32 * i), upper = _mm512_loadu_si512(table + 32 * i + 16);
+        found[i] = _mm512_permutex2var_epi32(lower, index, upper);
+    }
+    const __mmask16 is_odd = _mm512_test_epi32_mask(index, all(32)), is_high = _mm512_test_epi32_mask(index, all(64));
+    const lanes low = _mm512_mask_blend_epi32(is_odd, found[0], found[1]);
+    return _mm512_mask_blend_epi32(is_high, low, _mm512_mask_blend_epi32(is_odd, found[2], found[3]));
+}
+
+/* Entries 0..127 of a table of 129, and those after them. */
+static inline T3R_AVX512 void look_up(const uint32_t *table, lanes index, lanes *entry, lanes *next)
+{
+    *entry = entry_of(table, index);
+    *next = entry_of(table + 1, index);
+}
+
+#endif

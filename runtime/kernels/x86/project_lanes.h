@@ -1,0 +1,380 @@
+/* Projection of LANES Gaussians at a time: project.c step by step, with its bounds. Where a number of project.c has 64
+ * bits and that of a usual Gaussian 32, this is the usual one's; the others are marked, and plain C projects them.
+ * Comes behind a header of lanes. */
+#ifndef T3R_KERNELS_X86_PROJECT_LANES_H
+#define T3R_KERNELS_X86_PROJECT_LANES_H
+
+#include "core/fixed_tables.h"
+#include "kernels/project_parts.h"
+
+static inline T3R_LANES_TARGET lanes held(lanes x, lanes bound)
+{
+    return OF_LANES(max_epi32)(OF_LANES(min_epi32)(x, bound), subtract(all(0), bound));
+}
+
+/* a signed, b unsigned */
+static inline T3R_LANES_TARGET wide mixed_product(lanes a, lanes b)
+{
+    const lanes beyond = both(a, OF_LANES(srai_epi32)(b, 31)); /* b read as signed lacks 2^32 there */
+    const wide high = {OF_LANES(slli_epi64)(beyond, 32), OF_LANES(slli_epi64)(odd_of(beyond), 32)};
+    return sum(product(a, b), high);
+}
+
+static inline T3R_LANES_TARGET wide right_by(wide x, wide shift)
+{
+    return (wide){OF_LANES(srlv_epi64)(x.even, shift.even), OF_LANES(srlv_epi64)(x.odd, shift.odd)};
+}
+
+static inline T3R_LANES_TARGET wide left_by(wide x, wide shift)
+{
+    return (wide){OF_LANES(sllv_epi64)(x.even, shift.even), OF_LANES(sllv_epi64)(x.odd, shift.odd)};
+}
+
+/* x / 2^shift, round-half-up, of 64 bits, twice of which 32 bits hold; shift 1..33. */
+static inline T3R_LANES_TARGET lanes round_shift(wide x, lanes shift)
+{
+    return OF_LANES(srai_epi32)(add(low_of(right_by(x, widened(subtract(shift, all(1))))), all(1)), 1);
+}
+
+/* The same of numbers that are not negative; shift 1..63. */
+static inline T3R_LANES_TARGET lanes round_shift_positive(wide x, lanes shift)
+{
+    return OF_LANES(srli_epi32)(add(low_of(right_by(x, widened(subtract(shift, all(1))))), all(1)), 1);
+}
+
+/* The same of signed ones, |x| < 2^62, from their upper halves; shift 33 and more. */
+static inline T3R_LANES_TARGET lanes round_shift_far(wide x, lanes shift)
+{
+    return OF_LANES(srai_epi32)(add(OF_LANES(srav_epi32)(high_of(x), subtract(shift, all(33))), all(1)), 1);
+}
+
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far, below twice the first step. */
+static inline T3R_LANES_TARGET lanes normal_of(lanes x, int first_step, lanes *by)
+{
+    *by = all(0);
+    for (int step = first_step; step > 0; step >>= 1) {
+        const lanes shift = both(greater(all(1 << (31 - step)), x), all(step));
+        x = OF_LANES(sllv_epi32)(x, shift);
+        *by = add(*by, shift);
+    }
+    return x;
+}
+
+/* floor(2^62 / normal), normal in 2^31..2^32 - 1: a parabola to 1 %, Newton's step to 14 bits and twice the rest over
+ * the divisor. The last is off by one at most, as trying all divisors shows. */
+static inline T3R_LANES_TARGET lanes inverted(lanes normal)
+{
+    const wide one = all_wide(INT64_C(1) << 62);
+    const lanes x = OF_LANES(srli_epi32)(normal, 17); /* Q15, 1/2..1 */
+    /* 140 / 33 - x (64 / 11 - x 256 / 99), Q14 */
+    const lanes slope = subtract(all(95325), OF_LANES(srli_epi32)(multiply(x, all(42367)), 15));
+    lanes y = subtract(all(69508), OF_LANES(srli_epi32)(multiply(x, slope), 15));
+    const lanes lack = OF_LANES(srai_epi32)(subtract(all(1 << 29), multiply(x, y)), 14);
+    y = add(y, OF_LANES(srai_epi32)(multiply(y, lack), 15));
+    lanes quotient = OF_LANES(slli_epi32)(y, 16);
+    wide rest = difference(one, unsigned_product(normal, quotient)); /* below 2^49 */
+    quotient = add(quotient, OF_LANES(srai_epi32)(multiply(y, OF_LANES(srai_epi32)(high_of(rest), 2)), 12));
+    rest = difference(one, unsigned_product(normal, quotient)); /* below 2^38 */
+    quotient = add(quotient, OF_LANES(srai_epi32)(multiply(y, low_of(right(rest, 22))), 24));
+    rest = difference(one, unsigned_product(normal, quotient));
+    const lanes high = high_of(rest), is_more = greater(high, all(0)),
+                is_there = both(equal(high, all(0)), at_least(low_of(rest), normal));
+    return subtract(add(quotient, OF_LANES(srai_epi32)(high, 31)), either(is_more, is_there));
+}
+
+/* Between an entry of the table and the next. */
+static inline T3R_LANES_TARGET lanes interpolated(const uint32_t *table, lanes index, lanes fraction_q16)
+{
+    lanes entry, next;
+    look_up(table, index, &entry, &next);
+    const lanes step = subtract(next, entry);
+    return add(entry, OF_LANES(srli_epi32)(add(multiply(step, fraction_q16), all(0x8000)), 16));
+}
+
+/* The logarithm's fraction, Q16, of a number whose bit 30 is the highest. */
+static inline T3R_LANES_TARGET lanes log_fraction_q16(lanes normal)
+{
+    const lanes index = both(OF_LANES(srli_epi32)(normal, 23), all(127));
+    const lanes fraction_q16 = both(OF_LANES(srli_epi32)(normal, 7), all(0xffff));
+    const lanes log_q20 = interpolated(t3r_log2_table_q20, index, fraction_q16);
+    return OF_LANES(srli_epi32)(add(log_q20, all(8)), 4);
+}
+
+/* t3r_log2_q16(), x in 2^(31 - 2 first_step)..2^31 - 1 */
+static inline T3R_LANES_TARGET lanes log_q16(lanes x, int first_step)
+{
+    lanes by;
+    const lanes normal = normal_of(x, first_step, &by);
+    return add(OF_LANES(slli_epi32)(subtract(all(30), by), 16), log_fraction_q16(normal));
+}
+
+/* t3r_log2_wide_q16(), x in 2^15..2^52 - 1: by sevens down to 24 bits and more, all that the table reads */
+static inline T3R_LANES_TARGET lanes log_wide_q16(wide x)
+{
+    const lanes above = low_of(right(x, 31));
+    const lanes sevens = add(add(greater(above, all(0)), greater(above, all(127))), greater(above, all(16383)));
+    const lanes down = subtract(sevens, OF_LANES(slli_epi32)(sevens, 3));
+    return add(log_q16(low_of(right_by(x, widened(down))), 8), OF_LANES(slli_epi32)(down, 16));
+}
+
+/* t3r_exp2_q16(); a count beyond 31 gives 0, so that of the two shifts one does nothing, or both the same */
+static inline T3R_LANES_TARGET lanes exp_q16(lanes x_q16)
+{
+    const lanes index = OF_LANES(srli_epi32)(both(x_q16, all(0xffff)), 9);
+    const lanes fraction_q16 = OF_LANES(slli_epi32)(both(x_q16, all(511)), 7);
+    const lanes mantissa_q20 = interpolated(t3r_exp2_table_q20, index, fraction_q16);
+    const lanes up = subtract(OF_LANES(srai_epi32)(x_q16, 16), all(4)), down = subtract(all(0), up);
+    const lanes half = OF_LANES(srli_epi32)(OF_LANES(sllv_epi32)(all(1), down), 1);
+    return either(OF_LANES(sllv_epi32)(mantissa_q20, up), OF_LANES(srlv_epi32)(add(mantissa_q20, half), down));
+}
+
+/* t3r_log_level_q16() of more than 128: 255 of it have 16 to 23 bits, and levels 5 to 12; eight times as much, or 2^18,
+ * is normal by a few steps */
+static inline T3R_LANES_TARGET lanes log_level_q16(lanes opacity_q15)
+{
+    const lanes log = subtract(log_q16(multiply(opacity_q15, all(255 << 8)), 4), all(23 << 16));
+    const lanes level_q8 = add(low_of(right(unsigned_product(log, all(45426)), 24)), all(16));
+    return subtract(log_q16(OF_LANES(slli_epi32)(level_q8, 1 + 18), 4), all(18 << 16));
+}
+
+/* Gaussians by field. */
+typedef struct gaussians_by_field {
+    lanes position[3], factor[9], exponent, opacity_q15;
+} by_field;
+
+/* From the first ten words of each. */
+static inline T3R_LANES_TARGET by_field fields_of(const lanes word[10])
+{
+    by_field g;
+    for (int k = 0; k < 3; k++) {
+        g.position[k] = word[k];
+    }
+    for (int k = 0; k < 9; k++) {
+        const lanes two = word[3 + k / 2];
+        g.factor[k] = OF_LANES(srai_epi32)(k % 2 == 0 ? OF_LANES(slli_epi32)(two, 16) : two, 16);
+    }
+    g.exponent = OF_LANES(srai_epi32)(OF_LANES(slli_epi32)(word[7], 8), 24);
+    g.opacity_q15 = OF_LANES(srli_epi32)(word[9], 16);
+    return g;
+}
+
+/* Means before the camera, and whether they are seen; of those that are not, some that harms no step. */
+typedef struct means {
+    lanes z_q20, rn, lz, u_q24, v_q24, are_seen;
+    lanes beyond; /* the highest bit: of a lane that needs more than 32 bits */
+} means;
+
+static inline T3R_LANES_TARGET means see(const t3r_projection *p, const by_field *g)
+{
+    lanes c[3], beyond = all(0), by;
+    for (int i = 0; i < 3; i++) {
+        const int32_t *w = p->world_to_camera_q30 + 3 * i;
+        int64_t constant = INT64_C(1) << 29;
+        for (int k = 0; k < 3; k++) {
+            constant -= (int64_t)w[k] * p->centre_q20[k];
+        }
+        wide at_q50 = all_wide(constant);
+        for (int k = 0; k < 3; k++) {
+            at_q50 = sum(at_q50, product(g->position[k], all(w[k])));
+        }
+        c[i] = low_of(right(at_q50, 30));
+        /* 32 bits hold c where its three highest bits are the same */
+        beyond = either(beyond, add(high_of(at_q50), all(1 << 29)));
+    }
+    beyond = either(beyond, OF_LANES(slli_epi32)(beyond, 1));
+    const lanes aside = OF_LANES(slli_epi32)(OF_LANES(min_epu32)(c[2], all(1 << 27)), 4);
+    means m;
+    m.are_seen = both(greater(c[2], all(T3R_NEAR_Q20)), greater(g->opacity_q15, all(128)));
+    m.are_seen = both(m.are_seen, at_least(aside, OF_LANES(abs_epi32)(c[0])));
+    m.are_seen = both(m.are_seen, at_least(aside, OF_LANES(abs_epi32)(c[1])));
+    m.z_q20 = chosen(m.are_seen, c[2], all(1 << 20));
+    const lanes normal = OF_LANES(slli_epi32)(normal_of(m.z_q20, 8, &by), 1);
+    m.lz = add(by, all(1));
+    m.beyond = either(beyond, subtract(m.lz, all(5))); /* farther than 2^27 */
+    m.rn = inverted(normal);
+    const lanes shift = subtract(all(38), m.lz);
+    m.u_q24 = round_shift(mixed_product(both(c[0], m.are_seen), m.rn), shift);
+    m.v_q24 = round_shift(mixed_product(both(c[1], m.are_seen), m.rn), shift);
+    return m;
+}
+
+/* footprint_row() */
+static inline T3R_LANES_TARGET void row_of(const int32_t *w, const int32_t *w2, lanes tangent_q24, int32_t f_q16,
+                                           means *m, const by_field *g, lanes row_q12[3])
+{
+    lanes r_q24[3]; /* at most 17 x 2^24 */
+    for (int i = 0; i < 3; i++) {
+        /* w - round(along) rounded once more by 6 is floor(w + 2^5 - along + (2^-1 - 2^-24)) by 6 */
+        const int64_t constant = (int64_t)w[i] * (1 << 24) + (1 << 29) + (1 << 23) - 1;
+        r_q24[i] = low_of(right(difference(all_wide(constant), product(tangent_q24, all(w2[i]))), 30));
+    }
+    const lanes scale = low_of(right(sum(unsigned_product(m->rn, all(f_q16)), all_wide(1 << 29)), 30));
+    const lanes shift = subtract(all(26), add(g->exponent, m->lz));
+    m->beyond = either(m->beyond, subtract(shift, all(33))); /* wider than about a quarter of z */
+    for (int j = 0; j < 3; j++) {
+        wide along = all_wide(1 << 13);
+        for (int k = 0; k < 3; k++) {
+            along = sum(along, product(r_q24[k], g->factor[3 * k + j]));
+        }
+        /* 3 x 17 x 2^24 x 2^15 / 2^14 < 2^31, times scale < 2^31 */
+        const wide pixels = product(low_of(right(along, 14)), scale);
+        row_q12[j] = held(round_shift_far(pixels, shift), all(T3R_EXTENT_MOST_Q12));
+    }
+}
+
+static inline T3R_LANES_TARGET wide dot(const lanes a[3], const lanes b[3])
+{
+    return sum(sum(product(a[0], b[0]), product(a[1], b[1])), product(a[2], b[2]));
+}
+
+/* The inclusive pixels within centre -+ half, clipped to 0..size - 1. A centre beyond 2^18 px is as far out as one
+ * there: no box is as wide. */
+typedef struct ranges {
+    lanes low, high;
+} ranges;
+
+static inline T3R_LANES_TARGET ranges clipped(lanes centre_q12, const lanes row_q12[3], lanes level_q16, uint32_t size)
+{
+    const wide variance_q24 = sum(dot(row_q12, row_q12), all_wide(T3R_DILATION_Q24));
+    const lanes log_half_q16 =
+        subtract(OF_LANES(srai_epi32)(add(log_wide_q16(variance_q24), level_q16), 1), all(16 << 16));
+    const lanes half_q8 = OF_LANES(srli_epi32)(exp_q16(log_half_q16), 8);
+    const lanes half_q12 = OF_LANES(slli_epi32)(add(add(half_q8, OF_LANES(srli_epi32)(half_q8, 10)), all(2)), 4);
+    const lanes centre = held(centre_q12, all(1 << 30));
+    const lanes first = OF_LANES(srai_epi32)(add(subtract(centre, half_q12), all(4095)), 12);
+    return (ranges){OF_LANES(max_epi32)(first, all(0)),
+                    OF_LANES(min_epi32)(OF_LANES(srai_epi32)(add(centre, half_q12), 12), all((int32_t)size - 1))};
+}
+
+static inline T3R_LANES_TARGET lanes squares(const lanes a[3])
+{
+    return add(add(multiply(a[0], a[0]), multiply(a[1], a[1])), multiply(a[2], a[2]));
+}
+
+/* x y - z w, below 2^31 but for its sign: squared, nothing shows of it */
+static inline T3R_LANES_TARGET wide squared_minor(lanes x, lanes y, lanes z, lanes w)
+{
+    const lanes minor = subtract(multiply(x, y), multiply(z, w));
+    return product(minor, minor);
+}
+
+/* The covariance less its dilation, Q(24 - 2n), and its determinant, dilated, as conic_of() has them. */
+typedef struct covariances {
+    lanes twice; /* 2 n */
+    lanes aa, bb, ab;
+    lanes determinant, s; /* 32 bits of it, times 2^s */
+} covariances;
+
+/* Marks what of them is beyond 32 bits. */
+static inline T3R_LANES_TARGET covariances covariance_of(const lanes a_q12[3], const lanes b_q12[3], lanes *beyond)
+{
+    lanes largest = all(0), a[3], b[3], by;
+    for (int j = 0; j < 3; j++) {
+        largest = OF_LANES(max_epi32)(largest, OF_LANES(abs_epi32)(a_q12[j]));
+        largest = OF_LANES(max_epi32)(largest, OF_LANES(abs_epi32)(b_q12[j]));
+    }
+    /* below 2^14 as 2^14: n is 0..10 */
+    (void)normal_of(OF_LANES(slli_epi32)(OF_LANES(max_epi32)(largest, all(1 << 14)), 6), 8, &by);
+    const lanes n = subtract(all(10), by);
+    const lanes half = OF_LANES(srli_epi32)(OF_LANES(sllv_epi32)(all(1), n), 1);
+    for (int j = 0; j < 3; j++) {
+        a[j] = OF_LANES(srav_epi32)(add(a_q12[j], half), n);
+        b[j] = OF_LANES(srav_epi32)(add(b_q12[j], half), n);
+    }
+    covariances c;
+    c.twice = add(n, n);
+    c.aa = squares(a);
+    c.bb = squares(b);
+    /* With both below 2^31 so is ab, and their sum below 2^32. */
+    *beyond = either(*beyond, either(c.aa, c.bb));
+    c.ab = add(add(multiply(a[0], b[0]), multiply(a[1], b[1])), multiply(a[2], b[2]));
+    const wide dilations = all_wide((int64_t)T3R_DILATION_Q24 * T3R_DILATION_Q24);
+    wide det = right_by(dilations, widened(add(c.twice, c.twice)));
+    const wide twice = widened(c.twice), half_unit = right(left_by(all_wide(1), twice), 1);
+    const wide trace = unsigned_product(add(c.aa, c.bb), all(T3R_DILATION_Q24));
+    det = sum(det, right_by(sum(trace, half_unit), twice));
+    det = sum(det, squared_minor(a[0], b[1], a[1], b[0]));
+    det = sum(det, squared_minor(a[0], b[2], a[2], b[0]));
+    det = sum(det, squared_minor(a[1], b[2], a[2], b[1]));
+    const lanes high = high_of(det); /* below 2^31: by Lagrange the squares sum to at most aa bb */
+    *beyond = either(*beyond, equal(high, all(0)));
+    (void)normal_of(OF_LANES(max_epi32)(high, all(1)), 16, &by);
+    c.s = subtract(all(31), by); /* 1..31 */
+    c.determinant = low_of(right_by(det, widened(c.s)));
+    return c;
+}
+
+/* conic_of(); rd = floor(2^62 / determinant). a, c <= 1 / 0.6, and |b| less: twice that is below 2^32. */
+static inline T3R_LANES_TARGET void conic_of(const covariances *c, lanes rd, lanes conic_q30[3])
+{
+    const lanes half = OF_LANES(srli_epi32)(OF_LANES(sllv_epi32)(all(1), c->twice), 1);
+    const lanes dilation = OF_LANES(srlv_epi32)(add(all(T3R_DILATION_Q24), half), c->twice);
+    const lanes shift = add(add(c->twice, c->s), all(9));
+    conic_q30[0] = round_shift_positive(unsigned_product(add(c->bb, dilation), rd), shift);
+    conic_q30[2] = round_shift_positive(unsigned_product(add(c->aa, dilation), rd), shift);
+    /* a half of -ab rounds up: of ab > 0 it is one less, and then its opposite */
+    const lanes less = OF_LANES(srli_epi32)(greater(c->ab, all(0)), 31);
+    const wide size = difference(unsigned_product(OF_LANES(abs_epi32)(c->ab), rd), widened(less));
+    const lanes b = round_shift_positive(size, shift), opposite = subtract(all(0), less);
+    conic_q30[1] = add(different(b, opposite), less);
+}
+
+/* The centre in pixels, Q12, as 32 bits hold it. */
+static inline T3R_LANES_TARGET lanes centre_of(lanes tangent_q24, int32_t f_q16, int32_t c_q16)
+{
+    return low_of(right(sum(product(tangent_q24, all(f_q16)), all_wide((int64_t)c_q16 * (1 << 24) + (1 << 27))), 28));
+}
+
+/* Splats' ten words of Gaussians' ten; returns a bit each of those that plain C has to project. */
+static inline T3R_LANES_TARGET uint32_t project_lanes(const t3r_projection *p, const lanes gaussians[10],
+                                                      lanes splats[10])
+{
+    const int32_t *w = p->world_to_camera_q30;
+    const by_field g = fields_of(gaussians);
+    lanes a_q12[3], b_q12[3];
+    means m = see(p, &g);
+    row_of(w, w + 6, held(m.u_q24, all(p->limit_x_q24)), p->fx_q16, &m, &g, a_q12);
+    row_of(w + 3, w + 6, held(m.v_q24, all(p->limit_y_q24)), p->fy_q16, &m, &g, b_q12);
+    splats[0] = centre_of(m.u_q24, p->fx_q16, p->cx_q16);
+    splats[1] = centre_of(m.v_q24, p->fy_q16, p->cy_q16);
+    const lanes level_q16 = log_level_q16(chosen(m.are_seen, g.opacity_q15, all(129)));
+    const ranges x = clipped(splats[0], a_q12, level_q16, p->width),
+                 y = clipped(splats[1], b_q12, level_q16, p->height);
+    const lanes are_out = either(greater(x.low, x.high), greater(y.low, y.high));
+    const covariances c = covariance_of(a_q12, b_q12, &m.beyond);
+    conic_of(&c, inverted(c.determinant), splats + 2);
+    splats[5] = chosen(are_out, all(0), both(m.z_q20, m.are_seen));
+    splats[6] = gaussians[8];
+    splats[7] = gaussians[9];
+    splats[8] = either(x.low, OF_LANES(slli_epi32)(y.low, 16));
+    splats[9] = either(x.high, OF_LANES(slli_epi32)(y.high, 16));
+    return signs_of(m.beyond);
+}
+
+static void project_scalar(const t3r_projection *p, const t3r_gaussian *g, t3r_splat *splat)
+{
+    if (!t3r_project(p, g, splat)) {
+        splat->z_q20 = 0;
+    }
+}
+
+/* LANES Gaussians read, projected by project_lanes() and written: what it returns. */
+static uint32_t project_batch(const t3r_projection *p, const t3r_gaussian *gaussians, t3r_splat *splats);
+
+/* As t3r_project_kernel does. */
+static inline void project_all(const t3r_projection *p, const t3r_gaussian *gaussians, uint32_t count,
+                               t3r_splat *splats)
+{
+    uint32_t i = 0;
+    for (; i + LANES <= count; i += LANES) {
+        for (uint32_t beyond = project_batch(p, gaussians + i, splats + i); beyond != 0; beyond &= beyond - 1) {
+            const uint32_t lane = i + (uint32_t)__builtin_ctz(beyond);
+            project_scalar(p, &gaussians[lane], &splats[lane]);
+        }
+    }
+    for (; i < count; i++) {
+        project_scalar(p, &gaussians[i], &splats[i]);
+    }
+}
+
+#endif
