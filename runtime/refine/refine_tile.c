@@ -89,6 +89,22 @@ static void place(const t3r_refine_sums *sums, const t3r_splat *s, uint32_t x, u
     }
 }
 
+static bool is_in(const t3r_refine_slice *slice, uint32_t index)
+{
+    return index - slice->first < slice->count; /* unsigned: an index below the slice wraps and fails */
+}
+
+/* Sums are too many for the processor's nearest memory and are used in no order, so that they are asked for early. */
+#define SUMS_AHEAD 4
+static void ask_for_sums(const t3r_refine_slice *slice, uint32_t index)
+{
+    if (is_in(slice, index)) {
+        const t3r_refine_sums *sums = &slice->sums[index - slice->first];
+        __builtin_prefetch(sums);
+        __builtin_prefetch(sums + 1);
+    }
+}
+
 /* The kept splats from the last to the first: each accumulates, and is taken off the tile. */
 static void take_off(const t3r_refine_view *job, const uint32_t *list, const kept_splats *kept, uint32_t left,
                      uint32_t top)
@@ -97,13 +113,16 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
     for (uint32_t i = kept->count; i-- > 0;) {
         const uint32_t index = list[job->kept[i] >> SCALE_BITS];
         const t3r_splat *s = &job->splats[index];
+        if (i >= SUMS_AHEAD) {
+            ask_for_sums(&job->slice, list[job->kept[i - SUMS_AHEAD] >> SCALE_BITS]);
+        }
         t3r_tile_splat span;
         t3r_splat_span(s, left, top, &span);
         t3r_scatter_splat splat = {
             .span = &span, .rows = rows_at(job, rows), .scale = job->kept[i] & ((1 << SCALE_BITS) - 1)};
         rows -= t3r_rows_of(&span);
         t3r_refine_sums *sums = NULL;
-        if (index - job->slice.first < job->slice.count) { /* unsigned: an index below the slice wraps and fails */
+        if (is_in(&job->slice, index)) {
             sums = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
             place(sums, s, left + span.column, top + span.first, &splat);
             splat.pixels = (span.x1 - span.x0 + 1u) * (span.last - span.first + 1u);

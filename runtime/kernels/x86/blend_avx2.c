@@ -1,4 +1,4 @@
-/* Blending, two rows of eight columns at a time. */
+/* Blending, sixteen pixels at a time: two rows of eight columns, or a row of the tile. */
 #include "variants.h"
 
 #ifdef T3R_X86
@@ -14,6 +14,12 @@ static inline T3R_AVX2 __m256i mulr_q16(__m256i a, __m256i b)
     return _mm256_add_epi16(_mm256_mulhi_epu16(a, b), _mm256_srli_epi16(_mm256_mullo_epi16(a, b), 15));
 }
 
+/* The same from twice b: (a b / 2^15 + 1) / 2, both rounded down. */
+static inline T3R_AVX2 __m256i mulr_q16_doubled(__m256i a, __m256i twice_b)
+{
+    return _mm256_avg_epu16(_mm256_mulhi_epu16(a, twice_b), _mm256_setzero_si256());
+}
+
 static inline T3R_AVX2 __m256i constant(uint32_t x)
 {
     return _mm256_set1_epi16((int16_t)x);
@@ -25,19 +31,55 @@ static inline T3R_AVX2 __m256i at_least(__m256i a, __m256i b)
     return _mm256_cmpeq_epi16(_mm256_max_epu16(a, b), a);
 }
 
-/* T3R_ALPHA_RANGE less q / 8, of a row. */
-static inline T3R_AVX2 __m256i range_left(__m256i q_q17)
+/* A lane for each of 128 bits. */
+static inline T3R_AVX2 __m256i both_halves(int32_t low, int32_t high)
 {
-    __m256i t = _mm256_srai_epi32(_mm256_add_epi32(q_q17, _mm256_set1_epi32(8)), 4);
-    t = _mm256_max_epi32(t, _mm256_setzero_si256());
-    t = _mm256_min_epi32(t, _mm256_set1_epi32(T3R_ALPHA_RANGE));
-    return _mm256_sub_epi32(_mm256_set1_epi32(T3R_ALPHA_RANGE), t);
+    return _mm256_inserti128_si256(_mm256_set1_epi32(low), _mm_set1_epi32(high), 1);
 }
 
-static inline T3R_AVX2 __m256i alpha_of(__m256i upper_q17, __m256i lower_q17, __m256i opacity_q16)
+/* Sixteen pixels, eight of a row in each half: the first four columns of both halves, and the last four. What is left
+ * of T3R_ALPHA_RANGE when q / 8 is taken away, 16 times, with the half that rounds; modulo 2^32, as plain C's sums are
+ * without overflow. */
+typedef struct quadratic {
+    __m256i left[2], step[2], bend; /* from step to step, and what steps lose */
+} quadratic;
+
+static inline T3R_AVX2 void advance(quadratic *q)
 {
-    __m256i s = _mm256_packus_epi32(range_left(upper_q17), range_left(lower_q17));
-    s = _mm256_permute4x64_epi64(s, 0xd8); /* packing goes by halves of vectors */
+    for (int k = 0; k < 2; k++) {
+        q->left[k] = _mm256_sub_epi32(q->left[k], q->step[k]);
+        q->step[k] = _mm256_add_epi32(q->step[k], q->bend);
+    }
+}
+
+/* low, high: the halves' groups; rows: how far the high half's row is below the low one's, and `every` how many rows a
+ * step goes down. */
+static inline T3R_AVX2 quadratic quadratic_of(const t3r_tile_splat *s, uint32_t low, uint32_t high, int32_t rows,
+                                              int32_t every)
+{
+    const int32_t row[2] = {s->first, s->first + rows}, gy[2] = {s->group[low].gy, s->group[high].gy};
+    const int32_t q[2] = {s->group[low].q + row[0] * (gy[0] + row[0] * s->c),
+                          s->group[high].q + row[1] * (gy[1] + row[1] * s->c)};
+    const __m256i at = both_halves(16 * T3R_ALPHA_RANGE + 7 - q[0], 16 * T3R_ALPHA_RANGE + 7 - q[1]);
+    const __m256i slope = both_halves(s->group[low].gx + row[0] * s->b, s->group[high].gx + row[1] * s->b);
+    const __m256i a = _mm256_set1_epi32(s->a), b = _mm256_set1_epi32(every * s->b);
+    const __m256i down =
+        both_halves(every * (gy[0] + (2 * row[0] + every) * s->c), every * (gy[1] + (2 * row[1] + every) * s->c));
+    quadratic out = {.bend = _mm256_set1_epi32(2 * every * every * s->c)};
+    for (int k = 0; k < 2; k++) {
+        const __m256i i = _mm256_add_epi32(_mm256_setr_epi32(0, 1, 2, 3, 0, 1, 2, 3), _mm256_set1_epi32(4 * k));
+        const __m256i across = _mm256_mullo_epi32(i, _mm256_add_epi32(slope, _mm256_mullo_epi32(i, a)));
+        out.left[k] = _mm256_sub_epi32(at, across);
+        out.step[k] = _mm256_add_epi32(down, _mm256_mullo_epi32(i, b));
+    }
+    return out;
+}
+
+static inline T3R_AVX2 __m256i alpha_of(const quadratic *q, __m256i opacity_q16)
+{
+    /* packing holds it to 0 and above */
+    __m256i s = _mm256_packus_epi32(_mm256_srai_epi32(q->left[0], 4), _mm256_srai_epi32(q->left[1], 4));
+    s = _mm256_min_epu16(s, constant(T3R_ALPHA_RANGE));
     __m256i p = _mm256_add_epi16(constant(T3R_ALPHA_C3), _mm256_mulhi_epu16(s, constant(T3R_ALPHA_C4)));
     p = _mm256_add_epi16(constant(T3R_ALPHA_C2), _mm256_mulhi_epu16(s, p));
     p = _mm256_add_epi16(constant(T3R_ALPHA_C1), _mm256_mulhi_epu16(s, p));
@@ -49,98 +91,139 @@ static inline T3R_AVX2 __m256i alpha_of(__m256i upper_q17, __m256i lower_q17, __
     return _mm256_and_si256(alpha, at_least(alpha, constant(T3R_ALPHA_LEAST_Q16)));
 }
 
-/* Eight columns of two rows, or of one, whose neighbour is then not touched. */
-static inline T3R_AVX2 __m256i load_rows(const uint16_t *upper, bool two)
+/* Where the sixteen pixels lie. */
+typedef enum shape {
+    ONE_ROW, /* eight columns; the high half is nothing */
+    TWO_ROWS,
+    WHOLE_ROW /* sixteen columns */
+} shape;
+
+static inline T3R_AVX2 __m256i load(const uint16_t *at, shape pixels)
 {
-    __m128i first = _mm_loadu_si128((const __m128i *)(const void *)upper);
-    __m128i second = two ? _mm_loadu_si128((const __m128i *)(const void *)(upper + T3R_TILE_SIDE)) : first;
+    if (pixels == WHOLE_ROW) {
+        return _mm256_loadu_si256((const __m256i *)(const void *)at);
+    }
+    const __m128i first = _mm_loadu_si128((const __m128i *)(const void *)at);
+    if (pixels == ONE_ROW) {
+        return _mm256_zextsi128_si256(first);
+    }
+    const __m128i second = _mm_loadu_si128((const __m128i *)(const void *)(at + T3R_TILE_SIDE));
     return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
 }
 
-static inline T3R_AVX2 void store_rows(uint16_t *upper, size_t pitch, bool two, __m256i x)
+static inline T3R_AVX2 void store(uint16_t *at, shape pixels, __m256i x)
 {
-    _mm_storeu_si128((__m128i *)(void *)upper, _mm256_castsi256_si128(x));
-    if (two) {
-        _mm_storeu_si128((__m128i *)(void *)(upper + pitch), _mm256_extracti128_si256(x, 1));
+    if (pixels == WHOLE_ROW) {
+        _mm256_storeu_si256((__m256i *)(void *)at, x);
+        return;
+    }
+    _mm_storeu_si128((__m128i *)(void *)at, _mm256_castsi256_si128(x));
+    if (pixels == TWO_ROWS) {
+        _mm_storeu_si128((__m128i *)(void *)(at + T3R_TILE_SIDE), _mm256_extracti128_si256(x, 1));
     }
 }
 
-static inline T3R_AVX2 void add_colour(uint16_t *upper, bool two, __m256i w, __m256i colour_q7)
-{
-    __m256i sum = _mm256_add_epi16(load_rows(upper, two), mulr_q16(w, colour_q7));
-    store_rows(upper, T3R_TILE_SIDE, two, sum);
-}
+/* What blending a splat needs at each step. */
+typedef struct blend_job {
+    t3r_tile *tile;
+    __m256i opacity, colour[3];        /* colours twice */
+    __m256i drawn;                     /* all bits in the halves that are */
+    __m256i any;                       /* the bits of the weights that are kept */
+    t3r_blended_row *rows, *high_rows; /* of both halves, or NULL; known where this is inlined */
+} blend_job;
 
-/* rows: where what is blended is kept, or NULL; known where this is inlined. Returns all bits of the weights kept. */
-static inline __attribute__((always_inline)) T3R_AVX2 uint16_t blend_group(t3r_tile *restrict tile,
-                                                                           const t3r_tile_splat *splat, uint32_t group,
-                                                                           t3r_blended_row *restrict rows)
+static inline __attribute__((always_inline)) T3R_AVX2 void blend_step(blend_job *job, const quadratic *q,
+                                                                      uint32_t place, shape pixels)
 {
-    const uint32_t column = splat->column + group * T3R_LANES;
-    const int32_t gx = splat->group[group].gx, gy = splat->group[group].gy, row = splat->first;
-    const __m256i i = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), ii = _mm256_mullo_epi32(i, i);
-    const __m256i bend = _mm256_set1_epi32(2 * splat->c), ib = _mm256_mullo_epi32(i, _mm256_set1_epi32(splat->b));
-    /* sums modulo 2^32, as plain C's are without overflow */
-    __m256i upper = _mm256_set1_epi32(splat->group[group].q + row * (gy + row * splat->c));
-    upper = _mm256_add_epi32(upper, _mm256_mullo_epi32(i, _mm256_set1_epi32(gx + row * splat->b)));
-    upper = _mm256_add_epi32(upper, _mm256_mullo_epi32(ii, _mm256_set1_epi32(splat->a)));
-    __m256i step = _mm256_add_epi32(_mm256_set1_epi32(gy + (2 * row + 1) * splat->c), ib);
-    const __m256i opacity = constant(splat->opacity_q16);
-    const __m256i red = constant(splat->colour_q7[0]), green = constant(splat->colour_q7[1]);
-    const __m256i blue = constant(splat->colour_q7[2]);
-    __m256i any = _mm256_setzero_si256();
-    for (uint32_t j = splat->first; j <= splat->last; j += 2) {
-        const bool two = j < splat->last;
-        const __m256i lower = _mm256_add_epi32(upper, step);
-        uint16_t *transmittance = tile->transmittance_q16[j] + column;
-        __m256i t = load_rows(transmittance, two);
-        __m256i alpha = alpha_of(upper, lower, opacity);
-        alpha = _mm256_and_si256(alpha, at_least(t, constant(T3R_STOP_Q16)));
-        const __m256i w = mulr_q16(t, alpha);
-        store_rows(transmittance, T3R_TILE_SIDE, two, _mm256_sub_epi16(t, w));
-        add_colour(tile->colour_q7[0][j] + column, two, w, red);
-        add_colour(tile->colour_q7[1][j] + column, two, w, green);
-        add_colour(tile->colour_q7[2][j] + column, two, w, blue);
-        if (rows != NULL) {
-            t3r_blended_row *kept = rows + (j - splat->first);
-            const __m256i still = _mm256_cmpeq_epi16(w, _mm256_setzero_si256());
-            store_rows(kept->weight_q16, sizeof *kept / 2, two, w);
-            store_rows((uint16_t *)(void *)kept->alpha_q15, sizeof *kept / 2, two,
-                       _mm256_andnot_si256(still, _mm256_srli_epi16(alpha, 1)));
-            any = _mm256_or_si256(any, two ? w : _mm256_zextsi128_si256(_mm256_castsi256_si128(w)));
+    uint16_t *transmittance = job->tile->transmittance_q16[0] + place;
+    const __m256i t = load(transmittance, pixels);
+    __m256i alpha = _mm256_and_si256(alpha_of(q, job->opacity), at_least(t, constant(T3R_STOP_Q16)));
+    if (pixels == WHOLE_ROW) {
+        alpha = _mm256_and_si256(alpha, job->drawn);
+    }
+    const __m256i w = mulr_q16(t, alpha); /* 0 where there is no pixel */
+    store(transmittance, pixels, _mm256_sub_epi16(t, w));
+    for (int c = 0; c < 3; c++) {
+        uint16_t *colour = job->tile->colour_q7[c][0] + place;
+        store(colour, pixels, _mm256_add_epi16(load(colour, pixels), mulr_q16_doubled(w, job->colour[c])));
+    }
+    if (job->rows != NULL) {
+        const __m256i still = _mm256_cmpeq_epi16(w, _mm256_setzero_si256());
+        alpha = _mm256_andnot_si256(still, _mm256_srli_epi16(alpha, 1));
+        _mm256_storeu_si256((__m256i *)(void *)job->rows, _mm256_permute2x128_si256(w, alpha, 0x20));
+        if (pixels != ONE_ROW) {
+            _mm256_storeu_si256((__m256i *)(void *)job->high_rows, _mm256_permute2x128_si256(w, alpha, 0x31));
         }
-        step = _mm256_add_epi32(step, bend);
-        upper = _mm256_add_epi32(lower, step);
-        step = _mm256_add_epi32(step, bend);
+        job->any = _mm256_or_si256(job->any, w);
+        job->rows += pixels == TWO_ROWS ? 2 : 1;
+        job->high_rows += pixels == TWO_ROWS ? 2 : 1;
     }
-    __m128i bits = _mm_or_si128(_mm256_castsi256_si128(any), _mm256_extracti128_si256(any, 1));
-    bits = _mm_or_si128(bits, _mm_srli_si128(bits, 8));
-    bits = _mm_or_si128(bits, _mm_srli_si128(bits, 4));
-    return (uint16_t)((uint32_t)_mm_cvtsi128_si32(bits) | (uint32_t)_mm_cvtsi128_si32(bits) >> 16);
+}
+
+/* One group, a pair of rows at a time. */
+static inline __attribute__((always_inline)) T3R_AVX2 void blend_group(blend_job *job, const t3r_tile_splat *splat,
+                                                                       uint32_t group)
+{
+    quadratic q = quadratic_of(splat, group, group, 1, 2);
+    uint32_t row = splat->first, place = row * T3R_TILE_SIDE + splat->column + group * T3R_LANES;
+    for (; row < splat->last; row += 2, place += 2u * T3R_TILE_SIDE) {
+        blend_step(job, &q, place, TWO_ROWS);
+        advance(&q);
+    }
+    if (row == splat->last) {
+        blend_step(job, &q, place, ONE_ROW);
+    }
+}
+
+/* Both groups, a whole row of the tile at a time. */
+static inline __attribute__((always_inline)) T3R_AVX2 void blend_rows(blend_job *job, const t3r_tile_splat *splat)
+{
+    quadratic q = quadratic_of(splat, 0, 1, 0, 1);
+    for (uint32_t row = splat->first; row <= splat->last; row++) {
+        blend_step(job, &q, row * T3R_TILE_SIDE, WHOLE_ROW);
+        advance(&q);
+    }
+}
+
+static inline T3R_AVX2 blend_job begun(t3r_tile *tile, const t3r_tile_splat *splat)
+{
+    blend_job job = {.tile = tile, .opacity = constant(splat->opacity_q16), .any = _mm256_setzero_si256()};
+    for (int c = 0; c < 3; c++) {
+        job.colour[c] = constant(2u * splat->colour_q7[c]);
+    }
+    job.drawn = both_halves(-(splat->drawn & 1), -(splat->drawn >> 1 & 1));
+    return job;
 }
 
 T3R_AVX2 void t3r_blend_avx2(t3r_tile *tile, const t3r_tile_splat *splat)
 {
-    for (uint32_t group = 0; group < splat->groups; group++) {
-        if ((splat->drawn >> group & 1) != 0) {
-            (void)blend_group(tile, splat, group, NULL);
-        }
+    blend_job job = begun(tile, splat);
+    job.rows = job.high_rows = NULL;
+    if (splat->drawn == 3) {
+        blend_rows(&job, splat);
+    } else if (splat->drawn != 0) {
+        blend_group(&job, splat, splat->drawn == 1 ? 0 : 1);
     }
 }
 
 T3R_AVX2 uint16_t t3r_blend_keep_avx2(t3r_tile *restrict tile, const t3r_tile_splat *splat,
                                       t3r_blended_row *restrict rows)
 {
-    const uint32_t rows_a_group = splat->last - splat->first + 1u;
-    uint16_t bits = 0;
-    for (uint32_t group = 0; group < splat->groups; group++, rows += rows_a_group) {
-        if ((splat->drawn >> group & 1) != 0) {
-            bits |= blend_group(tile, splat, group, rows);
-        } else {
-            memset(rows, 0, rows_a_group * sizeof *rows);
-        }
+    blend_job job = begun(tile, splat);
+    job.rows = rows;
+    if (splat->groups == 2) {
+        job.high_rows = rows + (splat->last - splat->first + 1u);
+        blend_rows(&job, splat);
+    } else if (splat->drawn != 0) {
+        job.high_rows = rows + 1;
+        blend_group(&job, splat, 0);
+    } else {
+        memset(rows, 0, (splat->last - splat->first + 1u) * sizeof *rows);
     }
-    return bits;
+    __m128i bits = _mm_or_si128(_mm256_castsi256_si128(job.any), _mm256_extracti128_si256(job.any, 1));
+    bits = _mm_or_si128(bits, _mm_srli_si128(bits, 8));
+    bits = _mm_or_si128(bits, _mm_srli_si128(bits, 4));
+    return (uint16_t)((uint32_t)_mm_cvtsi128_si32(bits) | (uint32_t)_mm_cvtsi128_si32(bits) >> 16);
 }
 
 #else

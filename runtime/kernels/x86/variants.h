@@ -67,7 +67,9 @@
     X(place, T3R_CPU_AVX2, t3r_place_avx2)                                                                             \
     X(blend, T3R_CPU_AVX2, t3r_blend_avx2)                                                                             \
     X(blend_keep, T3R_CPU_AVX2, t3r_blend_keep_avx2)                                                                   \
-    X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)
+    X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)                                                                         \
+    X(scatter, T3R_CPU_X86_VNNI_, t3r_scatter_vnni)                                                                    \
+    X(solve, T3R_CPU_AVX2, t3r_solve_avx2)
 /* Of an activation that convolve_packed of these features reads. */
 #define T3R_X86_STRIP_BYTES(cpu) (((cpu)&T3R_CPU_X86_VNNI_) == T3R_CPU_X86_VNNI_ ? 1u : 2u)
 #else
