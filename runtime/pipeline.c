@@ -14,6 +14,7 @@
 #include "pointmap/exposure.h"
 #include "core/cut.h"
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "pointmap/flying_pixels.h"
 #include "head/head_views.h"
 #include "superclusters/pixel_clusters.h"
@@ -71,7 +72,9 @@ static void fill_view(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const views_job *job = context;
-    t3r_depth_fill(&job->views[job->first + index], job->rt->config.fill_radius);
+    if (!t3r_is_reused(job->rt, job->first + index)) {
+        t3r_depth_fill(&job->views[job->first + index], job->rt->config.fill_radius);
+    }
 }
 
 static t3r_status depth(t3r_runtime *rt, t3r_view *views)
@@ -87,13 +90,36 @@ static t3r_status depth(t3r_runtime *rt, t3r_view *views)
     return T3R_OK;
 }
 
+/* Views of a build that follows another stand in the same frame, as long as it has their scale and they are not far
+ * off. */
+#define FOLLOWS_WITHIN_Q20 (1 << 29) /* 512 scene units */
+
+static bool is_in_frame(const t3r_runtime *rt, const t3r_view *views)
+{
+    int32_t exponent, median_q20;
+    bool in_frame = rt->reuse.centres && t3r_scene_scale_choose(views, rt->views, &exponent, &median_q20) == T3R_OK &&
+                    exponent == rt->frame.exponent;
+    for (uint32_t v = 0; v < rt->views && in_frame; v++) {
+        t3r_pose pose;
+        in_frame = t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) == T3R_OK;
+        for (int i = 0; i < 3 && in_frame; i++) {
+            in_frame = t3r_abs32(pose.position_q20[i]) <= FOLLOWS_WITHIN_Q20;
+        }
+    }
+    return in_frame;
+}
+
 /* The pointmap is a function of depth and pose; what it needs is the frame that both are in. */
 static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
 {
+    t3r_scene_frame frame = rt->frame;
     for (int i = 0; i < 3; i++) {
-        rt->frame.origin_q32[i] = rt->camera[0].position_q32[i];
+        frame.origin_q32[i] = rt->camera[0].position_q32[i];
     }
-    t3r_status status = t3r_scene_scale_choose(views, rt->views, &rt->frame.exponent, &rt->median_depth_q20);
+    t3r_status status = t3r_scene_scale_choose(views, rt->views, &frame.exponent, &rt->median_depth_q20);
+    if (!rt->reuse.centres) {
+        rt->frame = frame;
+    }
     for (uint32_t v = 0; v < rt->views && status == T3R_OK; v++) {
         status = t3r_pose_in_scene(&rt->camera[v], &rt->frame, &views[v].pose);
     }
@@ -112,7 +138,9 @@ static void bridge_view(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const views_job *job = context;
-    t3r_bridge_view(&job->views[job->first + index], job->rt->config.bridge_radius);
+    if (!t3r_is_reused(job->rt, job->first + index)) {
+        t3r_bridge_view(&job->views[job->first + index], job->rt->config.bridge_radius);
+    }
 }
 
 /* Wide holes, once it is known where the views stand. What stereo left without depth shows nothing. */
@@ -124,7 +152,9 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
         if (!pointmap_step(rt, v)) {
             return T3R_ERR_CANCELLED;
         }
-        t3r_bridge_lend(views, rt->views, v, rt->frame.exponent, &work);
+        if (!t3r_is_reused(rt, v)) {
+            t3r_bridge_lend(views, rt->views, v, rt->frame.exponent, &work);
+        }
     }
     if (radius > 0) {
         t3r_status status = each_view(rt, views, bridge_view, T3R_STAGE_POINTMAP, rt->views, POINTMAP_STEPS(rt));
@@ -136,7 +166,8 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
         if (!pointmap_step(rt, 2 * rt->views + v)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent, (1u << v) - 1, &work);
+        const uint32_t settled = ((1u << v) - 1) | (rt->reuse.views & ~(1u << v));
+        (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent, settled, &work);
     }
     return T3R_OK;
 }
@@ -149,7 +180,9 @@ static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
         if (!pointmap_step(rt, 3 * rt->views + v)) {
             return T3R_ERR_CANCELLED;
         }
-        (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO, &work);
+        if (!t3r_is_reused(rt, v)) {
+            (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO, &work);
+        }
     }
     return T3R_OK;
 }
@@ -205,7 +238,17 @@ void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
 static void view_texture(void *context, uint32_t index, uint32_t worker)
 {
     const views_job *job = context;
-    texture_of(job->rt, &job->views[job->first + index], worker);
+    const t3r_runtime *rt = job->rt;
+    const uint32_t v = job->first + index;
+    const size_t bytes = T3R_PIXELS_(rt->config.width, rt->config.height) * sizeof(uint16_t);
+    if (t3r_is_reused(rt, v)) {
+        memcpy(job->views[v].texture, t3r_kept_texture(rt, v), bytes);
+        return;
+    }
+    texture_of(rt, &job->views[v], worker);
+    if (rt->config.warm) {
+        memcpy(t3r_kept_texture(rt, v), job->views[v].texture, bytes);
+    }
 }
 
 static t3r_status wavelet(t3r_runtime *rt, t3r_view *views)
@@ -243,7 +286,17 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     if (rt->config.depth == T3R_DEPTH_STEREO) {
         t3r_stereo_clear(views, rt->views);
     }
-    t3r_reset_comparison(views, rt->views); /* of an earlier analysis of the same planes */
+    if (!is_in_frame(rt, views)) {
+        t3r_reuse_nothing(rt);
+    }
+    rt->follows = rt->reuse.centres;
+    for (uint32_t v = 0; v < rt->views; v++) { /* of an earlier analysis of the same planes */
+        if (t3r_is_reused(rt, v)) {
+            t3r_reset_covered(&views[v]);
+        } else {
+            t3r_reset_comparison(&views[v], 1);
+        }
+    }
     t3r_hash_image(rt, views, 0, rt->views);
 
     t3r_status status = depth(rt, views);
@@ -269,6 +322,11 @@ t3r_status t3r_analyse(t3r_runtime *rt)
         status = superclusters(rt, views);
     }
     rt->analysed = status == T3R_OK;
+    if (status == T3R_OK) {
+        t3r_reuse_all(rt);
+    } else {
+        t3r_reuse_nothing(rt);
+    }
     return status;
 }
 
@@ -314,11 +372,11 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
 
 static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
 {
-    if (rt->config.refinements == 0) {
+    if (rt->build.refinements == 0) {
         return T3R_OK;
     }
     rt->analysed &= rt->config.keep_analysis; /* else refinement works where labels and clusters are */
-    t3r_status status = t3r_refine(rt, views);
+    t3r_status status = t3r_refine(rt, views, rt->build.refinements);
     if (status == T3R_OK) {
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
     }

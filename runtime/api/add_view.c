@@ -3,6 +3,7 @@
 #include "layout/arena.h"
 #include "state/state.h"
 #include "image/develop.h"
+#include "image/image.h"
 
 static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
 {
@@ -16,31 +17,74 @@ static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
     return false;
 }
 
+/* The slot of the next view: where there is no room for another, that of the oldest. */
+static uint32_t slot_of_next(const t3r_runtime *rt)
+{
+    return rt->views < rt->config.views ? rt->views : rt->next_slot;
+}
+
+static bool takes_view(const t3r_runtime *rt)
+{
+    return !rt->config.stream &&
+           (rt->config.warm ? rt->config.views > 0 : rt->views < rt->config.views && !rt->has_scene);
+}
+
+/* Whether the frame's depth has no measurement at all. What cannot be read is for others to refuse. */
+static bool is_blind(const t3r_frame *frame)
+{
+    if (t3r_image_check(frame) != T3R_OK) {
+        return false;
+    }
+    for (uint32_t y = 0; y < frame->depth_height; y++) {
+        const uint8_t *row = frame->depth + (size_t)y * frame->depth_stride_bytes;
+        for (uint32_t i = 0; i < 2 * frame->depth_width; i++) {
+            if (row[i] != 0) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
 {
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(!rt->config.stream && rt->views < rt->config.views && !rt->has_scene, T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(takes_view(rt), T3R_ERR_STATE);
     const bool stereo = rt->config.depth == T3R_DEPTH_STEREO;
+    const uint32_t slot = slot_of_next(rt);
     t3r_frame shown = *frame;
     if (stereo) {
         shown.depth = NULL;
     } else if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
-    rt->analysed = 0; /* the image stage works where later planes are */
+    const bool replaces = slot < rt->views;
+    if (replaces && !stereo && is_blind(frame)) {
+        return T3R_ERR_NO_DEPTH; /* before the oldest view is overwritten */
+    }
+    rt->analysed = 0; /* the image stage works where later planes and the scene are */
+    rt->has_scene = 0;
     t3r_camera undistorted;
-    t3r_status status = t3r_develop_view(rt, rt->views, &shown, camera, &undistorted);
+    t3r_status status = t3r_develop_view(rt, slot, &shown, camera, &undistorted);
     if (status != T3R_OK) {
         return status;
     }
-    if (!stereo && !has_measured_depth(rt, rt->views)) {
+    t3r_reuse_no_view(rt, slot);
+    if (!stereo && !has_measured_depth(rt, slot)) {
+        if (replaces) {
+            (void)t3r_reset(rt); /* the oldest view is gone */
+        }
         return T3R_ERR_NO_DEPTH;
     }
-    rt->camera[rt->views] = undistorted;
-    rt->depth_unit_q40[rt->views] = stereo ? 1 : frame->depth_unit_q40; /* stereo chooses its own */
-    rt->stereo_pair[rt->views] = T3R_PAIR_OK;
-    rt->stereo_partner[rt->views] = (uint8_t)rt->views;
-    rt->views++;
+    rt->camera[slot] = undistorted;
+    rt->depth_unit_q40[slot] = stereo ? 1 : frame->depth_unit_q40; /* stereo chooses its own */
+    rt->stereo_pair[slot] = T3R_PAIR_OK;
+    rt->stereo_partner[slot] = (uint8_t)slot;
+    if (replaces) {
+        rt->next_slot = (slot + 1) % rt->config.views;
+    } else {
+        rt->views++;
+    }
     return T3R_OK;
 }
 

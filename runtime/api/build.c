@@ -1,5 +1,6 @@
 /* A scene of the views: what is asked for, and whether it can be had, is settled here. */
 #include "api/checks.h"
+#include "core/config.h"
 #include "loss/budget_choice.h"
 #include "state/state.h"
 #include "pipeline.h"
@@ -99,7 +100,16 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scen
     rt->has_scene = 0;
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
-    return status == T3R_OK ? build(rt, &order, scene) : status;
+    if (status == T3R_OK && rt->follows) {
+        order.build.refinements = t3r_following_refinements_of(&rt->config);
+    }
+    if (status == T3R_OK) {
+        status = build(rt, &order, scene);
+    }
+    if (status != T3R_OK) {
+        t3r_reuse_nothing(rt);
+    }
+    return status;
 }
 
 t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene)

@@ -62,6 +62,7 @@ t3r_status t3r_reset(t3r_runtime *rt)
     rt->valid_points = 0;
     rt->keyframes = 0;
     rt->next_slot = 0;
+    t3r_reuse_nothing(rt);
     return T3R_OK;
 }
 

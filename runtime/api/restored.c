@@ -80,6 +80,36 @@ static bool is_stream(const t3r_runtime *rt)
                           : rt->views == 0 && rt->keyframes == 0 && rt->gaussians == 0);
 }
 
+/* Whether what the next build takes over is in range. Kept textures may hold anything. */
+static bool is_reuse(const t3r_runtime *rt)
+{
+    const t3r_reuse *reuse = &rt->reuse;
+    if (!rt->config.warm || rt->config.stream || !reuse->centres) {
+        return reuse->views == 0 && reuse->centres == 0;
+    }
+    if (reuse->views >> rt->views != 0) {
+        return false;
+    }
+    const int32_t most = T3R_FEATURE_MOST * (1 << T3R_CENTRE_FRACTION);
+    const t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_KEPT_CLUSTERS);
+    for (uint32_t i = 0; i < rt->config.clusters * T3R_DIMENSIONS; i++) {
+        const int32_t at = clusters[i / T3R_DIMENSIONS].centre_q19[i % T3R_DIMENSIONS];
+        if (at < -most || at > most) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether views take slots as adding them one after the other does. */
+static bool is_slot(const t3r_runtime *rt)
+{
+    if (rt->config.stream) {
+        return is_stream(rt);
+    }
+    return rt->next_slot == 0 || (rt->config.warm && rt->views == rt->config.views && rt->next_slot < rt->views);
+}
+
 static bool is_view(const t3r_runtime *rt, uint32_t v)
 {
     if (rt->stereo_pair[v] >= T3R_PAIR_COUNT || rt->stereo_partner[v] >= rt->views ||
@@ -102,7 +132,7 @@ static bool is_state(const t3r_runtime *rt)
     return rt->views <= rt->config.views && rt->gaussians <= rt->config.max_gaussians &&
            rt->analysed <= (rt->views > 0) && rt->has_scene <= 1 && rt->valid_points <= most_points &&
            t3r_is_scene_frame(&rt->frame) && t3r_is_build(&rt->config, &rt->build) &&
-           (rt->config.stream ? is_stream(rt) : rt->next_slot == 0);
+           is_slot(rt) && is_reuse(rt);
 }
 
 bool t3r_is_restored(const t3r_runtime *rt)

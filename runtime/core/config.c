@@ -29,6 +29,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .redundancy = 1,
         .exposure = 1,
         .keep_analysis = 0,
+        .warm = 0,
         .stream = 0,
         .half_life = 32,
         .tile_splats = 0,
@@ -67,6 +68,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
     X("redundancy must be 0 or 1", c->redundancy, 0, 1)                                                                \
     X("exposure must be 0 or 1", c->exposure, 0, 1)                                                                    \
     X("keep_analysis must be 0 or 1", c->keep_analysis, 0, 1)                                                          \
+    X("warm must be 0 or 1, and 0 with depth by stereo", c->warm, 0, !stereo)                                            \
     X("stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo)     \
     X("half_life must be 0..1024", c->half_life, 0, 1024)                                                              \
     X("tile_splats must be 0..2^24", c->tile_splats, 0, T3R_MAX_GAUSSIANS)                                             \
@@ -88,10 +90,10 @@ uint64_t t3r_most_arena_bytes(const t3r_config *c)
     const uint64_t worker = pixels * 4 + (uint64_t)(c->width + 15) * (c->head_column_bytes + 32) +
                             T3R_HEAD_KERNEL_BYTES + T3R_CLUSTER_SUMS_BYTES + T3R_GROUP_COUNTS_BYTES + T3R_WANTED_BYTES +
                             gaussians * 27 + 512;
-    const uint64_t fixed = T3R_HEADER_BYTES + T3R_CLUSTER_WORK_BYTES + (T3R_MAX_CLUSTERS + 1) * T3R_CLUSTER_BYTES +
+    const uint64_t fixed = T3R_HEADER_BYTES + T3R_CLUSTER_WORK_BYTES + 2 * (T3R_MAX_CLUSTERS + 1) * T3R_CLUSTER_BYTES +
                            2 * T3R_SORT_BYTES + 3 * T3R_RATIO_BINS * 4 +
                            T3R_BUFFER_COUNT * T3R_ARENA_ALIGN * (uint64_t)4;
-    uint64_t bytes = fixed + pixels * (c->views * (uint64_t)24 + 38) +
+    uint64_t bytes = fixed + pixels * (c->views * (uint64_t)26 + 38) +
                      (uint64_t)c->render_width * c->render_height * 8 + gaussians * 332 + workers * worker;
     /* planes of a quarter more on a side, the right one wider; 64 rows of sums and costs, and as many path states */
     const uint64_t wide = (uint64_t)T3R_MAX_(c->width, c->height) * 5 / 4 + 8 + T3R_STEREO_DISPARITIES;

@@ -15,6 +15,12 @@ static inline uint32_t t3r_tile_splats_of(const t3r_config *config)
     return config->tile_splats != 0 ? config->tile_splats : UINT32_MAX;
 }
 
+/* The passes of refinement in a build that follows another (t3r_config.warm). */
+static inline uint32_t t3r_following_refinements_of(const t3r_config *config)
+{
+    return (config->refinements + 1) / 2;
+}
+
 /* At least the bytes of any arena for fields in range, counted generously and in 64 bits: sums in size_t may wrap. */
 uint64_t t3r_most_arena_bytes(const t3r_config *config);
 

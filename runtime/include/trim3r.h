@@ -250,6 +250,16 @@ typedef struct t3r_config {
     /* 1 = the analysis outlives the build, which t3r_rebuild() and a bounded loss need; 0 = its memory is used again.
      * [0] */
     uint32_t keep_analysis;
+    /* 1 = builds follow one another, and each takes over what still holds from the one before; 0 = every build begins
+     * anew. Views then outlive the scene: t3r_add_view() adds to those of the last one, and where there is no room the
+     * newest replaces the oldest. So a pair slides along a camera's way by one view at a time. Of a view that stays,
+     * its depth with filled and bridged holes, its doubtful pixels and its texture are not made again. The K-means begin
+     * with the last centres and take a sixth of the batches. The scene's frame stays. Refinement takes half the passes.
+     * Both are rounded up. A build begins anew after t3r_init(), t3r_reset() and a build that failed, where the exponent
+     * of the frame changes, and beyond 512 scene units from its origin. A stream halves its passes from the second
+     * keyframe on. The bits are a function of all calls since t3r_init() or t3r_reset(). A build that begins anew has
+     * those of a build with 0. Must be 0 with depth by stereo. [0] */
+    uint32_t warm;
     /* 1 = a map of at most `gaussians` follows a camera with a depth sensor, by t3r_stream_keyframe() alone; 0 = scenes
      * are built of all views at once. Must be 0 without views and with depth by stereo. [0] */
     uint32_t stream;
@@ -288,7 +298,7 @@ typedef struct t3r_request {
 
 /* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */
 typedef struct t3r_scene_frame {
-    /* The origin in world units: the first context camera's centre. */
+    /* The origin in world units: the first context camera's centre, with `warm` that of the build that began anew. */
     int64_t origin_q32[3];
     /* The exponent of the scene unit, -24..24, with which the median depth is in [1, 2) scene units. */
     int32_t exponent;
@@ -455,7 +465,10 @@ uint32_t t3r_head_crc(const t3r_runtime *rt);
  * T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than half of the picture lies beyond what the lens can show.
  * T3R_ERR_NO_DEPTH: there is no depth plane, or not one measurement in it. T3R_ERR_STATE: there is no room for another
  * view, or there is a scene already (t3r_reset()). After an error no view is added, and an analysis that was kept is
- * discarded. */
+ * discarded.
+ *
+ * With `warm` a view may follow a scene, which it discards, and there is always room: the oldest view is replaced, and
+ * the new one takes its number. T3R_ERR_NO_DEPTH of a frame whose measurements are lost in resizing discards all. */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
 /* Discards views, analysis and scene; the configuration stays. Needed before t3r_add_view() once there is a scene. */
@@ -548,7 +561,7 @@ t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame);
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 
 /* Draws the scene in the arena as seen by the camera. Its distortion is ignored: targets are pinhole. Without
- * keep_analysis the views are discarded, for the raster works where their planes were. T3R_ERR_ARGUMENT: sizes or
+ * keep_analysis and `warm` the views are discarded, for the raster works where their planes were. T3R_ERR_ARGUMENT: sizes or
  * strides are out of range, or depth or alpha is not aligned for its type. T3R_ERR_CAMERA: the camera is more than
  * 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is drawn in part. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);

@@ -136,16 +136,16 @@
 
 /* --- the shape of an arena: what its bytes depend on ---------------------------------------------------------------
  *
- * Twelve numbers in parentheses, handed on as one argument and read by name, as T3R_VIEWS_(shape): a constant
+ * Thirteen numbers in parentheses, handed on as one argument and read by name, as T3R_VIEWS_(shape): a constant
  * expression cannot read a struct. `gaussians` is max_gaussians of t3r_config, and `stereo` is 1 where depth is made by
  * stereo, 0 where it comes from a sensor. `keep` is 0 where the analysis ends with the build, 1 where it outlives it,
  * and T3R_KEEP_MAP for a stream: its map and keyframes outlive everything, and one keyframe is analysed at a time. The
  * others are the fields of t3r_config with their names. */
 #define T3R_KEEP_MAP 2
 #define T3R_SHAPE_(width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep,    \
-                   refinements, stereo, workers)                                                                       \
+                   refinements, stereo, workers, warm)                                                                 \
     (width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep, refinements,     \
-     stereo, workers)
+     stereo, workers, warm)
 #define T3R_WIDTH_(shape) T3R_SHAPE_WIDTH_ shape
 #define T3R_HEIGHT_(shape) T3R_SHAPE_HEIGHT_ shape
 #define T3R_VIEWS_(shape) T3R_SHAPE_VIEWS_ shape
@@ -158,6 +158,7 @@
 #define T3R_REFINEMENTS_(shape) T3R_SHAPE_REFINEMENTS_ shape
 #define T3R_STEREO_(shape) T3R_SHAPE_STEREO_ shape
 #define T3R_WORKERS_(shape) T3R_SHAPE_WORKERS_ shape
+#define T3R_WARM_(shape) T3R_SHAPE_WARM_ shape
 #define T3R_SHAPE_WIDTH_(width, ...) ((size_t)(width))
 #define T3R_SHAPE_HEIGHT_(a, height, ...) ((size_t)(height))
 #define T3R_SHAPE_VIEWS_(a, b, views, ...) ((size_t)(views))
@@ -169,13 +170,18 @@
 #define T3R_SHAPE_KEEP_(a, b, c, d, e, f, g, h, keep, ...) ((size_t)(keep))
 #define T3R_SHAPE_REFINEMENTS_(a, b, c, d, e, f, g, h, i, refinements, ...) ((size_t)(refinements))
 #define T3R_SHAPE_STEREO_(a, b, c, d, e, f, g, h, i, j, stereo, ...) ((size_t)(stereo))
-#define T3R_SHAPE_WORKERS_(a, b, c, d, e, f, g, h, i, j, k, workers) ((size_t)(workers))
+#define T3R_SHAPE_WORKERS_(a, b, c, d, e, f, g, h, i, j, k, workers, ...) ((size_t)(workers))
+#define T3R_SHAPE_WARM_(a, b, c, d, e, f, g, h, i, j, k, l, warm) ((size_t)(warm))
 
 /* 1 or 0 */
 #define T3R_BUILDS_(shape) (T3R_VIEWS_(shape) > 0 ? (size_t)1 : (size_t)0)
 #define T3R_STREAMS_(shape) (T3R_KEEP_(shape) == T3R_KEEP_MAP ? (size_t)1 : (size_t)0)
 #define T3R_REFINES_(shape)                                                                                            \
     (T3R_BUILDS_(shape) * (T3R_REFINEMENTS_(shape) + T3R_STREAMS_(shape) > 0 ? (size_t)1 : (size_t)0))
+
+/* 1 where planes outlive a build for the next one; a stream keeps its map in any case. */
+#define T3R_FOLLOWS_(shape)                                                                                            \
+    (T3R_BUILDS_(shape) * (1 - T3R_STREAMS_(shape)) * (T3R_WARM_(shape) != 0 ? (size_t)1 : (size_t)0))
 
 #define T3R_OTHER_WORKERS_(shape) (T3R_WORKERS_(shape) - 1) /* all but the first */
 #define T3R_VIEW_PIXELS_(shape) (T3R_WIDTH_(shape) * T3R_HEIGHT_(shape))
@@ -184,7 +190,7 @@
 #define T3R_ANALYSED_(shape) (T3R_STREAMS_(shape) ? T3R_BUILDS_(shape) : T3R_VIEWS_(shape))
 #define T3R_ANALYSED_PIXELS_(shape) (T3R_VIEW_PIXELS_(shape) * T3R_ANALYSED_(shape))
 /* The last stage of what a build needs until `stage`: of the planes, and of the analysis. */
-#define T3R_LAST_(shape, stage) (T3R_KEEP_(shape) ? T3R_AT_RASTER : (stage))
+#define T3R_LAST_(shape, stage) (T3R_KEEP_(shape) + T3R_FOLLOWS_(shape) > 0 ? T3R_AT_RASTER : (stage))
 #define T3R_LAST_ANALYSIS_(shape, stage) (T3R_KEEP_(shape) && !T3R_STREAMS_(shape) ? T3R_AT_RASTER : (stage))
 
 /* What is kept of a splat's rows while its tile is drawn: from 129 Gaussians on, sorting leaves as much room. */
@@ -222,6 +228,10 @@
 #define T3R_BUFFERS(X, with, shape)                                                                                    \
     X(with, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                            \
     X(with, MAP_RECORDS, "map records", T3R_STREAMS_(shape) * T3R_GAUSSIANS_(shape) * T3R_MAP_RECORD_BYTES,            \
+      T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
+    X(with, KEPT_TEXTURE, "kept textures", T3R_FOLLOWS_(shape) * T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE,              \
+      T3R_AT_RASTER)                                                                                                   \
+    X(with, KEPT_CLUSTERS, "kept SuperClusters", T3R_FOLLOWS_(shape) * T3R_CLUSTERS_(shape) * T3R_CLUSTER_BYTES,        \
       T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
     X(with, COLOUR, "colour planes", T3R_ALL_PIXELS_(shape) * 3, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))        \
     X(with, DEPTH, "depth planes", T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))          \
@@ -298,25 +308,30 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
                         T3R_UP_(T3R_LISTS_BYTES_(shape)) - T3R_UP_(T3R_LISTS_LEAST_BYTES_(shape)))
 
 /* The default configuration: targets of the working size, the analysis not kept, one worker. */
-#define T3R_DEFAULT_SHAPE_(width, height, views, gaussians, keep, stereo)                                              \
+#define T3R_DEFAULT_SHAPE_(width, height, views, gaussians, keep, stereo, warm)                                        \
     T3R_SHAPE_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, keep,      \
-               T3R_DEFAULT_REFINEMENTS, stereo, 1)
+               T3R_DEFAULT_REFINEMENTS, stereo, 1, warm)
 
 /* The arena of the default configuration: the least bytes that work, and those with which a view takes one pass (views
  * of wide splats may take more). */
 #define T3R_ARENA_MIN_BYTES(width, height, views, gaussians)                                                           \
-    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0))
+    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 0))
 #define T3R_ARENA_BYTES(width, height, views, gaussians)                                                               \
-    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0))
+    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 0))
 /* The same with depth by stereo (t3r_config.depth). */
 #define T3R_STEREO_ARENA_MIN_BYTES(width, height, views, gaussians)                                                    \
-    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 1))
+    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 1, 0))
 #define T3R_STEREO_ARENA_BYTES(width, height, views, gaussians)                                                        \
-    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 1))
+    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 1, 0))
+/* The same with builds that follow one another (t3r_config.warm). */
+#define T3R_WARM_ARENA_MIN_BYTES(width, height, views, gaussians)                                                      \
+    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 1))
+#define T3R_WARM_ARENA_BYTES(width, height, views, gaussians)                                                          \
+    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 1))
 /* The same of a stream (t3r_config.stream) with `views` keyframes at hand. */
 #define T3R_STREAM_MIN_BYTES(width, height, views, gaussians)                                                          \
-    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, T3R_KEEP_MAP, 0))
+    T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, T3R_KEEP_MAP, 0, 0))
 #define T3R_STREAM_BYTES(width, height, views, gaussians)                                                              \
-    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, T3R_KEEP_MAP, 0))
+    T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, T3R_KEEP_MAP, 0, 0))
 
 #endif

@@ -42,7 +42,7 @@ static void read_table(const t3r_config *c, buffer_table *table)
     buffer_row *rows = table->row;
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,        \
-               c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO, c->workers)
+               c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO, c->workers, c->warm)
     T3R_BUFFERS(ROW, 0, SHAPE)
     for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
         rows[b].bytes = T3R_UP_(rows[b].bytes);

@@ -140,7 +140,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     if (status != T3R_OK) {
         return status;
     }
-    if (!rt->config.keep_analysis && !rt->config.stream) {
+    if (!rt->config.keep_analysis && !rt->config.stream && !rt->config.warm) {
         rt->views = 0; /* the raster's buffers lie where the planes were */
         rt->analysed = 0;
     }

@@ -294,7 +294,7 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
     return T3R_OK;
 }
 
-t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records)
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records)
 {
     const layout w = layout_of(rt);
     const t3r_workers workers = t3r_workers_of(rt);
@@ -305,9 +305,9 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_ma
                      .records = records,
                      .idle_most = rt->config.views};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
-    uint32_t total = rt->config.refinements * slices * rt->views, done = 0;
+    uint32_t total = passes * slices * rt->views, done = 0;
     memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);
-    for (uint32_t pass = 0; pass < rt->config.refinements; pass++) {
+    for (uint32_t pass = 0; pass < passes; pass++) {
         for (uint32_t first = 0; first < rt->gaussians; first += w.slice) {
             job.slice.first = first;
             job.slice.count = T3R_MIN(w.slice, rt->gaussians - first);
@@ -324,9 +324,9 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_ma
     return T3R_OK;
 }
 
-t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views)
+t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes)
 {
-    return t3r_refine_scene(rt, views, NULL);
+    return t3r_refine_scene(rt, views, passes, NULL);
 }
 
 t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *error_q8)

@@ -13,12 +13,12 @@
 /* A Gaussian takes the step of its correction. */
 void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);
 
-/* All passes over the scene in the arena. T3R_ERR_CANCELLED leaves it somewhere between two passes. */
-t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views);
+/* So many passes over the scene in the arena. T3R_ERR_CANCELLED leaves it somewhere between two passes. */
+t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes);
 
 /* The same of a map. A Gaussian stays as it is when no retained keyframe sees it as finely as its own keyframe did.
  * records: one a Gaussian; NULL: all change. */
-t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, const t3r_map_record *records);
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records);
 
 /* The room in which refinement draws a view of the working size: whoever draws one before can use it. */
 t3r_raster_room t3r_refine_room(const t3r_runtime *rt);

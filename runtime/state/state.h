@@ -10,6 +10,7 @@
 #include "ablation.h"
 #include "core/assertion.h"
 #include "kernels/kernels.h"
+#include "reuse.h"
 #include "trim3r.h"
 #include "views.h"
 #include "core/workers.h"
@@ -31,11 +32,12 @@ typedef struct t3r_build {
     uint32_t gaussians; /* 1..max_gaussians */
     t3r_allocation allocation;
     t3r_head head;
+    uint32_t refinements; /* 0..those of the configuration */
 } t3r_build;
 
 static inline t3r_build t3r_build_of(const t3r_config *config)
 {
-    return (t3r_build){config->gaussians, config->allocation, config->head};
+    return (t3r_build){config->gaussians, config->allocation, config->head, config->refinements};
 }
 
 struct t3r_runtime {
@@ -64,7 +66,9 @@ struct t3r_runtime {
     uint32_t render_passes;
     uint32_t head_crc;  /* of the weights bound last */
     uint32_t keyframes; /* taken by a stream; `views` of them are at hand */
-    uint32_t next_slot; /* the view that the next one takes */
+    uint32_t next_slot; /* the view that the next one takes: of a stream, and with `warm` where all are there */
+    t3r_reuse reuse;    /* nothing without `warm` */
+    uint32_t follows;   /* 1 = the last analysis took something over */
     const void *weights;
     t3r_hooks hooks;
     t3r_kernels kernels; /* chosen by t3r_set_cpu(); plain C until then */

@@ -69,3 +69,11 @@ void t3r_reset_comparison(const t3r_view *views, uint32_t count)
         }
     }
 }
+
+void t3r_reset_covered(const t3r_view *view)
+{
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    for (size_t i = 0; i < pixels; i++) {
+        view->validity[i] &= T3R_DEPTH_SOURCE_BITS | T3R_MARK_DOUBTFUL;
+    }
+}

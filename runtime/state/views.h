@@ -129,6 +129,9 @@ t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index);
 /* The planes of every view there is room for, likewise. */
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS]);
 
+/* Takes back that other views cover pixels; doubtful ones and the depth in wide holes stay. */
+void t3r_reset_covered(const t3r_view *view);
+
 /* Takes back what the comparison of views made: all marks, and the depth in wide holes. */
 void t3r_reset_comparison(const t3r_view *views, uint32_t count);
 

@@ -8,6 +8,7 @@
 
 #include "pointmap/bridge.h"
 #include "core/camera.h"
+#include "core/config.h"
 #include "depth/depth.h"
 #include "image/develop.h"
 #include "pointmap/exposure.h"
@@ -344,7 +345,9 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     if (rt->config.refinements > 0) {
         t3r_view all[T3R_MAX_VIEWS];
         t3r_views_of(rt, all);
-        status = t3r_refine_scene(rt, all, t3r_map_of(rt).records);
+        const bool follows = rt->config.warm && rt->keyframes > 1;
+        const uint32_t passes = follows ? t3r_following_refinements_of(&rt->config) : rt->config.refinements;
+        status = t3r_refine_scene(rt, all, passes, t3r_map_of(rt).records);
         if (status == T3R_OK) {
             t3r_hash_scene(rt, T3R_STAGE_REFINE);
         }

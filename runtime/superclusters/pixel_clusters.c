@@ -1,6 +1,7 @@
 #include "pixel_clusters.h"
 
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "pointmap/pointmap.h"
 #include "state/state.h"
 #include "superclusters.h"
@@ -47,13 +48,18 @@ t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
     };
     t3r_pointmaps_of(views, rt->views, rt->frame.exponent, points.maps);
     t3r_point_source source = {&points, points.pixels * rt->views, pixel_features};
-    t3r_cluster_settings settings = {&rt->kernels, rt->config.clusters, rt->config.cluster_batches, rt->config.seed};
+    t3r_cluster_settings settings = {&rt->kernels, rt->config.clusters, rt->config.cluster_batches, rt->config.seed,
+                                     rt->reuse.centres != 0};
     const t3r_cluster_host host = {
         .workers = t3r_workers_of(rt),
         .sums = t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_SUMS),
         .context = rt,
         .step = step_clusters,
     };
+    if (settings.follows) {
+        memcpy(t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS), t3r_buffer_at(rt, T3R_BUFFER_KEPT_CLUSTERS),
+               rt->config.clusters * sizeof(t3r_cluster));
+    }
     uint32_t valid =
         t3r_superclusters(&source, &settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
                           t3r_buffer_at(rt, T3R_BUFFER_LABELS), t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_WORK), &host);

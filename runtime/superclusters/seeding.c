@@ -92,8 +92,25 @@ static void choose_centre(const seeding *s, uint32_t *random, int16_t centre[T3R
     }
 }
 
-void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
-                      t3r_sample *sample)
+/* Those that stay; whether there is one. */
+static bool add_staying(seeding *s, uint32_t count, const bool *stays, const t3r_cluster *clusters)
+{
+    bool any = false;
+    for (uint32_t k = 0; k < count && stays != NULL; k++) {
+        if (stays[k]) {
+            int16_t centre[T3R_DIMENSIONS];
+            for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+                centre[d] = (int16_t)t3r_round_shift32(clusters[k].centre_q19[d], T3R_CENTRE_FRACTION);
+            }
+            add_centre(s, centre);
+            any = true;
+        }
+    }
+    return any;
+}
+
+void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, const bool *stays,
+                      t3r_cluster *clusters, t3r_sample *sample)
 {
     seeding s = {.kernels = settings->kernels, .sample = sample, .count = draw_sample(source, sample)};
     if (s.count == 0) {
@@ -103,10 +120,15 @@ void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings
     uint32_t random = t3r_mix32(settings->seed + 0x9e3779b9u);
     int16_t centre[T3R_DIMENSIONS];
     sample_point(sample, random % s.count, centre);
+    bool any = add_staying(&s, settings->clusters, stays, clusters);
     for (uint32_t k = 0; k < settings->clusters; k++) {
-        if (k > 0) {
+        if (stays != NULL && stays[k]) {
+            continue;
+        }
+        if (any) {
             choose_centre(&s, &random, centre);
         }
+        any = true;
         add_centre(&s, centre);
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
             clusters[k].centre_q19[d] = centre[d] * (1 << T3R_CENTRE_FRACTION);

@@ -6,6 +6,9 @@
 
 #define BLOCK 64u         /* points gathered at a time */
 #define TASK_POINTS 512u  /* points a task labels */
+#define FOLLOW_PART 6u    /* of the batches are taken where centres are taken over */
+#define FOLLOW_WEIGHT 16u /* points behind such a centre */
+#define FOLLOW_SHARE 2u   /* of the mean are the least points of the first batch with which it stays */
 #define WEIGHT_MOST 2048u /* a centre forgets what lies further back, so that late batches still move it */
 
 static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint32_t count)
@@ -207,24 +210,65 @@ static uint32_t assign(means_job *job, t3r_cluster *clusters, uint32_t done, uin
     return all_valid;
 }
 
+static void set_weights(t3r_cluster_work *work, uint32_t points)
+{
+    for (uint32_t k = 0; k < T3R_MAX_CLUSTERS; k++) {
+        work->u.means.weight[k] = points;
+    }
+}
+
+static void place_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
+                          t3r_cluster_work *work)
+{
+    memset(clusters, 0, settings->clusters * sizeof *clusters);
+    t3r_seed_centres(source, settings, NULL, clusters, &work->u.sample);
+    set_weights(work, 0);
+}
+
+/* The first batch of centres that were taken over: those that get none of its points are placed anew. */
+static void follow_centres(means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters)
+{
+    bool stays[T3R_MAX_CLUSTERS];
+    bool all = true;
+    set_weights(job->work, FOLLOW_WEIGHT);
+    run_batch(job, 0, clusters);
+    for (uint32_t k = 0; k < settings->clusters; k++) {
+        stays[k] = FOLLOW_SHARE * settings->clusters * sums_of(job, 0)->points[k] >= job->points;
+        all = all && stays[k];
+    }
+    if (all) {
+        return;
+    }
+    t3r_seed_centres(job->source, settings, stays, clusters, &job->work->u.sample);
+    for (uint32_t k = 0; k < settings->clusters; k++) {
+        job->work->u.means.weight[k] = stays[k] ? FOLLOW_WEIGHT : 0;
+    }
+}
+
 uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
                            uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_host *host)
 {
-    memset(clusters, 0, settings->clusters * sizeof *clusters);
-    uint32_t total = settings->batches + source->points / T3R_CLUSTER_BATCH;
-    t3r_seed_centres(source, settings, clusters, &work->u.sample);
-    memset(work->u.means.weight, 0, sizeof work->u.means.weight);
+    const uint32_t batches =
+        settings->follows ? (settings->batches + FOLLOW_PART - 1) / FOLLOW_PART : settings->batches;
+    const uint32_t total = batches + source->points / T3R_CLUSTER_BATCH;
     means_job job = {.kernels = settings->kernels,
                      .source = source,
                      .host = host,
                      .work = work,
                      .count = settings->clusters,
                      .labels = labels};
-    for (uint32_t batch = 0; batch < settings->batches; batch++) {
+    if (!settings->follows) {
+        place_centres(source, settings, clusters, work);
+    }
+    for (uint32_t batch = 0; batch < batches; batch++) {
         if (!step(host, batch, total)) {
             return T3R_CLUSTERS_CANCELLED;
         }
-        run_batch(&job, batch, clusters);
+        if (settings->follows && batch == 0) {
+            follow_centres(&job, settings, clusters);
+        } else {
+            run_batch(&job, batch, clusters);
+        }
     }
-    return assign(&job, clusters, settings->batches, total);
+    return assign(&job, clusters, batches, total);
 }

@@ -61,6 +61,7 @@ typedef struct t3r_cluster_work {
 typedef struct t3r_cluster_settings {
     const t3r_kernels *kernels;
     uint32_t clusters, batches, seed;
+    bool follows; /* the clusters are those of similar points: their centres are where to begin */
 } t3r_cluster_settings;
 
 /* Who runs the K-means: its workers, and a step that is called between batches and chunks of the assignment pass. */

@@ -157,7 +157,7 @@ static cloud cloud_of(uint32_t count, uint32_t blobs, double reach, double sprea
 static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
 {
     const t3r_point_source source = {c, c->count, cloud_features};
-    const t3r_cluster_settings settings = {&t3r_kernels_c, k, 24, 1};
+    const t3r_cluster_settings settings = {&t3r_kernels_c, k, 24, 1, false};
     t3r_cluster *clusters = calloc(k, sizeof *clusters);
     uint16_t *labels = calloc(c->count, sizeof *labels);
     t3r_cluster_work *work = calloc(1, sizeof *work);
@@ -225,6 +225,63 @@ static void kmeans(void **state)
     kmeans_case("one point", &c, 1, 1);
     c = cloud_of(4000, 0, 3.9, 0, 7);
     kmeans_case("to the ends of the range", &c, 512, 1.15);
+}
+
+/* The mean squared distance that the last centres leave, begun with those of the points before, against beginning anew.
+ */
+static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *clusters)
+{
+    const t3r_point_source source = {c, c->count, cloud_features};
+    const t3r_cluster_settings settings = {&t3r_kernels_c, k, 24, 1, follows};
+    const t3r_cluster_host alone = {.workers = {NULL, 1}};
+    uint16_t *labels = calloc(c->count, sizeof *labels);
+    t3r_cluster_work *work = calloc(1, sizeof *work);
+    double *centres = calloc(k, ORACLE_DIMENSIONS * sizeof *centres);
+    uint32_t *wide = calloc(c->count, sizeof *wide);
+    assert_true(labels != NULL && work != NULL && centres != NULL && wide != NULL);
+    assert_int_equal(t3r_superclusters(&source, &settings, clusters, labels, work, &alone), c->count);
+    for (uint32_t i = 0; i < k * ORACLE_DIMENSIONS; i++) {
+        centres[i] = ldexp(clusters[i / ORACLE_DIMENSIONS].centre_q19[i % ORACLE_DIMENSIONS], -19);
+    }
+    for (uint32_t i = 0; i < c->count; i++) {
+        wide[i] = labels[i];
+    }
+    const double msd = oracle_kmeans_msd(c->points, c->count, centres, wide);
+    free(labels);
+    free(work);
+    free(centres);
+    free(wide);
+    return msd;
+}
+
+/* Points that moved on by a third of the room: centres left behind are placed anew, and nothing is lost. */
+static void kmeans_that_follows(void **state)
+{
+    (void)state;
+    enum { K = 200, COUNT = 24000 };
+    const cloud before = cloud_of(COUNT, 60, 0.9, 0.15, 3);
+    cloud after = cloud_of(COUNT, 60, 0.9, 0.15, 3);
+    for (uint32_t i = 0; i < COUNT; i++) { /* what leaves at one end comes in at the other, from there on */
+        after.feature_q11[i][0] = (int16_t)(after.feature_q11[i][0] + 2048);
+        after.points[i * ORACLE_DIMENSIONS] += 1;
+        if (i % 3 == 0) {
+            after.feature_q11[i][1] = (int16_t)(after.feature_q11[i][1] - 3000);
+            after.points[i * ORACLE_DIMENSIONS + 1] -= 3000 / 2048.0;
+        }
+    }
+    t3r_cluster *anew = calloc(K, sizeof *anew), *following = calloc(K, sizeof *following);
+    assert_true(anew != NULL && following != NULL);
+    const double best = kmeans_of(&after, K, false, anew);
+    (void)kmeans_of(&before, K, false, following);
+    const double far_off = kmeans_of(&after, K, true, following), settled = kmeans_of(&after, K, true, following);
+    print_message("anew: msd %.6f; following points that moved %.6f, and that stayed %.6f\n", best, far_off, settled);
+    assert_true(far_off <= 1.1 * best && settled <= 1.02 * best);
+    free(anew);
+    free(following);
+    free(before.feature_q11);
+    free(before.points);
+    free(after.feature_q11);
+    free(after.points);
 }
 
 /* ---- wavelet ------------------------------------------------------------------------------------- */
@@ -353,6 +410,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pointmap),
         cmocka_unit_test(kmeans),
+        cmocka_unit_test(kmeans_that_follows),
         cmocka_unit_test(wavelet_oracle),
         cmocka_unit_test(wavelet_energy),
     };

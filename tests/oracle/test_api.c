@@ -194,6 +194,7 @@ static void config_ranges(void **state)
         RANGE(fill_radius, 0, 8),
         RANGE(bridge_radius, 0, 255),
         RANGE(keep_analysis, 0, 1),
+        RANGE(warm, 0, 1),
     };
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
         const uint32_t bad[] = {ranges[i].least_bad, UINT32_MAX, ranges[i].too_low};

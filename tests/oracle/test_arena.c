@@ -94,6 +94,7 @@ static void plan_equals_macros(void **state)
         t3r_config c = random_config(&d, T3R_MAX_SIDE, T3R_MAX_GAUSSIANS);
         c.stream = c.views > 0 && c.depth == T3R_DEPTH_SENSOR && dice_below(&d, 4) == 0;
         c.workers = 1 + dice_below(&d, T3R_MAX_WORKERS);
+        c.warm = c.depth == T3R_DEPTH_SENSOR && dice_below(&d, 2) == 0;
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
@@ -101,7 +102,7 @@ static void plan_equals_macros(void **state)
         const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.clusters, c.render_width, c.render_height,               \
-               c.head_column_bytes, keep, c.refinements, c.depth == T3R_DEPTH_STEREO, c.workers)
+               c.head_column_bytes, keep, c.refinements, c.depth == T3R_DEPTH_STEREO, c.workers, c.warm)
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(SHAPE));
         assert_true(plan.bytes == T3R_FULL_BYTES_(SHAPE));
 #undef SHAPE

@@ -148,7 +148,7 @@ bool bench_points_cluster(bench_points *points, uint32_t cpu)
     t3r_kernels_choose(&kernels, cpu);
     t3r_config defaults = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
     t3r_point_source source = {points, points->count, features_of};
-    t3r_cluster_settings settings = {&kernels, defaults.clusters, defaults.cluster_batches, defaults.seed};
+    t3r_cluster_settings settings = {&kernels, defaults.clusters, defaults.cluster_batches, defaults.seed, false};
     const t3r_cluster_host alone = {.workers = {NULL, 1}};
     return t3r_superclusters(&source, &settings, points->clusters, points->labels, points->work, &alone) ==
            points->count;

@@ -1,0 +1,417 @@
+/* Builds that follow one another (t3r_config.warm): a pair of views slides along a textured wall with boxes before it.
+ * The bits depend on the calls alone; what no longer holds is not taken over. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "drawing.h"
+#include "sanitized.h"
+#include "state/state.h"
+
+enum { W = 64, H = 48, PIXELS = W * H, BUDGET = 500, STEPS = 5, PASSES = 4 };
+
+/* ---- the walk ---------------------------------------------------------------------------------------------------- */
+
+typedef struct sight {
+    double x; /* metres, of the camera; the wall stands at z = 2, boxes 0.4 before it */
+    int hue;
+} sight;
+
+static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2]; /* of every frame in turn */
+
+static t3r_frame look_from(const sight *s, t3r_camera *camera)
+{
+    *camera = plain_camera(50, W, H);
+    camera->position_q32[0] = (int64_t)(s->x * 4294967296.0);
+    for (int i = 0; i < PIXELS; i++) {
+        double u = (i % W - (W - 1) / 2.0) / 50, v = ((double)(i / W) - (H - 1) / 2.0) / 50;
+        double at = s->x + u * 1.6;
+        bool box = at - floor(at) < 0.3;
+        double z = box ? 1.6 : 2, x = box ? at + 17 : s->x + u * z;
+        uint32_t steps = i % 41 == 0 || (i % W < 9 && i / W > 30) ? 0 : (uint32_t)(z * 1000 + 0.5);
+        rgb[3 * i] = (uint8_t)(128 + 90 * sin(x * 3) * cos(v * z * 4));
+        rgb[3 * i + 1] = (uint8_t)(128 + 60 * sin(x * 11 + v * z * 5));
+        rgb[3 * i + 2] = (uint8_t)(box ? 220 : s->hue);
+        depth[2 * i] = (uint8_t)steps;
+        depth[2 * i + 1] = (uint8_t)(steps >> 8);
+    }
+    return (t3r_frame){.format = T3R_PIXEL_RGB24,
+                       .width = W,
+                       .height = H,
+                       .planes = {rgb},
+                       .stride_bytes = {3 * W},
+                       .depth = depth,
+                       .depth_width = W,
+                       .depth_height = H,
+                       .depth_stride_bytes = 2 * W,
+                       .depth_unit_q40 = 1099511628};
+}
+
+static sight step_at(int step)
+{
+    return (sight){0.2 * step, 60};
+}
+
+/* ---- the runtime ------------------------------------------------------------------------------------------------- */
+
+typedef struct site {
+    t3r_config config;
+    arena memory;
+    t3r_runtime *rt;
+    uint32_t calls, cancel_at; /* of the progress hook; 0 = never */
+    uint32_t refining;         /* calls in stage refine */
+    uint64_t hash[T3R_STAGE_COUNT];
+} site;
+
+static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    site *s = user;
+    assert_true(stage < T3R_STAGE_COUNT && done <= total);
+    s->refining += stage == T3R_STAGE_REFINE;
+    return ++s->calls == s->cancel_at;
+}
+
+static void on_hash(void *user, t3r_stage stage, uint64_t hash)
+{
+    ((site *)user)->hash[stage] = hash;
+}
+
+/* The last task first, workers in turn. */
+static void in_reverse(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                       void *context)
+{
+    const site *s = user;
+    while (count-- > 0) {
+        task(context, count, count % s->config.workers);
+    }
+}
+
+static void set_hooks(site *s)
+{
+    const t3r_hooks hooks = {.user = s,
+                             .progress = progress,
+                             .stage_hash = on_hash,
+                             .parallel_for = s->config.workers > 1 ? in_reverse : NULL};
+    assert_int_equal(t3r_set_hooks(s->rt, &hooks), T3R_OK);
+}
+
+static t3r_config config_of(uint32_t warm)
+{
+    t3r_config c = t3r_default_config(W, H, 2, BUDGET);
+    c.clusters = 40;
+    c.refinements = PASSES;
+    c.warm = warm;
+    return c;
+}
+
+static site *site_of(t3r_config config, int arena_size)
+{
+    site *s = calloc(1, sizeof *s);
+    assert_non_null(s);
+    s->config = config;
+    s->memory = arena_of(&config, arena_size);
+    assert_int_equal(t3r_init(&s->rt, s->memory.bytes, s->memory.count, &config), T3R_OK);
+    set_hooks(s);
+    return s;
+}
+
+static void site_free(site *s)
+{
+    arena_free(&s->memory);
+    free(s);
+}
+
+/* The arena's bytes go elsewhere. */
+static void move(site *s)
+{
+    arena elsewhere = arena_of_bytes(s->memory.count);
+    memcpy(elsewhere.bytes, s->memory.bytes, s->memory.count);
+    memset(s->memory.bytes, 0xa5, s->memory.count);
+    arena_free(&s->memory);
+    s->memory = elsewhere;
+    assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_OK);
+    set_hooks(s);
+}
+
+static void add(site *s, sight at)
+{
+    t3r_camera camera;
+    const t3r_frame frame = look_from(&at, &camera);
+    assert_int_equal(t3r_add_view(s->rt, &frame, &camera), T3R_OK);
+}
+
+static t3r_scene build(site *s)
+{
+    t3r_scene scene;
+    s->refining = 0;
+    assert_int_equal(t3r_reconstruct(s->rt, NULL, &scene), T3R_OK);
+    assert_int_equal(scene.count, BUDGET);
+    return scene;
+}
+
+/* The pair of `step` and the one before, built after those before it; the scene is the caller's. */
+static t3r_gaussian *slide(site *s, bool moved)
+{
+    t3r_gaussian *scenes = calloc(STEPS * BUDGET, sizeof *scenes);
+    uint8_t picture[PIXELS * 3];
+    const t3r_target target = {.width = W, .height = H, .rgb = picture, .rgb_stride_bytes = 3 * W};
+    assert_non_null(scenes);
+    add(s, step_at(0));
+    for (int step = 1; step <= STEPS; step++) {
+        if (moved) {
+            move(s);
+        }
+        add(s, step_at(step));
+        if (moved) {
+            move(s);
+        }
+        const t3r_scene scene = build(s);
+        memcpy(scenes + (step - 1) * BUDGET, scene.gaussians, BUDGET * sizeof *scenes);
+        t3r_camera camera = plain_camera(50, W, H);
+        camera.position_q32[0] = (int64_t)((step - 0.5) * 0.2 * 4294967296.0);
+        assert_int_equal(t3r_render(s->rt, &camera, &target), T3R_OK);
+    }
+    return scenes;
+}
+
+/* A scene of these views by a runtime that has built nothing before. */
+static void assert_anew(const t3r_scene *scene, sight first, sight second)
+{
+    site *cold = site_of(config_of(0), ARENA_AT_FULL);
+    add(cold, first);
+    add(cold, second);
+    const t3r_scene expected = build(cold);
+    assert_int_equal(scene->count, expected.count);
+    assert_memory_equal(scene->gaussians, expected.gaussians, scene->count * sizeof(t3r_gaussian));
+    assert_memory_equal(scene->frame.origin_q32, expected.frame.origin_q32, sizeof expected.frame.origin_q32);
+    assert_int_equal(scene->frame.exponent, expected.frame.exponent);
+    site_free(cold);
+}
+
+/* ---- tests ------------------------------------------------------------------------------------------------------- */
+
+static void the_first_build_begins_anew(void **state)
+{
+    (void)state;
+    site *s = site_of(config_of(1), ARENA_AT_FULL);
+    for (int again = 0; again < 2; again++) {
+        add(s, step_at(0));
+        add(s, step_at(1));
+        const t3r_scene scene = build(s);
+        assert_anew(&scene, step_at(0), step_at(1));
+        assert_int_equal(s->refining, PASSES * 2);
+        add(s, step_at(2));
+        (void)build(s);
+        assert_int_equal(s->refining, PASSES / 2 * 2);
+        assert_int_equal(t3r_reset(s->rt), T3R_OK);
+    }
+    site_free(s);
+}
+
+static void same_bits(void **state)
+{
+    (void)state;
+    site *s = site_of(config_of(1), ARENA_AT_FULL);
+    t3r_gaussian *expected = slide(s, false);
+    site_free(s);
+    for (int way = 0; way < 5; way++) {
+        t3r_config config = config_of(1);
+        config.workers = way == 3 ? 3 : way == 4 ? 8 : 1;
+        config.keep_analysis = way == 2;
+        s = site_of(config, way == 1 || way == 4 ? ARENA_AT_MINIMUM : way == 2 ? ARENA_AT_TEN_TIMES : ARENA_AT_FULL);
+        t3r_gaussian *scenes = slide(s, way % 2 == 0);
+        assert_memory_equal(scenes, expected, STEPS * BUDGET * sizeof *scenes);
+        free(scenes);
+        site_free(s);
+    }
+    free(expected);
+}
+
+/* Textures are of each view alone: those that were kept, and the new view's, are what they would be anew. */
+static void a_view_that_changed_is_not_taken_for_the_old(void **state)
+{
+    (void)state;
+    site *s = site_of(config_of(1), ARENA_AT_FULL);
+    add(s, step_at(0));
+    add(s, step_at(1));
+    (void)build(s);
+    const sight changed = {step_at(0).x, 200}; /* the same camera, the same memory, other colours */
+    add(s, changed);
+    (void)build(s);
+    site *cold = site_of(config_of(0), ARENA_AT_FULL);
+    add(cold, changed);
+    add(cold, step_at(1));
+    (void)build(cold);
+    assert_true(s->hash[T3R_STAGE_IMAGE] == cold->hash[T3R_STAGE_IMAGE]);
+    assert_true(s->hash[T3R_STAGE_WAVELET] == cold->hash[T3R_STAGE_WAVELET]);
+    site_free(cold);
+    /* the oldest goes: the second view, and then the first again */
+    add(s, step_at(2));
+    (void)build(s);
+    cold = site_of(config_of(0), ARENA_AT_FULL);
+    add(cold, changed);
+    add(cold, step_at(2));
+    (void)build(cold);
+    assert_true(s->hash[T3R_STAGE_IMAGE] == cold->hash[T3R_STAGE_IMAGE]);
+    assert_true(s->hash[T3R_STAGE_WAVELET] == cold->hash[T3R_STAGE_WAVELET]);
+    site_free(cold);
+    site_free(s);
+}
+
+/* What is refused before anything is written leaves the pair as it was. */
+static void errors_in_between(void **state)
+{
+    (void)state;
+    site *s = site_of(config_of(1), ARENA_AT_FULL);
+    t3r_gaussian *expected = slide(s, false);
+    site_free(s);
+
+    s = site_of(config_of(1), ARENA_AT_FULL);
+    const sight next = step_at(2);
+    t3r_camera camera;
+    add(s, step_at(0));
+    add(s, step_at(1));
+    (void)build(s);
+    t3r_frame bad = look_from(&next, &camera);
+    bad.stride_bytes[0] = 1;
+    assert_int_equal(t3r_add_view(s->rt, &bad, &camera), T3R_ERR_FRAME);
+    bad = look_from(&next, &camera);
+    t3r_camera nowhere = camera;
+    nowhere.fx_q16 = 0;
+    assert_int_equal(t3r_add_view(s->rt, &bad, &nowhere), T3R_ERR_CAMERA);
+    bad.depth = NULL;
+    assert_int_equal(t3r_add_view(s->rt, &bad, &camera), T3R_ERR_NO_DEPTH);
+    bad = look_from(&next, &camera);
+    memset(depth, 0, sizeof depth);
+    assert_int_equal(t3r_add_view(s->rt, &bad, &camera), T3R_ERR_NO_DEPTH);
+    move(s);
+    t3r_scene scene;
+    const t3r_request too_many = {.gaussians = BUDGET + 1};
+    assert_int_equal(t3r_reconstruct(s->rt, &too_many, &scene), T3R_ERR_ARGUMENT);
+    add(s, next);
+    scene = build(s);
+    assert_memory_equal(scene.gaussians, expected + BUDGET, BUDGET * sizeof *expected);
+
+    /* a single measurement, of which the resized and undistorted picture has none: all views are gone */
+    bad = look_from(&next, &camera);
+    memset(depth, 0, sizeof depth);
+    depth[0] = 200;
+    camera.distortion = T3R_DISTORTION_RADTAN;
+    camera.distortion_q24[0] = -1200000;
+    assert_int_equal(t3r_add_view(s->rt, &bad, &camera), T3R_ERR_NO_DEPTH);
+    assert_int_equal(t3r_reconstruct(s->rt, NULL, &scene), T3R_ERR_STATE);
+    add(s, step_at(0));
+    add(s, step_at(1));
+    scene = build(s);
+    assert_anew(&scene, step_at(0), step_at(1));
+    free(expected);
+    site_free(s);
+}
+
+static void cancelled_builds_leave_nothing(void **state)
+{
+    (void)state;
+    uint32_t calls = UINT32_MAX;
+    for (uint32_t at = 1; at <= calls; at += T3R_SANITIZED ? 13 : 3) {
+        site *s = site_of(config_of(1), ARENA_AT_FULL);
+        add(s, step_at(0));
+        add(s, step_at(1));
+        (void)build(s);
+        add(s, step_at(2)); /* in the place of the first */
+        s->calls = 0;
+        if (calls == UINT32_MAX) { /* how many there are */
+            site *whole = site_of(config_of(1), ARENA_AT_FULL);
+            add(whole, step_at(0));
+            add(whole, step_at(1));
+            (void)build(whole);
+            add(whole, step_at(2));
+            whole->calls = 0;
+            (void)build(whole);
+            calls = whole->calls;
+            site_free(whole);
+        }
+        s->cancel_at = at;
+        t3r_scene scene;
+        assert_int_equal(t3r_reconstruct(s->rt, NULL, &scene), T3R_ERR_CANCELLED);
+        s->cancel_at = 0;
+        if (at % 2 == 0) {
+            move(s);
+        }
+        scene = build(s);
+        assert_anew(&scene, step_at(2), step_at(1));
+        site_free(s);
+    }
+}
+
+/* Views at another scale, or far from the origin, begin anew. */
+static void another_frame_begins_anew(void **state)
+{
+    (void)state;
+    site *s = site_of(config_of(1), ARENA_AT_FULL);
+    add(s, step_at(0));
+    add(s, step_at(1));
+    (void)build(s);
+    const sight far = {3000, 60}, farther = {3000.2, 60};
+    add(s, far);
+    add(s, farther);
+    t3r_scene scene = build(s);
+    assert_anew(&scene, far, farther);
+    for (int i = 0; i < 2; i++) { /* the same wall in steps eight times as long */
+        t3r_camera camera;
+        const sight at = step_at(i);
+        t3r_frame frame = look_from(&at, &camera);
+        frame.depth_unit_q40 *= 8;
+        assert_int_equal(t3r_add_view(s->rt, &frame, &camera), T3R_OK);
+    }
+    (void)build(s);
+    assert_int_equal(s->refining, PASSES * 2);
+    site_free(s);
+}
+
+/* An arena that says of views or centres what cannot be is refused. */
+static void damaged_arenas(void **state)
+{
+    (void)state;
+    site *s = site_of(config_of(1), ARENA_AT_FULL);
+    add(s, step_at(0));
+    add(s, step_at(1));
+    (void)build(s);
+    t3r_runtime *rt = s->rt;
+    const t3r_reuse good = rt->reuse;
+    rt->reuse.views = 4;
+    assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_ERR_EPOCH);
+    rt->reuse = (t3r_reuse){1, 0};
+    assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_ERR_EPOCH);
+    rt->reuse = good;
+    rt->next_slot = 2;
+    assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_ERR_EPOCH);
+    rt->next_slot = 0;
+    int32_t *centre = t3r_buffer_at(rt, T3R_BUFFER_KEPT_CLUSTERS);
+    const int32_t kept = *centre;
+    *centre = INT32_MAX;
+    assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_ERR_EPOCH);
+    *centre = kept;
+    assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_OK);
+    site_free(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_first_build_begins_anew),
+        cmocka_unit_test(same_bits),
+        cmocka_unit_test(a_view_that_changed_is_not_taken_for_the_old),
+        cmocka_unit_test(errors_in_between),
+        cmocka_unit_test(cancelled_builds_leave_nothing),
+        cmocka_unit_test(another_frame_begins_anew),
+        cmocka_unit_test(damaged_arenas),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
