@@ -20,6 +20,7 @@
 #include "superclusters/pixel_clusters.h"
 #include "pointmap/pointmap.h"
 #include "pointmap/redundancy.h"
+#include "pointmap/same_frame.h"
 #include "refine/refine.h"
 #include "core/scene_frame.h"
 #include "pointmap/scene_scale.h"
@@ -88,25 +89,6 @@ static t3r_status depth(t3r_runtime *rt, t3r_view *views)
     rt->valid_points = count_measured(rt, views);
     t3r_hash_depth(rt, views, 0, rt->views);
     return T3R_OK;
-}
-
-/* Views of a build that follows another stand in the same frame, as long as it has their scale and they are not far
- * off. */
-#define FOLLOWS_WITHIN_Q20 (1 << 29) /* 512 scene units */
-
-static bool is_in_frame(const t3r_runtime *rt, const t3r_view *views)
-{
-    int32_t exponent, median_q20;
-    bool in_frame = rt->reuse.centres && t3r_scene_scale_choose(views, rt->views, &exponent, &median_q20) == T3R_OK &&
-                    exponent == rt->frame.exponent;
-    for (uint32_t v = 0; v < rt->views && in_frame; v++) {
-        t3r_pose pose;
-        in_frame = t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) == T3R_OK;
-        for (int i = 0; i < 3 && in_frame; i++) {
-            in_frame = t3r_abs32(pose.position_q20[i]) <= FOLLOWS_WITHIN_Q20;
-        }
-    }
-    return in_frame;
 }
 
 /* The pointmap is a function of depth and pose; what it needs is the frame that both are in. */
@@ -286,7 +268,7 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     if (rt->config.depth == T3R_DEPTH_STEREO) {
         t3r_stereo_clear(views, rt->views);
     }
-    if (!is_in_frame(rt, views)) {
+    if (!rt->reuse.centres || !t3r_is_in_frame(views, rt->views, rt->camera, &rt->frame)) {
         t3r_reuse_nothing(rt);
     }
     rt->follows = rt->reuse.centres;
