@@ -25,16 +25,18 @@ static void count_band(void *context, uint32_t index, uint32_t worker)
     (void)worker;
     const bin_job *job = context;
     const t3r_binning *bin = job->bin;
-    const uint32_t across = bin->across;
+    const uint32_t across = bin->across, visible = bin->visible;
+    const t3r_tile_span *restrict spans = bin->spans;
+    uint32_t *restrict table = bin->table;
     const t3r_share rows = t3r_share_of(job->end, index, job->bands);
     for (uint32_t tile = rows.begin * across; tile < rows.end * across; tile++) {
-        bin->table[tile] = 0;
+        table[tile] = 0;
     }
-    for (uint32_t i = 0; i < bin->visible; i++) {
-        const t3r_tile_span span = bin->spans[i];
+    for (uint32_t i = 0; i < visible; i++) {
+        const t3r_tile_span span = spans[i];
         const uint32_t y0 = T3R_MAX(span.y0, rows.begin), y1 = T3R_MIN(span.y1 + 1u, rows.end);
         for (uint32_t y = y0; y < y1; y++) {
-            uint32_t *row = bin->table + y * across;
+            uint32_t *row = table + y * across;
             row[span.x0]++;
             if (span.x1 + 1u < across) {
                 row[span.x1 + 1]--; /* wraps, and is whole again in the sum */
@@ -42,7 +44,7 @@ static void count_band(void *context, uint32_t index, uint32_t worker)
         }
     }
     for (uint32_t y = rows.begin; y < rows.end; y++) {
-        uint32_t *row = bin->table + y * across;
+        uint32_t *row = table + y * across;
         for (uint32_t x = 1; x < across; x++) {
             row[x] += row[x - 1];
         }
@@ -75,18 +77,23 @@ static void fill_band(void *context, uint32_t index, uint32_t worker)
     const bin_job *job = context;
     const t3r_binning *bin = job->bin;
     const t3r_share tiles = t3r_share_of(job->end - job->begin, index, job->bands);
-    const uint32_t across = bin->across, first = job->begin + tiles.begin, last = job->begin + tiles.end - 1;
-    const uint32_t first_row = first / across, last_row = last / across;
-    for (uint32_t i = 0; i < bin->visible; i++) {
-        const t3r_tile_span span = bin->spans[i];
+    const uint32_t across = bin->across, visible = bin->visible;
+    const uint32_t first = job->begin + tiles.begin, last = job->begin + tiles.end - 1;
+    const uint32_t first_row = first / across, first_column = first % across;
+    const uint32_t last_row = last / across, last_column = last % across;
+    const t3r_tile_span *restrict spans = bin->spans;
+    const uint32_t *restrict order = bin->order;
+    uint32_t *restrict table = bin->table, *restrict lists = bin->lists;
+    for (uint32_t i = 0; i < visible; i++) {
+        const t3r_tile_span span = spans[i];
         const uint32_t y0 = T3R_MAX(span.y0, first_row), y1 = T3R_MIN(span.y1, last_row);
         for (uint32_t y = y0; y <= y1; y++) {
             /* the band begins and ends within a row of tiles */
-            const uint32_t x0 = y == first_row ? T3R_MAX(span.x0, first % across) : span.x0;
-            const uint32_t x1 = y == last_row ? T3R_MIN(span.x1, last % across) : span.x1;
-            uint32_t *row = bin->table + y * across;
+            const uint32_t x0 = y == first_row ? T3R_MAX(span.x0, first_column) : span.x0;
+            const uint32_t x1 = y == last_row ? T3R_MIN(span.x1, last_column) : span.x1;
+            uint32_t *row = table + y * across;
             for (uint32_t x = x0; x <= x1; x++) {
-                bin->lists[row[x]++] = bin->order[i];
+                lists[row[x]++] = order[i];
             }
         }
     }

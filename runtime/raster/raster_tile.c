@@ -19,16 +19,20 @@ static void note_depth(t3r_drawn_tile *tile, const t3r_tile_splat *splat, int32_
     }
 }
 
+/* Most tiles have a pixel in their first row that is not done. */
 bool t3r_tile_stopped(const t3r_tile *tile)
 {
-    uint16_t most = 0;
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
+        uint16_t most = 0;
         for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
-            uint16_t t = tile->transmittance_q16[j][i];
+            const uint16_t t = tile->transmittance_q16[j][i];
             most = t > most ? t : most;
         }
+        if (most >= T3R_STOP_Q16) {
+            return false;
+        }
     }
-    return most < T3R_STOP_Q16;
+    return true;
 }
 
 static uint8_t byte_of(uint16_t colour_q7)
@@ -37,29 +41,39 @@ static uint8_t byte_of(uint16_t colour_q7)
     return (uint8_t)T3R_MIN(rounded, 255u);
 }
 
+static void write_colours(const t3r_tile *tile, uint32_t j, uint32_t columns, uint8_t *rgb)
+{
+    for (uint32_t i = 0; i < columns; i++) {
+        rgb[3 * i] = byte_of(tile->colour_q7[0][j][i]);
+        rgb[3 * i + 1] = byte_of(tile->colour_q7[1][j][i]);
+        rgb[3 * i + 2] = byte_of(tile->colour_q7[2][j][i]);
+    }
+}
+
+static void write_alphas(const t3r_tile *tile, uint32_t j, uint32_t columns, uint16_t *alpha_q15)
+{
+    for (uint32_t i = 0; i < columns; i++) {
+        alpha_q15[i] = (uint16_t)((T3R_ONE_Q16 - tile->transmittance_q16[j][i]) >> 1);
+    }
+}
+
 void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target)
 {
-    const uint32_t left = tile->left, top = tile->top;
-    uint32_t columns = T3R_MIN(target->width - left, (uint32_t)T3R_TILE_SIDE);
-    uint32_t rows = T3R_MIN(target->height - top, (uint32_t)T3R_TILE_SIDE);
+    const uint32_t left = tile->left;
+    const uint32_t columns = T3R_MIN(target->width - left, (uint32_t)T3R_TILE_SIDE);
+    const uint32_t rows = T3R_MIN(target->height - tile->top, (uint32_t)T3R_TILE_SIDE);
     for (uint32_t j = 0; j < rows; j++) {
-        size_t y = top + j;
-        for (uint32_t i = 0; i < columns; i++) {
-            size_t x = left + i;
-            if (target->rgb != NULL) {
-                uint8_t *pixel = target->rgb + y * target->rgb_stride_bytes + 3 * x;
-                for (int channel = 0; channel < 3; channel++) {
-                    pixel[channel] = byte_of(tile->pixels.colour_q7[channel][j][i]);
-                }
-            }
-            if (target->alpha_q15 != NULL) {
-                target->alpha_q15[y * (target->alpha_stride_bytes / sizeof *target->alpha_q15) + x] =
-                    (uint16_t)((T3R_ONE_Q16 - tile->pixels.transmittance_q16[j][i]) >> 1);
-            }
-            if (target->depth_q20 != NULL) {
-                target->depth_q20[y * (target->depth_stride_bytes / sizeof *target->depth_q20) + x] =
-                    tile->depth_q20[j][i];
-            }
+        const size_t y = tile->top + j;
+        if (target->rgb != NULL) {
+            write_colours(&tile->pixels, j, columns, target->rgb + y * target->rgb_stride_bytes + 3 * (size_t)left);
+        }
+        if (target->alpha_q15 != NULL) {
+            write_alphas(&tile->pixels, j, columns,
+                         target->alpha_q15 + y * (target->alpha_stride_bytes / sizeof *target->alpha_q15) + left);
+        }
+        if (target->depth_q20 != NULL) {
+            memcpy(target->depth_q20 + y * (target->depth_stride_bytes / sizeof *target->depth_q20) + left,
+                   tile->depth_q20[j], columns * sizeof *target->depth_q20);
         }
     }
 }
