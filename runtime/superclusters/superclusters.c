@@ -102,21 +102,32 @@ static uint32_t tasks_of(uint32_t points)
     return (points + TASK_POINTS - 1) / TASK_POINTS;
 }
 
+/* The batch takes a point of its own from each of `job->points` parts of the source: where the s-th part begins. */
+static uint32_t part_begin(const means_job *job, uint32_t s)
+{
+    return (uint32_t)((uint64_t)s * job->source->points / job->points);
+}
+
 static void batch_task(void *context, uint32_t index, uint32_t worker)
 {
     const means_job *job = context;
     const t3r_point_source *source = job->source;
     const t3r_share points = points_of(job, index);
     uint16_t guess = 0;
+    uint32_t begin = part_begin(job, points.begin);
     for (uint32_t first = points.begin; first < points.end; first += BLOCK) {
         int16_t feature[BLOCK][T3R_DIMENSIONS];
         uint16_t label[BLOCK];
-        uint32_t valid = 0, end = T3R_MIN(first + BLOCK, points.end);
-        for (uint32_t s = first; s < end; s++) {
-            uint32_t low = (uint32_t)((uint64_t)s * source->points / job->points);
-            uint32_t high = (uint32_t)((uint64_t)(s + 1) * source->points / job->points);
-            uint32_t place = low + t3r_mix32(s * 1031u + job->batch) % (high - low);
-            valid += source->features(source->context, place, feature[valid]);
+        uint32_t place[BLOCK]; /* all of them before the first is read, so that reads from memory overlap */
+        const uint32_t count = T3R_MIN(BLOCK, points.end - first);
+        for (uint32_t i = 0; i < count; i++) {
+            const uint32_t end = part_begin(job, first + i + 1);
+            place[i] = begin + t3r_mix32((first + i) * 1031u + job->batch) % (end - begin);
+            begin = end;
+        }
+        uint32_t valid = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            valid += source->features(source->context, place[i], feature[valid]);
         }
         label_block(job, worker, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, &guess, label);
     }

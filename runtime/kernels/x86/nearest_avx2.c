@@ -42,15 +42,18 @@ T3R_AVX2 void t3r_nearest_begin_avx2(const t3r_centres *centres, uint32_t first,
     }
 }
 
+/* Not __m256i: where the least so far changes its type, gcc 12 copies it in every turn of a loop. */
+typedef __v8si eight;
+
 /* A point, and in each lane the least score so far and the first centre of the eight that had it. */
 typedef struct search {
     __m256i pair[T3R_PAIRS];
-    __m256i least, first;
+    eight least, first;
 } search;
 
 static T3R_AVX2 search search_of(const int16_t p[T3R_DIMENSIONS])
 {
-    search s = {.least = _mm256_set1_epi32(INT32_MAX), .first = _mm256_setzero_si256()};
+    search s = {.least = (eight)_mm256_set1_epi32(INT32_MAX), .first = (eight)_mm256_setzero_si256()};
     for (uint32_t d = 0; d < T3R_PAIRS; d++) {
         s.pair[d] = _mm256_set1_epi32(t3r_pair_of(p, d));
     }
@@ -61,28 +64,29 @@ static T3R_AVX2 search search_of(const int16_t p[T3R_DIMENSIONS])
  */
 static inline T3R_AVX2 void look(search *s, const __m256i pair[T3R_PAIRS], __m256i half_norm, __m256i here)
 {
-    __m256i dot = _mm256_madd_epi16(s->pair[0], pair[0]);
-    dot = _mm256_add_epi32(dot, _mm256_madd_epi16(s->pair[1], pair[1]));
-    dot = _mm256_add_epi32(dot, _mm256_madd_epi16(s->pair[2], pair[2]));
-    __m256i score = _mm256_sub_epi32(half_norm, dot), less = _mm256_cmpgt_epi32(s->least, score);
-    s->least = _mm256_min_epi32(s->least, score);
-    s->first = _mm256_blendv_epi8(s->first, here, less);
+    const eight score = (eight)half_norm - (eight)_mm256_madd_epi16(s->pair[0], pair[0]) -
+                        (eight)_mm256_madd_epi16(s->pair[1], pair[1]) - (eight)_mm256_madd_epi16(s->pair[2], pair[2]);
+    const __m256i less = _mm256_cmpgt_epi32((__m256i)s->least, (__m256i)score);
+    s->least = (eight)_mm256_min_epi32((__m256i)s->least, (__m256i)score);
+    s->first = (eight)_mm256_blendv_epi8((__m256i)s->first, here, less);
+}
+
+/* The least number of eight, in all lanes. */
+static inline T3R_AVX2 __m256i least_of(__m256i x)
+{
+    x = _mm256_min_epi32(x, _mm256_permute2x128_si256(x, x, 0x01));
+    x = _mm256_min_epi32(x, _mm256_shuffle_epi32(x, 0x4e));
+    return _mm256_min_epi32(x, _mm256_shuffle_epi32(x, 0xb1));
 }
 
 /* The least index of the least score. */
-static T3R_AVX2 uint16_t nearest_of(const search *s)
+static inline T3R_AVX2 uint16_t nearest_of(const search *s)
 {
-    int32_t least[LANES], first[LANES];
-    _mm256_storeu_si256((__m256i *)(void *)least, s->least);
-    _mm256_storeu_si256((__m256i *)(void *)first, s->first);
-    uint32_t best = 0;
-    for (uint32_t i = 1; i < LANES; i++) {
-        uint32_t index = (uint32_t)first[i] + i, best_index = (uint32_t)first[best] + best;
-        if (least[i] < least[best] || (least[i] == least[best] && index < best_index)) {
-            best = i;
-        }
-    }
-    return (uint16_t)((uint32_t)first[best] + best);
+    const eight index = s->first + (eight){0, 1, 2, 3, 4, 5, 6, 7};
+    const __m256i equal = _mm256_cmpeq_epi32((__m256i)s->least, least_of((__m256i)s->least));
+    const __m256i others = _mm256_set1_epi32(INT32_MAX);
+    const __m256i nearest = least_of(_mm256_blendv_epi8(others, (__m256i)index, equal));
+    return (uint16_t)_mm_cvtsi128_si32(_mm256_castsi256_si128(nearest));
 }
 
 T3R_AVX2 void t3r_nearest_avx2(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,

@@ -50,7 +50,9 @@
     X(texture_add, T3R_CPU_AVX2, t3r_texture_add_avx2)                                                                 \
     X(texture_spread, T3R_CPU_AVX2, t3r_texture_spread_avx2)                                                           \
     X(sample_potential, T3R_CPU_AVX2, t3r_sample_potential_avx2)                                                       \
+    X(sample_potential, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_sample_potential_avx512)                                    \
     X(sample_approach, T3R_CPU_AVX2, t3r_sample_approach_avx2)                                                         \
+    X(sample_approach, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_sample_approach_avx512)                                      \
     X(nearest_begin, T3R_CPU_AVX2, t3r_nearest_begin_avx2)                                                             \
     X(nearest, T3R_CPU_AVX2, t3r_nearest_avx2)                                                                         \
     X(nearest, T3R_CPU_X86_VNNI_, t3r_nearest_vnni)                                                                    \
