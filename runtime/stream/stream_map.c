@@ -1,6 +1,7 @@
 #include "stream_map.h"
 
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "pointmap/flying_pixels.h"
 #include "head/head.h"
 #include "state/state.h"
@@ -90,39 +91,62 @@ static uint32_t point_key(const t3r_view *view, size_t pixel)
     return T3R_MAX((uint32_t)view->key[pixel], (uint32_t)T3R_MAP_KEY_LEAST);
 }
 
+/* How many have each of 256 keys, or each of 256 times as many. */
 typedef struct counts {
-    uint32_t gaussians, points;
+    uint32_t gaussians[256], points[256];
 } counts;
 
-/* Those of a key below `limit` */
-static counts count_below(const t3r_map *map, const t3r_view *view, const t3r_budget_settings *settings, uint32_t limit)
+/* By their upper eight bits, or by their lower ones where the upper are `upper`. */
+#define ANY_UPPER 256u
+static void count_key(uint32_t key, uint32_t upper, uint32_t counted[256])
 {
-    counts n = {0, 0};
+    if (upper == ANY_UPPER) {
+        counted[key >> 8]++;
+    } else {
+        counted[key & 255] += key >> 8 == upper;
+    }
+}
+
+static void count_keys(const t3r_map *map, const t3r_view *view, const t3r_budget_settings *settings, uint32_t upper,
+                       counts *n)
+{
+    memset(n, 0, sizeof *n);
     for (uint32_t i = 0; i < map->count; i++) {
-        n.gaussians += key_of(&map->records[i]) < limit;
+        count_key(key_of(&map->records[i]), upper, n->gaussians);
     }
-    size_t pixels = (size_t)view->width * view->height;
+    const size_t pixels = (size_t)view->width * view->height;
     for (size_t i = 0; i < pixels; i++) {
-        n.points += point_key(view, i) < limit && competes(view, i, settings);
+        if (competes(view, i, settings)) {
+            count_key(point_key(view, i), upper, n->points);
+        }
     }
-    return n;
+}
+
+/* The last of the 256 below which fewer than `most` are; adds up those below. */
+static uint32_t pass(const counts *n, uint32_t most, uint32_t *gaussians, uint32_t *points)
+{
+    uint32_t at = 0;
+    while (at < 255 && *gaussians + *points + n->gaussians[at] + n->points[at] < most) {
+        *gaussians += n->gaussians[at];
+        *points += n->points[at++];
+    }
+    return at;
 }
 
 t3r_map_cut t3r_map_compete(const t3r_map *map, const t3r_view *view, const t3r_budget_settings *settings,
                             uint32_t most)
 {
-    /* The least threshold of which at least `most` are not above it, by bisection, as of any group of points */
-    uint32_t threshold = 0;
-    for (int bit = 15; bit >= 0; bit--) {
-        counts n = count_below(map, view, settings, threshold + (1u << bit));
-        threshold += n.gaussians + n.points < most ? 1u << bit : 0;
-    }
-    counts below = count_below(map, view, settings, threshold);
-    counts within = count_below(map, view, settings, threshold + 1);
-    uint32_t places = most - below.gaussians - below.points;
-    uint32_t points = T3R_MIN(within.points - below.points, places);
-    uint32_t ties = T3R_MIN(within.gaussians - below.gaussians, places - points);
-    return (t3r_map_cut){threshold, ties, below.points + points, below.gaussians + ties};
+    /* The least threshold of which at least `most` are not above it, byte by byte */
+    counts n;
+    uint32_t gaussians = 0, points = 0; /* below it */
+    count_keys(map, view, settings, ANY_UPPER, &n);
+    const uint32_t upper = pass(&n, most, &gaussians, &points);
+    count_keys(map, view, settings, upper, &n);
+    const uint32_t lower = pass(&n, most, &gaussians, &points);
+    const uint32_t places = most - gaussians - points;
+    const uint32_t more_points = T3R_MIN(n.points[lower], places);
+    const uint32_t ties = T3R_MIN(n.gaussians[lower], places - more_points);
+    return (t3r_map_cut){upper << 8 | lower, ties, points + more_points, gaussians + ties};
 }
 
 /* As wide as Gaussians 2^-density apart need to be. */
