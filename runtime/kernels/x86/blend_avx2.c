@@ -132,8 +132,7 @@ typedef struct blend_job {
     t3r_blended_row *rows, *high_rows; /* of both halves, or NULL; known where this is inlined */
 } blend_job;
 
-static inline __attribute__((always_inline)) T3R_AVX2 void blend_step(blend_job *job, const quadratic *q,
-                                                                      uint32_t place, shape pixels)
+T3R_X86_INLINE T3R_AVX2 void blend_step(blend_job *job, const quadratic *q, uint32_t place, shape pixels)
 {
     uint16_t *transmittance = job->tile->transmittance_q16[0] + place;
     const __m256i t = load(transmittance, pixels);
@@ -161,8 +160,7 @@ static inline __attribute__((always_inline)) T3R_AVX2 void blend_step(blend_job 
 }
 
 /* One group, a pair of rows at a time. */
-static inline __attribute__((always_inline)) T3R_AVX2 void blend_group(blend_job *job, const t3r_tile_splat *splat,
-                                                                       uint32_t group)
+T3R_X86_INLINE T3R_AVX2 void blend_group(blend_job *job, const t3r_tile_splat *splat, uint32_t group)
 {
     quadratic q = quadratic_of(splat, group, group, 1, 2);
     uint32_t row = splat->first, place = row * T3R_TILE_SIDE + splat->column + group * T3R_LANES;
@@ -176,7 +174,7 @@ static inline __attribute__((always_inline)) T3R_AVX2 void blend_group(blend_job
 }
 
 /* Both groups, a whole row of the tile at a time. */
-static inline __attribute__((always_inline)) T3R_AVX2 void blend_rows(blend_job *job, const t3r_tile_splat *splat)
+T3R_X86_INLINE T3R_AVX2 void blend_rows(blend_job *job, const t3r_tile_splat *splat)
 {
     quadratic q = quadratic_of(splat, 0, 1, 0, 1);
     for (uint32_t row = splat->first; row <= splat->last; row++) {

@@ -80,54 +80,77 @@ typedef struct off_job {
     __m256i lacking[3], weight;
 } off_job;
 
-/* Takes sixteen pixels off, of which these are the rows of the low and the high half; without `terms` that is all. */
-static inline __attribute__((always_inline)) T3R_SCATTER void take_off(off_job *job, const t3r_blended_row *low_row,
-                                                                       const t3r_blended_row *high_row, uint32_t place,
-                                                                       shape pixels, step_terms *terms)
+/* How sixteen pixels weigh, how far the splat moves their colours, and what these lack. */
+typedef struct sixteen {
+    __m256i w, moves[3], lacks[3];
+} sixteen;
+
+/* Takes sixteen pixels off, of which these are the rows of the low and the high half; fills `out` unless it is NULL. */
+T3R_X86_INLINE T3R_SCATTER void take_off(const off_job *job, const t3r_blended_row *low_row,
+                                         const t3r_blended_row *high_row, uint32_t place, shape pixels, sixteen *out)
 {
-    const __m256i zero = _mm256_setzero_si256();
     const __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)low_row);
-    const __m256i high = pixels == ONE_ROW ? zero : _mm256_loadu_si256((const __m256i *)(const void *)high_row);
+    const __m256i high =
+        pixels == ONE_ROW ? _mm256_setzero_si256() : _mm256_loadu_si256((const __m256i *)(const void *)high_row);
     const __m256i alpha = _mm256_permute2x128_si256(low, high, 0x31);
-    __m256i w = zero, moves[3], lacks[3];
-    if (terms != NULL) {
-        w = _mm256_and_si256(_mm256_permute2x128_si256(low, high, 0x20), load(job->tile->counts[0] + place, pixels));
-        w = _mm256_srli_epi16(_mm256_sll_epi16(w, job->scale), 1);
+    if (out != NULL) {
+        const __m256i w = _mm256_permute2x128_si256(low, high, 0x20);
+        const __m256i counted = _mm256_and_si256(w, load(job->tile->counts[0] + place, pixels));
+        out->w = _mm256_srli_epi16(_mm256_sll_epi16(counted, job->scale), 1);
     }
     for (int c = 0; c < 3; c++) {
         uint16_t *colour = job->tile->pixels.colour_q7[c][0] + place;
         const __m256i behind = load(colour, pixels);
         const __m256i step = _mm256_sub_epi16(job->colour[c], behind);
         store(colour, pixels, _mm256_add_epi16(behind, _mm256_mulhrs_epi16(alpha, step)));
-        if (terms != NULL) {
-            moves[c] = _mm256_mulhrs_epi16(w, step);
-            lacks[c] = load(job->tile->residual_q4[c][0] + place, pixels);
+        if (out != NULL) {
+            out->moves[c] = _mm256_mulhrs_epi16(out->w, step);
+            out->lacks[c] = load(job->tile->residual_q4[c][0] + place, pixels);
         }
     }
-    if (terms == NULL) {
-        return;
-    }
-    const __m256i share = _mm256_sra_epi16(w, job->less);
+}
+
+/* Half of them: squares and products of four columns of both halves. */
+T3R_X86_INLINE T3R_SCATTER void note_half(off_job *job, __m256i two_moves, __m256i last_move, __m256i two_lacks,
+                                          __m256i last_lack, __m256i *square_out, __m256i *product_out)
+{
+    __m256i square = _mm256_madd_epi16(two_moves, two_moves);
+    __m256i product = _mm256_madd_epi16(two_moves, two_lacks);
+    accumulate(&square, last_move, last_move);
+    accumulate(&product, last_move, last_lack);
+    *square_out = square;
+    *product_out = product;
+    job->squares = _mm256_or_si256(job->squares, square);
+    job->squares_sum = _mm256_add_epi32(job->squares_sum, _mm256_srli_epi32(square, 8));
+    const __m256i size = size_bits(product);
+    job->products = _mm256_or_si256(job->products, size);
+    job->products_sum = _mm256_add_epi32(job->products_sum, _mm256_srli_epi32(size, 8));
+}
+
+T3R_X86_INLINE T3R_SCATTER void note_terms(off_job *job, const sixteen *x, step_terms *terms)
+{
+    const __m256i zero = _mm256_setzero_si256(), share = _mm256_sra_epi16(x->w, job->less);
+    const __m256i *moves = x->moves, *lacks = x->lacks;
     for (int c = 0; c < 3; c++) {
         accumulate(&job->lacking[c], share, lacks[c]);
     }
     accumulate(&job->weight, share, _mm256_set1_epi16(1));
-    const __m256i two_moves[2] = {_mm256_unpacklo_epi16(moves[0], moves[1]), _mm256_unpackhi_epi16(moves[0], moves[1])};
-    const __m256i last_moves[2] = {_mm256_unpacklo_epi16(moves[2], zero), _mm256_unpackhi_epi16(moves[2], zero)};
-    const __m256i two_lacks[2] = {_mm256_unpacklo_epi16(lacks[0], lacks[1]), _mm256_unpackhi_epi16(lacks[0], lacks[1])};
-    const __m256i last_lacks[2] = {_mm256_unpacklo_epi16(lacks[2], zero), _mm256_unpackhi_epi16(lacks[2], zero)};
-    for (int half = 0; half < 2; half++) {
-        __m256i square = _mm256_madd_epi16(two_moves[half], two_moves[half]);
-        __m256i product = _mm256_madd_epi16(two_moves[half], two_lacks[half]);
-        accumulate(&square, last_moves[half], last_moves[half]);
-        accumulate(&product, last_moves[half], last_lacks[half]);
-        terms->square[half] = square;
-        terms->product[half] = product;
-        job->squares = _mm256_or_si256(job->squares, square);
-        job->squares_sum = _mm256_add_epi32(job->squares_sum, _mm256_srli_epi32(square, 8));
-        const __m256i size = size_bits(product);
-        job->products = _mm256_or_si256(job->products, size);
-        job->products_sum = _mm256_add_epi32(job->products_sum, _mm256_srli_epi32(size, 8));
+    note_half(job, _mm256_unpacklo_epi16(moves[0], moves[1]), _mm256_unpacklo_epi16(moves[2], zero),
+              _mm256_unpacklo_epi16(lacks[0], lacks[1]), _mm256_unpacklo_epi16(lacks[2], zero), &terms->square[0],
+              &terms->product[0]);
+    note_half(job, _mm256_unpackhi_epi16(moves[0], moves[1]), _mm256_unpackhi_epi16(moves[2], zero),
+              _mm256_unpackhi_epi16(lacks[0], lacks[1]), _mm256_unpackhi_epi16(lacks[2], zero), &terms->square[1],
+              &terms->product[1]);
+}
+
+/* Both; without `terms` it is taken off alone. */
+T3R_X86_INLINE T3R_SCATTER void step(off_job *job, const t3r_blended_row *low_row, const t3r_blended_row *high_row,
+                                     uint32_t place, shape pixels, step_terms *terms)
+{
+    sixteen x;
+    take_off(job, low_row, high_row, place, pixels, terms == NULL ? NULL : &x);
+    if (terms != NULL) {
+        note_terms(job, &x, terms);
     }
 }
 
@@ -209,10 +232,8 @@ typedef struct moments {
 } moments;
 
 /* Adds the sums that are asked for, which is known where this is inlined. */
-static inline __attribute__((always_inline)) T3R_SCATTER void sum_moments(places at, const step_terms *terms,
-                                                                          uint32_t steps, rounding square_by,
-                                                                          rounding product_by, bool low, bool high,
-                                                                          moments *to)
+T3R_X86_INLINE T3R_SCATTER void sum_moments(places at, const step_terms *terms, uint32_t steps, rounding square_by,
+                                            rounding product_by, bool low, bool high, moments *to)
 {
     moments m = *to; /* in registers */
     for (uint32_t i = 0; i < steps; i++) {
@@ -244,9 +265,7 @@ static inline T3R_SCATTER void add_scaled(__m128i low, __m128i high, __m256i rig
 }
 
 /* Takes the splat off, and notes the terms of every step unless `terms` is NULL; returns how many there are. */
-static inline __attribute__((always_inline)) T3R_SCATTER uint32_t collect_terms(off_job *job,
-                                                                                const t3r_scatter_splat *splat,
-                                                                                step_terms *terms)
+T3R_X86_INLINE T3R_SCATTER uint32_t collect_terms(off_job *job, const t3r_scatter_splat *splat, step_terms *terms)
 {
     const t3r_tile_splat *span = splat->span;
     const t3r_blended_row *row = splat->rows;
@@ -254,30 +273,30 @@ static inline __attribute__((always_inline)) T3R_SCATTER uint32_t collect_terms(
     uint32_t place = (uint32_t)span->first * T3R_TILE_SIDE + span->column, steps = 0;
     if (span->groups == 2) {
         for (; steps < rows; steps++, row++, place += T3R_TILE_SIDE) {
-            take_off(job, row, row + rows, place, WHOLE_ROW, terms == NULL ? NULL : &terms[steps]);
+            step(job, row, row + rows, place, WHOLE_ROW, terms == NULL ? NULL : &terms[steps]);
         }
         return steps;
     }
     for (; steps < rows / 2; steps++, row += 2, place += 2u * T3R_TILE_SIDE) {
-        take_off(job, row, row + 1, place, TWO_ROWS, terms == NULL ? NULL : &terms[steps]);
+        step(job, row, row + 1, place, TWO_ROWS, terms == NULL ? NULL : &terms[steps]);
     }
     if (rows % 2 != 0) {
-        take_off(job, row, NULL, place, ONE_ROW, terms == NULL ? NULL : &terms[steps]);
+        step(job, row, NULL, place, ONE_ROW, terms == NULL ? NULL : &terms[steps]);
         steps++;
     }
     return steps;
 }
 
-static inline T3R_SCATTER void add_sums(const off_job *job, const moments *m, const t3r_sum_shifts *by, int32_t most,
+/* fine: what is lacking, and the weight. */
+static inline T3R_SCATTER void add_sums(__m128i fine, const moments *m, const t3r_sum_shifts *by, int32_t most,
                                         t3r_refine_sums *to)
 {
     enum { X = T3R_X_FRACTION, XX = T3R_XX_FRACTION, XXX = T3R_XXX_FRACTION, XXXX = T3R_XXXX_FRACTION };
     const __m256i gradient = _mm256_set1_epi32(by->gradient), curvature = _mm256_set1_epi32(by->curvature);
     const __m256i held = _mm256_set1_epi32(most), *g = m->gradient, *c = m->curvature;
-    const __m256i fine = _mm256_blend_epi32(_mm256_set1_epi32(by->colour), _mm256_set1_epi32(by->weight), 1 << 3);
-    add_scaled(sums_of_four(job->lacking[0], job->lacking[1], job->lacking[2], job->weight),
-               sums_of_four(g[0], g[1], g[2], g[3]),
-               _mm256_add_epi32(_mm256_blend_epi32(fine, gradient, 0xf0), _mm256_setr_epi32(0, 0, 0, 0, 0, X, X, XX)),
+    const __m256i first = _mm256_blend_epi32(_mm256_set1_epi32(by->colour), _mm256_set1_epi32(by->weight), 1 << 3);
+    add_scaled(fine, sums_of_four(g[0], g[1], g[2], g[3]),
+               _mm256_add_epi32(_mm256_blend_epi32(first, gradient, 0xf0), _mm256_setr_epi32(0, 0, 0, 0, 0, X, X, XX)),
                _mm256_blend_epi32(_mm256_set1_epi32(INT32_MAX), held, 0xf0), to->colour);
     add_scaled(
         sums_of_four(g[4], g[5], c[0], c[1]), sums_of_four(c[2], c[3], c[4], c[5]),
@@ -311,37 +330,59 @@ static inline T3R_SCATTER term_shifts shifts_of(const off_job *job, uint32_t row
                          t3r_term_shift((uint32_t)(all >> 32), (uint32_t)(size >> 32), rows)};
 }
 
-T3R_SCATTER void T3R_SCATTER_NAME(t3r_wanted *restrict tile, const t3r_scatter_splat *splat,
-                                  t3r_refine_sums *restrict to)
+/* What the steps leave beside their terms. */
+typedef struct taken {
+    __m128i fine; /* what is lacking, and the weight */
+    term_shifts shift;
+    uint32_t steps;
+} taken;
+
+T3R_X86_INLINE T3R_SCATTER taken take_splat_off(t3r_wanted *restrict tile, const t3r_scatter_splat *splat,
+                                                uint32_t less, step_terms *terms)
 {
-    const t3r_tile_splat *span = splat->span;
-    const uint32_t rows = t3r_rows_of(span), less = t3r_count_bits(rows);
-    const __m256i none = _mm256_setzero_si256();
     off_job job;
     job.tile = tile;
     job.scale = _mm_cvtsi32_si128((int)splat->scale);
     job.less = _mm_cvtsi32_si128((int)less);
     job.squares = job.products = job.squares_sum = job.products_sum = job.weight = _mm256_setzero_si256();
     for (int c = 0; c < 3; c++) {
-        job.colour[c] = _mm256_set1_epi16((int16_t)span->colour_q7[c]);
+        job.colour[c] = _mm256_set1_epi16((int16_t)splat->span->colour_q7[c]);
         job.lacking[c] = _mm256_setzero_si256();
     }
-    if (to == NULL) {
-        (void)collect_terms(&job, splat, NULL);
-        return;
+    taken t = {.steps = collect_terms(&job, splat, terms)};
+    if (terms != NULL) {
+        t.fine = sums_of_four(job.lacking[0], job.lacking[1], job.lacking[2], job.weight);
+        t.shift = shifts_of(&job, t3r_rows_of(splat->span));
     }
-    step_terms terms[STEPS_MOST];
-    const uint32_t steps = collect_terms(&job, splat, terms);
-    const term_shifts shift = shifts_of(&job, rows);
-    const rounding square_by = rounding_of(shift.square), product_by = rounding_of(shift.product);
+    return t;
+}
+
+T3R_X86_INLINE T3R_SCATTER void add_terms(const t3r_scatter_splat *splat, const step_terms *terms, const taken *t,
+                                          uint32_t less, t3r_refine_sums *to)
+{
+    const rounding square_by = rounding_of(t->shift.square), product_by = rounding_of(t->shift.product);
     const places at = places_of(splat);
+    const __m256i none = _mm256_setzero_si256();
     moments m = {{none, none, none, none, none, none},
                  {none, none, none, none, none, none, none, none, none, none, none, none, none, none, none}};
     /* twice, as no instruction set has registers for all sums at once */
-    sum_moments(at, terms, steps, square_by, product_by, true, false, &m);
-    sum_moments(at, terms, steps, square_by, product_by, false, true, &m);
-    const t3r_sum_shifts by = t3r_sum_shifts_of(to->area, splat->scale, less, shift.square, shift.product);
-    add_sums(&job, &m, &by, t3r_moment_most(to->area, splat->pixels), to);
+    sum_moments(at, terms, t->steps, square_by, product_by, true, false, &m);
+    sum_moments(at, terms, t->steps, square_by, product_by, false, true, &m);
+    const t3r_sum_shifts by = t3r_sum_shifts_of(to->area, splat->scale, less, t->shift.square, t->shift.product);
+    add_sums(t->fine, &m, &by, t3r_moment_most(to->area, splat->pixels), to);
+}
+
+T3R_SCATTER void T3R_SCATTER_NAME(t3r_wanted *restrict tile, const t3r_scatter_splat *splat,
+                                  t3r_refine_sums *restrict to)
+{
+    const uint32_t less = t3r_count_bits(t3r_rows_of(splat->span));
+    if (to == NULL) {
+        (void)take_splat_off(tile, splat, less, NULL);
+        return;
+    }
+    step_terms terms[STEPS_MOST];
+    const taken t = take_splat_off(tile, splat, less, terms);
+    add_terms(splat, terms, &t, less, to);
 }
 
 #endif

@@ -233,20 +233,24 @@ static T3R_AVX2 void sweep(const unit_system *s, lanes y[PARAMETERS])
     }
 }
 
-/* solve() */
-static T3R_AVX2 void solve(const equations *e, lanes x_q16[PARAMETERS])
+static inline T3R_AVX2 lanes correlation(const equations *e, int i, int j)
+{
+    return i == j ? all_of(0) : e->a[T3R_MAX(i, j)][T3R_MIN(i, j)];
+}
+
+/* solve(); beside the diagonal, the matrix becomes the correlations. */
+static T3R_AVX2 void solve(equations *e, lanes x_q16[PARAMETERS])
 {
     inverse_root root[PARAMETERS];
-    lanes a_q15[PARAMETERS][PARAMETERS], top = {0};
+    lanes top = {0};
     for (int i = 0; i < PARAMETERS; i++) {
         const lanes square = most(e->a[i][i], all_of(0));
         const lanes diagonal = square + (square >> 4) * RELATIVE_DAMPING_Q4 + e->damping;
         root[i] = inverse_root_of(diagonal - (diagonal == 0));
         const lanes size = (lanes)_mm256_abs_epi32((__m256i)e->b[i]);
         top = most(top, (highest_bit(size) + root[i].up) & (size != 0));
-        a_q15[i][i] = all_of(0);
         for (int j = 0; j < i; j++) {
-            a_q15[i][j] = a_q15[j][i] = correlation_of(e->a[i][j], &root[i], &root[j]);
+            e->a[i][j] = correlation_of(e->a[i][j], &root[i], &root[j]);
         }
     }
     unit_system s;
@@ -256,7 +260,7 @@ static T3R_AVX2 void solve(const equations *e, lanes x_q16[PARAMETERS])
         const lanes up = e->b_up - e->a_up + 28 - top - root[i].up, whole = all_of(INT16_MAX);
         s.most[i] = chosen(up < 0, least(rounded_right(root[i].straight, -up), whole), whole);
         for (int k = 0; k < PARAMETERS / 2; k++) {
-            s.a_q15[i][k] = paired(a_q15[i][2 * k], a_q15[i][2 * k + 1]);
+            s.a_q15[i][k] = paired(correlation(e, i, 2 * k), correlation(e, i, 2 * k + 1));
         }
     }
     lanes y[PARAMETERS];
