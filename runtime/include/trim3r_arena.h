@@ -103,7 +103,7 @@
     X(uint8_t, states,                                                                                                 \
       (T3R_MATCH_BLOCKS(height) + 4) * T3R_MATCH_STATES(paths) * T3R_PATH_STATE_BYTES(width, disparities))             \
     X(uint8_t, bits, (size_t)(width)*T3R_CENSUS_BYTES)                                                                 \
-    X(uint8_t, bits_right, T3R_MATCH_RIGHT(width, disparities) * T3R_CENSUS_BYTES)                                     \
+    X(uint8_t, mirrored, T3R_MATCH_RIGHT(width, disparities) * T3R_CENSUS_BYTES)                                       \
     X(uint8_t, straight, T3R_MATCH_RIGHT(width, disparities) * T3R_CENSUS_BYTES)                                       \
     X(uint8_t, least, T3R_MATCH_RIGHT(width, disparities))
 #define T3R_PART_BYTES_(type, part, count) +T3R_UP_((count) * sizeof(type))

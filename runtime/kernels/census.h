@@ -22,13 +22,39 @@
 typedef void t3r_census_row_kernel(const uint8_t *const rows[T3R_CENSUS_ROWS], uint32_t width, uint32_t pitch,
                                    uint8_t *bits);
 
-/* The costs, 0..24, of one pixel against `count` (a multiple of 16) others: bits and others as census_row wrote them,
- * the first of the others at the pointer; at least `least[k]`, 0..24, for other k. Nothing is aligned, and nothing
- * beyond `count` is read or written. */
-typedef void t3r_census_cost_kernel(const uint8_t own[T3R_CENSUS_BYTES], const uint8_t *others, uint32_t pitch,
-                                    const uint8_t *least, uint32_t count, uint8_t *restrict cost);
+/* The costs of a row's pixels against all their candidates: pixel x with disparity k has right column x + disparities
+ * - 1 - k. */
+typedef struct t3r_census_costs {
+    uint32_t width, disparities; /* of the left row; disparities: a multiple of 16 up to T3R_PATH_MOST */
+    const uint8_t *luma;         /* of both rows: 0 = nothing. A left pixel of nothing costs 0 throughout */
+    const uint8_t *luma_right;
+    const uint8_t *bits;       /* as census_row writes them, the pitch is the row's length: `width` */
+    const uint8_t *bits_right; /* likewise, T3R_MATCH_RIGHT(width, disparities) */
+    uint8_t *mirrored;         /* work: the right row's bits by falling column, its length three times */
+    uint8_t *least;            /* work: the least cost against each right pixel, by falling column */
+    uint8_t *cost;             /* width x disparities: 0..24 */
+} t3r_census_costs;
+
+/* Fills the two parts of work. */
+static inline void t3r_census_mirror(const t3r_census_costs *row)
+{
+    const size_t right = T3R_MATCH_RIGHT(row->width, row->disparities);
+    for (size_t i = 0; i < T3R_CENSUS_BYTES; i++) {
+        const uint8_t *from = row->bits_right + i * right;
+        uint8_t *to = row->mirrored + i * right;
+        for (size_t n = 0; n < right; n++) {
+            to[n] = from[right - 1 - n];
+        }
+    }
+    for (size_t n = 0; n < right; n++) {
+        row->least[n] = row->luma_right[right - 1 - n] == 0 ? T3R_CENSUS_NOTHING : 0;
+    }
+}
+
+/* Nothing is aligned. */
+typedef void t3r_census_costs_kernel(const t3r_census_costs *row);
 
 t3r_census_row_kernel t3r_census_row_c;
-t3r_census_cost_kernel t3r_census_cost_c;
+t3r_census_costs_kernel t3r_census_costs_c;
 
 #endif

@@ -16,7 +16,7 @@
 #include "convolve.h"
 #include "image_rows.h"
 #include "nearest.h"
-#include "path_step.h"
+#include "path_row.h"
 #include "place.h"
 #include "points.h"
 #include "project.h"
@@ -26,6 +26,7 @@
 #include "seed.h"
 #include "solve.h"
 #include "wavelet_rows.h"
+#include "winner_row.h"
 
 typedef struct t3r_kernels {
     /* image */
@@ -41,8 +42,9 @@ typedef struct t3r_kernels {
     /* stereo */
     t3r_ray_row_kernel *ray_row;
     t3r_census_row_kernel *census_row;
-    t3r_census_cost_kernel *census_cost;
-    t3r_path_step_kernel *path_step;
+    t3r_census_costs_kernel *census_costs;
+    t3r_path_row_kernel *path_row;
+    t3r_winner_row_kernel *winner_row;
     /* wavelet */
     t3r_luma_row_kernel *luma_row;
     t3r_split_row_kernel *split_row;

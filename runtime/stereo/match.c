@@ -19,33 +19,19 @@ static void census(const t3r_kernels *kernels, const uint8_t *luma, uint32_t wid
 
 static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t y, uint8_t *cost)
 {
-    const uint32_t width = match->width, count = match->disparities;
-    const uint32_t right = (uint32_t)T3R_MATCH_RIGHT(width, count);
-    const uint8_t *luma = match->luma[0] + (size_t)y * width, *luma_right = match->luma[1] + (size_t)y * right;
+    const uint32_t width = match->width, right = (uint32_t)T3R_MATCH_RIGHT(width, match->disparities);
+    const t3r_census_costs row = {.width = width,
+                                  .disparities = match->disparities,
+                                  .luma = match->luma[0] + (size_t)y * width,
+                                  .luma_right = match->luma[1] + (size_t)y * right,
+                                  .bits = w->bits,
+                                  .bits_right = w->straight,
+                                  .mirrored = w->mirrored,
+                                  .least = w->least,
+                                  .cost = cost};
     census(match->kernels, match->luma[0], width, match->height, y, w->bits);
     census(match->kernels, match->luma[1], right, match->height, y, w->straight);
-    for (uint32_t i = 0; i < T3R_CENSUS_BYTES; i++) {
-        for (uint32_t n = 0; n < right; n++) {
-            w->bits_right[i * right + n] = w->straight[i * right + right - 1 - n];
-        }
-    }
-    for (uint32_t n = 0; n < right; n++) {
-        w->least[n] = luma_right[right - 1 - n] == 0 ? T3R_CENSUS_NOTHING : 0;
-    }
-    for (uint32_t x = 0; x < width; x++) {
-        uint8_t own[T3R_CENSUS_BYTES], *to = cost + (size_t)x * count;
-        for (uint32_t i = 0; i < T3R_CENSUS_BYTES; i++) {
-            own[i] = w->bits[i * width + x];
-        }
-        if (luma[x] != 0) {
-            match->kernels->census_cost(own, w->bits_right + (width - 1 - x), right, w->least + (width - 1 - x), count,
-                                        to);
-        } else {
-            for (uint32_t k = 0; k < count; k++) {
-                to[k] = 0; /* paths pass through a pixel without luma */
-            }
-        }
-    }
+    match->kernels->census_costs(&row);
 }
 
 static void copy(uint8_t *restrict to, const uint8_t *restrict from, size_t bytes)
@@ -66,11 +52,10 @@ void t3r_match_pair(const t3r_match *match)
 {
     const uint32_t width = match->width, height = match->height, count = match->disparities;
     const uint32_t rows = T3R_MATCH_ROWS(height), blocks = (uint32_t)T3R_MATCH_BLOCKS(height);
-    const bool diagonals = match->paths == 8;
     const t3r_path_costs costs = t3r_path_costs_of(match->p1, match->p2, match->p2_min);
     t3r_cut cut = t3r_cut_of(match->work, T3R_MATCH_PATH_BYTES_(width, height, count, match->paths));
     t3r_match_layout w = t3r_match_lay_out(match, &cut);
-    t3r_path_row row = {.kernels = match->kernels, .width = width, .disparities = count, .costs = &costs};
+    t3r_path_row row = {.width = width, .disparities = count, .diagonals = match->paths == 8, .costs = &costs};
 
     for (uint32_t path = 0; path < T3R_MATCH_STATES(match->paths); path++) {
         for (int i = 0; i < 2; i++) {
@@ -91,7 +76,7 @@ void t3r_match_pair(const t3r_match *match)
         row.cost = w.cost;
         row.from = w.down[0];
         row.to = w.down[1];
-        t3r_path_rows(&row, diagonals);
+        match->kernels->path_row(&row);
         exchange(w.down);
     }
     for (uint32_t block = blocks; block-- > 0;) {
@@ -105,7 +90,9 @@ void t3r_match_pair(const t3r_match *match)
             row.cost = w.cost + at;
             row.from = w.down[0];
             row.to = w.down[1];
-            t3r_path_sums(&row, diagonals, false, w.sums + at);
+            row.sums = w.sums + at;
+            row.reverse = false;
+            match->kernels->path_row(&row);
             exchange(w.down);
         }
         for (uint32_t y = end; y-- > first;) {
@@ -115,7 +102,9 @@ void t3r_match_pair(const t3r_match *match)
             row.cost = w.cost + at;
             row.from = w.up[0];
             row.to = w.up[1];
-            t3r_path_sums(&row, diagonals, true, w.sums + at);
+            row.sums = w.sums + at;
+            row.reverse = true;
+            match->kernels->path_row(&row);
             exchange(w.up);
             t3r_match_winners(match, y, w.sums + at, w.winners);
         }

@@ -8,7 +8,7 @@
 #define T3R_MATCH_PART_(type, part, count) type *part;
 typedef struct t3r_match_layout {
     /* sums, cost: a block's; winners: a row's; states: one a block, before its first row, and four more; bits: census
-     * of a left row; straight and bits_right: of a right row, by rising and by falling column; least: of the cost
+     * of a left row; straight and mirrored: of a right row, by rising and by falling column; least: of the cost
      * against each right pixel, by falling column */
     T3R_MATCH_PARTS_(T3R_MATCH_PART_, 0, 0, 0, 0)
     uint8_t *down[2]; /* states of the row before and of this row */

@@ -103,14 +103,14 @@ static int32_t begin_q16(const t3r_rectification *rect, uint32_t side, int32_t f
     return rect->first_q16[0] - (side == 0 ? 0 : (first + (int32_t)disparities - 1) * 65536);
 }
 
-/* One row at a quarter of the size: the mean of 4 x 4 pixels, 0 unless all of them show something. rows: four rows of
- * 4 x count. */
-static void quarter_row(const uint8_t *rows, uint32_t count, uint8_t *out)
+/* One row at a quarter of the size: the mean of 4 x 4 pixels, 0 unless all of them show something. rows: four rows,
+ * each `pitch` behind the one before. */
+static void quarter_row(const uint8_t *rows, size_t pitch, uint32_t count, uint8_t *restrict out)
 {
     for (uint32_t x = 0; x < count; x++) {
         uint32_t sum = 0, least = UINT8_MAX;
         for (uint32_t i = 0; i < QUARTER * QUARTER; i++) {
-            uint8_t value = rows[i / QUARTER * QUARTER * count + QUARTER * x + i % QUARTER];
+            uint8_t value = rows[i / QUARTER * pitch + QUARTER * x + i % QUARTER];
             sum += value;
             least = T3R_MIN(least, value);
         }
@@ -138,7 +138,7 @@ static void quarter_rows(void *context, uint32_t begin, uint32_t end, uint32_t w
     for (uint32_t y = begin; y < end; y++) {
         t3r_rectified_rows(full->kernels, full->rect, full->side, full->luma, full->begin_q16,
                            (t3r_share){QUARTER * y, QUARTER * (y + 1)}, columns, rows);
-        quarter_row(rows, full->columns, full->out + (size_t)y * full->columns);
+        quarter_row(rows, columns, full->columns, full->out + (size_t)y * full->columns);
     }
 }
 

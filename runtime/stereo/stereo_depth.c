@@ -168,9 +168,10 @@ typedef struct view_job {
 static void view_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;
-    const view_job *job = context;
-    const t3r_stereo_planes *planes = job->planes;
-    const t3r_view *view = job->view;
+    /* copies: writing bytes of the view changes none of what they hold */
+    const view_job all = *(const view_job *)context, *job = &all;
+    const t3r_view its = *job->view, *view = &its;
+    const t3r_stereo_planes parts = *job->planes, *planes = &parts;
     for (uint32_t v = begin; v < end; v++) {
         t3r_ray_places places;
         for (uint32_t u = 0; u < view->width; u++) {

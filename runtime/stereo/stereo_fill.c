@@ -47,16 +47,26 @@ static bool shows(const t3r_view *view, size_t i)
 
 /* ---- the nearest pixel with depth -------------------------------------------------------------------------------- */
 
+static void take_luma(const t3r_view *view, uint8_t *restrict luma)
+{
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    const uint8_t *r = view->colour[0], *g = view->colour[1], *b = view->colour[2];
+    for (size_t i = 0; i < pixels; i++) {
+        luma[i] = (uint8_t)((77 * r[i] + 150 * g[i] + 29 * b[i] + 128) >> 8);
+    }
+}
+
 static void begin(const filling *f)
 {
-    const t3r_view *view = f->view;
-    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    const size_t pixels = T3R_PIXELS_(f->view->width, f->view->height);
+    const uint16_t *depth = f->view->depth;
+    uint32_t *restrict source = f->source;
+    uint16_t *restrict cost = f->cost;
     for (size_t i = 0; i < pixels; i++) {
-        f->source[i] = (uint32_t)i;
-        f->cost[i] = view->depth[i] != 0 ? 0 : UINT16_MAX;
-        f->luma[i] =
-            (uint8_t)((77 * view->colour[0][i] + 150 * view->colour[1][i] + 29 * view->colour[2][i] + 128) >> 8);
+        source[i] = (uint32_t)i;
+        cost[i] = depth[i] != 0 ? 0 : UINT16_MAX;
     }
+    take_luma(f->view, f->luma);
 }
 
 /* Pixel `to` takes what pixel `from` has, if the way by it is shorter. */
@@ -90,6 +100,16 @@ static void sweep_hole(const filling *f, size_t row, size_t before, uint32_t fro
     }
 }
 
+/* Whether some of `count` pixels have no depth. */
+static bool any_hole(const uint16_t *cost, uint32_t count)
+{
+    uint16_t any = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        any |= cost[i];
+    }
+    return any != 0;
+}
+
 /* One row. What has depth costs nothing and takes nothing, so that each hole of the row is on its own. */
 static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
 {
@@ -97,6 +117,9 @@ static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
     const size_t row = (size_t)y * width, before = down ? row - width : row + width; /* unused of the first */
     const uint16_t *cost = f->cost + row;
     for (uint32_t x = 0; x < width; x++) {
+        while (width - x > 16 && !any_hole(cost + x, 16)) {
+            x += 16;
+        }
         const uint32_t from = x;
         while (x < width && cost[x] != 0) {
             x++;

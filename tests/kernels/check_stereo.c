@@ -1,4 +1,4 @@
-/* Places of rays, census, its costs, and the paths' step. */
+/* Places of rays, census, its costs, the paths' rows, and who wins. */
 #include "checks.h"
 #include "core/fixed.h"
 #include "guarded.h"
@@ -92,87 +92,204 @@ const char *check_census_row(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-const char *check_census_cost(const t3r_kernels *kernels, uint64_t *seed)
+const char *check_census_costs(const t3r_kernels *kernels, uint64_t *seed)
 {
-    const uint32_t count = 16 * (uint32_t)unit_between(seed, 1, 16), pitch = count + (uint32_t)unit_between(seed, 0, 5);
-    uint8_t *own = guarded_take(3, 1), *others = guarded_take((size_t)2 * pitch + count, 1);
-    uint8_t *least = guarded_take(count, 1), *cost = guarded_take(count, 1);
-    for (int i = 0; i < 3; i++) {
-        own[i] = (uint8_t)any_value(seed, 0, 255);
+    const uint32_t width = 1 + any_length(seed, 60), count = 16 * (uint32_t)unit_between(seed, 1, 16);
+    const uint32_t right = (uint32_t)T3R_MATCH_RIGHT(width, count);
+    uint8_t *luma = guarded_take(width, 1), *luma_right = guarded_take(right, 1);
+    uint8_t *bits = guarded_take((size_t)3 * width, 1), *bits_right = guarded_take((size_t)3 * right, 1);
+    uint8_t *cost = guarded_take((size_t)width * count, 1);
+    const t3r_census_costs row = {
+        width, count, luma, luma_right, bits, bits_right, guarded_take((size_t)3 * right, 1), guarded_take(right, 1),
+        cost};
+    for (uint32_t x = 0; x < 3 * width; x++) {
+        luma[x % width] = (uint8_t)any_value(seed, 0, 255);
+        bits[x] = (uint8_t)any_value(seed, 0, 255);
     }
-    for (uint32_t i = 0; i < 2 * pitch + count; i++) {
-        others[i] = (uint8_t)any_value(seed, 0, 255);
+    for (uint32_t j = 0; j < 3 * right; j++) {
+        luma_right[j % right] = (uint8_t)any_value(seed, 0, 255);
+        bits_right[j] = (uint8_t)any_value(seed, 0, 255);
     }
-    for (uint32_t k = 0; k < count; k++) {
-        least[k] = (uint8_t)any_value(seed, 0, 24);
-    }
-    kernels->census_cost(own, others, pitch, least, count, cost);
-    for (uint32_t k = 0; k < count; k++) {
-        int bits = 0;
-        for (uint32_t i = 0; i < 3; i++) {
-            bits += __builtin_popcount((unsigned)(own[i] ^ others[i * pitch + k]));
-        }
-        if (cost[k] != (bits > least[k] ? bits : least[k])) {
-            return "a cost differs";
+    kernels->census_costs(&row);
+    for (uint32_t x = 0; x < width; x++) {
+        for (uint32_t k = 0; k < count; k++) {
+            const uint32_t j = x + count - 1 - k;
+            int want = 0;
+            for (uint32_t i = 0; i < 3; i++) {
+                want += __builtin_popcount((unsigned)(bits[i * width + x] ^ bits_right[i * right + j]));
+            }
+            want = luma_right[j] == 0 && want < T3R_CENSUS_NOTHING ? T3R_CENSUS_NOTHING : want;
+            if (cost[x * count + k] != (luma[x] == 0 ? 0 : want)) {
+                return "a cost differs";
+            }
         }
     }
     return NULL;
 }
 
-const char *check_path_step(const t3r_kernels *kernels, uint64_t *seed)
+/* One path's value at a pixel, by the formula. */
+static int path_value(const uint8_t *from, int least, uint32_t k, int cost, int p1, int p2)
 {
-    const uint32_t count = 16 * (uint32_t)unit_between(seed, 1, 16), paths = (uint32_t)unit_between(seed, 1, 4);
+    const int same = from[k + 1] - least, below = from[k] + p1 - least, above = from[k + 2] + p1 - least;
+    int best = same < below ? same : below;
+    best = best < above ? best : above;
+    return cost + (best < p2 ? best : p2);
+}
+
+const char *check_path_row(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t width = 1 + any_length(seed, 40), count = 16 * (uint32_t)unit_between(seed, 1, 16);
+    const uint32_t paths = unit_random(seed) % 2 ? 3 : 1;
     const uint32_t p1 = (uint32_t)any_value(seed, 0, 60), p2_most = (uint32_t)any_value(seed, p1, 231 - p1);
-    const bool sum = paths % 2 == 0 && unit_random(seed) % 4 != 0, add = unit_random(seed) % 2;
-    uint8_t *cost = guarded_take(count, 1);
-    int16_t *sums = guarded_take(count * 2, 2);
-    int want_sums[256];
-    t3r_path_link links[T3R_PATH_LINKS];
-    for (uint32_t k = 0; k < count; k++) {
-        cost[k] = (uint8_t)any_value(seed, 0, 24);
-        sums[k] = (int16_t)any_value(seed, 0, 2000);
-        want_sums[k] = add ? sums[k] : 0;
+    const size_t pitch = count + 1, state = T3R_PATH_STATE_BYTES(width, count), leasts = t3r_path_leasts(width, count);
+    t3r_path_costs costs = {.p1 = (uint8_t)p1, .guard = (uint8_t)(p2_most + 24)};
+    for (int i = 0; i < T3R_PATH_PENALTIES; i++) {
+        costs.p2[i] = (uint8_t)any_value(seed, p1, p2_most);
+    }
+    uint8_t *luma = guarded_take(width, 1), *before = guarded_take(width, 1);
+    uint8_t *cost = guarded_take((size_t)width * count, 1);
+    uint8_t *from = guarded_take(paths * state, 1), *to = guarded_take(paths * state, 1);
+    int16_t *sums = guarded_take((size_t)width * count * 2, 2), want_sums[41 * 256];
+    for (uint32_t i = 0; i < width * count; i++) {
+        luma[i % width] = (uint8_t)any_value(seed, 0, 255);
+        before[i % width] = (uint8_t)any_value(seed, 0, 255);
+        cost[i] = (uint8_t)any_value(seed, 0, 24);
+        want_sums[i] = sums[i] = (int16_t)any_value(seed, 0, 2000);
     }
     for (uint32_t path = 0; path < paths; path++) {
-        uint8_t *from = guarded_take(count + 2, 1), least = 255;
-        from[0] = from[count + 1] = (uint8_t)(p2_most + 24);
-        const uint32_t floor_cost = (uint32_t)any_value(seed, 0, 24);
-        for (uint32_t k = 1; k <= count; k++) {
-            from[k] = (uint8_t)any_value(seed, floor_cost, p2_most + 24 < floor_cost ? floor_cost : p2_most + 24);
-            least = from[k] < least ? from[k] : least;
-        }
-        if (least > 24) { /* the least of a pixel is at most a cost */
-            from[1 + unit_random(seed) % count] = least = 24;
-        }
-        links[path] = (t3r_path_link){.from = from,
-                                      .to = guarded_take(count, 1),
-                                      .from_least = least,
-                                      .p2 = (uint8_t)any_value(seed, p1, p2_most)};
-    }
-    kernels->path_step(cost, links, paths, (uint8_t)p1, count, add, sum ? sums : NULL);
-    for (uint32_t path = 0; path < paths; path++) {
-        const t3r_path_link *l = &links[path];
-        int least = 255;
-        for (uint32_t k = 0; k < count; k++) {
-            const int same = l->from[k + 1] - l->from_least, below = l->from[k] + (int)p1 - l->from_least;
-            const int above = l->from[k + 2] + (int)p1 - l->from_least;
-            int best = same < below ? same : below;
-            best = best < above ? best : above;
-            best = cost[k] + (best < l->p2 ? best : l->p2);
-            if (l->to[k] != best) {
-                return "a value differs";
+        uint8_t *own = from + path * state;
+        for (uint32_t slot = 0; slot < width + 2; slot++) {
+            uint8_t *values = own + slot * pitch + 1, least = 255;
+            const uint32_t floor_cost = (uint32_t)any_value(seed, 0, 24);
+            for (uint32_t k = 0; k < count; k++) {
+                values[k] = (uint8_t)any_value(seed, floor_cost, p2_most + 24);
+                least = values[k] < least ? values[k] : least;
             }
-            least = best < least ? best : least;
-            want_sums[k] += best;
-        }
-        if (l->least != least) {
-            return "a least value differs";
+            if (least > 24) { /* the least of a pixel is at most a cost */
+                values[unit_random(seed) % count] = least = 24;
+            }
+            own[slot * pitch] = own[(slot + 1) * pitch] = costs.guard;
+            own[leasts + slot] = least;
         }
     }
-    for (uint32_t k = 0; k < count && sum; k++) {
-        if (sums[k] != want_sums[k]) {
-            return "a sum differs";
+    for (size_t i = 0; i < paths * state; i++) {
+        to[i] = 77;
+    }
+    const t3r_path_row row = {.width = width,
+                              .disparities = count,
+                              .diagonals = paths == 3,
+                              .reverse = unit_random(seed) % 2,
+                              .costs = &costs,
+                              .luma = luma,
+                              .luma_before = before,
+                              .cost = cost,
+                              .from = from,
+                              .to = to,
+                              .sums = unit_random(seed) % 4 == 0 ? NULL : sums};
+    kernels->path_row(&row);
+    uint8_t beside[2][258];
+    memset(beside, 0, sizeof beside);
+    for (int i = 0; i < 2; i++) {
+        beside[i][0] = beside[i][count + 1] = costs.guard;
+    }
+    int beside_least = 0;
+    for (uint32_t i = 0; i < width; i++) {
+        const uint32_t x = row.reverse ? width - 1 - i : i;
+        const uint32_t columns[3] = {x, x == 0 ? 0 : x - 1, x + 1 == width ? x : x + 1};
+        const uint32_t slots[3] = {x + 1, x, x + 2};
+        const int last = i == 0 ? luma[x] : luma[row.reverse ? x + 1 : x - 1];
+        int least[4] = {255, 255, 255, 255};
+        for (uint32_t k = 0; k < count; k++) {
+            int sum = row.reverse ? want_sums[x * count + k] : 0;
+            for (uint32_t path = 0; path < paths; path++) {
+                const uint8_t *own = from + path * state;
+                const int value =
+                    path_value(own + slots[path] * pitch, own[leasts + slots[path]], k, cost[x * count + k], (int)p1,
+                               costs.p2[abs(luma[x] - before[columns[path]])]);
+                if (to[path * state + (x + 1) * pitch + 1 + k] != value) {
+                    return "a value differs";
+                }
+                least[path] = value < least[path] ? value : least[path];
+                sum += value;
+            }
+            const int value =
+                path_value(beside[i & 1], beside_least, k, cost[x * count + k], (int)p1, costs.p2[abs(luma[x] - last)]);
+            beside[~i & 1][k + 1] = (uint8_t)value;
+            least[3] = value < least[3] ? value : least[3];
+            want_sums[x * count + k] = (int16_t)(row.sums == NULL ? want_sums[x * count + k] : sum + value);
         }
+        beside_least = least[3];
+        for (uint32_t path = 0; path < paths; path++) {
+            if (to[path * state + leasts + x + 1] != least[path]) {
+                return "a least value differs";
+            }
+        }
+    }
+    if (!SAME(sums, want_sums, (size_t)width * count)) {
+        return "a sum differs";
+    }
+    for (uint32_t path = 0; path < paths; path++) {
+        const uint8_t *own = to + path * state;
+        for (uint32_t k = 0; k < pitch; k++) {
+            if (own[k] != 77 || own[(width + 1) * pitch + k] != 77) {
+                return "an end was written";
+            }
+        }
+        for (uint32_t slot = 0; slot < width + 2; slot++) {
+            if (own[slot * pitch] != 77) {
+                return "a guard was written";
+            }
+        }
+    }
+    return NULL;
+}
+
+const char *check_winner_row(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t width = 1 + any_length(seed, 60), count = 16 * (uint32_t)unit_between(seed, 1, 16);
+    const uint32_t right = (uint32_t)T3R_MATCH_RIGHT(width, count);
+    const int64_t most = unit_random(seed) % 2 ? 3 : 2000; /* many are equal, or few */
+    uint8_t *luma = guarded_take(width, 1);
+    int16_t *sums = guarded_take((size_t)width * count * 2, 2);
+    const t3r_winner_row row = {width,
+                                count,
+                                luma,
+                                sums,
+                                guarded_take(width * 2, 2),
+                                guarded_take(width * 2, 2),
+                                guarded_take(right * 2, 2),
+                                guarded_take(right * 2, 2)};
+    int16_t best[61 + 256], at[61 + 256];
+    for (uint32_t n = 0; n < right; n++) {
+        best[n] = INT16_MAX;
+        at[n] = 0;
+    }
+    for (uint32_t i = 0; i < width * count; i++) {
+        luma[i % width] = (uint8_t)any_value(seed, 0, 3);
+        sums[i] = (int16_t)any_value(seed, 0, most);
+    }
+    kernels->winner_row(&row);
+    for (uint32_t x = 0; x < width; x++) {
+        const int16_t *s = sums + x * count;
+        uint32_t first = 0;
+        int second = luma[x] == 0 ? 0 : INT16_MAX;
+        for (uint32_t k = 0; k < count && luma[x] != 0; k++) {
+            const uint32_t n = width - 1 - x + k;
+            first = s[k] < s[first] ? k : first;
+            if (s[k] < best[n] || (s[k] == best[n] && (int16_t)k < at[n])) {
+                best[n] = s[k];
+                at[n] = (int16_t)k;
+            }
+        }
+        for (uint32_t k = 0; k < count && luma[x] != 0; k++) {
+            second = (k + 1 < first || k > first + 1) && s[k] < second ? s[k] : second;
+        }
+        if (row.first[x] != first || row.second[x] != second) {
+            return "a left winner differs";
+        }
+    }
+    if (!SAME(row.best, best, right) || !SAME(row.at, at, right)) {
+        return "a right winner differs";
     }
     return NULL;
 }

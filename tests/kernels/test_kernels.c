@@ -19,8 +19,9 @@
     X(locate, check_locate)                                                                                            \
     X(ray_row, check_ray_row)                                                                                          \
     X(census_row, check_census_row)                                                                                    \
-    X(census_cost, check_census_cost)                                                                                  \
-    X(path_step, check_path_step)                                                                                      \
+    X(census_costs, check_census_costs)                                                                                \
+    X(path_row, check_path_row)                                                                                        \
+    X(winner_row, check_winner_row)                                                                                    \
     X(luma_row, check_luma_row)                                                                                        \
     X(split_row, check_split_row)                                                                                      \
     X(db2_predict, check_db2_predict)                                                                                  \

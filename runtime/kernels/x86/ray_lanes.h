@@ -4,6 +4,7 @@
 #ifndef T3R_RAY_LANES_H
 #define T3R_RAY_LANES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 typedef int32_t lanes __attribute__((vector_size(LANES * sizeof(int32_t))));
@@ -30,13 +31,16 @@ static inline TARGET ulanes high(ulanes a, ulanes b)
     return (ulanes)join(multiply(a, b) >> 32, multiply((ulanes)odd((lanes)a), (ulanes)odd((lanes)b)));
 }
 
-/* Below 2^27 in size: of its 64 bits a logical shift leaves enough. */
-static inline TARGET lanes coordinate(const t3r_ray_map *map, int axis, lanes a, lanes b)
+/* Below 2^27 in size: of its 64 bits a logical shift leaves enough. sloped: b counts, too. */
+static inline TARGET lanes coordinate(const t3r_ray_map *map, int axis, lanes a, lanes b, bool sloped)
 {
     const uint64_t base = (uint64_t)map->base_q54[axis] + (UINT64_C(1) << 29);
     const lanes turn = (lanes){0} + map->turn_q30[axis], slope = (lanes){0} + map->slope_q30[axis];
-    const pairs even = multiply_signed(a, turn) + multiply_signed(b, slope) + base;
-    const pairs uneven = multiply_signed((lanes)odd(a), turn) + multiply_signed((lanes)odd(b), slope) + base;
+    pairs even = multiply_signed(a, turn) + base, uneven = multiply_signed((lanes)odd(a), turn) + base;
+    if (sloped) {
+        even += multiply_signed(b, slope);
+        uneven += multiply_signed((lanes)odd(b), slope);
+    }
     return join(even >> 30, uneven << 2);
 }
 
@@ -84,10 +88,12 @@ static inline TARGET lanes place(lanes at, int32_t scale, int32_t offset)
     return (join(even >> 24, uneven << 8) & fits) | (~fits & (sign ^ INT32_MAX));
 }
 
-static inline TARGET void ray_block(const t3r_ray_map *map, lanes a, lanes b, lanes *u, lanes *v, lanes *shown)
+static inline TARGET void ray_block(const t3r_ray_map *map, lanes a, lanes b, bool sloped, lanes *u, lanes *v,
+                                    lanes *shown)
 {
     const int32_t least = 1 << 18;
-    const lanes x = coordinate(map, 0, a, b), y = coordinate(map, 1, a, b), z = coordinate(map, 2, a, b);
+    const lanes x = coordinate(map, 0, a, b, sloped), y = coordinate(map, 1, a, b, sloped);
+    const lanes z = coordinate(map, 2, a, b, sloped);
     const lanes most = z * map->steepest;
     const lanes any = (z >= least) & (size_of(x) <= most) & (size_of(y) <= most);
     const lanes by = (z & any) | (~any & least);

@@ -15,7 +15,6 @@
 #include "kernels/blur.c"
 
 #define t3r_census_row_c t3r_census_row_avx2
-#define t3r_census_cost_c t3r_census_cost_avx2
 #include "kernels/census.c"
 
 #define t3r_convolve_c t3r_convolve_avx2
@@ -29,9 +28,6 @@
 #define t3r_weigh_row_c t3r_weigh_row_avx2
 #define t3r_divide_row_c t3r_divide_row_avx2
 #include "kernels/image_rows.c"
-
-#define t3r_path_step_c t3r_path_step_avx2
-#include "kernels/path_step.c"
 
 #define t3r_sample_potential_c t3r_sample_potential_avx2
 #define t3r_sample_approach_c t3r_sample_approach_avx2

@@ -1,0 +1,112 @@
+/* path_row in vectors of BYTES disparities. The file that includes this defines TARGET, BYTES and, of its instruction
+ * set, the functions declared first. The path along the row stays in registers. */
+#ifndef T3R_PATH_LANES_H
+#define T3R_PATH_LANES_H
+
+typedef uint8_t bytes __attribute__((vector_size(BYTES)));
+
+/* Disparities of the last vector: 16, or all; lanes beyond are 0 when loaded and not stored. */
+static inline TARGET bytes load(const uint8_t *from, uint32_t count);
+static inline TARGET void store(uint8_t *to, bytes x, uint32_t count);
+/* Lanes below `count` of x, else of `other`. */
+static inline TARGET bytes held(bytes x, bytes other, uint32_t count);
+static inline TARGET bytes minimum(bytes a, bytes b);
+static inline TARGET bytes all_of(uint8_t x);
+/* Each lane's neighbour below and above; the ends take theirs of the next vector. */
+static inline TARGET bytes below(bytes x, bytes next);
+static inline TARGET bytes above(bytes x, bytes next);
+/* The least of all lanes, in all lanes. */
+static inline TARGET bytes least_of(bytes x);
+static inline TARGET uint8_t first_of(bytes x);
+/* sums = a + b + c + d, with `add` sums + ...; of two paths c and d are not read. */
+static inline TARGET void sum(int16_t *sums, const bytes values[T3R_PATH_LINKS], uint32_t paths, uint32_t count,
+                              bool add);
+
+/* What a path adds to the cost. */
+static inline TARGET bytes relaxed(bytes lower, bytes same, bytes upper, bytes least, bytes p1, bytes p2)
+{
+    return minimum(minimum(same, minimum(lower, upper) + p1) - least, p2);
+}
+
+/* vectors: as many as hold the disparities, 1..4; paths: from the row before. A function of its own for each of these
+ * numbers keeps everything in registers. */
+static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_row *row, const uint32_t vectors,
+                                                                const uint32_t paths)
+{
+    const uint32_t width = row->width, count = row->disparities;
+    const size_t pitch = (size_t)count + 1, state = T3R_PATH_STATE_BYTES(width, count);
+    const size_t leasts = t3r_path_leasts(width, count);
+    const bytes guard = all_of(row->costs->guard), p1 = all_of(row->costs->p1);
+    bytes beside[4], least = all_of(0);
+    for (uint32_t i = 0; i < vectors; i++) {
+        beside[i] = held(least, guard, count - i * BYTES);
+    }
+    for (uint32_t i = 0; i < width; i++) {
+        const uint32_t x = row->reverse ? width - 1 - i : i;
+        const uint8_t *cost = row->cost + (size_t)x * count;
+        t3r_path_link links[3];
+        bytes leasts_here[3], next_least = all_of(UINT8_MAX), lower = guard;
+        _Pragma("GCC unroll 3") for (uint32_t path = 0; path < paths; path++)
+        {
+            links[path] = t3r_path_link_of(row, path, x);
+            leasts_here[path] = next_least;
+        }
+        const bytes p2 = all_of(t3r_path_p2_along(row, x, i));
+        for (uint32_t n = 0; n < vectors; n++) {
+            const uint32_t left = count - n * BYTES; /* disparities from here on */
+            const bytes own = load(cost + n * BYTES, left);
+            bytes values[T3R_PATH_LINKS];
+            _Pragma("GCC unroll 3") for (uint32_t path = 0; path < paths; path++)
+            {
+                const uint8_t *from = links[path].from + n * BYTES;
+                const bytes same = load(from + 1, left);
+                const bytes value = held(own + relaxed(load(from, left), same, load(from + 2, left),
+                                                       all_of(links[path].least), p1, all_of(links[path].p2)),
+                                         guard, left);
+                store(row->to + path * state + ((size_t)x + 1) * pitch + 1 + n * BYTES, value, left);
+                leasts_here[path] = minimum(leasts_here[path], value);
+                values[path] = value;
+            }
+            if (row->sums != NULL) {
+                const bytes same = beside[n], upper = n + 1 < vectors ? beside[n + 1] : guard;
+                const bytes value = own + relaxed(below(same, lower), same, above(same, upper), least, p1, p2);
+                lower = same;
+                beside[n] = held(value, guard, left);
+                next_least = minimum(next_least, beside[n]);
+                values[paths] = value;
+                sum(row->sums + (size_t)x * count + n * BYTES, values, paths + 1, left, row->reverse);
+            }
+        }
+        least = least_of(next_least);
+        _Pragma("GCC unroll 3") for (uint32_t path = 0; path < paths; path++)
+        {
+            row->to[path * state + leasts + x + 1] = first_of(least_of(leasts_here[path]));
+        }
+    }
+}
+
+/* For as many vectors and both numbers of paths */
+#define FOLLOW(name, vectors)                                                                                          \
+    static TARGET void name##_straight(const t3r_path_row *row)                                                        \
+    {                                                                                                                  \
+        follow(row, vectors, 1);                                                                                       \
+    }                                                                                                                  \
+    static TARGET void name##_diagonal(const t3r_path_row *row)                                                        \
+    {                                                                                                                  \
+        follow(row, vectors, 3);                                                                                       \
+    }                                                                                                                  \
+    static TARGET void name(const t3r_path_row *row)                                                                   \
+    {                                                                                                                  \
+        if (row->diagonals) {                                                                                          \
+            name##_diagonal(row);                                                                                      \
+        } else {                                                                                                       \
+            name##_straight(row);                                                                                      \
+        }                                                                                                              \
+    }
+
+FOLLOW(one, 1)
+FOLLOW(two, 2)
+FOLLOW(three, 3)
+FOLLOW(four, 4)
+
+#endif
