@@ -29,8 +29,8 @@ uint32_t t3r_cpu_features(void)
     if (__builtin_cpu_supports("avx2")) {
         found |= T3R_CPU_AVX2;
     }
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl")) {
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
         found |= T3R_CPU_AVX512;
         found |= __builtin_cpu_supports("avx512vnni") ? T3R_CPU_VNNI : 0;
     }

@@ -427,7 +427,7 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 
 /* Features of processors that variants of the runtime's inner loops use. */
 #define T3R_CPU_AVX2 (1u << 0)     /* x86-64 */
-#define T3R_CPU_AVX512 (1u << 1)   /* F, BW, DQ and VL of AVX-512 */
+#define T3R_CPU_AVX512 (1u << 1)   /* F, BW, CD, DQ and VL of AVX-512 */
 #define T3R_CPU_VNNI (1u << 2)     /* AVX512_VNNI, with T3R_CPU_AVX512 */
 #define T3R_CPU_NEON (1u << 8)     /* 64-bit Arm */
 #define T3R_CPU_DOTPROD (1u << 9)  /* its dot products of 8 bits */

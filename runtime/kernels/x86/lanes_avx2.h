@@ -69,6 +69,18 @@ static inline T3R_AVX2 lanes high_of(wide x)
     return _mm256_blend_epi32(odd_of(x.even), x.odd, 0xaa);
 }
 
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far, below twice the first step. */
+static inline T3R_AVX2 lanes normal_of(lanes x, int first_step, lanes *by)
+{
+    *by = all(0);
+    for (int step = first_step; step > 0; step >>= 1) {
+        const lanes shift = both(greater(all(1 << (31 - step)), x), all(step));
+        x = _mm256_sllv_epi32(x, shift);
+        *by = add(*by, shift);
+    }
+    return x;
+}
+
 /* Two neighbours in the table. */
 static inline T3R_AVX2 __m128i pair_at(const uint32_t *table, const uint32_t *index)
 {

@@ -69,6 +69,14 @@ static inline T3R_AVX512 lanes high_of(wide x)
     return _mm512_mask_shuffle_epi32(x.odd, 0x5555, x.even, _MM_PERM_DDBB);
 }
 
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far, below twice the first step. */
+static inline T3R_AVX512 lanes normal_of(lanes x, int first_step, lanes *by)
+{
+    (void)first_step;
+    *by = subtract(_mm512_lzcnt_epi32(x), all(1));
+    return _mm512_sllv_epi32(x, *by);
+}
+
 /* Entries 0..127 of a table: of four pairs of vectors each, two bits of the index say which. */
 static inline T3R_AVX512 lanes entry_of(const uint32_t *table, lanes index)
 {

@@ -48,18 +48,6 @@ static inline T3R_LANES_TARGET lanes round_shift_far(wide x, lanes shift)
     return OF_LANES(srai_epi32)(add(OF_LANES(srav_epi32)(high_of(x), subtract(shift, all(33))), all(1)), 1);
 }
 
-/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far, below twice the first step. */
-static inline T3R_LANES_TARGET lanes normal_of(lanes x, int first_step, lanes *by)
-{
-    *by = all(0);
-    for (int step = first_step; step > 0; step >>= 1) {
-        const lanes shift = both(greater(all(1 << (31 - step)), x), all(step));
-        x = OF_LANES(sllv_epi32)(x, shift);
-        *by = add(*by, shift);
-    }
-    return x;
-}
-
 /* floor(2^62 / normal), normal in 2^31..2^32 - 1: a parabola to 1 %, Newton's step to 14 bits and twice the rest over
  * the divisor. The last is off by one at most, as trying all divisors shows. */
 static inline T3R_LANES_TARGET lanes inverted(lanes normal)

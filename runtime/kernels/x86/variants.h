@@ -9,8 +9,8 @@
 #if defined(__x86_64__) && defined(__SSE2__)
 #define T3R_X86 1
 #define T3R_AVX2 __attribute__((target("avx2")))
-#define T3R_AVX512 __attribute__((target("avx2,avx512f,avx512bw,avx512dq,avx512vl")))
-#define T3R_VNNI __attribute__((target("avx2,avx512f,avx512bw,avx512dq,avx512vl,avx512vnni")))
+#define T3R_AVX512 __attribute__((target("avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")))
+#define T3R_VNNI __attribute__((target("avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vnni")))
 #define T3R_CPU_X86_VNNI_ (T3R_CPU_AVX2 | T3R_CPU_AVX512 | T3R_CPU_VNNI)
 /* Without optimization each step of projection has a frame of vectors of 64 bytes: 20 KiB of stack. */
 #ifdef __OPTIMIZE__
