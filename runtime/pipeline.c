@@ -336,7 +336,7 @@ static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_sett
     if (importance != NULL) {
         t3r_importance_keys(views, rt->views, importance);
     }
-    const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK)};
+    const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK), &rt->kernels};
     t3r_allocate(views, rt->views, settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS), &work);
     t3r_hash_budget(rt, views, 0, rt->views);
 }

@@ -2,25 +2,21 @@
 
 #include "blue_noise.h"
 #include "core/fixed.h"
+#include "core/logarithm.h"
 #include "core/memory.h"
 #include "importance.h"
-
-/* Added to the texture before its power, 0.002 of full scale, so that blank walls keep some points. */
-#define TEXTURE_FLOOR_Q4 8
-/* A pixel whose threshold (of 65536) is below this, 0.003, is retained first of all, whatever its texture. */
-#define SURE_THRESHOLD 197
 
 /* --- texture ---------------------------------------------------------------------------------------------------- */
 
 /* A step over the rows of one view, and whatever it needs. */
 typedef struct rows_of_view {
-    const t3r_kernels *kernels; /* of the blur */
+    const t3r_kernels *kernels;
     const t3r_view *view;
     uint32_t number; /* of the view */
     const t3r_budget_settings *settings;
     t3r_cluster *clusters;
-    t3r_group_counts *counts; /* of each worker */
-    uint32_t step;
+    t3r_group_count *counts; /* of each group, for each worker */
+    uint32_t shift;          /* of the digit of keys that is counted */
 } rows_of_view;
 
 /* The 5-box twice: weights 1 2 3 4 5 4 3 2 1 of 25; variance 4 px^2. Beyond the border the edge repeats. */
@@ -147,57 +143,70 @@ int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *setti
     if (!follows_texture(settings->allocation)) {
         return 0;
     }
-    int64_t log_q16 = t3r_log2_q16((uint32_t)texture_q4 + TEXTURE_FLOOR_Q4);
+    int64_t log_q16 = t3r_log2_q16((uint32_t)texture_q4 + T3R_TEXTURE_FLOOR_Q4);
     return (int32_t)t3r_round_shift64(log_q16 * settings->gamma_q8, 14);
 }
 
-/* The pixel's threshold in [0, 65535]: blue noise, whose 4,096 ranks are split by white noise. Each view sees the map
- * shifted, so that two views of a surface complement each other. */
-static uint32_t threshold_at(uint32_t view, uint32_t x, uint32_t y, const t3r_budget_settings *settings)
+/* gamma log2(texture + floor) of a run. */
+static void find_wanted(const rows_of_view *job, const uint16_t *texture_q4, uint32_t count, uint16_t *wanted_q10)
 {
-    uint32_t noise = t3r_mix32((view << 26) ^ (y << 13) ^ x ^ t3r_mix32(settings->seed));
-    if (settings->allocation == T3R_ALLOCATE_RANDOM) {
-        return noise >> 16;
+    if (follows_texture(job->settings->allocation)) {
+        job->kernels->wanted_row(texture_q4, count, job->settings->gamma_q8, wanted_q10);
+    } else {
+        memset(wanted_q10, 0, count * sizeof *wanted_q10);
     }
-    uint32_t row = (y + 23 * view) % T3R_BLUE_NOISE_SIDE, column = (x + 46 * view) % T3R_BLUE_NOISE_SIDE;
-    return t3r_blue_noise(row, column) * 16u + (noise >> 28);
 }
 
-static uint16_t key_of(uint32_t threshold, int32_t wanted_q10)
+/* The ranks of the blue noise in a row of the view. Each view sees the map shifted, so that two views of a surface
+ * complement each other. */
+static void find_ranks(uint32_t view, uint32_t y, uint16_t rank[T3R_BLUE_NOISE_SIDE])
 {
-    if (threshold < SURE_THRESHOLD) {
-        return (uint16_t)(threshold >> 4); /* at most 12 */
+    const uint32_t row = (y + 23 * view) % T3R_BLUE_NOISE_SIDE;
+    for (uint32_t x = 0; x < T3R_BLUE_NOISE_SIDE; x++) {
+        rank[x] = (uint16_t)t3r_blue_noise(row, (x + 46 * view) % T3R_BLUE_NOISE_SIDE);
     }
-    /* log2((2 t + 1) / 2^17) in [-17, 0] */
-    int32_t log_threshold_q10 = t3r_round_shift32(t3r_log2_q16(2 * threshold + 1), 6) - (17 << 10);
-    return (uint16_t)t3r_clamp32(T3R_KEY_ZERO + log_threshold_q10 - wanted_q10, 16, UINT16_MAX);
 }
 
+/* Of the points that are retained last, among these the doubtful ones at the very end. */
+static void defer_row(const rows_of_view *job, size_t at, uint32_t count)
+{
+    const uint8_t deferring = t3r_deferring_marks(job->settings);
+    const uint8_t *validity = job->view->validity + at;
+    uint16_t *key = job->view->key + at;
+    for (uint32_t x = 0; x < count; x++) {
+        const uint16_t deferred = (uint16_t)((key[x] >> 1) | (t3r_is_doubtful(validity[x]) ? 0x8000u : 0));
+        key[x] = (validity[x] & deferring) != 0 ? deferred : key[x];
+    }
+}
+
+/* Thresholds are blue noise, whose 4,096 ranks are split by white noise, or white noise alone. */
 static void key_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;
     const rows_of_view *job = context;
     const t3r_view *view = job->view;
-    const t3r_budget_settings *settings = job->settings;
+    const uint32_t number = job->settings->shift + job->number, seed = t3r_mix32(job->settings->seed);
+    const bool is_white = job->settings->allocation == T3R_ALLOCATE_RANDOM;
     for (uint32_t y = begin; y < end; y++) {
-        for (uint32_t x = 0; x < view->width; x++) {
-            size_t i = (size_t)y * view->width + x;
-            uint16_t key = key_of(threshold_at(settings->shift + job->number, x, y, settings),
-                                  t3r_log_wanted_q10(view->texture[i], settings));
-            if (t3r_is_deferred(view, i, settings)) { /* among these the doubtful ones last */
-                key = (uint16_t)((key >> 1) | (t3r_is_doubtful(view->validity[i]) ? 0x8000u : 0));
-            }
-            view->key[i] = key;
+        uint16_t rank[T3R_BLUE_NOISE_SIDE], wanted_q10[T3R_KEY_RUN];
+        find_ranks(number, y, rank);
+        const size_t at = (size_t)y * view->width;
+        for (uint32_t x = 0; x < view->width; x += T3R_KEY_RUN) {
+            const uint32_t count = T3R_MIN(T3R_KEY_RUN, view->width - x);
+            find_wanted(job, view->texture + at + x, count, wanted_q10);
+            job->kernels->key_row((number << 26) ^ (y << 13) ^ x, seed, is_white ? NULL : rank, wanted_q10, count,
+                                  view->key + at + x);
         }
+        defer_row(job, at, view->width);
     }
 }
 
 void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                     const t3r_workers *workers)
+                     const t3r_budget_work *work)
 {
     for (uint32_t v = 0; v < count; v++) {
-        rows_of_view job = {.view = &views[v], .number = v, .settings = settings};
-        t3r_run_rows(workers, views[v].height, key_rows, &job);
+        rows_of_view job = {.kernels = work->kernels, .view = &views[v], .number = v, .settings = settings};
+        t3r_run_rows(&work->workers, views[v].height, key_rows, &job);
     }
 }
 
@@ -310,70 +319,98 @@ static void hold_quotas(t3r_cluster *clusters, uint32_t groups, uint32_t most)
 
 #define NO_GROUP UINT32_MAX
 
-/* The group whose quota a pixel falls under: its SuperCluster, or cluster 0 standing for all points; the one behind the
- * last SuperCluster for deferred points, and none without depth. */
-static inline uint32_t group_of(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
+/* The groups of pixels by settings: a pixel falls under the quota of its SuperCluster, or of cluster 0 standing for all
+ * points; a deferred one under that of the group behind the last SuperCluster, and one without depth under none. */
+typedef struct grouping {
+    uint32_t deferred; /* the group behind the last SuperCluster */
+    uint32_t labels;   /* ones where labels count, else 0 */
+    uint8_t deferring; /* marks */
+} grouping;
+
+static inline grouping grouping_of(const t3r_budget_settings *settings)
 {
-    uint32_t label = view->label[pixel];
+    return (grouping){settings->clusters, by_cluster(settings->allocation) ? UINT32_MAX : 0,
+                      t3r_deferring_marks(settings)};
+}
+
+static inline uint32_t group_of(const t3r_view *view, size_t pixel, const grouping *groups)
+{
+    const uint32_t label = view->label[pixel];
     if (label == T3R_NO_LABEL) {
         return NO_GROUP;
     }
-    if (t3r_is_deferred(view, pixel, settings)) {
-        return settings->clusters;
-    }
-    return by_cluster(settings->allocation) ? label : 0;
+    return (view->validity[pixel] & groups->deferring) != 0 ? groups->deferred : label & groups->labels;
 }
 
-/* Runs a step that counts by group over all views, from 0, into the counts of worker 0. */
+/* Runs a step that counts by group over all views, from 0. */
 static void count_groups(const t3r_view *views, uint32_t count, rows_of_view *job, const t3r_workers *workers,
                          t3r_rows_task *rows)
 {
-    for (uint32_t w = 0; w < workers->count; w++) {
-        memset(&job->counts[w], 0, sizeof job->counts[w]);
-    }
+    memset(job->counts, 0, (size_t)workers->count * (job->settings->clusters + 1) * sizeof *job->counts);
     for (uint32_t v = 0; v < count; v++) {
         job->view = &views[v];
         t3r_run_rows(workers, views[v].height, rows, job);
     }
 }
 
-/* Points with a key below threshold + step of their group */
-static void count_below(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+static t3r_group_count *counts_of(const rows_of_view *job, uint32_t worker)
+{
+    return job->counts + (size_t)worker * (job->settings->clusters + 1);
+}
+
+/* Points by the digit of their key at `shift`, where the digits above are those of their group's threshold. */
+static void count_digits(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     const rows_of_view *job = context;
-    const t3r_view *view = job->view;
-    uint32_t *below = job->counts[worker].of.below;
-    for (size_t i = (size_t)begin * view->width; i < (size_t)end * view->width; i++) {
-        uint32_t g = group_of(view, i, job->settings);
-        if (g != NO_GROUP) {
-            below[g] += view->key[i] < job->clusters[g].threshold + job->step;
+    const t3r_view view = *job->view;
+    const grouping groups = grouping_of(job->settings);
+    const t3r_cluster *clusters = job->clusters;
+    const uint32_t shift = job->shift;
+    t3r_group_count *counts = counts_of(job, worker);
+    for (size_t i = (size_t)begin * view.width; i < (size_t)end * view.width; i++) {
+        const uint32_t g = group_of(&view, i, &groups), key = view.key[i];
+        if (g != NO_GROUP && ((key ^ clusters[g].threshold) >> shift >> T3R_KEY_DIGIT_BITS) == 0) {
+            counts[g].of.digit[key >> shift & (T3R_KEY_DIGITS - 1)]++;
         }
     }
 }
 
-/* Finds each group's threshold, the least key of which at least `quota` points are not above it, by bisection over
- * the 16 bits of all groups at once; then how many points at the threshold itself are wanted. */
+/* The largest digit below which fewer points lie than the group still wants, and what it wants from that digit on. */
+static void choose_digit(const rows_of_view *job, uint32_t g, uint32_t workers)
+{
+    t3r_cluster *group = &job->clusters[g];
+    uint32_t digit = 0, below = 0;
+    for (uint32_t d = 0; d + 1 < T3R_KEY_DIGITS; d++) {
+        uint32_t next = below;
+        for (uint32_t w = 0; w < workers; w++) {
+            next += counts_of(job, w)[g].of.digit[d];
+        }
+        if (next >= group->ties) {
+            break;
+        }
+        digit = d + 1;
+        below = next;
+    }
+    group->threshold += digit << job->shift;
+    group->ties -= below; /* fewer than these, or none */
+}
+
+/* Finds each group's threshold, the largest key below which fewer than `quota` points lie, digit by digit of all groups
+ * at once; and how many points at the threshold itself are wanted. */
 static void find_thresholds(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
                             t3r_cluster *clusters, const t3r_budget_work *work)
 {
-    uint32_t groups = settings->clusters + 1;
+    const uint32_t groups = settings->clusters + 1;
     rows_of_view job = {.settings = settings, .clusters = clusters, .counts = work->counts};
     for (uint32_t g = 0; g < groups; g++) {
         clusters[g].threshold = 0;
+        clusters[g].ties = clusters[g].quota;
     }
-    for (int bit = 15; bit >= -1; bit--) { /* in the last round the points below the threshold itself */
-        job.step = bit >= 0 ? 1u << bit : 0;
-        count_groups(views, count, &job, &work->workers, count_below);
+    for (job.shift = 16; job.shift > 0;) {
+        job.shift -= T3R_KEY_DIGIT_BITS;
+        count_groups(views, count, &job, &work->workers, count_digits);
         for (uint32_t g = 0; g < groups; g++) {
-            uint32_t below = 0;
-            for (uint32_t w = 0; w < work->workers.count; w++) {
-                below += work->counts[w].of.below[g];
-            }
-            if (bit >= 0 && below < clusters[g].quota) {
-                clusters[g].threshold += job.step;
-            } else if (bit < 0) {
-                clusters[g].ties = clusters[g].quota - below;
-            }
+            choose_digit(&job, g, work->workers.count);
         }
     }
 }
@@ -388,13 +425,19 @@ static int32_t local_density_q10(int32_t density_q10, int32_t wanted_q10)
 static void expect_points(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     const rows_of_view *job = context;
-    const t3r_view *view = job->view;
-    uint64_t *expected_q16 = job->counts[worker].of.expected_q16;
-    for (size_t i = (size_t)begin * view->width; i < (size_t)end * view->width; i++) {
-        uint32_t g = group_of(view, i, job->settings);
-        if (g < job->settings->clusters) {
-            int32_t wanted = t3r_log_wanted_q10(view->texture[i], job->settings);
-            expected_q16[g] += t3r_exp2_q16(local_density_q10(job->clusters[g].density_q10, wanted) * 64);
+    const t3r_view view = *job->view;
+    const grouping groups = grouping_of(job->settings);
+    const t3r_cluster *clusters = job->clusters;
+    t3r_group_count *counts = counts_of(job, worker);
+    for (size_t at = (size_t)begin * view.width; at < (size_t)end * view.width; at += T3R_KEY_RUN) {
+        const uint32_t run = (uint32_t)T3R_MIN((size_t)T3R_KEY_RUN, (size_t)end * view.width - at);
+        uint16_t wanted_q10[T3R_KEY_RUN];
+        find_wanted(job, view.texture + at, run, wanted_q10);
+        for (uint32_t i = 0; i < run; i++) {
+            const uint32_t g = group_of(&view, at + i, &groups);
+            if (g < groups.deferred) {
+                counts[g].of.expected_q16 += t3r_exp2_of_q10(local_density_q10(clusters[g].density_q10, wanted_q10[i]));
+            }
         }
     }
 }
@@ -404,7 +447,7 @@ static void expect_points(void *context, uint32_t begin, uint32_t end, uint32_t 
 static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
                                t3r_cluster *clusters, const t3r_budget_work *work)
 {
-    rows_of_view job = {.settings = settings, .clusters = clusters, .counts = work->counts};
+    rows_of_view job = {.kernels = work->kernels, .settings = settings, .clusters = clusters, .counts = work->counts};
     for (uint32_t g = 0; g < settings->clusters; g++) {
         clusters[g].density_q10 = (int32_t)clusters[g].threshold - T3R_KEY_ZERO;
     }
@@ -413,7 +456,7 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
         for (uint32_t g = 0; g < settings->clusters; g++) {
             uint64_t expected_q16 = 0;
             for (uint32_t w = 0; w < work->workers.count; w++) {
-                expected_q16 += work->counts[w].of.expected_q16[g];
+                expected_q16 += counts_of(&job, w)[g].of.expected_q16;
             }
             if (clusters[g].quota > 0 && expected_q16 > 0) {
                 int32_t log_ratio_q16 =
@@ -427,12 +470,13 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
 /* Ties go to the first points in the order of views and rows: one after the other. */
 static void set_masks(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
 {
+    const grouping groups = grouping_of(settings);
     for (uint32_t v = 0; v < count; v++) {
         const t3r_view *view = &views[v];
         size_t pixels = (size_t)view->width * view->height;
         memset(view->mask, 0, (pixels + 31) / 32 * sizeof *view->mask);
         for (size_t i = 0; i < pixels; i++) {
-            uint32_t g = group_of(view, i, settings);
+            uint32_t g = group_of(view, i, &groups);
             if (g == NO_GROUP) {
                 continue;
             }
@@ -502,7 +546,7 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     hold_quotas(clusters, settings->clusters + 1, settings->gaussians);
     const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
     if (!given) {
-        t3r_budget_keys(views, count, settings, &work->workers);
+        t3r_budget_keys(views, count, settings, work);
     }
     find_thresholds(views, count, settings, clusters, work);
     if (!given) {
@@ -517,7 +561,8 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
                             const t3r_cluster *clusters)
 {
-    uint32_t g = group_of(view, pixel, settings);
+    const grouping groups = grouping_of(settings);
+    uint32_t g = group_of(view, pixel, &groups);
     if (g >= settings->clusters) {
         return 0; /* retained where all others are, so that nothing about it is left for it to cover */
     }

@@ -16,9 +16,6 @@
 #include "trim3r.h"
 #include "state/views.h"
 
-/* Keys are logarithms in Q10 above this zero: where the key of a point of blue noise 1 and wanted density 1 stands. */
-#define T3R_KEY_ZERO (50 << 10)
-
 typedef struct t3r_budget_settings {
     t3r_allocation allocation;
     uint32_t gaussians;    /* Z */
@@ -30,26 +27,35 @@ typedef struct t3r_budget_settings {
     bool pass_over_covered; /* the budget is so small that points of surfaces seen twice are wanted once */
 } t3r_budget_settings;
 
-/* Counts of each group of points, one such record a worker. */
-typedef struct t3r_group_counts {
+#define T3R_KEY_DIGIT_BITS 4
+#define T3R_KEY_DIGITS (1u << T3R_KEY_DIGIT_BITS)
+
+/* What is counted of a group of points. */
+typedef struct t3r_group_count {
     union {
-        uint32_t below[T3R_MAX_CLUSTERS + 1];    /* points whose key is below a bound */
-        uint64_t expected_q16[T3R_MAX_CLUSTERS]; /* points expected by the densities */
+        uint32_t digit[T3R_KEY_DIGITS]; /* points by a digit of their keys */
+        uint64_t expected_q16;          /* points expected by the densities */
     } of;
-} t3r_group_counts;
+} t3r_group_count;
 
 typedef struct t3r_budget_work {
     t3r_workers workers;
-    t3r_group_counts *counts; /* of each worker */
+    t3r_group_count *counts; /* of each group, for each worker */
+    const t3r_kernels *kernels;
 } t3r_budget_work;
+
+/* The marks of points that are retained only once all others are. */
+static inline uint8_t t3r_deferring_marks(const t3r_budget_settings *settings)
+{
+    const uint8_t covered = settings->pass_over_covered ? T3R_MARK_COVERED : 0;
+    return settings->allocation == T3R_ALLOCATE_GIVEN ? 0 : (uint8_t)(T3R_MARK_DOUBTFUL | covered);
+}
 
 /* Whether a point is retained only once all others are: the doubtful ones, and with pass_over_covered those that
  * another view covers. Heads let the splats of other points not grow over them. None when importance is given. */
 static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
-    uint8_t validity = view->validity[pixel];
-    return settings->allocation != T3R_ALLOCATE_GIVEN &&
-           (t3r_is_doubtful(validity) || (settings->pass_over_covered && t3r_is_covered(validity)));
+    return (view->validity[pixel] & t3r_deferring_marks(settings)) != 0;
 }
 
 /* Whether Z is at most two thirds of the points that are neither doubtful nor covered by another view. */
@@ -71,7 +77,7 @@ bool t3r_are_ranked(const t3r_cluster *clusters, uint32_t cluster_count);
 /* The keys of all pixels, of which t3r_allocate() retains the smallest; log2 of the density that a texture asks for, up
  * to a constant, Q10: key = T3R_KEY_ZERO + log2 of the threshold - wanted but for sure and deferred points. */
 void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                     const t3r_workers *workers);
+                     const t3r_budget_work *work);
 int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings);
 
 /* Quotas, thresholds and masks: exactly min(Z, valid points) bits set, and at most Z whatever the clusters say. For

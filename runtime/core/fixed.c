@@ -1,6 +1,8 @@
 /* Square root, logarithm and power of two (SPEC, "Fixed-point functions"). */
 #include "fixed.h"
 
+#include "logarithm.h"
+
 #include "fixed_tables.h"
 
 const uint32_t t3r_log2_table_q20[129] = {
@@ -29,26 +31,15 @@ const uint32_t t3r_exp2_table_q20[129] = {
     1975878, 1986607, 1997394, 2008240, 2019144, 2030108, 2041131, 2052214, 2063358, 2074562, 2085826, 2097152,
 };
 
-/* entry + (next - entry) fraction, Q20; fraction Q16 below 1; a step is below 2^13.5, so the product fits */
-static uint32_t interpolate(const uint32_t *entry, uint32_t fraction_q16)
-{
-    return entry[0] + (((entry[1] - entry[0]) * fraction_q16 + 0x8000) >> 16);
-}
-
 int32_t t3r_log2_q16(uint32_t x)
 {
-    uint32_t exponent = t3r_msb32(x);
-    uint32_t mantissa = x << (31 - exponent); /* 1.31 */
-    uint32_t index = (mantissa >> 24) & 127;
-    uint32_t fraction_q16 = (mantissa >> 8) & 0xffff;
-
-    return (int32_t)(exponent << 16) + t3r_round_shift32((int32_t)interpolate(&t3r_log2_table_q20[index], fraction_q16), 4);
+    return t3r_log2_inline_q16(x);
 }
 
 uint32_t t3r_exp2_q16(int32_t x_q16)
 {
     uint32_t fraction = (uint32_t)x_q16 & 0xffff;
-    uint32_t mantissa_q20 = interpolate(&t3r_exp2_table_q20[fraction >> 9], (fraction & 511) << 7);
+    uint32_t mantissa_q20 = t3r_interpolate(t3r_exp2_table_q20, fraction >> 9, (fraction & 511) << 7);
     int32_t exponent = x_q16 >> 16;
 
     /* Q20 to Q16 and times 2^exponent; below 2^21 x 2^10 */

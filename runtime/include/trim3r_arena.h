@@ -37,7 +37,7 @@
 #define T3R_SORT_BYTES 4096          /* four histograms of 256 counts */
 #define T3R_CLUSTER_BYTES 56         /* centre and statistics of a SuperCluster */
 #define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
-#define T3R_GROUP_COUNTS_BYTES 4096  /* what the budget counts by SuperCluster */
+#define T3R_GROUP_COUNT_BYTES 64     /* what the budget counts of a SuperCluster */
 #define T3R_RATIO_BINS 512           /* of a histogram of exposure */
 #define T3R_CLUSTER_SUMS_BYTES 26624 /* sums of each worker but the first */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
@@ -262,8 +262,9 @@
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
     X(with, KEYS, "budget keys", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_BUDGET,                                       \
       T3R_STREAMS_(shape) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                               \
-    X(with, BUDGET_WORK, "counts by SuperCluster", T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_GROUP_COUNTS_BYTES,  \
-      T3R_AT_BUDGET, T3R_AT_BUDGET)                                                                                    \
+    X(with, BUDGET_WORK, "counts by SuperCluster",                                                                     \
+      T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_GROUP_COUNT_BYTES, T3R_AT_BUDGET,    \
+      T3R_AT_BUDGET)                                                                                                   \
     X(with, HEAD_WORK, "head work",                                                                                    \
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) *                                                                       \
           T3R_UP_(T3R_HEAD_WORK_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_COLUMN_BYTES_(shape))),                    \

@@ -15,6 +15,7 @@
 #include "census.h"
 #include "convolve.h"
 #include "image_rows.h"
+#include "keys.h"
 #include "nearest.h"
 #include "path_row.h"
 #include "place.h"
@@ -66,6 +67,8 @@ typedef struct t3r_kernels {
     t3r_nearest_kernel *nearest;
     t3r_blur_row_kernel *blur_row;
     t3r_blur_column_kernel *blur_column;
+    t3r_wanted_row_kernel *wanted_row;
+    t3r_key_row_kernel *key_row;
     /* head */
     t3r_convolve_kernel *convolve;
     t3r_depthwise_kernel *depthwise;

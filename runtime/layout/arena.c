@@ -15,7 +15,7 @@ _Static_assert(sizeof(t3r_splat) == T3R_SPLAT_BYTES, "trim3r_arena.h knows the s
 _Static_assert(sizeof(t3r_cluster) == T3R_CLUSTER_BYTES, "trim3r_arena.h knows the SuperCluster's size");
 _Static_assert(sizeof(t3r_cluster_work) <= T3R_CLUSTER_WORK_BYTES, "trim3r_arena.h knows the K-means' work");
 _Static_assert(sizeof(t3r_cluster_sums) == T3R_CLUSTER_SUMS_BYTES, "trim3r_arena.h knows the K-means' sums");
-_Static_assert(sizeof(t3r_group_counts) == T3R_GROUP_COUNTS_BYTES, "trim3r_arena.h knows the budget's counts");
+_Static_assert(sizeof(t3r_group_count) == T3R_GROUP_COUNT_BYTES, "trim3r_arena.h knows the budget's counts");
 _Static_assert(sizeof(t3r_refine_sums) == T3R_REFINE_SUMS_BYTES, "trim3r_arena.h knows refinement's sums");
 _Static_assert(sizeof(t3r_wanted) == T3R_WANTED_BYTES, "trim3r_arena.h knows the compared tile's size");
 _Static_assert(T3R_KEPT_LEAST * sizeof(uint32_t) == T3R_KEPT_LEAST_BYTES, "trim3r_arena.h knows what a splat of a tile keeps");

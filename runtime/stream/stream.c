@@ -253,7 +253,7 @@ static t3r_budget_settings keyframe_settings(const t3r_runtime *rt)
 static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t slot, t3r_stream_report *report)
 {
     const t3r_view *view = &views[slot];
-    const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK)};
+    const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK), &rt->kernels};
     if (!t3r_progress(rt, T3R_STAGE_WAVELET, 0, 1)) {
         return T3R_ERR_CANCELLED;
     }
@@ -264,7 +264,7 @@ static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t sl
 
     t3r_budget_settings settings = keyframe_settings(rt);
     t3r_map map = t3r_map_of(rt);
-    t3r_budget_keys(view, 1, &settings, &work.workers);
+    t3r_budget_keys(view, 1, &settings, &work);
     t3r_map_cut cut = t3r_map_compete(&map, view, &settings, rt->config.gaussians);
     settings.gaussians = cut.added;
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);

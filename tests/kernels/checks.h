@@ -16,7 +16,7 @@ kernel_check check_luma_row, check_split_row, check_db2_predict, check_db2_updat
 kernel_check check_haar_update, check_cdf53_predict, check_cdf53_update;
 kernel_check check_texture_finest, check_texture_coarse, check_texture_add, check_texture_spread;
 kernel_check check_sample_potential, check_sample_approach, check_nearest;
-kernel_check check_blur_row, check_blur_column;
+kernel_check check_blur_row, check_blur_column, check_wanted_row, check_key_row;
 kernel_check check_convolve, check_depthwise, check_convolve_packed;
 kernel_check check_project, check_radix_count, check_radix_pass;
 kernel_check check_place, check_blend, check_blend_keep, check_scatter, check_solve;

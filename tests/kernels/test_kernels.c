@@ -41,6 +41,8 @@
     X(nearest, check_nearest)                                                                                          \
     X(blur_row, check_blur_row)                                                                                        \
     X(blur_column, check_blur_column)                                                                                  \
+    X(wanted_row, check_wanted_row)                                                                                    \
+    X(key_row, check_key_row)                                                                                          \
     X(convolve, check_convolve)                                                                                        \
     X(depthwise, check_depthwise)                                                                                      \
     X(pack_layer, check_convolve_packed)                                                                               \

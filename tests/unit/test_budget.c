@@ -13,8 +13,8 @@
 enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };
 
 /* One worker. */
-static t3r_group_counts counts;
-static const t3r_budget_work alone = {{NULL, 1}, &counts};
+static t3r_group_count counts[T3R_MAX_CLUSTERS + 1];
+static const t3r_budget_work alone = {{NULL, 1}, counts, &t3r_kernels_c};
 
 static uint16_t texture[PIXELS], key[PIXELS], label[PIXELS];
 static uint8_t validity[PIXELS];

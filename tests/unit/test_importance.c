@@ -27,8 +27,8 @@ enum {
 };
 
 /* One worker. */
-static t3r_group_counts counts;
-static const t3r_budget_work alone = {{NULL, 1}, &counts};
+static t3r_group_count counts[T3R_MAX_CLUSTERS + 1];
+static const t3r_budget_work alone = {{NULL, 1}, counts, &t3r_kernels_c};
 
 static uint16_t texture[VIEWS][PIXELS], key[VIEWS][PIXELS], label[VIEWS][PIXELS];
 static uint8_t validity[VIEWS][PIXELS];

@@ -62,6 +62,8 @@
     X(nearest, T3R_CPU_X86_VNNI_, t3r_nearest_vnni)                                                                    \
     X(blur_row, T3R_CPU_AVX2, t3r_blur_row_avx2)                                                                       \
     X(blur_column, T3R_CPU_AVX2, t3r_blur_column_avx2)                                                                 \
+    X(wanted_row, T3R_CPU_AVX2, t3r_wanted_row_avx2)                                                                   \
+    X(key_row, T3R_CPU_AVX2, t3r_key_row_avx2)                                                                         \
     X(convolve, T3R_CPU_AVX2, t3r_convolve_avx2)                                                                       \
     X(depthwise, T3R_CPU_AVX2, t3r_depthwise_avx2)                                                                     \
     X(pack_layer, T3R_CPU_AVX2, t3r_pack_layer_avx2)                                                                   \
