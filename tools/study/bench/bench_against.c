@@ -10,6 +10,7 @@
 #include "cli/json_output.h"
 #include "cli/other_program.h"
 #include "file_bytes.h"
+#include "study/bench/spread.h"
 
 #define ERROR_BYTES 512
 #define LIST_BYTES 1024
@@ -201,22 +202,6 @@ static int take_turns(contest_state *s)
 
 /* ---- what came of it -----------------------------------------------------------------------------------------------
  */
-
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-typedef struct spread {
-    double median, least, most;
-} spread;
-
-static spread spread_of(double *values, uint32_t count)
-{
-    qsort(values, count, sizeof *values, compare_doubles);
-    return (spread){(values[(count - 1) / 2] + values[count / 2]) / 2, values[0], values[count - 1]};
-}
 
 /* How many times as fast this program is, of each turn's pair. */
 static spread ratio_of(const contest_state *s, uint32_t stage)

@@ -19,6 +19,20 @@ COLOUR_SCENES = ("clip_nyu_2", "clip_scannet_0", "clip_kitti_0", "strecha_founta
 COLOUR_CASES = 4  # triplets of a scene
 
 
+def processor():
+    """Its name, as the system has it."""
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        names = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
+    return names[0] if names else "an unnamed processor"
+
+
+def compiler():
+    """What made PROGRAM."""
+    with open(os.path.join(os.path.dirname(PROGRAM), "CMakeCache.txt"), encoding="utf-8") as file:
+        path = next(line.split("=", 1)[1].strip() for line in file if line.startswith("CMAKE_C_COMPILER:"))
+    return subprocess.run([path, "--version"], check=True, capture_output=True, text=True).stdout.splitlines()[0]
+
+
 class Measurements:
     """Files that commands make, a run of `trim3r eval` that was cut off going on where it stopped."""
 

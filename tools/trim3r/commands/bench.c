@@ -12,6 +12,7 @@
 #include "study/bench/bench_kernels.h"
 #include "study/bench/bench_stages.h"
 #include "study/bench/cpu_flags.h"
+#include "study/bench/spread.h"
 #include "reconstruction/chosen_head.h"
 #include "cli/cli.h"
 #include "cli/file_options.h"
@@ -143,7 +144,8 @@ static int choose_stages(const char *list, bool chosen[BENCH_STAGES_MOST])
 typedef struct row {
     const bench_stage *stage; /* NULL: it is not chosen */
     double items;             /* that a run handles; 0 = they are not counted */
-    double seconds[MAX_RUNS]; /* sorted in the end */
+    double seconds[MAX_RUNS];
+    spread taken; /* of them */
 } row;
 
 static int open_rows(bench_work *w, const bool chosen[BENCH_STAGES_MOST], row rows[BENCH_STAGES_MOST])
@@ -166,12 +168,6 @@ static double seconds_of(clockid_t clock)
     struct timespec now;
     clock_gettime(clock, &now);
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 /* Round after round through all rows, so that a slow moment of the machine hits each alike; the first is not counted.
@@ -197,7 +193,7 @@ static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGE
     }
     cli_progress_end();
     for (uint32_t s = 0; s < BENCH_STAGES_MOST; s++) {
-        qsort(rows[s].seconds, o->runs, sizeof rows[s].seconds[0], compare_doubles);
+        rows[s].taken = spread_of(rows[s].seconds, o->runs);
         rows[s].items = rows[s].stage != NULL && rows[s].stage->items != NULL ? rows[s].stage->items(w) : 0;
     }
     return CLI_OK;
@@ -210,16 +206,15 @@ typedef struct figures {
     double each_ns;             /* of an item, at the median */
 } figures;
 
-static figures figures_of(const row *r, uint32_t runs)
+static figures figures_of(const row *r)
 {
-    const double median = (r->seconds[(runs - 1) / 2] + r->seconds[runs / 2]) / 2;
-    const double first = bench_stage_figure(r->stage, r->seconds[0], r->items);
-    const double last = bench_stage_figure(r->stage, r->seconds[runs - 1], r->items);
+    const double first = bench_stage_figure(r->stage, r->taken.least, r->items);
+    const double last = bench_stage_figure(r->stage, r->taken.most, r->items);
     return (figures){
-        .median = bench_stage_figure(r->stage, median, r->items),
+        .median = bench_stage_figure(r->stage, r->taken.median, r->items),
         .least = first < last ? first : last, /* a rate is highest where the time is least */
         .most = first < last ? last : first,
-        .each_ns = r->items > 0 ? median * 1e9 / r->items : 0,
+        .each_ns = r->items > 0 ? r->taken.median * 1e9 / r->items : 0,
     };
 }
 
@@ -234,7 +229,7 @@ static bool are_clustered(const row rows[BENCH_STAGES_MOST])
     return false;
 }
 
-static void print_text(const bench_work *w, const bench_options *o, const row rows[BENCH_STAGES_MOST])
+static void print_text(const bench_work *w, const row rows[BENCH_STAGES_MOST])
 {
     char flags[CPU_FLAGS_BYTES];
     for (int s = 0; s < BENCH_STAGES_MOST; s++) {
@@ -242,14 +237,14 @@ static void print_text(const bench_work *w, const bench_options *o, const row ro
         if (stage == NULL) {
             continue;
         }
-        const figures f = figures_of(&rows[s], o->runs);
-        char spread[40];
-        snprintf(spread, sizeof spread, "(%.3f to %.3f)", f.least, f.most);
+        const figures f = figures_of(&rows[s]);
+        char range[40];
+        snprintf(range, sizeof range, "(%.3f to %.3f)", f.least, f.most);
         printf("%-22s %9.3f  ", stage->key, f.median);
         if (stage->each != NULL) {
-            printf("%-22s %9.3f %s\n", spread, f.each_ns, stage->each);
+            printf("%-22s %9.3f %s\n", range, f.each_ns, stage->each);
         } else {
-            printf("%s\n", spread);
+            printf("%s\n", range);
         }
     }
     if (are_clustered(rows)) {
@@ -271,7 +266,7 @@ static void print_json(const bench_work *w, const bench_options *o, const row ro
         if (stage == NULL) {
             continue;
         }
-        const figures f = figures_of(&rows[s], o->runs);
+        const figures f = figures_of(&rows[s]);
         cJSON_AddNumberToObject(root, stage->key, f.median);
         snprintf(key, sizeof key, "%s_min", stage->key);
         cJSON_AddNumberToObject(root, key, f.least);
@@ -313,7 +308,7 @@ static int run_alone(const bench_options *o, const bool chosen[BENCH_STAGES_MOST
     if (code == CLI_OK && o->json) {
         print_json(&w, o, rows);
     } else if (code == CLI_OK) {
-        print_text(&w, o, rows);
+        print_text(&w, rows);
     }
     bench_work_close(&w);
     free(rows);
