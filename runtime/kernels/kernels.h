@@ -50,8 +50,9 @@ typedef struct t3r_kernels {
     t3r_luma_row_kernel *luma_row;
     t3r_split_row_kernel *split_row;
     t3r_db2_predict_kernel *db2_predict;
-    t3r_db2_update_kernel *db2_update;
-    t3r_add_row_kernel *add_row;
+    t3r_db2_lift_kernel *db2_lift;
+    t3r_db2_split_kernel *db2_split;
+    t3r_db2_join_kernel *db2_join;
     t3r_subtract_row_kernel *subtract_row;
     t3r_haar_update_kernel *haar_update;
     t3r_cdf53_predict_kernel *cdf53_predict;

@@ -24,25 +24,51 @@ void t3r_luma_row_c(int16_t *restrict row, const uint8_t *restrict r, const uint
     }
 }
 
+static inline int16_t predicted(int16_t high, int16_t low)
+{
+    return (int16_t)(high - 2 * low + t3r_mulr_q15_small(low, T3R_DB2_PREDICT_Q15));
+}
+
+static inline int16_t updated(int16_t low, int16_t high, int16_t high_next)
+{
+    return (int16_t)(low + t3r_mulr_q15_small(high, T3R_DB2_UPDATE_Q15) -
+                     t3r_mulr_q15_small(high_next, T3R_DB2_UPDATE_NEXT_Q15));
+}
+
 void t3r_db2_predict_c(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        high[i] = (int16_t)(high[i] - 2 * low[i] + t3r_mulr_q15_small(low[i], T3R_DB2_PREDICT_Q15));
+        high[i] = predicted(high[i], low[i]);
     }
 }
 
-void t3r_db2_update_c(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count)
+void t3r_db2_lift_c(int16_t *restrict low, int16_t *high, const int16_t *high_next,
+                    const int16_t *restrict low_previous, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        low[i] = (int16_t)(low[i] + t3r_mulr_q15_small(high[i], T3R_DB2_UPDATE_Q15) -
-                           t3r_mulr_q15_small(high_next[i], T3R_DB2_UPDATE_NEXT_Q15));
+        const int16_t before = high[i];
+        low[i] = updated(low[i], before, high_next[i]);
+        high[i] = (int16_t)(before + low_previous[i]);
     }
 }
 
-void t3r_add_row_c(int16_t *restrict high, const int16_t *restrict low, size_t count)
+void t3r_db2_split_c(int16_t *restrict low, int16_t *restrict high, const int16_t *restrict row, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        high[i] = (int16_t)(high[i] + low[i]);
+        const int16_t first = row[2 * i];
+        low[i] = first;
+        high[i] = predicted(row[2 * i + 1], first);
+    }
+}
+
+void t3r_db2_join_c(int16_t *restrict lows, int16_t *restrict highs, const int16_t *restrict low,
+                    const int16_t *restrict high, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        lows[i + 1] = updated(low[i], high[i], high[i + 1]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        highs[i] = (int16_t)(high[i] + lows[i]);
     }
 }
 

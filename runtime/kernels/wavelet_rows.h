@@ -32,12 +32,18 @@ typedef void t3r_split_row_kernel(int16_t *restrict even, int16_t *restrict odd,
 typedef void t3r_luma_row_kernel(int16_t *restrict row, const uint8_t *restrict r, const uint8_t *restrict g,
                                  const uint8_t *restrict b, size_t count);
 
-/* db2, 1: high -= sqrt(3) low, as 2 low - mulr(low, 2 - sqrt 3) */
+/* db2 down the rows, 1: high -= sqrt(3) low, as 2 low - mulr(low, 2 - sqrt 3) */
 typedef void t3r_db2_predict_kernel(int16_t *restrict high, const int16_t *restrict low, size_t count);
-/* db2, 2: low += mulr(high, sqrt 3 / 4) - mulr(next high, (2 - sqrt 3) / 4) */
-typedef void t3r_db2_update_kernel(int16_t *restrict low, const int16_t *high, const int16_t *high_next, size_t count);
-/* db2, 3: high += previous low */
-typedef void t3r_add_row_kernel(int16_t *restrict high, const int16_t *restrict low, size_t count);
+/* 2: low += mulr(high, sqrt 3 / 4) - mulr(next high, (2 - sqrt 3) / 4), and then 3: high += previous low, which is no row
+ * of the others. The next high may be the high itself. */
+typedef void t3r_db2_lift_kernel(int16_t *restrict low, int16_t *high, const int16_t *high_next,
+                                 const int16_t *restrict low_previous, size_t count);
+/* db2 along a row, split_row and 1: low[i] = row[2 i], high[i] = row[2 i + 1] less sqrt(3) low[i] */
+typedef void t3r_db2_split_kernel(int16_t *restrict low, int16_t *restrict high, const int16_t *restrict row,
+                                  size_t count);
+/* 2 and 3: lows[i + 1] of low[i], high[i] and high[i + 1]; then highs[i] = high[i] + lows[i]. lows[0] is given. */
+typedef void t3r_db2_join_kernel(int16_t *restrict lows, int16_t *restrict highs, const int16_t *restrict low,
+                                 const int16_t *restrict high, size_t count);
 typedef void t3r_subtract_row_kernel(int16_t *restrict high, const int16_t *restrict low, size_t count);
 /* Seldom called, and so not in the table. db2, the first sample, which has no partner: x0 -= mulr(x1, 2 - sqrt 3) */
 void t3r_row_db2_first(int16_t *restrict x0, const int16_t *restrict x1, size_t count);
@@ -70,8 +76,9 @@ typedef void t3r_texture_spread_kernel(uint16_t *restrict fine, const uint16_t *
 t3r_split_row_kernel t3r_split_row_c;
 t3r_luma_row_kernel t3r_luma_row_c;
 t3r_db2_predict_kernel t3r_db2_predict_c;
-t3r_db2_update_kernel t3r_db2_update_c;
-t3r_add_row_kernel t3r_add_row_c;
+t3r_db2_lift_kernel t3r_db2_lift_c;
+t3r_db2_split_kernel t3r_db2_split_c;
+t3r_db2_join_kernel t3r_db2_join_c;
 t3r_subtract_row_kernel t3r_subtract_row_c;
 t3r_haar_update_kernel t3r_haar_update_c;
 t3r_cdf53_predict_kernel t3r_cdf53_predict_c;

@@ -32,27 +32,23 @@ static void store_halves(int16_t *row, halves x)
     memcpy(row + x.lows, x.high, x.highs * sizeof(int16_t));
 }
 
-/* ---- db2: low[n] holds a[n], then s[n]; high[n - 1] holds b[n], d1[n], then d[n - 1] -------------------- */
+/* ---- db2: low[n - 1] holds a[n], high[n - 1] b[n], then d1[n]; the row gets s[n], then d[n - 1] ---------------------- */
 
 static void forward_db2(int16_t *row, halves x)
 {
-    uint32_t width = x.lows + x.highs, pairs = (width - 1) / 2;
-    int16_t *last = &x.low[pairs + 1]; /* the sample that an even width leaves */
+    const uint32_t width = x.lows + x.highs, pairs = (width - 1) / 2;
+    int16_t last = row[width - 1]; /* the sample that an even width leaves */
 
-    x.kernels->split_row(x.low + 1, x.high, row + 1, width - 1);
-    x.low[0] = row[0];
     if (width % 2 == 0) {
-        t3r_row_db2_last(last, &x.high[pairs - 1], &x.low[pairs], 1);
+        t3r_row_db2_last(&last, &row[width - 2], &row[width - 3], 1);
     }
-    t3r_row_db2_first(x.low, x.low + 1, 1);
-    x.kernels->db2_predict(x.high, x.low + 1, pairs);
+    x.kernels->db2_split(x.low, x.high, row + 1, pairs);
     x.high[pairs] = x.high[pairs - 1];
-    x.kernels->db2_update(x.low + 1, x.high, x.high + 1, pairs);
-    x.kernels->add_row(x.high, x.low, pairs);
+    t3r_row_db2_first(row, x.low, 1);
+    x.kernels->db2_join(row, row + x.lows, x.low, x.high, pairs);
     if (width % 2 == 0) {
-        x.high[pairs] = *last;
+        row[width - 1] = last;
     }
-    store_halves(row, x);
 }
 
 /* ---- Haar and CDF 5/3: lows are the even samples, highs the odd ones ------------------------------------ */

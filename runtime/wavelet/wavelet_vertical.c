@@ -52,8 +52,7 @@ static void forward_db2(const t3r_level *x)
         if (n < pairs) {
             predict_pair(x, n + 1);
         }
-        x->kernels->db2_update(a_row(x, n), b_row(x, n), b_row(x, T3R_MIN(n + 1, pairs)), x->width);
-        x->kernels->add_row(b_row(x, n), a_row(x, n - 1), x->width);
+        x->kernels->db2_lift(a_row(x, n), b_row(x, n), b_row(x, T3R_MIN(n + 1, pairs)), a_row(x, n - 1), x->width);
     }
 }
 

@@ -71,13 +71,68 @@ const char *check_split_row(const t3r_kernels *kernels, uint64_t *seed)
         return NULL;                                                                                                   \
     }
 LIFT(db2_predict, db2_predict(to, a, count), t - 2 * x + rounded(x * T3R_DB2_PREDICT_Q15, 15))
-LIFT(db2_update, db2_update(to, a, b, count),
-     t + rounded(x * T3R_DB2_UPDATE_Q15, 15) - rounded(y * T3R_DB2_UPDATE_NEXT_Q15, 15))
-LIFT(add_row, add_row(to, a, count), t + x)
 LIFT(subtract_row, subtract_row(to, a, count), t - x)
 LIFT(haar_update, haar_update(to, a, count), t + rounded(x, 1))
 LIFT(cdf53_predict, cdf53_predict(to, a, b, count), t - rounded(x + y, 1))
 LIFT(cdf53_update, cdf53_update(to, a, b, count), t + rounded(x + y, 2))
+
+static int16_t updated(int64_t low, int64_t high, int64_t next)
+{
+    return (int16_t)(uint16_t)(low + rounded(high * T3R_DB2_UPDATE_Q15, 15) -
+                               rounded(next * T3R_DB2_UPDATE_NEXT_Q15, 15));
+}
+
+const char *check_db2_lift(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = any_length(seed, MOST);
+    int16_t *low = random_row(seed, count), *high = random_row(seed, count), before[2][MOST], next_before[MOST];
+    const int16_t *previous = random_row(seed, count), *other = random_row(seed, count);
+    const int16_t *next = unit_random(seed) % 4 == 0 ? high : other;
+    memcpy(before[0], low, count * sizeof *low);
+    memcpy(before[1], high, count * sizeof *high);
+    memcpy(next_before, next, count * sizeof *next);
+    kernels->db2_lift(low, high, next, previous, count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (low[i] != updated(before[0][i], before[1][i], next_before[i]) ||
+            high[i] != (int16_t)(uint16_t)(before[1][i] + previous[i])) {
+            return "a sample differs";
+        }
+    }
+    return NULL;
+}
+
+const char *check_db2_split(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = any_length(seed, MOST / 2);
+    const int16_t *row = random_row(seed, 2 * count);
+    int16_t *low = guarded_take(count * 2, 2), *high = guarded_take(count * 2, 2);
+    kernels->db2_split(low, high, row, count);
+    for (uint32_t i = 0; i < count; i++) {
+        const int64_t first = row[2 * i];
+        const int64_t made = row[2 * i + 1] - 2 * first + rounded(first * T3R_DB2_PREDICT_Q15, 15);
+        if (low[i] != first || high[i] != (int16_t)(uint16_t)made) {
+            return "a sample differs";
+        }
+    }
+    return NULL;
+}
+
+/* Both halves lie in one row. */
+const char *check_db2_join(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = any_length(seed, MOST / 2), between = (uint32_t)unit_between(seed, 0, 2);
+    const int16_t *low = random_row(seed, count), *high = random_row(seed, count + 1);
+    int16_t *lows = random_row(seed, count + 1 + between + count), *highs = lows + count + 1 + between;
+    const int16_t first = lows[0];
+    kernels->db2_join(lows, highs, low, high, count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (lows[i + 1] != updated(low[i], high[i], high[i + 1]) ||
+            highs[i] != (int16_t)(uint16_t)(high[i] + lows[i])) {
+            return "a sample differs";
+        }
+    }
+    return lows[0] == first ? NULL : "the first sample differs";
+}
 
 /* Coefficients within the bounds of wavelet_texture.c. */
 static int16_t *coefficients(uint64_t *seed, size_t count, int64_t most)

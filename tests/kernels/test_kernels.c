@@ -25,8 +25,9 @@
     X(luma_row, check_luma_row)                                                                                        \
     X(split_row, check_split_row)                                                                                      \
     X(db2_predict, check_db2_predict)                                                                                  \
-    X(db2_update, check_db2_update)                                                                                    \
-    X(add_row, check_add_row)                                                                                          \
+    X(db2_lift, check_db2_lift)                                                                                        \
+    X(db2_split, check_db2_split)                                                                                      \
+    X(db2_join, check_db2_join)                                                                                        \
     X(subtract_row, check_subtract_row)                                                                                \
     X(haar_update, check_haar_update)                                                                                  \
     X(cdf53_predict, check_cdf53_predict)                                                                              \
@@ -183,7 +184,7 @@ static void rounds_down(const uint16_t *const rows[T3R_BLUR_TAPS], uint32_t widt
 
 static void writes_whole_vectors(int16_t *restrict high, const int16_t *restrict low, size_t count)
 {
-    t3r_add_row_c(high, low, count);
+    t3r_subtract_row_c(high, low, count);
     if (count % 8 == 7) {
         high[count] = 0;
     }
@@ -230,12 +231,12 @@ static void wrong_ones_are_found(void **state)
 {
     (void)state;
     t3r_kernels wrong[6];
-    static const char *const entry[6] = {"blur_column", "add_row", "texture_spread", "blend", "nearest", "convolve"};
+    static const char *const entry[6] = {"blur_column", "subtract_row", "texture_spread", "blend", "nearest", "convolve"};
     for (int i = 0; i < 6; i++) {
         wrong[i] = t3r_kernels_c;
     }
     wrong[0].blur_column = rounds_down;
-    wrong[1].add_row = writes_whole_vectors;
+    wrong[1].subtract_row = writes_whole_vectors;
     wrong[2].texture_spread = reads_whole_vectors;
     wrong[3].blend = bends_the_opacity;
     wrong[4].nearest = takes_the_last;

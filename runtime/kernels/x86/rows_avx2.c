@@ -36,8 +36,9 @@
 #define t3r_luma_row_c t3r_luma_row_avx2
 #define t3r_split_row_c t3r_split_row_avx2
 #define t3r_db2_predict_c t3r_db2_predict_avx2
-#define t3r_db2_update_c t3r_db2_update_avx2
-#define t3r_add_row_c t3r_add_row_avx2
+#define t3r_db2_lift_c t3r_db2_lift_avx2
+#define t3r_db2_split_c t3r_db2_split_avx2
+#define t3r_db2_join_c t3r_db2_join_avx2
 #define t3r_subtract_row_c t3r_subtract_row_avx2
 #define t3r_haar_update_c t3r_haar_update_avx2
 #define t3r_cdf53_predict_c t3r_cdf53_predict_avx2

@@ -43,8 +43,9 @@
     X(luma_row, T3R_CPU_AVX2, t3r_luma_row_avx2)                                                                       \
     X(split_row, T3R_CPU_AVX2, t3r_split_row_avx2)                                                                     \
     X(db2_predict, T3R_CPU_AVX2, t3r_db2_predict_avx2)                                                                 \
-    X(db2_update, T3R_CPU_AVX2, t3r_db2_update_avx2)                                                                   \
-    X(add_row, T3R_CPU_AVX2, t3r_add_row_avx2)                                                                         \
+    X(db2_lift, T3R_CPU_AVX2, t3r_db2_lift_avx2)                                                                       \
+    X(db2_split, T3R_CPU_AVX2, t3r_db2_split_avx2)                                                                     \
+    X(db2_join, T3R_CPU_AVX2, t3r_db2_join_avx2)                                                                       \
     X(subtract_row, T3R_CPU_AVX2, t3r_subtract_row_avx2)                                                               \
     X(haar_update, T3R_CPU_AVX2, t3r_haar_update_avx2)                                                                 \
     X(cdf53_predict, T3R_CPU_AVX2, t3r_cdf53_predict_avx2)                                                             \
