@@ -21,13 +21,15 @@
 
 /* ---- of how many ---- */
 
-#define T3R_LIMIT_FRAMES 100000        /* of a folder */
-#define T3R_LIMIT_TRIPLETS 1048576     /* of a folder or a recording */
-#define T3R_LIMIT_POSES 2097152        /* of a trajectory */
-#define T3R_LIMIT_PICTURES 1000000     /* lines of a list of pictures */
-#define T3R_LIMIT_JSON_VALUES 3000000  /* of a JSON text: each takes up to 144 bytes of memory with its key and text */
-#define T3R_LIMIT_JPEG_SCANS 32        /* cameras and programs write 10 or so */
-#define T3R_LIMIT_VIEWS_OF_POINTS 1000 /* pointmaps in a file */
+#define T3R_LIMIT_FRAMES 100000         /* of a folder */
+#define T3R_LIMIT_TRIPLETS 1048576      /* of a folder or a recording */
+#define T3R_LIMIT_POSES 2097152         /* of a trajectory */
+#define T3R_LIMIT_PICTURES 1000000      /* lines of a list of pictures */
+#define T3R_LIMIT_JSON_VALUES 3000000   /* of a JSON text: each takes up to 144 bytes of memory with its key and text */
+#define T3R_LIMIT_JPEG_SCANS 32         /* cameras and programs write 10 or so */
+#define T3R_LIMIT_VIEWS_OF_POINTS 1000  /* pointmaps in a file */
+#define T3R_LIMIT_TRANSFORM_FRAMES 1024 /* frames that the transforms of a bag name ... */
+#define T3R_LIMIT_TRANSFORM_DEPTH 64    /* ... and of these one above the other */
 
 /* ---- of bytes ---- */
 

@@ -6,6 +6,7 @@
 #include "recording_index.h"
 
 #define NO_STREAM T3R_NO_STREAM
+#define MOST_LEVELS 8u /* of a topic that are looked at, so that names of slashes cost no more */
 
 const char *const t3r_stream_use_names[T3R_USE_COUNT] = {
     "", "colour", "depth", "camera_info", "camera_info of depth", "pose", "transforms"};
@@ -75,14 +76,23 @@ static uint32_t depth_rank(const t3r_recording *recording, size_t i)
     return 1 + (stream->compressed ? 0u : 1u) + (t3r_text_same(stream->frame_id, colour->frame_id) ? 2u : 0u);
 }
 
+static size_t prefix_above(const t3r_stream *stream, size_t prefix)
+{
+    do {
+        prefix--;
+    } while (prefix > 0 && stream->topic[prefix - 1] != '/');
+    return prefix;
+}
+
 /* Below the longest prefix of the colour topic that has any; the only one where that is the root. */
 static size_t choose_depth(const t3r_recording *recording)
 {
     const t3r_stream *colour = &recording->streams[recording->colour];
-    for (size_t prefix = prefix_bytes(colour); prefix > 1; prefix--) {
+    size_t prefix = prefix_bytes(colour);
+    for (uint32_t levels = 0; prefix > 1 && levels < MOST_LEVELS; levels++, prefix = prefix_above(colour, prefix)) {
         size_t best = NO_STREAM;
         uint32_t best_rank = 0;
-        for (size_t i = 0; colour->topic[prefix - 1] == '/' && i < recording->stream_count; i++) {
+        for (size_t i = 0; i < recording->stream_count; i++) {
             bool candidate =
                 has_role(recording, i, T3R_STREAM_DEPTH) && is_below(&recording->streams[i], colour, prefix);
             if (candidate && depth_rank(recording, i) > best_rank) {
@@ -187,10 +197,11 @@ static void mark_all(t3r_recording *recording)
     mark(recording, recording->camera_info, T3R_USE_CAMERA_INFO);
     mark(recording, recording->depth_camera_info, T3R_USE_DEPTH_CAMERA_INFO);
     mark(recording, recording->pose, T3R_USE_POSE);
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        t3r_stream *stream = &recording->streams[i];
-        if (stream->role == T3R_STREAM_TF && recording->colour != NO_STREAM && needs_transforms(recording)) {
-            stream->use = T3R_USE_TRANSFORMS;
+    bool transforms = recording->colour != NO_STREAM && needs_transforms(recording);
+    for (size_t i = 0; i < recording->stream_count && transforms; i++) {
+        if (has_role(recording, i, T3R_STREAM_TF)) {
+            mark(recording, i, T3R_USE_TRANSFORMS);
+            recording->transforms = recording->transforms == NO_STREAM ? i : recording->transforms;
         }
     }
     for (size_t i = 0; i < recording->stream_count; i++) {

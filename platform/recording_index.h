@@ -68,6 +68,7 @@ struct t3r_recording {
     t3r_stream *streams;
     size_t stream_count, stream_capacity;
     size_t colour, depth, pose, camera_info, depth_camera_info; /* the streams chosen, or T3R_NO_STREAM */
+    size_t transforms; /* the first of them */
     int64_t pair_ns;
     t3r_image_decoder decoder; /* decode NULL: none */
 

@@ -109,12 +109,14 @@ t3r_recording_cut t3r_recording_cut_of(const t3r_recording *recording)
 
 size_t t3r_recording_stream_for(const t3r_recording *recording, t3r_stream_use use)
 {
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        if (recording->streams[i].use == use) {
-            return i;
-        }
-    }
-    return T3R_NO_STREAM;
+    const size_t chosen[T3R_USE_COUNT] = {[T3R_USE_NONE] = T3R_NO_STREAM,
+                                          [T3R_USE_COLOUR] = recording->colour,
+                                          [T3R_USE_DEPTH] = recording->depth,
+                                          [T3R_USE_CAMERA_INFO] = recording->camera_info,
+                                          [T3R_USE_DEPTH_CAMERA_INFO] = recording->depth_camera_info,
+                                          [T3R_USE_POSE] = recording->pose,
+                                          [T3R_USE_TRANSFORMS] = recording->transforms};
+    return chosen[use];
 }
 
 uint32_t t3r_recording_message_count(const t3r_recording *recording, size_t stream)

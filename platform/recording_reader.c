@@ -291,7 +291,7 @@ static t3r_recording *parse(const uint8_t *bytes, size_t count, const t3r_record
         return NULL;
     }
     recording->colour = recording->depth = recording->pose = T3R_NO_STREAM;
-    recording->camera_info = recording->depth_camera_info = T3R_NO_STREAM;
+    recording->camera_info = recording->depth_camera_info = recording->transforms = T3R_NO_STREAM;
     recording->depth_unit_q40 = DEFAULT_DEPTH_UNIT_Q40;
     memcpy(recording->clock, "unknown", sizeof "unknown");
     if (index_bytes(recording, bytes, count, choice, error, error_bytes) != 0) {

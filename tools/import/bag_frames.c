@@ -296,6 +296,35 @@ static int depth_lens(const bag_frames *b, uint32_t index, const t3r_frame *fram
     return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "camera_info of depth: %s", wrong);
 }
 
+/* Registered depth in the place of the frame's. False: out of memory. */
+static bool put_registered(bag_frames *b, uint32_t index, t3r_frame *f, const lens *depth, const lens *colour,
+                           const rigid *from_depth)
+{
+    const uint8_t *const of[3] = {t3r_recording_frame_message(b->recording, index, T3R_USE_DEPTH).data,
+                                  t3r_recording_frame_message(b->recording, index, T3R_USE_CAMERA_INFO).data,
+                                  t3r_recording_frame_message(b->recording, index, T3R_USE_DEPTH_CAMERA_INFO).data};
+    uint32_t width, height;
+    register_depth_size(f, &width, &height);
+    bool same = b->depth != NULL && memcmp(of, b->depth_of, sizeof of) == 0 &&
+                memcmp(from_depth, &b->depth_place, sizeof *from_depth) == 0;
+    if (!same) {
+        free(b->depth);
+        b->depth = malloc((size_t)width * height * 2);
+        if (b->depth == NULL || !ray_grid_make(&b->rays, depth, f->depth_width, f->depth_height, of[2])) {
+            return false;
+        }
+        register_depth(f, &b->rays, colour, from_depth, b->depth);
+        memcpy(b->depth_of, of, sizeof of);
+        b->depth_place = *from_depth;
+    }
+    f->depth = b->depth;
+    f->depth_width = width;
+    f->depth_height = height;
+    f->depth_stride_bytes = width * 2;
+    b->registered++;
+    return true;
+}
+
 static int make_depth(bag_frames *b, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
     t3r_frame *f = &frame->frame;
@@ -323,19 +352,8 @@ static int make_depth(bag_frames *b, uint32_t index, t3r_capture_frame *frame, c
         drop_depth(b, f);
         return 0;
     }
-    uint32_t width, height;
-    register_depth_size(f, &width, &height);
-    free(b->depth);
-    b->depth = malloc((size_t)width * height * 2);
-    if (b->depth == NULL || !register_depth(f, &depth, &colour, &from_depth, b->depth)) {
-        return t3r_reason(error, error_bytes, "out of memory");
-    }
-    f->depth = b->depth;
-    f->depth_width = width;
-    f->depth_height = height;
-    f->depth_stride_bytes = width * 2;
-    b->registered++;
-    return 0;
+    return put_registered(b, index, f, &depth, &colour, &from_depth) ? 0
+                                                                     : t3r_reason(error, error_bytes, "out of memory");
 }
 
 int bag_frames_make(bag_frames *b, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
@@ -352,4 +370,5 @@ void bag_frames_close(bag_frames *b)
     pose_track_free(&b->poses);
     free(b->depth);
     b->depth = NULL;
+    ray_grid_free(&b->rays);
 }

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "import/register_depth.h"
 #include "import/transform_tree.h"
 #include "recording.h"
 
@@ -22,7 +23,10 @@ typedef struct bag_frames {
     transform_tree tree;
     pose_track poses; /* of the pose topic */
     t3r_text camera, fixed, pose_parent, pose_child;
-    uint8_t *depth; /* registered, of the last frame */
+    uint8_t *depth; /* registered, of the last frame that had other depth, camera or place than the one before */
+    ray_grid rays;
+    const uint8_t *depth_of[3]; /* its messages: depth and the two camera_info */
+    rigid depth_place;
     /* counted as frames are made */
     uint32_t interpolated, composed, unposed, registered, unregistered;
     char remark[256]; /* the first reason why a frame has no pose, or its depth is left out; "" */

@@ -5,6 +5,7 @@
 
 #define STEPS 20     /* of the inverse: each brings a usual lens nearer by a factor of three or more */
 #define MARGIN 1.05  /* around the picture */
+#define ENOUGH 1e-9  /* of the inverse, in units of the focal length */
 #define WIDEST 100.0 /* radius in units of the focal length: 89.4 degrees off the axis */
 
 static void distort(const lens *l, const double in[2], double out[2])
@@ -38,6 +39,9 @@ void lens_ray(const lens *l, double u, double v, double ray[2])
         } else {
             ray[0] += seen[0] - at[0];
             ray[1] += seen[1] - at[1];
+        }
+        if (fabs(seen[0] - at[0]) + fabs(seen[1] - at[1]) < ENOUGH) {
+            return;
         }
     }
 }

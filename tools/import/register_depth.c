@@ -28,9 +28,9 @@ typedef struct target {
 } target;
 
 /* The corner of a sample's square in the target's pixels, and its distance in front of the colour camera. */
-static bool corner(const target *t, const double ray[2], double z, double pixel[2], double *depth)
+static bool corner(const target *t, const float ray[2], double z, double pixel[2], double *depth)
 {
-    const double point[3] = {ray[0] * z, ray[1] * z, z};
+    const double point[3] = {(double)ray[0] * z, (double)ray[1] * z, z};
     double moved[3];
     rigid_apply(t->from_depth, point, moved);
     if (!lens_project(t->colour, moved, pixel)) {
@@ -61,7 +61,7 @@ static bool span(double a, double b, double widest, uint32_t count, uint32_t *fi
     return true;
 }
 
-static void draw(const target *t, const double from[2], const double to[2], double z)
+static void draw(const target *t, const float from[2], const float to[2], double z)
 {
     double a[2], b[2], depth_a, depth_b;
     uint32_t x0, x1, y0, y1;
@@ -84,7 +84,32 @@ static void draw(const target *t, const double from[2], const double to[2], doub
     }
 }
 
-bool register_depth(const t3r_frame *frame, const lens *depth, const lens *colour, const rigid *from_depth,
+bool ray_grid_make(ray_grid *grid, const lens *l, uint32_t width, uint32_t height, const void *of)
+{
+    if (grid->rays != NULL && grid->of == of && grid->width == width && grid->height == height) {
+        return true;
+    }
+    free(grid->rays);
+    *grid = (ray_grid){malloc(((size_t)width + 1) * (height + 1) * sizeof *grid->rays), width, height, of};
+    for (uint32_t y = 0; y <= height && grid->rays != NULL; y++) {
+        for (uint32_t x = 0; x <= width; x++) {
+            double ray[2];
+            lens_ray(l, x - 0.5, y - 0.5, ray);
+            float *kept = grid->rays[(size_t)y * (width + 1) + x];
+            kept[0] = (float)ray[0];
+            kept[1] = (float)ray[1];
+        }
+    }
+    return grid->rays != NULL;
+}
+
+void ray_grid_free(ray_grid *grid)
+{
+    free(grid->rays);
+    *grid = (ray_grid){0};
+}
+
+void register_depth(const t3r_frame *frame, const ray_grid *rays, const lens *colour, const rigid *from_depth,
                     uint8_t *out)
 {
     target t = {
@@ -95,27 +120,15 @@ bool register_depth(const t3r_frame *frame, const lens *depth, const lens *colou
     t.widest[0] = 4 + 2.0 * t.width / frame->depth_width;
     t.widest[1] = 4 + 2.0 * t.height / frame->depth_height;
     memset(out, 0, (size_t)t.width * t.height * 2);
-    /* the corners of a row's squares: those above, then those below */
-    double(*rays)[2] = malloc(2 * (size_t)(frame->depth_width + 1) * sizeof *rays);
-    if (rays == NULL) {
-        return false;
-    }
-    double(*above)[2] = rays, (*below)[2] = rays + frame->depth_width + 1;
-    for (uint32_t y = 0; y <= frame->depth_height; y++) {
-        for (uint32_t x = 0; x <= frame->depth_width; x++) {
-            lens_ray(depth, x - 0.5, y - 0.5, below[x]);
-        }
-        const uint8_t *row = frame->depth + (size_t)(y > 0 ? y - 1 : 0) * frame->depth_stride_bytes;
-        for (uint32_t x = 0; y > 0 && x < frame->depth_width; x++) {
+    for (uint32_t y = 0; y < frame->depth_height; y++) {
+        const uint8_t *row = frame->depth + (size_t)y * frame->depth_stride_bytes;
+        const float(*above)[2] = (const float(*)[2])rays->rays + (size_t)y * (rays->width + 1);
+        const float(*below)[2] = above + rays->width + 1;
+        for (uint32_t x = 0; x < frame->depth_width; x++) {
             uint16_t steps = t3r_load_le16(row + 2 * (size_t)x);
             if (steps > 0) {
                 draw(&t, above[x], below[x + 1], steps * t.unit);
             }
         }
-        double(*swapped)[2] = above;
-        above = below;
-        below = swapped;
     }
-    free(rays);
-    return true;
 }

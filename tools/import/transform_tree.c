@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "grow.h"
+#include "reader_limits.h"
 
-#define SLOTS (2 * TRANSFORM_FRAMES_MOST) /* a power of two; half of them stay free */
+#define SLOTS (2u * T3R_LIMIT_TRANSFORM_FRAMES) /* a power of two; half of them stay free */
 
 t3r_text transform_tree_name(t3r_text name)
 {
@@ -39,8 +40,8 @@ static uint32_t frame_of(transform_tree *tree, t3r_text name, const char **wrong
     if (*slot != 0) {
         return *slot - 1;
     }
-    if (tree->count == TRANSFORM_FRAMES_MOST) {
-        *wrong = "there are more than 4096 frames";
+    if (tree->count == T3R_LIMIT_TRANSFORM_FRAMES) {
+        *wrong = T3R_LIMIT_TEXT("there are more than ", T3R_LIMIT_TRANSFORM_FRAMES, " frames");
         return TRANSFORM_NO_FRAME;
     }
     transform_frame *grown = t3r_grow(tree->frames, tree->count, &tree->capacity, sizeof *grown);
@@ -81,8 +82,9 @@ const char *transform_tree_finish(transform_tree *tree)
     for (uint32_t i = 0; i < tree->count; i++) {
         uint32_t steps = 0;
         for (uint32_t at = i; at != TRANSFORM_NO_FRAME; at = tree->frames[at].parent) {
-            if (steps++ > TRANSFORM_DEPTH_MOST) {
-                return "a frame has more than 64 above it, or is above itself";
+            if (steps++ > T3R_LIMIT_TRANSFORM_DEPTH) {
+                return T3R_LIMIT_TEXT("a frame has more than ", T3R_LIMIT_TRANSFORM_DEPTH,
+                                      " above it, or is above itself");
             }
         }
         pose_track_sort(&tree->frames[i].track);

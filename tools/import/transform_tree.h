@@ -8,8 +8,6 @@
 #include "import/pose_track.h"
 #include "text.h"
 
-#define TRANSFORM_FRAMES_MOST 4096u
-#define TRANSFORM_DEPTH_MOST 64u
 #define TRANSFORM_NO_FRAME UINT32_MAX
 
 typedef struct transform_frame {
