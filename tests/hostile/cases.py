@@ -105,6 +105,38 @@ given("recording", "escapes-in-lens.mcap",
 given("recording", "escapes-in-schema.mcap",
       f.mcap(f.record(3, struct.pack("<H", 1) + f.text(f.ESCAPE) + f.text(f.ESCAPE) + f.text(f.ESCAPE)),
              f.record(4, struct.pack("<HH", 1, 1) + f.text(f.ESCAPE) + f.text(f.ESCAPE) + f.text("")), f.frame(0)[:0]), None)
+
+
+def bag(*messages, kind="tf2_msgs/msg/TFMessage", topic="/tf"):
+    """Two frames without poses, and messages of another topic."""
+    return f.mcap(f.channels(names=("image", "camera_info")), f.channel(9, topic, kind), *[f.message(9, 10**9, m) for m in messages],
+                  *[f.message(1, 10**9 + i, f.image(10**9 + i)) + f.message(2, 10**9 + i, f.camera_info(10**9 + i)) for i in (0, 1)])
+
+
+def picture_bag(form, data, **lies):
+    kind, stamp = "sensor_msgs/msg/CompressedImage", 10**9
+    return f.mcap(f.channel(1, "/camera/image/compressed", kind), f.message(1, stamp, f.compressed(stamp, form, data, **lies)))
+
+
+given("bag", "tf-loop.mcap", bag(f.transforms(10**9, [("a", "b"), ("b", "c"), ("c", "a")])), "above itself")
+given("bag", "tf-1000-deep.mcap", bag(f.transforms(10**9, [(f"f{i}", f"f{i + 1}") for i in range(1000)])), "more than 64 above it")
+given("bag", "tf-5000-frames.mcap", bag(f.transforms(10**9, [("map", f"f{i}") for i in range(5000)])), "more than 1024 frames")
+given("bag", "tf-200000-transforms.mcap",
+      lambda: bag(*[f.transforms(10**9 + i, [("map", f"frame{i % 900}")] * 100) for i in range(2000)]), None)
+given("bag", "tf-count-of-2^32.mcap", bag(f.transforms(10**9, [("map", "camera")], 0xFFFFFFFF)), "cut short")
+given("bag", "tf-nan.mcap", bag(f.transforms(10**9, [("map", "camera")], place=(float("nan"), 0, 0, 0, 0, 0, 1))), "not a number")
+given("bag", "tf-without-rotation.mcap", bag(f.transforms(10**9, [("map", "camera")], place=(0,) * 7)), "no direction")
+given("bag", "tf-far-away.mcap", bag(f.transforms(10**9, [("map", "camera")], place=(1e300, 0, 0, 0, 0, 0, 1))), "within -2^30")
+given("bag", "tf-two-parents.mcap", bag(f.transforms(10**9, [("map", "camera"), ("other", "camera")])), None)
+given("bag", "tf-escapes.mcap", bag(f.transforms(10**9, [(f.ESCAPE, "camera")]), topic=f.ESCAPE), None)
+given("bag", "tf-nameless.mcap", bag(f.transforms(10**9, [("", "camera")])), "no name")
+given("bag", "compressed-65535.mcap", picture_bag("png", f.png(65535, 65535, rows=b"")), "PNG")
+given("bag", "compressed-1000-scans.mcap", lambda: picture_bag("jpeg", f.jpeg(512, 1000)), "more than 32 scans")
+given("bag", "compressed-cut.mcap", picture_bag("jpeg", f.jpeg(64, 2)[:150]), "JPEG")
+given("bag", "compressed-empty.mcap", picture_bag("jpeg", b""), None)
+given("bag", "compressed-lies.mcap", picture_bag("jpeg", b"\xff\xd8\xff", data_bytes=1 << 31), "cut short")
+given("bag", "compressed-escapes.mcap", picture_bag(f.ESCAPE, b"neither of them"), None)
+
 given("recording", "escapes-in-compression.mcap", f.mcap(f.chunk(f.ESCAPE, b"", 0)), "not supported")
 
 

@@ -198,6 +198,21 @@ def pose(stamp, position=(0, 0, 0), rotation=(0, 0, 0, 1)):
     return Cdr(stamp, "world").put("d" * 7, *position, *rotation).bytes()
 
 
+def transforms(stamp, edges, count=None, place=(0, 0, 0, 0, 0, 0, 1)):
+    """A tf2_msgs/TFMessage of (parent, child); count: what it says."""
+    out = Cdr(stamp)
+    out.data = b""
+    out.put("I", len(edges) if count is None else count)
+    for parent, child in edges:
+        out.put("iI", stamp // 10**9, stamp % 10**9).string(parent).string(child).put("d" * 7, *place)
+    return out.bytes()
+
+
+def compressed(stamp, form, data, data_bytes=None):
+    """A sensor_msgs/CompressedImage."""
+    return Cdr(stamp).string(form).put("I", len(data) if data_bytes is None else data_bytes).bytes() + data
+
+
 TYPES = {"image": "sensor_msgs/msg/Image", "depth": "sensor_msgs/msg/Image", "camera_info": "sensor_msgs/msg/CameraInfo",
          "pose": "geometry_msgs/msg/PoseStamped"}
 
@@ -212,6 +227,11 @@ def channels(prefix="/camera/", names=TYPES):
         out += record(3, struct.pack("<H", i + 1) + text(TYPES[name]) + text("ros2msg") + text(""))
         out += record(4, struct.pack("<HH", i + 1, i + 1) + text(prefix + name) + text("cdr") + text(""))
     return out
+
+
+def channel(number, topic, kind):
+    return (record(3, struct.pack("<H", number) + text(kind) + text("ros2msg") + text("")) +
+            record(4, struct.pack("<HH", number, number) + text(topic) + text("cdr") + text("")))
 
 
 def frame(i, **wrong):

@@ -42,10 +42,11 @@ def commands(kind, path, out):
     return {
         "recording": [("info", path), ("info", "--json", path), ("build", path, *context, "-o", f"{out}.ply"),
                       ("replay", path, *context), ("eval", path, "--keep", "50"),
-                      ("import", path, "--poses", "estimate", "-o", f"{out}.mcap"),
+                      ("import", path, "--poses", "estimate", "-o", f"{out}.mcap"), ("import", path, "-o", f"{out}.mcap"),
                       ("render", scene, path, "--view", "0", "-o", f"{out}.png"),
                       ("capture", "--source", f"replay:{path}", "--quiet", "-o", f"{out}.mcap"),
                       ("capture", "--source", f"replay:{room}", "--poses", path, "--quiet", "-o", f"{out}.mcap")],
+        "bag": [("import", path, "-o", f"{out}.mcap"), ("build", path, *context, "-o", f"{out}.ply"), ("info", path)],
         "path": [("info", path), ("build", path, *context, "-o", f"{out}.ply")],
         "scene": [("info", path), ("render", path, room, "--view", "1", "-o", f"{out}.png"), ("diff", path, scene),
                   ("eval", room, "--prune", path, "--context", "0,1", "--target", "2", "--keep", "50")],

@@ -71,6 +71,57 @@ static int save_chunked(const char *folder, const char *name, const char *compre
     return status;
 }
 
+/* One transform of `child` in `parent`, at a quarter to its right. */
+static void put_transform(bag *b, uint16_t channel, int64_t stamp_ns, const char *parent, const char *child)
+{
+    bag_cdr cdr;
+    bag_cdr_start(&cdr, false);
+    bag_u32(&cdr, 1);
+    bag_header(&cdr, stamp_ns, parent);
+    bag_string(&cdr, child);
+    for (uint32_t i = 0; i < 7; i++) {
+        bag_f64(&cdr, i == 0 ? 0.25 : i == 6 ? 1 : 0);
+    }
+    bag_message(b, channel, stamp_ns, cdr.bytes.data, cdr.bytes.count);
+    bag_bytes_free(&cdr.bytes);
+}
+
+/* What import alone reads: transforms that move, depth of another lens, a compressed image. */
+static int save_rig(const char *folder)
+{
+    static const uint8_t pixels[64] = {1, 2, 3, 4, 5, 6, 7, 8};
+    const bag_image colour = {2000, 4, 4, 12, "rgb8", false, pixels, 48},
+                    depth = {2000, 4, 4, 8, "16UC1", false, pixels, 32};
+    bag_info info = {
+        .stamp_ns = 2000, .width = 4, .height = 4, .model = "plumb_bob", .k = {20, 0, 2, 0, 20, 2, 0, 0, 1}};
+    bag b;
+    bag_start(&b);
+    bag_put_image(&b, bag_channel(&b, "/c/image", "sensor_msgs/msg/Image"), &colour);
+    bag_put_info(&b, bag_channel(&b, "/c/camera_info", "sensor_msgs/msg/CameraInfo"), &info);
+    bag_put_image(&b, bag_channel(&b, "/d/image", "sensor_msgs/msg/Image"), &depth);
+    info.k[0] = info.k[4] = 16;
+    info.d_count = 8;
+    info.d[0] = info.d[5] = 0.25;
+    info.model = "rational_polynomial";
+    bag_put_info(&b, bag_channel(&b, "/d/camera_info", "sensor_msgs/msg/CameraInfo"), &info);
+    put_transform(&b, bag_channel(&b, "/tf_static", "tf2_msgs/msg/TFMessage"), 1000, "body", "optical");
+    uint16_t tf = bag_channel(&b, "/tf", "tf2_msgs/msg/TFMessage");
+    put_transform(&b, tf, 1000, "map", "body");
+    put_transform(&b, tf, 3000, "map", "body");
+    bag_cdr cdr;
+    bag_cdr_start(&cdr, false);
+    bag_header(&cdr, 2000, "optical");
+    bag_string(&cdr, "jpeg");
+    bag_u32(&cdr, 8);
+    bag_append(&cdr.bytes, "\xff\xd8\xff\xe0\0\x04\0", 8);
+    bag_message(&b, bag_channel(&b, "/e/compressed", "sensor_msgs/msg/CompressedImage"), 2000, cdr.bytes.data,
+                cdr.bytes.count);
+    bag_bytes_free(&cdr.bytes);
+    int status = save(folder, "rig", b.bytes.data, b.bytes.count);
+    bag_free(&b);
+    return status;
+}
+
 int seeds_write(const char *folder)
 {
     static const t3r_pixel_format formats[] = {T3R_PIXEL_GREY, T3R_PIXEL_YUYV, T3R_PIXEL_NV12};
@@ -95,6 +146,7 @@ int seeds_write(const char *folder)
         failed |= save(folder, name, bytes.data, bytes.count);
         bag_bytes_free(&bytes);
     }
+    failed |= save_rig(folder);
     bag_bytes content = records();
     size_t room = LZ4F_compressFrameBound(content.count, NULL) + ZSTD_compressBound(content.count);
     uint8_t *packed = malloc(room);
