@@ -336,6 +336,12 @@ def built_from():
         hashes.add(run(TRIM3R, "replay", "copy.mcap", "--context", "0,2").stdout.splitlines()[-1])
     hashes.add(run(TRIM3R, "replay", "room.mcap", "--context", "0,2").stdout.splitlines()[-1])
     check(len(hashes) == 1, f"{hashes}")
+    for options, words in ((("--compression", "gzip"), "there are none, zstd, lz4"),
+                           (("--compression", "zstd", "--unchunked"), "which --unchunked leaves out")):
+        refused = run(TRIM3R, "room", *options, "-o", "x.mcap", expect=2).stderr
+        check(words in refused, refused)
+    folder_usage = run(TRIM3R, "import", ".", "--pose-topic", "/odom", "-o", "x.mcap", expect=2).stderr
+    check("is for bags and recordings" in folder_usage, folder_usage)
     bag_usage = run(TRIM3R, "import", "room.mcap", "--size", "32x24", "-o", "x.mcap", expect=2).stderr
     check("belong to folders" in bag_usage, bag_usage)
 

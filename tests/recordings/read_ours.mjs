@@ -6,15 +6,11 @@ import { readFileSync } from "node:fs";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
-import * as zstd from "@foxglove/wasm-zstd";
-import lz4 from "lz4js";
+import { loadDecompressHandlers } from "@mcap/support";
+import { definitions } from "./ros2.mjs";
 import * as sample from "./sample.mjs";
 
-await zstd.isLoaded;
-const decompressHandlers = {
-  zstd: (data, bytes) => zstd.decompress(data, Number(bytes)),
-  lz4: (data) => Uint8Array.from(lz4.decompress(data)),
-};
+const decompressHandlers = await loadDecompressHandlers();
 const [storage, encoding, path] = process.argv.slice(2);
 const bytes = readFileSync(path);
 
@@ -57,6 +53,18 @@ const plain = (message) => {
   return { ...message, header: { ...message.header, stamp: { sec, nanosec: nanosec ?? nsec } } };
 };
 
+// The schema's text says what a ROS 2 installation says, with all that the message refers to.
+function checkSchema(schema) {
+  const plainly = (list, root) => list.map((definition, i) => ({
+    name: i === 0 ? root : definition.name,
+    fields: definition.definitions.filter((field) => !field.isConstant).map(
+      ({ type, name, isArray, arrayLength }) => [type.replace("builtin_interfaces/Time", "time"), name, !!isArray, arrayLength]),
+  })).filter(({ name }) => name !== "builtin_interfaces/Time").sort((a, b) => a.name.localeCompare(b.name));
+  const root = schema.name.replace("/msg/", "/");
+  const text = new TextDecoder().decode(schema.data);
+  assert.deepEqual(plainly(parse(text, { ros2: true }), root), plainly(definitions(schema.name), root), schema.name);
+}
+
 // One message against the sample's; `list` holds those of its topic before it.
 function check(record, channel, schema, list) {
   const f = channel.topic === "/camera/depth" && list.length === 1 ? 2 : list.length;
@@ -82,6 +90,7 @@ for (let record; (record = reader.nextRecord()); ) {
     case "Schema":
       assert.equal(record.encoding, "ros2msg");
       seen.schemas.set(record.id, record);
+      checkSchema(record);
       break;
     case "Channel":
       assert.equal(record.messageEncoding, "cdr");
