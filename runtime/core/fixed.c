@@ -46,8 +46,9 @@ uint32_t t3r_exp2_q16(int32_t x_q16)
     return (uint32_t)t3r_scale64(mantissa_q20, exponent - 4);
 }
 
-/* Newton's iteration from above. The start, 2^(log2(x) / 2) and more than its error, is at most 2^-11 too large; three
- * steps then reach the floor, where the iteration stops falling. */
+/* Newton's iteration from above, which squares the error. The start, 2^(log2(x) / 2) and more than its error, is at
+ * most 2^-11 and 1 too large. A step leaves 2^-23 of the root and less than 3/4: the floor or one more where the root
+ * is below 2^21. A second step leaves as much of any root. */
 uint32_t t3r_isqrt64(uint64_t x)
 {
     if (x == 0) {
@@ -59,12 +60,9 @@ uint32_t t3r_isqrt64(uint64_t x)
     uint64_t root_q15 = t3r_exp2_q16(t3r_log2_q16(top) / 2 - (1 << 16)); /* sqrt(top) < 2^16, Q15 */
     root_q15 += root_q15 >> 12;
     uint64_t root = (half >= 15 ? root_q15 << (half - 15) : root_q15 >> (15 - half)) + 1;
-    for (int step = 0; step < 4; step++) {
-        uint64_t next = (root + x / root) >> 1;
-        if (next >= root) {
-            break;
-        }
-        root = next;
+    for (int step = half > 5 ? 2 : 1; step > 0; step--) { /* a root below 2^(half + 16) */
+        root = (root + x / root) >> 1;
     }
-    return (uint32_t)root;
+    root = T3R_MIN(root, (uint64_t)UINT32_MAX);
+    return (uint32_t)(root - (root * root > x));
 }

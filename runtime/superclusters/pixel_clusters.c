@@ -2,7 +2,7 @@
 
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "pointmap/pointmap.h"
+#include "pointmap/reproject.h"
 #include "state/state.h"
 #include "superclusters.h"
 
@@ -10,27 +10,52 @@
 typedef struct pixel_points {
     const t3r_view *views;
     t3r_pointmap maps[T3R_MAX_VIEWS];
+    const t3r_kernels *kernels;
     uint32_t pixels;
     int64_t inverse_median_q30; /* of the median depth in scene units */
     int32_t colour_scale_q16;   /* 8-bit level to Q11 */
 } pixel_points;
 
-static bool pixel_features(const void *context, uint32_t index, int16_t feature_q11[T3R_DIMENSIONS])
+/* The features of pixels of view v, which leave `points`. */
+static void write_features(const pixel_points *source, uint32_t v, t3r_points *points,
+                           int16_t feature_q11[][T3R_DIMENSIONS])
 {
-    const pixel_points *points = context;
-    uint32_t v = index / points->pixels, pixel = index % points->pixels;
-    const t3r_view *view = &points->views[v];
-    int32_t point[3];
-    if (!t3r_point(&points->maps[v], pixel % view->width, pixel / view->width, point)) {
-        return false;
+    const t3r_view *view = &source->views[v];
+    const t3r_unprojection from = t3r_unprojection_of(&source->maps[v]);
+    source->kernels->unproject(&from, points);
+    for (uint32_t i = 0; i < points->count; i++) {
+        const size_t pixel = (size_t)points->v[i] * view->width + points->u[i];
+        for (int k = 0; k < 3; k++) {
+            /* |point| <= 2^30, the inverse <= 2^30 */
+            int64_t x = t3r_round_shift64(points->point_q20[k][i] * source->inverse_median_q30, 39);
+            feature_q11[i][k] = (int16_t)t3r_clamp64(x, -T3R_FEATURE_MOST, T3R_FEATURE_MOST);
+            feature_q11[i][3 + k] = (int16_t)t3r_round_shift32(view->colour[k][pixel] * source->colour_scale_q16, 16);
+        }
     }
-    for (int i = 0; i < 3; i++) {
-        /* |point| <= 2^30, the inverse <= 2^30 */
-        int64_t x = t3r_round_shift64(point[i] * points->inverse_median_q30, 39);
-        feature_q11[i] = (int16_t)t3r_clamp64(x, -T3R_FEATURE_MOST, T3R_FEATURE_MOST);
-        feature_q11[3 + i] = (int16_t)t3r_round_shift32(view->colour[i][pixel] * points->colour_scale_q16, 16);
+    points->count = 0;
+}
+
+static uint32_t pixel_features(const void *context, const uint32_t *index, uint32_t count,
+                               int16_t feature_q11[][T3R_DIMENSIONS], uint8_t *which)
+{
+    const pixel_points *source = context;
+    t3r_points points = {0};
+    uint32_t valid = 0, written = 0, v = index[0] / source->pixels;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t view = index[i] / source->pixels, pixel = index[i] % source->pixels;
+        if (view != v) {
+            write_features(source, v, &points, feature_q11 + written);
+            written = valid;
+            v = view;
+        }
+        if (t3r_has_depth(source->views[v].validity[pixel])) {
+            const uint32_t row = pixel / source->views[v].width;
+            t3r_add_pixel(&points, &source->views[v], pixel - row * source->views[v].width, row);
+            which[valid++] = (uint8_t)i;
+        }
     }
-    return true;
+    write_features(source, v, &points, feature_q11 + written);
+    return valid;
 }
 
 static bool step_clusters(void *context, uint32_t done, uint32_t total)
@@ -42,6 +67,7 @@ t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
 {
     pixel_points points = {
         .views = views,
+        .kernels = &rt->kernels,
         .pixels = rt->config.width * rt->config.height,
         .inverse_median_q30 = ((int64_t)1 << 50) / rt->median_depth_q20,
         .colour_scale_q16 = (int32_t)((rt->config.colour_weight_q8 << 19) / 255),

@@ -14,12 +14,13 @@ static uint32_t draw_sample(const t3r_point_source *source, t3r_sample *sample)
         uint32_t first = (uint32_t)((uint64_t)s * source->points / strata);
         uint32_t end = (uint32_t)((uint64_t)(s + 1) * source->points / strata);
         uint32_t jitter = t3r_mix32(s) % (end - first);
-        int16_t feature[T3R_DIMENSIONS];
+        int16_t feature[1][T3R_DIMENSIONS];
+        uint8_t which;
         for (uint32_t i = 0; i < end - first; i++) {
             uint32_t index = first + (jitter + i) % (end - first);
-            if (source->features(source->context, index, feature)) {
+            if (source->features(source->context, &index, 1, feature, &which) > 0) {
                 for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-                    sample->feature_q11[d][count] = feature[d];
+                    sample->feature_q11[d][count] = feature[0][d];
                 }
                 sample->distance_q20[count] = INT32_MAX;
                 count++;

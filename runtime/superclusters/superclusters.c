@@ -4,7 +4,7 @@
 #include "core/memory.h"
 #include "seeding.h"
 
-#define BLOCK 64u         /* points gathered at a time */
+#define BLOCK T3R_POINTS  /* points gathered at a time */
 #define TASK_POINTS 512u  /* points a task labels */
 #define FOLLOW_PART 6u    /* of the batches are taken where centres are taken over */
 #define FOLLOW_WEIGHT 16u /* points behind such a centre */
@@ -118,6 +118,7 @@ static void batch_task(void *context, uint32_t index, uint32_t worker)
     for (uint32_t first = points.begin; first < points.end; first += BLOCK) {
         int16_t feature[BLOCK][T3R_DIMENSIONS];
         uint16_t label[BLOCK];
+        uint8_t which[BLOCK];
         uint32_t place[BLOCK]; /* all of them before the first is read, so that reads from memory overlap */
         const uint32_t count = T3R_MIN(BLOCK, points.end - first);
         for (uint32_t i = 0; i < count; i++) {
@@ -125,10 +126,7 @@ static void batch_task(void *context, uint32_t index, uint32_t worker)
             place[i] = begin + t3r_mix32((first + i) * 1031u + job->batch) % (end - begin);
             begin = end;
         }
-        uint32_t valid = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            valid += source->features(source->context, place[i], feature[valid]);
-        }
+        const uint32_t valid = source->features(source->context, place, count, feature, which);
         label_block(job, worker, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, &guess, label);
     }
 }
@@ -182,15 +180,16 @@ static void assign_task(void *context, uint32_t index, uint32_t worker)
         int16_t feature[BLOCK][T3R_DIMENSIONS];
         uint32_t place[BLOCK];
         uint16_t label[BLOCK];
-        uint32_t valid = 0, end = T3R_MIN(first + BLOCK, points.end);
+        uint8_t which[BLOCK];
+        const uint32_t end = T3R_MIN(first + BLOCK, points.end);
         for (uint32_t i = first; i < end; i++) {
             job->labels[i] = T3R_NO_LABEL;
-            place[valid] = i;
-            valid += source->features(source->context, i, feature[valid]);
+            place[i - first] = i;
         }
+        const uint32_t valid = source->features(source->context, place, end - first, feature, which);
         label_block(job, worker, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, &guess, label);
         for (uint32_t i = 0; i < valid; i++) {
-            job->labels[place[i]] = label[i];
+            job->labels[first + which[i]] = label[i];
         }
     }
 }

@@ -15,12 +15,14 @@
 #define T3R_CLUSTER_TRIALS 4u   /* draws for a new centre, of which the best is taken */
 #define T3R_CENTRE_FRACTION 8   /* a centre has so many bits more than a feature, so that small steps are not lost */
 
-/* Where points come from: `index` below `points` to its six features, Q11 within +-T3R_FEATURE_MOST; false = the
- * point is not valid and gets T3R_NO_LABEL. */
+/* Where points come from. features() takes up to T3R_POINTS indices below `points` and writes, one behind the other,
+ * the six features of those that are valid, Q11 within +-T3R_FEATURE_MOST, and which of the indices they are; it
+ * returns how many. A point that is not valid gets T3R_NO_LABEL. */
 typedef struct t3r_point_source {
     const void *context;
     uint32_t points;
-    bool (*features)(const void *context, uint32_t index, int16_t feature_q11[T3R_DIMENSIONS]);
+    uint32_t (*features)(const void *context, const uint32_t *index, uint32_t count,
+                         int16_t feature_q11[][T3R_DIMENSIONS], uint8_t *which);
 } t3r_point_source;
 
 /* The least density that is noted, 0.003: log2(197 / 65536). */

@@ -119,11 +119,18 @@ typedef struct cloud {
     uint32_t hole_every; /* every so many points one is invalid; 0 = none */
 } cloud;
 
-static bool cloud_features(const void *context, uint32_t index, int16_t feature_q11[T3R_DIMENSIONS])
+static uint32_t cloud_features(const void *context, const uint32_t *index, uint32_t count,
+                               int16_t feature_q11[][T3R_DIMENSIONS], uint8_t *which)
 {
     const cloud *c = context;
-    memcpy(feature_q11, c->feature_q11[index], sizeof c->feature_q11[index]);
-    return c->hole_every == 0 || index % c->hole_every != 0;
+    uint32_t valid = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (c->hole_every == 0 || index[i] % c->hole_every != 0) {
+            memcpy(feature_q11[valid], c->feature_q11[index[i]], sizeof feature_q11[valid]);
+            which[valid++] = (uint8_t)i;
+        }
+    }
+    return valid;
 }
 
 /* `blobs` normal clusters of the given spread, over the cube of +-reach; 0 blobs = uniform */
@@ -408,11 +415,8 @@ static void wavelet_oracle(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pointmap),
-        cmocka_unit_test(kmeans),
-        cmocka_unit_test(kmeans_that_follows),
-        cmocka_unit_test(wavelet_oracle),
-        cmocka_unit_test(wavelet_energy),
+        cmocka_unit_test(pointmap),       cmocka_unit_test(kmeans),         cmocka_unit_test(kmeans_that_follows),
+        cmocka_unit_test(wavelet_oracle), cmocka_unit_test(wavelet_energy),
     };
     return cmocka_run_group_tests_name("analysis", tests, NULL, NULL);
 }

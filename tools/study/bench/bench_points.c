@@ -135,11 +135,15 @@ int bench_points_unproject(bench_points *points, uint32_t views, uint32_t width,
     return 0;
 }
 
-static bool features_of(const void *context, uint32_t index, int16_t feature_q11[T3R_DIMENSIONS])
+static uint32_t features_of(const void *context, const uint32_t *index, uint32_t count,
+                            int16_t feature_q11[][T3R_DIMENSIONS], uint8_t *which)
 {
     const bench_points *points = context;
-    memcpy(feature_q11, points->feature_q11[index], sizeof points->feature_q11[index]);
-    return true;
+    for (uint32_t i = 0; i < count; i++) {
+        memcpy(feature_q11[i], points->feature_q11[index[i]], sizeof feature_q11[i]);
+        which[i] = (uint8_t)i;
+    }
+    return count;
 }
 
 bool bench_points_cluster(bench_points *points, uint32_t cpu)
