@@ -3,7 +3,7 @@
 #include "core/fixed.h"
 #include "points_parts.h"
 
-void t3r_unproject_c(const t3r_unprojection *from, t3r_points *points)
+void t3r_unproject_c(const t3r_unprojection *restrict from, t3r_points *restrict points)
 {
     const t3r_pinhole *view = &from->view;
     for (uint32_t i = 0; i < points->count; i++) {
@@ -58,7 +58,7 @@ uint32_t t3r_locate_point(const t3r_pinhole *view, const int32_t point_q20[3], i
     return (uint32_t)row * view->width + (uint32_t)column;
 }
 
-void t3r_locate_c(const t3r_pinhole *view, const t3r_points *points, t3r_places *places)
+void t3r_locate_c(const t3r_pinhole *restrict view, const t3r_points *restrict points, t3r_places *restrict places)
 {
     for (uint32_t i = 0; i < points->count; i++) {
         const int32_t point[3] = {points->point_q20[0][i], points->point_q20[1][i], points->point_q20[2][i]};

@@ -40,10 +40,11 @@ typedef struct t3r_places {
 } t3r_places;
 
 /* Points of pixels: a depth of 0 gives the view's own place. */
-typedef void t3r_unproject_kernel(const t3r_unprojection *from, t3r_points *points);
+typedef void t3r_unproject_kernel(const t3r_unprojection *restrict from, t3r_points *restrict points);
 
 /* Their places: no pixel for a point nearer than 1/32 scene unit, more than 16 z off the axis, or outside the image. */
-typedef void t3r_locate_kernel(const t3r_pinhole *view, const t3r_points *points, t3r_places *places);
+typedef void t3r_locate_kernel(const t3r_pinhole *restrict view, const t3r_points *restrict points,
+                               t3r_places *restrict places);
 
 t3r_unproject_kernel t3r_unproject_c;
 t3r_locate_kernel t3r_locate_c;

@@ -8,13 +8,16 @@
 
 static bool lies_between(const t3r_view *view, size_t pixel, size_t before, size_t after)
 {
+    uint16_t here = view->depth[pixel];
+    if (t3r_same_surface(view->depth[before], here) || t3r_same_surface(here, view->depth[after])) {
+        return false; /* as a rule */
+    }
     if (!t3r_is_measured(view->validity[before]) || !t3r_is_measured(view->validity[after])) {
         return false;
     }
-    uint16_t here = view->depth[pixel];
     uint16_t near = T3R_MIN(view->depth[before], view->depth[after]);
     uint16_t deep = T3R_MAX(view->depth[before], view->depth[after]);
-    return near < here && here < deep && !t3r_same_surface(near, here) && !t3r_same_surface(here, deep);
+    return near < here && here < deep;
 }
 
 static bool between_surfaces(const t3r_view *view, uint32_t x, uint32_t y)

@@ -49,7 +49,7 @@ static inline TARGET lanes depth_of(t3r_depth_scale scale, lanes step)
     return chosen(z > most, most, z);
 }
 
-TARGET void UNPROJECT(const t3r_unprojection *from, t3r_points *points)
+TARGET void UNPROJECT(const t3r_unprojection *restrict from, t3r_points *restrict points)
 {
     const t3r_pinhole *view = &from->view;
     for (uint32_t i = 0; i < points->count; i += LANES) {
@@ -104,7 +104,8 @@ static inline TARGET lanes is_between(lanes at_q16, int32_t focal_q16)
 }
 
 /* The pixels of LANES points; returns the lanes that only t3r_locate_point() can answer. */
-static inline TARGET lanes locate(const t3r_pinhole *view, const t3r_points *points, uint32_t at, t3r_places *places)
+static inline TARGET lanes locate(const t3r_pinhole *restrict view, const t3r_points *restrict points, uint32_t at,
+                                  t3r_places *restrict places)
 {
     const int32_t *r_q30 = view->pose.rotation_q30;
     lanes offset[3], camera[3], wide_offset = all(0);
@@ -133,7 +134,7 @@ static inline TARGET lanes locate(const t3r_pinhole *view, const t3r_points *poi
     return wide_offset | (is_before & ~is_sure);
 }
 
-TARGET void LOCATE(const t3r_pinhole *view, const t3r_points *points, t3r_places *places)
+TARGET void LOCATE(const t3r_pinhole *restrict view, const t3r_points *restrict points, t3r_places *restrict places)
 {
     for (uint32_t at = 0; at < points->count; at += LANES) {
         const lanes open = locate(view, points, at, places);
