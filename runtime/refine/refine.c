@@ -1,5 +1,7 @@
 #include "refine.h"
 
+#include <stdbool.h>
+
 #include "core/cut.h"
 #include "core/fixed.h"
 #include "core/memory.h"
@@ -110,9 +112,16 @@ typedef struct view_job {
     const layout *work;
     const t3r_refine_view *view;
     const t3r_binning *bin;
-    uint32_t begin; /* the first tile of the pass: its list starts at 0 */
+    uint32_t done, total; /* for the progress hook */
+    uint32_t begin, end;  /* tiles of the pass: the first one's list starts at 0 */
+    uint32_t next;        /* tile that is not in a chunk yet */
+    uint32_t count;       /* bands of this chunk */
     t3r_refine_band bands[T3R_MAX_WORKERS];
 } view_job;
+
+/* Tiles between two looks at the progress hook, and splats in their lists. */
+#define TILES_A_CHUNK 256u
+#define SPLATS_A_CHUNK 65536u
 
 /* A view whose error is measured: of each band. */
 typedef struct error_job {
@@ -124,6 +133,32 @@ typedef struct error_job {
 static uint32_t list_begin(const view_job *job, uint32_t tile)
 {
     return tile == job->begin ? 0 : job->bin->table[tile - 1];
+}
+
+/* Cuts the next tiles into bands, and fills their lists first where they are in no pass yet. No bands: all tiles are
+ * done. False: the progress hook wants no more. */
+static bool next_chunk(const t3r_runtime *rt, view_job *job)
+{
+    const t3r_workers workers = t3r_workers_of(rt);
+    const t3r_binning *bin = job->bin;
+    job->count = 0;
+    if (job->next == bin->tiles) {
+        return true;
+    }
+    if (!t3r_progress(rt, T3R_STAGE_REFINE, job->done, job->total)) {
+        return false;
+    }
+    if (job->next == job->end) {
+        job->begin = job->end;
+        job->end = t3r_bin_pass(&workers, bin, job->begin);
+    }
+    const uint32_t first = job->next, listed = list_begin(job, first);
+    const uint32_t most = T3R_MIN(job->end - first, TILES_A_CHUNK);
+    do {
+        job->next++;
+    } while (job->next < first + most && bin->table[job->next] - listed <= SPLATS_A_CHUNK);
+    job->count = t3r_refine_bands(bin, first, job->next, listed, &job->view->slice, &job->work->borders, job->bands);
+    return true;
 }
 
 static void accumulate_band(void *context, uint32_t index, uint32_t worker)
@@ -162,9 +197,9 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-/* One view drawn from the scene; no Gaussian's sums change. */
-static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view *views, uint32_t v,
-                         const t3r_projection *projection, uint32_t *pixels)
+/* One view drawn from the scene; no Gaussian's sums change. False: cancelled. */
+static bool add_error_of(const t3r_runtime *rt, const layout *w, const t3r_view *views, uint32_t v,
+                         const t3r_projection *projection, uint64_t *error, uint32_t *pixels)
 {
     const t3r_workers workers = t3r_workers_of(rt);
     const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
@@ -175,20 +210,16 @@ static uint64_t error_of(const t3r_runtime *rt, const layout *w, const t3r_view 
         .kept_words = w->kept_words,
         .gain_q14 = rt->gain_q14[v],
     };
-    error_job to = {.job = {.work = w, .view = &view, .bin = &bin}};
-    view_job *job = &to.job;
-    uint64_t error = 0;
-    while (job->begin < bin.tiles) {
-        uint32_t end = t3r_bin_pass(&workers, &bin, job->begin);
-        uint32_t bands = t3r_refine_bands(&bin, job->begin, end, &view.slice, &w->borders, job->bands);
-        t3r_run_tasks(&workers, bands, measure_band, &to);
-        for (uint32_t b = 0; b < bands; b++) {
-            error += to.error[b];
+    error_job to = {.job = {.work = w, .view = &view, .bin = &bin, .done = v, .total = rt->views}};
+    bool goes_on = next_chunk(rt, &to.job);
+    for (; goes_on && to.job.count > 0; goes_on = next_chunk(rt, &to.job)) {
+        t3r_run_tasks(&workers, to.job.count, measure_band, &to);
+        for (uint32_t b = 0; b < to.job.count; b++) {
+            *error += to.error[b];
             *pixels += to.pixels[b];
         }
-        job->begin = end;
     }
-    return error;
+    return goes_on;
 }
 
 /* Gaussians a task begins, solves or applies. */
@@ -245,9 +276,9 @@ static void apply_chunk(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-/* What one view adds to the sums of the slice. */
-static void accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t v,
-                       const t3r_projection *projection)
+/* What one view adds to the sums of the slice. False: cancelled. */
+static bool accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t v,
+                       const t3r_projection *projection, uint32_t done, uint32_t total)
 {
     const t3r_workers workers = t3r_workers_of(rt);
     const layout *w = slice->work;
@@ -264,14 +295,13 @@ static void accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *
         .kept_words = w->kept_words,
         .gain_q14 = rt->gain_q14[v],
     };
-    view_job job = {.work = w, .view = &view, .bin = &bin};
-    while (job.begin < bin.tiles) {
-        uint32_t end = t3r_bin_pass(&workers, &bin, job.begin);
-        uint32_t bands = t3r_refine_bands(&bin, job.begin, end, &view.slice, &w->borders, job.bands);
-        t3r_run_tasks(&workers, bands, accumulate_band, &job);
-        t3r_refine_join(job.bands, bands, &w->borders, &view.slice);
-        job.begin = end;
+    view_job job = {.work = w, .view = &view, .bin = &bin, .done = done, .total = total};
+    bool goes_on = next_chunk(rt, &job);
+    for (; goes_on && job.count > 0; goes_on = next_chunk(rt, &job)) {
+        t3r_run_tasks(&workers, job.count, accumulate_band, &job);
+        t3r_refine_join(job.bands, job.count, &w->borders, &view.slice);
     }
+    return goes_on;
 }
 
 /* The sums of a slice over all views. */
@@ -279,8 +309,8 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
                                    uint32_t total)
 {
     memset(slice->slice.sums, 0, (size_t)slice->slice.count * sizeof *slice->slice.sums);
-    for (uint32_t v = 0; v < rt->views; v++) {
-        if (!t3r_progress(rt, T3R_STAGE_REFINE, (*done)++, total)) {
+    for (uint32_t v = 0; v < rt->views; v++, ++*done) {
+        if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
         }
         t3r_projection projection;
@@ -289,7 +319,9 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
         if (status != T3R_OK) {
             return status;
         }
-        accumulate(rt, slice, views, v, &projection);
+        if (!accumulate(rt, slice, views, v, &projection, *done, total)) {
+            return T3R_ERR_CANCELLED;
+        }
     }
     return T3R_OK;
 }
@@ -344,7 +376,9 @@ t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *er
         if (status != T3R_OK) {
             return status;
         }
-        error += error_of(rt, &w, views, v, &projection, &pixels);
+        if (!add_error_of(rt, &w, views, v, &projection, &error, &pixels)) {
+            return T3R_ERR_CANCELLED;
+        }
     }
     *error_q8 = pixels == 0 ? 0 : (uint32_t)t3r_round_div64((int64_t)error, 3 * (int64_t)pixels);
     return T3R_OK;

@@ -14,13 +14,14 @@ static uint32_t last_tile_of(const t3r_splat *splat, uint32_t across)
 }
 
 /* Bands of about as many list entries each; a band may be empty. */
-static void cut(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t count, t3r_refine_band *bands)
+static void cut(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t listed, uint32_t count,
+                t3r_refine_band *bands)
 {
-    const uint64_t entries = bin->table[end - 1]; /* the end of the last list */
+    const uint64_t entries = bin->table[end - 1] - listed; /* up to the end of the last list */
     uint32_t tile = begin;
     for (uint32_t b = 0; b < count; b++) {
         bands[b] = (t3r_refine_band){.begin = tile, .own_from = b == 0 ? 0 : tile};
-        while (tile < end && (b + 1 == count || bin->table[tile] <= entries * (b + 1) / count)) {
+        while (tile < end && (b + 1 == count || bin->table[tile] - listed <= entries * (b + 1) / count)) {
             tile++;
         }
         bands[b].end = tile;
@@ -50,12 +51,13 @@ static bool find_crossing(const t3r_binning *bin, const t3r_refine_slice *slice,
     return true;
 }
 
-uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, const t3r_refine_slice *slice,
-                          const t3r_refine_borders *borders, t3r_refine_band bands[T3R_MAX_WORKERS])
+uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t listed,
+                          const t3r_refine_slice *slice, const t3r_refine_borders *borders,
+                          t3r_refine_band bands[T3R_MAX_WORKERS])
 {
     uint32_t count = T3R_MIN(borders->bands, end - begin);
     for (bool fits = false; !fits; count = fits ? count : count / 2) { /* a single band has no border */
-        cut(bin, begin, end, count, bands);
+        cut(bin, begin, end, listed, count, bands);
         fits = true;
         for (uint32_t b = 1; b < count && fits; b++) {
             const size_t place = (size_t)(b - 1) * borders->most;

@@ -31,11 +31,13 @@ typedef struct t3r_refine_slice {
     uint32_t first, count;
 } t3r_refine_slice;
 
-/* Cuts the tiles begin..end - 1 of an open pass into at most borders->bands bands, of about as many list entries each;
+/* Cuts the tiles begin..end - 1 of an open pass, the first of whose lists starts at `listed`, into at most
+ * borders->bands bands, of about as many list entries each;
  * fewer where more Gaussians of the slice cross a border than there is room for. Clears the sums of those. Returns the
  * number of bands, at least 1. */
-uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, const t3r_refine_slice *slice,
-                          const t3r_refine_borders *borders, t3r_refine_band bands[T3R_MAX_WORKERS]);
+uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t listed,
+                          const t3r_refine_slice *slice, const t3r_refine_borders *borders,
+                          t3r_refine_band bands[T3R_MAX_WORKERS]);
 
 /* The sums to which band number `band` adds for Gaussian `index` of the slice; `across`: tiles a row. */
 t3r_refine_sums *t3r_refine_sums_in(const t3r_refine_band *bands, uint32_t band, const t3r_refine_borders *borders,

@@ -88,18 +88,23 @@ static void every_share_counts_once(void **state)
             own[i].area = 7 + slice.first + i;
         }
         for (uint32_t begin = 0, end; begin < TILES; begin = end) {
-            t3r_refine_band bands[T3R_MAX_WORKERS];
             end = t3r_bin_pass(&alone, &bin, begin);
-            const uint32_t count = t3r_refine_bands(&bin, begin, end, &slice, &borders, bands);
-            assert_in_range(count, 1, borders.bands);
-            assert_true(borders.most == SPLATS ? count == borders.bands || count == end - begin : true);
-            assert_int_equal(bands[0].begin, begin);
-            assert_int_equal(bands[count - 1].end, end);
-            for (uint32_t b = count; b-- > 0;) { /* the last first: no band leans on an earlier one */
-                assert_true(b == 0 || bands[b].begin == bands[b - 1].end);
-                accumulate(&bin, begin, bands, b, &borders, &slice);
+            const uint32_t middle = (uint32_t)unit_between(&seed, begin, end - 1); /* a pass in one chunk or in two */
+            for (uint32_t first = begin, last; first < end; first = last) {
+                t3r_refine_band bands[T3R_MAX_WORKERS];
+                const uint32_t listed = first == begin ? 0 : bin.table[first - 1];
+                last = first < middle ? middle : end;
+                const uint32_t count = t3r_refine_bands(&bin, first, last, listed, &slice, &borders, bands);
+                assert_in_range(count, 1, borders.bands);
+                assert_true(borders.most == SPLATS ? count == borders.bands || count == last - first : true);
+                assert_int_equal(bands[0].begin, first);
+                assert_int_equal(bands[count - 1].end, last);
+                for (uint32_t b = count; b-- > 0;) { /* the last first: no band leans on an earlier one */
+                    assert_true(b == 0 || bands[b].begin == bands[b - 1].end);
+                    accumulate(&bin, begin, bands, b, &borders, &slice);
+                }
+                t3r_refine_join(bands, count, &borders, &slice);
             }
-            t3r_refine_join(bands, count, &borders, &slice);
         }
         for (uint32_t i = 0; i < slice.count; i++) {
             const t3r_splat *s = &splats[slice.first + i];
