@@ -63,7 +63,7 @@ const char *check_unproject(const t3r_kernels *kernels, uint64_t *seed)
             held(rounded((((int64_t)before.v[i] << 16) - from->view.cy_q16) * from->inverse_fy_q32, 24), far);
         for (int k = 0; k < 3; k++) {
             const int32_t *r = from->view.pose.rotation_q30 + 3 * k;
-            const int64_t direction = rounded(r[0] * x + r[1] * y + ((int64_t)r[2] << 24), 30);
+            const int64_t direction = rounded(r[0] * x + r[1] * y + (int64_t)r[2] * (1 << 24), 30);
             const int64_t at = from->view.pose.position_q20[k] + rounded(direction * z, 24);
             before.point_q20[k][i] = (int32_t)held(at, T3R_POSITION_MOST_Q20);
             if (points->point_q20[k][i] != before.point_q20[k][i]) {
@@ -86,7 +86,7 @@ static int64_t divided(int128 n, int64_t d)
 
 static int64_t pixel_along(int64_t x, int64_t z, int32_t focal_q16, int32_t centre_q16)
 {
-    const int64_t ratio_q24 = divided((int128)x << 24, z);
+    const int64_t ratio_q24 = divided((int128)x * (1 << 24), z);
     return rounded(rounded(ratio_q24 * focal_q16, 24) + centre_q16, 16);
 }
 
@@ -107,7 +107,7 @@ static void between_pixels(const t3r_pinhole *view, uint64_t *seed, int32_t poin
 {
     const int64_t z = INT64_C(1) << unit_between(seed, 15, 29), f = view->fx_q16;
     const int64_t column = unit_between(seed, -1, (int64_t)view->width);
-    const int64_t x = (((2 * column + 1) << 15) - view->cx_q16) * z / f + unit_between(seed, -1, 1);
+    const int64_t x = ((2 * column + 1) * (1 << 15) - view->cx_q16) * z / f + unit_between(seed, -1, 1);
     point[0] = (int32_t)held(x, T3R_POSITION_MOST_Q20);
     point[2] = (int32_t)z;
 }
