@@ -211,9 +211,11 @@ def odometry_and_named_topics():
     for i in range(2):
         expected = frames.matrix(yaw(0.3 * (i + 0.2)), (i + 0.2, 0, 0)) @ frames.matrix(OPTICAL, (0, 0, 0.5))
         same_pose(told["read"]["pose"][i], expected, f"odometry {i}")
+    check("/tf_static" in [t["topic"] for t in told["topics"]], "/tf_static leads from the body to the camera")
     check(told["posed_frames"] == 3 and told["interpolated"] == 3, "the last one is within 20 ms of the end")
     check(imported("odometry.mcap", "--pose-topic", "/odom", "--pair", 19)["posed_frames"] == 2, "and not within 19")
-    told = imported("odometry.mcap", "--pose-topic", "/slam")
+    told = imported("odometry.mcap", "--pose-topic", "/slam", "--fixed-frame", "map")
+    check("/tf_static" in [t["topic"] for t in told["unused"]], "no transform is needed where the frames are those asked for")
     for i in range(3):
         same_pose(told["read"]["pose"][i], frames.matrix(yaw(0), (0, i, 0)), f"PoseWithCovarianceStamped {i}")
     told = imported("odometry.mcap", "--pose-topic", "/mocap")

@@ -12,6 +12,7 @@
 #include "import/poses_output.h"
 #include "import/recording_poses.h"
 #include "reason.h"
+#include "ros_messages.h"
 
 #define ERROR_BYTES 1024
 
@@ -78,17 +79,25 @@ static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
     }
 }
 
-static cJSON *topics_json(const t3r_recording *recording, bool used)
+/* Transforms are also used where a pose topic's frames are not those asked for. */
+static t3r_stream_use use_of(const t3r_stream_info *info, const bag_frames *frames)
+{
+    bool transforms = t3r_ros_is_named(T3R_ROS_TF, t3r_text_of(info->schema));
+    return transforms && frames->composed > 0 ? T3R_USE_TRANSFORMS : info->use;
+}
+
+static cJSON *topics_json(const t3r_recording *recording, const bag_frames *frames, bool used)
 {
     cJSON *list = cJSON_CreateArray();
     for (uint32_t i = 0; i < t3r_recording_stream_count(recording); i++) {
         t3r_stream_info info = t3r_recording_stream(recording, i);
-        if ((info.use != T3R_USE_NONE) == used) {
+        t3r_stream_use use = use_of(&info, frames);
+        if ((use != T3R_USE_NONE) == used) {
             cJSON *item = cJSON_CreateObject();
             cJSON_AddStringToObject(item, "topic", info.topic);
             cJSON_AddStringToObject(item, "schema", info.schema);
             json_add_integer(item, "messages", (int64_t)info.messages);
-            cJSON_AddStringToObject(item, used ? "use" : "unused", used ? t3r_stream_use_names[info.use] : info.unused);
+            cJSON_AddStringToObject(item, used ? "use" : "unused", used ? t3r_stream_use_names[use] : info.unused);
             cJSON_AddItemToArray(list, item);
         }
     }
@@ -112,8 +121,8 @@ static void print_json(const t3r_recording *recording, const bag_frames *frames,
     cJSON_AddNumberToObject(json, "unregistered", frames->unregistered);
     cJSON_AddStringToObject(json, "remark", frames->remark);
     cJSON_AddStringToObject(json, "lost", lost);
-    cJSON_AddItemToObject(json, "topics", topics_json(recording, true));
-    cJSON_AddItemToObject(json, "unused", topics_json(recording, false));
+    cJSON_AddItemToObject(json, "topics", topics_json(recording, frames, true));
+    cJSON_AddItemToObject(json, "unused", topics_json(recording, frames, false));
     cJSON *poses = accounts != NULL ? cJSON_AddArrayToObject(json, "poses") : NULL;
     for (uint32_t i = 0; poses != NULL && i < totals->frames; i++) {
         cJSON_AddItemToArray(poses, pose_account_json(NULL, i, accounts));
@@ -121,17 +130,18 @@ static void print_json(const t3r_recording *recording, const bag_frames *frames,
     json_print(json);
 }
 
-static void print_topics(const t3r_recording *recording)
+static void print_topics(const t3r_recording *recording, const bag_frames *frames)
 {
     for (uint32_t i = 0; i < t3r_recording_stream_count(recording); i++) {
         t3r_stream_info info = t3r_recording_stream(recording, i);
-        if (info.use != T3R_USE_NONE) {
-            printf("%-20s %s\n", t3r_stream_use_names[info.use], info.topic);
+        t3r_stream_use use = use_of(&info, frames);
+        if (use != T3R_USE_NONE) {
+            printf("%-20s %s\n", t3r_stream_use_names[use], info.topic);
         }
     }
     for (uint32_t i = 0; i < t3r_recording_stream_count(recording); i++) {
         t3r_stream_info info = t3r_recording_stream(recording, i);
-        if (info.use == T3R_USE_NONE) {
+        if (use_of(&info, frames) == T3R_USE_NONE) {
             printf("%-20s %s (%s, %" PRIu64 " messages): %s\n", "not used", info.topic, info.schema, info.messages,
                    info.unused);
         }
@@ -148,7 +158,7 @@ static void print_text(const recording_import_request *r, const t3r_recording *r
     if (lost[0] != '\0') {
         printf("lost: %s\n", lost);
     }
-    print_topics(recording);
+    print_topics(recording, frames);
     if (frames->interpolated > 0 || frames->composed > 0) {
         printf("poses: %u between two of their topic, %u composed of transforms\n", frames->interpolated,
                frames->composed);
