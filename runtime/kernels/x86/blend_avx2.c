@@ -3,7 +3,7 @@
 
 #ifdef T3R_X86
 
-#include "intrinsics.h"
+#include "sixteen.h"
 
 #include "core/memory.h"
 #include "kernels/alpha.h"
@@ -91,38 +91,6 @@ static inline T3R_AVX2 __m256i alpha_of(const quadratic *q, __m256i opacity_q16)
     return _mm256_and_si256(alpha, at_least(alpha, constant(T3R_ALPHA_LEAST_Q16)));
 }
 
-/* Where the sixteen pixels lie. */
-typedef enum shape {
-    ONE_ROW, /* eight columns; the high half is nothing */
-    TWO_ROWS,
-    WHOLE_ROW /* sixteen columns */
-} shape;
-
-static inline T3R_AVX2 __m256i load(const uint16_t *at, shape pixels)
-{
-    if (pixels == WHOLE_ROW) {
-        return _mm256_loadu_si256((const __m256i *)(const void *)at);
-    }
-    const __m128i first = _mm_loadu_si128((const __m128i *)(const void *)at);
-    if (pixels == ONE_ROW) {
-        return _mm256_zextsi128_si256(first);
-    }
-    const __m128i second = _mm_loadu_si128((const __m128i *)(const void *)(at + T3R_TILE_SIDE));
-    return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
-}
-
-static inline T3R_AVX2 void store(uint16_t *at, shape pixels, __m256i x)
-{
-    if (pixels == WHOLE_ROW) {
-        _mm256_storeu_si256((__m256i *)(void *)at, x);
-        return;
-    }
-    _mm_storeu_si128((__m128i *)(void *)at, _mm256_castsi256_si128(x));
-    if (pixels == TWO_ROWS) {
-        _mm_storeu_si128((__m128i *)(void *)(at + T3R_TILE_SIDE), _mm256_extracti128_si256(x, 1));
-    }
-}
-
 /* What blending a splat needs at each step. */
 typedef struct blend_job {
     t3r_tile *tile;
@@ -132,30 +100,31 @@ typedef struct blend_job {
     t3r_blended_row *rows, *high_rows; /* of both halves, or NULL; known where this is inlined */
 } blend_job;
 
-T3R_X86_INLINE T3R_AVX2 void blend_step(blend_job *job, const quadratic *q, uint32_t place, shape pixels)
+T3R_X86_INLINE T3R_AVX2 void blend_step(blend_job *job, const quadratic *q, uint32_t place, t3r_sixteen pixels)
 {
     uint16_t *transmittance = job->tile->transmittance_q16[0] + place;
-    const __m256i t = load(transmittance, pixels);
+    const __m256i t = t3r_load_sixteen(transmittance, pixels);
     __m256i alpha = _mm256_and_si256(alpha_of(q, job->opacity), at_least(t, constant(T3R_STOP_Q16)));
-    if (pixels == WHOLE_ROW) {
+    if (pixels == T3R_WHOLE_ROW) {
         alpha = _mm256_and_si256(alpha, job->drawn);
     }
     const __m256i w = mulr_q16(t, alpha); /* 0 where there is no pixel */
-    store(transmittance, pixels, _mm256_sub_epi16(t, w));
+    t3r_store_sixteen(transmittance, pixels, _mm256_sub_epi16(t, w));
     for (int c = 0; c < 3; c++) {
         uint16_t *colour = job->tile->colour_q7[c][0] + place;
-        store(colour, pixels, _mm256_add_epi16(load(colour, pixels), mulr_q16_doubled(w, job->colour[c])));
+        t3r_store_sixteen(colour, pixels,
+                          _mm256_add_epi16(t3r_load_sixteen(colour, pixels), mulr_q16_doubled(w, job->colour[c])));
     }
     if (job->rows != NULL) {
         const __m256i still = _mm256_cmpeq_epi16(w, _mm256_setzero_si256());
         alpha = _mm256_andnot_si256(still, _mm256_srli_epi16(alpha, 1));
         _mm256_storeu_si256((__m256i *)(void *)job->rows, _mm256_permute2x128_si256(w, alpha, 0x20));
-        if (pixels != ONE_ROW) {
+        if (pixels != T3R_ONE_ROW) {
             _mm256_storeu_si256((__m256i *)(void *)job->high_rows, _mm256_permute2x128_si256(w, alpha, 0x31));
         }
         job->any = _mm256_or_si256(job->any, w);
-        job->rows += pixels == TWO_ROWS ? 2 : 1;
-        job->high_rows += pixels == TWO_ROWS ? 2 : 1;
+        job->rows += pixels == T3R_TWO_ROWS ? 2 : 1;
+        job->high_rows += pixels == T3R_TWO_ROWS ? 2 : 1;
     }
 }
 
@@ -165,11 +134,11 @@ T3R_X86_INLINE T3R_AVX2 void blend_group(blend_job *job, const t3r_tile_splat *s
     quadratic q = quadratic_of(splat, group, group, 1, 2);
     uint32_t row = splat->first, place = row * T3R_TILE_SIDE + splat->column + group * T3R_LANES;
     for (; row < splat->last; row += 2, place += 2u * T3R_TILE_SIDE) {
-        blend_step(job, &q, place, TWO_ROWS);
+        blend_step(job, &q, place, T3R_TWO_ROWS);
         advance(&q);
     }
     if (row == splat->last) {
-        blend_step(job, &q, place, ONE_ROW);
+        blend_step(job, &q, place, T3R_ONE_ROW);
     }
 }
 
@@ -178,7 +147,7 @@ T3R_X86_INLINE T3R_AVX2 void blend_rows(blend_job *job, const t3r_tile_splat *sp
 {
     quadratic q = quadratic_of(splat, 0, 1, 0, 1);
     for (uint32_t row = splat->first; row <= splat->last; row++) {
-        blend_step(job, &q, row * T3R_TILE_SIDE, WHOLE_ROW);
+        blend_step(job, &q, row * T3R_TILE_SIDE, T3R_WHOLE_ROW);
         advance(&q);
     }
 }

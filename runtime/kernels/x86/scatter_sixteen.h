@@ -6,51 +6,18 @@
 
 #include <stdbool.h>
 
-#include "intrinsics.h"
+#include "sixteen.h"
 
 #include "core/fixed.h"
 #include "kernels/scatter_bits.h"
 
-#define STEPS_MOST (T3R_BLENDED_ROWS_MOST / 2)
+#define STEPS_MOST (T3R_BLENDED_ROWS_MOST / 2) /* of sixteen pixels, of a splat */
 
 /* Squares and products of sixteen pixels: the first four columns of both halves, then the last four, as packing takes
  * them. */
 typedef struct step_terms {
     __m256i square[2], product[2];
 } step_terms;
-
-/* Where sixteen pixels lie. */
-typedef enum shape {
-    ONE_ROW, /* eight columns; the high half is nothing */
-    TWO_ROWS,
-    WHOLE_ROW /* sixteen columns */
-} shape;
-
-static inline T3R_SCATTER __m256i load(const void *from, shape pixels)
-{
-    const uint16_t *at = from;
-    if (pixels == WHOLE_ROW) {
-        return _mm256_loadu_si256((const __m256i *)(const void *)at);
-    }
-    const __m128i first = _mm_loadu_si128((const __m128i *)(const void *)at);
-    if (pixels == ONE_ROW) {
-        return _mm256_zextsi128_si256(first);
-    }
-    const __m128i second = _mm_loadu_si128((const __m128i *)(const void *)(at + T3R_TILE_SIDE));
-    return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
-}
-
-static inline T3R_SCATTER void store(uint16_t *at, shape pixels, __m256i x)
-{
-    if (pixels == WHOLE_ROW) {
-        _mm256_storeu_si256((__m256i *)(void *)at, x);
-        return;
-    }
-    _mm_storeu_si128((__m128i *)(void *)at, _mm256_castsi256_si128(x));
-    if (pixels == TWO_ROWS) {
-        _mm_storeu_si128((__m128i *)(void *)(at + T3R_TILE_SIDE), _mm256_extracti128_si256(x, 1));
-    }
-}
 
 static inline T3R_SCATTER void accumulate(__m256i *sum, __m256i a, __m256i b)
 {
@@ -87,25 +54,26 @@ typedef struct sixteen {
 
 /* Takes sixteen pixels off, of which these are the rows of the low and the high half; fills `out` unless it is NULL. */
 T3R_X86_INLINE T3R_SCATTER void take_off(const off_job *job, const t3r_blended_row *low_row,
-                                         const t3r_blended_row *high_row, uint32_t place, shape pixels, sixteen *out)
+                                         const t3r_blended_row *high_row, uint32_t place, t3r_sixteen pixels,
+                                         sixteen *out)
 {
     const __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)low_row);
     const __m256i high =
-        pixels == ONE_ROW ? _mm256_setzero_si256() : _mm256_loadu_si256((const __m256i *)(const void *)high_row);
+        pixels == T3R_ONE_ROW ? _mm256_setzero_si256() : _mm256_loadu_si256((const __m256i *)(const void *)high_row);
     const __m256i alpha = _mm256_permute2x128_si256(low, high, 0x31);
     if (out != NULL) {
         const __m256i w = _mm256_permute2x128_si256(low, high, 0x20);
-        const __m256i counted = _mm256_and_si256(w, load(job->tile->counts[0] + place, pixels));
+        const __m256i counted = _mm256_and_si256(w, t3r_load_sixteen(job->tile->counts[0] + place, pixels));
         out->w = _mm256_srli_epi16(_mm256_sll_epi16(counted, job->scale), 1);
     }
     for (int c = 0; c < 3; c++) {
         uint16_t *colour = job->tile->pixels.colour_q7[c][0] + place;
-        const __m256i behind = load(colour, pixels);
+        const __m256i behind = t3r_load_sixteen(colour, pixels);
         const __m256i step = _mm256_sub_epi16(job->colour[c], behind);
-        store(colour, pixels, _mm256_add_epi16(behind, _mm256_mulhrs_epi16(alpha, step)));
+        t3r_store_sixteen(colour, pixels, _mm256_add_epi16(behind, _mm256_mulhrs_epi16(alpha, step)));
         if (out != NULL) {
             out->moves[c] = _mm256_mulhrs_epi16(out->w, step);
-            out->lacks[c] = load(job->tile->residual_q4[c][0] + place, pixels);
+            out->lacks[c] = t3r_load_sixteen(job->tile->residual_q4[c][0] + place, pixels);
         }
     }
 }
@@ -145,7 +113,7 @@ T3R_X86_INLINE T3R_SCATTER void note_terms(off_job *job, const sixteen *x, step_
 
 /* Both; without `terms` it is taken off alone. */
 T3R_X86_INLINE T3R_SCATTER void step(off_job *job, const t3r_blended_row *low_row, const t3r_blended_row *high_row,
-                                     uint32_t place, shape pixels, step_terms *terms)
+                                     uint32_t place, t3r_sixteen pixels, step_terms *terms)
 {
     sixteen x;
     take_off(job, low_row, high_row, place, pixels, terms == NULL ? NULL : &x);
@@ -273,15 +241,15 @@ T3R_X86_INLINE T3R_SCATTER uint32_t collect_terms(off_job *job, const t3r_scatte
     uint32_t place = (uint32_t)span->first * T3R_TILE_SIDE + span->column, steps = 0;
     if (span->groups == 2) {
         for (; steps < rows; steps++, row++, place += T3R_TILE_SIDE) {
-            step(job, row, row + rows, place, WHOLE_ROW, terms == NULL ? NULL : &terms[steps]);
+            step(job, row, row + rows, place, T3R_WHOLE_ROW, terms == NULL ? NULL : &terms[steps]);
         }
         return steps;
     }
     for (; steps < rows / 2; steps++, row += 2, place += 2u * T3R_TILE_SIDE) {
-        step(job, row, row + 1, place, TWO_ROWS, terms == NULL ? NULL : &terms[steps]);
+        step(job, row, row + 1, place, T3R_TWO_ROWS, terms == NULL ? NULL : &terms[steps]);
     }
     if (rows % 2 != 0) {
-        step(job, row, NULL, place, ONE_ROW, terms == NULL ? NULL : &terms[steps]);
+        step(job, row, NULL, place, T3R_ONE_ROW, terms == NULL ? NULL : &terms[steps]);
         steps++;
     }
     return steps;
