@@ -27,7 +27,7 @@ def points():
 def stages():
     found = expect_json("bench", "--runs", 1)
     for key in ("raster_131k_ms", "raster_13k_ms", "refine_ms", "kmeans_ms", "texture_ns_per_pixel", "build_analytic_ms",
-                "build_small_ms", "stereo_ms", "stereo_8_paths_ms", "head_gmac_per_s", "network_ms", "machine_gmac_per_s",
+                "build_unrefined_ms", "build_small_ms", "stereo_ms", "stereo_8_paths_ms", "head_gmac_per_s", "network_ms", "machine_gmac_per_s",
                 "machine_copy_gb_per_s"):
         check(found[key] > 0 and found[key + "_min"] <= found[key] <= found[key + "_max"], f"bench lacks {key}")
     # each item's share of the whole

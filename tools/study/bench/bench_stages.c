@@ -28,6 +28,11 @@ static bool run_build(bench_work *w)
     return bench_work_build(w, BENCH_TRIMMED) == T3R_OK;
 }
 
+static bool run_build_unrefined(bench_work *w)
+{
+    return bench_work_build(w, BENCH_UNREFINED) == T3R_OK;
+}
+
 static bool run_build_learned(bench_work *w)
 {
     return bench_work_build(w, BENCH_LEARNED) == T3R_OK;
@@ -156,6 +161,7 @@ const bench_stage bench_stages[BENCH_STAGES_MOST + 1] = {
     {"kmeans_ms", run_kmeans, BENCH_NO_SCENE, points, "ns a point", "kmeans_ns_per_point"},
     {"texture_ns_per_pixel", run_texture, BENCH_NO_SCENE, pixels_of_texture, NULL, NULL},
     {"build_analytic_ms", run_build, BENCH_TRIMMED, pixels, "ns a pixel", "build_analytic_ns_per_pixel"},
+    {"build_unrefined_ms", run_build_unrefined, BENCH_UNREFINED, pixels, "ns a pixel", "build_unrefined_ns_per_pixel"},
     {"build_small_ms", run_build_learned, BENCH_LEARNED, pixels, "ns a pixel", "build_small_ns_per_pixel"},
     {"head_gmac_per_s", run_head, BENCH_HEADED, macs_of_head, "ns a multiply-accumulate", "head_ns_per_mac"},
     {"network_ms", run_network, BENCH_NETWORKED, pixels, "ns a pixel", "network_ns_per_pixel"},

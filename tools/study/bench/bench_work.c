@@ -24,6 +24,7 @@ static const struct {
 } scene_settings[BENCH_SCENES] = {
     [BENCH_FULL] = {BENCH_POINTS, ANALYTIC, false, REFINEMENTS, false},
     [BENCH_TRIMMED] = {BENCH_TRIMMED_TO, ANALYTIC, false, REFINEMENTS, false},
+    [BENCH_UNREFINED] = {BENCH_TRIMMED_TO, ANALYTIC, false, 0, false},
     [BENCH_LEARNED] = {BENCH_TRIMMED_TO, SMALL, false, REFINEMENTS, false},
     [BENCH_REFINED] = {BENCH_TRIMMED_TO, ANALYTIC, true, 1, false},
     [BENCH_MATCHED] = {BENCH_TRIMMED_TO, ANALYTIC, true, 0, true},

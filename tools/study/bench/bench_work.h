@@ -23,6 +23,7 @@
 typedef enum bench_scene {
     BENCH_FULL,
     BENCH_TRIMMED,
+    BENCH_UNREFINED,
     BENCH_LEARNED,
     BENCH_REFINED,
     BENCH_MATCHED,
