@@ -9,8 +9,9 @@ from common import check, done, need_opencv, run
 
 tools, docs = sys.argv[1:3]
 scripts = os.path.join(tools, "study", "scripts")
-SCRIPTS = ("auto", "live", "paper", "peers", "poses", "results", "speed", "stability", "stereo_results", "stream")
+SCRIPTS = ("auto", "growth", "live", "paper", "peers", "poses", "results", "speed", "stability", "stereo_results", "stream")
 WRONG = {  # beside an unknown option
+    "growth": [["colour"], ["size", "--write"], ["--quick", "--write"]],
     "live": [["--runs", "few"]],
     "paper": [["nothing"], ["--write", "--quick"], ["views", "--write"], ["--tuned-pruned", "101"], ["--head-of", "x"]],
     "peers": [["--rounds", "few"], ["--rounds", "0"], ["--write", "--only", "kmeans"], ["--only", "sorting"]],

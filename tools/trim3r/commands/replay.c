@@ -17,6 +17,7 @@
 #include "cli/option_values.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/replay_expectation.h"
+#include "reconstruction/replay_slide.h"
 #include "reconstruction/replay_stream.h"
 
 #define ERROR_BYTES 512
@@ -26,7 +27,7 @@ typedef struct replay_options {
     const char *expect;
     bool json;
     replay_stream_options stream;
-    bool streams, has_half_life;
+    bool streams, has_half_life, slides;
     reconstruction_options settings;
 } replay_options;
 
@@ -40,13 +41,15 @@ typedef struct replayed_view {
     work_times times;
 } replayed_view;
 
-enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_HALF_LIFE, KEY_OVERLAP, KEY_IMAGES };
+enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_HALF_LIFE, KEY_OVERLAP, KEY_IMAGES, KEY_SLIDE };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {"expect", KEY_EXPECT, "HASH|FILE", OPTION_READS | OPTION_OR_WORD,
      "expected final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout, fit for --expect", 0},
+    {"slide", KEY_SLIDE, NULL, 0,
+     "build a scene at every frame, of it and the one before; print the time of each and the hash of all", 0},
     {NULL, 0, NULL, 0, "A map that follows the camera:", 5},
     {"stream", KEY_STREAM, NULL, 0,
      "take all frames in turn: keyframes go into one map of at most --gaussians; the frames between them are drawn and "
@@ -94,6 +97,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_STREAM:
         o->streams = true;
         return 0;
+    case KEY_SLIDE:
+        o->slides = true;
+        return 0;
     case KEY_EVERY:
         o->stream.every = option_number(state, "every", arg, 1, 1000);
         return 0;
@@ -125,6 +131,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             o->settings.keep_percent = 10;
         }
         check_stream(state, o);
+        if (o->slides && (o->streams || o->settings.context_count > 0 ||
+                          o->settings.config.allocation == T3R_ALLOCATE_GIVEN)) {
+            argp_error(state, "--slide takes no --stream, --context or --allocate given");
+        }
         if (o->settings.method != METHOD_TRIM3R) {
             argp_error(state, "--method %s is made in floats, which promise no bits; trim3r alone is replayed",
                        method_name(o->settings.method));
@@ -144,11 +154,12 @@ static const struct argp argp = {
         "Build a scene (10 % of the points, unless a budget is given), draw the first frame that is not a context "
         "view, "
         "and print the hash of every stage and of the whole. With --stream, take all frames of the recording in turn; "
-        "percents are then of the points of the first two keyframes."
+        "percents are then of the points of the first two keyframes. With --slide, build a scene at every frame."
         "\vExamples:\n"
         "  trim3r replay room.mcap\n"
         "  trim3r replay room.mcap --json > golden.json\n"
         "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n"
+        "  trim3r replay walk.mcap --slide --warm on\n"
         "  trim3r replay walk.mcap --stream --every 3 --gaussians 10000\n\n"
         "With a file to compare with, the first stage that differs is named, and for the raster the first 16x16 tile.",
     .children = children,
@@ -341,8 +352,9 @@ int command_replay(int argc, char **argv)
         } else {
             work_times_end(&times, WORK_READ);
             warn_of_epoch(&o, recording);
-            code = o.streams ? replay_stream(&o.stream, recording, o.recording, &o.settings, &e)
-                             : replay(&o, recording, &e, &times);
+            code = o.streams  ? replay_stream(&o.stream, recording, o.recording, &o.settings, &e)
+                   : o.slides ? replay_slide(recording, o.recording, &o.settings, o.json, &e)
+                              : replay(&o, recording, &e, &times);
             t3r_recording_close(recording);
         }
     }
