@@ -386,42 +386,53 @@ bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u
     return true;
 }
 
-/* In planes, of rays up to 4 to the side: kernels/ray_row.h has their z below 2^27. */
-static bool places_in_plane(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view, uint32_t u,
-                            uint32_t v, uint32_t count, t3r_ray_places *places)
+void t3r_view_columns_of(const t3r_rectification *rect, uint32_t view, uint32_t u, uint32_t count,
+                         t3r_view_columns *columns)
 {
     const t3r_rectified_view *from = &rect->view[view];
-    const t3r_divisor fx = t3r_divisor_of((uint32_t)from->fx_q16), fy = t3r_divisor_of((uint32_t)from->fy_q16);
-    const int64_t y = t3r_divide_q24(&fy, ((int64_t)v << 16) - from->cy_q16, RAY_MOST);
+    const t3r_divisor fx = t3r_divisor_of((uint32_t)from->fx_q16);
+    columns->u = u;
+    columns->count = count;
+    for (uint32_t i = 0; i < T3R_RAYS; i++) {
+        const int64_t x_q16 = ((int64_t)(u + i) << 16) - from->cx_q16;
+        columns->x_q24[i] = i < count ? t3r_divide_q24(&fx, x_q16, RAY_MOST) : 0;
+    }
+}
+
+/* In planes, of rays up to 4 to the side: kernels/ray_row.h has their z below 2^27. */
+static bool places_in_plane(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view,
+                            const t3r_view_columns *columns, uint32_t v, t3r_ray_places *places)
+{
+    static const int32_t none[T3R_RAYS];
+    const t3r_rectified_view *from = &rect->view[view];
+    const int64_t y_q16 = ((int64_t)v << 16) - from->cy_q16, most = 4 * ONE_Q24;
+    const int64_t y =
+        t3r_clamp64(t3r_round_div64(y_q16 * ONE_Q24, from->fy_q16), -RAY_MOST * ONE_Q24, RAY_MOST * ONE_Q24);
     t3r_ray_map map = {.steepest = PLACE_MOST,
                        .scale_q16 = {rect->scale_q16[0], rect->scale_q16[1]},
                        .offset_q16 = {0, -rect->first_q16[1]}};
-    int32_t x_q24[T3R_RAYS] = {0}, none[T3R_RAYS] = {0};
-    int64_t most = t3r_abs64(y);
-    for (uint32_t i = 0; i < count; i++) {
-        x_q24[i] = t3r_divide_q24(&fx, ((int64_t)(u + i) << 16) - from->cx_q16, RAY_MOST);
-        most = T3R_MAX(most, t3r_abs64(x_q24[i]));
-    }
-    if (most > 4 * ONE_Q24) {
+    /* the columns rise: the outermost are the ends */
+    if (t3r_abs64(y) > most || columns->x_q24[0] < -most || columns->x_q24[columns->count - 1] > most) {
         return false;
     }
     for (int i = 0; i < 3; i++) {
         map.turn_q30[i] = from->turn_q30[i];
         map.base_q54[i] = y * from->turn_q30[3 + i] + ONE_Q24 * from->turn_q30[6 + i];
     }
-    kernels->ray_row(&map, x_q24, none, (count + 15) & ~15u, places);
+    kernels->ray_row(&map, columns->x_q24, none, (columns->count + 15) & ~15u, places);
     return true;
 }
 
-void t3r_rectified_places(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view, uint32_t u,
-                          uint32_t v, uint32_t count, t3r_ray_places *places)
+void t3r_rectified_places(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view,
+                          const t3r_view_columns *columns, uint32_t v, t3r_ray_places *places)
 {
-    if (!rect->polar && places_in_plane(kernels, rect, view, u, v, count, places)) {
+    if (!rect->polar && places_in_plane(kernels, rect, view, columns, v, places)) {
         return;
     }
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < columns->count; i++) {
         int32_t place[2] = {0, 0}, across_q24 = 0;
-        (void)t3r_rectified_place(rect, view, (int32_t)((u + i) << 16), (int32_t)(v << 16), place, &across_q24);
+        (void)t3r_rectified_place(rect, view, (int32_t)((columns->u + i) << 16), (int32_t)(v << 16), place,
+                                  &across_q24);
         places->x_q16[i] = place[0];
         places->y_q16[i] = place[1];
         places->z_q24[i] = across_q24;

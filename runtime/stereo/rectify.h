@@ -51,16 +51,33 @@ typedef struct t3r_column {
 } t3r_column;
 
 /* The column x pixels from where the baseline's normal is, Q16: the plane's own first one is first_q16[0]. */
-t3r_column t3r_rectified_column(const t3r_rectification *rect, int32_t x_q16);
+static inline t3r_column t3r_rectified_column(const t3r_rectification *rect, int32_t x_q16)
+{
+    const int64_t at = t3r_divide_q24(&rect->column_scale, x_q16, 4);
+    if (!rect->polar) {
+        return (t3r_column){(int32_t)at, 1 << 24};
+    }
+    return (t3r_column){(int32_t)(2 * at), (int32_t)((1 << 24) - t3r_round_shift64(at * at, 24))};
+}
 
 /* Where a view's pixel lies: column as above, row counted from the plane's first, Q16; and how far its ray goes from
  * the baseline while z grows by 1 in the view, Q24. False: nowhere. */
 bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u_q16, int32_t v_q16,
                          int32_t place_q16[2], int32_t *across_q24);
 
-/* The same of `count` pixels (u.., v) of a view, up to T3R_RAYS: places->z_q24 is how far, 0 = nowhere. */
-void t3r_rectified_places(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view, uint32_t u,
-                          uint32_t v, uint32_t count, t3r_ray_places *places);
+/* Columns of a view from u on, count of them up to T3R_RAYS: how far to the side their rays go. */
+typedef struct t3r_view_columns {
+    uint32_t u, count;
+    int32_t x_q24[T3R_RAYS]; /* 0 behind the last */
+} t3r_view_columns;
+
+void t3r_view_columns_of(const t3r_rectification *rect, uint32_t view, uint32_t u, uint32_t count,
+                         t3r_view_columns *columns);
+
+/* The places of a view's pixels in such columns and row v, as t3r_rectified_place() has them: places->z_q24 is how far,
+ * 0 = nowhere. */
+void t3r_rectified_places(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view,
+                          const t3r_view_columns *columns, uint32_t v, t3r_ray_places *places);
 
 /* `count` pixels of each of the rows of a plane of `view`, whose first column is at x_q16, one row behind the other:
  * luma 1..255, 0 where the view shows nothing. luma: the view's own plane, 0 where it shows nothing. */

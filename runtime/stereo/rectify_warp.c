@@ -4,15 +4,6 @@
 
 #define ONE_Q24 (INT64_C(1) << 24)
 
-t3r_column t3r_rectified_column(const t3r_rectification *rect, int32_t x_q16)
-{
-    const int64_t at = t3r_divide_q24(&rect->column_scale, x_q16, 4);
-    if (!rect->polar) {
-        return (t3r_column){(int32_t)at, (int32_t)ONE_Q24};
-    }
-    return (t3r_column){(int32_t)(2 * at), (int32_t)(ONE_Q24 - t3r_round_shift64(at * at, 24))};
-}
-
 /* e(row): its parts along y and z, Q24 */
 static void row_direction(const t3r_rectification *rect, uint32_t row, int64_t e_q24[2])
 {

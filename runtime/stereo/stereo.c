@@ -8,6 +8,8 @@
 
 /* The first look is at a quarter of the size. */
 #define QUARTER 4
+/* Rows of that size that are made at once, where there is room */
+#define BAND 8
 /* Coarse disparities beyond the outermost 1/128 of all on either side are taken for errors. */
 #define TAIL 128
 /* Disparities more on either side than the first look found, pixels. */
@@ -105,7 +107,8 @@ static int32_t begin_q16(const t3r_rectification *rect, uint32_t side, int32_t f
 
 /* One row at a quarter of the size: the mean of 4 x 4 pixels, 0 unless all of them show something. rows: four rows,
  * each `pitch` behind the one before. */
-static void quarter_row(const uint8_t *rows, size_t pitch, uint32_t count, uint8_t *restrict out)
+static __attribute__((noinline)) void quarter_row(const uint8_t *rows, size_t pitch, uint32_t count,
+                                                  uint8_t *restrict out)
 {
     for (uint32_t x = 0; x < count; x++) {
         uint32_t sum = 0, least = UINT8_MAX;
@@ -123,9 +126,10 @@ static uint32_t lanes(uint32_t disparities)
     return (disparities + T3R_PATH_LANES - 1) / T3R_PATH_LANES * T3R_PATH_LANES;
 }
 
-/* A quarter of the size, row by row; each worker has four rows of the full size. */
+/* The right plane at a quarter of the size; each worker has `band` times four rows of the full size. */
 typedef struct quarter_job {
-    side_job full;
+    side_job full; /* columns: a quarter of them */
+    uint32_t band;
     uint8_t *rows;
 } quarter_job;
 
@@ -134,11 +138,15 @@ static void quarter_rows(void *context, uint32_t begin, uint32_t end, uint32_t w
     const quarter_job *job = context;
     const side_job *full = &job->full;
     const uint32_t columns = QUARTER * full->columns;
-    uint8_t *rows = job->rows + (size_t)worker * QUARTER * columns;
-    for (uint32_t y = begin; y < end; y++) {
+    uint8_t *rows = job->rows + (size_t)worker * job->band * QUARTER * columns;
+    for (uint32_t first = begin; first < end; first += job->band) {
+        const uint32_t last = T3R_MIN(first + job->band, end);
         t3r_rectified_rows(full->kernels, full->rect, full->side, full->luma, full->begin_q16,
-                           (t3r_share){QUARTER * y, QUARTER * (y + 1)}, columns, rows);
-        quarter_row(rows, columns, full->columns, full->out + (size_t)y * full->columns);
+                           (t3r_share){QUARTER * first, QUARTER * last}, columns, rows);
+        for (uint32_t y = first; y < last; y++) {
+            quarter_row(rows + (size_t)(y - first) * QUARTER * columns, columns, full->columns,
+                        full->out + (size_t)y * full->columns);
+        }
     }
 }
 
@@ -161,29 +169,46 @@ static uint32_t match_score_of(const uint32_t *histogram, uint32_t count, int32_
     return (uint32_t)T3R_MIN(sum, (uint64_t)UINT32_MAX);
 }
 
-/* Luma of both views at a quarter of the size. A function of its own: workers' tasks need the stack that its caller's
- * histogram takes. */
-static __attribute__((noinline)) void fill_quarter(const t3r_stereo_settings *settings, const t3r_rectification *rect,
-                                                   const t3r_view views[2], const planes *full, const planes *p,
-                                                   uint32_t count)
+/* The left plane's luma in full, which is the same whatever disparities are found, and at a quarter of the size.
+ * Functions of their own, like the next: workers' tasks need the stack that their caller's histogram takes. */
+static __attribute__((noinline)) void fill_left(const t3r_stereo_settings *settings, const t3r_rectification *rect,
+                                                const t3r_view *view, const planes *full, uint8_t *out)
 {
     const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
-    for (uint32_t side = 0; side < 2; side++) {
-        const uint32_t columns = side == 0 ? width : (uint32_t)T3R_MATCH_RIGHT(width, count);
-        quarter_job job = {
-            .full = {.kernels = settings->kernels,
-                     .rect = rect,
-                     .side = side,
-                     .columns = columns,
-                     .begin_q16 = begin_q16(rect, side, rect->least_disparity, QUARTER * (count - 1) + 1),
-                     .luma = full->work,
-                     .out = p->side[side].luma},
-            .rows = full->side[side].luma};
-        luma_of(&views[side], full->work);
-        const bool fits = settings->workers.count <= full->pixels[side] / (QUARTER * QUARTER * (size_t)columns);
-        const t3r_workers alone = {NULL, 1};
-        t3r_run_rows(fits ? &settings->workers : &alone, height, quarter_rows, &job);
+    side_job job = {.kernels = settings->kernels,
+                    .rect = rect,
+                    .side = 0,
+                    .columns = rect->width,
+                    .begin_q16 = rect->first_q16[0],
+                    .luma = full->work,
+                    .out = full->side[0].luma};
+    luma_of(view, full->work);
+    t3r_run_rows(&settings->workers, rect->height, rectify_rows, &job);
+    for (uint32_t y = 0; y < height; y++) {
+        quarter_row(job.out + (size_t)y * QUARTER * rect->width, rect->width, width, out + (size_t)y * width);
     }
+}
+
+/* The right plane at a quarter of the size. */
+static __attribute__((noinline)) void fill_right(const t3r_stereo_settings *settings, const t3r_rectification *rect,
+                                                 const t3r_view *view, const planes *full, uint32_t count, uint8_t *out)
+{
+    const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
+    const uint32_t columns = (uint32_t)T3R_MATCH_RIGHT(width, count);
+    quarter_job job = {.full = {.kernels = settings->kernels,
+                                .rect = rect,
+                                .side = 1,
+                                .columns = columns,
+                                .begin_q16 = begin_q16(rect, 1, rect->least_disparity, QUARTER * (count - 1) + 1),
+                                .luma = full->work,
+                                .out = out},
+                       .rows = full->side[1].luma};
+    luma_of(view, full->work);
+    const size_t room = full->pixels[1] / (QUARTER * QUARTER * (size_t)columns); /* for so many times four rows */
+    const t3r_workers alone = {NULL, 1};
+    const t3r_workers *workers = settings->workers.count <= room ? &settings->workers : &alone;
+    job.band = (uint32_t)T3R_MIN(T3R_MAX(room / T3R_MAX(workers->count, 1), 1), BAND);
+    t3r_run_rows(workers, height, quarter_rows, &job);
 }
 
 /* The range of disparities that the first look trusts, and what it is worth. */
@@ -240,7 +265,8 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
     const uint32_t room = T3R_MIN(T3R_MIN(rect->width, T3R_PATH_MOST), QUARTER * settings->disparities);
     const uint32_t count = lanes(T3R_MIN(wanted, room));
     const planes p = divide_quarter(full, width, height, count);
-    fill_quarter(settings, rect, views, full, &p, count);
+    fill_left(settings, rect, &views[0], full, p.side[0].luma);
+    fill_right(settings, rect, &views[1], full, count, p.side[1].luma);
     const t3r_match match = match_of(&p, settings, width, height, count);
     t3r_match_pair(&match);
     t3r_match_agree(&match);
@@ -286,16 +312,16 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
         found.columns[side] = columns;
         found.disparity[side] = full.side[side].disparity;
         found.confidence[side] = full.side[side].confidence;
-        luma_of(&views[side], full.work);
-        side_job job = {.kernels = settings->kernels,
-                        .rect = &rect,
-                        .side = side,
-                        .columns = columns,
-                        .begin_q16 = found.begin_q16[side],
-                        .luma = full.work,
-                        .out = full.side[side].luma};
-        t3r_run_rows(&settings->workers, rect.height, rectify_rows, &job);
     }
+    luma_of(&views[1], full.work); /* the left plane's luma is the first look's */
+    side_job job = {.kernels = settings->kernels,
+                    .rect = &rect,
+                    .side = 1,
+                    .columns = found.columns[1],
+                    .begin_q16 = found.begin_q16[1],
+                    .luma = full.work,
+                    .out = full.side[1].luma};
+    t3r_run_rows(&settings->workers, rect.height, rectify_rows, &job);
     t3r_match_all(&match, settings->fill != 0);
     pair = t3r_stereo_unit(settings->kernels, &found, views, depth_unit_q40);
     for (uint32_t side = 0; side < 2 && pair == T3R_PAIR_OK; side++) {

@@ -99,24 +99,26 @@ t3r_pair t3r_stereo_unit(const t3r_kernels *kernels, t3r_stereo_planes *planes, 
     const t3r_rectification *rect = planes->rect;
     uint32_t histogram[BINS] = {0}, sampled = 0, matched = 0, still = 0;
     for (uint32_t side = 0; side < 2; side++) {
-        for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
+        for (uint32_t first = 0; first < views[side].width; first += T3R_RAYS) {
+            t3r_view_columns columns;
             t3r_ray_places places;
-            for (uint32_t u = 0; u < views[side].width; u += SAMPLING) {
-                distance s;
-                if (u % T3R_RAYS == 0) {
-                    t3r_rectified_places(kernels, rect, side, u, v, T3R_MIN(views[side].width - u, T3R_RAYS), &places);
+            t3r_view_columns_of(rect, side, first, T3R_MIN(views[side].width - first, T3R_RAYS), &columns);
+            for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
+                t3r_rectified_places(kernels, rect, side, &columns, v, &places);
+                for (uint32_t i = 0; i < columns.count; i += SAMPLING) {
+                    distance s;
+                    sampled++;
+                    if (!see(planes, side, &places, i, &s) || s.confidence < T3R_STEREO_SURE) {
+                        continue;
+                    }
+                    matched++;
+                    if (s.disparity_q16 < NO_PARALLAX_Q16) {
+                        still++;
+                        continue;
+                    }
+                    const int64_t baselines_q16 = t3r_round_div64(s.numerator_q24 * (1 << 22), s.denominator_q30);
+                    histogram[t3r_log2_wide_q16((uint64_t)T3R_MAX(baselines_q16, 1)) >> 13]++;
                 }
-                sampled++;
-                if (!see(planes, side, &places, u % T3R_RAYS, &s) || s.confidence < T3R_STEREO_SURE) {
-                    continue;
-                }
-                matched++;
-                if (s.disparity_q16 < NO_PARALLAX_Q16) {
-                    still++;
-                    continue;
-                }
-                const int64_t baselines_q16 = t3r_round_div64(s.numerator_q24 * (1 << 22), s.denominator_q30);
-                histogram[t3r_log2_wide_q16((uint64_t)T3R_MAX(baselines_q16, 1)) >> 13]++;
             }
         }
     }
@@ -172,24 +174,25 @@ static void view_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     const view_job all = *(const view_job *)context, *job = &all;
     const t3r_view its = *job->view, *view = &its;
     const t3r_stereo_planes parts = *job->planes, *planes = &parts;
-    for (uint32_t v = begin; v < end; v++) {
+    for (uint32_t first = 0; first < view->width; first += T3R_RAYS) {
+        t3r_view_columns columns;
         t3r_ray_places places;
-        for (uint32_t u = 0; u < view->width; u++) {
-            const size_t at = (size_t)v * view->width + u;
-            distance s;
-            if (u % T3R_RAYS == 0) {
-                t3r_rectified_places(job->kernels, planes->rect, job->side, u, v, T3R_MIN(view->width - u, T3R_RAYS),
-                                     &places);
-            }
-            view->depth[at] = 0;
-            view->match_confidence[at] = T3R_STEREO_NONE;
-            const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
-            if (shown && see(planes, job->side, &places, u % T3R_RAYS, &s)) {
-                /* 2^22 x 2^25 x 2^6 */
-                int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
-                view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
-                const bool known = depth <= UINT16_MAX && s.disparity_q16 >= NO_PARALLAX_Q16;
-                view->match_confidence[at] = known ? s.confidence : T3R_STEREO_FILLED;
+        t3r_view_columns_of(planes->rect, job->side, first, T3R_MIN(view->width - first, T3R_RAYS), &columns);
+        for (uint32_t v = begin; v < end; v++) {
+            t3r_rectified_places(job->kernels, planes->rect, job->side, &columns, v, &places);
+            for (uint32_t i = 0; i < columns.count; i++) {
+                const size_t at = (size_t)v * view->width + first + i;
+                distance s;
+                view->depth[at] = 0;
+                view->match_confidence[at] = T3R_STEREO_NONE;
+                const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
+                if (shown && see(planes, job->side, &places, i, &s)) {
+                    /* 2^22 x 2^25 x 2^6 */
+                    int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
+                    view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
+                    const bool known = depth <= UINT16_MAX && s.disparity_q16 >= NO_PARALLAX_Q16;
+                    view->match_confidence[at] = known ? s.confidence : T3R_STEREO_FILLED;
+                }
             }
         }
     }

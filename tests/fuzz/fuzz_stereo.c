@@ -1,5 +1,5 @@
 /* Bytes to two cameras, settings and pictures: whatever passes the check of cameras gets an answer, within the memory
- * that the macros promise, and depths within their range. */
+ * that the macros promise, and depths within their range. It is the same in plain C and in the processor's variants. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,6 +39,17 @@ static void tame(header *h)
     }
 }
 
+static uint32_t features(void)
+{
+#if defined(__x86_64__)
+    const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    return (__builtin_cpu_supports("avx2") ? T3R_CPU_AVX2 : 0) | (wide ? T3R_CPU_AVX512 : 0);
+#else
+    return 0;
+#endif
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     header h;
@@ -76,6 +87,27 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     uint64_t unit = 0;
     const t3r_pair pair = t3r_stereo_depth(&settings, h.cameras, views, work, &unit);
     REQUIRE((uint32_t)pair < T3R_PAIR_COUNT);
+    t3r_kernels variants;
+    t3r_kernels_choose(&variants, features());
+    t3r_stereo_settings chosen = settings;
+    chosen.kernels = &variants;
+    t3r_view again[2] = {views[0], views[1]};
+    uint16_t *other_depth = malloc(pixels * 4);
+    uint8_t *other_confidence = malloc(pixels * 2);
+    REQUIRE(other_depth != NULL && other_confidence != NULL);
+    for (size_t i = 0; i < 2; i++) {
+        again[i].depth = other_depth + pixels * i;
+        again[i].match_confidence = other_confidence + pixels * i;
+    }
+    uint64_t other_unit = 0;
+    REQUIRE(t3r_stereo_depth(&chosen, h.cameras, again, work, &other_unit) == pair);
+    for (size_t i = 0; i < 2 && pair == T3R_PAIR_OK; i++) {
+        REQUIRE(other_unit == unit);
+        REQUIRE(memcmp(again[i].depth, views[i].depth, pixels * 2) == 0);
+        REQUIRE(memcmp(again[i].match_confidence, views[i].match_confidence, pixels) == 0);
+    }
+    free(other_depth);
+    free(other_confidence);
     for (size_t i = 0; i < 2 && pair == T3R_PAIR_OK; i++) {
         REQUIRE(unit >= 1 && unit < UINT64_C(1) << 47);
         for (size_t n = 0; n < pixels; n++) {

@@ -293,7 +293,9 @@ static void anything(void **state)
             t3r_rectified_rows(&t3r_kernels_c, &rect, side, luma, rect.first_q16[0], (t3r_share){y, y + 1}, rect.width,
                                row);
             t3r_ray_places places;
-            t3r_rectified_places(&t3r_kernels_c, &rect, side, 3, v, 45, &places);
+            t3r_view_columns columns;
+            t3r_view_columns_of(&rect, side, 3, 45, &columns);
+            t3r_rectified_places(&t3r_kernels_c, &rect, side, &columns, v, &places);
             for (int i = 0; i < 45; i++) {
                 int32_t place[2] = {0, 0}, across = 0;
                 (void)t3r_rectified_place(&rect, side, (3 + i) << 16, (int32_t)v << 16, place, &across);

@@ -5,7 +5,7 @@
 
 typedef uint8_t bytes __attribute__((vector_size(BYTES)));
 
-/* Disparities of the last vector: 16, or all; lanes beyond are 0 when loaded and not stored. */
+/* `count` may be 16, or BYTES and more: lanes beyond are 0 when loaded and not stored. */
 static inline TARGET bytes load(const uint8_t *from, uint32_t count);
 static inline TARGET void store(uint8_t *to, bytes x, uint32_t count);
 /* Lanes below `count` of x, else of `other`. */

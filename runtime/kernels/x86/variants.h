@@ -33,13 +33,10 @@
     X(locate, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_locate_avx512)                                                        \
     X(census_row, T3R_CPU_AVX2, t3r_census_row_avx2)                                                                   \
     X(census_costs, T3R_CPU_AVX2, t3r_census_costs_avx2)                                                               \
-    X(census_costs, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_census_costs_avx512)                                            \
     X(ray_row, T3R_CPU_AVX2, t3r_ray_row_avx2)                                                                         \
     X(ray_row, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_ray_row_avx512)                                                      \
     X(path_row, T3R_CPU_AVX2, t3r_path_row_avx2)                                                                       \
-    X(path_row, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_path_row_avx512)                                                    \
     X(winner_row, T3R_CPU_AVX2, t3r_winner_row_avx2)                                                                   \
-    X(winner_row, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_winner_row_avx512)                                                \
     X(luma_row, T3R_CPU_AVX2, t3r_luma_row_avx2)                                                                       \
     X(split_row, T3R_CPU_AVX2, t3r_split_row_avx2)                                                                     \
     X(db2_predict, T3R_CPU_AVX2, t3r_db2_predict_avx2)                                                                 \
