@@ -94,7 +94,8 @@ INLINE __m512i scaled(__m512i sum, const place *at, uint32_t first, int16_t zero
 /* Writes the first `count` activations of x, held within 8 or 16 bits. */
 INLINE void write(__m512i x, uint32_t output_bits, uint32_t count, void *out, size_t at)
 {
-    const __mmask16 there = count >= LANES ? (__mmask16)0xffff : (__mmask16)((1u << count) - 1);
+    const unsigned there_bits = count >= LANES ? 0xffffu : (1u << count) - 1;
+    const __mmask16 there = (__mmask16)there_bits;
     if (output_bits == 8) {
         _mm_mask_storeu_epi8((int8_t *)out + at, there, _mm512_cvtsepi32_epi8(x));
     } else {

@@ -99,11 +99,13 @@ static inline TARGET void ray_block(const t3r_ray_map *map, lanes a, lanes b, bo
     const lanes by = (z & any) | (~any & least);
     ulanes d = (ulanes)by, shift = (ulanes){0};
     for (uint32_t step = 4; step > 0; step >>= 1) { /* below 2^22, 2^24, 2^25 */
-        const ulanes up = (ulanes)((lanes)d < 1 << (step == 4 ? 22 : step == 2 ? 24 : 25)) & step;
+        const int32_t bound = 1 << (step == 4 ? 22 : step == 2 ? 24 : 25);
+        const ulanes up = (ulanes)((lanes)d < bound) & step;
         d <<= up;
         shift += up;
     }
-    const ulanes up = (ulanes)((lanes)d < 1 << 26) & 1;
+    const int32_t full = 1 << 26;
+    const ulanes up = (ulanes)((lanes)d < full) & 1;
     const ulanes inverse = reciprocal(d << up);
     *u = any & place(divide(x & any, by, shift + up, inverse), map->scale_q16[0], map->offset_q16[0]);
     *v = any & place(divide(y & any, by, shift + up, inverse), map->scale_q16[1], map->offset_q16[1]);

@@ -218,12 +218,12 @@ static T3R_AVX2 void sweep(const unit_system *s, lanes y[PARAMETERS])
     __m256i pairs[PARAMETERS / 2] = {_mm256_setzero_si256(), _mm256_setzero_si256(), _mm256_setzero_si256()};
     for (int step = 0; step < SWEEPS; step++) {
         for (int i = 0; i < PARAMETERS; i++) {
-            lanes rest = s->b[i];
+            ulanes rest = (ulanes)s->b[i]; /* modulo 2^32: the result is below 2^31 */
             for (int k = 1; k <= PARAMETERS / 2; k++) { /* the pair with the newest unknown last */
                 const int pair = ((i + PARAMETERS - 1) / 2 + k) % (PARAMETERS / 2);
-                rest -= (lanes)_mm256_madd_epi16(s->a_q15[i][pair], pairs[pair]);
+                rest -= (ulanes)_mm256_madd_epi16(s->a_q15[i][pair], pairs[pair]);
             }
-            const lanes x = held(rest >> 15, s->most[i]);
+            const lanes x = held((lanes)rest >> 15, s->most[i]);
             pairs[i / 2] = i % 2 == 0 ? _mm256_blend_epi16(pairs[i / 2], (__m256i)x, 0x55)
                                       : _mm256_blend_epi16(pairs[i / 2], (__m256i)(x << 16), 0xaa);
         }
