@@ -164,7 +164,7 @@ static void add_group(const factors *f, uint32_t rows, uint32_t gradient[T3R_REF
 /* Adds sums of the orders 0, 1, 2 and so on, whose fractions are these. */
 static void add_moments(const uint32_t *moments, uint32_t orders, int32_t right, int32_t most, int32_t *sums)
 {
-    static const int8_t fraction[] = {0, T3R_X_FRACTION, T3R_XX_FRACTION, T3R_XXX_FRACTION, T3R_XXXX_FRACTION};
+    static const int8_t fraction[] = {0, T3R_X_FRACTION, T3R_X2_FRACTION, T3R_X3_FRACTION, T3R_X4_FRACTION};
     for (uint32_t order = 0, k = 0; order < orders; order++) {
         for (uint32_t i = 0; i <= order; i++, k++) {
             sums[k] += t3r_clamp32(t3r_scale32((int32_t)moments[k], -(right + fraction[order])), -most, most);

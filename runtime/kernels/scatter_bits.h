@@ -6,10 +6,10 @@
 #include "scatter.h"
 
 #define T3R_X_FRACTION 13  /* bits of x and y: |x| is below 3.4 wherever a weight is not 0, and held modulo 8 */
-#define T3R_XX_FRACTION 11 /* of their products */
+#define T3R_X2_FRACTION 11 /* of their products */
 /* The square times a power, rounded by 15 bits, times another one */
-#define T3R_XXX_FRACTION (T3R_X_FRACTION + T3R_XX_FRACTION - 15)
-#define T3R_XXXX_FRACTION (2 * T3R_XX_FRACTION - 15)
+#define T3R_X3_FRACTION (T3R_X_FRACTION + T3R_X2_FRACTION - 15)
+#define T3R_X4_FRACTION (2 * T3R_X2_FRACTION - 15)
 
 /* The sum of all pixels' |g|^2 takes so many bits, and each of them so many. The same goes for g . r. |x| < 2^14.8 in
  * its fraction, so that sums of their products stay below 2^31. */

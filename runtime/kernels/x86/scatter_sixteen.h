@@ -259,22 +259,22 @@ T3R_X86_INLINE T3R_SCATTER uint32_t collect_terms(off_job *job, const t3r_scatte
 static inline T3R_SCATTER void add_sums(__m128i fine, const moments *m, const t3r_sum_shifts *by, int32_t most,
                                         t3r_refine_sums *to)
 {
-    enum { X = T3R_X_FRACTION, XX = T3R_XX_FRACTION, XXX = T3R_XXX_FRACTION, XXXX = T3R_XXXX_FRACTION };
+    enum { X = T3R_X_FRACTION, X2 = T3R_X2_FRACTION, X3 = T3R_X3_FRACTION, X4 = T3R_X4_FRACTION };
     const __m256i gradient = _mm256_set1_epi32(by->gradient), curvature = _mm256_set1_epi32(by->curvature);
     const __m256i held = _mm256_set1_epi32(most), *g = m->gradient, *c = m->curvature;
     const __m256i first = _mm256_blend_epi32(_mm256_set1_epi32(by->colour), _mm256_set1_epi32(by->weight), 1 << 3);
     add_scaled(fine, sums_of_four(g[0], g[1], g[2], g[3]),
-               _mm256_add_epi32(_mm256_blend_epi32(first, gradient, 0xf0), _mm256_setr_epi32(0, 0, 0, 0, 0, X, X, XX)),
+               _mm256_add_epi32(_mm256_blend_epi32(first, gradient, 0xf0), _mm256_setr_epi32(0, 0, 0, 0, 0, X, X, X2)),
                _mm256_blend_epi32(_mm256_set1_epi32(INT32_MAX), held, 0xf0), to->colour);
     add_scaled(
         sums_of_four(g[4], g[5], c[0], c[1]), sums_of_four(c[2], c[3], c[4], c[5]),
-        _mm256_add_epi32(_mm256_blend_epi32(gradient, curvature, 0xfc), _mm256_setr_epi32(XX, XX, 0, X, X, XX, XX, XX)),
+        _mm256_add_epi32(_mm256_blend_epi32(gradient, curvature, 0xfc), _mm256_setr_epi32(X2, X2, 0, X, X, X2, X2, X2)),
         held, to->gradient + T3R_M_XY);
     add_scaled(sums_of_four(c[6], c[7], c[8], c[9]), sums_of_four(c[10], c[11], c[12], c[13]),
-               _mm256_add_epi32(curvature, _mm256_setr_epi32(XXX, XXX, XXX, XXX, XXXX, XXXX, XXXX, XXXX)), held,
+               _mm256_add_epi32(curvature, _mm256_setr_epi32(X3, X3, X3, X3, X4, X4, X4, X4)), held,
                to->curvature + T3R_M_X3);
     const __m256i zero = _mm256_setzero_si256();
-    const int32_t last = t3r_scale32(_mm_cvtsi128_si32(sums_of_four(c[14], zero, zero, zero)), -(by->curvature + XXXX));
+    const int32_t last = t3r_scale32(_mm_cvtsi128_si32(sums_of_four(c[14], zero, zero, zero)), -(by->curvature + X4));
     to->curvature[T3R_M_Y4] += t3r_clamp32(last, -most, most);
 }
 
