@@ -17,6 +17,7 @@
 #include <cmocka.h>
 
 #include "capture/record.h"
+#include "rgbd_frame.h"
 #include "scratch.h"
 
 enum { WIDTH = 48, HEIGHT = 32, KILLS = 200, MOST_FRAMES = 4000 };
@@ -44,16 +45,7 @@ static t3r_capture_frame make_frame(uint32_t number)
         .stamp_ns = 1000000000 + (int64_t)number * 33333333,
         .has_pose = true,
         .has_intrinsics = true,
-        .frame = {.format = T3R_PIXEL_RGB24,
-                  .width = WIDTH,
-                  .height = HEIGHT,
-                  .planes = {p},
-                  .stride_bytes = {WIDTH * 3},
-                  .depth = number % 3 == 2 ? NULL : d,
-                  .depth_width = WIDTH,
-                  .depth_height = HEIGHT,
-                  .depth_stride_bytes = WIDTH * 2,
-                  .depth_unit_q40 = 1099511628},
+        .frame = rgbd_frame(p, number % 3 == 2 ? NULL : d, WIDTH, HEIGHT, MILLIMETRE_Q40),
         .camera = {.fx_q16 = 40 << 16,
                    .fy_q16 = 40 << 16,
                    .cx_q16 = 24 << 16,

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "api/checks.h"
+#include "rgbd_frame.h"
 #include "arguments.h"
 #include "budget/budget.h"
 #include "core/fixed.h"
@@ -77,16 +78,7 @@ static t3r_status show(t3r_runtime *rt, uint32_t place)
     static uint8_t colour[HEIGHT][WIDTH][3];
     static uint16_t depth[HEIGHT][WIDTH];
     draw_frame(place, colour, depth);
-    const t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                             .width = WIDTH,
-                             .height = HEIGHT,
-                             .planes = {&colour[0][0][0]},
-                             .stride_bytes = {WIDTH * 3},
-                             .depth = (const uint8_t *)depth,
-                             .depth_width = WIDTH,
-                             .depth_height = HEIGHT,
-                             .depth_stride_bytes = WIDTH * 2,
-                             .depth_unit_q40 = 1099511628};
+    const t3r_frame frame = rgbd_frame(&colour[0][0][0], (const uint8_t *)depth, WIDTH, HEIGHT, MILLIMETRE_Q40);
     const t3r_camera camera = camera_at(place);
     return rt->config.stream ? t3r_stream_keyframe(rt, &frame, &camera, NULL) : t3r_add_view(rt, &frame, &camera);
 }

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "drawing.h"
+#include "rgbd_frame.h"
 #include "weights_maker.h"
 
 enum { W = 32, H = 24, POINTS = W * H };
@@ -77,18 +78,7 @@ static t3r_frame good_frame(void)
             pixels[T3R_PIXEL_RGB24][i * 3 + c] = (uint8_t)(i * (7 + c) + (i / W) * 13);
         }
     }
-    return (t3r_frame){
-        .format = T3R_PIXEL_RGB24,
-        .width = W,
-        .height = H,
-        .planes = {pixels[T3R_PIXEL_RGB24], NULL},
-        .stride_bytes = {W * 3, 0},
-        .depth = depths,
-        .depth_width = W,
-        .depth_height = H,
-        .depth_stride_bytes = W * 2,
-        .depth_unit_q40 = 1099511628,
-    };
+    return rgbd_frame(pixels[T3R_PIXEL_RGB24], depths, W, H, MILLIMETRE_Q40);
 }
 
 static t3r_config good_config(void)

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "state/ablation.h"
+#include "rgbd_frame.h"
 #include "state/state.h"
 #include "drawing.h"
 #include "head/head_views.h"
@@ -33,16 +34,7 @@ static t3r_frame made_up_frame(int holes)
             colours[i * 3 + c] = (uint8_t)(i * (7 + c) + (i / W) * 13 + (i * i >> 5));
         }
     }
-    return (t3r_frame){.format = T3R_PIXEL_RGB24,
-                       .width = W,
-                       .height = H,
-                       .planes = {colours, NULL},
-                       .stride_bytes = {W * 3, 0},
-                       .depth = depths,
-                       .depth_width = W,
-                       .depth_height = H,
-                       .depth_stride_bytes = W * 2,
-                       .depth_unit_q40 = 1099511628};
+    return rgbd_frame(colours, depths, W, H, MILLIMETRE_Q40);
 }
 
 static t3r_config learned_config(uint32_t gaussians)

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "state/ablation.h"
+#include "rgbd_frame.h"
 #include "drawing.h"
 #include "oracle_refine.h"
 
@@ -61,16 +62,7 @@ static t3r_gaussian *reconstruct(uint32_t refinements, const splat_maker *maker,
     assert_int_equal(t3r_init(&rt, a.bytes, a.count, &config), T3R_OK);
     assert_int_equal(t3r_set_ablation(rt, &maker->ablation), T3R_OK);
     for (uint32_t v = 0; v < VIEWS; v++) {
-        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                           .width = SIDE,
-                           .height = SIDE,
-                           .planes = {rgb[v]},
-                           .stride_bytes = {3 * SIDE},
-                           .depth = depth[v],
-                           .depth_width = SIDE,
-                           .depth_height = SIDE,
-                           .depth_stride_bytes = 2 * SIDE,
-                           .depth_unit_q40 = 1099511628};
+        t3r_frame frame = rgbd_frame(rgb[v], depth[v], SIDE, SIDE, MILLIMETRE_Q40);
         assert_int_equal(t3r_add_view(rt, &frame, &camera[v]), T3R_OK);
     }
     assert_int_equal(t3r_reconstruct(rt, NULL, scene), T3R_OK);

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "drawing.h"
+#include "rgbd_frame.h"
 #include "state/state.h"
 #include "sanitized.h"
 #include "stream/stream_map.h"
@@ -53,16 +54,7 @@ static void look_from(const pose *p, t3r_frame *frame, t3r_camera *camera)
         depth[2 * i] = (uint8_t)steps;
         depth[2 * i + 1] = (uint8_t)(steps >> 8);
     }
-    *frame = (t3r_frame){.format = T3R_PIXEL_RGB24,
-                         .width = W,
-                         .height = H,
-                         .planes = {rgb},
-                         .stride_bytes = {3 * W},
-                         .depth = depth,
-                         .depth_width = W,
-                         .depth_height = H,
-                         .depth_stride_bytes = 2 * W,
-                         .depth_unit_q40 = 1099511628};
+    *frame = rgbd_frame(rgb, depth, W, H, MILLIMETRE_Q40);
 }
 
 static t3r_config stream_config(void)

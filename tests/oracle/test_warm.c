@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "drawing.h"
+#include "rgbd_frame.h"
 #include "sanitized.h"
 #include "state/state.h"
 
@@ -19,14 +20,14 @@ enum { W = 64, H = 48, PIXELS = W * H, BUDGET = 500, STEPS = 5, PASSES = 4 };
 
 /* ---- the walk ---------------------------------------------------------------------------------------------------- */
 
-typedef struct sight {
+typedef struct viewpoint {
     double x; /* metres, of the camera; the wall stands at z = 2, boxes 0.4 before it */
     int hue;
-} sight;
+} viewpoint;
 
 static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2]; /* of every frame in turn */
 
-static t3r_frame look_from(const sight *s, t3r_camera *camera)
+static t3r_frame look_from(const viewpoint *s, t3r_camera *camera)
 {
     *camera = plain_camera(50, W, H);
     camera->position_q32[0] = (int64_t)(s->x * 4294967296.0);
@@ -42,21 +43,12 @@ static t3r_frame look_from(const sight *s, t3r_camera *camera)
         depth[2 * i] = (uint8_t)steps;
         depth[2 * i + 1] = (uint8_t)(steps >> 8);
     }
-    return (t3r_frame){.format = T3R_PIXEL_RGB24,
-                       .width = W,
-                       .height = H,
-                       .planes = {rgb},
-                       .stride_bytes = {3 * W},
-                       .depth = depth,
-                       .depth_width = W,
-                       .depth_height = H,
-                       .depth_stride_bytes = 2 * W,
-                       .depth_unit_q40 = 1099511628};
+    return rgbd_frame(rgb, depth, W, H, MILLIMETRE_Q40);
 }
 
-static sight step_at(int step)
+static viewpoint step_at(int step)
 {
-    return (sight){0.2 * step, 60};
+    return (viewpoint){0.2 * step, 60};
 }
 
 /* ---- the runtime ------------------------------------------------------------------------------------------------- */
@@ -142,7 +134,7 @@ static void move(site *s)
     set_hooks(s);
 }
 
-static void add(site *s, sight at)
+static void add(site *s, viewpoint at)
 {
     t3r_camera camera;
     const t3r_frame frame = look_from(&at, &camera);
@@ -184,7 +176,7 @@ static t3r_gaussian *slide(site *s, bool moved)
 }
 
 /* A scene of these views by a runtime that has built nothing before. */
-static void assert_anew(const t3r_scene *scene, sight first, sight second)
+static void assert_anew(const t3r_scene *scene, viewpoint first, viewpoint second)
 {
     site *cold = site_of(config_of(0), ARENA_AT_FULL);
     add(cold, first);
@@ -244,7 +236,7 @@ static void a_view_that_changed_is_not_taken_for_the_old(void **state)
     add(s, step_at(0));
     add(s, step_at(1));
     (void)build(s);
-    const sight changed = {step_at(0).x, 200}; /* the same camera, the same memory, other colours */
+    const viewpoint changed = {step_at(0).x, 200}; /* the same camera, the same memory, other colours */
     add(s, changed);
     (void)build(s);
     site *cold = site_of(config_of(0), ARENA_AT_FULL);
@@ -276,7 +268,7 @@ static void errors_in_between(void **state)
     site_free(s);
 
     s = site_of(config_of(1), ARENA_AT_FULL);
-    const sight next = step_at(2);
+    const viewpoint next = step_at(2);
     t3r_camera camera;
     add(s, step_at(0));
     add(s, step_at(1));
@@ -360,14 +352,14 @@ static void another_frame_begins_anew(void **state)
     add(s, step_at(0));
     add(s, step_at(1));
     (void)build(s);
-    const sight far = {3000, 60}, farther = {3000.2, 60};
+    const viewpoint far = {3000, 60}, farther = {3000.2, 60};
     add(s, far);
     add(s, farther);
     t3r_scene scene = build(s);
     assert_anew(&scene, far, farther);
     for (int i = 0; i < 2; i++) { /* the same wall in steps eight times as long */
         t3r_camera camera;
-        const sight at = step_at(i);
+        const viewpoint at = step_at(i);
         t3r_frame frame = look_from(&at, &camera);
         frame.depth_unit_q40 *= 8;
         assert_int_equal(t3r_add_view(s->rt, &frame, &camera), T3R_OK);

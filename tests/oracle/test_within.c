@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "drawing.h"
+#include "rgbd_frame.h"
 #include "refine/refine.h"
 #include "sanitized.h"
 #include "state/state.h"
@@ -58,16 +59,7 @@ static void make_views(double contrast)
 static void add_views(site *s, uint32_t views)
 {
     for (uint32_t v = 0; v < views; v++) {
-        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                           .width = SIDE,
-                           .height = SIDE,
-                           .planes = {rgb[v]},
-                           .stride_bytes = {3 * SIDE},
-                           .depth = depth[v],
-                           .depth_width = SIDE,
-                           .depth_height = SIDE,
-                           .depth_stride_bytes = 2 * SIDE,
-                           .depth_unit_q40 = 1099511628};
+        t3r_frame frame = rgbd_frame(rgb[v], depth[v], SIDE, SIDE, MILLIMETRE_Q40);
         assert_int_equal(t3r_add_view(s->rt, &frame, &camera[v]), T3R_OK);
     }
 }

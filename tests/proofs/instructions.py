@@ -41,7 +41,7 @@ def build(folder):
     """The driver with the runtime, the head and the room, each compiled as the proofs of the stack are."""
     name = proof.compiler_of(TARGET)
     hosted = sorted((proof.ROOT / "tools" / "room").glob("*.c")) + [DRIVER]
-    folders = ("runtime", "runtime/include", "platform", "tools", "quant/heads")
+    folders = ("runtime", "runtime/include", "platform", "tools", "quant/heads", "tests")
     includes = [word for place in folders for word in ("-I", proof.ROOT / place)]
 
     def compiled(numbered):

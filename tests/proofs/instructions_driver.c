@@ -6,6 +6,7 @@
 #include <valgrind/callgrind.h>
 
 #include "room/room.h"
+#include "rgbd_frame.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
 
@@ -41,16 +42,7 @@ static t3r_status add_frame(t3r_runtime *runtime, uint32_t index)
         depth[2 * i] = (uint8_t)(depth_mm[i] & 255);
         depth[2 * i + 1] = (uint8_t)(depth_mm[i] >> 8);
     }
-    const t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                             .width = SIDE,
-                             .height = SIDE,
-                             .planes = {rgb},
-                             .stride_bytes = {3 * SIDE},
-                             .depth = depth,
-                             .depth_width = SIDE,
-                             .depth_height = SIDE,
-                             .depth_stride_bytes = 2 * SIDE,
-                             .depth_unit_q40 = ROOM_DEPTH_UNIT_Q40};
+    const t3r_frame frame = rgbd_frame(rgb, depth, SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
     CALLGRIND_ZERO_STATS;
     return t3r_add_view(runtime, &frame, &camera);
 }

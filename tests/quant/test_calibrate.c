@@ -1,5 +1,6 @@
 /* Calibration: maxima and percentiles against a sort, and views of a runtime. */
 #include "calibrate.h"
+#include "rgbd_frame.h"
 
 #include "budget/budget.h"
 #include "head/head_features.h"
@@ -182,16 +183,7 @@ static void test_runtime_views(void **state)
             depth[y][x][1] = 2000 >> 8;
         }
     }
-    t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                       .width = SIDE,
-                       .height = SIDE,
-                       .planes = {&colour[0][0][0]},
-                       .stride_bytes = {SIDE * 3},
-                       .depth = &depth[0][0][0],
-                       .depth_width = SIDE,
-                       .depth_height = SIDE,
-                       .depth_stride_bytes = SIDE * 2,
-                       .depth_unit_q40 = 1099511628};
+    t3r_frame frame = rgbd_frame(&colour[0][0][0], &depth[0][0][0], SIDE, SIDE, MILLIMETRE_Q40);
     t3r_camera camera = {.fx_q16 = SIDE << 16,
                          .fy_q16 = SIDE << 16,
                          .cx_q16 = (SIDE - 1) << 15,
@@ -266,16 +258,7 @@ static void add_pair(t3r_runtime *runtime)
             depth[2 * i] = (uint8_t)steps;
             depth[2 * i + 1] = (uint8_t)(steps >> 8);
         }
-        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                           .width = PAIR_SIDE,
-                           .height = PAIR_SIDE,
-                           .planes = {colour},
-                           .stride_bytes = {PAIR_SIDE * 3},
-                           .depth = depth,
-                           .depth_width = PAIR_SIDE,
-                           .depth_height = PAIR_SIDE,
-                           .depth_stride_bytes = PAIR_SIDE * 2,
-                           .depth_unit_q40 = 1099511628};
+        t3r_frame frame = rgbd_frame(colour, depth, PAIR_SIDE, PAIR_SIDE, MILLIMETRE_Q40);
         t3r_camera camera = {.fx_q16 = PAIR_SIDE << 16,
                              .fy_q16 = PAIR_SIDE << 16,
                              .cx_q16 = (PAIR_SIDE - 1) << 15,

@@ -1,5 +1,6 @@
 /* Wide depth holes: depth lent by other views, bridged between what is known, and what other views say against it. */
 #include "rig.h"
+#include "rgbd_frame.h"
 
 #include "pointmap/bridge.h"
 #include "pointmap/flying_pixels.h"
@@ -357,16 +358,7 @@ static uint32_t reconstruct(uint32_t radius, uint32_t gaussians, uint32_t views,
                 rgb[3 * i + c] = (uint8_t)unit_between(&seed, 60, 180);
             }
         }
-        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                           .width = W,
-                           .height = H,
-                           .planes = {rgb},
-                           .stride_bytes = {3 * W},
-                           .depth = depth,
-                           .depth_width = W,
-                           .depth_height = H,
-                           .depth_stride_bytes = 2 * W,
-                           .depth_unit_q40 = UNIT_Q40};
+        t3r_frame frame = rgbd_frame(rgb, depth, W, H, UNIT_Q40);
         t3r_camera camera = {.fx_q16 = F << 16,
                              .fy_q16 = F << 16,
                              .cx_q16 = (W / 2) << 16,

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "budget/budget.h"
+#include "rgbd_frame.h"
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "budget/importance.h"
@@ -244,16 +245,7 @@ static t3r_runtime *with_views(const t3r_config *config)
             depth[2 * i] = (uint8_t)step;
             depth[2 * i + 1] = (uint8_t)(step >> 8);
         }
-        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                           .width = W,
-                           .height = H,
-                           .planes = {colour},
-                           .stride_bytes = {W * 3},
-                           .depth = depth,
-                           .depth_width = W,
-                           .depth_height = H,
-                           .depth_stride_bytes = W * 2,
-                           .depth_unit_q40 = 1099511628};
+        t3r_frame frame = rgbd_frame(colour, depth, W, H, MILLIMETRE_Q40);
         t3r_camera camera = {.fx_q16 = W << 16,
                              .fy_q16 = W << 16,
                              .cx_q16 = W << 15,

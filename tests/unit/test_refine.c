@@ -1,6 +1,7 @@
 /* Refinement on the built-in room: it gains what it promises, changes nothing where nothing is missing, can be
  * cancelled anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
 #include "unit.h"
+#include "rgbd_frame.h"
 
 #include "core/hash.h"
 #include "core/fixed.h"
@@ -75,16 +76,7 @@ static t3r_runtime *open_arena(const t3r_config *config, uint32_t share)
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, memory, memory_bytes, config), T3R_OK);
     for (uint32_t v = 0; v < 2; v++) {
-        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                           .width = SIDE,
-                           .height = SIDE,
-                           .planes = {rgb[v]},
-                           .stride_bytes = {3 * SIDE},
-                           .depth = depth[v],
-                           .depth_width = SIDE,
-                           .depth_height = SIDE,
-                           .depth_stride_bytes = 2 * SIDE,
-                           .depth_unit_q40 = ROOM_DEPTH_UNIT_Q40};
+        t3r_frame frame = rgbd_frame(rgb[v], depth[v], SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
         assert_int_equal(t3r_add_view(rt, &frame, &camera[v]), T3R_OK);
     }
     return rt;

@@ -1,6 +1,7 @@
 /* What a build may be asked for: every part of a request alone and with the others gives the scene that a configuration
  * of these values gives, holds for its call alone, and leaves everything as it was when it is refused. */
 #include "unit.h"
+#include "rgbd_frame.h"
 
 #include "state/ablation.h"
 #include "state/state.h"
@@ -45,16 +46,7 @@ static t3r_runtime *with_view(const t3r_config *config)
     assert_true(plan.bytes <= sizeof arena);
     arena_bytes = plan.bytes;
     assert_int_equal(t3r_init(&rt, arena, arena_bytes, config), T3R_OK);
-    t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                       .width = SIDE,
-                       .height = SIDE,
-                       .planes = {rgb},
-                       .stride_bytes = {SIDE * 3},
-                       .depth = depth,
-                       .depth_width = SIDE,
-                       .depth_height = SIDE,
-                       .depth_stride_bytes = SIDE * 2,
-                       .depth_unit_q40 = 1099511628};
+    t3r_frame frame = rgbd_frame(rgb, depth, SIDE, SIDE, MILLIMETRE_Q40);
     t3r_camera camera = {.fx_q16 = SIDE << 16,
                          .fy_q16 = SIDE << 16,
                          .cx_q16 = SIDE << 15,

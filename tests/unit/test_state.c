@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "budget/budget.h"
+#include "rgbd_frame.h"
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "state/state.h"
@@ -37,16 +38,7 @@ static t3r_frame made_up_frame(void)
         depth[2 * i] = (uint8_t)step;
         depth[2 * i + 1] = (uint8_t)(step >> 8);
     }
-    return (t3r_frame){.format = T3R_PIXEL_RGB24,
-                       .width = SIDE,
-                       .height = SIDE,
-                       .planes = {colour},
-                       .stride_bytes = {SIDE * 3},
-                       .depth = depth,
-                       .depth_width = SIDE,
-                       .depth_height = SIDE,
-                       .depth_stride_bytes = SIDE * 2,
-                       .depth_unit_q40 = 1099511628};
+    return rgbd_frame(colour, depth, SIDE, SIDE, MILLIMETRE_Q40);
 }
 
 static t3r_camera made_up_camera(void)

@@ -1,6 +1,7 @@
 /* Depth by stereo in the pipeline: the built-in room from colours alone, refusals, more than two views, and its parts:
  * several pairs brought together, what was not matched filled. */
 #include "unit.h"
+#include "rgbd_frame.h"
 
 #include "core/fixed.h"
 #include "core/hash.h"
@@ -82,16 +83,7 @@ static bench open_bench(uint32_t views)
 
 static void add(bench *b, const shots *s, uint32_t v, const uint16_t *depth, uint64_t unit_q40)
 {
-    const t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                             .width = W,
-                             .height = H,
-                             .planes = {s->rgb[v]},
-                             .stride_bytes = {3 * W},
-                             .depth = (const uint8_t *)depth,
-                             .depth_width = W,
-                             .depth_height = H,
-                             .depth_stride_bytes = 2 * W,
-                             .depth_unit_q40 = unit_q40};
+    const t3r_frame frame = rgbd_frame(s->rgb[v], (const uint8_t *)depth, W, H, unit_q40);
     assert_int_equal(t3r_add_view(b->rt, &frame, &s->camera[v]), T3R_OK);
 }
 

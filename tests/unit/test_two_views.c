@@ -1,5 +1,6 @@
 /* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
 #include "rig.h"
+#include "rgbd_frame.h"
 
 #include "loss/disagreement.h"
 #include "pointmap/exposure.h"
@@ -395,16 +396,7 @@ static void add_frames(t3r_runtime *rt)
                 rgb[3 * i + c] = (uint8_t)(v == 0 ? level : level * 4 / 5);
             }
         }
-        t3r_frame frame = {.format = T3R_PIXEL_RGB24,
-                           .width = W,
-                           .height = H,
-                           .planes = {rgb},
-                           .stride_bytes = {3 * W},
-                           .depth = depth,
-                           .depth_width = W,
-                           .depth_height = H,
-                           .depth_stride_bytes = 2 * W,
-                           .depth_unit_q40 = UNIT_Q40};
+        t3r_frame frame = rgbd_frame(rgb, depth, W, H, UNIT_Q40);
         t3r_camera camera = {.fx_q16 = F << 16,
                              .fy_q16 = F << 16,
                              .cx_q16 = (W / 2) << 16,

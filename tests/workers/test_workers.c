@@ -1,6 +1,7 @@
 /* Builds and views of the built-in room by threads, and by tasks in reverse order whose workers take turns: each stage
  * has the hash that one worker gives it. */
 #include "unit/unit.h"
+#include "rgbd_frame.h"
 
 #include "room/room.h"
 #include "threads.h"
@@ -49,16 +50,7 @@ static int draw_frames(void **state)
             m->depth[2 * i] = (uint8_t)(hole ? 0 : depth_mm[i]);
             m->depth[2 * i + 1] = (uint8_t)(hole ? 0 : depth_mm[i] >> 8);
         }
-        m->frame = (t3r_frame){.format = T3R_PIXEL_RGB24,
-                               .width = WIDTH,
-                               .height = HEIGHT,
-                               .planes = {m->rgb},
-                               .stride_bytes = {WIDTH * 3},
-                               .depth = m->depth,
-                               .depth_width = WIDTH,
-                               .depth_height = HEIGHT,
-                               .depth_stride_bytes = WIDTH * 2,
-                               .depth_unit_q40 = 1099511628};
+        m->frame = rgbd_frame(m->rgb, m->depth, WIDTH, HEIGHT, MILLIMETRE_Q40);
     }
     return 0;
 }

@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/json_output.h"
 #include "cli/recorded_frame.h"
+#include "reconstruction/hash_report.h"
 #include "reconstruction/reconstruction_error.h"
 
 typedef struct slide_run {
@@ -26,8 +27,9 @@ static int add_frame(slide_run *s, uint32_t frame)
         return code;
     }
     t3r_status status = t3r_add_view(s->r.runtime, &captured.frame, &captured.camera);
-    return status == T3R_OK ? CLI_OK
-                            : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
+    return status == T3R_OK
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
 }
 
 /* The scene of the frame and the one before. */
@@ -62,20 +64,12 @@ static int by_size(const void *a, const void *b)
 static void print_text(const slide_run *s, double mean, double median, uint64_t hash)
 {
     const reconstruction *r = &s->r;
-    char text[HASH_TEXT_BYTES];
-    printf("%s: %" PRIu32 " scenes of two frames each, %" PRIu32 " Gaussians, head %s, warm %s, arena %zu bytes\n", s->path,
-           s->scenes, r->scene.count, r->head.name, r->config.warm ? "on" : "off", r->arena_bytes);
+    printf("%s: %" PRIu32 " scenes of two frames each, %" PRIu32 " Gaussians, head %s, warm %s, arena %zu bytes\n",
+           s->path, s->scenes, r->scene.count, r->head.name, r->config.warm ? "on" : "off", r->arena_bytes);
     if (s->scenes > 1) {
         printf("behind the first: %.1f ms each (median %.1f), %.1f frames a second\n", mean, median, 1000 / mean);
     }
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        if (r->stage_hashed[stage]) {
-            hash_text(r->stage_hash[stage], text);
-            printf("%-14s %s\n", t3r_stage_name((t3r_stage)stage), text);
-        }
-    }
-    hash_text(hash, text);
-    printf("%-14s %s\n", "final", text);
+    hash_report_print(r, hash);
 }
 
 static void print_json(const slide_run *s, double mean, double median, uint64_t hash, const expectation *e,
@@ -97,12 +91,7 @@ static void print_json(const slide_run *s, double mean, double median, uint64_t 
         cJSON_AddNumberToObject(root, "median_ms", median);
         cJSON_AddNumberToObject(root, "frames_per_second", 1000 / mean);
     }
-    cJSON *stages = cJSON_AddObjectToObject(root, "stages");
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        if (r->stage_hashed[stage]) {
-            json_add_hash(stages, t3r_stage_name((t3r_stage)stage), r->stage_hash[stage]);
-        }
-    }
+    hash_report_add_stages(root, r);
     json_add_hash(root, "hash", hash);
     expectation_add(root, e, difference);
     json_print(root);

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "cli/cli.h"
+#include "reconstruction/hash_report.h"
 #include "reconstruction/reconstruction_error.h"
 #include "cli/recorded_frame.h"
 #include "core/hash.h"
@@ -313,12 +314,7 @@ static void print_json(const stream_run *s, uint64_t hash, const expectation *e,
     add_decibels(root, "live_psnr_all", m.live_all);
     add_decibels(root, "final_psnr", m.final);
     add_decibels(root, "final_psnr_all", m.final_all);
-    cJSON *stages = cJSON_AddObjectToObject(root, "stages");
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        if (r->stage_hashed[stage]) {
-            json_add_hash(stages, t3r_stage_name((t3r_stage)stage), r->stage_hash[stage]);
-        }
-    }
+    hash_report_add_stages(root, r);
     json_add_hash(root, "hash", hash);
     expectation_add(root, e, difference);
     json_print(root);
@@ -345,15 +341,7 @@ static void print_text(const stream_run *s, uint64_t hash)
         }
         printf(" in the end %.2f | %.2f dB (%" PRIu32 ")\n", m.final, m.final_all, m.final_count);
     }
-    char text[HASH_TEXT_BYTES];
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        if (r->stage_hashed[stage]) {
-            hash_text(r->stage_hash[stage], text);
-            printf("%-14s %s\n", t3r_stage_name((t3r_stage)stage), text);
-        }
-    }
-    hash_text(hash, text);
-    printf("%-14s %s\n", "final", text);
+    hash_report_print(r, hash);
 }
 
 /* The first place that differs, as text; "" when none does. A stage's hashes are chained over all keyframes, so the

@@ -16,6 +16,7 @@
 #include "cli/json_output.h"
 #include "cli/option_values.h"
 #include "reconstruction/reconstruction.h"
+#include "reconstruction/hash_report.h"
 #include "reconstruction/replay_expectation.h"
 #include "reconstruction/replay_slide.h"
 #include "reconstruction/replay_stream.h"
@@ -41,7 +42,17 @@ typedef struct replayed_view {
     work_times times;
 } replayed_view;
 
-enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_HALF_LIFE, KEY_OVERLAP, KEY_IMAGES, KEY_SLIDE };
+enum {
+    KEY_EXPECT = 0x1000,
+    KEY_JSON,
+    KEY_STREAM,
+    KEY_EVERY,
+    KEY_AT_HAND,
+    KEY_HALF_LIFE,
+    KEY_OVERLAP,
+    KEY_IMAGES,
+    KEY_SLIDE
+};
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
@@ -131,8 +142,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             o->settings.keep_percent = 10;
         }
         check_stream(state, o);
-        if (o->slides && (o->streams || o->settings.context_count > 0 ||
-                          o->settings.config.allocation == T3R_ALLOCATE_GIVEN)) {
+        if (o->slides &&
+            (o->streams || o->settings.context_count > 0 || o->settings.config.allocation == T3R_ALLOCATE_GIVEN)) {
             argp_error(state, "--slide takes no --stream, --context or --allocate given");
         }
         if (o->settings.method != METHOD_TRIM3R) {
@@ -261,12 +272,7 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
     }
     json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
     work_times_add_json(root, &view->times);
-    cJSON *stages = cJSON_AddObjectToObject(root, "stages");
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        if (r->stage_hashed[stage]) {
-            json_add_hash(stages, t3r_stage_name((t3r_stage)stage), r->stage_hash[stage]);
-        }
-    }
+    hash_report_add_stages(root, r);
     cJSON *tiles = cJSON_AddArrayToObject(root, "tiles");
     for (uint32_t i = 0; i < view->tile_count; i++) {
         char text[HASH_TEXT_BYTES];
@@ -280,21 +286,14 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
 
 static void print_text(const replay_options *o, const reconstruction *r, const replayed_view *view)
 {
-    char text[HASH_TEXT_BYTES], text_of_times[WORK_TIMES_BYTES];
+    char text_of_times[WORK_TIMES_BYTES];
     printf("%s: context", o->recording);
     for (uint32_t v = 0; v < r->context_count; v++) {
         printf("%s%" PRIu32, v == 0 ? " " : ",", r->context[v]);
     }
     printf(", view %" PRIu32 ", %" PRIu32 " Gaussians, head %s, arena %zu bytes; %s\n", view->frame, r->scene.count,
            r->head.name, r->arena_bytes, work_times_text(&view->times, text_of_times));
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        if (r->stage_hashed[stage]) {
-            hash_text(r->stage_hash[stage], text);
-            printf("%-14s %s\n", t3r_stage_name((t3r_stage)stage), text);
-        }
-    }
-    hash_text(view->hash, text);
-    printf("%-14s %s\n", "final", text);
+    hash_report_print(r, view->hash);
 }
 
 static int replay(const replay_options *o, const t3r_recording *recording, const expectation *e,
