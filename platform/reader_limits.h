@@ -35,6 +35,8 @@
 
 #define T3R_LIMIT_TEXT_BYTES (UINT32_C(64) << 20) /* of transforms.json, a list, a trajectory, a table */
 
+#define T3R_LIMIT_MODEL_BYTES (256 << 20) /* of a text of COLMAP, which is read line by line */
+
 /* Compressed data may become this many bytes, whatever they are, and this many for each of theirs. Pictures of cameras
  * become at most ten times smaller without loss; what packs better is worth no more memory. */
 #define T3R_LIMIT_UNPACKED_FREE (UINT64_C(128) << 20)

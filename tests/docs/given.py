@@ -47,6 +47,10 @@ def photos(given, path):
     shutil.copytree(given.views() / "images", path)
 
 
+def colmap(given, path):
+    shutil.copytree(given.views(), path)
+
+
 def photo(given, path):
     shutil.copyfile(given.views() / "images" / "frame_000001.png", path)
 
@@ -135,6 +139,6 @@ def write_json(path, value):
     path.write_text(json.dumps(value))
 
 
-MAKERS = {"room.mcap": recording, "photos/": photos, "photo.png": photo, "posed/": posed, "tum/": tum,
+MAKERS = {"room.mcap": recording, "photos/": photos, "photo.png": photo, "posed/": posed, "tum/": tum, "colmap/": colmap,
           "tracker.txt": trajectory, "importance/": importance, "small.safetensors": head, "theirs.ply": scene,
           "dust3r.npz": pointmaps}

@@ -298,6 +298,70 @@ def circle(path):
     os.symlink("b", f"{path}/b")
 
 
+def colmap(path, cameras=f.colmap_cameras(), images=f.colmap_images()):
+    """A model of COLMAP in text or bytes."""
+    os.makedirs(f"{path}/sparse/0")
+    for name, content in (("cameras", cameras), ("images", images)):
+        binary = isinstance(content, bytes)
+        with open(f"{path}/sparse/0/{name}.{'bin' if binary else 'txt'}", "wb" if binary else "w") as file:
+            file.write(content)
+
+
+@case("folder", "colmap-2^64-cameras", "camera 2 of 18446744073709551615: the file ends in it")
+def colmap_many_cameras(path):
+    return colmap(path, struct.pack("<Q", (1 << 64) - 1) + f.colmap_cameras()[8:])
+
+
+@case("folder", "colmap-2^64-images", "image 2 of 18446744073709551615: the file ends in it")
+def colmap_many_images(path):
+    return colmap(path, images=struct.pack("<Q", (1 << 64) - 1) + f.colmap_images()[8:])
+
+
+@case("folder", "colmap-million-images", "more than 100000 images")
+def colmap_million_images(path):
+    return colmap(path, images=f.colmap_images(1000000))
+
+
+@case("folder", "colmap-2^60-points", "reach past the file's end")
+def colmap_many_points(path):
+    return colmap(path, images=f.colmap_images(points=1 << 60))
+
+
+@case("folder", "colmap-name-without-end", "a name of more than 4096 bytes")
+def colmap_long_name(path):
+    return colmap(path, images=f.colmap_images(name="x" * (8 * MIB)))
+
+
+@case("folder", "colmap-escapes", "No such file")
+def colmap_escapes(path):
+    return colmap(path, images=f.colmap_images(name=f"{f.ESCAPE}.png"))
+
+
+@case("folder", "colmap-nan", "norm is not 1")
+def colmap_nan(path):
+    return colmap(path, images=f.colmap_images(rotation=(float("nan"), 0, 0, 0)))
+
+
+@case("folder", "colmap-wide-as-2^64", "a side is not")
+def colmap_wide(path):
+    return colmap(path, f.colmap_cameras(width=(1 << 64) - 1))
+
+
+@case("folder", "colmap-images-of-a-terabyte", "more than 268435456 bytes")
+def colmap_sparse(path):
+    colmap(path, "7 PINHOLE 16 16 20 20 8 8\n", "")
+    with open(f"{path}/sparse/0/images.txt", "wb") as file:
+        file.write(b"1 1 0 0 0 0 0 0 7 a.png\n")
+        file.truncate(1 << 40)
+
+
+@case("folder", "colmap-pipe", "not a regular file")
+def colmap_pipe(path):
+    colmap(path)
+    os.remove(f"{path}/sparse/0/images.bin")
+    os.mkfifo(f"{path}/sparse/0/images.bin")
+
+
 @case("folder", "tum-escapes", "")
 def tum(path):
     os.makedirs(path)

@@ -310,3 +310,17 @@ def ply(count=1, before="", values=None, rows=None, fields=None, behind=""):
 def safetensors(header, data=b"", length=None):
     header = header if isinstance(header, bytes) else json.dumps(header).encode()
     return struct.pack("<Q", len(header) if length is None else length) + header + data
+
+
+# --- models of COLMAP ------------------------------------------------------------------------------------------------
+
+
+def colmap_cameras(width=16):
+    """cameras.bin with one pinhole camera."""
+    return struct.pack("<QIiQQ4d", 1, 7, 1, width, 16, 20, 20, 8, 8)
+
+
+def colmap_images(count=1, name="a.png", points=0, rotation=(1, 0, 0, 0)):
+    """images.bin with so many images, each the same bytes."""
+    one = struct.pack("<I7dI", 1, *rotation, 0, 0, 0, 7) + name.encode() + b"\0" + struct.pack("<Q", points)
+    return struct.pack("<Q", count) + one * count

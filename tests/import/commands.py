@@ -70,7 +70,7 @@ def test_good_folder():
     check(status == 0, f"good folder: {error}")
     report = json.loads(out)
     expected = {"frames": 3, "depth_frames": 3, "triplets": 1, "width": 40, "height": 30,
-                "bytes": os.path.getsize(target), "skipped": 0}
+                "bytes": os.path.getsize(target), "skipped": 0, "left_out": [], "remarks": []}
     check(report == expected, f"good folder: {report}")
     status, out, _ = run("info", target, "--json")
     info = json.loads(out)
@@ -107,6 +107,7 @@ def test_tum_folder():
     check(status == 0, f"TUM: {error}")
     report = json.loads(out)
     check((report["frames"], report["depth_frames"], report["skipped"]) == (2, 1, 1), f"TUM: {report}")
+    check(report["left_out"] == ["rgb/1.png: no pose near it in time"], f"TUM: {report}")
 
 
 def test_bad_folders():

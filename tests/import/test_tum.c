@@ -56,7 +56,7 @@ static void test_association(void **state)
     }
     /* d has no pose near it */
     assert_int_equal(folder.frame_count, 3);
-    assert_int_equal(folder.skipped, 1);
+    assert_int_equal(folder.left_out.count, 1);
     assert_true(folder.depth_unit == 1 / 5000.0);
     assert_string_equal(folder.frames[0].image, "rgb/a.png");
     assert_string_equal(folder.frames[1].image, "rgb/b.png");

@@ -8,23 +8,30 @@
 #include <unistd.h>
 
 #include "file_bytes.h"
+#include "import/colmap_folder.h"
 #include "import/picture_folder.h"
 #include "import/transforms_json.h"
 #include "import/tum_rgbd.h"
 #include "reader_limits.h"
 #include "reason.h"
 
-static bool exists(const char *directory, const char *name)
+static bool has_transforms(const char *directory)
 {
-    char *path = posed_path(directory, name);
-    bool found = path != NULL && access(path, F_OK) == 0;
-    free(path);
-    return found;
+    return posed_exists(directory, "transforms.json");
+}
+
+static bool has_tum_lists(const char *directory)
+{
+    return posed_exists(directory, "rgb.txt") || posed_exists(directory, "groundtruth.txt");
 }
 
 static int read_transforms(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                            size_t error_bytes)
 {
+    if (options != NULL && options->intrinsics_count != 0) {
+        return t3r_reason(error, error_bytes,
+                          "%s/transforms.json: has its own intrinsics; --intrinsics is for folders without", directory);
+    }
     char *path = posed_path(directory, "transforms.json");
     if (path == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");
@@ -44,27 +51,38 @@ static int read_transforms(const char *directory, const posed_folder_options *op
     return status;
 }
 
+/* Every kind of folder, in the order in which they are looked for. */
+static const struct folder_kind {
+    const char *name;
+    bool (*is)(const char *directory);
+    int (*read)(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                size_t error_bytes);
+} kinds[] = {
+    {"transforms.json", has_transforms, read_transforms},
+    {"TUM RGB-D", has_tum_lists, tum_rgbd_read},
+    {"COLMAP", colmap_folder_is, colmap_folder_read},
+};
+
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                       size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
-    if (!exists(directory, ".")) {
+    if (!posed_exists(directory, ".")) {
         return t3r_reason(error, error_bytes, "%s: %s", directory, errno == ENOTDIR ? "not a folder" : strerror(errno));
     }
-    if (exists(directory, "transforms.json")) {
-        if (options != NULL && options->intrinsics_count != 0) {
-            return t3r_reason(error, error_bytes,
-                              "%s/transforms.json: has its own intrinsics; --intrinsics is for folders without",
-                              directory);
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (kinds[i].is(directory)) {
+            int status = kinds[i].read(directory, options, out, error, error_bytes);
+            out->kind = kinds[i].name;
+            return status;
         }
-        return read_transforms(directory, options, out, error, error_bytes);
-    }
-    if (exists(directory, "rgb.txt") || exists(directory, "groundtruth.txt")) {
-        return tum_rgbd_read(directory, options, out, error, error_bytes);
     }
     if (options != NULL && options->without_poses) {
         return picture_folder_read(directory, options, out, error, error_bytes);
     }
-    return t3r_reason(error, error_bytes,
-                      "%s: neither transforms.json nor rgb.txt and groundtruth.txt (TUM RGB-D) is there", directory);
+    return t3r_reason(
+        error, error_bytes,
+        "%s: neither transforms.json nor rgb.txt and groundtruth.txt (TUM RGB-D) nor a model of COLMAP is "
+        "there",
+        directory);
 }

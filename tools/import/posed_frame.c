@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "reason.h"
 #include "trim3r.h"
@@ -24,6 +25,14 @@ char *posed_path(const char *directory, const char *name)
         snprintf(path, bytes, "%s%s%s", directory, slash ? "/" : "", name);
     }
     return path;
+}
+
+bool posed_exists(const char *directory, const char *name)
+{
+    char *path = posed_path(directory, name);
+    bool found = path != NULL && access(path, F_OK) == 0;
+    free(path);
+    return found;
 }
 
 posed_intrinsics posed_intrinsics_of(const double numbers[9])
@@ -96,5 +105,7 @@ void posed_folder_close(posed_folder *folder)
     }
     free(folder->frames);
     free(folder->triplets);
+    text_list_free(&folder->left_out);
+    text_list_free(&folder->remarks);
     memset(folder, 0, sizeof *folder);
 }

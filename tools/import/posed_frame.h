@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cli/text_list.h"
 #include "recording.h"
 
 /* What a folder says of a camera; a number that it does not give is NAN. Pixels, with the principal point measured
@@ -30,20 +31,22 @@ typedef struct posed_frame {
 } posed_frame;
 
 typedef struct posed_folder {
-    const char *kind; /* "transforms.json", "TUM RGB-D" or "pictures" */
+    const char *kind; /* "transforms.json", as the table of posed_folder.c has it */
     posed_frame *frames;
     uint32_t frame_count;
     t3r_triplet *triplets;
     uint32_t triplet_count;
     double depth_unit; /* world units a step; 0.001 where no frame has depth and none is given */
     bool depth_unit_given;
-    uint32_t skipped; /* pictures left out because no pose is near them in time */
+    text_list left_out; /* "picture: why", one a picture that is no frame */
+    text_list remarks;  /* what a user should know of how the folder was read */
 } posed_folder;
 
 typedef struct posed_folder_options {
     const double *intrinsics;  /* fx fy cx cy [k1 k2 p1 p2 k3], cx and cy from the top-left pixel's centre: of folders
                                   that do not hold them */
     uint32_t intrinsics_count; /* 0, 4 or 9 */
+    double depth_unit;         /* of depth whose steps no file tells; 0 = not given */
     bool without_poses;        /* frames may lack a pose, and a folder may hold pictures alone */
     bool without_intrinsics;   /* they may lack these as well: NAN then */
 } posed_folder_options;
@@ -60,5 +63,6 @@ int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height
 posed_intrinsics posed_intrinsics_of(const double numbers[9]);
 /* DIR/NAME, or NAME when absolute, on the heap; NULL when out of memory. */
 char *posed_path(const char *directory, const char *name);
+bool posed_exists(const char *directory, const char *name);
 
 #endif

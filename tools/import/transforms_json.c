@@ -1,7 +1,7 @@
 /* transforms.json: camera-to-world matrices with OpenGL axes (x right, y up, z backward). Intrinsics stand in a frame
  * or, for all frames, at the top; a frame's own win. */
+#define _GNU_SOURCE /* strcasestr() */
 #include "import/transforms_json.h"
-#include "posing/quaternion.h"
 
 #include <assert.h>
 #include <math.h>
@@ -10,11 +10,14 @@
 
 #include "cli/json_input.h"
 #include "fixed_camera.h"
+#include "import/pose_matrix.h"
 #include "reader_limits.h"
 #include "reason.h"
 #include "trim3r.h"
 
 #define MAX_PATH_BYTES 4096u
+#define TOLD_MOST 16u         /* fields that are not read and are told of */
+#define NERFSTUDIO_UNIT 0.001 /* of a depth_file_path, where nothing else is said: nerfstudio's own default */
 
 /* Every field that is read of the top or of a frame, in the order of strcmp(). */
 static const char *const known[] = {"camera_angle_x",
@@ -23,7 +26,9 @@ static const char *const known[] = {"camera_angle_x",
                                     "confidence_path",
                                     "cx",
                                     "cy",
+                                    "depth_file_path",
                                     "depth_path",
+                                    "depth_unit_scale_factor",
                                     "equirectangular",
                                     "file_path",
                                     "fl_x",
@@ -58,7 +63,11 @@ typedef struct reader {
     field_table top, own;
     const cJSON *frame; /* NULL while the top is read */
     const posed_folder_options *options;
-    char where[64]; /* "frames[3]" */
+    text_list *remarks;
+    const char *told[TOLD_MOST]; /* fields that remarks are made of; the names are the text's */
+    uint32_t told_count;
+    bool nerfstudio; /* some frame has a depth_file_path */
+    char where[64];  /* "frames[3]" */
     char *error;
     size_t error_bytes;
 } reader;
@@ -80,8 +89,41 @@ static size_t number_of(const char *name)
     return found != NULL ? (size_t)(found - known) : KNOWN;
 }
 
+/* Whether a field that is not read may hold depth or poses, by its name. */
+static bool may_matter(const char *name)
+{
+    static const char *const parts[] = {"depth", "disparity", "pose", "transform", "extrinsic"};
+    static const char *const harmless[] = {"applied_transform"}; /* the poses have it in them already */
+    for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
+        if (strcmp(name, harmless[i]) == 0) {
+            return false;
+        }
+    }
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        if (strcasestr(name, parts[i]) != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Once a name. */
+static void tell_unread(reader *r, const char *name)
+{
+    for (uint32_t i = 0; i < r->told_count; i++) {
+        if (strcmp(r->told[i], name) == 0) {
+            return;
+        }
+    }
+    if (r->told_count < TOLD_MOST) {
+        r->told[r->told_count++] = name;
+        (void)text_list_add(r->remarks, "%s%s%.100s: this field is not read, though its name says depth or pose",
+                            r->where, r->where[0] != '\0' ? ": " : "", name);
+    }
+}
+
 /* Of two equal keys the first counts. */
-static void find_fields(const cJSON *object, field_table *table)
+static void find_fields(reader *r, const cJSON *object, field_table *table)
 {
     const cJSON *item;
     *table = (field_table){0};
@@ -90,6 +132,8 @@ static void find_fields(const cJSON *object, field_table *table)
         size_t number = number_of(item->string);
         if (number < KNOWN && table->item[number] == NULL) {
             table->item[number] = item;
+        } else if (number == KNOWN && may_matter(item->string)) {
+            tell_unread(r, item->string);
         }
     }
 }
@@ -206,8 +250,9 @@ static int read_lens(reader *r, bool *fisheye, bool *pinhole)
         *fisheye = true;
     } else if (strcmp(name, "PINHOLE") == 0 || strcmp(name, "SIMPLE_PINHOLE") == 0) {
         *pinhole = !*fisheye;
-    } else if (strcmp(name, "OPENCV") != 0) {
-        return fail(r, "camera_model", "not one of OPENCV, OPENCV_FISHEYE, PINHOLE, SIMPLE_PINHOLE");
+    } else if (strcmp(name, "OPENCV") != 0 && strcmp(name, "RADIAL") != 0 && strcmp(name, "SIMPLE_RADIAL") != 0) {
+        return fail(r, "camera_model",
+                    "not one of OPENCV, OPENCV_FISHEYE, PINHOLE, SIMPLE_PINHOLE, RADIAL, SIMPLE_RADIAL");
     }
     return 0;
 }
@@ -273,7 +318,7 @@ static int read_row(reader *r, const cJSON *row, double values[4])
     int column = 0;
     cJSON_ArrayForEach(item, row)
     {
-        if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble)) {
+        if (!cJSON_IsNumber(item)) {
             return fail(r, "transform_matrix", "an entry is not a finite number");
         }
         values[column++] = item->valuedouble;
@@ -293,31 +338,79 @@ static int read_pose(reader *r, posed_frame *out)
     if (rows != 3 && rows != 4) {
         return fail(r, "transform_matrix", "not an array of 4 rows");
     }
-    double m[4][4] = {[3] = {0, 0, 0, 1}};
+    double m[16] = {[15] = 1};
     const cJSON *row;
     int y = 0;
     cJSON_ArrayForEach(row, matrix)
     {
-        if (read_row(r, row, m[y++]) != 0) {
+        if (read_row(r, row, &m[y]) != 0) {
             return -1;
         }
+        y += 4;
     }
-    if (fabs(m[3][0]) > 1e-6 || fabs(m[3][1]) > 1e-6 || fabs(m[3][2]) > 1e-6 || fabs(m[3][3] - 1) > 1e-6) {
-        return fail(r, "transform_matrix", "the last row is not 0 0 0 1");
-    }
-    /* columns y and z change sign: from y up, z backward to y down, z forward */
-    double rotation[9];
-    for (int i = 0; i < 3; i++) {
-        rotation[i * 3] = m[i][0];
-        rotation[i * 3 + 1] = -m[i][1];
-        rotation[i * 3 + 2] = -m[i][2];
-        out->position[i] = m[i][3];
-        if (!(fabs(m[i][3]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-            return fail(r, "transform_matrix", T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more"));
-        }
-    }
-    const char *wrong = quaternion_of(rotation, out->rotation);
+    const char *wrong = pose_of_matrix(m, AXES_OPENGL, out->position, out->rotation);
     return wrong == NULL ? 0 : fail(r, "transform_matrix", wrong);
+}
+
+/* ---- depth ----------------------------------------------------------------------------------------------------- */
+
+/* depth_path as instant-ngp calls it, or depth_file_path as nerfstudio does. */
+static int read_depth_path(reader *r, posed_frame *out)
+{
+    char *other = NULL;
+    if (read_optional_path(r, "depth_path", &out->depth) != 0 ||
+        read_optional_path(r, "depth_file_path", &other) != 0) {
+        return -1;
+    }
+    if (out->depth == NULL) {
+        r->nerfstudio = r->nerfstudio || other != NULL;
+        out->depth = other;
+        return 0;
+    }
+    int status = other == NULL || strcmp(out->depth, other) == 0
+                     ? 0
+                     : fail(r, "depth_file_path", "there is another depth_path too");
+    free(other);
+    return status;
+}
+
+/* One of the two names of the depth unit; NAN when absent. */
+static int read_unit(reader *r, const char *name, double *unit)
+{
+    uint64_t fixed;
+    if (read_number(r, name, unit) != 0) {
+        return -1;
+    }
+    return isnan(*unit) || t3r_fixed_depth_unit(*unit, &fixed)
+               ? 0
+               : fail(r, name, T3R_LIMIT_TEXT("not between 1e-12 and ", T3R_LIMIT_DEPTH_UNIT, ""));
+}
+
+static int read_depth_unit(reader *r, posed_folder *out)
+{
+    double unit, other;
+    if (read_unit(r, "integer_depth_scale", &unit) != 0 || read_unit(r, "depth_unit_scale_factor", &other) != 0) {
+        return -1;
+    }
+    if (!isnan(unit) && !isnan(other) && unit != other) {
+        return fail(r, "depth_unit_scale_factor", "not the integer_depth_scale that is there too");
+    }
+    unit = isnan(unit) ? other : unit;
+    for (uint32_t i = 0; isnan(unit) && i < out->frame_count; i++) {
+        if (out->frames[i].depth == NULL) {
+            continue;
+        }
+        if (!r->nerfstudio) {
+            return fail(r, "integer_depth_scale", "missing, but frames have a depth_path");
+        }
+        unit = NERFSTUDIO_UNIT;
+        (void)text_list_add(r->remarks,
+                            "depth_unit_scale_factor: missing; a step of depth is taken as %g, nerfstudio's default",
+                            NERFSTUDIO_UNIT);
+    }
+    out->depth_unit = isnan(unit) ? 0.001 : unit;
+    out->depth_unit_given = !isnan(unit);
+    return 0;
 }
 
 /* ---- the whole ------------------------------------------------------------------------------------------------- */
@@ -343,12 +436,11 @@ static int read_frames(reader *r, posed_folder *out)
         if (!cJSON_IsObject(r->frame)) {
             return t3r_reason(r->error, r->error_bytes, "%s: not an object", r->where);
         }
-        find_fields(r->frame, &r->own);
+        find_fields(r, r->frame, &r->own);
         if (read_path(r, "file_path", &frame->image) != 0) {
             return -1;
         }
-        if (read_optional_path(r, "depth_path", &frame->depth) != 0 ||
-            read_optional_path(r, "pointmap_path", &frame->pointmap) != 0 ||
+        if (read_depth_path(r, frame) != 0 || read_optional_path(r, "pointmap_path", &frame->pointmap) != 0 ||
             read_optional_path(r, "confidence_path", &frame->confidence) != 0) {
             return -1;
         }
@@ -364,26 +456,6 @@ static int read_frames(reader *r, posed_folder *out)
     }
     r->frame = NULL;
     r->where[0] = '\0';
-    return 0;
-}
-
-static int read_depth_unit(reader *r, posed_folder *out)
-{
-    double unit;
-    if (read_number(r, "integer_depth_scale", &unit) != 0) {
-        return -1;
-    }
-    for (uint32_t i = 0; isnan(unit) && i < out->frame_count; i++) {
-        if (out->frames[i].depth != NULL) {
-            return fail(r, "integer_depth_scale", "missing, but frames have a depth_path");
-        }
-    }
-    uint64_t fixed;
-    if (!isnan(unit) && !t3r_fixed_depth_unit(unit, &fixed)) {
-        return fail(r, "integer_depth_scale", T3R_LIMIT_TEXT("not between 1e-12 and ", T3R_LIMIT_DEPTH_UNIT, ""));
-    }
-    out->depth_unit = isnan(unit) ? 0.001 : unit;
-    out->depth_unit_given = !isnan(unit);
     return 0;
 }
 
@@ -439,17 +511,19 @@ int transforms_json_parse(const char *text, size_t bytes, const posed_folder_opt
 {
     static const posed_folder_options strict = {0};
     memset(out, 0, sizeof *out);
-    out->kind = "transforms.json";
     cJSON *root = json_parse(text, bytes, error, error_bytes);
     if (root == NULL) {
         return -1;
     }
-    reader r = {.options = options != NULL ? options : &strict, .error = error, .error_bytes = error_bytes};
+    reader r = {.options = options != NULL ? options : &strict,
+                .remarks = &out->remarks,
+                .error = error,
+                .error_bytes = error_bytes};
     int status;
     if (!cJSON_IsObject(root)) {
         status = t3r_reason(error, error_bytes, "byte 0: not a JSON object");
     } else {
-        find_fields(root, &r.top);
+        find_fields(&r, root, &r.top);
         status = read_frames(&r, out) != 0 || read_depth_unit(&r, out) != 0 || read_triplets(&r, out) != 0 ? -1 : 0;
     }
     cJSON_Delete(root);

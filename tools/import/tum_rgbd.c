@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "file_bytes.h"
 #include "import/pose_between.h"
@@ -250,7 +249,9 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
         posed_frame *frame = &out->frames[out->frame_count];
         frame->posed = find_pose(trajectory, colour->items[i].stamp, frame);
         if (!frame->posed && !without_poses) {
-            out->skipped++;
+            if (text_list_add(&out->left_out, "%s: no pose near it in time", colour->items[i].name) != 0) {
+                return t3r_reason(error, error_bytes, "out of memory");
+            }
             continue;
         }
         out->frame_count++;
@@ -271,19 +272,10 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
     return 0;
 }
 
-static bool is_there(const char *directory, const char *name)
-{
-    char *path = posed_path(directory, name);
-    bool there = path != NULL && access(path, F_OK) == 0;
-    free(path);
-    return there;
-}
-
 int tum_rgbd_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                   size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
-    out->kind = "TUM RGB-D";
     out->depth_unit = 1 / DEPTH_STEPS_PER_METRE;
     out->depth_unit_given = true;
     posed_intrinsics intrinsics;
@@ -293,10 +285,10 @@ int tum_rgbd_read(const char *directory, const posed_folder_options *options, po
         status = read_list(directory, "rgb.txt", false, &colour, error, error_bytes);
     }
     bool without_poses = options != NULL && options->without_poses;
-    if (status == 0 && (!without_poses || is_there(directory, "groundtruth.txt"))) {
+    if (status == 0 && (!without_poses || posed_exists(directory, "groundtruth.txt"))) {
         status = read_list(directory, "groundtruth.txt", true, &trajectory, error, error_bytes);
     }
-    if (status == 0 && is_there(directory, "depth.txt")) {
+    if (status == 0 && posed_exists(directory, "depth.txt")) {
         status = read_list(directory, "depth.txt", false, &depth, error, error_bytes);
     }
     if (status == 0) {

@@ -156,8 +156,9 @@ static const struct argp_option argp_options[] = {
     {"min-confidence", KEY_CONFIDENCE, "C", 0,
      "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
     {"depth-unit", KEY_UNIT, "U", 0,
-     "length of one step of depth made from pointmaps (integer_depth_scale of the folder, else a power of two with "
-     "which the median has 4096 to 8192 steps)",
+     "length of one step of depth: of depth pictures beside a model of COLMAP (needed), or of depth made from "
+     "pointmaps "
+     "(integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 steps)",
      0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
@@ -173,9 +174,12 @@ static const struct argp parser = {
     .doc = "Turn a posed folder, or a bag of ROS 2, into a recording. A recording that was cut off is mended.\v"
            "DIR holds one of\n"
            "  transforms.json (instant-ngp, NeRFCapture, nerfstudio): camera_model OPENCV\n"
-           "    or OPENCV_FISHEYE, depth_path with integer_depth_scale, trim3r_triplets\n"
+           "    or OPENCV_FISHEYE, depth_path with integer_depth_scale, depth_file_path\n"
+           "    with depth_unit_scale_factor, trim3r_triplets\n"
            "  rgb.txt, groundtruth.txt and optionally depth.txt (TUM RGB-D); pictures\n"
            "    without a pose are left out\n"
+           "  sparse/0 or sparse with a model of COLMAP, text or binary, and images; depth\n"
+           "    with 16-bit PNG of their names, if --depth-unit is given\n"
            "  pictures alone, in the order of their names, with --poses estimate or\n"
            "    --pointmaps\n"
            "Frames get stamps 1/30 s apart.\n"
@@ -311,7 +315,9 @@ static void print_json(const material *m, const totals *t)
     cJSON_AddNumberToObject(json, "width", t->width);
     cJSON_AddNumberToObject(json, "height", t->height);
     json_add_integer(json, "bytes", (int64_t)t->bytes);
-    cJSON_AddNumberToObject(json, "skipped", folder->skipped);
+    cJSON_AddNumberToObject(json, "skipped", folder->left_out.count);
+    text_list_add_json(&folder->left_out, json, "left_out");
+    text_list_add_json(&folder->remarks, json, "remarks");
     if (m->pointmaps.count > 0) {
         cJSON_AddNumberToObject(json, "pointmaps", m->pointmaps.count);
         cJSON_AddNumberToObject(json, "depth_unit", folder->depth_unit);
@@ -329,9 +335,8 @@ static void print_text(const options *o, const material *m, const totals *t)
     const posed_folder *folder = &m->folder;
     printf("%s: %u frames of %ux%u (%u with depth), %u triplets, %llu bytes\n", o->output, folder->frame_count,
            t->width, t->height, t->depth_frames, folder->triplet_count, (unsigned long long)t->bytes);
-    if (folder->skipped > 0) {
-        printf("left out: %u pictures without a pose near in time\n", folder->skipped);
-    }
+    text_list_print(&folder->left_out, "left out");
+    text_list_print(&folder->remarks, "remark");
     if (m->pointmaps.count > 0) {
         printf("pointmaps: %u, depth in steps of %g", m->pointmaps.count, folder->depth_unit);
         if (m->pointmaps.worst_px > 0) {
@@ -356,14 +361,16 @@ static int prepare(const options *o, material *m, char *error)
     bool estimate = o->poses != POSES_GIVEN;
     posed_folder_options how = {.intrinsics = o->intrinsics,
                                 .intrinsics_count = o->intrinsics_count,
+                                .depth_unit = o->pointmaps.depth_unit,
                                 .without_poses = estimate || o->pointmaps.file != NULL,
                                 .without_intrinsics = o->pointmaps.file != NULL};
     if (posed_folder_open(o->directory, &how, &m->folder, error, ERROR_BYTES) != 0) {
         return -1;
     }
-    bool maps = o->pointmaps.file != NULL;
+    bool maps = o->pointmaps.file != NULL, depth = false;
     for (uint32_t i = 0; i < m->folder.frame_count; i++) {
         maps = maps || m->folder.frames[i].pointmap != NULL;
+        depth = depth || m->folder.frames[i].depth != NULL;
     }
     if (maps && o->poses == POSES_ESTIMATE_COLOUR) {
         return t3r_reason(error, ERROR_BYTES,
@@ -375,9 +382,14 @@ static int prepare(const options *o, material *m, char *error)
         points.resect = estimate;
         return pointmap_source_open(&m->pointmaps, o->directory, &points, &m->folder, error, ERROR_BYTES);
     }
-    if (pointmap_option(&o->pointmaps) != NULL) {
-        return t3r_reason(error, ERROR_BYTES, "%s: %s is for pointmaps, but no frame has one", o->directory,
-                          pointmap_option(&o->pointmaps));
+    if (o->pointmaps.confidence_least != -HUGE_VAL) {
+        return t3r_reason(error, ERROR_BYTES, "%s: --min-confidence is for pointmaps, but no frame has one",
+                          o->directory);
+    }
+    if (o->pointmaps.depth_unit != 0 && !(depth && o->pointmaps.depth_unit == m->folder.depth_unit)) {
+        return t3r_reason(error, ERROR_BYTES,
+                          "%s: --depth-unit is for pointmaps and for depth whose unit the folder does not tell",
+                          o->directory);
     }
     if (!estimate) {
         return 0;
@@ -442,6 +454,9 @@ int command_import(int argc, char **argv)
         status = write_recording(&o, &m, &t, error);
     }
     cli_progress_end();
+    if (status == 0 && t.depth_frames == 0) {
+        (void)text_list_add(&m.folder.remarks, "no frame has depth: build and replay need --depth stereo");
+    }
     if (status != 0) {
         status = cli_error(CLI_BAD_INPUT, "%s", error);
     } else if (o.json) {

@@ -1,0 +1,250 @@
+"""Folders that others make: the room, written as each kind of folder, is imported as it is: the same pictures, depth,
+intrinsics and poses. What a folder lacks or holds in vain is told.
+
+folders.py TRIM3R
+"""
+
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is not there")
+    sys.exit(77)
+
+from common import check, done, run  # noqa: E402
+from frames import png, read  # noqa: E402
+
+WIDTH, HEIGHT, FRAMES = 64, 48, 3
+OPENGL = np.diag([1, -1, -1, 1])  # axes of its cameras in ours
+UNIT = 0.001
+
+
+def write(path, content):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb" if isinstance(content, bytes) else "w") as file:
+        file.write(content)
+    return path
+
+
+def quaternion(r):
+    """w x y z of a rotation, by the component that is largest."""
+    squares = np.array([1 + r[0, 0] + r[1, 1] + r[2, 2], 1 + r[0, 0] - r[1, 1] - r[2, 2],
+                        1 - r[0, 0] + r[1, 1] - r[2, 2], 1 - r[0, 0] - r[1, 1] + r[2, 2]])
+    products = np.array([[squares[0], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
+                         [r[2, 1] - r[1, 2], squares[1], r[1, 0] + r[0, 1], r[0, 2] + r[2, 0]],
+                         [r[0, 2] - r[2, 0], r[1, 0] + r[0, 1], squares[2], r[2, 1] + r[1, 2]],
+                         [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[2, 1] + r[1, 2], squares[3]]])
+    row = products[np.argmax(squares)]
+    return row / np.linalg.norm(row)
+
+
+def pictures(path, colour="{}.png", depth=None):
+    for i in range(FRAMES):
+        write(f"{path}/{colour.format(i)}", png(ROOM["image"][i]))
+        if depth:
+            write(f"{path}/{depth.format(i)}", png(ROOM["depth"][i]))
+
+
+def imported(path, *options):
+    """The report, and the recording."""
+    target = f"{path}.mcap"
+    status, out, error = run("import", path, "-o", target, "--json", *options)
+    check(status == 0, f"{path} {options}: {error}")
+    return (json.loads(out), read(target)) if status == 0 else ({}, {})
+
+
+def refused(path, why, *options):
+    status, out, error = run("import", path, "-o", f"{path}.mcap", *options)
+    check(status == 1 and out == "" and why in error, f"{path}: {status}, {error.strip()!r} does not say {why!r}")
+    check(not os.path.exists(f"{path}.mcap"), f"{path}: a recording is left behind")
+
+
+def same(name, got, depth=True):
+    """The room again: poses and intrinsics to the rounding of the file and of fixed point."""
+    for what in ("image", "depth") if depth else ("image",):
+        check(np.array_equal(got.get(what, []), ROOM[what]), f"{name}: {what}")
+    check(depth or "depth" not in got, f"{name}: there is depth")
+    for what, most in (("pose", 1e-6), ("camera_info", 1e-3)):
+        off = np.abs(np.stack(got[what]) - np.stack(ROOM[what])).max() if what in got else np.inf
+        check(off < most, f"{name}: {what} is off by {off}")
+
+
+# --- transforms.json -------------------------------------------------------------------------------------------------
+
+
+def transforms(path, depth_key="depth_file_path", change=None, **top):
+    """As nerfstudio writes it."""
+    pictures(path, "images/frame_{:05d}.png", "depth/{:05d}.png")
+    k = ROOM["camera_info"][0]
+    frames = [{"file_path": f"images/frame_{i:05d}.png", depth_key: f"depth/{i:05d}.png", "colmap_im_id": i + 1,
+               "transform_matrix": (pose @ OPENGL).tolist()} for i, pose in enumerate(ROOM["pose"])]
+    content = {"camera_model": "OPENCV", "fl_x": k[0, 0], "fl_y": k[1, 1], "cx": k[0, 2] + 0.5, "cy": k[1, 2] + 0.5,
+               "w": WIDTH, "h": HEIGHT, "k1": 0, "k2": 0, "p1": 0, "p2": 0, "applied_transform": np.eye(4)[:3].tolist(),
+               "ply_file_path": "sparse_pc.ply", **top, "frames": frames}
+    if change:
+        change(content)
+    write(f"{path}/transforms.json", json.dumps(content))
+    return path
+
+
+def test_nerfstudio():
+    report, got = imported(transforms("nerfstudio"))
+    same("nerfstudio", got)
+    check(report["remarks"] == ["depth_unit_scale_factor: missing; a step of depth is taken as 0.001, nerfstudio's default"],
+          f"nerfstudio: {report}")
+    report, got = imported(transforms("scaled", depth_unit_scale_factor=UNIT))
+    same("nerfstudio with its factor", got)
+    check(report["remarks"] == [], f"nerfstudio with its factor: {report}")
+    report, got = imported(transforms("both_names", "depth_path", integer_depth_scale=UNIT, depth_unit_scale_factor=UNIT))
+    same("both names of the unit", got)
+
+    def other(content):
+        for frame in content["frames"]:
+            frame["depth_map"] = frame.pop("depth_file_path")
+        content["poses_bounds"] = "poses_bounds.npy"
+
+    report, got = imported(transforms("unread", change=other))
+    same("unread fields", got, depth=False)
+    said = "this field is not read, though its name says depth or pose"
+    check(report["remarks"] == [f"poses_bounds: {said}", f"frames[0]: depth_map: {said}",
+                                "no frame has depth: build and replay need --depth stereo"], f"unread fields: {report}")
+    refused(transforms("two_units", integer_depth_scale=0.5, depth_unit_scale_factor=UNIT), "integer_depth_scale")
+    refused(transforms("two_paths", change=lambda c: c["frames"][1].update(depth_path="x.png")), "frames[1]: depth_file_path")
+    refused(transforms("bad_unit", depth_unit_scale_factor=200), "depth_unit_scale_factor: not between")
+    refused(transforms("no_unit", "depth_path"), "integer_depth_scale: missing")
+
+
+# --- COLMAP ----------------------------------------------------------------------------------------------------------
+
+
+def colmap_lists():
+    """(number, model, sides, parameters) of a camera, and (number, quaternion, translation, camera, name) of images, in
+    an order of their own."""
+    k = ROOM["camera_info"][0]
+    camera = (7, 1, (WIDTH, HEIGHT), (k[0, 0], k[1, 1], k[0, 2] + 0.5, k[1, 2] + 0.5))
+    images = []
+    for i in (2, 0, 1):
+        inverse = np.linalg.inv(ROOM["pose"][i])
+        images.append((i + 5, quaternion(inverse[:3, :3]), inverse[:3, 3], 7, f"view_{i}.png"))
+    return camera, images
+
+
+def colmap_text(path):
+    (number, _, sides, parameters), images = colmap_lists()
+    write(f"{path}/cameras.txt", f"# Camera list\n{number} PINHOLE {sides[0]} {sides[1]} "
+          + " ".join(f"{p:.17g}" for p in parameters) + "\n")
+    lines = ["# Image list with two lines of data per image:"]
+    for number, q, t, camera, name in images:
+        lines.append(f"{number} " + " ".join(f"{v:.17g}" for v in (*q, *t)) + f" {camera} {name}")
+        lines.append("1.5 2.5 -1 30.25 40 12" if number % 2 else "")  # points, or none
+    write(f"{path}/images.txt", "\n".join(lines) + "\n")
+    write(f"{path}/points3D.txt", "# no points\n")
+
+
+def colmap_binary(path):
+    (number, model, sides, parameters), images = colmap_lists()
+    write(f"{path}/cameras.bin", struct.pack("<QIiQQ4d", 1, number, model, *sides, *parameters))
+    data = struct.pack("<Q", len(images))
+    for number, q, t, camera, name in images:
+        points = [(1.5, 2.5, -1)] * (number % 3)
+        data += struct.pack("<I7dI", number, *q, *t, camera) + name.encode() + b"\0" + struct.pack("<Q", len(points))
+        data += b"".join(struct.pack("<ddq", *p) for p in points)
+    write(f"{path}/images.bin", data)
+
+
+def colmap(path, place="sparse/0", lists=colmap_text, depth=None):
+    pictures(path, "images/view_{}.png", depth)
+    lists(f"{path}/{place}")
+    return path
+
+
+def test_colmap():
+    for place in ("sparse/0", "sparse", "colmap/sparse/0", "."):
+        for lists in (colmap_text, colmap_binary):
+            name = f"{lists.__name__} in {place}"
+            report, got = imported(colmap(f"{lists.__name__}_{place.replace('/', '_')}", place, lists))
+            same(name, got, depth=False)
+            check(report.get("remarks", [""])[-1] == "no frame has depth: build and replay need --depth stereo", f"{name}: {report}")
+    refused(colmap("unit_unknown", depth="depth/view_{}.png"), "depth/view_0.png: depth, but nothing says", )
+    report, got = imported(colmap("with_depth", depth="depth/view_{}.png"), "--depth-unit", str(UNIT))
+    same("COLMAP with depth", got)
+    path = colmap("without_depth")
+    status, _, error = run("import", path, "--depth-unit", "1", "-o", "no.mcap")
+    check(status == 1 and "--depth-unit is for pointmaps" in error, f"a unit of nothing: {error}")
+
+
+def test_several_models():
+    path = colmap("several")
+    colmap_binary(f"{path}/sparse/3")
+    report, got = imported(path)
+    same("the first of several models", got, depth=False)
+    check("sparse/3 is another model, which is not read; import several/sparse/3 reads it" in report["remarks"], f"{report}")
+    same("another model by its own folder", imported(f"{path}/sparse/3")[1], depth=False)
+
+
+def test_stereo_of_colmap():
+    """Without depth, build says what it needs, and makes a scene with it."""
+    path = colmap("stereo")
+    imported(path)
+    arguments = ("build", "stereo.mcap", "--context", "0,1", "--gaussians", "50", "-o", "stereo.ply")
+    status, _, error = run(*arguments)
+    check(status == 1 and "--depth stereo" in error, f"without stereo: {error}")
+    status, _, error = run(*arguments, "--depth", "stereo")
+    check(status == 0, f"with stereo: {error}")
+
+
+def test_colmap_refusals():
+    def changed(name, file, old, new):
+        path = colmap(name)
+        with open(f"{path}/sparse/0/{file}", encoding="utf-8") as text:
+            content = text.read()
+        check(old in content, f"{name}: nothing to change")
+        write(f"{path}/sparse/0/{file}", content.replace(old, new, 1))
+        return path
+
+    refused(changed("fov", "cameras.txt", "PINHOLE", "FOV"), "cameras.txt: line 2: fewer parameters")
+    path = changed("fov", "cameras.txt", "7 PINHOLE 64 48", "7 FOV 64 48 1")
+    refused(path, "the camera model FOV is not supported")
+    refused(changed("unknown", "cameras.txt", "PINHOLE", "WIDE"), "an unknown camera model")
+    refused(changed("no_camera", "cameras.txt", "7 ", "8 "), "camera 7 of view_0.png: it is not among the cameras")
+    refused(changed("sides", "cameras.txt", " 64 48 ", " 65 48 "), "w: 65, but the picture is 64 pixels wide")
+    refused(changed("gone", "images.txt", "view_1.png", "view_9.png"), "images/view_9.png: No such file")
+    path = colmap("cut", lists=colmap_binary)
+    with open(f"{path}/sparse/0/images.bin", "rb") as file:
+        data = file.read()
+    write(f"{path}/sparse/0/images.bin", data[:-30])
+    refused(path, "images.bin: image 3 of 3: the file ends in it")
+    status, _, error = run("import", colmap("given"), "--intrinsics", "9,9,9,9", "-o", "no.mcap")
+    check(status == 1 and "the model has its own intrinsics" in error, f"intrinsics twice: {error}")
+
+
+def test_colmap_itself():
+    """What COLMAP writes of our text, where it is installed."""
+    if shutil.which("colmap") is None:
+        print("without COLMAP's own files: colmap is not there")
+        return
+    path = colmap("itself")
+    os.makedirs(f"{path}/sparse/1")
+    for form, number in (("BIN", 1), ("TXT", 0)):
+        subprocess.run(["colmap", "model_converter", "--input_path", f"{path}/sparse/{1 - number}", "--output_path",
+                        f"{path}/sparse/{number}", "--output_type", form], check=True, capture_output=True)
+        same(f"COLMAP's own {form}", imported(f"{path}/sparse/{number}")[1], depth=False)
+
+
+TESTS = [test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
+
+with tempfile.TemporaryDirectory() as work:
+    os.chdir(work)
+    code, _, message = run("room", "--frames", str(FRAMES), "--size", f"{WIDTH}x{HEIGHT}", "-o", "room.mcap")
+    check(code == 0, f"room: {message}")
+    ROOM = read("room.mcap")
+    for test in TESTS:
+        test()
+done()
