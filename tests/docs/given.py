@@ -51,6 +51,18 @@ def colmap(given, path):
     shutil.copytree(given.views(), path)
 
 
+def scannet(given, path):
+    for i in range(2):
+        for name, bits, channels, value in (("color", 8, 3, lambda x, y: (x * 5, y * 7, 90)),
+                                            ("depth", 16, 1, lambda x, y: (1000 + x + y,))):
+            (path / name).mkdir(parents=True, exist_ok=True)
+            write_png(path / name / f"{i}.png", bits, channels, value)
+        (path / "pose").mkdir(exist_ok=True)
+        (path / "pose" / f"{i}.txt").write_text(f"1 0 0 {i / 10}\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+    (path / "intrinsic").mkdir()
+    (path / "intrinsic" / "intrinsic_color.txt").write_text("35 0 19.5 0\n0 35 14.5 0\n0 0 1 0\n0 0 0 1\n")
+
+
 def photo(given, path):
     shutil.copyfile(given.views() / "images" / "frame_000001.png", path)
 
@@ -140,5 +152,6 @@ def write_json(path, value):
 
 
 MAKERS = {"room.mcap": recording, "photos/": photos, "photo.png": photo, "posed/": posed, "tum/": tum, "colmap/": colmap,
+          "scannet/": scannet,
           "tracker.txt": trajectory, "importance/": importance, "small.safetensors": head, "theirs.ply": scene,
           "dust3r.npz": pointmaps}

@@ -362,6 +362,44 @@ def colmap_pipe(path):
     os.mkfifo(f"{path}/sparse/0/images.bin")
 
 
+def pose_files(path, pose="1 0 0 0 0 1 0 0 0 0 1 0", lens="20 0 8 0 20 8 0 0 1", name="0"):
+    """A folder of one pose, as ScanNet has them."""
+    for folder, file, content in (("pose", f"{name}.txt", pose), ("intrinsic", "intrinsic_color.txt", lens)):
+        os.makedirs(f"{path}/{folder}")
+        with open(f"{path}/{folder}/{file}", "w", encoding="utf-8") as text:
+            text.write(content)
+    os.makedirs(f"{path}/color")
+    with open(f"{path}/color/{name}.png", "wb") as picture:
+        picture.write(f.png(16, 16))
+
+
+@case("folder", "pose-file-of-100-mb", "too large")
+def long_pose(path):
+    return pose_files(path, pose="0 " * (50 * MIB))
+
+
+@case("folder", "pose-file-of-escapes", "a word that is no number")
+def escaped_pose(path):
+    return pose_files(path, pose=f.ESCAPE, name=f.ESCAPE)
+
+
+@case("folder", "pose-files-far-away", "2^30 or more")
+def far_pose(path):
+    return pose_files(path, pose="1 0 0 1e300 0 1 0 0 0 0 1 0")
+
+
+@case("folder", "pose-files-lens-of-1e300", "focal lengths")
+def long_lens(path):
+    return pose_files(path, lens="1e300 0 8 0 1e300 8 0 0 1")
+
+
+@case("folder", "101000-pose-files", "more than 100000 poses")
+def many_poses(path):
+    pose_files(path)
+    for i in range(101000):
+        os.symlink("0.txt", f"{path}/pose/a{i}.txt")
+
+
 @case("folder", "tum-escapes", "")
 def tum(path):
     os.makedirs(path)

@@ -238,7 +238,90 @@ def test_colmap_itself():
         same(f"COLMAP's own {form}", imported(f"{path}/sparse/{number}")[1], depth=False)
 
 
-TESTS = [test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
+# --- pose texts ------------------------------------------------------------------------------------------------------
+
+
+def matrix_text(m):
+    return "\n".join(" ".join(f"{v:.17g}" for v in row) for row in m) + "\n"
+
+
+def pose_files(path, depth=True, lens=True):
+    """As ScanNet's frames are exported."""
+    pictures(path, "color/{}.png", "depth/{}.png" if depth else None)
+    for i, pose in enumerate(ROOM["pose"]):
+        write(f"{path}/pose/{i}.txt", matrix_text(pose))
+    full = np.eye(4)
+    full[:3, :3] = ROOM["camera_info"][0]
+    if lens:
+        write(f"{path}/intrinsic/intrinsic_color.txt", matrix_text(full))
+        write(f"{path}/intrinsic/intrinsic_depth.txt", matrix_text(full))
+        write(f"{path}/intrinsic/extrinsic_color.txt", matrix_text(np.eye(4)))
+    return path
+
+
+def test_pose_files():
+    report, got = imported(pose_files("scannet"))
+    same("pose files", got)
+    check(report["remarks"] == [] and report["left_out"] == [], f"pose files: {report}")
+    k = ROOM["camera_info"][0]
+    lens = f"{k[0, 0]},{k[1, 1]},{k[0, 2]},{k[1, 2]}"
+    same("pose files and a lens", imported(pose_files("scannet_lens", False, False), "--intrinsics", lens)[1], depth=False)
+    refused(pose_files("scannet_blind", lens=False), "no intrinsic/intrinsic_color.txt; give --intrinsics")
+    path = pose_files("scannet_unit")
+    report, got = imported(path, "--depth-unit", "0.25")
+    check(json.loads(run("info", f"{path}.mcap", "--json")[1])["depth_unit"] == 0.25, "pose files: --depth-unit")
+
+
+def test_lost_poses():
+    path = pose_files("lost")
+    write(f"{path}/pose/1.txt", "-inf -inf -inf -inf\n" * 4)
+    report, got = imported(path)
+    check(report["frames"] == 2 and report["left_out"] == ["color/1.png: pose/1.txt is not finite: the pose was lost"],
+          f"a lost pose: {report}")
+    check(np.array_equal(got["image"], [ROOM["image"][i] for i in (0, 2)]), "a lost pose: other pictures")
+    status, out, _ = run("import", path, "-o", "lost.mcap")
+    check("left out: color/1.png: pose/1.txt" in out, f"a lost pose as text: {out}")
+    for i in (0, 2):
+        write(f"{path}/pose/{i}.txt", "nan " * 16)
+    os.remove("lost.mcap")
+    refused(path, "lost/pose: no pose is finite")
+
+
+def test_depth_of_another_lens():
+    """Depth of half the size, by a lens that is 1.25 times as wide: a plane keeps its distance, and an edge its place."""
+    path = pose_files("wide")
+    k = ROOM["camera_info"][0]
+    width, height = WIDTH // 2, HEIGHT // 2
+    full = np.eye(4)
+    full[0, 0], full[1, 1] = k[0, 0] / 2 / 1.25, k[1, 1] / 2 / 1.25
+    full[0, 2], full[1, 2] = (k[0, 2] + 0.5) / 2 - 0.5, (k[1, 2] + 0.5) / 2 - 0.5
+    write(f"{path}/intrinsic/intrinsic_depth.txt", matrix_text(full))
+    depth = np.full((height, width), 2000, np.uint16)
+    depth[:, width // 2 + 4:] = 3000  # the edge is 4 pixels from the middle: 10 of colour's
+    for i in range(FRAMES):
+        write(f"{path}/depth/{i}.png", png(depth))
+    _, got = imported(path)
+    seen = got["depth"][0]
+    check(set(np.unique(seen)) == {2000, 3000}, f"another lens: {np.unique(seen)}")
+    edge = np.argmax(seen == 3000, axis=1) * WIDTH / seen.shape[1]
+    check(abs(edge - (WIDTH / 2 + 10)).max() <= WIDTH / seen.shape[1], f"another lens: the edge is at {edge}")
+
+
+def test_pose_file_refusals():
+    def changed(name, file, content):
+        return write(f"{pose_files(name)}/{file}", content) and name
+
+    refused(changed("short", "pose/1.txt", "1 0 0 0"), "pose/1.txt: not 16 or 12 numbers")
+    refused(changed("long", "pose/1.txt", "1 " * 17), "pose/1.txt: more than 16 numbers")
+    refused(changed("word", "pose/1.txt", "1 0 0 x"), "pose/1.txt: a word that is no number")
+    refused(changed("skewed", "pose/1.txt", "1 0.1 0 0 0 1 0 0 0 0 1 0 0 0 0 1"), "pose/1.txt: ")
+    refused(changed("no_lens", "intrinsic/intrinsic_color.txt", "0 0 0 0 0 0 0 0 1"), "not a camera matrix")
+    path = pose_files("no_picture")
+    os.remove(f"{path}/color/1.png")
+    refused(path, "pose/1.txt: there is no picture of that name in color")
+
+
+TESTS = [test_pose_files, test_lost_poses, test_depth_of_another_lens, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

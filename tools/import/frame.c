@@ -10,6 +10,7 @@
 #include "fixed_camera.h"
 #include "image/image.h"
 #include "image/undistort.h"
+#include "import/align_depth.h"
 #include "pictures/picture.h"
 #include "reader_limits.h"
 #include "reason.h"
@@ -262,6 +263,9 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
         free(path);
         if (status != 0) {
             return -1;
+        }
+        if (frame->depth_lens.fx != 0 && align_depth(frame, colour, depth, reason, sizeof reason) != 0) {
+            return t3r_reason(error, error_bytes, "%s: its lens: %s", frame->depth, reason);
         }
     }
     /* networks round sides to whole patches, so the two need not agree to the pixel */

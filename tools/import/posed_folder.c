@@ -10,6 +10,7 @@
 #include "file_bytes.h"
 #include "import/colmap_folder.h"
 #include "import/picture_folder.h"
+#include "import/pose_files.h"
 #include "import/transforms_json.h"
 #include "import/tum_rgbd.h"
 #include "reader_limits.h"
@@ -61,6 +62,7 @@ static const struct folder_kind {
     {"transforms.json", has_transforms, read_transforms},
     {"TUM RGB-D", has_tum_lists, tum_rgbd_read},
     {"COLMAP", colmap_folder_is, colmap_folder_read},
+    {"pose files", pose_files_are_there, pose_files_read},
 };
 
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,

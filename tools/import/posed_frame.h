@@ -26,8 +26,9 @@ typedef struct posed_frame {
     char *pointmap, *confidence; /* likewise: depth made elsewhere (pointmaps.h) */
     bool posed;                  /* false: position 0, rotation none */
     posed_intrinsics intrinsics;
-    double position[3]; /* camera centre, world units */
-    double rotation[4]; /* unit quaternion w x y z; camera (x right, y down, z forward) to world */
+    posed_intrinsics depth_lens; /* of the depth picture's camera, which is where colour's is; fx 0: it sees the same */
+    double position[3];          /* camera centre, world units */
+    double rotation[4];          /* unit quaternion w x y z; camera (x right, y down, z forward) to world */
 } posed_frame;
 
 typedef struct posed_folder {

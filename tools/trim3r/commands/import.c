@@ -142,7 +142,8 @@ static const struct argp_option argp_options[] = {
      "area average and depth by the pixel at the centre of each box (as the pictures are)",
      0},
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
-     "colour camera of a TUM RGB-D folder or of pictures alone: fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being "
+     "colour camera of a TUM RGB-D folder, of a folder of pose texts or of pictures alone: "
+     "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being "
      "the centre of the top-left pixel (known where the name of the folder has freiburg1, freiburg2 or freiburg3 in "
      "it)",
      0},
@@ -180,6 +181,7 @@ static const struct argp parser = {
            "    without a pose are left out\n"
            "  sparse/0 or sparse with a model of COLMAP, text or binary, and images; depth\n"
            "    with 16-bit PNG of their names, if --depth-unit is given\n"
+           "  pose, color, intrinsic and optionally depth (ScanNet): a text for each pose\n"
            "  pictures alone, in the order of their names, with --poses estimate or\n"
            "    --pointmaps\n"
            "Frames get stamps 1/30 s apart.\n"

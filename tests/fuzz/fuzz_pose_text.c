@@ -1,0 +1,36 @@
+/* A text with a matrix: an error, or numbers whose pose, if it is one, lies within the limits. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "import/matrix_text.h"
+#include "import/pose_matrix.h"
+#include "reader_limits.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    double matrix[MATRIX_NUMBERS_MOST], position[3], rotation[4];
+    uint32_t count;
+    char *text = malloc(size + 1);
+    if (text == NULL) {
+        return 0;
+    }
+    if (size > 0) {
+        memcpy(text, data, size);
+    }
+    text[size] = '\0';
+    const char *wrong = matrix_text_parse(text, matrix, &count);
+    free(text);
+    if (count > MATRIX_NUMBERS_MOST || (wrong != NULL && wrong[0] == '\0')) {
+        abort();
+    }
+    for (int axes = AXES_OPENCV; wrong == NULL && count == 16 && axes <= AXES_OPENGL; axes++) {
+        if (pose_of_matrix(matrix, (camera_axes)axes, position, rotation) == NULL &&
+            !(fabs(position[0]) < 1 << T3R_LIMIT_POSITION_LOG2 && fabs(rotation[0]) <= 1)) {
+            abort();
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,13 @@
+/* Matrices as text files of numbers. */
+#ifndef TRIM3R_TOOLS_MATRIX_TEXT_H
+#define TRIM3R_TOOLS_MATRIX_TEXT_H
+
+#include <stdint.h>
+
+#define MATRIX_NUMBERS_MOST 16u
+
+/* Numbers with blanks, commas or line ends between them, row by row; infinities and NaN among them, with which some
+ * programs mark poses that they lost. NULL, or what is wrong: another character, more than MATRIX_NUMBERS_MOST. */
+const char *matrix_text_parse(const char *text, double numbers[MATRIX_NUMBERS_MOST], uint32_t *count);
+
+#endif
