@@ -152,6 +152,5 @@ def write_json(path, value):
 
 
 MAKERS = {"room.mcap": recording, "photos/": photos, "photo.png": photo, "posed/": posed, "tum/": tum, "colmap/": colmap,
-          "scannet/": scannet,
-          "tracker.txt": trajectory, "importance/": importance, "small.safetensors": head, "theirs.ply": scene,
-          "dust3r.npz": pointmaps}
+          "scannet/": scannet, "tracker.txt": trajectory, "importance/": importance, "small.safetensors": head,
+          "theirs.ply": scene, "dust3r.npz": pointmaps}

@@ -388,7 +388,7 @@ def far_pose(path):
     return pose_files(path, pose="1 0 0 1e300 0 1 0 0 0 0 1 0")
 
 
-@case("folder", "pose-files-lens-of-1e300", "focal lengths")
+@case("folder", "pose-files-lens-of-1e300", "8 to 16384 pixels")
 def long_lens(path):
     return pose_files(path, lens="1e300 0 8 0 1e300 8 0 0 1")
 
