@@ -6,7 +6,7 @@ import sys
 from program import TRIM3R, check, expect, fill_disk, in_scratch
 
 
-COMMANDS = ["import", "room", "info", "build", "render", "eval", "replay", "diff", "plan", "bench", "quantize",
+COMMANDS = ["import", "room", "info", "build", "render", "view", "eval", "replay", "diff", "plan", "bench", "quantize",
             "head-info", "stress"]
 
 

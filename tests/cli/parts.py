@@ -20,6 +20,7 @@ LINES = {
     "info": (["scene.ply", "--svg", "out.svg"], ["out.svg"]),
     "build": (["room.mcap", "--keep", "10", "-o", "out.ply", "--colmap", "start"], ["out.ply", "start"]),
     "render": (["scene.ply", "room.mcap", "--view", "1", "-o", "out.png"], ["out.png"]),
+    "view": (["room.mcap", "-o", "out.html"], ["out.html"]),
     "eval": (["room.mcap", "--keep", "10", "--html", "out.html", "--images", "pictures"], ["out.html"]),
     "chart": (["scores.csv", "-o", "out.html", "--svg", "out.svg"], ["out.html", "out.svg"]),
     "stress": (["room.mcap", "--rows", "noise", "--strengths", "1", "--captures", "0", "--html", "out.html"],

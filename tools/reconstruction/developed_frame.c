@@ -8,7 +8,7 @@
 #include "cli/recorded_frame.h"
 
 int developed_frame(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
-                    uint8_t *rgb, t3r_camera *camera)
+                    uint8_t *rgb, uint16_t *depth, t3r_camera *camera)
 {
     t3r_capture_frame frame;
     int code = recorded_frame_read(recording, path, index, &frame);
@@ -27,7 +27,7 @@ int developed_frame(const t3r_recording *recording, const char *path, uint32_t i
     }
     status = t3r_init(&runtime, arena, plan.min_bytes, &config);
     if (status == T3R_OK) {
-        status = t3r_develop(runtime, &frame.frame, &frame.camera, rgb, NULL, camera);
+        status = t3r_develop(runtime, &frame.frame, &frame.camera, rgb, depth, camera);
     }
     free(arena);
     return status == T3R_OK

@@ -21,7 +21,7 @@ static int make_frame(scene_frames *made, uint32_t view, const scene_file *scene
     made->rgb[view] = malloc((size_t)width * height * 3);
     int code = made->rgb[view] == NULL
                    ? cli_error(CLI_BAD_INPUT, "out of memory")
-                   : developed_frame(recording, path, index, width, height, made->rgb[view], &frame->camera);
+                   : developed_frame(recording, path, index, width, height, made->rgb[view], NULL, &frame->camera);
     if (code != CLI_OK) {
         return code;
     }

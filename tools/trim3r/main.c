@@ -23,6 +23,7 @@ static const struct {
     {"info", command_info, "show what recordings and scenes hold"},
     {"build", command_build, "turn frames of a recording into exactly Z Gaussians"},
     {"render", command_render, "draw a scene as a recorded camera, a pose or a trajectory sees it"},
+    {"view", command_view, "show a scene or a recording in a browser"},
     {"eval", command_eval, "score rendered views against recorded ones"},
     {"chart", command_chart, "plot scores against time and bytes, as a picture or a report"},
     {"stress", command_stress, "measure each method under noise, wrong poses and hard scenes"},

@@ -68,7 +68,7 @@ static int make_picture(evaluation_picture *picture, const evaluation_views *vie
     if (picture->rgb == NULL || picture->mask == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    int code = developed_frame(what->recording, what->path, index, views->width, views->height, picture->rgb,
+    int code = developed_frame(what->recording, what->path, index, views->width, views->height, picture->rgb, NULL,
                                &picture->camera);
     if (code != CLI_OK || what->planar) {
         memset(picture->mask, 255, pixels);

@@ -40,7 +40,7 @@ static int open_pictures(rival_source *source, const reconstruction *r)
         source->rgb[v] = malloc((size_t)o->config.width * o->config.height * 3);
         code = source->rgb[v] == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
                                       : developed_frame(source->recording, source->path, o->context[v], o->config.width,
-                                                        o->config.height, source->rgb[v], &source->camera[v]);
+                                                        o->config.height, source->rgb[v], NULL, &source->camera[v]);
     }
     source->opened = code == CLI_OK;
     return code;

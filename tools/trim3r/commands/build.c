@@ -258,7 +258,7 @@ static int write_colmap(const build_options *o, const t3r_recording *recording, 
         views[v].rgb = malloc((size_t)told->width * told->height * 3);
         code = views[v].rgb == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
                                     : developed_frame(recording, o->recording, told->context[v], told->width,
-                                                      told->height, views[v].rgb, &views[v].camera);
+                                                      told->height, views[v].rgb, NULL, &views[v].camera);
     }
     colmap_model model = {.views = views,
                           .view_count = told->context_count,

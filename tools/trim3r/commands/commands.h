@@ -9,6 +9,7 @@ int command_capture(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_build(int argc, char **argv);
 int command_render(int argc, char **argv);
+int command_view(int argc, char **argv);
 int command_eval(int argc, char **argv);
 int command_stress(int argc, char **argv);
 int command_replay(int argc, char **argv);

@@ -1,0 +1,23 @@
+"""What the scripts of this folder share."""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import browser  # noqa: E402, F401
+from checks import check, done, run, skip  # noqa: E402, F401
+
+
+def need_page(trim3r, folder):
+    """Makes the room and a scene of it. The program must hold a page: else it was built without clang and lld."""
+    room, scene = f"{folder}/room.mcap", f"{folder}/scene.ply"
+    run(trim3r, "room", "--size", "64x48", "-o", room)
+    run(trim3r, "build", room, "--context", "0,2", "--keep", "10", "-o", scene)
+    tried = run_any(trim3r, "view", scene, "-o", f"{folder}/page.html")
+    if tried.returncode != 0 and "built without the page" in tried.stderr:
+        skip("the program was built without clang and lld (tools/setup --viewer)")
+    return room, scene
+
+
+def run_any(*command):
+    import subprocess
+    return subprocess.run([str(part) for part in command], capture_output=True, text=True)

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""page.py TRIM3R [FOLDER]: the viewer in a headless Chromium: its hash is the native one, the slider rebuilds, every
+overlay differs, mouse and keyboard move the camera, a phone; no errors, no requests. With FOLDER, what it looks like
+goes there."""
+import json
+import sys
+import tempfile
+
+from common import browser, check, done, need_page, run, skip
+
+TRIM3R = sys.argv[1]
+looks = sys.argv[2] if len(sys.argv) > 2 else None
+program = browser.find()
+if program is None:
+    skip("there is no Chromium (tools/setup --tests installs it)")
+
+PICTURE = """(() => { const c = document.getElementById('picture'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+    let h = 2166136261; for (let i = 0; i < d.length; i++) h = Math.imul(h ^ d[i], 16777619); return h >>> 0; })()"""
+STATUS = "document.getElementById('status').textContent"
+STAGES = "Object.fromEntries([...document.querySelectorAll('#stages tbody tr')].map((r) => [r.cells[0].textContent, r.cells[2].textContent]))"
+
+
+def drawn(page, action):
+    """The picture after an action that draws."""
+    page.wait("!busy")
+    before = page.value("Number(document.body.dataset.drawn ?? 0)")
+    action()
+    page.wait(f"Number(document.body.dataset.drawn ?? 0) > {before}")
+    return page.value(PICTURE)
+
+
+def opened(page, path):
+    page.open(path)
+    page.wait("document.body.dataset.drawn !== undefined && document.body.dataset.gaussians !== undefined")
+
+
+def slide(page, value):
+    page.value(f"(() => {{ const s = document.getElementById('slider'); s.value = {value}; s.dispatchEvent(new Event('input')); }})()")
+
+
+def budget(page, room):
+    """The slider from 100 to 2 %: another picture each time, and the bits of the native program."""
+    seen = set()
+    for share in (100, 30, 10, 2):
+        wanted = max(1, round(page.value("data.valid") * share / 100))
+        value = page.value(f"sliderAt({share})")
+        before = page.value("document.body.dataset.hash")
+        slide(page, value)
+        page.wait(f"document.body.dataset.hash !== {json.dumps(before)}")
+        count = int(page.value("document.body.dataset.gaussians"))
+        check(abs(count - wanted) <= 0.01 * wanted, f"{share} %: {count} Gaussians, not about {wanted}")
+        native = json.loads(run(TRIM3R, "replay", room, "--context", "0,2", "--gaussians", count, "--json").stdout)["stages"]
+        for stage, digits in page.value(STAGES).items():
+            check(native[stage] == digits, f"{share} %, {stage}: {digits} in the page, {native[stage]} natively")
+        page.wait("!busy && !waiting.draw")
+        seen.add(page.value(PICTURE))
+    check(len(seen) == 4, "every budget is another picture")
+    check("dB" in page.value(STATUS), f"scores are told: {page.value(STATUS)}")
+
+
+def shows(page):
+    pictures = set()
+    for show in ("depth", "alpha", "frame", "error", "mask", "clusters", "texture", "picture"):
+        pictures.add(drawn(page, lambda: page.value(f"document.querySelector('input[name=show][value={show}]').click()")))
+        browser.look(page, looks, f"view-{show}")
+    check(len(pictures) == 8, f"eight ways to show a frame, {len(pictures)} pictures")
+
+
+def motion(page):
+    start = drawn(page, lambda: page.click("#reset"))
+    seen = {start}
+    page.value("document.getElementById('picture').focus()")
+    for name, code, text in (("ArrowLeft", 37, ""), ("ArrowUp", 38, ""), ("w", 87, "w"), ("+", 187, "+")):
+        seen.add(drawn(page, lambda: page.key(name, code, text)))
+    check(page.value("document.querySelectorAll('#frames [aria-pressed=true]').length") == 0, "a move leaves the frame")
+    x, y = page.place("#picture")
+
+    def drag():
+        page.mouse("mousePressed", (x, y), button="left", clickCount=1)
+        page.mouse("mouseMoved", (x + 60, y + 20), button="left", buttons=1)
+        page.mouse("mouseReleased", (x + 60, y + 20), button="left", clickCount=1)
+
+    seen.add(drawn(page, drag))
+    page.value("document.querySelector('input[name=motion][value=fly]').click()")
+    seen.add(drawn(page, drag))
+    seen.add(drawn(page, lambda: page.mouse("mouseWheel", (x, y), deltaX=0, deltaY=-200)))
+    check(len(seen) == 8, f"seven moves, {len(seen)} pictures")
+    check(drawn(page, lambda: page.key("r", 82, "r")) == start, "and back to the start")
+    seen.add(drawn(page, lambda: page.key("2", 50, "2")))
+    check(page.value("document.querySelector('#frames [aria-pressed=true]').textContent") == "frame 2", "frames by number")
+
+
+def accessible(page):
+    unnamed = page.value("""[...document.querySelectorAll('input, button, canvas, progress')].filter((e) =>
+        !e.getAttribute('aria-label') && !e.textContent && !(e.labels && e.labels.length)).length""")
+    check(unnamed == 0, "everything that can be used has a name")
+    check(page.value("document.getElementById('slider').getAttribute('aria-valuetext')").endswith("%"), "the slider tells its value")
+    for scheme in ("light", "dark"):
+        page.scheme(scheme)
+        least = page.value("""(() => {
+            const light = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map((x) => (x /= 255) <= .03928 ? x / 12.92 : ((x + .055) / 1.055) ** 2.4);
+                                   return .2126 * r + .7152 * g + .0722 * b; };
+            const back = (e) => { while (e && getComputedStyle(e).backgroundColor === 'rgba(0, 0, 0, 0)') e = e.parentElement;
+                                  return light(getComputedStyle(e).backgroundColor); };
+            return Math.min(...[...document.querySelectorAll('h1, p, legend, span, button, th, td, summary, output')]
+                .filter((e) => e.textContent && e.offsetParent).map((e) => {
+                    const [a, b] = [light(getComputedStyle(e).color), back(e)];
+                    return (Math.max(a, b) + .05) / (Math.min(a, b) + .05); })); })()""")
+        check(least >= 4.5, f"contrast of texts is at least 4.5 : 1 in {scheme}: {least:.2f}")
+    page.scheme("light")
+
+
+def on_a_phone(page):
+    page.size(390, 844, True)
+    check(page.value("document.documentElement.scrollWidth") <= 390, "nothing is wider than a phone")
+    check(page.value("document.getElementById('picture').clientWidth") > 300, "the picture is as wide")
+    browser.look(page, looks, "view-phone")
+    page.size(1200, 1000)
+
+
+with tempfile.TemporaryDirectory() as scratch:
+    recording, scene = need_page(TRIM3R, scratch)
+    run(TRIM3R, "view", recording, "--context", "0,2", "-o", f"{scratch}/both.html")
+    page = browser.Page(program, timeout=120)
+    try:
+        opened(page, f"{scratch}/both.html")
+        check(page.value("document.getElementById('bits').dataset.same") == "true", "the page has the native hash")
+        accessible(page)
+        shows(page)
+        motion(page)
+        budget(page, recording)
+        on_a_phone(page)
+        opened(page, f"{scratch}/page.html")
+        check(page.value("document.getElementById('budget').hidden"), "a scene alone has no budget to choose")
+        check("Gaussians" in page.value(STATUS), f"it is drawn: {page.value(STATUS)}")
+        browser.look(page, looks, "view-scene")
+        run(TRIM3R, "view", scene, recording, "--context", "0,2", "-o", f"{scratch}/pair.html")
+        opened(page, f"{scratch}/pair.html")
+        of_file = page.value("document.body.dataset.gaussians")
+        page.click("input[name=source][value=built]")
+        page.wait("document.body.dataset.hash !== ''")
+        page.click("input[name=source][value=file]")
+        page.wait("document.body.dataset.hash === ''")
+        check(page.value("document.body.dataset.gaussians") == of_file, "from the file, built here, and back")
+        check(page.logged == [], f"nothing on the console: {page.logged}")
+        check(all(url.startswith(("file:", "blob:", "data:")) for url in page.requested), f"requests: {page.requested}")
+    finally:
+        page.close()
+done()

@@ -1,0 +1,308 @@
+/* trim3r view: a scene, a recording or both, in a browser. */
+#include "trim3r/commands/commands.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "cli/file_kind.h"
+#include "cli/file_options.h"
+#include "cli/json_output.h"
+#include "cli/option_values.h"
+#include "cli/whole_file.h"
+#include "reconstruction/reconstruction.h"
+#include "scene/scene_file.h"
+#include "viewer/page.h"
+#include "viewer/server.h"
+#include "viewer/viewpoints.h"
+
+#define ERROR_BYTES 512
+
+typedef struct view_options {
+    const char *inputs[2];
+    const char *scene, *recording; /* which of them is which; NULL = not given */
+    const char *output;            /* NULL = the page is served */
+    uint16_t port;
+    bool json;
+    uint32_t compare[T3R_MAX_VIEWS], compare_count;
+    reconstruction_options settings;
+} view_options;
+
+enum { KEY_PORT = 0x1000, KEY_COMPARE, KEY_JSON };
+
+static const struct argp_option options[] = {
+    OPTION_ARGUMENTS("INPUT", OPTION_READS),
+    {"output", 'o', "view.html", OPTION_WRITES(FILE_PAGE), "page to write, which needs no server (it is served)", 0},
+    {"port", KEY_PORT, "N", 0, "port of the server on 127.0.0.1, 0 = any free one (0)", 0},
+    {"compare", KEY_COMPARE, "LIST", 0,
+     "further frames of the recording to look from and to compare with (the one in the middle of the first two context "
+     "frames)",
+     0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {0},
+};
+
+static void check_options(struct argp_state *state, view_options *o)
+{
+    for (int i = 0; i < 2 && o->inputs[i] != NULL; i++) {
+        const file_kind kind = file_kind_of(o->inputs[i]);
+        const char **place = kind == FILE_RECORDING ? &o->recording : &o->scene;
+        if (*place != NULL) {
+            argp_error(state, "'%s' and '%s' are both %s; one scene and one recording go together", *place,
+                       o->inputs[i], kind == FILE_RECORDING ? "recordings" : "scenes");
+        }
+        *place = o->inputs[i];
+    }
+    if (o->inputs[0] == NULL) {
+        argp_error(state, "REC.mcap or SCENE.ply is missing");
+    } else if (o->settings.method != METHOD_TRIM3R || o->settings.config.allocation == T3R_ALLOCATE_GIVEN) {
+        argp_error(state, "a page builds by trim3r's own method and allocations alone");
+    } else if (o->compare_count > 0 && o->recording == NULL) {
+        argp_error(state, "--compare needs a recording");
+    }
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    view_options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->settings;
+        return 0;
+    case 'o':
+        o->output = arg;
+        return 0;
+    case KEY_PORT:
+        o->port = (uint16_t)option_number(state, "port", arg, 0, UINT16_MAX);
+        return 0;
+    case KEY_COMPARE:
+        option_frames(state, "compare", arg, o->compare, &o->compare_count);
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        option_argument(state, arg, (const char **[]){&o->inputs[0], &o->inputs[1]}, 2);
+        return 0;
+    case ARGP_KEY_END:
+        check_options(state, o);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {0}};
+static const struct argp argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "REC.mcap|SCENE.ply [REC.mcap|SCENE.ply]",
+    .doc = "Show a scene or a recording in a browser, by the runtime itself as WebAssembly."
+           "\vExamples:\n"
+           "  trim3r view room.mcap --context 0,2 -o view.html\n"
+           "  trim3r view room.mcap --context 0,2 --keep 5% --head moment\n"
+           "  trim3r view scene.ply -o view.html\n"
+           "  trim3r view scene.ply room.mcap --context 0,2 --port 8080\n\n"
+           "The page builds scenes of a recording itself: a slider changes the budget, and mask, SuperClusters, "
+           "texture and "
+           "error are drawn over the frames. The first scene is built here as well, and the page compares the hashes. "
+           "A scene file is drawn as it is; with a recording beside, the page does both.\n\n"
+           "With -o the page is one file that fetches nothing. Without, it is served on 127.0.0.1 until Ctrl-C.",
+    .children = children,
+};
+
+/* ---- what the page is given -----------------------------------------------------------------------------------------
+ */
+
+static int add_frames(viewpoints *v, const view_options *o, const t3r_recording *recording, const reconstruction *r)
+{
+    const bool by_sensor = r->config.depth == T3R_DEPTH_SENSOR;
+    const uint32_t width = r->config.width, height = r->config.height;
+    int code = CLI_OK;
+    for (uint32_t i = 0; i < r->context_count && code == CLI_OK; i++) {
+        code = viewpoints_add(v, recording, o->recording, r->context[i], width, height, by_sensor);
+    }
+    for (uint32_t i = 0; i < o->compare_count && code == CLI_OK; i++) {
+        code = viewpoints_add(v, recording, o->recording, o->compare[i], width, height, false);
+    }
+    const uint32_t middle = r->context_count > 1 ? (r->context[0] + r->context[1]) / 2 : r->context[0];
+    const bool apart = r->context_count > 1 && middle != r->context[0] && middle != r->context[1];
+    if (code == CLI_OK && o->compare_count == 0 && apart) {
+        code = viewpoints_add(v, recording, o->recording, middle, width, height, false);
+    }
+    return code;
+}
+
+/* Builds here what the page builds first, so that it can compare. */
+static int prepare_recording(const view_options *o, reconstruction *r, viewpoints *v, viewer_page *page)
+{
+    char error[ERROR_BYTES] = "";
+    t3r_recording *recording = t3r_recording_open(o->recording, error, sizeof error);
+    if (recording == NULL) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    int code = reconstruction_build(r, recording, o->recording, &o->settings);
+    if (code == CLI_OK) {
+        code = add_frames(v, o, recording, r);
+        page->data.config = r->config;
+        page->data.config.workers = 1;
+        page->data.weights = r->head.weights;
+        page->data.weight_bytes = r->head.bytes;
+        page->data.frames = v->frames;
+        page->data.frame_count = v->count;
+        page->valid_points = r->scene.valid_points;
+        page->gaussians = r->scene.count;
+        page->hashed = o->scene == NULL;
+        page->hash = reconstruction_hash(r);
+    }
+    t3r_recording_close(recording);
+    return code;
+}
+
+static void prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *page)
+{
+    enum { WIDTH = 640, HEIGHT = 480 };
+    page->data.config = t3r_default_config(WIDTH, HEIGHT, 0, 1);
+    viewpoints_add_before(v, scene, WIDTH, HEIGHT);
+}
+
+/* ---- where the page goes
+ * ---------------------------------------------------------------------------------------------- */
+
+static void tell(const view_options *o, const viewer_page *page, const char *key, const char *where, uint64_t bytes)
+{
+    if (o->json) {
+        cJSON *root = cJSON_CreateObject();
+        cJSON_AddStringToObject(root, key, where);
+        json_add_integer(root, "bytes", (int64_t)bytes);
+        json_add_integer(root, "viewpoints", page->viewpoint_count);
+        json_add_integer(root, "gaussians", page->gaussians);
+        if (page->hashed) {
+            json_add_hash(root, "hash", page->hash);
+        }
+        json_print(root);
+    } else if (o->output != NULL) {
+        printf("%s: %" PRIu64 " bytes; open it in a browser\n", where, bytes);
+    } else {
+        printf("%s (Ctrl-C ends it)\n", where);
+    }
+    fflush(stdout);
+}
+
+static int write_file(const view_options *o, const viewer_page *page)
+{
+    char error[ERROR_BYTES] = "";
+    uint64_t bytes;
+    whole_file file;
+    if (whole_file_begin(&file, o->output, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    if (viewer_page_write(page, file.stream) != 0) {
+        whole_file_abandon(&file);
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    if (whole_file_commit(&file, &bytes, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    tell(o, page, "page", o->output, bytes);
+    return CLI_OK;
+}
+
+/* The page in memory, on the heap; NULL when memory is out. */
+static char *page_text(const viewer_page *page, size_t *bytes)
+{
+    char *text = NULL;
+    FILE *memory = open_memstream(&text, bytes);
+    if (memory == NULL) {
+        return NULL;
+    }
+    const bool whole = viewer_page_write(page, memory) == 0 && !ferror(memory);
+    if (fclose(memory) != 0 || !whole) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+static int serve(const view_options *o, const viewer_page *page)
+{
+    char error[ERROR_BYTES] = "", address[64];
+    uint16_t port = o->port;
+    size_t bytes = 0;
+    const int listener = server_open(&port, error, sizeof error);
+    if (listener < 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    char *text = page_text(page, &bytes);
+    if (text != NULL) {
+        snprintf(address, sizeof address, "http://127.0.0.1:%u/", (unsigned)port);
+        tell(o, page, "address", address, bytes);
+        (void)server_run(listener, port, text, bytes, error, sizeof error);
+    }
+    const int code = cli_error(CLI_BAD_INPUT, "%s", text != NULL ? error : "out of memory");
+    free(text);
+    close(listener);
+    return code;
+}
+
+static const char *last_part(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+static int show(const view_options *o, const scene_file *scene, reconstruction *r)
+{
+    char title[256];
+    viewpoints v = {.count = 0};
+    viewer_page page = {.title = title, .names = v.names, .viewpoints = v.frames};
+    snprintf(title, sizeof title, "%s%s%s", last_part(o->inputs[0]), o->inputs[1] != NULL ? " and " : "",
+             o->inputs[1] != NULL ? last_part(o->inputs[1]) : "");
+    int code = CLI_OK;
+    if (o->recording != NULL) {
+        code = prepare_recording(o, r, &v, &page);
+    } else {
+        prepare_scene(scene, &v, &page);
+        page.gaussians = scene->count;
+    }
+    page.viewpoint_count = v.count;
+    t3r_config *config = &page.data.config;
+    const uint32_t points = config->width * config->height * config->views;
+    config->max_gaussians = points > 0 ? points : 1;
+    if (o->scene != NULL) {
+        page.data.scene = scene;
+        config->max_gaussians = scene->count > config->max_gaussians ? scene->count : config->max_gaussians;
+    }
+    if (code == CLI_OK) {
+        code = o->output != NULL ? write_file(o, &page) : serve(o, &page);
+    }
+    viewpoints_free(&v);
+    return code;
+}
+
+int command_view(int argc, char **argv)
+{
+    view_options o = {.port = 0};
+    reconstruction_defaults(&o.settings);
+    o.settings.keep_percent = 10;
+    o.settings.config.keep_analysis = 1; /* as the page's own builds: the slider takes the analysis over */
+    file_options_parse(&argp, argc, argv, &o);
+    if (!viewer_page_is_built()) {
+        return cli_error(CLI_BAD_INPUT,
+                         "this program was built without the page: install clang and lld, and build again");
+    }
+    char error[ERROR_BYTES] = "";
+    scene_file scene = {0};
+    reconstruction r = {0};
+    if (o.scene != NULL && scene_file_read(o.scene, &scene, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    const int code = show(&o, &scene, &r);
+    reconstruction_close(&r);
+    scene_file_free(&scene);
+    return code;
+}

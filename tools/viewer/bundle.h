@@ -1,0 +1,31 @@
+/* A bundle in memory: what a page of `trim3r view` is given (bundle_layout.h). */
+#ifndef TRIM3R_TOOLS_BUNDLE_H
+#define TRIM3R_TOOLS_BUNDLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "scene/scene_file.h"
+#include "trim3r.h"
+
+/* A frame of the working size, undistorted. */
+typedef struct bundle_frame {
+    t3r_camera camera;
+    uint8_t *rgb;            /* 3 bytes a pixel */
+    uint16_t *depth;         /* steps; NULL = none */
+    uint64_t depth_unit_q40; /* of a step */
+} bundle_frame;
+
+typedef struct bundle {
+    t3r_config config; /* `views` context views, which are the first frames */
+    const void *weights;
+    size_t weight_bytes;
+    const bundle_frame *frames;
+    uint32_t frame_count;
+    const scene_file *scene; /* NULL = the page builds its own */
+} bundle;
+
+/* The bytes, on the heap; NULL when memory is out, or where they are more than 1 GiB. */
+uint8_t *bundle_bytes(const bundle *b, size_t *count);
+
+#endif

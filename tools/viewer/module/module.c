@@ -1,0 +1,333 @@
+/* The runtime as a WebAssembly module: what the page's worker calls. The worker places the bundle and the arena in the
+ * module's memory, which it grows itself; there is no heap here either. */
+#include <stddef.h>
+#include <stdint.h>
+
+#include "bundle_layout.h"
+#include "core/hash.h"
+#include "state/state.h"
+#include "state/views.h"
+#include "trim3r.h"
+
+#define EXPORT(name) __attribute__((export_name(#name)))
+#define IMPORT(name) __attribute__((import_module("page"), import_name(#name)))
+
+IMPORT(progress) extern int32_t page_progress(int32_t stage, uint32_t done, uint32_t total);
+IMPORT(stage_ends) extern void page_stage_ends(int32_t stage);
+
+/* ---- reading the bundle ------------------------------------------------------------------------------------------ */
+
+typedef struct frame_data {
+    t3r_camera camera;
+    uint64_t depth_unit_q40;
+    const uint8_t *rgb, *depth; /* depth: NULL = none */
+} frame_data;
+
+typedef struct reading {
+    const uint8_t *start;
+    size_t at, count;
+    int32_t broken; /* 1 = it ended too early */
+} reading;
+
+/* The module keeps one bundle and one runtime: a page shows one scene. */
+static struct {
+    t3r_config config;
+    uint32_t frames;
+    frame_data frame[BUNDLE_MOST_FRAMES];
+    const uint8_t *weights, *gaussians;
+    uint32_t weight_bytes, gaussian_count;
+    t3r_scene_frame scene_frame;
+    t3r_runtime *runtime;
+    t3r_scene scene;
+    uint64_t hash[T3R_STAGE_COUNT];
+    uint8_t hashed[T3R_STAGE_COUNT];
+} module;
+
+static const uint8_t *take(reading *in, size_t bytes)
+{
+    if (bytes > in->count - in->at) {
+        in->broken = 1;
+        in->at = in->count;
+        return in->start;
+    }
+    const uint8_t *taken = in->start + in->at;
+    in->at += bytes;
+    return taken;
+}
+
+static uint64_t take_number(reading *in, uint32_t bytes)
+{
+    const uint8_t *from = take(in, bytes);
+    uint64_t value = 0;
+    for (uint32_t i = 0; i < bytes && !in->broken; i++) {
+        value |= (uint64_t)from[i] << (8 * i);
+    }
+    return value;
+}
+
+static uint32_t take_u32(reading *in)
+{
+    return (uint32_t)take_number(in, 4);
+}
+
+static const uint8_t *take_block(reading *in, size_t bytes)
+{
+    (void)take(in, (BUNDLE_ALIGN - in->at % BUNDLE_ALIGN) % BUNDLE_ALIGN);
+    return take(in, bytes);
+}
+
+static void take_config(reading *in, t3r_config *config)
+{
+    uint32_t *words = (uint32_t *)config; /* a structure of words: bundle_layout.h */
+    in->broken |= take_u32(in) != BUNDLE_CONFIG_WORDS;
+    for (uint32_t i = 0; i < BUNDLE_CONFIG_WORDS; i++) {
+        words[i] = take_u32(in);
+    }
+}
+
+static void take_frame(reading *in, frame_data *frame)
+{
+    t3r_camera *c = &frame->camera;
+    *c = (t3r_camera){0};
+    c->fx_q16 = (int32_t)take_u32(in);
+    c->fy_q16 = (int32_t)take_u32(in);
+    c->cx_q16 = (int32_t)take_u32(in);
+    c->cy_q16 = (int32_t)take_u32(in);
+    for (int i = 0; i < 3; i++) {
+        c->position_q32[i] = (int64_t)take_number(in, 8);
+    }
+    for (int i = 0; i < 4; i++) {
+        c->rotation_q30[i] = (int32_t)take_u32(in);
+    }
+    frame->depth_unit_q40 = take_number(in, 8);
+}
+
+static void take_pixels(reading *in, frame_data *frame, size_t pixels)
+{
+    frame->rgb = take_block(in, pixels * 3);
+    frame->depth = frame->depth_unit_q40 != 0 ? take_block(in, pixels * 2) : NULL;
+}
+
+static int32_t read_bundle(reading *in)
+{
+    if (take_u32(in) != BUNDLE_MAGIC) {
+        return 0;
+    }
+    take_config(in, &module.config);
+    const uint32_t views = take_u32(in);
+    module.frames = take_u32(in);
+    module.weight_bytes = take_u32(in);
+    module.gaussian_count = take_u32(in);
+    module.scene_frame.exponent = (int32_t)take_u32(in);
+    for (int i = 0; i < 3; i++) {
+        module.scene_frame.origin_q32[i] = (int64_t)take_number(in, 8);
+    }
+    if (in->broken || module.frames > BUNDLE_MOST_FRAMES || views > module.frames || views != module.config.views ||
+        module.gaussian_count > T3R_MAX_GAUSSIANS || module.config.width > T3R_MAX_SIDE ||
+        module.config.height > T3R_MAX_SIDE) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < module.frames; i++) {
+        take_frame(in, &module.frame[i]);
+    }
+    module.weights = take_block(in, module.weight_bytes);
+    for (uint32_t i = 0; i < module.frames; i++) {
+        take_pixels(in, &module.frame[i], (size_t)module.config.width * module.config.height);
+    }
+    module.gaussians = take_block(in, (size_t)module.gaussian_count * BUNDLE_GAUSSIAN_BYTES);
+    return !in->broken;
+}
+
+/* ---- the runtime ------------------------------------------------------------------------------------------------- */
+
+static int report_progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    (void)user;
+    return page_progress(stage, done, total);
+}
+
+/* As `trim3r replay` keeps them: a stage that reports several times has its reports chained. */
+static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
+{
+    (void)user;
+    module.hash[stage] = module.hashed[stage] ? t3r_hash_u64(module.hash[stage], hash) : hash;
+    module.hashed[stage] = 1;
+    page_stage_ends(stage);
+}
+
+/* Takes the bundle at this address, aligned to 16, whose memory stays the module's; targets are at most of this size.
+ * The bytes of the arena that it needs; 0 = the bundle is damaged or its configuration refused. */
+EXPORT(open) uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_width, uint32_t render_height)
+{
+    reading in = {.start = bundle, .count = bytes};
+    t3r_plan_info plan;
+    if (!read_bundle(&in)) {
+        return 0;
+    }
+    module.config.render_width = render_width;
+    module.config.render_height = render_height;
+    return t3r_plan(&module.config, &plan) == T3R_OK ? (uint32_t)plan.bytes : 0;
+}
+
+/* Lays the arena out at this address, aligned to 64. A t3r_status. */
+EXPORT(start) int32_t module_start(void *arena, uint32_t bytes)
+{
+    const t3r_hooks hooks = {.progress = report_progress, .stage_hash = keep_hash};
+    t3r_status status = t3r_init(&module.runtime, arena, bytes, &module.config);
+    if (status == T3R_OK) {
+        status = t3r_set_hooks(module.runtime, &hooks);
+    }
+    if (status == T3R_OK && module.weight_bytes > 0) {
+        status = t3r_bind_head(module.runtime, module.weights, module.weight_bytes);
+    }
+    return status;
+}
+
+static t3r_gaussian gaussian_at(uint32_t index)
+{
+    reading in = {.start = module.gaussians + (size_t)index * BUNDLE_GAUSSIAN_BYTES, .count = BUNDLE_GAUSSIAN_BYTES};
+    t3r_gaussian g = {0};
+    for (int i = 0; i < 3; i++) {
+        g.position_q20[i] = (int32_t)take_u32(&in);
+    }
+    for (int i = 0; i < 9; i++) {
+        g.factor[i] = (int16_t)take_number(&in, 2);
+    }
+    g.factor_exponent = (int8_t)take_number(&in, 1);
+    g.view = (uint8_t)take_number(&in, 1);
+    for (int i = 0; i < 3; i++) {
+        g.colour_q7[i] = (uint16_t)take_number(&in, 2);
+    }
+    g.opacity_q15 = (uint16_t)take_number(&in, 2);
+    g.confidence = (uint8_t)take_number(&in, 1);
+    return g;
+}
+
+/* Puts the bundle's Gaussians into the arena. A t3r_status. */
+EXPORT(load) int32_t module_load(void)
+{
+    t3r_status status = t3r_scene_begin(module.runtime, &module.scene_frame);
+    for (uint32_t i = 0; i < module.gaussian_count && status == T3R_OK; i++) {
+        const t3r_gaussian g = gaussian_at(i);
+        status = t3r_scene_append(module.runtime, &g);
+    }
+    return status == T3R_OK ? t3r_get_scene(module.runtime, &module.scene) : status;
+}
+
+/* Adds the context views to an empty arena. A t3r_status. */
+static t3r_status add_views(void)
+{
+    const uint32_t width = module.config.width, height = module.config.height;
+    t3r_status status = t3r_reset(module.runtime);
+    for (uint32_t v = 0; v < module.config.views && status == T3R_OK; v++) {
+        const frame_data *f = &module.frame[v];
+        const t3r_frame frame = {
+            .format = T3R_PIXEL_RGB24,
+            .width = width,
+            .height = height,
+            .planes = {f->rgb},
+            .stride_bytes = {width * 3},
+            .depth = f->depth,
+            .depth_width = f->depth != NULL ? width : 0,
+            .depth_height = f->depth != NULL ? height : 0,
+            .depth_stride_bytes = f->depth != NULL ? width * 2 : 0,
+            .depth_unit_q40 = f->depth_unit_q40,
+        };
+        status = t3r_add_view(module.runtime, &frame, &f->camera);
+    }
+    return status;
+}
+
+/* Builds a scene of this budget: the first time from the frames, then from the analysis that was kept. A t3r_status. */
+EXPORT(build) int32_t module_build(uint32_t gaussians)
+{
+    const t3r_request request = {.gaussians = gaussians};
+    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
+        module.hashed[stage] = 0;
+    }
+    if (module.runtime->analysed) {
+        return t3r_rebuild(module.runtime, &request, &module.scene);
+    }
+    const t3r_status status = add_views();
+    return status == T3R_OK ? t3r_reconstruct(module.runtime, &request, &module.scene) : status;
+}
+
+EXPORT(gaussians) uint32_t module_gaussians(void)
+{
+    return module.scene.count;
+}
+
+EXPORT(valid_points) uint32_t module_valid_points(void)
+{
+    return module.scene.valid_points;
+}
+
+/* The exponent of the scene's frame: the median depth is 1 to 2 times 2^exponent world units. */
+EXPORT(exponent) int32_t module_exponent(void)
+{
+    return module.scene.frame.exponent;
+}
+
+/* The hash of a stage of the last build, 0 = it did not run; of all stages that ran with T3R_STAGE_COUNT. */
+EXPORT(hash) uint64_t module_hash(uint32_t stage)
+{
+    if (stage < T3R_STAGE_COUNT) {
+        return module.hashed[stage] ? module.hash[stage] : 0;
+    }
+    uint64_t hash = T3R_HASH_START;
+    for (uint32_t i = 0; i < T3R_STAGE_COUNT; i++) {
+        if (module.hashed[i]) {
+            hash = t3r_hash_u64(t3r_hash_u8(hash, (uint8_t)i), module.hash[i]);
+        }
+    }
+    return hash;
+}
+
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+/* Draws RGB, depth (Q20 scene units) and alpha (Q15), rows without gaps, as a camera of these numbers sees the scene
+ * (t3r_camera has their ranges). A t3r_status. */
+EXPORT(render)
+int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy_q16, int64_t x_q32, int64_t y_q32,
+                      int64_t z_q32, int32_t qw_q30, int32_t qx_q30, int32_t qy_q30, int32_t qz_q30, uint32_t width,
+                      uint32_t height, uint8_t *rgb, uint32_t *depth_q20, uint16_t *alpha_q15)
+{
+    const t3r_camera camera = {
+        .fx_q16 = fx_q16,
+        .fy_q16 = fy_q16,
+        .cx_q16 = cx_q16,
+        .cy_q16 = cy_q16,
+        .position_q32 = {x_q32, y_q32, z_q32},
+        .rotation_q30 = {qw_q30, qx_q30, qy_q30, qz_q30},
+    };
+    const t3r_target target = {
+        .width = width,
+        .height = height,
+        .rgb = rgb,
+        .rgb_stride_bytes = width * 3,
+        .depth_q20 = depth_q20,
+        .depth_stride_bytes = width * 4,
+        .alpha_q15 = alpha_q15,
+        .alpha_stride_bytes = width * 2,
+    };
+    return t3r_render(module.runtime, &camera, &target);
+}
+
+/* The pixels of a frame in the bundle, 3 bytes each. */
+EXPORT(frame_rgb) const uint8_t *module_frame_rgb(uint32_t frame)
+{
+    return frame < module.frames ? module.frame[frame].rgb : NULL;
+}
+
+enum { PLANE_MASK, PLANE_LABEL, PLANE_TEXTURE };
+
+/* A plane of an analysed context view: the mask of retained pixels (a bit each, in words), the SuperClusters' labels or
+ * the texture (16 bits each). NULL = there is none. */
+EXPORT(plane) const void *module_plane(uint32_t view, uint32_t plane)
+{
+    if (!module.runtime->analysed || view >= module.config.views) {
+        return NULL;
+    }
+    const t3r_view planes = t3r_view_of(module.runtime, view);
+    return plane == PLANE_MASK ? (const void *)planes.mask : plane == PLANE_LABEL ? planes.label : planes.texture;
+}

@@ -1,0 +1,373 @@
+"use strict";
+/* The page: camera, controls and words. What is computed, the worker computes. */
+const $ = (id) => document.getElementById(id);
+const data = JSON.parse($("data").textContent);
+const bytesOf = (id) => Uint8Array.from(atob($(id).textContent), (c) => c.charCodeAt(0)).buffer;
+const STAGES = data.stages;
+
+/* ---- vectors: rows of a matrix are the world's axes, its columns right, down and forward of the camera ------------- */
+
+const add = (a, b, s = 1) => a.map((x, i) => x + s * b[i]);
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => { const n = Math.hypot(...a); return a.map((x) => x / n); };
+
+function axesOf([w, x, y, z]) {
+  return [[1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
+          [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
+          [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]];
+}
+
+function quaternionOf([right, down, forward]) {
+  const [a, b, c] = [right, down, forward], trace = a[0] + b[1] + c[2];
+  if (trace > 0) {
+    const s = Math.sqrt(trace + 1) * 2;
+    return [s / 4, (b[2] - c[1]) / s, (c[0] - a[2]) / s, (a[1] - b[0]) / s];
+  }
+  if (a[0] > b[1] && a[0] > c[2]) {
+    const s = Math.sqrt(1 + a[0] - b[1] - c[2]) * 2;
+    return [(b[2] - c[1]) / s, s / 4, (b[0] + a[1]) / s, (c[0] + a[2]) / s];
+  }
+  if (b[1] > c[2]) {
+    const s = Math.sqrt(1 + b[1] - a[0] - c[2]) * 2;
+    return [(c[0] - a[2]) / s, (b[0] + a[1]) / s, s / 4, (c[1] + b[2]) / s];
+  }
+  const s = Math.sqrt(1 + c[2] - a[0] - b[1]) * 2;
+  return [(a[1] - b[0]) / s, (c[0] + a[2]) / s, (c[1] + b[2]) / s, s / 4];
+}
+
+function turned(vector, axis, angle) {
+  const c = Math.cos(angle), s = Math.sin(angle);
+  return add(add(vector.map((x) => x * c), cross(axis, vector), s), axis, dot(axis, vector) * (1 - c));
+}
+
+/* ---- the camera ---------------------------------------------------------------------------------------------------- */
+
+const lens = data.frames[0]; /* a page has one frame at least: that it starts from */
+const up = axesOf(lens.rotation)[1].map((x) => -x);
+const camera = { position: [0, 0, 0], axes: [], distance: 1, frame: 0 };
+let sceneUnit = 1;
+
+function lookFrom(index) {
+  const frame = data.frames[index];
+  camera.position = [...frame.position];
+  camera.axes = axesOf(frame.rotation);
+  camera.distance = 1.5 * sceneUnit;
+  camera.frame = index;
+}
+
+function turn(yaw, pitch) {
+  const pivot = add(camera.position, camera.axes[2], camera.distance);
+  const slope = Math.asin(Math.max(-1, Math.min(1, dot(camera.axes[2], up))));
+  const most = 1.45; /* radians: up stays up */
+  pitch = Math.max(-most - slope, Math.min(most - slope, pitch));
+  camera.axes = camera.axes.map((axis) => turned(axis, up, yaw));
+  const right = camera.axes[0];
+  camera.axes = camera.axes.map((axis) => unit(turned(axis, right, pitch)));
+  if (motion() === "orbit") camera.position = add(pivot, camera.axes[2], -camera.distance);
+  camera.frame = null;
+}
+
+function move(right, down, forward) {
+  [right, down, forward].forEach((step, i) => { camera.position = add(camera.position, camera.axes[i], step * camera.distance); });
+  camera.frame = null;
+}
+
+function approach(factor) {
+  const nearest = sceneUnit / 64, farthest = sceneUnit * 256;
+  const distance = Math.max(nearest, Math.min(farthest, camera.distance * factor));
+  camera.position = add(camera.position, camera.axes[2], camera.distance - distance);
+  camera.distance = distance;
+  camera.frame = null;
+}
+
+const cameraOf = (frame, width) => {
+  const scale = width / data.width;
+  return { focal: frame.focal.map((f) => f * scale), centre: frame.centre.map((c) => (c + .5) * scale - .5),
+           position: frame.position, rotation: frame.rotation };
+};
+
+/* ---- the worker: one request at a time, and of those that wait the newest of its kind -------------------------------- */
+
+const source = new Blob([$("worker").textContent], { type: "text/javascript" });
+const worker = new Worker(URL.createObjectURL(source));
+const waiting = {};
+let busy = false, number = 0;
+const done = {};
+
+function ask(kind, more) {
+  waiting[kind] = more;
+  next();
+}
+
+function next() {
+  const kind = ["open", "load", "build", "draw"].find((k) => waiting[k]);
+  if (busy || !kind) return;
+  const request = { kind, id: ++number, ...(kind === "draw" ? drawing() : waiting[kind]) };
+  delete waiting[kind];
+  busy = true;
+  worker.postMessage(request);
+}
+
+worker.onmessage = ({ data: answer }) => {
+  if (answer.kind === "progress") return showProgress(answer);
+  busy = false;
+  if (answer.kind === "failed") say(answer.text, true);
+  else done[answer.kind](answer);
+  next();
+};
+worker.onerror = (event) => say(event.message || "the runtime does not start", true);
+
+/* ---- the picture ------------------------------------------------------------------------------------------------------ */
+
+const canvas = $("picture"), context = canvas.getContext("2d", { willReadFrequently: true });
+const chosen = (name) => document.querySelector(`input[name=${name}]:checked`).value;
+const motion = () => chosen("motion");
+const most = (() => {
+  const width = Math.min(960, Math.max(256, Math.round($("stage").clientWidth * Math.min(devicePixelRatio, 1.5))));
+  return { width, height: Math.round(width * data.height / data.width) };
+})();
+canvas.width = most.width;
+canvas.height = most.height;
+
+function drawing() {
+  const show = chosen("show"), frame = camera.frame ?? 0;
+  const flat = document.querySelector(`#overlay input[value=${show}]`);
+  const from = flat ? cameraOf(data.frames[frame], data.width)
+                    : { ...cameraOf(lens, most.width), position: camera.position, rotation: quaternionOf(camera.axes) };
+  return { camera: from, width: most.width, height: most.height, show, frame };
+}
+
+const draw = () => ask("draw", {});
+
+function onFrame() {
+  return document.querySelector("#overlay input:checked") !== null;
+}
+
+/* A move leaves the frame, and with it what can be shown of it alone. */
+function moved() {
+  if (onFrame() && camera.frame === null) document.querySelector("input[name=show][value=picture]").checked = true;
+  markFrames();
+  draw();
+}
+
+done.draw = ({ pixels, width, height, ms, show }) => {
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width;
+    canvas.height = height;
+  }
+  context.putImageData(new ImageData(pixels, width, height), 0, 0);
+  if (ms > 0) $("drawn").textContent = `Last picture, ${width} x ${height}: ${ms.toFixed(1)} ms.`;
+  document.body.dataset.drawn = number; /* for tests: something was drawn since */
+  const of = camera.frame === null ? "from a free viewpoint" : `from ${data.frames[camera.frame].name}`;
+  canvas.setAttribute("aria-label", `${document.querySelector(`input[name=show][value=${show}]`).nextSibling.textContent}, ${of}`);
+};
+
+/* ---- words -------------------------------------------------------------------------------------------------------------- */
+
+const count = (n) => n.toLocaleString("en");
+function say(text, bad = false) {
+  $("status").textContent = text;
+  $("status").classList.toggle("bad", bad);
+  if (bad) $("progress").hidden = true;
+}
+
+function showProgress({ stage, done: part, total }) {
+  $("progress").hidden = false;
+  $("progress").value = total > 0 ? part / total : 0;
+  say(`Building: ${STAGES[stage]}`);
+}
+
+function showBits(hash) {
+  if (data.hash === null) return;
+  const same = hash === data.hash;
+  $("bits").hidden = false;
+  $("bits").classList.toggle("other", !same);
+  $("bits").textContent = same ? `Same bits as the native program: ${hash}` : `Other bits than the native program: ${hash}, not ${data.hash}`;
+  $("bits").dataset.same = same;
+}
+
+function showResult({ gaussians, valid, stages, hash, psnr }) {
+  const share = valid > 0 ? ` of ${count(valid)} points (${(100 * gaussians / valid).toFixed(1)} %)` : "";
+  const scores = psnr.map((dB, i) => `${data.frames[i].name} ${dB.toFixed(2)} dB`).join(", ");
+  say(`${count(gaussians)} Gaussians${share}.${scores ? ` PSNR: ${scores}.` : ""}`);
+  $("progress").hidden = true;
+  $("stages").hidden = stages.length === 0;
+  const rows = stages.map(({ stage, ms, hash: of }) => {
+    const row = document.createElement("tr");
+    for (const text of [STAGES[stage], ms.toFixed(1), of]) row.appendChild(document.createElement("td")).textContent = text;
+    return row;
+  });
+  document.querySelector("#stages tbody").replaceChildren(...rows);
+  document.body.dataset.hash = hash ?? "";
+  document.body.dataset.gaussians = gaussians;
+}
+
+/* ---- the budget ----------------------------------------------------------------------------------------------------------- */
+
+const LEAST = .5, MOST = 100; /* percent, at the ends of the slider, which is logarithmic */
+const slider = $("slider");
+const percentAt = (value) => LEAST * (MOST / LEAST) ** (value / 1000);
+const sliderAt = (percent) => Math.round(1000 * Math.log(percent / LEAST) / Math.log(MOST / LEAST));
+const budgetOf = (percent) => Math.max(1, Math.min(data.valid, Math.round(data.valid * percent / 100)));
+let wanted = data.gaussians;
+
+function showBudget() {
+  const text = `${count(wanted)} Gaussians, ${(100 * wanted / data.valid).toPrecision(3)} %`;
+  $("budget-text").textContent = text;
+  slider.setAttribute("aria-valuetext", text);
+}
+
+function build() {
+  const built = document.querySelector("input[name=source][value=built]");
+  built.checked = true;
+  ask("build", { gaussians: wanted, frames: data.frames.filter((f) => f.recorded).map((f) => cameraOf(f, data.width)) });
+}
+
+let first = true;
+done.build = (answer) => {
+  if (first) {
+    showBits(answer.hash);
+    first = false;
+  }
+  settle(answer);
+};
+done.load = (answer) => settle(answer);
+
+let settled = false;
+function settle(answer) {
+  sceneUnit = 2 ** answer.exponent;
+  if (!settled) {
+    settled = true;
+    if (camera.frame !== null) lookFrom(camera.frame);
+  }
+  showResult(answer);
+  showOverlays();
+  draw();
+}
+
+/* ---- controls --------------------------------------------------------------------------------------------------------------- */
+
+/* Of a view that the scene was built of here: its retained pixels, SuperClusters and texture. */
+function showOverlays() {
+  const built = data.valid > 0 && chosen("source") === "built";
+  $("overlay").hidden = !data.frames.some((f) => f.recorded);
+  const view = camera.frame === null || camera.frame < data.views;
+  for (const label of document.querySelectorAll(".of-view")) label.hidden = !built || !view;
+  const shown = document.querySelector("input[name=show]:checked");
+  if (shown.closest("label").hidden) document.querySelector("input[name=show][value=picture]").checked = true;
+}
+
+function markFrames() {
+  [...$("frames").querySelectorAll("button")].forEach((button, i) => button.setAttribute("aria-pressed", camera.frame === i));
+  showOverlays();
+}
+
+function goTo(index) {
+  if (index >= data.frames.length) return;
+  lookFrom(index);
+  markFrames();
+  draw();
+}
+
+if (data.frames.some((f) => f.recorded)) {
+  $("frames").hidden = false;
+  data.frames.forEach((frame, i) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = frame.name;
+    button.onclick = () => goTo(i);
+    $("frames").appendChild(button);
+  });
+}
+for (const input of document.querySelectorAll("input[name=show]")) {
+  input.onchange = () => {
+    if (onFrame() && camera.frame === null) lookFrom(0);
+    markFrames();
+    draw();
+  };
+}
+for (const input of document.querySelectorAll("input[name=source]")) {
+  input.onchange = () => (chosen("source") === "file" ? load() : build());
+}
+slider.oninput = () => {
+  wanted = budgetOf(percentAt(Number(slider.value)));
+  showBudget();
+  build();
+};
+$("reset").onclick = () => goTo(0);
+$("controls").onsubmit = (event) => event.preventDefault();
+
+/* ---- mouse, touch, keys -------------------------------------------------------------------------------------------------------- */
+
+const pointers = new Map();
+const RADIANS = 3; /* across the whole picture */
+
+canvas.onpointerdown = (event) => {
+  canvas.setPointerCapture(event.pointerId);
+  pointers.set(event.pointerId, [event.clientX, event.clientY]);
+};
+canvas.onpointerup = canvas.onpointercancel = (event) => pointers.delete(event.pointerId);
+canvas.onpointermove = (event) => {
+  const before = pointers.get(event.pointerId);
+  if (!before) return;
+  const now = [event.clientX, event.clientY], size = canvas.clientWidth;
+  const dx = (now[0] - before[0]) / size, dy = (now[1] - before[1]) / size;
+  if (pointers.size === 1) {
+    const sign = motion() === "orbit" ? 1 : -1;
+    turn(sign * dx * RADIANS, -sign * dy * RADIANS);
+  } else {
+    const other = [...pointers].find(([id]) => id !== event.pointerId)[1];
+    const apart = (at) => Math.max(8, Math.hypot(at[0] - other[0], at[1] - other[1]));
+    approach(apart(before) / apart(now));
+    move(-dx / 2, -dy / 2, 0);
+  }
+  pointers.set(event.pointerId, now);
+  moved();
+};
+canvas.addEventListener("wheel", (event) => {
+  event.preventDefault();
+  approach(1.0015 ** Math.max(-200, Math.min(200, event.deltaY)));
+  moved();
+}, { passive: false });
+
+const STEP = .08, ANGLE = .06;
+const KEYS = {
+  ArrowLeft: () => turn(motion() === "orbit" ? ANGLE : -ANGLE, 0), ArrowRight: () => turn(motion() === "orbit" ? -ANGLE : ANGLE, 0),
+  ArrowUp: () => turn(0, motion() === "orbit" ? -ANGLE : ANGLE), ArrowDown: () => turn(0, motion() === "orbit" ? ANGLE : -ANGLE),
+  w: () => move(0, 0, STEP), s: () => move(0, 0, -STEP), a: () => move(-STEP, 0, 0), d: () => move(STEP, 0, 0),
+  e: () => move(0, -STEP, 0), q: () => move(0, STEP, 0), "+": () => approach(.92), "=": () => approach(.92), "-": () => approach(1.09),
+  r: () => lookFrom(0),
+};
+canvas.onkeydown = (event) => {
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+  if (/^[1-9]$/.test(key)) {
+    goTo(Number(key) - 1);
+  } else if (KEYS[key]) {
+    KEYS[key]();
+    moved();
+  } else {
+    return;
+  }
+  event.preventDefault();
+};
+
+/* ---- the start --------------------------------------------------------------------------------------------------------------------- */
+
+const load = () => ask("load", { frames: data.frames.filter((f) => f.recorded).map((f) => cameraOf(f, data.width)) });
+done.open = () => {
+  if (data.scene) load();
+  else build();
+};
+document.title = `${data.title} - trim3r view`;
+$("title").textContent = data.title;
+$("budget").hidden = data.valid === 0;
+$("source").hidden = !(data.scene && data.valid > 0);
+if (data.valid > 0) {
+  slider.value = sliderAt(100 * wanted / data.valid);
+  showBudget();
+}
+lookFrom(0);
+markFrames();
+ask("open", { wasm: bytesOf("wasm"), bundle: bytesOf("bundle"), width: data.width, height: data.height, most });

@@ -1,0 +1,72 @@
+#include "viewer/viewpoints.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/cli.h"
+#include "cli/recorded_frame.h"
+#include "import/viewpoint.h"
+#include "reconstruction/developed_frame.h"
+
+#define DEGREES 60 /* across a scene that came without frames */
+
+int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *path, uint32_t index, uint32_t width,
+                   uint32_t height, bool with_depth)
+{
+    const size_t pixels = (size_t)width * height;
+    if (v->count == BUNDLE_MOST_FRAMES) {
+        return cli_error(CLI_BAD_USAGE, "a page holds at most %u frames", BUNDLE_MOST_FRAMES);
+    }
+    t3r_capture_frame recorded;
+    int code = recorded_frame_read(recording, path, index, &recorded);
+    if (code != CLI_OK) {
+        return code;
+    }
+    with_depth = with_depth && recorded.frame.depth != NULL;
+    bundle_frame *frame = &v->frames[v->count];
+    snprintf(v->names[v->count], PAGE_NAME_BYTES, "frame %" PRIu32, index);
+    v->count++;
+    frame->depth_unit_q40 = recorded.frame.depth_unit_q40;
+    frame->rgb = malloc(pixels * 3);
+    frame->depth = with_depth ? malloc(pixels * sizeof *frame->depth) : NULL;
+    if (frame->rgb == NULL || (with_depth && frame->depth == NULL)) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    return developed_frame(recording, path, index, width, height, frame->rgb, frame->depth, &frame->camera);
+}
+
+void viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height)
+{
+    viewpoint lens;
+    (void)viewpoint_from_angle(DEGREES, width, height, &lens);
+    double centre[3] = {0}, spread = 0;
+    for (uint32_t i = 0; i < scene->count; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            centre[axis] += scene->gaussians[i].position_q20[axis] / 1048576.0 / scene->count;
+        }
+    }
+    for (uint32_t i = 0; i < scene->count; i++) {
+        for (int axis = 0; axis < 2; axis++) { /* across the view */
+            spread += fabs(scene->gaussians[i].position_q20[axis] / 1048576.0 - centre[axis]) / scene->count;
+        }
+    }
+    centre[2] -= 2 * spread;
+    for (int axis = 0; axis < 3; axis++) {
+        lens.camera.position_q32[axis] =
+            scene->frame.origin_q32[axis] + llround(ldexp(centre[axis], scene->frame.exponent + 32));
+    }
+    v->frames[v->count] = (bundle_frame){.camera = lens.camera};
+    snprintf(v->names[v->count], PAGE_NAME_BYTES, "the start");
+    v->count++;
+}
+
+void viewpoints_free(viewpoints *v)
+{
+    for (uint32_t i = 0; i < v->count; i++) {
+        free(v->frames[i].rgb);
+        free(v->frames[i].depth);
+    }
+    v->count = 0;
+}

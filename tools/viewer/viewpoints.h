@@ -1,0 +1,28 @@
+/* Where a page looks from: recorded frames, or a place before a scene that came without any. */
+#ifndef TRIM3R_TOOLS_VIEWER_VIEWPOINTS_H
+#define TRIM3R_TOOLS_VIEWER_VIEWPOINTS_H
+
+#include <stdint.h>
+
+#include "recording.h"
+#include "viewer/bundle.h"
+#include "viewer/bundle_layout.h"
+#include "viewer/page.h"
+
+typedef struct viewpoints {
+    bundle_frame frames[BUNDLE_MOST_FRAMES];
+    char names[BUNDLE_MOST_FRAMES][PAGE_NAME_BYTES];
+    uint32_t count;
+} viewpoints;
+
+/* Adds a recorded frame of this size. with_depth: its depth as well, where it has one. An exit status of cli.h after a
+ * message; viewpoints_free() is due either way. */
+int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *path, uint32_t index, uint32_t width,
+                   uint32_t height, bool with_depth);
+
+/* Adds a place from which most of the scene is seen, along the world's z with y down. */
+void viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height);
+
+void viewpoints_free(viewpoints *v);
+
+#endif
