@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """chart.py TRIM3R: `trim3r chart` from outside: SVG, PNG and report, what is refused, tables of older versions."""
+import json
 import os
+import random
+import re
 import struct
 import sys
 import tempfile
@@ -89,6 +92,37 @@ def reports(folder):
     check("<b>&'\"" in texts(f"{folder}/hostile.svg", "text"), "and are shown as they are")
 
 
+def noise(path, side, seed):
+    """A PNG that does not pack."""
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    dice = random.Random(seed)
+    rows = b"".join(b"\0" + dice.randbytes(3 * side) for _ in range(side))
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)) +
+                   chunk(b"IDAT", zlib.compress(rows, 0)) + chunk(b"IEND", b""))
+
+
+def small_reports(folder):
+    """A report stays below 4 MB unless it is told otherwise, and the front's pictures come first."""
+    table = made_up(f"{folder}/many.csv", scenes=1, cases=1)
+    with open(table, encoding="utf-8") as file:
+        heading, *rows = file.read().splitlines()
+    with open(table, "w", encoding="utf-8") as file:
+        file.write("\n".join([heading + ",picture", *(f"{row},{i}.png" for i, row in enumerate(rows))]) + "\n")
+    for i in range(len(rows)):
+        noise(f"{folder}/{i}.png", 400, i)
+    page, whole = f"{folder}/some.html", f"{folder}/whole.html"
+    run(trim3r, "chart", table, "--pictures", folder, "-o", page)
+    run(trim3r, "chart", table, "--pictures", folder, "-o", whole, "--all-pictures")
+    check(os.path.getsize(page) < 4_000_000 < os.path.getsize(whole), f"{os.path.getsize(page)} bytes by default")
+    with open(page, encoding="utf-8") as file:
+        data = json.loads(re.search(r'id="data">(.*?)</script>', file.read(), re.S)[1])
+    shown = {data["series"][point["series"]]["name"] for point in data["points"]
+             for cell in point["cells"] if cell[1] is not None}
+    check(shown and "worse" not in shown, f"what is on the front is shown first: {shown}")
+
+
 def older(folder):
     """What eval wrote before it told wavelet, levels, clusters, bytes of the scene and pictures."""
     old, new = f"{folder}/old.csv", f"{folder}/new.svg"
@@ -148,7 +182,7 @@ def refuses(folder):
     check(not any(name.startswith("never") for name in os.listdir(folder)), "nothing is left of what failed")
 
 
-for part in (draws, reports, older, refuses):
+for part in (draws, reports, small_reports, older, refuses):
     with tempfile.TemporaryDirectory() as where:
         part(where)
 done()

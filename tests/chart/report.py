@@ -15,6 +15,7 @@ if program is None:
 SPOTS = "[...document.querySelectorAll('.live .spot')]"
 TITLES = f"{SPOTS}.map((g) => g.getAttribute('aria-label'))"
 TICKS = "[...document.querySelectorAll('.live text:not(.axis)')].map((t) => t.textContent)"
+TOP = "Math.min(...[...document.querySelectorAll('.live .near')].map((c) => Number(c.getAttribute('cy'))))"
 COLOUR = "getComputedStyle(document.body).backgroundColor"
 
 
@@ -58,11 +59,14 @@ def scenes(page):
 
 
 def legend(page):
+    ticks = page.value(TICKS)
     button = "#legend [data-series='0']"
     check(page.value("[...document.querySelectorAll('#legend [data-series]')].map((b) => b.textContent)") ==
           ["best", "worse", "fast"], "the legend")
+    top = page.value(TOP)
     page.click(button)
     titles = page.value(TITLES)
+    check(abs(page.value(TOP) - top) < 20 and page.value(TICKS) != ticks, "the axes follow what is shown")
     check(page.value(f"document.querySelector(\"{button}\").getAttribute('aria-pressed')") == "false", "it tells")
     check(len(titles) == 6 and not any(t.startswith("best") for t in titles), "a series goes")
     check(any(t.startswith("worse") and "on the front" in t for t in titles), "and the front is that of what is left")

@@ -36,7 +36,7 @@ static void draw(const chart_points *points, const chart_view *view)
     size_t bytes = 0;
     FILE *out = open_memstream(&text, &bytes);
     if (out == NULL || chart_names_make(&names, points) != 0 ||
-        chart_pictures_gather(&pictures, points, NULL, 0, 0, error, sizeof error) != 0 ||
+        chart_pictures_gather(&pictures, points, view, NULL, 0, 0, error, sizeof error) != 0 ||
         chart_page_write(out, points, &names, &pictures, view) != 0) {
         abort();
     }

@@ -63,6 +63,29 @@
       return fits;
     });
   }
+  /* Ticks at 1, 2 and 5 times powers of ten. */
+  function roundTicks(low, high, log) {
+    const step = 10 ** Math.floor(Math.log10((high - low) / 8)), found = [];
+    const every = [1, 2, 5, 10].map((t) => t * step).find((s) => (high - low) / s <= 8);
+    if (!log) {
+      for (let v = Math.ceil(low / every) * every; v <= high; v += every) found.push(v);
+      return found;
+    }
+    for (let power = 10 ** Math.floor(Math.log10(low)); power <= high; power *= 10) {
+      found.push(...[1, 2, 5].map((t) => t * power).filter((v) => v >= low && v <= high));
+    }
+    return found;
+  }
+  /* The axis for those that are shown, where some are hidden; that of all points else. */
+  function fitted(axis, measure, list) {
+    const whiskers = measures[measure].unit === "ms";
+    const values = list.flatMap((p) => { const s = spread(p, measure); return whiskers && many(s) ? [s[0], s[1], s[3]] : [s[0]]; });
+    const least = Math.min(...values), most = Math.max(...values);
+    if (state.hidden.size === 0 || !(most - least > 1e-3 * Math.abs(most))) return axis;
+    const log = axis.log && most / least > 5, room = log ? (most / least) ** .06 : .06 * (most - least);
+    const [low, high] = log ? [least / room, most * room] : [axis.low >= 0 ? Math.max(0, least - room) : least - room, most + room];
+    return { ...axis, low, high, log, ticks: roundTicks(low, high, log).map((v) => [v, text(measure, v)]) };
+  }
   function draw() {
     const wide = Math.max(300, $("canvas").clientWidth), high = Math.round(Math.min(600, Math.max(340, wide * 0.55)));
     const list = shown(), at = pair(), best = front(list), onFront = new Set(best);
@@ -76,13 +99,14 @@
       return;
     }
     const left = 66, right = wide - 16, top = 34, bottom = high - 48;
-    const x = scale(at.x, left, right), y = at.y.falling ? scale(at.y, top, bottom) : scale(at.y, bottom, top);
+    const xs = fitted(at.x, state.cost, list), ys = fitted(at.y, state.quality, list);
+    const x = scale(xs, left, right), y = ys.falling ? scale(ys, top, bottom) : scale(ys, bottom, top);
     const px = (p) => x(spread(p, state.cost)[0]), py = (p) => y(spread(p, state.quality)[0]);
-    for (const [v, label] of ticks(at.y, y, 22)) {
+    for (const [v, label] of ticks(ys, y, 22)) {
       svg.append(make("svg:path", { class: "grid", d: `M${left},${y(v)}H${right}` }),
                  make("svg:text", { x: left - 8, y: y(v) + 4, "text-anchor": "end" }, label));
     }
-    for (const [v, label] of ticks(at.x, x, 50)) {
+    for (const [v, label] of ticks(xs, x, 50)) {
       svg.append(make("svg:path", { class: "grid", d: `M${x(v)},${top}V${bottom}` }),
                  make("svg:text", { x: x(v), y: bottom + 18, "text-anchor": "middle" }, label));
     }

@@ -15,6 +15,7 @@
 typedef struct gathering {
     chart_pictures *to;
     const chart_points *points;
+    const chart_view *view;
     char *const *folders;
     uint32_t folder_count;
     size_t most;
@@ -149,6 +150,19 @@ static int gather_cell(const gathering *g, uint32_t index)
     return failed == 0 ? check_size(g, path, shots->render, shots->mask) : failed;
 }
 
+/* A case of every point that is on the front, or of every other one. */
+static int gather_round(const gathering *g, uint32_t round, bool front)
+{
+    for (uint32_t p = 0; p < g->points->count; p++) {
+        const chart_point *point = &g->points->points[p];
+        if (round < point->cell_count && g->view->spots[p].front == front &&
+            gather_cell(g, point->first_cell + round) != 0) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
 static int gather(const gathering *g)
 {
     const chart_points *points = g->points;
@@ -157,18 +171,15 @@ static int gather(const gathering *g)
         rounds = points->points[p].cell_count > rounds ? points->points[p].cell_count : rounds;
     }
     for (uint32_t round = 0; round < rounds; round++) {
-        for (uint32_t p = 0; p < points->count; p++) {
-            const chart_point *point = &points->points[p];
-            if (round < point->cell_count && gather_cell(g, point->first_cell + round) != 0) {
-                return -1;
-            }
+        if (gather_round(g, round, true) != 0 || gather_round(g, round, false) != 0) {
+            return -1;
         }
     }
     return 0;
 }
 
-int chart_pictures_gather(chart_pictures *pictures, const chart_points *points, char *const *folders,
-                          uint32_t folder_count, size_t most, char *error, size_t error_bytes)
+int chart_pictures_gather(chart_pictures *pictures, const chart_points *points, const chart_view *view,
+                          char *const *folders, uint32_t folder_count, size_t most, char *error, size_t error_bytes)
 {
     *pictures = (chart_pictures){.of_cell = calloc(points->cell_count, sizeof *pictures->of_cell)};
     if (pictures->of_cell == NULL) {
@@ -177,7 +188,7 @@ int chart_pictures_gather(chart_pictures *pictures, const chart_points *points, 
     for (uint32_t i = 0; i < points->cell_count; i++) {
         pictures->of_cell[i] = (chart_shots){CHART_NO_PICTURE, CHART_NO_PICTURE, CHART_NO_PICTURE};
     }
-    gathering g = {pictures, points, folders, folder_count, most, error, error_bytes};
+    gathering g = {pictures, points, view, folders, folder_count, most, error, error_bytes};
     int failed = folder_count > 0 ? gather(&g) : 0;
     if (failed != 0) {
         chart_pictures_free(pictures);

@@ -7,6 +7,7 @@
 
 #include "study/chart/points.h"
 #include "study/chart/texts.h"
+#include "study/chart/view.h"
 
 #define CHART_NO_PICTURE UINT32_MAX
 
@@ -34,11 +35,12 @@ typedef struct chart_pictures {
 } chart_pictures;
 
 /* Reads a row's `picture`, and target.png and mask.png beside it, as FOLDER/picture or FOLDER/scene/picture, until
- * they are `most` bytes: the first case of every point first, then the second, and so on. folders: one for all tables,
- * or one a table; none = no pictures. 0, or -1 with "path: why" in error[]: a file that is no picture of 8 bits, a
+ * they are `most` bytes: the first case of every point first, then the second, and so on; of each case those of the
+ * points on the front of a view before the others. folders: one for all tables, or one a table; none = no
+ * pictures. 0, or -1 with "path: why" in error[]: a file that is no picture of 8 bits, a
  * render of another size than its target. */
-int chart_pictures_gather(chart_pictures *pictures, const chart_points *points, char *const *folders,
-                          uint32_t folder_count, size_t most, char *error, size_t error_bytes);
+int chart_pictures_gather(chart_pictures *pictures, const chart_points *points, const chart_view *view,
+                          char *const *folders, uint32_t folder_count, size_t most, char *error, size_t error_bytes);
 void chart_pictures_free(chart_pictures *pictures);
 
 #endif

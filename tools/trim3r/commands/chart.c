@@ -22,7 +22,7 @@
 
 #define ERROR_BYTES 512
 #define MOST_COSTS ((uint32_t)(CHART_COSTS_END - CHART_QUALITIES))
-#define PICTURE_MIB 48u /* unless told otherwise */
+#define PICTURE_BYTES ((size_t)9 << 18) /* unless told otherwise: as text, in a report below 4 MB */
 #define PNG_SCALE 2.0
 
 typedef struct options {
@@ -34,11 +34,11 @@ typedef struct options {
     chart_measure quality; /* CHART_MEASURES = the first that there is */
     chart_measure costs[MOST_COSTS];
     uint32_t cost_count; /* 0 = those that there are */
-    uint32_t picture_mib;
+    size_t picture_bytes;
     bool dark;
 } options;
 
-enum { KEY_SVG = 0x100, KEY_PNG, KEY_PICTURES, KEY_MIB, KEY_QUALITY, KEY_AGAINST, KEY_SCENE, KEY_DARK };
+enum { KEY_SVG = 0x100, KEY_PNG, KEY_PICTURES, KEY_MIB, KEY_ALL, KEY_QUALITY, KEY_AGAINST, KEY_SCENE, KEY_DARK };
 
 /* ---- arguments ------------------------------------------------------------------------------------------------- */
 
@@ -107,7 +107,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->folders[o->folder_count++] = arg; /* as many as arguments: there is room */
         return 0;
     case KEY_MIB:
-        o->picture_mib = option_number(state, "picture-mib", arg, 1, 1024);
+        o->picture_bytes = (size_t)option_number(state, "picture-mib", arg, 1, 1024) << 20;
+        return 0;
+    case KEY_ALL:
+        o->picture_bytes = SIZE_MAX;
         return 0;
     case KEY_QUALITY:
         o->quality = measure(state, "quality", (list_word){arg, strlen(arg)}, 0, CHART_QUALITIES);
@@ -150,7 +153,9 @@ static const struct argp_option argp_options[] = {
     {"scene", KEY_SCENE, "NAME", 0, "scene to draw, alone (the mean over all); the report begins with it", 0},
     {"pictures", KEY_PICTURES, "DIR", OPTION_READS | OPTION_FOLDER,
      "folder that eval --images wrote, for the report: one for all tables, or one for each in their order", 0},
-    {"picture-mib", KEY_MIB, "N", 0, "most MiB of pictures that the report holds, 1..1024 (48)", 0},
+    {"picture-mib", KEY_MIB, "N", 0,
+     "most MiB of pictures that the report holds, 1..1024, the front's first (as many as leave it below 4 MB)", 0},
+    {"all-pictures", KEY_ALL, NULL, 0, "hold all of them", 0},
     {0},
 };
 
@@ -291,7 +296,7 @@ static int report(const chart *c, const options *o)
 {
     char error[ERROR_BYTES] = "";
     chart_pictures pictures;
-    if (chart_pictures_gather(&pictures, &c->points, o->folders, o->folder_count, (size_t)o->picture_mib << 20, error,
+    if (chart_pictures_gather(&pictures, &c->points, &c->views[0], o->folders, o->folder_count, o->picture_bytes, error,
                               sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
@@ -332,7 +337,7 @@ static int run(options *o)
 int command_chart(int argc, char **argv)
 {
     options o = {
-        .quality = CHART_MEASURES, .picture_mib = PICTURE_MIB, .folders = calloc((size_t)argc, sizeof(char *))};
+        .quality = CHART_MEASURES, .picture_bytes = PICTURE_BYTES, .folders = calloc((size_t)argc, sizeof(char *))};
     if (o.folders == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
