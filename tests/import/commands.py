@@ -69,7 +69,7 @@ def test_good_folder():
     status, out, error = run("import", folder, "-o", target, "--json")
     check(status == 0, f"good folder: {error}")
     report = json.loads(out)
-    expected = {"frames": 3, "depth_frames": 3, "triplets": 1, "width": 40, "height": 30,
+    expected = {"frames": 3, "depth_frames": 3, "posed_frames": 3, "triplets": 1, "width": 40, "height": 30,
                 "bytes": os.path.getsize(target), "skipped": 0, "left_out": [], "remarks": []}
     check(report == expected, f"good folder: {report}")
     status, out, _ = run("info", target, "--json")

@@ -151,16 +151,40 @@ def test_build(room):
     check(stored["hash"] == good("build", f"{work}/rgbd.mcap", "--keep", "5%", "-o", scene)["hash"], "stored poses")
 
 
+def kept_without_pose(name, path, room, left, why):
+    """Of a folder and of the recording made of it: all frames are there, and all but that one have their poses."""
+    target = f"{work}/kept.mcap"
+    for source in (path, target):
+        made = f"{work}/again.mcap" if source == target else target
+        status, out, error = run("import", source, "--poses", "estimate", "-o", made)
+        check(status == 0 and f"frame {left} cannot be posed" in out and why in out, f"{name}: {status} {out} {error}")
+        report = good("import", source, "--poses", "estimate", "-o", made)
+        check((report["frames"], report["posed_frames"]) == (FRAMES, FRAMES - 1), f"{name}: {report}")
+        check([why in p.get("why", "") for p in report["poses"]] == [i == left for i in range(FRAMES)], f"{name}: {report}")
+        others = {"pose": [p for i, p in enumerate(room["pose"]) if i != left]}
+        close(name, read(made)["pose"], others, 0.3, 0.04)
+        check(good("info", made)["pairing"]["with_pose"] == FRAMES - 1, f"{name}: info")
+    status, _, error = run("build", target, "--context", f"{left},1", "--keep", "5%", "-o", f"{work}/s.ply")
+    check(status == 1 and f"frame {left} has no pose" in error, f"{name}: build: {error}")
+
+
 def test_refusals(room):
     status, out, error = run("build", f"{work}/room.mcap", "--keep", "5%", "--poses", "guess", "-o", f"{work}/s.ply")
     check(status == 2 and "estimate-colour" in error, f"usage: {error}")
     other = dict(room, image=list(room["image"]))
     other["image"][2] = np.random.default_rng(1).integers(0, 255, room["image"][2].shape).astype(np.uint8)
-    status, out, error = run("import", folder("other", other), "--poses", "estimate", "-o", f"{work}/no.mcap")
-    check(status == 1 and "frame 2 cannot be posed from frame" in error and "corners" in error, f"another place: {error}")
+    kept_without_pose("another place", folder("other", other), room, 2, "corners")
     other["image"][2] = np.full_like(room["image"][2], 90)
-    status, out, error = run("import", folder("blank", other), "--poses", "estimate", "-o", f"{work}/no.mcap")
-    check(status == 1 and "frame 2 cannot be posed" in error and "only 0 corners match" in error, f"blank: {error}")
+    kept_without_pose("blank", folder("blank", other), room, 2, "only 0 corners match")
+    other = dict(room, image=[np.full_like(room["image"][0], 90), *room["image"][1:]])
+    kept_without_pose("blank at the start", folder("blank_start", other), room, 0, "only 0 corners match")
+    given = dict(room, image=room["image"][:2] + [other["image"][0]])
+    for name in ("depth", "camera_info", "pose"):
+        given[name] = room[name][:3]
+    good("import", folder("short", given), "--poses", "estimate", "-o", f"{work}/short.mcap")
+    status, _, error = run("build", f"{work}/short.mcap", "--context", "0,2", "--keep", "5%", "--poses", "estimate", "-o",
+                           f"{work}/s.ply")
+    check(status == 1 and "frame 2 cannot be posed from frame 0: only 0 corners" in error, f"build needs all: {error}")
     still = dict(room, image=[room["image"][0]] * FRAMES)
     status, out, error = run("import", folder("still", still, depth=False), "--poses", "estimate", "-o", f"{work}/no.mcap")
     check(status == 1 and "no parallax" in error, f"a camera that stands still: {error}")

@@ -51,29 +51,32 @@ static void set_pose(posed_frame *frame, const t3r_camera *camera)
     for (int i = 0; i < 4; i++) {
         frame->rotation[i] = ldexp(camera->rotation_q30[i], -30);
     }
-    frame->posed = true;
 }
 
 static int estimate(const char *directory, posed_folder *folder, poses_source source, pose_view *views, motion *poses,
-                    pose_account *accounts, char *error, size_t error_bytes)
+                    t3r_camera *cameras, pose_account *accounts, char *error, size_t error_bytes)
 {
-    t3r_camera first = {0}, camera;
     if (poses_check_count(folder->frame_count, error, error_bytes) != 0) {
         return -1;
     }
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         char reason[512];
         cli_progress("looking for corners", i, folder->frame_count);
-        if (look_at(directory, folder, i, &views[i], i == 0 ? &first : &camera, reason, sizeof reason) != 0) {
+        if (look_at(directory, folder, i, &views[i], &cameras[i], reason, sizeof reason) != 0) {
             return t3r_reason(error, error_bytes, "frame %u: %s", i, reason);
         }
     }
     if (poses_estimate(views, folder->frame_count, source, NULL, poses, accounts, error, error_bytes) != 0) {
         return -1;
     }
+    const uint32_t first = poses_find(accounts, 0, folder->frame_count, true);
     for (uint32_t i = 0; i < folder->frame_count; i++) {
-        camera = first;
-        if (i > 0 && pose_store(&poses[i], &first, &camera) != 0) {
+        t3r_camera camera = cameras[first];
+        folder->frames[i].posed = accounts[i].why[0] == '\0';
+        if (!folder->frames[i].posed) {
+            continue;
+        }
+        if (i != first && pose_store(&poses[i], &cameras[first], &camera) != 0) {
             return t3r_reason(error, error_bytes, "frame %u: its position is out of range", i);
         }
         set_pose(&folder->frames[i], &camera);
@@ -86,13 +89,15 @@ int import_estimate_poses(const char *directory, posed_folder *folder, poses_sou
 {
     pose_view *views = calloc(folder->frame_count, sizeof *views);
     motion *poses = calloc(folder->frame_count, sizeof *poses);
-    int status = views != NULL && poses != NULL
-                     ? estimate(directory, folder, source, views, poses, accounts, error, error_bytes)
+    t3r_camera *cameras = calloc(folder->frame_count, sizeof *cameras);
+    int status = views != NULL && poses != NULL && cameras != NULL
+                     ? estimate(directory, folder, source, views, poses, cameras, accounts, error, error_bytes)
                      : t3r_reason(error, error_bytes, "out of memory");
     for (uint32_t i = 0; views != NULL && i < folder->frame_count; i++) {
         pose_view_free(&views[i]);
     }
     free(views);
     free(poses);
+    free(cameras);
     return status;
 }

@@ -9,6 +9,9 @@ cJSON *pose_account_json(const uint32_t *frames, uint32_t index, const pose_acco
     const pose_account *a = &accounts[index];
     cJSON *out = cJSON_CreateObject();
     cJSON_AddNumberToObject(out, "frame", frames != NULL ? frames[index] : index);
+    if (a->why[0] != '\0') {
+        cJSON_AddStringToObject(out, "why", a->why);
+    }
     if (a->matches > 0) {
         cJSON_AddNumberToObject(out, "from", frames != NULL ? frames[a->from] : a->from);
         cJSON_AddNumberToObject(out, "matches", a->matches);
@@ -47,7 +50,11 @@ void poses_print(const uint32_t *frames, uint32_t count, const pose_account *acc
 {
     for (uint32_t i = 0; i < count; i++) {
         const pose_account *a = &accounts[i];
-        if (a->matches > 0) {
+        char why[512];
+        if (a->why[0] != '\0') {
+            (void)pose_refusal(accounts, i, frames, why, sizeof why);
+            printf("%s\n", why);
+        } else if (a->matches > 0) {
             printf("frame %" PRIu32 " posed from frame %" PRIu32 ": %" PRIu32 " of %" PRIu32
                    " corners agree within %.2f pixels%s, rotation +-%.2f degrees, direction +-%.1f\n",
                    frames != NULL ? frames[i] : i, frames != NULL ? frames[a->from] : a->from, a->matches, a->tried,

@@ -18,13 +18,23 @@
 
 /* ---- making ---- */
 
+typedef struct made_frames {
+    bag_frames *frames;
+    const pose_account *accounts; /* NULL: poses were not estimated */
+} made_frames;
+
 /* The frame as it is written, its poses those that were estimated where they were. */
 static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
-    return bag_frames_make(user, index, frame, error, error_bytes);
+    const made_frames *made = user;
+    int status = bag_frames_make(made->frames, index, frame, error, error_bytes);
+    if (made->accounts != NULL && made->accounts[index].why[0] != '\0') {
+        frame->has_pose = false; /* one of another world than the estimated ones */
+    }
+    return status;
 }
 
-static int write_new(const recording_import_request *r, const t3r_recording *recording, bag_frames *frames,
+static int write_new(const recording_import_request *r, const t3r_recording *recording, made_frames *frames,
                      posed_recording_totals *totals)
 {
     whole_file file;
@@ -195,7 +205,7 @@ static int import_opened(const recording_import_request *r, t3r_recording *recor
         code =
             accounts == NULL ? cli_error(CLI_BAD_INPUT, "out of memory") : estimate_all(recording, r, count, accounts);
     }
-    code = code == CLI_OK ? write_new(r, recording, &frames, &totals) : code;
+    code = code == CLI_OK ? write_new(r, recording, &(made_frames){&frames, accounts}, &totals) : code;
     if (code == CLI_OK && r->json) {
         print_json(recording, &frames, &totals, accounts);
     } else if (code == CLI_OK) {

@@ -38,15 +38,14 @@ static int look_at(const t3r_recording *recording, const char *path, uint32_t in
 }
 
 static int estimate(t3r_recording *recording, const char *path, const uint32_t *frames, uint32_t count,
-                    poses_source source, pose_account *accounts, pose_view *views, motion *poses)
+                    poses_source source, pose_account *accounts, pose_view *views, motion *poses, t3r_camera *cameras)
 {
     char error[ERROR_BYTES] = "";
-    t3r_camera first, camera;
     if (poses_check_count(count, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s: %s", path, error);
     }
     for (uint32_t i = 0; i < count; i++) {
-        int code = look_at(recording, path, frames[i], &views[i], i == 0 ? &first : &camera);
+        int code = look_at(recording, path, frames[i], &views[i], &cameras[i]);
         if (code != CLI_OK) {
             return code;
         }
@@ -54,9 +53,10 @@ static int estimate(t3r_recording *recording, const char *path, const uint32_t *
     if (poses_estimate(views, count, source, frames, poses, accounts, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s: %s", path, error);
     }
-    for (uint32_t i = 0; i < count; i++) {
-        camera = first; /* of which the first view keeps every bit */
-        if (i > 0 && pose_store(&poses[i], &first, &camera) != 0) {
+    const uint32_t first = poses_find(accounts, 0, count, true);
+    for (uint32_t i = first; i < count; i = poses_find(accounts, i + 1, count, true)) {
+        t3r_camera camera = cameras[first]; /* of which the first view keeps every bit */
+        if (i > first && pose_store(&poses[i], &cameras[first], &camera) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": its position is out of range", path, frames[i]);
         }
         if (t3r_recording_set_pose(recording, frames[i], camera.position_q32, camera.rotation_q30) != 0) {
@@ -71,12 +71,15 @@ int recording_estimate_poses(t3r_recording *recording, const char *path, const u
 {
     pose_view *views = calloc(count, sizeof *views);
     motion *poses = calloc(count, sizeof *poses);
-    int code = views != NULL && poses != NULL ? estimate(recording, path, frames, count, source, accounts, views, poses)
-                                              : cli_error(CLI_BAD_INPUT, "out of memory");
+    t3r_camera *cameras = calloc(count, sizeof *cameras);
+    int code = views != NULL && poses != NULL && cameras != NULL
+                   ? estimate(recording, path, frames, count, source, accounts, views, poses, cameras)
+                   : cli_error(CLI_BAD_INPUT, "out of memory");
     for (uint32_t i = 0; views != NULL && i < count; i++) {
         pose_view_free(&views[i]);
     }
     free(views);
     free(poses);
+    free(cameras);
     return code;
 }

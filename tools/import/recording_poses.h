@@ -6,9 +6,9 @@
 #include "recording.h"
 
 /* Estimates the poses of `count` frames and sets them in the recording, rounded to the fixed point of t3r_camera, so
- * that all that reads these frames later sees the same numbers. The first one keeps its recorded pose; without one it
- * is the world's origin. accounts[] (`count`): what each rests on, `from` being an index into frames[]. An exit status
- * of cli.h. */
+ * that all that reads these frames later sees the same numbers. The first that can be posed keeps its recorded pose;
+ * without one it is the world's origin. accounts[] (`count`): what each rests on, `from` being an index into frames[];
+ * a frame whose account has no pose keeps what it had. An exit status of cli.h. */
 int recording_estimate_poses(t3r_recording *recording, const char *path, const uint32_t *frames, uint32_t count,
                              poses_source source, pose_account *accounts);
 

@@ -13,7 +13,6 @@
 #define DEEP_LEAST 20u  /* matching corners with depth in both views, or colour decides */
 #define SHARED_LEAST 8u /* depths that must agree on a scale */
 #define PARALLAX 0.01   /* radians between rays whose meeting place is kept as a depth */
-#define REASON_BYTES 256
 #define NAME_COUNT 3
 
 static const char *const names_of[NAME_COUNT] = {"given", "estimate", "estimate-colour"};
@@ -36,7 +35,7 @@ typedef struct edge {
     uint32_t a, b, count;
     pose_match *matches;
     bool refused;
-    char why[REASON_BYTES];
+    char why[POSES_WHY_BYTES];
     bool unscaled; /* refused for want of a scale, which another view may bring */
 } edge;
 
@@ -156,9 +155,9 @@ static int relate(const pose_view *views, const edge *e, poses_source source, re
         deep += a->depth[e->matches[i].a] > 0 && b->depth[e->matches[i].b] > 0;
     }
     if (source != POSES_ESTIMATE_COLOUR && deep >= DEEP_LEAST) {
-        return relative_by_depth(a, b, e->matches, e->count, out, error, REASON_BYTES);
+        return relative_by_depth(a, b, e->matches, e->count, out, error, POSES_WHY_BYTES);
     }
-    return relative_by_colour(a, b, e->matches, e->count, out, error, REASON_BYTES);
+    return relative_by_colour(a, b, e->matches, e->count, out, error, POSES_WHY_BYTES);
 }
 
 /* Gives the pair's unposed view its pose. *scaled: whether lengths have a unit already. */
@@ -172,7 +171,8 @@ static int join(pose_view *views, edge *e, poses_source source, bool *scaled, bo
         scale = scale_by_depth(&views[e->a], &views[e->b], &r);
         if (scale == 0 && *scaled) {
             e->unscaled = true;
-            status = t3r_reason(e->why, REASON_BYTES, "too few corners in common with a third view to tell the scale");
+            status =
+                t3r_reason(e->why, POSES_WHY_BYTES, "too few corners in common with a third view to tell the scale");
         }
         scale = scale == 0 ? 1 : scale;
     }
@@ -198,38 +198,15 @@ static int join(pose_view *views, edge *e, poses_source source, bool *scaled, bo
     return status;
 }
 
-/* The first view that has no pose, and why its most promising pair gave none. */
-static int tell_refusal(const graph *g, const bool *posed, uint32_t count, const uint32_t *names, char *error,
-                        size_t error_bytes)
-{
-    const edge *best = NULL;
-    uint32_t left = 0;
-    while (left < count - 1 && posed[left]) {
-        left++;
-    }
-    for (uint32_t i = 0; i < g->count; i++) {
-        const edge *e = &g->edges[i];
-        if ((e->a == left || e->b == left) && posed[e->a] != posed[e->b] && (best == NULL || e->count > best->count)) {
-            best = e;
-        }
-    }
-    if (best == NULL) {
-        return t3r_reason(error, error_bytes, "frame %u cannot be posed: no frame near it in order has a pose",
-                          names != NULL ? names[left] : left);
-    }
-    uint32_t other = best->a == left ? best->b : best->a;
-    return t3r_reason(error, error_bytes, "frame %u cannot be posed from frame %u: %s",
-                      names != NULL ? names[left] : left, names != NULL ? names[other] : other, best->why);
-}
-
-static int join_all(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, graph *g, bool *posed,
-                    motion *poses, pose_account *accounts, char *error, size_t error_bytes)
+/* All views that can be joined to `start`. How many have their pose, itself among them. */
+static uint32_t join_to(uint32_t start, pose_view *views, uint32_t count, poses_source source, graph *g, bool *posed,
+                        motion *poses, pose_account *accounts)
 {
     bool scaled = false;
     uint32_t done = 1;
-    posed[0] = true;
-    poses[0] = motion_none;
-    accounts[0] = (pose_account){0};
+    posed[start] = true;
+    poses[start] = motion_none;
+    accounts[start] = (pose_account){.from = start};
     edge *e;
     while (done < count && (e = best_edge(g, posed)) != NULL) {
         cli_progress("estimating poses", done, count);
@@ -244,7 +221,61 @@ static int join_all(pose_view *views, uint32_t count, poses_source source, const
         }
     }
     cli_progress_end();
-    return done == count ? 0 : tell_refusal(g, posed, count, names, error, error_bytes);
+    return done;
+}
+
+/* Why the most promising pair of a view without a pose gave none. */
+static pose_account account_for(const graph *g, uint32_t left)
+{
+    const edge *best = NULL;
+    pose_account out = {.from = left, .why = "no frame near it in order has a pose"};
+    for (uint32_t i = 0; i < g->count; i++) {
+        const edge *e = &g->edges[i];
+        if ((e->a == left || e->b == left) && e->why[0] != '\0' && (best == NULL || e->count > best->count)) {
+            best = e;
+        }
+    }
+    if (best != NULL) {
+        out.from = best->a == left ? best->b : best->a;
+        memcpy(out.why, best->why, sizeof out.why);
+    }
+    return out;
+}
+
+/* A view to which none can be joined has no pose, either, and the next one is tried. Each pair is refused once at the
+ * most, so this takes no longer than a graph whose views are all joined. */
+static int join_all(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, graph *g, bool *posed,
+                    motion *poses, pose_account *accounts, char *error, size_t error_bytes)
+{
+    uint32_t done = 0;
+    for (uint32_t start = 0; start < count && done < 2; start++) {
+        done = join_to(start, views, count, source, g, posed, poses, accounts);
+        posed[start] = done > 1 || count == 1;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        if (!posed[i]) {
+            poses[i] = motion_none;
+            accounts[i] = account_for(g, i);
+        }
+    }
+    return done > 1 || count == 1 ? 0 : pose_refusal(accounts, 1, names, error, error_bytes);
+}
+
+int pose_refusal(const pose_account *accounts, uint32_t index, const uint32_t *names, char *text, size_t bytes)
+{
+    const pose_account *a = &accounts[index];
+    const uint32_t name = names != NULL ? names[index] : index, other = names != NULL ? names[a->from] : a->from;
+    return a->from == index
+               ? t3r_reason(text, bytes, "frame %u cannot be posed: %s", name, a->why)
+               : t3r_reason(text, bytes, "frame %u cannot be posed from frame %u: %s", name, other, a->why);
+}
+
+uint32_t poses_find(const pose_account *accounts, uint32_t from, uint32_t count, bool posed)
+{
+    while (from < count && (accounts[from].why[0] == '\0') != posed) {
+        from++;
+    }
+    return from;
 }
 
 int poses_check_count(uint32_t count, char *error, size_t error_bytes)

@@ -21,9 +21,12 @@ typedef enum poses_source {
 /* false: no such name. */
 bool poses_named(const char *name, poses_source *source);
 
-/* What an estimate rests on. */
+#define POSES_WHY_BYTES 256
+
+/* What an estimate rests on, or why there is none. */
 typedef struct pose_account {
-    uint32_t from;                         /* the view that it was made from; its own number for the first */
+    char why[POSES_WHY_BYTES];             /* why the view has no pose; "" = it has one */
+    uint32_t from;                         /* the view that it was made from, or could not be; its own number: none */
     uint32_t matches, tried;               /* corners that agree with the motion, of those that match */
     bool metric;                           /* by depth in both */
     double pixels;                         /* root of the mean square of their errors */
@@ -34,11 +37,18 @@ typedef struct pose_account {
  */
 int poses_check_count(uint32_t count, char *error, size_t error_bytes);
 
-/* Poses, camera to the first camera. The unit of length is that of the depths; without any, the distance of the first
- * two cameras that are joined. views[].depth gains the depths of corners found on the way. Deterministic: fixed seeds,
- * bounded work. 0, or -1 with "view N: why" in error[], N as `names` has it (NULL: the index). */
+/* Poses of the views that can be joined, camera to the first camera that has one: the first view, or the first after it
+ * to which another can be joined. The others' accounts say why. The unit of length is that of the depths; without any,
+ * the distance of the first two cameras that are joined. views[].depth gains the depths of corners found on the way.
+ * Deterministic: fixed seeds, bounded work. 0, or -1 with "frame N: why" in error[], N as `names` has it (NULL: the
+ * index), where no two of several views can be joined. */
 int poses_estimate(pose_view *views, uint32_t count, poses_source source, const uint32_t *names, motion *poses,
                    pose_account *accounts, char *error, size_t error_bytes);
+
+/* "frame N cannot be posed from frame M: why", of a view without a pose, into text[]. Always -1, as t3r_reason(). */
+int pose_refusal(const pose_account *accounts, uint32_t index, const uint32_t *names, char *text, size_t bytes);
+/* The first view that has a pose, or that has none, at `from` or behind; `count` when there is no such one. */
+uint32_t poses_find(const pose_account *accounts, uint32_t from, uint32_t count, bool posed);
 
 /* The pose `pose` in the first camera's axes, behind the first camera's own pose in `first`, rounded to the fixed point
  * of t3r_camera into `camera`: positions to Q32, the quaternion to Q30. -1 when a position is out of range. */

@@ -349,6 +349,20 @@ static void name_context(reconstruction_options *settings, const t3r_recording *
     }
 }
 
+/* Of all context views: a scene of some of them would not be the one that was asked for. */
+static int estimate_poses(t3r_recording *recording, const build_options *o, pose_account *accounts)
+{
+    char why[512];
+    const uint32_t *frames = o->settings.context, count = o->settings.context_count;
+    int code = recording_estimate_poses(recording, o->recording, frames, count, o->poses, accounts);
+    const uint32_t left = code == CLI_OK ? poses_find(accounts, 0, count, false) : count;
+    if (left < count) {
+        (void)pose_refusal(accounts, left, frames, why, sizeof why);
+        code = cli_error(CLI_BAD_INPUT, "%s: %s", o->recording, why);
+    }
+    return code;
+}
+
 int command_build(int argc, char **argv)
 {
     build_options o = {0};
@@ -371,8 +385,7 @@ int command_build(int argc, char **argv)
     pose_account accounts[T3R_MAX_VIEWS];
     if (code == CLI_OK && o.poses != POSES_GIVEN) {
         name_context(&o.settings, recording);
-        code = recording_estimate_poses(recording, o.recording, o.settings.context, o.settings.context_count, o.poses,
-                                        accounts);
+        code = estimate_poses(recording, &o, accounts);
         work_times_end(&times, WORK_POSES);
     }
     reconstruction r;

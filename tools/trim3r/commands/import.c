@@ -48,7 +48,7 @@ typedef struct material {
 
 typedef struct totals {
     uint32_t width, height; /* of every frame */
-    uint32_t depth_frames;
+    uint32_t depth_frames, unposed;
     uint64_t bytes;
 } totals;
 
@@ -198,8 +198,9 @@ static const struct argp parser = {
            "folder, and missing poses are taken from the points. Numbers that are not finite are refused. So are poses "
            "of which some are in the folder's world and others in that of the points.\n"
            "\n"
-           "Estimated poses are rounded into the recording: what is made of it later is the same everywhere. With them "
-           "DIR may also be a bag or a recording.\n"
+           "Estimated poses are rounded into the recording: what is made of it later is the same everywhere. A frame "
+           "that cannot be posed is kept without a pose, and the reason is told. With --poses estimate DIR may also be "
+           "a bag or a recording.\n"
            "\n"
            "Of a bag (MCAP) the frames are written anew: compressed images (JPEG, PNG, compressedDepth) decoded, poses "
            "interpolated between two of their topic or composed of /tf and /tf_static, depth of another camera "
@@ -248,6 +249,8 @@ static int write_frame(t3r_recorder *recorder, const options *o, material *m, ui
         status = t3r_reason(error, ERROR_BYTES, "%s: frame %u: %s: %ux%u pixels, but frame 0 has %ux%u; give --size",
                             o->directory, index, frame->image, recorded.width, recorded.height, t->width, t->height);
     } else {
+        recorded.unposed = m->accounts != NULL && !frame->posed;
+        t->unposed += recorded.unposed;
         recorded.stamp_ns = (int64_t)index * 1000000000 / 30;
         t->width = recorded.width;
         t->height = recorded.height;
@@ -313,6 +316,7 @@ static void print_json(const material *m, const totals *t)
     cJSON *json = cJSON_CreateObject();
     cJSON_AddNumberToObject(json, "frames", folder->frame_count);
     cJSON_AddNumberToObject(json, "depth_frames", t->depth_frames);
+    cJSON_AddNumberToObject(json, "posed_frames", folder->frame_count - t->unposed);
     cJSON_AddNumberToObject(json, "triplets", folder->triplet_count);
     cJSON_AddNumberToObject(json, "width", t->width);
     cJSON_AddNumberToObject(json, "height", t->height);
@@ -337,6 +341,9 @@ static void print_text(const options *o, const material *m, const totals *t)
     const posed_folder *folder = &m->folder;
     printf("%s: %u frames of %ux%u (%u with depth), %u triplets, %llu bytes\n", o->output, folder->frame_count,
            t->width, t->height, t->depth_frames, folder->triplet_count, (unsigned long long)t->bytes);
+    if (t->unposed > 0) {
+        printf("without a pose: %u frames\n", t->unposed);
+    }
     text_list_print(&folder->left_out, "left out");
     text_list_print(&folder->remarks, "remark");
     if (m->pointmaps.count > 0) {
