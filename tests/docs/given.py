@@ -63,6 +63,16 @@ def scannet(given, path):
     (path / "intrinsic" / "intrinsic_color.txt").write_text("35 0 19.5 0\n0 35 14.5 0\n0 0 1 0\n0 0 0 1\n")
 
 
+def record3d(given, path):
+    (path / "rgbd").mkdir(parents=True)
+    for i in range(2):
+        write_png(path / "rgbd" / f"{i}.png", 8, 3, lambda x, y: (x * 5, y * 7, 90))
+        (path / "rgbd" / f"{i}.depth").write_bytes(struct.pack("<f", 2) * (SIDE[0] * SIDE[1]))
+    write_json(path / "metadata", {"w": SIDE[0], "h": SIDE[1], "dw": SIDE[0], "dh": SIDE[1],
+                                   "K": [35, 0, 0, 0, 35, 0, 20, 15, 1],
+                                   "poses": [[0, 0, 0, 1, i / 10, 0, 0] for i in range(2)]})
+
+
 def photo(given, path):
     shutil.copyfile(given.views() / "images" / "frame_000001.png", path)
 
@@ -152,5 +162,5 @@ def write_json(path, value):
 
 
 MAKERS = {"room.mcap": recording, "photos/": photos, "photo.png": photo, "posed/": posed, "tum/": tum, "colmap/": colmap,
-          "scannet/": scannet, "tracker.txt": trajectory, "importance/": importance, "small.safetensors": head,
-          "theirs.ply": scene, "dust3r.npz": pointmaps}
+          "scannet/": scannet, "record3d/": record3d, "tracker.txt": trajectory, "importance/": importance,
+          "small.safetensors": head, "theirs.ply": scene, "dust3r.npz": pointmaps}

@@ -400,6 +400,51 @@ def many_poses(path):
         os.symlink("0.txt", f"{path}/pose/a{i}.txt")
 
 
+def record3d(path, depth=b"", **changes):
+    """A folder of one frame, as Record3D has them."""
+    os.makedirs(f"{path}/rgbd")
+    for name, content in (("0.png", f.png(16, 16)), ("0.depth", depth)):
+        with open(f"{path}/rgbd/{name}", "wb") as file:
+            file.write(content)
+    content = {"w": 16, "h": 16, "dw": 16, "dh": 16, "K": [20, 0, 0, 0, 20, 0, 8, 8, 1], "poses": [[0, 0, 0, 1, 0, 0, 0]]}
+    with open(f"{path}/metadata", "w", encoding="utf-8") as file:
+        json.dump({**content, **changes}, file)
+
+
+@case("folder", "record3d-short-depth", "fewer bytes than its sides need")
+def short_depth(path):
+    return record3d(path, bytes(16 * 16 * 4 - 1))
+
+
+@case("folder", "record3d-long-depth", "too large")
+def long_depth(path):
+    return record3d(path, bytes(16 * 16 * 4 + 1))
+
+
+@case("folder", "record3d-depth-of-a-terabyte", "too large")
+def sparse_depth(path):
+    record3d(path, dw=4096, dh=4096)
+    with open(f"{path}/rgbd/0.depth", "wb") as file:
+        file.truncate(1 << 40)
+
+
+@case("folder", "record3d-wide-depth", "dw, dh: not whole numbers")
+def wide_depth(path):
+    return record3d(path, dw=1e300)
+
+
+@case("folder", "record3d-pipe-as-depth", "not a regular file")
+def depth_pipe(path):
+    record3d(path)
+    os.remove(f"{path}/rgbd/0.depth")
+    os.mkfifo(f"{path}/rgbd/0.depth")
+
+
+@case("folder", "record3d-million-poses", "more than 100000")
+def many_record3d_poses(path):
+    return record3d(path, poses=[[]] * 1000000)
+
+
 @case("folder", "tum-escapes", "")
 def tum(path):
     os.makedirs(path)

@@ -321,7 +321,47 @@ def test_pose_file_refusals():
     refused(path, "pose/1.txt: there is no picture of that name in color")
 
 
-TESTS = [test_pose_files, test_lost_poses, test_depth_of_another_lens, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
+# --- Record3D --------------------------------------------------------------------------------------------------------
+
+
+def record3d(path, exr=False, packed=False, change=None):
+    """As Record3D exports it; the depth of an .r3d as `lzfse -decode` leaves it, or packed."""
+    pictures(path, "rgb/{}.png" if exr else "rgbd/{}.png")
+    k = np.array(ROOM["camera_info"][0])
+    k[:2, 2] += 0.5
+    poses = []
+    for i, pose in enumerate(ROOM["pose"]):
+        w, x, y, z = quaternion((pose @ OPENGL)[:3, :3])
+        poses.append([x, y, z, w, *pose[:3, 3]])
+        metres = (ROOM["depth"][i] * UNIT).astype("<f4")
+        metres[ROOM["depth"][i] == 0] = np.nan
+        raw = b"bvx2" + bytes(99) if packed else metres.tobytes()
+        write(f"{path}/depth/{i}.exr" if exr else f"{path}/rgbd/{i}.depth", raw)
+    content = {"w": WIDTH, "h": HEIGHT, "dw": WIDTH, "dh": HEIGHT, "fps": 60, "K": k.T.flatten().tolist(), "poses": poses,
+               "perFrameIntrinsicCoeffs": [[k[0, 0], k[1, 1], k[0, 2], k[1, 2]]] * FRAMES}
+    if change:
+        change(content)
+    write(f"{path}/{'metadata.json' if exr else 'metadata'}", json.dumps(content))
+    return path
+
+
+def test_record3d():
+    report, got = imported(record3d("record3d"))
+    same("Record3D", got)
+    check(report["remarks"] == [], f"Record3D: {report}")
+    same("Record3D with K alone", imported(record3d("k_alone", change=lambda c: c.pop("perFrameIntrinsicCoeffs")))[1])
+    for name, exr, said in (("packed", False, "packed with LZFSE, which is not read"), ("exr", True, "OpenEXR, which is not read")):
+        report, got = imported(record3d(name, exr, True))
+        same(f"Record3D {name}", got, depth=False)
+        check(f"depth of {FRAMES} frames is left out" in report["remarks"][0] and said in report["remarks"][0], f"{name}: {report}")
+    refused(record3d("cut_depth", change=lambda c: c.update(dw=WIDTH + 1)), "rgbd/0.depth: fewer bytes")
+    refused(record3d("no_sides", change=lambda c: c.pop("dw")), "dw, dh: missing")
+    refused(record3d("k_of_8", change=lambda c: c["K"].pop()), "K: not 9 finite numbers")
+    refused(record3d("pose_of_6", change=lambda c: c["poses"][1].pop()), "poses[1]: not 7 finite numbers")
+    refused(record3d("more_poses", change=lambda c: c["poses"].append(c["poses"][0])), "rgbd/3.jpg: No such file")
+
+
+TESTS = [test_record3d, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

@@ -126,18 +126,18 @@ static const char *place_of(const char *directory, const char *const *places, si
 }
 
 /* The depth picture that goes with a picture: of its name, ending in .png. */
-static void depth_name(const char *picture, char name[PATH_BYTES])
+static void depth_name(const char *image, char name[PATH_BYTES])
 {
-    const char *slash = strrchr(picture, '/'), *dot = strrchr(picture, '.');
+    const char *slash = strrchr(image, '/'), *dot = strrchr(image, '.');
     bool ending = dot != NULL && (slash == NULL || dot > slash);
-    snprintf(name, PATH_BYTES, "%.*s.png", (int)(ending ? (size_t)(dot - picture) : strlen(picture)), picture);
+    snprintf(name, PATH_BYTES, "%.*s.png", (int)(ending ? (size_t)(dot - image) : strlen(image)), image);
 }
 
-static int add_depth(const char *directory, const posed_folder_options *options, const char *picture,
-                     posed_frame *frame, char *error, size_t error_bytes)
+static int add_depth(const char *directory, const posed_folder_options *options, const char *image, posed_frame *frame,
+                     char *error, size_t error_bytes)
 {
     char name[PATH_BYTES], path[PATH_BYTES];
-    depth_name(picture, name);
+    depth_name(image, name);
     const char *place = place_of(directory, depth_places, sizeof depth_places / sizeof *depth_places, name);
     if (place == NULL) {
         return 0;

@@ -113,8 +113,11 @@ static int read_colour(const char *path, picture *out, char *error, size_t error
     return 0;
 }
 
-static int read_depth(const char *path, picture *out, char *error, size_t error_bytes)
+static int read_depth(const char *path, const raw_depth *raw, picture *out, char *error, size_t error_bytes)
 {
+    if (raw->width != 0) {
+        return raw_depth_read(path, raw, out, error, error_bytes);
+    }
     if (picture_read(path, out, error, error_bytes) != 0) {
         return -1;
     }
@@ -259,7 +262,7 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
     if (!made) {
         path = find_picture(directory, frame->depth);
         status = path == NULL ? t3r_reason(error, error_bytes, "out of memory")
-                              : read_depth(path, depth, error, error_bytes);
+                              : read_depth(path, &frame->depth_raw, depth, error, error_bytes);
         free(path);
         if (status != 0) {
             return -1;

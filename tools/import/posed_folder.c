@@ -11,6 +11,7 @@
 #include "import/colmap_folder.h"
 #include "import/picture_folder.h"
 #include "import/pose_files.h"
+#include "import/record3d.h"
 #include "import/transforms_json.h"
 #include "import/tum_rgbd.h"
 #include "reader_limits.h"
@@ -59,9 +60,8 @@ static const struct folder_kind {
     int (*read)(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                 size_t error_bytes);
 } kinds[] = {
-    {"transforms.json", has_transforms, read_transforms},
-    {"TUM RGB-D", has_tum_lists, tum_rgbd_read},
-    {"COLMAP", colmap_folder_is, colmap_folder_read},
+    {"transforms.json", has_transforms, read_transforms},  {"TUM RGB-D", has_tum_lists, tum_rgbd_read},
+    {"COLMAP", colmap_folder_is, colmap_folder_read},      {"Record3D", record3d_is, record3d_read},
     {"pose files", pose_files_are_there, pose_files_read},
 };
 

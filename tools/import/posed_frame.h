@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "cli/text_list.h"
+#include "import/raw_depth.h"
 #include "recording.h"
 
 /* What a folder says of a camera; a number that it does not give is NAN. Pixels, with the principal point measured
@@ -23,6 +24,7 @@ typedef struct posed_intrinsics {
 typedef struct posed_frame {
     char *image;                 /* path, relative to the folder as the folder spells it */
     char *depth;                 /* likewise; NULL = none */
+    raw_depth depth_raw;         /* how depth is stored where it is no picture */
     char *pointmap, *confidence; /* likewise: depth made elsewhere (pointmaps.h) */
     bool posed;                  /* false: position 0, rotation none */
     posed_intrinsics intrinsics;
