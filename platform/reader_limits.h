@@ -48,6 +48,17 @@
 #define T3R_LIMIT_UNPACKED_WHOLE (UINT64_C(320) << 20)
 #define T3R_LIMIT_MESSAGE_BYTES 160
 
+/* A compressed scene may hold this many Gaussians, whatever its size, and beyond that one for so many of its bytes.
+ * Real ones take ten bytes and more. */
+#define T3R_LIMIT_GAUSSIANS_FREE 1048576
+#define T3R_LIMIT_GAUSSIAN_BYTES 4
+
+static inline uint64_t t3r_limit_gaussians(uint64_t packed_bytes)
+{
+    const uint64_t most = T3R_LIMIT_GAUSSIANS_FREE + packed_bytes / T3R_LIMIT_GAUSSIAN_BYTES;
+    return most < T3R_MAX_GAUSSIANS ? most : T3R_MAX_GAUSSIANS;
+}
+
 static inline uint64_t t3r_limit_unpacked(uint64_t packed_bytes)
 {
     return packed_bytes > (UINT64_MAX - T3R_LIMIT_UNPACKED_FREE) / T3R_LIMIT_UNPACKED_RATIO

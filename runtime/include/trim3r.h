@@ -58,6 +58,8 @@ extern "C" {
 #define T3R_MAX_VIEWS 16u         /* most context views */
 #define T3R_MAX_CLUSTERS 512u     /* most SuperClusters */
 #define T3R_MAX_GAUSSIANS (1u << 24)
+#define T3R_HARMONICS_DEGREE_MOST 3u
+#define T3R_HARMONICS_MOST 16u /* of each colour, degree 0 included */
 #define T3R_MAX_REFINEMENTS 16u
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536u
@@ -253,12 +255,12 @@ typedef struct t3r_config {
     /* 1 = builds follow one another, and each takes over what still holds from the one before; 0 = every build begins
      * anew. Views then outlive the scene: t3r_add_view() adds to those of the last one, and where there is no room the
      * newest replaces the oldest. So a pair slides along a camera's way by one view at a time. Of a view that stays,
-     * its depth with filled and bridged holes, its doubtful pixels and its texture are not made again. The K-means begin
-     * with the last centres and take a sixth of the batches. The scene's frame stays. Refinement takes half the passes.
-     * Both are rounded up. A build begins anew after t3r_init(), t3r_reset() and a build that failed, where the exponent
-     * of the frame changes, and beyond 512 scene units from its origin. A stream halves its passes from the second
-     * keyframe on. The bits are a function of all calls since t3r_init() or t3r_reset(). A build that begins anew has
-     * those of a build with 0. Must be 0 with depth by stereo. [0] */
+     * its depth with filled and bridged holes, its doubtful pixels and its texture are not made again. The K-means
+     * begin with the last centres and take a sixth of the batches. The scene's frame stays. Refinement takes half the
+     * passes. Both are rounded up. A build begins anew after t3r_init(), t3r_reset() and a build that failed, where the
+     * exponent of the frame changes, and beyond 512 scene units from its origin. A stream halves its passes from the
+     * second keyframe on. The bits are a function of all calls since t3r_init() or t3r_reset(). A build that begins
+     * anew has those of a build with 0. Must be 0 with depth by stereo. [0] */
     uint32_t warm;
     /* 1 = a map of at most `gaussians` follows a camera with a depth sensor, by t3r_stream_keyframe() alone; 0 = scenes
      * are built of all views at once. Must be 0 without views and with depth by stereo. [0] */
@@ -560,10 +562,18 @@ t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame);
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 
+/* The colour of a Gaussian seen along a direction, from spherical harmonics (SPEC, "Harmonics"): the scene holds one
+ * colour for all directions, so whoever draws a scene with harmonics appends its Gaussians again for each view.
+ * `degree` is 0..T3R_HARMONICS_DEGREE_MOST. coefficients_q12 are (degree + 1)^2 times r g b, in 1/2^12. `direction` is
+ * from the camera to the mean, of any length in any unit; at length 0 degree 0 alone counts. colour_q7 is as in
+ * t3r_gaussian. T3R_ERR_ARGUMENT: `degree` is out of range. */
+t3r_status t3r_harmonics_colour(const int16_t *coefficients_q12, uint32_t degree, const int32_t direction[3],
+                                uint16_t colour_q7[3]);
+
 /* Draws the scene in the arena as seen by the camera. Its distortion is ignored: targets are pinhole. Without
- * keep_analysis and `warm` the views are discarded, for the raster works where their planes were. T3R_ERR_ARGUMENT: sizes or
- * strides are out of range, or depth or alpha is not aligned for its type. T3R_ERR_CAMERA: the camera is more than
- * 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is drawn in part. */
+ * keep_analysis and `warm` the views are discarded, for the raster works where their planes were. T3R_ERR_ARGUMENT:
+ * sizes or strides are out of range, or depth or alpha is not aligned for its type. T3R_ERR_CAMERA: the camera is more
+ * than 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is drawn in part. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);
 
 /* The number of passes over the scene that the last t3r_render() took: 1 when the arena had room for all splats. */

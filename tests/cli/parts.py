@@ -19,6 +19,7 @@ LINES = {
     "room": ([*SIZE, "-o", "out.mcap"], ["out.mcap"]),
     "info": (["scene.ply", "--svg", "out.svg"], ["out.svg"]),
     "build": (["room.mcap", "--keep", "10", "-o", "out.ply", "--colmap", "start"], ["out.ply", "start"]),
+    "convert": (["scene.ply", "-o", "out.spz"], ["out.spz"]),
     "render": (["scene.ply", "room.mcap", "--view", "1", "-o", "out.png"], ["out.png"]),
     "view": (["room.mcap", "-o", "out.html"], ["out.html"]),
     "eval": (["room.mcap", "--keep", "10", "--html", "out.html", "--images", "pictures"], ["out.html"]),

@@ -1,46 +1,9 @@
-/* Any bytes as a .ply: an error, or a scene that the runtime takes whole. */
-#include <stdint.h>
-#include <stdlib.h>
-
-#include "scene/scene_file.h"
-#include "trim3r.h"
+/* Any bytes as a .ply, of 3DGS or compressed (scene_bytes.h). */
+#include "scene_bytes.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    enum { MOST = 64 };
-    static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[T3R_ARENA_MIN_BYTES(T3R_MIN_SIDE, T3R_MIN_SIDE, 0, MOST)];
-    scene_file scene;
-    char error[256] = "";
-    if (scene_file_parse(data, size, &scene, error, sizeof error) != 0) {
-        if (error[0] == '\0' || scene.gaussians != NULL) {
-            abort();
-        }
-        return 0;
-    }
-    t3r_config config = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 0, MOST);
-    t3r_runtime *runtime;
-    if (t3r_init(&runtime, arena, sizeof arena, &config) != T3R_OK ||
-        t3r_scene_begin(runtime, &scene.frame) != T3R_OK) {
-        abort();
-    }
-    for (uint32_t i = 0; i < scene.count && i < MOST; i++) {
-        if (t3r_scene_append(runtime, &scene.gaussians[i]) != T3R_OK) {
-            abort();
-        }
-    }
-    t3r_camera camera = {
-        .fx_q16 = 8 << 16, .fy_q16 = 8 << 16, .cx_q16 = 4 << 16, .cy_q16 = 4 << 16, .rotation_q30 = {1 << 30, 0, 0, 0}};
-    for (int axis = 0; axis < 3; axis++) {
-        camera.position_q32[axis] = scene.frame.origin_q32[axis];
-    }
-    uint8_t rgb[T3R_MIN_SIDE * T3R_MIN_SIDE * 3];
-    t3r_target target = {
-        .width = T3R_MIN_SIDE, .height = T3R_MIN_SIDE, .rgb = rgb, .rgb_stride_bytes = 3 * T3R_MIN_SIDE};
-    if (t3r_render(runtime, &camera, &target) != T3R_OK) {
-        abort();
-    }
-    scene_file_free(&scene);
-    return 0;
+    return fuzz_scene("scene.ply", data, size);
 }

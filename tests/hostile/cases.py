@@ -1,5 +1,6 @@
 """Hostile files: each a name, what kind of input it is, what writes it, and words that its refusal must say ("" where any
 will do, None where it may also be read)."""
+import gzip
 import json
 import os
 import struct
@@ -174,15 +175,30 @@ given("scene", "2^31-vertices.ply", f.ply(1 << 31, rows=1), "over the limit")
 given("scene", "2^24-vertices.ply", f.ply(1 << 24, rows=1), "cut off")
 given("scene", "2^64-vertices.ply", f.ply("18446744073709551616", rows=1))
 given("scene", "negative-vertices.ply", f.ply(-1, rows=1), "is no element")
-given("scene", "list-property.ply", f.ply(behind="property list uchar int vertex_indices\n"), "lists are not")
+given("scene", "list-property.ply", f.ply(behind="property list uchar int vertex_indices\n"), "has lists")
 given("scene", "header-without-end.ply", b"ply\nformat binary_little_endian 1.0\n" + b"comment x\n" * 100000, "no end")
 given("scene", "huge-header-line.ply", lambda: b"ply\ncomment " + b"x" * (8 * MIB) + b"\n", "")
 given("scene", "skips-2^37-bytes.ply",
-      f.ply(before="element face 16777216\n" + "".join(f"property double p{i}\n" for i in range(1000))), "cut off")
+      f.ply(before="element face 16777216\n" + "".join(f"property double p{i}\n" for i in range(1000))), "more than 512")
 given("scene", "nan.ply", f.ply(3, values=[float("nan")] + [0] * 13), "not a finite number")
 given("scene", "far-apart.ply", lambda: f.ply(2, rows=1) + struct.pack("<14f", 3e38, *([0] * 10), 1, 0, 0))
 given("scene", "no-rotation.ply", f.ply(values=[0] * 14), "rotation without length")
 given("scene", "escapes.ply", f.ply(before=f"{f.ESCAPE}\n"), "unknown header line")
+given("scene", "4096-vertices-of-2^13-bytes.ply",
+      f.ply(before="element face 16777216\n" + "".join(f"property double p{i}\n" for i in range(400))), "cut off")
+given("scene", "16-million-of-zeros.spz", f.spz(1 << 24), "1..1048")
+given("scene", "million-of-zeros.spz", f.spz(1 << 20), "")
+given("scene", "million-of-degree-3.spz", f.spz(1 << 20, degree=3), "")
+given("scene", "streams-of-4-gb.spz", f.spz(1000, stream=f.zstd([(0, 1 << 32)])), "does not unpack")
+given("scene", "table-at-4-gb.spz", f.spz(1000)[:16] + b"\xff" * 4 + f.spz(1000)[20:], "their table")
+given("scene", "stream-of-2^63.spz", f.spz(1000)[:32] + b"\xff" * 8 + f.spz(1000)[40:], "cut off")
+given("scene", "gzip-of-zeros.spz", lambda: gzip.compress(bytes(64 * MIB)), "not an .spz")
+given("scene", "gzip-of-16-million.spz", lambda: gzip.compress(b"NGSP" + struct.pack("<IIBBBB", 3, 1 << 24, 0, 12, 0, 0)), "1..1048")
+given("scene", "gzip-of-a-million.spz",
+      lambda: gzip.compress(b"NGSP" + struct.pack("<IIBBBB", 2, 1 << 20, 3, 12, 0, 0) + bytes(64 << 20)), "")
+given("scene", "not-a-row.splat", bytes(33), "are not those of")
+given("scene", "million-of-zeros.splat", lambda: bytes(32 << 20), "")
+given("scene", "chunks-without-bounds.compressed.ply", f.ply(1, before="element chunk 1\n"), "no property min_x")
 given("scene", "escapes-in-format.ply", b"ply\nformat " + f.ESCAPE.encode() + b"\n", "only binary_little_endian")
 
 

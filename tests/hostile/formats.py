@@ -143,6 +143,18 @@ def xxh32(data):
     return h ^ h >> 16
 
 
+# --- scenes ----------------------------------------------------------------------------------------------------------
+
+
+def spz(count, degree=0, stream=None):
+    """Version 4, every stream of zeros; or each the given one."""
+    sizes = [9, 1, 3, 3, 4, 3 * ((degree + 1)**2 - 1)][:6 if degree else 5]
+    streams = [zstd([(0, count * size)]) if stream is None else stream for size in sizes]
+    table = b"".join(struct.pack("<QQ", len(data), count * size) for data, size in zip(streams, sizes))
+    head = b"NGSP" + struct.pack("<IIBBBBI", 4, count, degree, 12, 0, len(sizes), 32) + bytes(12)
+    return head + table + b"".join(streams)
+
+
 # --- recordings ------------------------------------------------------------------------------------------------------
 
 

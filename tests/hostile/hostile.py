@@ -49,6 +49,7 @@ def commands(kind, path, out):
         "bag": [("import", path, "-o", f"{out}.mcap"), ("build", path, *context, "-o", f"{out}.ply"), ("info", path)],
         "path": [("info", path), ("build", path, *context, "-o", f"{out}.ply")],
         "scene": [("info", path), ("render", path, room, "--view", "1", "-o", f"{out}.png"), ("diff", path, scene),
+                  ("convert", path, "-o", f"{out}.spz"),
                   ("eval", room, "--prune", path, "--context", "0,1", "--target", "2", "--keep", "50")],
         "picture": [("import", pictures, "--intrinsics", "40,40,8,8", "--poses", "estimate", "-o", f"{out}.mcap"),
                     ("diff", path, "good.png")],

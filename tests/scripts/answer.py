@@ -9,7 +9,7 @@ from common import check, done, need_opencv, run
 
 tools, docs = sys.argv[1:3]
 scripts = os.path.join(tools, "study", "scripts")
-SCRIPTS = ("auto", "growth", "live", "paper", "peers", "poses", "results", "speed", "stability", "stereo_results", "stream")
+SCRIPTS = ("auto", "formats", "growth", "live", "paper", "peers", "poses", "results", "speed", "stability", "stereo_results", "stream")
 WRONG = {  # beside an unknown option
     "growth": [["colour"], ["size", "--write"], ["--quick", "--write"]],
     "live": [["--runs", "few"]],

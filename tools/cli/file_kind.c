@@ -13,19 +13,36 @@
 static const struct {
     file_kind kind;
     const char *name, *ending, *begins; /* begins: with these bytes, letters of either case; NULL = see below */
+    bool by_name;                       /* other kinds begin so, too: the name has the ending as well */
 } kinds[] = {
-    {FILE_RECORDING, "a recording", ".mcap", "\x89MCAP0\r\n"},
-    {FILE_SCENE, "a scene", ".ply", "ply"},
-    {FILE_PICTURE, "a PNG picture", ".png", "\x89PNG\r\n\x1a\n"},
-    {FILE_SVG, "an SVG picture", ".svg", "<svg"},
-    {FILE_SVG, "an SVG picture", ".svg", "<?xml"},
-    {FILE_PAGE, "a page", ".html", "<!DOCTYPE html"},
-    {FILE_WEIGHTS, "a weight file", ".t3w", "T3RW"},
-    {FILE_SOURCE, "the C source of a head", ".c", "/* The head `"},
-    {FILE_TABLE, "a table", ".csv", NULL},
-    {FILE_OTHER, "a file of another kind", NULL, NULL},
+    {FILE_RECORDING, "a recording", ".mcap", "\x89MCAP0\r\n", false},
+    {FILE_SCENE, "a scene", ".ply", "ply", false},
+    {FILE_SCENE, "a scene", ".spz", "NGSP", false},
+    {FILE_SCENE, "a scene", ".spz", "\x1f\x8b", true},
+    {FILE_SCENE, "a scene", ".splat", "", true},
+    {FILE_PICTURE, "a PNG picture", ".png", "\x89PNG\r\n\x1a\n", false},
+    {FILE_SVG, "an SVG picture", ".svg", "<svg", false},
+    {FILE_SVG, "an SVG picture", ".svg", "<?xml", false},
+    {FILE_PAGE, "a page", ".html", "<!DOCTYPE html", false},
+    {FILE_WEIGHTS, "a weight file", ".t3w", "T3RW", false},
+    {FILE_SOURCE, "the C source of a head", ".c", "/* The head `", false},
+    {FILE_TABLE, "a table", ".csv", NULL, false},
+    {FILE_OTHER, "a file of another kind", NULL, NULL, false},
 };
 enum { ROWS = sizeof kinds / sizeof kinds[0] };
+
+/* The dot of the ending, or NULL. */
+static const char *ending_of(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    return dot != NULL && dot > slash ? dot : NULL;
+}
+
+static bool is_named(int row, const char *path)
+{
+    const char *ending = ending_of(path);
+    return kinds[row].ending != NULL && ending != NULL && strcmp(ending, kinds[row].ending) == 0;
+}
 
 /* Names of columns with commas between, up to the end of a line: what the tables of eval and stress begin with. */
 static bool is_heading(const char *text)
@@ -48,7 +65,8 @@ file_kind file_kind_of(const char *path)
         return 0;
     }
     for (int i = 0; i < ROWS && count > 0; i++) {
-        if (kinds[i].begins != NULL && strncasecmp(text, kinds[i].begins, strlen(kinds[i].begins)) == 0) {
+        if (kinds[i].begins != NULL && strncasecmp(text, kinds[i].begins, strlen(kinds[i].begins)) == 0 &&
+            (!kinds[i].by_name || is_named(i, path))) {
             return kinds[i].kind;
         }
     }
@@ -57,9 +75,8 @@ file_kind file_kind_of(const char *path)
 
 file_kind file_kind_named(const char *path)
 {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    for (int i = 0; i < ROWS && dot != NULL && dot > slash; i++) {
-        if (kinds[i].ending != NULL && strcmp(dot, kinds[i].ending) == 0) {
+    for (int i = 0; i < ROWS; i++) {
+        if (is_named(i, path)) {
             return kinds[i].kind;
         }
     }

@@ -14,6 +14,7 @@
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "reconstruction/importance_pictures.h"
+#include "reconstruction/scene_append.h"
 #include "reconstruction/scene_frames.h"
 
 void reconstruction_defaults(reconstruction_options *options)
@@ -493,6 +494,24 @@ int reconstruction_stream(reconstruction *r, const t3r_recording *recording, con
 
 /* ---- from a file ---------------------------------------------------------------------------------------------- */
 
+static int append_scene(reconstruction *r, const scene_file *scene, const t3r_camera *eye)
+{
+    uint32_t index = 0;
+    t3r_status status = scene_append_all(r->runtime, scene, eye, &index);
+    if (status != T3R_OK && index > 0) {
+        return cli_error(CLI_BAD_INPUT, "Gaussian %" PRIu32 ": %s", index - 1, t3r_error_text(status));
+    }
+    if (status == T3R_OK) {
+        status = t3r_get_scene(r->runtime, &r->scene);
+    }
+    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "scene", &r->config, r->arena_bytes);
+}
+
+int reconstruction_look_from(reconstruction *r, const scene_file *scene, const t3r_camera *camera)
+{
+    return scene->degree == 0 ? CLI_OK : append_scene(r, scene, camera);
+}
+
 static int load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
                 const reconstruction_options *options)
 {
@@ -505,17 +524,7 @@ static int load(reconstruction *r, const scene_file *scene, uint32_t width, uint
     if (code != CLI_OK) {
         return code;
     }
-    t3r_status status = t3r_scene_begin(r->runtime, &scene->frame);
-    for (uint32_t i = 0; i < scene->count && status == T3R_OK; i++) {
-        status = t3r_scene_append(r->runtime, &scene->gaussians[i]);
-        if (status != T3R_OK) {
-            return cli_error(CLI_BAD_INPUT, "Gaussian %" PRIu32 ": %s", i, t3r_error_text(status));
-        }
-    }
-    if (status == T3R_OK) {
-        status = t3r_get_scene(r->runtime, &r->scene);
-    }
-    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "scene", &r->config, r->arena_bytes);
+    return append_scene(r, scene, NULL);
 }
 
 int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,

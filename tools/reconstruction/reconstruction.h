@@ -124,6 +124,8 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
  * arena, threads and hash are read. */
 int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options);
+/* Gives a loaded scene the colours that its harmonics have from a camera; t3r_render() draws them from now on. */
+int reconstruction_look_from(reconstruction *r, const scene_file *scene, const t3r_camera *camera);
 
 /* What the frames of a scene hold before one is built: valid points, and by stereo the scene's depth in world units, a
  * power of two times 1.5 (0 by sensor). */

@@ -9,8 +9,8 @@
 #include "reason.h"
 #include "scene/scene_format.h"
 
-/* Every format, the first for files that none of them knows. */
-#define FORMATS FORMAT(ply)
+/* Every format. Of two with one suffix the first is written; `ply` is that of files which none of them knows. */
+#define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz) FORMAT(spz_gzip)
 
 #define FORMAT(name) extern const scene_format scene_format_##name;
 FORMATS
@@ -23,16 +23,20 @@ static const scene_format *const formats[] = {
 };
 enum { FORMATS_COUNT = sizeof formats / sizeof formats[0] };
 
+/* That of the longest suffix. */
 static const scene_format *format_of_path(const char *path)
 {
-    size_t length = strlen(path);
+    const scene_format *found = NULL;
+    const size_t length = strlen(path);
+    size_t longest = 0;
     for (int i = 0; i < FORMATS_COUNT; i++) {
-        size_t end = strlen(formats[i]->suffix);
-        if (length > end && strcmp(path + length - end, formats[i]->suffix) == 0) {
-            return formats[i];
+        const size_t end = strlen(formats[i]->suffix);
+        if (length > end && end > longest && strcmp(path + length - end, formats[i]->suffix) == 0) {
+            found = formats[i];
+            longest = end;
         }
     }
-    return NULL;
+    return found;
 }
 
 static const scene_format *format_of_bytes(const uint8_t *bytes, size_t count)
@@ -78,35 +82,39 @@ static int parse_as(const scene_format *format, const uint8_t *bytes, size_t cou
                                  : format->parse(bytes, count, out, error, error_bytes);
 }
 
-int scene_file_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+/* By the first bytes, else by the name. */
+static const scene_format *format_of(const char *name, const uint8_t *bytes, size_t count)
 {
     const scene_format *format = format_of_bytes(bytes, count);
-    return parse_as(format != NULL ? format : formats[0], bytes, count, out, error, error_bytes);
+    format = format != NULL ? format : format_of_path(name);
+    return format != NULL ? format : &scene_format_ply;
+}
+
+int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, scene_file *out, char *error,
+                     size_t error_bytes)
+{
+    return parse_as(format_of(name, bytes, count), bytes, count, out, error, error_bytes);
 }
 
 /* Before the whole of a file is read. */
 static const char *check_first(const uint8_t *first, size_t count)
 {
-    bool any = false;
-    for (int i = 0; i < FORMATS_COUNT; i++) {
-        any = any || formats[i]->magic == NULL;
-    }
-    return any || format_of_bytes(first, count) != NULL ? NULL : formats[0]->foreign;
+    return format_of_bytes(first, count) != NULL ? NULL : scene_format_ply.foreign;
 }
 
 int scene_file_read(const char *path, scene_file *out, char *error, size_t error_bytes)
 {
     *out = (scene_file){0};
     size_t count;
-    uint8_t *bytes = t3r_file_bytes_checked(path, SIZE_MAX, check_first, &count, error, error_bytes);
+    const scene_format *named = format_of_path(path);
+    const bool begins_with_anything = named != NULL && named->magic == NULL && named->parse != NULL;
+    uint8_t *bytes =
+        t3r_file_bytes_checked(path, SIZE_MAX, begins_with_anything ? NULL : check_first, &count, error, error_bytes);
     if (bytes == NULL) {
         return -1;
     }
-    const scene_format *format = format_of_bytes(bytes, count);
-    format = format != NULL ? format : format_of_path(path);
-    format = format != NULL ? format : formats[0];
     char reason[256] = "";
-    int result = parse_as(format, bytes, count, out, reason, sizeof reason);
+    int result = scene_file_parse(path, bytes, count, out, reason, sizeof reason);
     if (result != 0) {
         t3r_reason(error, error_bytes, "%s: %s", path, reason);
     }
@@ -114,18 +122,47 @@ int scene_file_read(const char *path, scene_file *out, char *error, size_t error
     return result;
 }
 
-int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
-                     size_t error_bytes)
+uint32_t scene_file_degree_most(const char *path)
+{
+    const scene_format *format = format_of_path(path);
+    return format == NULL ? 0 : format->degree;
+}
+
+static int write_file(const char *path, const scene_file *scene, int flags, const char *note, char *error,
+                      size_t error_bytes)
 {
     const scene_format *format = format_of_path(path);
     if (format == NULL || format->write == NULL) {
         char known[SCENE_FILE_SUFFIXES_BYTES];
         return t3r_reason(error, error_bytes, "%s: scenes are written as %s", path, scene_file_suffixes(known));
     }
+    scene_source source = {.scene = scene,
+                           .flags = flags,
+                           .note = note,
+                           .turn = scene_turn_to(format->axes, (scene_up)(flags / SCENE_FILE_UP)),
+                           .degree = scene->degree < format->degree ? scene->degree : format->degree};
     whole_file file;
     if (whole_file_begin(&file, path, error, error_bytes) != 0) {
         return -1;
     }
-    format->write(file.stream, scene, flags, note);
+    char reason[256] = "";
+    if (format->write(file.stream, &source, reason, sizeof reason) != 0) {
+        whole_file_abandon(&file);
+        return t3r_reason(error, error_bytes, "%s: %s", path, reason);
+    }
     return whole_file_commit(&file, NULL, error, error_bytes);
+}
+
+int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
+                     size_t error_bytes)
+{
+    /* it is only read */
+    const scene_file made = {
+        .frame = scene->frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene->gaussians, .count = scene->count};
+    return write_file(path, &made, flags, note, error, error_bytes);
+}
+
+int scene_file_rewrite(const char *path, const scene_file *scene, int flags, char *error, size_t error_bytes)
+{
+    return write_file(path, scene, flags, NULL, error, error_bytes);
 }

@@ -23,15 +23,27 @@ static int64_t to_q32(double value)
     return (int64_t)nearbyint(ldexp(value, 32));
 }
 
+/* A row with the axes of the scene. */
+static int read_row(const scene_rows *rows, const scene_turn *turn, uint32_t index, scene_row *row, char *error,
+                    size_t error_bytes)
+{
+    if (rows->read(rows->user, index, row, error, error_bytes) != 0) {
+        return -1;
+    }
+    scene_turn_apply(turn, row->position, row->rotation, rows->degree, row->rest);
+    return 0;
+}
+
 /* A frame for positions that name none: origin at their mean, the median distance from it in [1, 2) scene units.
  * Where the runtime's range of 2^10 does not hold the farthest, the exponent rises by up to 6: positions then still
  * keep 2^-14 of the median distance. */
-static int choose_frame(const scene_rows *rows, t3r_scene_frame *frame, char *error, size_t error_bytes)
+static int choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame, char *error,
+                        size_t error_bytes)
 {
     double mean[3] = {0};
     scene_row row;
     for (uint32_t i = 0; i < rows->count; i++) {
-        if (rows->read(rows->user, i, &row, error, error_bytes) != 0) {
+        if (read_row(rows, turn, i, &row, error, error_bytes) != 0) {
             return -1;
         }
         for (int axis = 0; axis < 3; axis++) {
@@ -44,7 +56,7 @@ static int choose_frame(const scene_rows *rows, t3r_scene_frame *frame, char *er
     }
     double largest_scale = -INFINITY;
     for (uint32_t i = 0; i < rows->count; i++) {
-        (void)rows->read(rows->user, i, &row, error, error_bytes); /* checked above */
+        (void)read_row(rows, turn, i, &row, error, error_bytes); /* checked above */
         const double *p = row.position, *scale = row.log_scale;
         distance[i] = sqrt((p[0] - mean[0]) * (p[0] - mean[0]) + (p[1] - mean[1]) * (p[1] - mean[1]) +
                            (p[2] - mean[2]) * (p[2] - mean[2]));
@@ -95,13 +107,24 @@ static uint16_t clamp_to(double value, int most)
     return (uint16_t)(value <= 0 ? 0 : value >= most ? most : nearbyint(value));
 }
 
-static int convert_row(const scene_rows *rows, uint32_t index, const t3r_scene_frame *frame, t3r_gaussian *g,
-                       char *error, size_t error_bytes)
+/* Coefficients beyond 8 become 8: colours need no more than 2. */
+static void convert_harmonics(const scene_row *row, uint32_t degree, int16_t *harmonics_q12)
+{
+    for (uint32_t i = 0; i < 3 * (harmonics_rest(degree) + 1); i++) {
+        const double value = i < 3 ? row->harmonic[i] : row->rest[i / 3 - 1][i % 3];
+        harmonics_q12[i] = (int16_t)fmax(fmin(nearbyint(value * 4096), INT16_MAX), INT16_MIN);
+    }
+}
+
+static int convert_row(const scene_rows *rows, const scene_turn *turn, uint32_t index, scene_file *scene, char *error,
+                       size_t error_bytes)
 {
     static const char *const axes[] = {"x", "y", "z"};
+    const t3r_scene_frame *frame = &scene->frame;
+    t3r_gaussian *g = &scene->gaussians[index];
     scene_row row;
     double scale[3];
-    if (rows->read(rows->user, index, &row, error, error_bytes) != 0) {
+    if (read_row(rows, turn, index, &row, error, error_bytes) != 0) {
         return -1;
     }
     *g = (t3r_gaussian){.confidence = 255};
@@ -113,7 +136,7 @@ static int convert_row(const scene_rows *rows, uint32_t index, const t3r_scene_f
                               axes[i], row.position[i]);
         }
         g->position_q20[i] = (int32_t)position;
-        g->colour_q7[i] = clamp_to((0.5 + SCENE_HARMONIC_0 * row.harmonic[i]) * 32640, 32640);
+        g->colour_q7[i] = clamp_to((0.5 + HARMONICS_ZERO * row.harmonic[i]) * 32640, 32640);
         scale[i] = exp(row.log_scale[i] - frame->exponent * M_LN2);
     }
     if (gaussian_shape_set(g, scale, row.rotation) != 0) {
@@ -121,24 +144,31 @@ static int convert_row(const scene_rows *rows, uint32_t index, const t3r_scene_f
                           "vertex %" PRIu32 ": a rotation without length, or a scale beyond the format", index);
     }
     g->opacity_q15 = clamp_to(32768 / (1 + exp(-row.opacity_logit)), 32767);
+    if (scene->degree > 0) {
+        convert_harmonics(&row, scene->degree, scene_file_harmonics(scene, index));
+    }
     return 0;
 }
 
 int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, size_t error_bytes)
 {
     *out = (scene_file){0};
-    scene_file scene = {.frame = rows->frame, .count = rows->count};
+    scene_file scene = {.frame = rows->frame, .count = rows->count, .degree = rows->degree};
+    const scene_turn turn = scene_turn_from(rows->axes);
     if ((rows->has_frame ? check_frame(&scene.frame, error, error_bytes)
-                         : choose_frame(rows, &scene.frame, error, error_bytes)) != 0) {
+                         : choose_frame(rows, &turn, &scene.frame, error, error_bytes)) != 0) {
         return -1;
     }
     scene.gaussians = malloc(rows->count * sizeof *scene.gaussians);
-    if (scene.gaussians == NULL) {
+    scene.harmonics_q12 =
+        rows->degree == 0 ? NULL : malloc(rows->count * scene_file_harmonics_count(&scene) * sizeof(int16_t));
+    if (scene.gaussians == NULL || (rows->degree > 0 && scene.harmonics_q12 == NULL)) {
+        scene_file_free(&scene);
         return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", rows->count);
     }
     for (uint32_t i = 0; i < rows->count; i++) {
-        if (convert_row(rows, i, &scene.frame, &scene.gaussians[i], error, error_bytes) != 0) {
-            free(scene.gaussians);
+        if (convert_row(rows, &turn, i, &scene, error, error_bytes) != 0) {
+            scene_file_free(&scene);
             return -1;
         }
     }
@@ -149,5 +179,6 @@ int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, s
 void scene_file_free(scene_file *scene)
 {
     free(scene->gaussians);
+    free(scene->harmonics_q12);
     *scene = (scene_file){0};
 }

@@ -22,6 +22,7 @@ static const struct {
     {"room", command_room, "write the built-in room as a recording"},
     {"info", command_info, "show what recordings and scenes hold"},
     {"build", command_build, "turn frames of a recording into exactly Z Gaussians"},
+    {"convert", command_convert, "turn a scene file into another format"},
     {"render", command_render, "draw a scene as a recorded camera, a pose or a trajectory sees it"},
     {"view", command_view, "show a scene or a recording in a browser"},
     {"eval", command_eval, "score rendered views against recorded ones"},

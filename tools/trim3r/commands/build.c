@@ -9,6 +9,7 @@
 #include "cli/cli.h"
 #include "cli/file_options.h"
 #include "scene/scene_file.h"
+#include "scene/scene_up_option.h"
 #include "scene/colmap_folder.h"
 #include "scene/tile_lists.h"
 #include "reconstruction/developed_frame.h"
@@ -34,7 +35,7 @@ typedef struct build_options {
     reconstruction_options settings;
 } build_options;
 
-enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_POSES, KEY_JSON };
+enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_UP, KEY_POSES, KEY_JSON };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
@@ -53,6 +54,10 @@ static const struct argp_option options[] = {
      0},
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
+    {"up", KEY_UP, "AXIS", 0,
+     "axis of the recording's world that points up, x, -x, y, -y, z or -z: the file is turned so that y does, for "
+     "viewers that want it (not turned; .spz and .glb as for -y)",
+     0},
     {"comments", KEY_COMMENTS, NULL, 0,
      "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
@@ -77,6 +82,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_LOCAL:
         o->flags |= SCENE_FILE_LOCAL;
+        return 0;
+    case KEY_UP:
+        o->flags |= scene_up_option(state, arg);
         return 0;
     case KEY_COMMENTS:
         o->flags |= SCENE_FILE_COMMENTS;

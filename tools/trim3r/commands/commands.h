@@ -8,6 +8,7 @@ int command_import(int argc, char **argv);
 int command_capture(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_build(int argc, char **argv);
+int command_convert(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_view(int argc, char **argv);
 int command_eval(int argc, char **argv);

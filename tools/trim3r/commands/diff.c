@@ -44,7 +44,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (o->path[1] == NULL) {
             argp_error(state, "two files are needed");
         } else if (scene_file_is_read(o->path[0]) != scene_file_is_read(o->path[1])) {
-            argp_error(state, "a scene (.ply) and a picture cannot be compared");
+            argp_error(state, "a scene and a picture cannot be compared");
         }
         return 0;
     default:
@@ -56,7 +56,7 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "A B",
-    .doc = "Compare two scenes (.ply) or two views (PNG)."
+    .doc = "Compare two scenes or two views (PNG)."
            "\vExamples:\n"
            "  trim3r diff scene.ply other.ply\n"
            "  trim3r diff view.png other.png --json\n\n"

@@ -87,6 +87,14 @@ static double parse_positive(struct argp_state *state, const char *option, const
     return value;
 }
 
+/* Pictures are PNG; devices take any bytes. */
+static void check_picture_name(struct argp_state *state, const char *option, const char *path)
+{
+    if (path != NULL && file_kind_named(path) != FILE_PICTURE && strncmp(path, "/dev/", 5) != 0) {
+        argp_error(state, "%s %s: pictures are written as .png", option, path);
+    }
+}
+
 static void check_options(struct argp_state *state, const render_options *o)
 {
     int lenses = o->has_view + (o->pose != NULL) + o->has_fov;
@@ -102,6 +110,9 @@ static void check_options(struct argp_state *state, const render_options *o)
     } else if (o->has_fov && (o->trajectory == NULL || !o->has_size)) {
         argp_error(state, "--fov goes with --trajectory and --size");
     }
+    check_picture_name(state, "-o", o->output);
+    check_picture_name(state, "--depth", o->depth);
+    check_picture_name(state, "--alpha", o->alpha);
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -289,8 +300,8 @@ typedef struct planes {
     uint16_t *grey;
 } planes;
 
-static int render_one(const render_options *o, reconstruction *r, const viewpoint *view, uint32_t index, uint32_t count,
-                      const planes *p, uint64_t *hash, work_times *times)
+static int render_one(const render_options *o, reconstruction *r, const scene_file *scene, const viewpoint *view,
+                      uint32_t index, uint32_t count, const planes *p, uint64_t *hash, work_times *times)
 {
     size_t pixels = (size_t)view->width * view->height;
     t3r_target target = {
@@ -305,6 +316,10 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
     };
     r->give_up_at = o->most_ms > 0 ? cli_now() + o->most_ms / 1e3 : 0;
     work_times_pass(times);
+    int code = reconstruction_look_from(r, scene, &view->camera);
+    if (code != CLI_OK) {
+        return code;
+    }
     t3r_status status = t3r_render(r->runtime, &view->camera, &target);
     work_times_end(times, WORK_DRAW);
     if (status == T3R_ERR_CANCELLED) {
@@ -316,7 +331,7 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
         return reconstruction_error(status, from, &r->config, r->arena_bytes);
     }
     *hash = t3r_hash_bytes(*hash, p->rgb, pixels * 3);
-    int code = write_picture(o->output, index, count, &(picture){view->width, view->height, 3, 8, p->rgb});
+    code = write_picture(o->output, index, count, &(picture){view->width, view->height, 3, 8, p->rgb});
     picture grey = {view->width, view->height, 1, 16, p->grey};
     if (code == CLI_OK && o->depth != NULL) {
         convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
@@ -354,7 +369,7 @@ static int render_all(const render_options *o, const scene_file *scene, const vi
         code = cli_error(CLI_BAD_INPUT, "out of memory");
     }
     for (uint32_t i = 0; i < views->count && code == CLI_OK; i++) {
-        code = render_one(o, &r, &views->items[i], i, views->count, &p, &hash, times);
+        code = render_one(o, &r, scene, &views->items[i], i, views->count, &p, &hash, times);
     }
     times->seconds[WORK_DRAW] /= views->count;
     times->seconds[WORK_WRITE] /= views->count;

@@ -1,0 +1,331 @@
+/* Every format of scene files: what is written reads back within the steps of the format, cut and damaged files are
+ * refused with a reason. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/fixed.h"
+#include "file_bytes.h"
+#include "scene/gaussian_shape.h"
+#include "scene/scene_file.h"
+#include "scene/scene_turn.h"
+#include "scratch.h"
+
+enum { COUNT = 700 };
+
+static const struct format {
+    const char *suffix;
+    double position, scale, colour, opacity, harmonic; /* the most that may differ: scene units, a share, of 1, of 1 */
+    uint32_t degree;                                   /* that is kept */
+} formats[] = {
+    {".ply", 1e-5, 1e-4, 1e-4, 1e-4, 2e-4, 3},
+    {".compressed.ply", 4e-3, 2e-2, 3e-3, 3e-3, 0.017, 3},
+    {".splat", 1e-5, 3e-2, 3e-3, 3e-3, 0, 0},
+    {".spz", 1e-5, 4e-2, 5e-3, 3e-3, 0.064, 3},
+};
+enum { FORMATS = sizeof formats / sizeof formats[0] };
+
+static void *folder;
+
+static int make_folder(void **state)
+{
+    int failed = scratch_setup(state);
+    folder = *state;
+    return failed;
+}
+
+static double share(uint32_t *seed)
+{
+    *seed = t3r_mix32(*seed + 0x9e3779b9u);
+    return *seed / 4294967296.0;
+}
+
+/* A helix, so that the order of a file can be undone: x of each Gaussian is its own. */
+static void make_scene(scene_file *scene, uint32_t degree)
+{
+    uint32_t seed = 5;
+    *scene =
+        (scene_file){.frame = {{INT64_C(3) << 30, -(INT64_C(1) << 33), 12345}, 1}, .count = COUNT, .degree = degree};
+    scene->gaussians = calloc(COUNT, sizeof *scene->gaussians);
+    scene->harmonics_q12 = calloc(COUNT * scene_file_harmonics_count(scene), sizeof(int16_t));
+    assert_true(scene->gaussians != NULL && scene->harmonics_q12 != NULL);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        t3r_gaussian *g = &scene->gaussians[i];
+        const double angle = i * 0.05, place[3] = {i * 0.01 - 3.5, cos(angle), sin(angle)};
+        double rotation[4], scale[3];
+        for (int k = 0; k < 4; k++) {
+            rotation[k] = share(&seed) - 0.5;
+        }
+        for (int k = 0; k < 3; k++) {
+            scale[k] = exp(-5 + 2 * share(&seed));
+            g->position_q20[k] = (int32_t)nearbyint(ldexp(place[k], 20));
+            g->colour_q7[k] = (uint16_t)(share(&seed) * 32640);
+        }
+        assert_int_equal(gaussian_shape_set(g, scale, rotation), 0);
+        g->opacity_q15 = (uint16_t)(1000 + share(&seed) * 31000);
+        g->confidence = 255;
+        for (size_t k = 0; k < scene_file_harmonics_count(scene); k++) {
+            const double value = k < 3 ? (g->colour_q7[k] / 32640.0 - 0.5) / HARMONICS_ZERO : 1.6 * share(&seed) - 0.8;
+            scene_file_harmonics(scene, i)[k] = (int16_t)nearbyint(value * 4096);
+        }
+    }
+    if (degree == 0) {
+        free(scene->harmonics_q12);
+        scene->harmonics_q12 = NULL;
+    }
+}
+
+static double world(const scene_file *scene, uint32_t index, int axis)
+{
+    return ldexp((double)scene->frame.origin_q32[axis], -32) +
+           ldexp(scene->gaussians[index].position_q20[axis], scene->frame.exponent - 20);
+}
+
+/* The Gaussian of `b` that lies where `index` of `a` does. */
+static uint32_t find(const scene_file *a, uint32_t index, const scene_file *b)
+{
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < b->count; i++) {
+        if (fabs(world(b, i, 0) - world(a, index, 0)) < fabs(world(b, best, 0) - world(a, index, 0))) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+#define NEAR(x, y, most)                                                                                               \
+    do {                                                                                                               \
+        if (!(fabs((x) - (y)) <= (most))) {                                                                            \
+            fail_msg("%s, Gaussian %u: %s = %g, not %g", f->suffix, index, #x, (double)(x), (double)(y));              \
+        }                                                                                                              \
+    } while (0)
+
+static void compare(const struct format *f, const scene_file *a, const scene_file *b, uint32_t degree)
+{
+    assert_int_equal(b->count, a->count);
+    assert_int_equal(b->degree, degree < f->degree ? degree : f->degree);
+    for (uint32_t index = 0; index < a->count; index++) {
+        const uint32_t other = find(a, index, b);
+        const t3r_gaussian *g = &a->gaussians[index], *h = &b->gaussians[other];
+        double p[9], q[9], most = 0;
+        gaussian_covariance(g, p);
+        gaussian_covariance(h, q);
+        for (int i = 0; i < 9; i++) {
+            most = fmax(most, fabs(p[i]));
+        }
+        for (int i = 0; i < 9; i++) {
+            NEAR(ldexp(q[i], 2 * (b->frame.exponent - a->frame.exponent)), p[i], 2.5 * f->scale * most);
+        }
+        for (int i = 0; i < 3; i++) {
+            NEAR(world(b, other, i), world(a, index, i), f->position);
+            NEAR(h->colour_q7[i] / 32640.0, g->colour_q7[i] / 32640.0, f->colour);
+        }
+        NEAR(h->opacity_q15 / 32768.0, g->opacity_q15 / 32768.0, f->opacity);
+        for (size_t i = 3; b->degree > 0 && i < scene_file_harmonics_count(b); i++) {
+            NEAR(scene_file_harmonics(b, other)[i] / 4096.0, scene_file_harmonics(a, index)[i] / 4096.0, f->harmonic);
+        }
+    }
+}
+
+static const char *path_of(const struct format *f, const char *stem)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s%s", stem, f->suffix);
+    return scratch_path(folder, name);
+}
+
+static void must_read(const char *path, scene_file *out)
+{
+    char error[256] = "";
+    if (scene_file_read(path, out, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+}
+
+static void must_write(const char *path, const scene_file *scene, int flags)
+{
+    char error[256] = "";
+    if (scene_file_rewrite(path, scene, flags, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+}
+
+static void read_back(void **state)
+{
+    (void)state;
+    for (int k = 0; k < FORMATS; k++) {
+        for (uint32_t degree = 0; degree <= 3; degree++) {
+            scene_file scene, back;
+            make_scene(&scene, degree);
+            const char *path = path_of(&formats[k], "whole");
+            must_write(path, &scene, 0);
+            must_read(path, &back);
+            compare(&formats[k], &scene, &back, degree);
+            scene_file_free(&scene);
+            scene_file_free(&back);
+        }
+    }
+}
+
+/* With --up each format has y up; those of other axes read it as y down, as ever. */
+static void turn_up(void **state)
+{
+    (void)state;
+    for (int k = 0; k < FORMATS; k++) {
+        scene_file scene, back;
+        make_scene(&scene, 0);
+        const char *path = path_of(&formats[k], "up");
+        must_write(path, &scene, SCENE_FILE_UP * SCENE_UP_Z);
+        must_read(path, &back);
+        const bool flipped = strcmp(formats[k].suffix, ".spz") == 0 || strcmp(formats[k].suffix, ".glb") == 0;
+        for (uint32_t i = 0; i < COUNT; i += 50) { /* z was up */
+            const uint32_t other = strcmp(formats[k].suffix, ".ply") == 0 ? i : find(&scene, i, &back);
+            assert_true(fabs((flipped ? -1 : 1) * world(&back, other, 1) - world(&scene, i, 2)) < 0.01);
+        }
+        scene_file_free(&scene);
+        scene_file_free(&back);
+    }
+}
+
+static int parse(const char *suffix, const uint8_t *bytes, size_t count, char error[256])
+{
+    char name[64];
+    snprintf(name, sizeof name, "scene%s", suffix);
+    /* exactly as long as it is, so that a sanitizer sees the byte behind */
+    uint8_t *copy = malloc(count + (count == 0));
+    assert_non_null(copy);
+    memcpy(copy, bytes, count);
+    scene_file scene;
+    error[0] = '\0';
+    int result = scene_file_parse(name, copy, count, &scene, error, 256);
+    assert_int_equal(result != 0, error[0] != '\0');
+    if (result != 0) {
+        assert_true(scene.gaussians == NULL && scene.harmonics_q12 == NULL);
+    }
+    scene_file_free(&scene);
+    free(copy);
+    return result;
+}
+
+static uint8_t *bytes_of(const struct format *f, uint32_t count, size_t *size)
+{
+    scene_file scene;
+    char error[256] = "";
+    make_scene(&scene, 3);
+    scene.count = count;
+    const char *path = path_of(f, "small");
+    must_write(path, &scene, 0);
+    scene_file_free(&scene);
+    uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, size, error, sizeof error);
+    assert_non_null(bytes);
+    return bytes;
+}
+
+static void refuse_every_cut(void **state)
+{
+    (void)state;
+    char error[256];
+    for (int k = 0; k < FORMATS; k++) {
+        const struct format *f = &formats[k];
+        size_t size;
+        uint8_t *bytes = bytes_of(f, 3, &size);
+        assert_int_equal(parse(f->suffix, bytes, size, error), 0);
+        for (size_t cut = 0; cut < size; cut++) {
+            const bool whole_rows = strcmp(f->suffix, ".splat") == 0 && cut > 0 && cut % 32 == 0;
+            if (parse(f->suffix, bytes, cut, error) != (whole_rows ? 0 : -1)) {
+                fail_msg("%s: cut at byte %zu of %zu", f->suffix, cut, size);
+            }
+        }
+        free(bytes);
+    }
+}
+
+/* Whatever byte changes, a scene or a reason comes out. */
+static void survive_every_byte(void **state)
+{
+    (void)state;
+    char error[256];
+    for (int k = 0; k < FORMATS; k++) {
+        size_t size;
+        uint8_t *bytes = bytes_of(&formats[k], 3, &size);
+        for (size_t at = 0; at < size; at++) {
+            static const uint8_t values[] = {0, 1, 0x7f, 0x80, 0xff};
+            const uint8_t kept = bytes[at];
+            for (size_t i = 0; i < sizeof values; i++) {
+                bytes[at] = values[i];
+                (void)parse(formats[k].suffix, bytes, size, error);
+            }
+            bytes[at] = kept;
+        }
+        free(bytes);
+    }
+}
+
+static void say_why(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *suffix, *reason;
+        size_t at;
+        uint8_t value;
+    } bad[] = {
+        {".spz", "not an .spz file", 0, 'X'},
+        {".spz", "version 9", 4, 9},
+        {".spz", "1048", 11, 1},
+        {".spz", "harmonics of degree 5", 12, 5},
+        {".spz", "255 fraction bits", 13, 255},
+        {".spz", "2 streams", 15, 2},
+        {".spz", "table at byte 255", 16, 255},
+        {".spz", "cut off", 34, 255},
+        {".splat", "not finite", 3, 0x7f},
+        {".splat", "below 0", 15, 0xbf},
+        {".compressed.ply", "property", 70, 'w'},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        int k = 0;
+        while (strcmp(formats[k].suffix, bad[i].suffix) != 0) {
+            k++;
+        }
+        size_t size;
+        char error[256];
+        uint8_t *bytes = bytes_of(&formats[k], 3, &size);
+        bytes[bad[i].at] = bad[i].value;
+        if (strcmp(bad[i].suffix, ".splat") == 0 && bad[i].at == 3) {
+            bytes[2] = 0x80;
+        }
+        assert_int_equal(parse(bad[i].suffix, bytes, size, error), -1);
+        if (strstr(error, bad[i].reason) == NULL) {
+            fail_msg("%s: '%s' does not say '%s'", bad[i].suffix, error, bad[i].reason);
+        }
+        free(bytes);
+    }
+}
+
+/* A place that the format does not hold. */
+static void refuse_to_write(void **state)
+{
+    (void)state;
+    char error[256] = "";
+    t3r_gaussian g = {.opacity_q15 = 9};
+    const t3r_scene far = {.frame = {{INT64_C(1) << 60, 0, 0}, 0}, .gaussians = &g, .count = 1};
+    const char *path = scratch_path(folder, "far.spz");
+    assert_int_equal(scene_file_write(path, &far, 0, NULL, error, sizeof error), -1);
+    assert_non_null(strstr(error, "--local"));
+    assert_int_equal(scene_file_write(path, &far, SCENE_FILE_LOCAL, NULL, error, sizeof error), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(read_back),          cmocka_unit_test(turn_up), cmocka_unit_test(refuse_every_cut),
+        cmocka_unit_test(survive_every_byte), cmocka_unit_test(say_why), cmocka_unit_test(refuse_to_write),
+    };
+    return cmocka_run_group_tests(tests, make_folder, scratch_teardown);
+}

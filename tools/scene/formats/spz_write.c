@@ -1,0 +1,170 @@
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zstd.h>
+
+#include "bytes.h"
+#include "reason.h"
+#include "scene/formats/byte_codes.h"
+#include "scene/formats/spz.h"
+
+enum {
+    FRACTION_BITS_MOST = 23, /* 24 bits hold a unit then */
+    PACKING_LEVEL = 12,      /* of Zstandard: hardly any larger than the best, and fast */
+    STEPS_OF_DEGREE_1 = 8,   /* of 1/128: the reference writer keeps 5 bits of degree 1 ... */
+    STEPS_BEYOND = 16        /* ... and 4 of the others */
+};
+
+typedef struct packed_stream {
+    uint8_t *bytes;
+    size_t count;
+} packed_stream;
+
+/* As many fraction bits as the farthest coordinate leaves of 23; -1: it has no place in them. */
+static int choose_fraction(const scene_source *source)
+{
+    double farthest = 0;
+    scene_row row;
+    for (uint32_t i = 0; i < source->scene->count; i++) {
+        scene_source_row(source, i, &row);
+        farthest = fmax(farthest, fmax(fmax(fabs(row.position[0]), fabs(row.position[1])), fabs(row.position[2])));
+    }
+    int bits = FRACTION_BITS_MOST;
+    while (bits >= 0 && ldexp(farthest, bits) > 0x7fffff) {
+        bits--;
+    }
+    return bits;
+}
+
+static void put_position(uint8_t *bytes, double position, uint32_t fraction_bits)
+{
+    const uint32_t steps = (uint32_t)(int32_t)nearbyint(ldexp(position, (int)fraction_bits));
+    bytes[0] = (uint8_t)steps;
+    bytes[1] = (uint8_t)(steps >> 8);
+    bytes[2] = (uint8_t)(steps >> 16);
+}
+
+/* The inverse of what spz_read.c says. */
+static void put_rotation(uint8_t *bytes, const double rotation[4])
+{
+    const double xyzw[4] = {rotation[1], rotation[2], rotation[3], rotation[0]};
+    uint32_t largest = 0;
+    for (uint32_t i = 1; i < 4; i++) {
+        largest = fabs(xyzw[i]) > fabs(xyzw[largest]) ? i : largest;
+    }
+    uint32_t word = largest;
+    for (uint32_t i = 0; i < 4; i++) {
+        if (i != largest) {
+            const double size = nearbyint(fabs(xyzw[i]) * (511 * M_SQRT2));
+            const bool negative = (xyzw[i] < 0) != (xyzw[largest] < 0);
+            word = word << 10 | (negative ? 512u : 0u) | (size < 511 ? (uint32_t)size : 511u);
+        }
+    }
+    t3r_store_le32(bytes, word);
+}
+
+/* 128 + 128 x the coefficient, a multiple of `step` steps of 1/128. */
+static uint8_t harmonic_byte(double value, int step)
+{
+    return byte_of(nearbyint(value * 128 / step) * step + 128);
+}
+
+static void put_row(const scene_row *row, const spz_layout *layout, int stream, uint8_t *out)
+{
+    const uint32_t rest = harmonics_rest(layout->degree);
+    switch (stream) {
+    case SPZ_POSITIONS:
+        for (int i = 0; i < 3; i++) {
+            put_position(out + 3 * i, row->position[i], layout->fraction_bits);
+        }
+        return;
+    case SPZ_ALPHAS:
+        *out = byte_of(255 * scene_row_opacity(row));
+        return;
+    case SPZ_COLOURS:
+        for (int i = 0; i < 3; i++) {
+            out[i] = byte_of(255 * (0.5 + SPZ_COLOUR_SCALE * row->harmonic[i]));
+        }
+        return;
+    case SPZ_SCALES:
+        for (int i = 0; i < 3; i++) {
+            out[i] = byte_of((row->log_scale[i] - SPZ_SCALE_LEAST) * SPZ_SCALE_STEPS);
+        }
+        return;
+    case SPZ_ROTATIONS:
+        put_rotation(out, row->rotation);
+        return;
+    default:
+        for (uint32_t i = 0; i < 3 * rest; i++) {
+            out[i] = harmonic_byte(row->rest[i / 3][i % 3], i < 9 ? STEPS_OF_DEGREE_1 : STEPS_BEYOND);
+        }
+    }
+}
+
+static int pack_stream(const scene_source *source, const spz_layout *layout, int stream, packed_stream *out)
+{
+    const size_t each = spz_stream_bytes(layout, stream), size = layout->count * each;
+    const size_t most = ZSTD_compressBound(size);
+    uint8_t *bytes = malloc(size + 1);
+    out->bytes = malloc(most);
+    if (bytes == NULL || out->bytes == NULL) {
+        free(bytes);
+        return -1;
+    }
+    for (uint32_t i = 0; i < layout->count; i++) {
+        scene_row row;
+        scene_source_row(source, i, &row);
+        put_row(&row, layout, stream, bytes + i * each);
+    }
+    out->count = ZSTD_compress(out->bytes, most, bytes, size, PACKING_LEVEL);
+    free(bytes);
+    return ZSTD_isError(out->count) ? -1 : 0;
+}
+
+static void write_packed(FILE *file, const spz_layout *layout, const packed_stream *streams, int stream_count)
+{
+    uint8_t header[SPZ_HEADER_BYTES] = SPZ_MAGIC;
+    t3r_store_le32(header + SPZ_VERSION_AT, layout->version);
+    t3r_store_le32(header + SPZ_COUNT_AT, layout->count);
+    header[SPZ_DEGREE_AT] = (uint8_t)layout->degree;
+    header[SPZ_FRACTION_AT] = (uint8_t)layout->fraction_bits;
+    header[SPZ_STREAMS_AT] = (uint8_t)stream_count;
+    t3r_store_le32(header + SPZ_TABLE_AT, SPZ_HEADER_BYTES);
+    fwrite(header, 1, sizeof header, file);
+    for (int i = 0; i < stream_count; i++) {
+        uint8_t entry[SPZ_ENTRY_BYTES];
+        t3r_store_le64(entry, streams[i].count);
+        t3r_store_le64(entry + 8, (uint64_t)layout->count * spz_stream_bytes(layout, i));
+        fwrite(entry, 1, sizeof entry, file);
+    }
+    for (int i = 0; i < stream_count; i++) {
+        fwrite(streams[i].bytes, 1, streams[i].count, file);
+    }
+}
+
+int spz_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
+{
+    const int fraction_bits = choose_fraction(source);
+    if (fraction_bits < 0) {
+        return t3r_reason(error, error_bytes, "positions of 2^23 world units and more have no place in an .spz%s",
+                          (source->flags & SCENE_FILE_LOCAL) == 0 ? " (--local writes them from the first camera)"
+                                                                  : "");
+    }
+    const spz_layout layout = {SPZ_VERSION, source->scene->count, source->degree, (uint32_t)fraction_bits};
+    const int stream_count = source->degree > 0 ? SPZ_STREAMS : SPZ_HARMONICS;
+    packed_stream streams[SPZ_STREAMS] = {0};
+    int result = 0;
+    for (int i = 0; i < stream_count && result == 0; i++) {
+        result = pack_stream(source, &layout, i, &streams[i]);
+    }
+    if (result == 0) {
+        write_packed(file, &layout, streams, stream_count);
+    } else {
+        (void)t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", layout.count);
+    }
+    for (int i = 0; i < SPZ_STREAMS; i++) {
+        free(streams[i].bytes);
+    }
+    return result;
+}

@@ -1,6 +1,0 @@
-#include "scene/ply.h"
-
-#include "scene/scene_format.h"
-
-const scene_format scene_format_ply = {
-    .suffix = ".ply", .magic = "ply", .foreign = "byte 0: not a .ply file", .parse = ply_parse, .write = ply_write};

@@ -1,0 +1,101 @@
+#include "scene/scene_turn.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Quaternions w x y z. */
+static const double stays[4] = {1, 0, 0, 0};
+static const double half_about_x[4] = {0, 1, 0, 0}; /* x, -y, -z */
+static const double half_about_z[4] = {0, 0, 0, 1}; /* -x, -y, z */
+
+/* What turns each axis to -y, which is up where y points down. */
+static const struct {
+    const char *name;
+    double rotation[4];
+} ups[] = {
+    [SCENE_UP_UNKNOWN] = {"", {1, 0, 0, 0}},
+    [SCENE_UP_X] = {"x", {M_SQRT1_2, 0, 0, -M_SQRT1_2}},
+    [SCENE_UP_MX] = {"-x", {M_SQRT1_2, 0, 0, M_SQRT1_2}},
+    [SCENE_UP_Y] = {"y", {0, 1, 0, 0}},
+    [SCENE_UP_MY] = {"-y", {1, 0, 0, 0}},
+    [SCENE_UP_Z] = {"z", {M_SQRT1_2, M_SQRT1_2, 0, 0}},
+    [SCENE_UP_MZ] = {"-z", {M_SQRT1_2, -M_SQRT1_2, 0, 0}},
+};
+
+/* First b, then a. */
+static void multiply(const double a[4], const double b[4], double out[4])
+{
+    out[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
+    out[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
+    out[2] = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
+    out[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
+}
+
+static scene_turn turn_of(const double q[4])
+{
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    scene_turn turn = {.rotation = {w, x, y, z},
+                       .matrix = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+                                  2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                                  2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+    for (int i = 0; i < 9; i++) {
+        turn.matrix[i] = nearbyint(turn.matrix[i]);
+    }
+    turn.none = turn.matrix[0] == 1 && turn.matrix[4] == 1;
+    turn.harmonics = harmonics_turn_of(turn.matrix);
+    return turn;
+}
+
+static const double *from_scene(scene_axes axes)
+{
+    return axes == SCENE_AXES_RUB ? half_about_x : axes == SCENE_AXES_LUF ? half_about_z : stays;
+}
+
+scene_turn scene_turn_to(scene_axes axes, scene_up up)
+{
+    double both[4];
+    const bool bare = axes == SCENE_AXES_AS_THEY_ARE && up != SCENE_UP_UNKNOWN;
+    multiply(bare ? half_about_x : from_scene(axes), ups[up].rotation, both);
+    return turn_of(both);
+}
+
+scene_turn scene_turn_from(scene_axes axes)
+{
+    return turn_of(from_scene(axes)); /* half a turn is its own inverse */
+}
+
+void scene_turn_apply(const scene_turn *turn, double position[3], double rotation[4], uint32_t degree,
+                      double rest[HARMONICS_REST_MOST][3])
+{
+    if (turn->none) {
+        return;
+    }
+    const double p[3] = {position[0], position[1], position[2]};
+    const double q[4] = {rotation[0], rotation[1], rotation[2], rotation[3]};
+    for (int axis = 0; axis < 3; axis++) {
+        const double *to = &turn->matrix[3 * axis];
+        position[axis] = to[0] * p[0] + to[1] * p[1] + to[2] * p[2];
+    }
+    multiply(turn->rotation, q, rotation);
+    harmonics_turn_apply(&turn->harmonics, degree, rest);
+}
+
+void scene_turn_origin(const scene_turn *turn, const int64_t origin_q32[3], int64_t turned_q32[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        turned_q32[axis] = 0;
+        for (int i = 0; i < 3; i++) {
+            turned_q32[axis] += (int64_t)turn->matrix[3 * axis + i] * origin_q32[i];
+        }
+    }
+}
+
+scene_up scene_up_named(const char *name)
+{
+    for (int i = SCENE_UP_X; i <= SCENE_UP_MZ; i++) {
+        if (strcmp(ups[i].name, name) == 0) {
+            return (scene_up)i;
+        }
+    }
+    return SCENE_UP_UNKNOWN;
+}

@@ -1,0 +1,113 @@
+/* trim3r convert: a scene file to another format. */
+#include "trim3r/commands/commands.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "cli/cli.h"
+#include "cli/file_options.h"
+#include "cli/json_output.h"
+#include "cli/option_values.h"
+#include "scene/scene_file.h"
+#include "scene/scene_up_option.h"
+
+#define ERROR_BYTES 512
+
+typedef struct options {
+    const char *scene, *output;
+    int flags; /* SCENE_FILE_... */
+    bool json;
+} options;
+
+enum { KEY_UP = 0x100, KEY_JSON };
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    options *o = state->input;
+    switch (key) {
+    case 'o':
+        o->output = argument;
+        return 0;
+    case KEY_UP:
+        o->flags |= scene_up_option(state, argument);
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        option_argument(state, argument, (const char **[]){&o->scene}, 1);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->scene == NULL || o->output == NULL) {
+            argp_error(state, o->scene == NULL ? "SCENE is missing" : "-o SCENE is missing");
+        } else if (!scene_file_is_written(o->output)) {
+            argp_error(state, "-o %s: scenes are written as %s", o->output,
+                       scene_file_suffixes((char[SCENE_FILE_SUFFIXES_BYTES]){0}));
+        }
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_option argp_options[] = {
+    OPTION_ARGUMENTS("SCENE", OPTION_READS),
+    {"output", 'o', "SCENE", OPTION_WRITES(FILE_SCENE), "scene to write (needed); its ending names the format", 0},
+    {"up", KEY_UP, "AXIS", 0,
+     "axis of the scene that points up, x, -x, y, -y, z or -z: the file is turned so that y does, for viewers that "
+     "want "
+     "it (not turned; .spz and .glb as for -y)",
+     0},
+    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {0},
+};
+
+static const struct argp argp = {
+    .options = argp_options,
+    .parser = parse_option,
+    .args_doc = "SCENE",
+    .doc = "Turn a scene file into another format."
+           "\vThe scene's first bytes say what is read, the ending of -o what is written. Harmonics are kept up to the "
+           "degree that the format holds.\n"
+           "\n"
+           "Examples:\n"
+           "  trim3r convert scene.ply -o scene.spz\n"
+           "  trim3r convert theirs.compressed.ply -o theirs.ply\n"
+           "  trim3r convert scene.ply --up z -o scene.splat",
+};
+
+static void report(const options *o, const scene_file *scene, uint32_t degree)
+{
+    if (o->json) {
+        cJSON *root = cJSON_CreateObject();
+        cJSON_AddStringToObject(root, "scene", o->output);
+        json_add_integer(root, "gaussians", scene->count);
+        json_add_integer(root, "degree_read", scene->degree);
+        json_add_integer(root, "degree", degree);
+        json_print(root);
+        return;
+    }
+    printf("%s: %" PRIu32 " Gaussians, harmonics of degree %" PRIu32, o->output, scene->count, degree);
+    if (degree < scene->degree) {
+        printf(" (%" PRIu32 " were read)", scene->degree);
+    }
+    putchar('\n');
+}
+
+int command_convert(int argc, char **argv)
+{
+    options o = {0};
+    file_options_parse(&argp, argc, argv, &o);
+    char error[ERROR_BYTES] = "";
+    scene_file scene;
+    if (scene_file_read(o.scene, &scene, error, sizeof error) != 0 ||
+        scene_file_rewrite(o.output, &scene, o.flags, error, sizeof error) != 0) {
+        scene_file_free(&scene);
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    const uint32_t most = scene_file_degree_most(o.output);
+    report(&o, &scene, scene.degree < most ? scene.degree : most);
+    scene_file_free(&scene);
+    return CLI_OK;
+}
