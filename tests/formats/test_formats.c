@@ -25,10 +25,9 @@ static const struct format {
     double position, scale, colour, opacity, harmonic; /* the most that may differ: scene units, a share, of 1, of 1 */
     uint32_t degree;                                   /* that is kept */
 } formats[] = {
-    {".ply", 1e-5, 1e-4, 1e-4, 1e-4, 2e-4, 3},
-    {".compressed.ply", 4e-3, 2e-2, 3e-3, 3e-3, 0.017, 3},
-    {".splat", 1e-5, 3e-2, 3e-3, 3e-3, 0, 0},
-    {".spz", 1e-5, 4e-2, 5e-3, 3e-3, 0.064, 3},
+    {".ply", 1e-5, 1e-4, 1e-4, 1e-4, 2e-4, 3}, {".compressed.ply", 4e-3, 2e-2, 3e-3, 3e-3, 0.017, 3},
+    {".splat", 1e-5, 3e-2, 3e-3, 3e-3, 0, 0},  {".spz", 1e-5, 4e-2, 5e-3, 3e-3, 0.064, 3},
+    {".glb", 1e-5, 1e-3, 1e-4, 1e-4, 2e-4, 3},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
@@ -284,6 +283,10 @@ static void say_why(void **state)
         {".spz", "2 streams", 15, 2},
         {".spz", "table at byte 255", 16, 255},
         {".spz", "cut off", 34, 255},
+        {".glb", "not a .glb", 4, 1},
+        {".glb", "chunk of JSON", 16, 1},
+        {".glb", "not JSON", 20, 'x'},
+        {".glb", "cut off", 14, 255},
         {".splat", "not finite", 3, 0x7f},
         {".splat", "below 0", 15, 0xbf},
         {".compressed.ply", "property", 70, 'w'},

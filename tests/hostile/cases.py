@@ -199,6 +199,15 @@ given("scene", "gzip-of-a-million.spz",
 given("scene", "not-a-row.splat", bytes(33), "are not those of")
 given("scene", "million-of-zeros.splat", lambda: bytes(32 << 20), "")
 given("scene", "chunks-without-bounds.compressed.ply", f.ply(1, before="element chunk 1\n"), "no property min_x")
+given("scene", "rows-beyond.glb", f.glb(f.gaussians(1 << 24), bytes(64)), "reach beyond")
+given("scene", "rows-of-2^32.glb", f.glb(f.gaussians((1 << 32) - 1, stride=4294967295), bytes(64)), "reach beyond")
+given("scene", "one-row-16-million-times.glb", f.glb(f.gaussians(1 << 24, stride=0), bytes(64)), "a type that is not read")
+given("scene", "deep.glb", f.glb(b"[" * (1 << 20)), "not JSON")
+given("scene", "8-million-values.glb", lambda: f.glb(b"[" + b"0," * 8000000 + b"0]"), "3000000 values")
+given("scene", "3-million-nodes.glb",
+      lambda: f.glb(json.dumps(f.gaussians(1)).encode()[:-1] + b', "nodes": [' + b"0," * 2900000 + b"0]}", bytes(64)), None)
+given("scene", "moved.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "matrix": [0] * 16}]), bytes(64)), "matrix")
+given("scene", "packed-otherwise.glb", f.glb(f.gaussians(1, extensionsRequired=[f.ESCAPE]), bytes(64)), "needs the extension")
 given("scene", "escapes-in-format.ply", b"ply\nformat " + f.ESCAPE.encode() + b"\n", "only binary_little_endian")
 
 

@@ -155,6 +155,25 @@ def spz(count, degree=0, stream=None):
     return head + table + b"".join(streams)
 
 
+def glb(text, numbers=b""):
+    text = text if isinstance(text, bytes) else json.dumps(text).encode()
+    text += b" " * (-len(text) % 4)
+    return (b"glTF" + struct.pack("<II", 2, 28 + len(text) + len(numbers)) + struct.pack("<II", len(text), 0x4E4F534A) + text +
+            struct.pack("<II", len(numbers), 0x004E4942) + numbers)
+
+
+def gaussians(count, stride=None, **more):
+    """The JSON of a .glb whose attributes are all the same numbers."""
+    names = ("ROTATION", "SCALE", "OPACITY", "SH_DEGREE_0_COEF_0")
+    types = {"POSITION": "VEC3", "ROTATION": "VEC4", "SCALE": "VEC3", "OPACITY": "SCALAR", "SH_DEGREE_0_COEF_0": "VEC3"}
+    view = {"buffer": 0, "byteLength": 64} | ({} if stride is None else {"byteStride": stride})
+    attributes = {"POSITION": 0} | {f"KHR_gaussian_splatting:{name}": i + 1 for i, name in enumerate(names)}
+    extension = {"KHR_gaussian_splatting": {"kernel": "ellipse", "colorSpace": "srgb_rec709_display"}}
+    return {"asset": {"version": "2.0"}, "bufferViews": [view],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": count, "type": types[name]} for name in types],
+            "meshes": [{"primitives": [{"mode": 0, "attributes": attributes, "extensions": extension}]}]} | more
+
+
 # --- recordings ------------------------------------------------------------------------------------------------------
 
 

@@ -10,7 +10,7 @@
 #include "scene/scene_format.h"
 
 /* Every format. Of two with one suffix the first is written; `ply` is that of files which none of them knows. */
-#define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz) FORMAT(spz_gzip)
+#define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz) FORMAT(spz_gzip) FORMAT(glb)
 
 #define FORMAT(name) extern const scene_format scene_format_##name;
 FORMATS
