@@ -147,9 +147,9 @@ def xxh32(data):
 
 
 def spz(count, degree=0, stream=None):
-    """Version 4, every stream of zeros; or each the given one."""
+    """Version 4, every stream of zeros but that of scales, which are 1; or each the given one."""
     sizes = [9, 1, 3, 3, 4, 3 * ((degree + 1)**2 - 1)][:6 if degree else 5]
-    streams = [zstd([(0, count * size)]) if stream is None else stream for size in sizes]
+    streams = [zstd([(160 if i == 3 else 0, count * size)]) if stream is None else stream for i, size in enumerate(sizes)]
     table = b"".join(struct.pack("<QQ", len(data), count * size) for data, size in zip(streams, sizes))
     head = b"NGSP" + struct.pack("<IIBBBBI", 4, count, degree, 12, 0, len(sizes), 32) + bytes(12)
     return head + table + b"".join(streams)

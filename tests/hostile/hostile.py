@@ -51,6 +51,8 @@ def commands(kind, path, out):
         "scene": [("info", path), ("render", path, room, "--view", "1", "-o", f"{out}.png"), ("diff", path, scene),
                   ("convert", path, "-o", f"{out}.spz"),
                   ("eval", room, "--prune", path, "--context", "0,1", "--target", "2", "--keep", "50")],
+        "large scene": [("info", path), ("render", path, room, "--view", "1", "-o", f"{out}.png"),
+                        ("convert", path, "-o", f"{out}.spz")],
         "picture": [("import", pictures, "--intrinsics", "40,40,8,8", "--poses", "estimate", "-o", f"{out}.mcap"),
                     ("diff", path, "good.png")],
         "folder": [("import", path, "-o", f"{out}.mcap"),

@@ -13,6 +13,7 @@
 #include "cli/recorded_frame.h"
 #include "core/fixed.h"
 #include "core/hash.h"
+#include "core/scene_frame.h"
 #include "reconstruction/importance_pictures.h"
 #include "reconstruction/scene_append.h"
 #include "reconstruction/scene_frames.h"
@@ -509,7 +510,9 @@ static int append_scene(reconstruction *r, const scene_file *scene, const t3r_ca
 
 int reconstruction_look_from(reconstruction *r, const scene_file *scene, const t3r_camera *camera)
 {
-    return scene->degree == 0 ? CLI_OK : append_scene(r, scene, camera);
+    t3r_pose pose;
+    const bool is_drawn = t3r_pose_in_scene(camera, &scene->frame, &pose) == T3R_OK; /* else t3r_render() refuses */
+    return scene->degree == 0 || !is_drawn ? CLI_OK : append_scene(r, scene, camera);
 }
 
 static int load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,

@@ -50,6 +50,8 @@ typedef struct scene_source {
 } scene_source;
 
 void scene_source_row(const scene_source *source, uint32_t index, scene_row *row);
+/* The position alone. */
+void scene_source_position(const scene_source *source, uint32_t index, double position[3]);
 /* The opacity of a row, 0..1. */
 double scene_row_opacity(const scene_row *row);
 /* The colour of degree 0, 0..1 for what a screen can show; `channel` 0..2. */

@@ -20,15 +20,31 @@ static void put_harmonics(const scene_source *source, uint32_t index, scene_row 
     }
 }
 
+/* Without the turn. */
+static void put_position(const scene_source *source, uint32_t index, double position[3])
+{
+    const t3r_scene_frame *frame = &source->scene->frame;
+    for (int i = 0; i < 3; i++) {
+        double origin = (source->flags & SCENE_FILE_LOCAL) != 0 ? 0 : ldexp((double)frame->origin_q32[i], -32);
+        position[i] = origin + ldexp(source->scene->gaussians[index].position_q20[i], frame->exponent - 20);
+    }
+}
+
+void scene_source_position(const scene_source *source, uint32_t index, double position[3])
+{
+    double rotation[4] = {1, 0, 0, 0}, none[HARMONICS_REST_MOST][3];
+    put_position(source, index, position);
+    scene_turn_apply(&source->turn, position, rotation, 0, none);
+}
+
 void scene_source_row(const scene_source *source, uint32_t index, scene_row *row)
 {
     const t3r_scene_frame *frame = &source->scene->frame;
     const t3r_gaussian *g = &source->scene->gaussians[index];
     gaussian_shape shape = gaussian_shape_of(g);
     *row = (scene_row){.opacity_logit = opacity_logit(g->opacity_q15)};
+    put_position(source, index, row->position);
     for (int i = 0; i < 3; i++) {
-        double origin = (source->flags & SCENE_FILE_LOCAL) != 0 ? 0 : ldexp((double)frame->origin_q32[i], -32);
-        row->position[i] = origin + ldexp(g->position_q20[i], frame->exponent - 20);
         row->harmonic[i] = (g->colour_q7[i] / 32640.0 - 0.5) / HARMONICS_ZERO;
         row->log_scale[i] = log(shape.scale[i]) + frame->exponent * M_LN2;
     }

@@ -1,6 +1,7 @@
 #include <cjson/cJSON.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -159,33 +160,32 @@ static void put_colour(const scene_row *row, uint8_t *out)
     out[3] = byte_of(255 * scene_row_opacity(row));
 }
 
-static void write_numbers(FILE *file, const scene_source *source, const glb_layout *layout)
+/* All numbers, by one pass over the scene; free() them. NULL: out of memory. */
+static uint8_t *make_numbers(const scene_source *source, const glb_layout *layout)
 {
-    for (uint32_t attribute = 0; attribute <= layout->attributes; attribute++) {
-        for (uint32_t i = 0; i < layout->count; i++) {
-            uint8_t bytes[16];
-            scene_row row;
-            scene_source_row(source, i, &row);
-            if (attribute == layout->attributes) {
-                put_colour(&row, bytes);
-                fwrite(bytes, 1, COLOUR_BYTES, file);
-            } else {
-                put_attribute(&row, attribute, bytes);
-                fwrite(bytes, 1, bytes_of(attribute), file);
-            }
+    uint8_t *bytes = malloc((size_t)binary_bytes(layout) + 1);
+    for (uint32_t i = 0; i < layout->count && bytes != NULL; i++) {
+        scene_row row;
+        uint8_t *at = bytes;
+        scene_source_row(source, i, &row);
+        for (uint32_t attribute = 0; attribute < layout->attributes; attribute++) {
+            put_attribute(&row, attribute, at + (size_t)i * bytes_of(attribute));
+            at += (size_t)layout->count * bytes_of(attribute);
         }
+        put_colour(&row, at + (size_t)i * COLOUR_BYTES);
     }
+    return bytes;
 }
 
 static glb_layout layout_of(const scene_source *source)
 {
     glb_layout layout = {.count = source->scene->count, .attributes = GLB_REST + harmonics_rest(source->degree)};
     for (uint32_t i = 0; i < layout.count; i++) {
-        scene_row row;
-        scene_source_row(source, i, &row);
+        double position[3];
+        scene_source_position(source, i, position);
         for (int axis = 0; axis < 3; axis++) {
-            layout.low[axis] = i == 0 ? row.position[axis] : fmin(layout.low[axis], row.position[axis]);
-            layout.high[axis] = i == 0 ? row.position[axis] : fmax(layout.high[axis], row.position[axis]);
+            layout.low[axis] = i == 0 ? position[axis] : fmin(layout.low[axis], position[axis]);
+            layout.high[axis] = i == 0 ? position[axis] : fmax(layout.high[axis], position[axis]);
         }
     }
     return layout;
@@ -199,20 +199,9 @@ static void write_chunk_header(FILE *file, uint64_t length, uint32_t kind)
     fwrite(bytes, 1, sizeof bytes, file);
 }
 
-int glb_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
+static void write_file(FILE *file, const char *json, const uint8_t *numbers, uint64_t number_bytes, uint64_t whole)
 {
-    const glb_layout layout = layout_of(source);
-    char *json = make_json(&layout);
-    if (json == NULL) {
-        return t3r_reason(error, error_bytes, "out of memory");
-    }
     const size_t text = strlen(json), padding = (4 - text % 4) % 4;
-    const uint64_t binary = binary_bytes(&layout); /* a multiple of 4, as all attributes are */
-    const uint64_t whole = GLB_HEADER_BYTES + 2 * GLB_CHUNK_BYTES + text + padding + binary;
-    if (whole > UINT32_MAX) {
-        free(json);
-        return t3r_reason(error, error_bytes, "%" PRIu64 " bytes: a .glb ends at 4 GiB", whole);
-    }
     uint8_t header[GLB_HEADER_BYTES] = GLB_MAGIC;
     t3r_store_le32(header + GLB_VERSION_AT, GLB_VERSION);
     t3r_store_le32(header + GLB_LENGTH_AT, (uint32_t)whole);
@@ -220,8 +209,26 @@ int glb_write(FILE *file, const scene_source *source, char *error, size_t error_
     write_chunk_header(file, text + padding, GLB_JSON);
     fwrite(json, 1, text, file);
     fwrite("   ", 1, padding, file);
-    write_chunk_header(file, binary, GLB_BINARY);
-    write_numbers(file, source, &layout);
+    write_chunk_header(file, number_bytes, GLB_BINARY);
+    fwrite(numbers, 1, (size_t)number_bytes, file);
+}
+
+int glb_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
+{
+    enum { JSON_BYTES_MOST = 65536 }; /* of 20 attributes */
+    const glb_layout layout = layout_of(source);
+    const uint64_t number_bytes = binary_bytes(&layout); /* a multiple of 4, as all attributes are */
+    if (number_bytes > UINT32_MAX - JSON_BYTES_MOST) {
+        return t3r_reason(error, error_bytes, "%" PRIu64 " bytes: a .glb ends at 4 GiB", number_bytes);
+    }
+    char *json = make_json(&layout);
+    uint8_t *numbers = make_numbers(source, &layout);
+    const bool is_made = json != NULL && numbers != NULL;
+    if (is_made) {
+        const uint64_t text = (strlen(json) + 3) / 4 * 4;
+        write_file(file, json, numbers, number_bytes, GLB_HEADER_BYTES + 2 * GLB_CHUNK_BYTES + text + number_bytes);
+    }
     free(json);
-    return 0;
+    free(numbers);
+    return is_made ? 0 : t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", layout.count);
 }

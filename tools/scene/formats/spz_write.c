@@ -1,5 +1,6 @@
 #include <inttypes.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zstd.h>
@@ -11,7 +12,7 @@
 
 enum {
     FRACTION_BITS_MOST = 23, /* 24 bits hold a unit then */
-    PACKING_LEVEL = 12,      /* of Zstandard: hardly any larger than the best, and fast */
+    PACKING_LEVEL = 9,       /* of Zstandard: hardly any larger than the best, and fast */
     STEPS_OF_DEGREE_1 = 8,   /* of 1/128: the reference writer keeps 5 bits of degree 1 ... */
     STEPS_BEYOND = 16        /* ... and 4 of the others */
 };
@@ -25,10 +26,10 @@ typedef struct packed_stream {
 static int choose_fraction(const scene_source *source)
 {
     double farthest = 0;
-    scene_row row;
     for (uint32_t i = 0; i < source->scene->count; i++) {
-        scene_source_row(source, i, &row);
-        farthest = fmax(farthest, fmax(fmax(fabs(row.position[0]), fabs(row.position[1])), fabs(row.position[2])));
+        double position[3];
+        scene_source_position(source, i, position);
+        farthest = fmax(farthest, fmax(fmax(fabs(position[0]), fabs(position[1])), fabs(position[2])));
     }
     int bits = FRACTION_BITS_MOST;
     while (bits >= 0 && ldexp(farthest, bits) > 0x7fffff) {
@@ -102,24 +103,31 @@ static void put_row(const scene_row *row, const spz_layout *layout, int stream, 
     }
 }
 
-static int pack_stream(const scene_source *source, const spz_layout *layout, int stream, packed_stream *out)
+/* One pass over the scene fills all streams, which are packed then: 0, or -1 without memory. */
+static int pack_streams(const scene_source *source, const spz_layout *layout, int stream_count, packed_stream *out)
 {
-    const size_t each = spz_stream_bytes(layout, stream), size = layout->count * each;
-    const size_t most = ZSTD_compressBound(size);
-    uint8_t *bytes = malloc(size + 1);
-    out->bytes = malloc(most);
-    if (bytes == NULL || out->bytes == NULL) {
-        free(bytes);
-        return -1;
+    uint8_t *bytes[SPZ_STREAMS] = {NULL};
+    bool is_made = true;
+    for (int k = 0; k < stream_count; k++) {
+        bytes[k] = malloc((size_t)layout->count * spz_stream_bytes(layout, k) + 1);
+        is_made = is_made && bytes[k] != NULL;
     }
-    for (uint32_t i = 0; i < layout->count; i++) {
+    for (uint32_t i = 0; i < layout->count && is_made; i++) {
         scene_row row;
         scene_source_row(source, i, &row);
-        put_row(&row, layout, stream, bytes + i * each);
+        for (int k = 0; k < stream_count; k++) {
+            put_row(&row, layout, k, bytes[k] + (size_t)i * spz_stream_bytes(layout, k));
+        }
     }
-    out->count = ZSTD_compress(out->bytes, most, bytes, size, PACKING_LEVEL);
-    free(bytes);
-    return ZSTD_isError(out->count) ? -1 : 0;
+    for (int k = 0; k < stream_count; k++) {
+        const size_t size = (size_t)layout->count * spz_stream_bytes(layout, k), most = ZSTD_compressBound(size);
+        out[k].bytes = is_made ? malloc(most) : NULL;
+        is_made = out[k].bytes != NULL;
+        out[k].count = is_made ? ZSTD_compress(out[k].bytes, most, bytes[k], size, PACKING_LEVEL) : 0;
+        is_made = is_made && !ZSTD_isError(out[k].count);
+        free(bytes[k]);
+    }
+    return is_made ? 0 : -1;
 }
 
 static void write_packed(FILE *file, const spz_layout *layout, const packed_stream *streams, int stream_count)
@@ -154,10 +162,7 @@ int spz_write(FILE *file, const scene_source *source, char *error, size_t error_
     const spz_layout layout = {SPZ_VERSION, source->scene->count, source->degree, (uint32_t)fraction_bits};
     const int stream_count = source->degree > 0 ? SPZ_STREAMS : SPZ_HARMONICS;
     packed_stream streams[SPZ_STREAMS] = {0};
-    int result = 0;
-    for (int i = 0; i < stream_count && result == 0; i++) {
-        result = pack_stream(source, &layout, i, &streams[i]);
-    }
+    const int result = pack_streams(source, &layout, stream_count, streams);
     if (result == 0) {
         write_packed(file, &layout, streams, stream_count);
     } else {
