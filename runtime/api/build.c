@@ -1,25 +1,26 @@
 /* A scene of the views: what is asked for, and whether it can be had, is settled here. */
 #include "api/checks.h"
 #include "core/config.h"
+#include "core/features.h"
 #include "loss/budget_choice.h"
 #include "state/state.h"
 #include "pipeline.h"
 
 /* A request with the configuration's values where it has none of its own. */
-typedef struct t3r_order {
+typedef struct build_order {
     t3r_build build;
     uint32_t max_loss_q8;      /* 0 = exactly the budget */
     t3r_importance importance; /* no planes unless the allocation is `given` */
-} t3r_order;
+} build_order;
 
-static const t3r_importance *importance_of(const t3r_order *order)
+static const t3r_importance *importance_of(const build_order *order)
 {
     return order->importance.planes != NULL ? &order->importance : NULL;
 }
 
-static t3r_order order_of(const t3r_runtime *rt, const t3r_request *request)
+static build_order order_of(const t3r_runtime *rt, const t3r_request *request)
 {
-    t3r_order order = {.build = t3r_build_of(&rt->config)};
+    build_order order = {.build = t3r_build_of(&rt->config)};
     if (request == NULL) {
         return order;
     }
@@ -57,14 +58,20 @@ static bool agrees(const t3r_request *request)
            request->allocation == T3R_ALLOCATE_GIVEN;
 }
 
-static bool is_request(const t3r_runtime *rt, const t3r_request *request, const t3r_order *order)
+static bool is_request(const t3r_runtime *rt, const t3r_request *request, const build_order *order)
 {
     return agrees(request) && t3r_is_build(&rt->config, &order->build) && order->max_loss_q8 <= T3R_MAX_LOSS_Q8 &&
            (order->importance.planes == NULL || is_importance(rt, &order->importance));
 }
 
+/* Whether the library was built with what the order asks for. */
+static bool is_supported(const build_order *order)
+{
+    return t3r_has(t3r_feature_of_head(order->build.head) | (order->max_loss_q8 != 0 ? T3R_HAS_REFINEMENT : 0u));
+}
+
 /* Whether what the order needs besides the views is there. A loss is measured on trial scenes of one analysis. */
-static bool can_be_built(const t3r_runtime *rt, const t3r_order *order)
+static bool can_be_built(const t3r_runtime *rt, const build_order *order)
 {
     return t3r_has_head(rt, order->build.head) &&
            (order->build.allocation != T3R_ALLOCATE_GIVEN || order->importance.planes != NULL) &&
@@ -76,7 +83,7 @@ static bool has_views(const t3r_runtime *rt)
     return !rt->config.stream && rt->views >= (rt->config.depth == T3R_DEPTH_STEREO ? 2u : 1u);
 }
 
-static t3r_status build(t3r_runtime *rt, t3r_order *order, t3r_scene *scene)
+static t3r_status build(t3r_runtime *rt, build_order *order, t3r_scene *scene)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
@@ -94,7 +101,8 @@ static t3r_status build(t3r_runtime *rt, t3r_order *order, t3r_scene *scene)
 t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene)
 {
     T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
-    t3r_order order = order_of(rt, request);
+    build_order order = order_of(rt, request);
+    T3R_REFUSE_UNLESS(is_supported(&order), T3R_ERR_UNSUPPORTED);
     T3R_REFUSE_UNLESS(is_request(rt, request, &order), T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(has_views(rt) && can_be_built(rt, &order), T3R_ERR_STATE);
     rt->has_scene = 0;
@@ -115,7 +123,8 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scen
 t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene)
 {
     T3R_REFUSE_UNLESS(rt != NULL && scene != NULL, T3R_ERR_ARGUMENT);
-    t3r_order order = order_of(rt, request);
+    build_order order = order_of(rt, request);
+    T3R_REFUSE_UNLESS(is_supported(&order), T3R_ERR_UNSUPPORTED);
     T3R_REFUSE_UNLESS(is_request(rt, request, &order), T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(rt->config.keep_analysis && rt->analysed && can_be_built(rt, &order), T3R_ERR_STATE);
     return build(rt, &order, scene);

@@ -1,5 +1,6 @@
 #include "api/checks.h"
 
+#include "core/features.h"
 #include "core/scene_frame.h"
 
 bool t3r_is_scene_frame(const t3r_scene_frame *frame)
@@ -28,8 +29,8 @@ bool t3r_is_build(const t3r_config *config, const t3r_build *build)
 {
     return build->gaussians >= 1 && build->gaussians <= config->max_gaussians &&
            (uint32_t)build->allocation > T3R_ALLOCATE_CONFIGURED && (uint32_t)build->allocation < T3R_ALLOCATE_COUNT &&
-           build->refinements <= config->refinements &&
-           (uint32_t)build->head > T3R_HEAD_CONFIGURED && (uint32_t)build->head < T3R_HEAD_COUNT;
+           build->refinements <= config->refinements && (uint32_t)build->head > T3R_HEAD_CONFIGURED &&
+           (uint32_t)build->head < T3R_HEAD_COUNT && t3r_has(t3r_feature_of_head(build->head));
 }
 
 bool t3r_has_head(const t3r_runtime *rt, t3r_head head)

@@ -32,8 +32,9 @@ t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     *rt = NULL;
     T3R_REFUSE_UNLESS(arena != NULL && config != NULL, T3R_ERR_ARGUMENT);
-    if (!t3r_is_config(config)) {
-        return T3R_ERR_CONFIG;
+    const t3r_status status = t3r_config_check(config);
+    if (status != T3R_OK) {
+        return status;
     }
     t3r_layout layout;
     if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || t3r_lay_out(config, arena_bytes, &layout) != T3R_OK) {
@@ -91,7 +92,7 @@ t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
     t3r_runtime *state = arena;
     t3r_layout layout;
     if (state->magic != T3R_MAGIC || state->bits_epoch != T3R_BITS_EPOCH || state->arena_bytes != arena_bytes ||
-        !t3r_is_config(&state->config) || t3r_lay_out(&state->config, arena_bytes, &layout) != T3R_OK ||
+        t3r_config_check(&state->config) != T3R_OK || t3r_lay_out(&state->config, arena_bytes, &layout) != T3R_OK ||
         state->layout_hash != layout_hash(&layout)) {
         return T3R_ERR_EPOCH;
     }

@@ -1,6 +1,8 @@
 /* Settings: their defaults and their ranges. */
 #include "config.h"
 
+#include "features.h"
+
 t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
 {
     return (t3r_config){
@@ -68,20 +70,29 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
     X("redundancy must be 0 or 1", c->redundancy, 0, 1)                                                                \
     X("exposure must be 0 or 1", c->exposure, 0, 1)                                                                    \
     X("keep_analysis must be 0 or 1", c->keep_analysis, 0, 1)                                                          \
-    X("warm must be 0 or 1, and 0 with depth by stereo", c->warm, 0, !stereo)                                            \
+    X("warm must be 0 or 1, and 0 with depth by stereo", c->warm, 0, !stereo)                                          \
     X("stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo)     \
     X("half_life must be 0..1024", c->half_life, 0, 1024)                                                              \
     X("tile_splats must be 0..2^24", c->tile_splats, 0, T3R_MAX_GAUSSIANS)                                             \
     X("workers must be 1..16", c->workers, 1, T3R_MAX_WORKERS)
 
+/* X(text, features), what a setting needs of the library. */
+#define NEEDS(X)                                                                                                       \
+    X("this library was built without stereo", c->depth == T3R_DEPTH_STEREO ? T3R_HAS_STEREO : 0u)                     \
+    X("this library was built without streams", c->stream ? T3R_HAS_STREAMS : 0u)                                      \
+    X("this library was built without this head", t3r_feature_of_head(c->head))                                        \
+    X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)
+
 #define BOUNDS(text, value, low, high) {(uint32_t)(value), (low), (high)},
 #define TEXT(text, value, low, high) text,
+#define NEED(text, features) (features),
+#define NEED_TEXT(text, features) text,
 
 /* The texts lie apart, so that a firmware links them only when it asks for them. */
-static const char *const texts[] = {"no configuration",
-                                    RANGES(TEXT) "the arena would be larger than this machine can address"};
+static const char *const texts[] = {
+    "no configuration", RANGES(TEXT) "the arena would be larger than this machine can address", NEEDS(NEED_TEXT)};
 
-#define FAULTS (sizeof texts / sizeof texts[0])
+enum { NEEDS_COUNT = 4, FAULTS = sizeof texts / sizeof texts[0], FIRST_NEED = FAULTS - NEEDS_COUNT };
 
 uint64_t t3r_most_arena_bytes(const t3r_config *c)
 {
@@ -102,6 +113,19 @@ uint64_t t3r_most_arena_bytes(const t3r_config *c)
     return bytes;
 }
 
+/* The need's text's place, FAULTS when the library has all that the settings ask for. */
+static size_t first_need(const t3r_config *c)
+{
+    const uint32_t needs[] = {NEEDS(NEED)};
+    _Static_assert(sizeof needs / sizeof needs[0] == NEEDS_COUNT, "as many texts as needs");
+    for (size_t i = 0; i < NEEDS_COUNT; i++) {
+        if (!t3r_has(needs[i])) {
+            return FIRST_NEED + i;
+        }
+    }
+    return FAULTS;
+}
+
 /* The text's place, FAULTS when nothing is wrong. */
 static size_t first_fault(const t3r_config *c)
 {
@@ -119,12 +143,13 @@ static size_t first_fault(const t3r_config *c)
         }
     }
     /* sizes are summed in size_t */
-    return t3r_most_arena_bytes(c) > SIZE_MAX / 2 ? FAULTS - 1 : FAULTS;
+    return t3r_most_arena_bytes(c) > SIZE_MAX / 2 ? FIRST_NEED - 1 : first_need(c);
 }
 
-bool t3r_is_config(const t3r_config *config)
+t3r_status t3r_config_check(const t3r_config *config)
 {
-    return first_fault(config) == FAULTS;
+    const size_t fault = first_fault(config);
+    return fault == FAULTS ? T3R_OK : fault < FIRST_NEED ? T3R_ERR_CONFIG : T3R_ERR_UNSUPPORTED;
 }
 
 const char *t3r_config_error(const t3r_config *config)

@@ -6,8 +6,8 @@
 
 #include "trim3r.h"
 
-/* t3r_config_error() without its texts. */
-bool t3r_is_config(const t3r_config *config);
+/* T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: t3r_config_error() has the reason. */
+t3r_status t3r_config_check(const t3r_config *config);
 
 /* The most splats that a tile is drawn from. */
 static inline uint32_t t3r_tile_splats_of(const t3r_config *config)

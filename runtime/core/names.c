@@ -1,4 +1,5 @@
 /* Names and sentences, as the command line and the tables spell them. */
+#include "features.h"
 #include "trim3r.h"
 
 /* A table is exactly as long as its enumeration. */
@@ -111,6 +112,8 @@ const char *t3r_error_text(t3r_status status)
         return "the scene has no room for another Gaussian";
     case T3R_ERR_STEREO:
         return "no depth can be made of these views";
+    case T3R_ERR_UNSUPPORTED:
+        return "this library was built without what is asked for";
     case T3R_ERR_WEIGHTS:
         return "the weights are damaged, of another version, or too large a head for this arena";
     }
@@ -120,4 +123,9 @@ const char *t3r_error_text(t3r_status status)
 const char *t3r_version(void)
 {
     return T3R_VERSION;
+}
+
+uint32_t t3r_features(void)
+{
+    return T3R_FEATURES_BUILT;
 }

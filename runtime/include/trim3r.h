@@ -37,9 +37,13 @@
 #include <stdint.h>
 
 #include "trim3r_arena.h"
+#include "trim3r_features.h"
 
 #ifdef __cplusplus
 extern "C" {
+#endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default) /* what a shared library exports */
 #endif
 
 /* The version of this header; t3r_version() is that of the library. */
@@ -79,7 +83,8 @@ typedef enum t3r_status {
     T3R_ERR_EPOCH = -9,     /* a copied arena made by another version, layout or bits epoch */
     T3R_ERR_FULL = -10,     /* no room for another Gaussian in the scene */
     T3R_ERR_WEIGHTS = -11,  /* weights that are foreign, damaged, of another epoch, or too large a head for the arena */
-    T3R_ERR_STEREO = -12    /* no depth can be made of the views: t3r_stereo_pair() has the reason */
+    T3R_ERR_STEREO = -12,   /* no depth can be made of the views: t3r_stereo_pair() has the reason */
+    T3R_ERR_UNSUPPORTED = -13 /* the library was built without what is asked for: t3r_features() */
 } t3r_status;
 
 /* The stages in the order in which the data passes them. */
@@ -405,16 +410,18 @@ typedef struct t3r_runtime t3r_runtime;
 /* Defaults for a working size, number of views and budget. Never fails. */
 t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians);
 
-/* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does. */
+/* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does.
+ * T3R_ERR_UNSUPPORTED: it is in range, but this library was built without what it asks for. */
 t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan);
 
 /* The inverse: lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, and the
  * budget `gaussians` along with it. It never raises them: begin with the most that you could use, which is width x
- * height x views. Takes 24 plans. T3R_ERR_ARENA: not even one Gaussian fits. T3R_ERR_CONFIG: as t3r_plan(). After both
- * the configuration is as before. */
+ * height x views. Takes 24 plans. T3R_ERR_ARENA: not even one Gaussian fits. T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: as
+ * t3r_plan(). After an error the configuration is as before. */
 t3r_status t3r_plan_within(size_t bytes, t3r_config *config);
 
-/* The first field of the configuration that is out of range, as text; NULL when all are in range. */
+/* The first field of the configuration that is out of range, or asks for what this library was built without, as text;
+ * NULL when there is none. */
 const char *t3r_config_error(const t3r_config *config);
 
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
@@ -445,7 +452,8 @@ t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features);
  * pointer is kept: the memory stays the caller's, is read in place, and must not change or go while it is bound. Bind
  * after t3r_init() and again after t3r_attach(). The analysis does not depend on the head, so another may be bound to
  * one that was kept. T3R_ERR_ARGUMENT: misaligned. T3R_ERR_WEIGHTS: t3r_weights_error() has the reason. T3R_ERR_STATE:
- * the arena has no room for views. After an error what was bound stays. */
+ * the arena has no room for views. T3R_ERR_UNSUPPORTED: this library has no learned heads. After an error what was
+ * bound stays. */
 t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 
 /* The reason for which t3r_bind_head() refuses a weight file, as text. NULL when the file is sound: a head that is
@@ -488,9 +496,10 @@ t3r_status t3r_reset(t3r_runtime *rt);
  * 1/100 and 1/50 of the points, miss in the context views, and by how far these disagree among themselves. That takes
  * the time of two builds and more, and the trials' stages are hashed too.
  *
- * T3R_ERR_ARGUMENT: a field of the request is out of its range. T3R_ERR_STATE: there are no views (by stereo, fewer
+ * T3R_ERR_ARGUMENT: a field of the request is out of its range. T3R_ERR_UNSUPPORTED: this library was built without the
+ * head, or without the refinement that a bounded loss needs. T3R_ERR_STATE: there are no views (by stereo, fewer
  * than two); the learned head has no weights; the allocation is `given` and no importance came; or a bounded loss
- * without keep_analysis and refinements. After these two everything is as it was. T3R_ERR_CAMERA: a view stands more
+ * without keep_analysis and refinements. After these three everything is as it was. T3R_ERR_CAMERA: a view stands more
  * than 1,024 scene units from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() has the
  * reason. T3R_ERR_CANCELLED. After these three there is no scene, and the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
@@ -538,11 +547,11 @@ typedef struct t3r_stream_report {
  * 1,024 scene units behind is discarded. A Gaussian's `view` is its keyframe's number modulo `views`.
  *
  * T3R_ERR_STATE: the arena is not one for streams, the learned head has no weights, or the allocation is `given`.
- * T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than 1,024 scene units from the origin. After these three
- * everything is as before. T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens that shows too little, and T3R_ERR_CANCELLED: the
- * keyframe adds nothing. Refinement then uses neither it nor the one of `views` keyframes ago, and Gaussians that it
- * contradicts may be gone. T3R_ERR_CANCELLED during refinement: the keyframe is taken, and passes are missing. The map
- * stays valid and within its cap after any error. */
+ * T3R_ERR_UNSUPPORTED: this library has no streams. T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than 1,024
+ * scene units from the origin. After these four everything is as before. T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens
+ * that shows too little, and T3R_ERR_CANCELLED: the keyframe adds nothing. Refinement then uses neither it nor the one
+ * of `views` keyframes ago, and Gaussians that it contradicts may be gone. T3R_ERR_CANCELLED during refinement: the
+ * keyframe is taken, and passes are missing. The map stays valid and within its cap after any error. */
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 
@@ -550,7 +559,7 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
  * lesser of two shares. One is of the keyframe's points: those that the picture would show. The other is of the cells
  * of an 8 x 8 grid over a picture: those that the points fall on here, against those in their own. The camera's
  * distortion is ignored. It serves to choose keyframes: below some 70 % the next one is due. T3R_ERR_STATE: there is no
- * keyframe yet. T3R_ERR_CAMERA: as t3r_stream_keyframe(). */
+ * keyframe yet. T3R_ERR_CAMERA, T3R_ERR_UNSUPPORTED: as t3r_stream_keyframe(). */
 t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                               uint32_t *overlap_q8);
 
@@ -588,6 +597,9 @@ t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera
 /* The version of the library, "major.minor.patch". */
 const char *t3r_version(void);
 
+/* The features that this library was built with, as T3R_HAS_... (trim3r_features.h). */
+uint32_t t3r_features(void);
+
 /* A short English sentence for a status. Never NULL. */
 const char *t3r_error_text(t3r_status status);
 /* Stable lower-case names, as the command line and the tables spell them. NULL = out of range, or one of the values
@@ -601,6 +613,9 @@ const char *t3r_pixel_format_name(t3r_pixel_format format);
 /* Whether two views can be matched, and why not, as text for people. Never NULL. */
 const char *t3r_pair_text(t3r_pair pair);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

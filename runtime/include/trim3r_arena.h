@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "trim3r_features.h"
+
 #define T3R_ARENA_ALIGN 64
 
 /* Stages as plain numbers, usable in constant expressions; t3r_stage gives them a type. */
@@ -24,7 +26,7 @@
 
 /* Defaults of t3r_default_config() that an arena's bytes depend on. */
 #define T3R_DEFAULT_CLUSTERS 300
-#define T3R_DEFAULT_REFINEMENTS 4
+#define T3R_DEFAULT_REFINEMENTS (T3R_FEATURE_REFINEMENT ? 4 : 0)
 
 #define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
 #define T3R_MAX_(a, b) ((a) > (b) ? (a) : (b))

@@ -1,5 +1,6 @@
 #include "kernels.h"
 
+/* Entries of a feature that is left out are NULL, and nothing calls them. */
 const t3r_kernels t3r_kernels_c = {
     .packed_row = t3r_packed_row_c,
     .nv12_row = t3r_nv12_row_c,
@@ -9,11 +10,13 @@ const t3r_kernels t3r_kernels_c = {
     .divide_row = t3r_divide_row_c,
     .unproject = t3r_unproject_c,
     .locate = t3r_locate_c,
+#if T3R_FEATURE_STEREO
     .ray_row = t3r_ray_row_c,
     .census_row = t3r_census_row_c,
     .census_costs = t3r_census_costs_c,
     .path_row = t3r_path_row_c,
     .winner_row = t3r_winner_row_c,
+#endif
     .luma_row = t3r_luma_row_c,
     .split_row = t3r_split_row_c,
     .db2_predict = t3r_db2_predict_c,
@@ -36,15 +39,19 @@ const t3r_kernels t3r_kernels_c = {
     .blur_column = t3r_blur_column_c,
     .wanted_row = t3r_wanted_row_c,
     .key_row = t3r_key_row_c,
+#if T3R_FEATURE_LEARNED
     .convolve = t3r_convolve_c,
     .depthwise = t3r_depthwise_c,
+#endif
     .project = t3r_project_c,
     .radix_count = t3r_radix_count_c,
     .radix_pass = t3r_radix_pass_c,
     .place = t3r_place_c,
     .blend = t3r_blend_c,
+#if T3R_FEATURE_REFINEMENT
     .blend_keep = t3r_blend_keep_c,
     .scatter = t3r_scatter_c,
     .solve = t3r_solve_c,
+#endif
     .strip_bytes = 2,
 };

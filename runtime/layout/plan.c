@@ -7,8 +7,9 @@
 t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
 {
     T3R_REFUSE_UNLESS(config != NULL && plan != NULL, T3R_ERR_ARGUMENT);
-    if (!t3r_is_config(config)) {
-        return T3R_ERR_CONFIG;
+    const t3r_status status = t3r_config_check(config);
+    if (status != T3R_OK) {
+        return status;
     }
     t3r_layout layout;
     (void)t3r_lay_out(config, 0, &layout); /* for the two sums */
@@ -41,16 +42,20 @@ static t3r_config with_room_for(const t3r_config *config, uint32_t most)
 static bool fits(const t3r_config *config, size_t bytes)
 {
     t3r_layout layout;
-    return t3r_is_config(config) && t3r_lay_out(config, bytes, &layout) == T3R_OK;
+    return t3r_config_check(config) == T3R_OK && t3r_lay_out(config, bytes, &layout) == T3R_OK;
 }
 
 t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
 {
     T3R_REFUSE_UNLESS(config != NULL, T3R_ERR_ARGUMENT);
     const t3r_config one = with_room_for(config, 1);
-    if (!t3r_is_config(&one) || config->max_gaussians > T3R_MAX_GAUSSIANS || config->gaussians == 0 ||
+    if (config->max_gaussians > T3R_MAX_GAUSSIANS || config->gaussians == 0 ||
         config->gaussians > config->max_gaussians) {
         return T3R_ERR_CONFIG;
+    }
+    const t3r_status status = t3r_config_check(&one);
+    if (status != T3R_OK) {
+        return status;
     }
     if (!fits(&one, bytes)) {
         return T3R_ERR_ARENA;

@@ -6,66 +6,14 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 #include "refine_bands.h"
+#include "refine_layout.h"
 #include "refine_tile.h"
 #include "state/state.h"
 
-/* The refinement work, cut up. The first four parts and the least lists always fit; sums take what they can use of the
- * rest, lists what is left. */
-typedef struct layout {
-    t3r_raster_room room;
-    t3r_correction *corrections; /* of all Gaussians: the pass before's, as far as this one's are not there yet */
-    t3r_refine_sums *sums;
-    uint32_t slice; /* Gaussians whose sums fit */
-    t3r_refine_borders borders;
-    t3r_wanted *wanted; /* of each band but the first */
-    uint32_t *kept;     /* what bands keep while they draw, of each `kept_words` */
-    uint32_t kept_words;
-} layout;
-
-static layout layout_of(const t3r_runtime *rt)
-{
-    const t3r_config *c = &rt->config;
-    size_t most = c->max_gaussians, least_lists = T3R_UP_(most * sizeof(uint32_t));
-    t3r_cut cut = t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_REFINE_WORK), rt->refine_bytes);
-    layout w;
-    w.room.splats = t3r_take(&cut, most * T3R_SPLAT_BYTES);
-    w.room.order = t3r_take(&cut, most * T3R_ORDER_BYTES + T3R_SORT_BYTES);
-    w.room.table = t3r_take(&cut, T3R_TILES_(c->width, c->height) * sizeof(uint32_t));
-    w.corrections = t3r_take(&cut, most * T3R_CORRECTION_BYTES);
-    w.kept = t3r_take(&cut, T3R_KEPT_BYTES_(most));
-    w.slice = (uint32_t)T3R_MIN((t3r_cut_left(&cut) - least_lists) / T3R_REFINE_SUMS_BYTES, most);
-    w.sums = t3r_take(&cut, (size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* what is left is a multiple of the alignment */
-    w.room.capacity = T3R_MIN((uint64_t)t3r_cut_left(&cut) / sizeof(uint32_t), (uint64_t)UINT32_MAX);
-    w.room.lists = t3r_take(&cut, t3r_cut_left(&cut));
-
-    const t3r_workers workers = t3r_workers_of(rt);
-    w.borders.bands = t3r_is_parallel(&workers) ? workers.count : 1;
-    w.borders.most = (uint32_t)T3R_REFINE_BORDER_(most);
-    w.borders.sums = t3r_buffer_at(rt, T3R_BUFFER_BORDER_SUMS);
-    w.borders.index = (void *)(w.borders.sums + (size_t)(c->workers - 1) * w.borders.most);
-    w.wanted = t3r_buffer_at(rt, T3R_BUFFER_WANTED);
-
-    w.kept_words = T3R_KEPT_LEAST;
-    if (T3R_KEPT_BYTES_(most) == 0) { /* what sorting needed is enough */
-        const uint32_t words = (uint32_t)(most * T3R_RASTER_SPARE_BYTES / sizeof *w.kept);
-        w.borders.bands = T3R_MIN(w.borders.bands, words / T3R_KEPT_LEAST);
-        w.kept = t3r_raster_spare(&w.room);
-        w.kept_words = words / w.borders.bands;
-    } else {
-        w.borders.bands = 1;
-    }
-    return w;
-}
-
 /* Where a band's tile is compared with the view: while the first one is drawn, nothing is sorted. */
-static t3r_wanted *wanted_of(const layout *w, uint32_t band)
+static t3r_wanted *wanted_of(const t3r_refine_layout *w, uint32_t band)
 {
     return band == 0 ? t3r_raster_spare_histogram(&w->room) : &w->wanted[band - 1];
-}
-
-t3r_raster_room t3r_refine_room(const t3r_runtime *rt)
-{
-    return layout_of(rt).room;
 }
 
 static void shift_each(int32_t *sums, uint32_t count, uint32_t shift)
@@ -109,7 +57,7 @@ static void set_axes(const t3r_projection *projection, const t3r_gaussian *g, co
 
 /* One view on its way: what all its bands share. */
 typedef struct view_job {
-    const layout *work;
+    const t3r_refine_layout *work;
     const t3r_refine_view *view;
     const t3r_binning *bin;
     uint32_t done, total; /* for the progress hook */
@@ -198,7 +146,7 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
 }
 
 /* One view drawn from the scene; no Gaussian's sums change. False: cancelled. */
-static bool add_error_of(const t3r_runtime *rt, const layout *w, const t3r_view *views, uint32_t v,
+static bool add_error_of(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views, uint32_t v,
                          const t3r_projection *projection, uint64_t *error, uint32_t *pixels)
 {
     const t3r_workers workers = t3r_workers_of(rt);
@@ -232,7 +180,7 @@ static uint32_t chunks_of(uint32_t count)
 
 typedef struct slice_job {
     const t3r_kernels *kernels;
-    const layout *work;
+    const t3r_refine_layout *work;
     t3r_refine_slice slice;
     const t3r_projection *projection; /* of the view that is begun */
     t3r_gaussian *scene;
@@ -281,7 +229,7 @@ static bool accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *
                        const t3r_projection *projection, uint32_t done, uint32_t total)
 {
     const t3r_workers workers = t3r_workers_of(rt);
-    const layout *w = slice->work;
+    const t3r_refine_layout *w = slice->work;
     const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
     slice->projection = projection;
     t3r_run_tasks(&workers, chunks_of(slice->slice.count), begin_chunk, slice);
@@ -328,7 +276,7 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
 
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records)
 {
-    const layout w = layout_of(rt);
+    const t3r_refine_layout w = t3r_refine_layout_of(rt);
     const t3r_workers workers = t3r_workers_of(rt);
     slice_job job = {.kernels = &rt->kernels,
                      .work = &w,
@@ -363,7 +311,7 @@ t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes)
 
 t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *error_q8)
 {
-    const layout w = layout_of(rt);
+    const t3r_refine_layout w = t3r_refine_layout_of(rt);
     uint64_t error = 0; /* below 3 x 2^24 x 2^28 */
     uint32_t pixels = 0;
     for (uint32_t v = 0; v < rt->views; v++) {

@@ -85,12 +85,13 @@ void t3r_wavelet_texture(const t3r_kernels *kernels, const uint8_t *const colour
         memset(texture_q4, 0, (size_t)width * height * sizeof(uint16_t));
         return;
     }
-    for (uint32_t l = 0; l < levels; l++) {
+    uint32_t l = 0;
+    do {
         level[l] = t3r_level_of(plane, width, height, l, kind, work);
         level[l].kernels = kernels;
         level[l].in_place = l;
         level[l].colour = l == 0 ? colour : NULL;
         t3r_wavelet_level_forward(&level[l]);
-    }
+    } while (++l < levels);
     texture_plane(level, levels, texture_q4, (uint16_t *)work);
 }

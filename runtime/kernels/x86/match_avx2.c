@@ -153,16 +153,16 @@ TARGET void t3r_path_row_avx2(const t3r_path_row *row)
 {
     switch ((row->disparities + BYTES - 1) / BYTES) {
     case 1:
-        one(row);
+        follow_one(row);
         break;
     case 2:
-        two(row);
+        follow_two(row);
         break;
     case 3:
-        three(row);
+        follow_three(row);
         break;
     case 4:
-        four(row);
+        follow_four(row);
         break;
     default:
         t3r_path_row_c(row); /* a first look's alone */

@@ -104,9 +104,9 @@ static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_r
         }                                                                                                              \
     }
 
-FOLLOW(one, 1)
-FOLLOW(two, 2)
-FOLLOW(three, 3)
-FOLLOW(four, 4)
+FOLLOW(follow_one, 1)
+FOLLOW(follow_two, 2)
+FOLLOW(follow_three, 3)
+FOLLOW(follow_four, 4)
 
 #endif

@@ -14,12 +14,16 @@
 #define t3r_blur_column_c t3r_blur_column_avx2
 #include "kernels/blur.c"
 
+#if T3R_FEATURE_STEREO
 #define t3r_census_row_c t3r_census_row_avx2
 #include "kernels/census.c"
+#endif
 
+#if T3R_FEATURE_LEARNED
 #define t3r_convolve_c t3r_convolve_avx2
 #define t3r_depthwise_c t3r_depthwise_avx2
 #include "kernels/convolve.c"
+#endif
 
 #define t3r_packed_row_c t3r_packed_row_avx2
 #define t3r_nv12_row_c t3r_nv12_row_avx2

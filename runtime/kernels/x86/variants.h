@@ -19,6 +19,37 @@
 #else
 #define T3R_X86_OPTIMIZED_(X)
 #endif
+/* What belongs to a feature that a library may be built without. */
+#if T3R_FEATURE_STEREO
+#define T3R_X86_STEREO_VARIANTS_(X)                                                                                    \
+    X(census_row, T3R_CPU_AVX2, t3r_census_row_avx2)                                                                   \
+    X(census_costs, T3R_CPU_AVX2, t3r_census_costs_avx2)                                                               \
+    X(ray_row, T3R_CPU_AVX2, t3r_ray_row_avx2)                                                                         \
+    X(ray_row, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_ray_row_avx512)                                                      \
+    X(path_row, T3R_CPU_AVX2, t3r_path_row_avx2)                                                                       \
+    X(winner_row, T3R_CPU_AVX2, t3r_winner_row_avx2)
+#else
+#define T3R_X86_STEREO_VARIANTS_(X)
+#endif
+#if T3R_FEATURE_LEARNED
+#define T3R_X86_LEARNED_VARIANTS_(X)                                                                                   \
+    X(convolve, T3R_CPU_AVX2, t3r_convolve_avx2)                                                                       \
+    X(depthwise, T3R_CPU_AVX2, t3r_depthwise_avx2)                                                                     \
+    X(pack_layer, T3R_CPU_AVX2, t3r_pack_layer_avx2)                                                                   \
+    X(pack_layer, T3R_CPU_X86_VNNI_, t3r_pack_layer_vnni)                                                              \
+    X(convolve_packed, T3R_CPU_AVX2, t3r_convolve_packed_avx2)                                                         \
+    X(convolve_packed, T3R_CPU_X86_VNNI_, t3r_convolve_packed_vnni)
+#else
+#define T3R_X86_LEARNED_VARIANTS_(X)
+#endif
+#if T3R_FEATURE_REFINEMENT
+#define T3R_X86_REFINEMENT_VARIANTS_(X)                                                                                \
+    X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)                                                                         \
+    X(scatter, T3R_CPU_X86_VNNI_, t3r_scatter_vnni)                                                                    \
+    X(solve, T3R_CPU_AVX2, t3r_solve_avx2)
+#else
+#define T3R_X86_REFINEMENT_VARIANTS_(X)
+#endif
 /* X(entry, features, function): its type is the entry's. */
 #define T3R_X86_VARIANTS(X)                                                                                            \
     X(packed_row, T3R_CPU_AVX2, t3r_packed_row_avx2)                                                                   \
@@ -31,12 +62,6 @@
     X(unproject, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_unproject_avx512)                                                  \
     X(locate, T3R_CPU_AVX2, t3r_locate_avx2)                                                                           \
     X(locate, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_locate_avx512)                                                        \
-    X(census_row, T3R_CPU_AVX2, t3r_census_row_avx2)                                                                   \
-    X(census_costs, T3R_CPU_AVX2, t3r_census_costs_avx2)                                                               \
-    X(ray_row, T3R_CPU_AVX2, t3r_ray_row_avx2)                                                                         \
-    X(ray_row, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_ray_row_avx512)                                                      \
-    X(path_row, T3R_CPU_AVX2, t3r_path_row_avx2)                                                                       \
-    X(winner_row, T3R_CPU_AVX2, t3r_winner_row_avx2)                                                                   \
     X(luma_row, T3R_CPU_AVX2, t3r_luma_row_avx2)                                                                       \
     X(split_row, T3R_CPU_AVX2, t3r_split_row_avx2)                                                                     \
     X(db2_predict, T3R_CPU_AVX2, t3r_db2_predict_avx2)                                                                 \
@@ -62,20 +87,14 @@
     X(blur_column, T3R_CPU_AVX2, t3r_blur_column_avx2)                                                                 \
     X(wanted_row, T3R_CPU_AVX2, t3r_wanted_row_avx2)                                                                   \
     X(key_row, T3R_CPU_AVX2, t3r_key_row_avx2)                                                                         \
-    X(convolve, T3R_CPU_AVX2, t3r_convolve_avx2)                                                                       \
-    X(depthwise, T3R_CPU_AVX2, t3r_depthwise_avx2)                                                                     \
-    X(pack_layer, T3R_CPU_AVX2, t3r_pack_layer_avx2)                                                                   \
-    X(pack_layer, T3R_CPU_X86_VNNI_, t3r_pack_layer_vnni)                                                              \
-    X(convolve_packed, T3R_CPU_AVX2, t3r_convolve_packed_avx2)                                                         \
-    X(convolve_packed, T3R_CPU_X86_VNNI_, t3r_convolve_packed_vnni)                                                    \
     X(project, T3R_CPU_AVX2, t3r_project_avx2)                                                                         \
-    T3R_X86_OPTIMIZED_(X)                                                                                              \
     X(place, T3R_CPU_AVX2, t3r_place_avx2)                                                                             \
     X(blend, T3R_CPU_AVX2, t3r_blend_avx2)                                                                             \
     X(blend_keep, T3R_CPU_AVX2, t3r_blend_keep_avx2)                                                                   \
-    X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)                                                                         \
-    X(scatter, T3R_CPU_X86_VNNI_, t3r_scatter_vnni)                                                                    \
-    X(solve, T3R_CPU_AVX2, t3r_solve_avx2)
+    T3R_X86_OPTIMIZED_(X)                                                                                              \
+    T3R_X86_STEREO_VARIANTS_(X)                                                                                        \
+    T3R_X86_LEARNED_VARIANTS_(X)                                                                                       \
+    T3R_X86_REFINEMENT_VARIANTS_(X)
 /* Of an activation that convolve_packed of these features reads. */
 #define T3R_X86_STRIP_BYTES(cpu) (((cpu)&T3R_CPU_X86_VNNI_) == T3R_CPU_X86_VNNI_ ? 1u : 2u)
 #else

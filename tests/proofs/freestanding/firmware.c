@@ -2,6 +2,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "memory.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
 
@@ -12,43 +13,6 @@
 
 int firmware(void *arena, size_t bytes, const t3r_config *config, const t3r_frame *frame, const t3r_camera *camera,
              const t3r_target *target);
-
-/* volatile: or the compiler would make the loops calls of these very functions */
-void *memcpy(void *restrict to, const void *restrict from, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        ((volatile uint8_t *)to)[i] = ((const uint8_t *)from)[i];
-    }
-    return to;
-}
-
-void *memmove(void *to, const void *from, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        size_t k = (uintptr_t)to < (uintptr_t)from ? i : count - 1 - i;
-        ((volatile uint8_t *)to)[k] = ((const uint8_t *)from)[k];
-    }
-    return to;
-}
-
-void *memset(void *to, int byte, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        ((volatile uint8_t *)to)[i] = (uint8_t)byte;
-    }
-    return to;
-}
-
-int memcmp(const void *a, const void *b, size_t count)
-{
-    const uint8_t *p = a, *q = b;
-    for (size_t i = 0; i < count; i++) {
-        if (p[i] != q[i]) {
-            return p[i] < q[i] ? -1 : 1;
-        }
-    }
-    return 0;
-}
 
 int firmware(void *arena, size_t bytes, const t3r_config *config, const t3r_frame *frame, const t3r_camera *camera,
              const t3r_target *target)

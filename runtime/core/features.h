@@ -1,0 +1,26 @@
+/* The features of this build (trim3r_features.h), and which of them settings ask for. */
+#ifndef T3R_CORE_FEATURES_H
+#define T3R_CORE_FEATURES_H
+
+#include <stdbool.h>
+
+#include "trim3r.h"
+
+#define T3R_FEATURES_BUILT                                                                                             \
+    ((T3R_FEATURE_STEREO ? T3R_HAS_STEREO : 0u) | (T3R_FEATURE_STREAMS ? T3R_HAS_STREAMS : 0u) |                       \
+     (T3R_FEATURE_LEARNED ? T3R_HAS_LEARNED : 0u) | (T3R_FEATURE_MOMENT ? T3R_HAS_MOMENT : 0u) |                       \
+     (T3R_FEATURE_REFINEMENT ? T3R_HAS_REFINEMENT : 0u))
+
+/* Whether this library has all of these T3R_HAS_... */
+static inline bool t3r_has(uint32_t features)
+{
+    return (features & ~T3R_FEATURES_BUILT) == 0;
+}
+
+/* What a head needs, 0 for one that every library has. */
+static inline uint32_t t3r_feature_of_head(t3r_head head)
+{
+    return head == T3R_HEAD_LEARNED ? T3R_HAS_LEARNED : head == T3R_HEAD_MOMENT ? T3R_HAS_MOMENT : 0u;
+}
+
+#endif

@@ -1,0 +1,19 @@
+/* What stands for refinement where it is left out: no configuration asks for a pass (core/config.c). */
+#include "refine.h"
+
+#if !T3R_FEATURE_REFINEMENT
+
+t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes)
+{
+    return t3r_refine_scene(rt, views, passes, NULL);
+}
+
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records)
+{
+    (void)rt;
+    (void)views;
+    (void)records;
+    return passes == 0 ? T3R_OK : T3R_ERR_UNSUPPORTED;
+}
+
+#endif

@@ -1,0 +1,19 @@
+/* What stands for depth by stereo where it is left out: no configuration asks for it (core/config.c). */
+#include "stereo_views.h"
+
+#if !T3R_FEATURE_STEREO
+
+void t3r_stereo_clear(const t3r_view *views, uint32_t count)
+{
+    (void)views;
+    (void)count;
+}
+
+t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views)
+{
+    (void)rt;
+    (void)views;
+    return T3R_ERR_UNSUPPORTED;
+}
+
+#endif

@@ -1,0 +1,88 @@
+#include "scene.h"
+
+#include "trim3r.h"
+#include "trim3r_heads.h"
+
+enum { SIDE = 64, VIEWS = 2, BUDGET = 400 };
+
+static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[T3R_ARENA_BYTES(SIDE, SIDE, VIEWS, BUDGET)];
+static uint8_t colour[SIDE][SIDE][3], depth[SIDE][SIDE][2], view[SIDE][SIDE][3];
+
+/* FNV-1a by words of 64 bits. */
+static void fold(void *user, t3r_stage stage, uint64_t hash)
+{
+    uint64_t *folded = user;
+    *folded = (*folded ^ hash ^ (uint64_t)stage) * UINT64_C(1099511628211);
+}
+
+/* A chequered wall that leans back, seen from `shift` pixels further to the right. */
+static void draw_wall(int shift)
+{
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) {
+            const int millimetres = 1500 + 8 * y;
+            colour[y][x][0] = ((x + shift) / 8 + y / 8) % 2 == 0 ? 230 : 30;
+            colour[y][x][1] = (uint8_t)(4 * x);
+            colour[y][x][2] = 120;
+            depth[y][x][0] = (uint8_t)millimetres;
+            depth[y][x][1] = (uint8_t)(millimetres >> 8);
+        }
+    }
+}
+
+static t3r_status add_views(t3r_runtime *rt, t3r_camera *camera)
+{
+    const t3r_frame frame = {.format = T3R_PIXEL_RGB24,
+                             .width = SIDE,
+                             .height = SIDE,
+                             .planes = {&colour[0][0][0]},
+                             .stride_bytes = {SIDE * 3},
+                             .depth = &depth[0][0][0],
+                             .depth_width = SIDE,
+                             .depth_height = SIDE,
+                             .depth_stride_bytes = SIDE * 2,
+                             .depth_unit_q40 = 1099511628};
+    t3r_status status = T3R_OK;
+    for (int v = 0; v < VIEWS && status == T3R_OK; v++) {
+        draw_wall(4 * v);
+        status = t3r_add_view(rt, &frame, camera);
+        camera->position_q32[0] += INT64_C(1) << 29; /* 12.5 cm to the right */
+    }
+    return status;
+}
+
+uint64_t build_scene(uint32_t cpu)
+{
+    uint64_t folded = UINT64_C(14695981039346656037);
+    const t3r_hooks hooks = {.user = &folded, .stage_hash = fold};
+    const t3r_target target = {.width = SIDE, .height = SIDE, .rgb = &view[0][0][0], .rgb_stride_bytes = SIDE * 3};
+    t3r_camera camera = {.fx_q16 = SIDE << 16,
+                         .fy_q16 = SIDE << 16,
+                         .cx_q16 = (SIDE - 1) << 15,
+                         .cy_q16 = (SIDE - 1) << 15,
+                         .rotation_q30 = {1 << 30}};
+    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
+    config.head = T3R_HEAD_LEARNED;
+    t3r_runtime *rt;
+    t3r_scene scene;
+    t3r_status status = t3r_init(&rt, arena, sizeof arena, &config);
+    if (status == T3R_OK) {
+        status = t3r_set_cpu(rt, cpu);
+    }
+    if (status == T3R_OK) {
+        status = t3r_set_hooks(rt, &hooks);
+    }
+    if (status == T3R_OK) {
+        status = t3r_bind_head(rt, t3r_head_small, t3r_head_small_bytes);
+    }
+    if (status == T3R_OK) {
+        status = add_views(rt, &camera);
+    }
+    if (status == T3R_OK) {
+        status = t3r_reconstruct(rt, 0, &scene);
+    }
+    if (status == T3R_OK) {
+        status = t3r_render(rt, &camera, &target);
+    }
+    return status == T3R_OK ? folded : (uint64_t)status;
+}
