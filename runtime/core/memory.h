@@ -5,9 +5,15 @@
 
 #include <stddef.h>
 
+#ifdef __GNUC__
+#pragma GCC visibility push(default) /* they come from elsewhere, also where all else is hidden */
+#endif
 void *memcpy(void *restrict to, const void *restrict from, size_t count);
 void *memmove(void *to, const void *from, size_t count);
 void *memset(void *to, int byte, size_t count);
 int memcmp(const void *a, const void *b, size_t count);
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 
 #endif

@@ -1,6 +1,7 @@
 """Files that pages begin with, each made once for all of them, on built-in input."""
 import json
 import pathlib
+import re
 import shutil
 import struct
 import subprocess
@@ -122,6 +123,11 @@ def scene(given, path):
     given.run("build", "scene.mcap", "--context", "0,2", "--keep", "100%", "--head", "none", "--refine", 0, "-o", path)
 
 
+def example(given, path):
+    """The README's program."""
+    path.write_text(re.search(r"```c\n(.*?)```", (pages.ROOT / "README.md").read_text(), flags=re.S)[1])
+
+
 def pointmaps(given, path):
     """A slanted plane before the cameras of `photos`, as DUSt3R would save it."""
     count, side, focal = 3, 64, 55.0
@@ -163,4 +169,4 @@ def write_json(path, value):
 
 MAKERS = {"room.mcap": recording, "photos/": photos, "photo.png": photo, "posed/": posed, "tum/": tum, "colmap/": colmap,
           "scannet/": scannet, "record3d/": record3d, "tracker.txt": trajectory, "importance/": importance,
-          "small.safetensors": head, "theirs.ply": scene, "dust3r.npz": pointmaps}
+          "small.safetensors": head, "theirs.ply": scene, "dust3r.npz": pointmaps, "example.c": example}

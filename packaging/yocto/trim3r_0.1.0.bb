@@ -1,0 +1,17 @@
+# The recipe for Yocto: the tree itself is built, wherever this file lies in it.
+SUMMARY = "Posed camera frames to a budgeted set of 3-D Gaussians, in integers"
+LICENSE = "Apache-2.0"
+LIC_FILES_CHKSUM = "file://LICENSE;md5=3b83ef96387f14655fc854ddc3c6bd57"
+
+inherit cmake pkgconfig externalsrc
+
+EXTERNALSRC ?= "${THISDIR}/../.."
+
+PACKAGECONFIG ??= "stereo streams learned moment refinement"
+PACKAGECONFIG[stereo] = "-DT3R_WITH_STEREO=ON,-DT3R_WITH_STEREO=OFF"
+PACKAGECONFIG[streams] = "-DT3R_WITH_STREAMS=ON,-DT3R_WITH_STREAMS=OFF"
+PACKAGECONFIG[learned] = "-DT3R_WITH_LEARNED=ON,-DT3R_WITH_LEARNED=OFF"
+PACKAGECONFIG[moment] = "-DT3R_WITH_MOMENT=ON,-DT3R_WITH_MOMENT=OFF"
+PACKAGECONFIG[refinement] = "-DT3R_WITH_REFINEMENT=ON,-DT3R_WITH_REFINEMENT=OFF"
+
+EXTRA_OECMAKE = "-DT3R_TOOLS=OFF -DT3R_TESTS=OFF"

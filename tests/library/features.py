@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""features.py [--each]: a library without a feature says so wherever it is asked for, and has the bits of the whole one
+in all else.
+
+The two files of tools/amalgamate are compiled whole and without any feature; with --each also without each, and CMake
+builds and installs a library without any. features_driver.c asks for every feature.
+"""
+import os
+import pathlib
+import re
+import sys
+import tempfile
+
+from library import CONSUMERS, FEATURES, HEADS, HERE, ROOT, WARNINGS, amalgamate, at_once, there, without
+
+from checks import check, done, run
+
+BITS = {name: 1 << at for at, name in enumerate(FEATURES)}
+
+
+def lines_of(driver, *words):
+    """What the driver prints of the library that the words give the compiler."""
+    run("cc", "-std=c11", "-O0", *WARNINGS, HERE / "features_driver.c", CONSUMERS / "scene.c", *words, "-o", driver)
+    return run(driver).stdout.splitlines()
+
+
+def of_two_files(folder, left_out):
+    return lines_of(folder / ("driver_" + "_".join(left_out or ["whole"])), *map(without, left_out), "-I", folder, "-I",
+                    HEADS, HEADS / "small.c", folder / "trim3r.c")
+
+
+def of_cmake(folder):
+    """A library without any feature, installed; pkg-config knows what is left out."""
+    build, installed = folder / "build", folder / "installed"
+    run("cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DT3R_TOOLS=OFF", "-DT3R_TESTS=OFF",
+        "-DT3R_SHARED=OFF", *(f"-DT3R_WITH_{name.upper()}=OFF" for name in FEATURES))
+    run("cmake", "--build", build)
+    run("cmake", "--install", build, "--prefix", installed)
+    os.environ["PKG_CONFIG_PATH"] = str(installed / "lib" / "pkgconfig")
+    return lines_of(folder / "driver_cmake", *run("pkg-config", "--cflags", "--libs", "trim3r-heads").stdout.split())
+
+
+def expected(whole, left_out):
+    """The whole library's lines, changed where something is left out, and nowhere else."""
+    features = sum(bit for name, bit in BITS.items() if name not in left_out)
+    lines = [f"features {features:02x}, {0 if 'refinement' in left_out else 4} passes of refinement"]
+    for line in whole[1:]:
+        name, call = re.match(r"(\w+)(, a call)?", line).groups()
+        if name not in left_out:
+            lines.append(line)
+        elif call:
+            lines.append(f"{name}, a call: unsupported")
+        else:
+            what = "this head" if name in ("learned", "moment") else name
+            lines.append(f"{name}: unsupported: this library was built without {what}")
+    return lines
+
+
+def main():
+    if not there("cc"):
+        sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="trim3r-features-") as folder:
+        folder = pathlib.Path(folder)
+        amalgamate(folder)
+        choices = [[], list(FEATURES), *([name] for name in FEATURES if "--each" in sys.argv)]
+        whole, *reduced = at_once(lambda left_out: of_two_files(folder, left_out), choices)
+        if "--each" in sys.argv:
+            check(of_cmake(folder) == reduced[0], "CMake's library without any feature is another")
+    hashes = {line.split()[-1] for line in whole if re.fullmatch(r"\w+: [0-9a-f]{16}", line)}
+    check(len(hashes) == 1 + len(FEATURES), f"the whole library builds not all scenes, or two alike: {whole}")
+    check(expected(whole, ["stereo"]) != expected(whole, ["moment"]) != whole, "blind: all libraries seem alike")
+    for left_out, lines in zip(choices[1:], reduced):
+        check(lines == expected(whole, left_out), f"without {', '.join(left_out)}: {lines}")
+    done()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+/* features_driver: a line for each feature, of a scene that uses it, and a line of a call that needs it. A library
+ * without a feature prints "unsupported" there, and what any other prints in all the other lines. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "consumers/scene.h"
+#include "trim3r.h"
+
+static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[4 << 20];
+
+static t3r_config plain_config(void)
+{
+    t3r_config config = t3r_default_config(SCENE_SIDE, SCENE_SIDE, SCENE_VIEWS, SCENE_BUDGET);
+    config.refinements = 0;
+    return config;
+}
+
+static void print_scene(const char *name, const t3r_config *config)
+{
+    uint64_t folded;
+    const t3r_status status = fold_scene(config, 0, arena, sizeof arena, &folded);
+    if (status == T3R_OK) {
+        printf("%s: %016" PRIx64 "\n", name, folded);
+    } else if (status == T3R_ERR_UNSUPPORTED) {
+        printf("%s: unsupported: %s\n", name, t3r_config_error(config));
+    } else {
+        printf("%s: %s\n", name, t3r_error_text(status));
+    }
+}
+
+static void print_scenes(void)
+{
+    t3r_config config = plain_config();
+    print_scene("plain", &config);
+    config.depth = T3R_DEPTH_STEREO;
+    print_scene("stereo", &config);
+    config = plain_config();
+    config.stream = 1;
+    print_scene("streams", &config);
+    config = plain_config();
+    config.head = T3R_HEAD_LEARNED;
+    print_scene("learned", &config);
+    config.head = T3R_HEAD_MOMENT;
+    print_scene("moment", &config);
+    config = plain_config();
+    config.refinements = 4;
+    print_scene("refinement", &config);
+}
+
+static void print_call(const char *name, t3r_status status)
+{
+    printf("%s, a call: %s\n", name, status == T3R_ERR_UNSUPPORTED ? "unsupported" : t3r_error_text(status));
+}
+
+/* Of a runtime that has no views. */
+static void print_calls(void)
+{
+    const t3r_config config = plain_config();
+    const t3r_request moment = {.head = T3R_HEAD_MOMENT}, bounded = {.max_loss_q8 = 256};
+    const t3r_frame frame = {0};
+    const t3r_camera camera = {0};
+    t3r_runtime *rt;
+    t3r_scene scene;
+    print_call("plain", t3r_init(&rt, arena, sizeof arena, &config));
+    print_call("streams", t3r_stream_keyframe(rt, &frame, &camera, NULL));
+    print_call("learned", t3r_bind_head(rt, arena, 1));
+    print_call("moment", t3r_reconstruct(rt, &moment, &scene));
+    print_call("refinement", t3r_reconstruct(rt, &bounded, &scene));
+}
+
+int main(void)
+{
+    printf("features %02x, %u passes of refinement\n", (unsigned)t3r_features(),
+           (unsigned)t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, 1).refinements);
+    print_scenes();
+    print_calls();
+    return 0;
+}

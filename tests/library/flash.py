@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""flash.py [--update]: what each feature takes of a Cortex-M7's flash, as docs/library.md has it.
+
+The two files of tools/amalgamate, compiled for size and linked with a firmware that calls every function of trim3r.h but
+t3r_set_cpu(). A row may be off by 2 %: that much another version of the compiler makes. --update writes the table.
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+from library import FEATURES, ROOT, amalgamate, at_once, there, without
+
+import proof
+from checks import check, done, run
+
+PAGE = ROOT / "docs" / "library.md"
+TABLE = re.compile(r"(<!-- flash:begin -->\n)(.*?)(<!-- flash:end -->)", re.S)
+COMPILER = "arm-none-eabi-gcc"
+FLAGS = ["-std=c11", "-Os", "-mcpu=cortex-m7", "-mthumb", "-mfloat-abi=soft", "-ffreestanding", "-nostdlib",
+         "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections", "-Wl,-e,firmware"]
+TOLERANCE = 0.02
+
+
+def caller():
+    """A firmware that names every function."""
+    names = [name for name in proof.public_functions() if name != "t3r_set_cpu"]
+    rows = "".join(f"    (function *){name},\n" for name in names)
+    return ('#include "memory.h"\n#include "trim3r.h"\n\ntypedef void function(void);\n'
+            f"function *const firmware[] __attribute__((used)) = {{\n{rows}}};\n")
+
+
+def bytes_of(folder, left_out):
+    firmware = folder / ("firmware_" + "_".join(left_out or ["whole"]))
+    run(COMPILER, *FLAGS, *map(without, left_out), "-I", folder, "-I", ROOT / "tests" / "proofs" / "freestanding",
+        folder / "caller.c", folder / "trim3r.c", "-lgcc", "-o", firmware)
+    text, data = run("arm-none-eabi-size", firmware).stdout.splitlines()[1].split()[:2]
+    return int(text) + int(data)
+
+
+def table_of(sizes):
+    whole, *without_one, plain = sizes
+    rows = [f"| {name} | `T3R_WITH_{name.upper()}`, `T3R_FEATURE_{name.upper()}` | {whole - size:,} |\n"
+            for name, size in zip(FEATURES, without_one)]
+    return ("| left out | CMake's option, the compiler's macro | bytes saved |\n|---|---|---:|\n" + "".join(rows)
+            + f"| all of them | | {whole - plain:,} |\n| nothing: the whole library takes | | {whole:,} |\n")
+
+
+def figures(table):
+    return [int(row.replace(",", "")) for row in re.findall(r"\| ([\d,]+) \|$", table, flags=re.M)]
+
+
+def alike(shown, measured, whole):
+    """Whether each figure is the measured one, within so much of it and a thousandth of the library."""
+    return len(shown) == len(measured) and all(
+        abs(a - b) <= TOLERANCE * b + whole / 1000 for a, b in zip(shown, measured))
+
+
+def main():
+    if not there(COMPILER):
+        sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="trim3r-flash-") as folder:
+        folder = pathlib.Path(folder)
+        amalgamate(folder)
+        (folder / "caller.c").write_text(caller())
+        choices = [[], *([name] for name in FEATURES), list(FEATURES)]
+        sizes = at_once(lambda left_out: bytes_of(folder, left_out), choices)
+    table, page = table_of(sizes), PAGE.read_text()
+    measured = figures(table)
+    check(all(size > 0 for size in measured), f"a feature saves nothing:\n{table}")
+    check(not alike([size + 900 for size in measured], measured, sizes[0]), "blind: 900 bytes more are not noticed")
+    if "--update" in sys.argv:
+        PAGE.write_text(TABLE.sub(lambda match: match[1] + table + match[3], page))
+    else:
+        shown = TABLE.search(page)
+        check(shown is not None and alike(figures(shown[2]), measured, sizes[0]),
+              f"docs/library.md is not what is measured; tests/library/flash.py --update writes\n{table}")
+    print(table, end="")
+    done()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""packages.py BUILD: cpack makes Debian packages of the build folder. Unpacked together into one folder, a program is
+built with what lies there, and the packed program runs. Files, names and dependencies are as wanted."""
+import pathlib
+import re
+import sys
+import tempfile
+
+from library import CONSUMERS, HASH, there
+
+from checks import check, done, run
+
+VERSION = "0.1.0"
+FILES = {
+    "libtrim3r0.1": ["lib/libtrim3r.so.0.1", f"lib/libtrim3r.so.{VERSION}"],
+    "libtrim3r-dev": ["include/trim3r.h", "include/trim3r_arena.h", "include/trim3r_features.h", "include/trim3r_heads.h",
+                      "lib/cmake/trim3r/trim3r-config-release.cmake", "lib/cmake/trim3r/trim3r-config-version.cmake",
+                      "lib/cmake/trim3r/trim3r-config.cmake", "lib/libtrim3r.a", "lib/libtrim3r.so",
+                      "lib/libtrim3r_heads.a", "lib/pkgconfig/trim3r-heads.pc", "lib/pkgconfig/trim3r.pc"],
+    "trim3r": ["bin/trim3r"],
+}
+NEEDS = {"libtrim3r0.1": ["libc6"], "libtrim3r-dev": [f"libtrim3r0.1 (= {VERSION})"],
+         "trim3r": ["libc6", "libcjson1", "libjpeg", "liblapacke", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
+CAMERAS = "trim3r-cameras" # only where the libraries for them are
+
+
+def fields_of(package):
+    return dict(re.findall(r"^(\w[\w-]*): (.*)$", run("dpkg-deb", "--field", package).stdout, flags=re.M))
+
+
+def files_in(package):
+    """Paths below /usr; of a multiarch folder, as if it were lib."""
+    lines = run("dpkg-deb", "--contents", package).stdout.splitlines()
+    paths = [line.split()[5] for line in lines if not line.startswith("d")]
+    check(all(path.startswith("./usr/") for path in paths), f"{package.name}: outside /usr: {paths}")
+    return sorted(re.sub(r"^\./usr/(lib/[a-z0-9_]+-linux-gnu\w*/)?", lambda m: "lib/" if m[1] else "", path)
+                  for path in paths)
+
+
+def check_package(package, fields):
+    name = fields["Package"]
+    check(fields["Version"] == VERSION, f"{name}: version {fields['Version']}")
+    check(fields.get("Architecture") == run("dpkg", "--print-architecture").stdout.strip(), f"{name}: architecture")
+    check(files_in(package) == FILES[name], f"{name} holds {files_in(package)}")
+    for needed in NEEDS[name]:
+        check(needed in fields.get("Depends", ""), f"{name}: needs {fields.get('Depends')}, and not {needed}")
+
+
+def check_use(root, folder):
+    """A consumer by the unpacked library, and the unpacked program."""
+    usr = root / "usr"
+    library = next(usr.rglob("libtrim3r.so")).parent
+    run("cmake", "-S", CONSUMERS, "-B", folder / "use", f"-DCMAKE_PREFIX_PATH={usr}", f"-DWANTED_VERSION={VERSION}")
+    run("cmake", "--build", folder / "use")
+    for kind in ("trim3r", "shared"):
+        said = run(folder / "use" / f"consumer_{kind}").stdout
+        check(said.split() == [HASH, HASH, VERSION], f"consumer, {kind}: {said}")
+    program, room = usr / "bin" / "trim3r", folder / "room.mcap"
+    check(str(library) not in run("ldd", program).stdout, "the program loads the library that it holds already")
+    run(program, "room", "--size", "32x32", "-o", room)
+    said = run(program, "replay", room).stdout
+    check(re.search(r"^final +[0-9a-f]{16}$", said, flags=re.M), f"the packed program replays: {said}")
+
+
+def main():
+    if not there("cpack", "cmake", "dpkg-deb", "dpkg-shlibdeps"):
+        sys.exit(77)
+    build = pathlib.Path(sys.argv[1])
+    with tempfile.TemporaryDirectory(prefix="trim3r-packages-") as folder:
+        folder = pathlib.Path(folder).resolve()
+        run("cpack", "--config", build / "CPackConfig.cmake", "-B", folder / "packages")
+        packages = {}
+        for path in (folder / "packages").glob("*.deb"):
+            packages[fields_of(path)["Package"]] = path
+        check(set(packages) - {CAMERAS} == set(FILES), f"packages: {sorted(packages)}")
+        for name in FILES:
+            check_package(packages[name], fields_of(packages[name]))
+            run("dpkg-deb", "--extract", packages[name], folder / "root")
+        check_use(folder / "root", folder)
+        total = {name: path.stat().st_size for name, path in sorted(packages.items())}
+    print(", ".join(f"{name}: {size} bytes" for name, size in total.items()))
+    done()
+
+
+if __name__ == "__main__":
+    main()
