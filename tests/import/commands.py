@@ -108,6 +108,7 @@ def test_tum_folder():
     report = json.loads(out)
     check((report["frames"], report["depth_frames"], report["skipped"]) == (2, 1, 1), f"TUM: {report}")
     check(report["left_out"] == ["rgb/1.png: no pose near it in time"], f"TUM: {report}")
+    check(report["remarks"] == ["1 of 2 frames have no depth"], f"TUM: {report}")
 
 
 def test_bad_folders():

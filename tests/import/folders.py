@@ -189,6 +189,22 @@ def test_several_models():
     same("another model by its own folder", imported(f"{path}/sparse/3")[1], depth=False)
 
 
+def test_pictures_without_pose():
+    """What the lists pass over is named."""
+    path = colmap("passed_over")
+    for name in ("view_10.png", "view_9.png", "notes.txt"):
+        write(f"{path}/images/{name}", png(ROOM["image"][0]))
+    report, got = imported(path)
+    same("passed over", got, depth=False)
+    check(report["left_out"] == [f"images/view_{i}.png: the model has no pose of it" for i in (9, 10)], f"{report}")
+    path = record3d("cut_short", change=lambda c: (c["poses"].pop(), c["perFrameIntrinsicCoeffs"].pop()))
+    os.remove(f"{path}/rgbd/0.depth")
+    report, _ = imported(path)
+    check((report["frames"], report["skipped"]) == (2, 1), f"cut short: {report}")
+    check(report["left_out"] == ["rgbd/2.png: there is no pose of it"], f"cut short: {report}")
+    check(report["remarks"] == ["1 of 2 frames have no depth"], f"cut short: {report}")
+
+
 def test_stereo_of_colmap():
     """Without depth, build says what it needs, and makes a scene with it."""
     path = colmap("stereo")
@@ -361,7 +377,7 @@ def test_record3d():
     refused(record3d("more_poses", change=lambda c: c["poses"].append(c["poses"][0])), "rgbd/3.jpg: No such file")
 
 
-TESTS = [test_record3d, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
+TESTS = [test_record3d, test_pictures_without_pose, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

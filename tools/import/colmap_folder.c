@@ -6,6 +6,7 @@
 
 #include "file_bytes.h"
 #include "import/colmap_model.h"
+#include "import/picture_folder.h"
 #include "reason.h"
 
 #define PATH_BYTES 8192
@@ -188,7 +189,7 @@ static int add_frames(const char *directory, const posed_folder_options *options
             return -1;
         }
     }
-    return 0;
+    return picture_folder_rest(directory, place, "the model has no pose of it", out, error, error_bytes);
 }
 
 int colmap_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,

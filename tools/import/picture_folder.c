@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -55,4 +56,49 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
     }
     free(entries);
     return out->frames != NULL ? status : t3r_reason(error, error_bytes, "out of memory");
+}
+
+static int by_text(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* The entry's path as frames spell it, on the heap. */
+static char *spelled(const char *place, const char *name)
+{
+    const size_t bytes = strlen(place) + strlen(name) + 2;
+    char *path = malloc(bytes);
+    if (path != NULL) {
+        snprintf(path, bytes, "%s/%s", place, name);
+    }
+    return path;
+}
+
+int picture_folder_rest(const char *directory, const char *place, const char *why, posed_folder *out, char *error,
+                        size_t error_bytes)
+{
+    struct dirent **entries = NULL;
+    char *folder = posed_path(directory, place);
+    const char **used = malloc((out->frame_count + 1) * sizeof *used);
+    const int count = folder == NULL ? -1 : scandir(folder, &entries, is_picture, versionsort);
+    int status = folder != NULL && used != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
+    for (uint32_t i = 0; i < out->frame_count && status == 0; i++) {
+        used[i] = out->frames[i].image;
+    }
+    if (status == 0) {
+        qsort(used, out->frame_count, sizeof *used, by_text);
+    }
+    for (int i = 0; i < count; i++) {
+        char *path = status == 0 ? spelled(place, entries[i]->d_name) : NULL;
+        if (status == 0 && (path == NULL || (bsearch(&path, used, out->frame_count, sizeof *used, by_text) == NULL &&
+                                             text_list_add(&out->left_out, "%s: %s", path, why) != 0))) {
+            status = t3r_reason(error, error_bytes, "out of memory");
+        }
+        free(path);
+        free(entries[i]);
+    }
+    free(entries);
+    free(used);
+    free(folder);
+    return status;
 }

@@ -1,6 +1,5 @@
-/* Posed folders: pictures with known cameras, as transforms.json (instant-ngp, NeRFCapture, nerfstudio), as
- * TUM RGB-D lists, or without poses as pictures alone. Reading one yields the list of its frames; the pictures are left
- * to the caller. */
+/* Folders of pictures with known cameras, of every kind that posed_folder.c lists, or without poses as pictures alone.
+ * Reading one yields the list of its frames; the pictures are left to the caller. */
 #ifndef TRIM3R_TOOLS_POSED_FOLDER_H
 #define TRIM3R_TOOLS_POSED_FOLDER_H
 

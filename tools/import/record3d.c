@@ -11,6 +11,7 @@
 
 #include "cli/json_input.h"
 #include "file_bytes.h"
+#include "import/picture_folder.h"
 #include "import/pose_between.h"
 #include "reader_limits.h"
 #include "reason.h"
@@ -254,7 +255,7 @@ static int add_names(const char *directory, const layout *l, const uint32_t dept
                                   "read; lzfse -decode unpacks it",
                             packed);
     }
-    return 0;
+    return picture_folder_rest(directory, l->pictures, "there is no pose of it", out, error, error_bytes);
 }
 
 int record3d_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,

@@ -467,6 +467,9 @@ int command_import(int argc, char **argv)
     cli_progress_end();
     if (status == 0 && t.depth_frames == 0) {
         (void)text_list_add(&m.folder.remarks, "no frame has depth: build and replay need --depth stereo");
+    } else if (status == 0 && t.depth_frames < m.folder.frame_count) {
+        (void)text_list_add(&m.folder.remarks, "%u of %u frames have no depth", m.folder.frame_count - t.depth_frames,
+                            m.folder.frame_count);
     }
     if (status != 0) {
         status = cli_error(CLI_BAD_INPUT, "%s", error);
