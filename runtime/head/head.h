@@ -23,7 +23,7 @@ typedef struct t3r_head_input {
     const void *weights; /* of `learned`, checked; NULL for the others */
     void *work;          /* two bytes a pixel; `learned`: at least t3r_head_learned_work_bytes() */
     size_t work_bytes;
-    bool unadapted;      /* the head takes every point for retained, spacing 1 */
+    bool unadapted; /* the head takes every point for retained, spacing 1 */
 } t3r_head_input;
 
 /* A total footprint in the image plane: mean and covariance in pixels, as the source view shall show it. */
@@ -62,5 +62,7 @@ T3R_HEADS(T3R_HEAD_FUNCTION_)
 
 /* Bytes of work that a learned head needs for views of this width. */
 size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width);
+/* The same with room for packed layers, which are faster; SIZE_MAX where they cannot be packed. */
+size_t t3r_head_learned_packed_bytes(const void *weights, uint32_t width);
 
 #endif

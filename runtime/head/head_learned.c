@@ -16,10 +16,20 @@ static size_t outputs_bytes(uint32_t width)
     return (size_t)width * T3R_HEAD_OUTPUTS * sizeof(int16_t);
 }
 
+static size_t with_outputs(size_t network, uint32_t width)
+{
+    const size_t row = T3R_UP_(outputs_bytes(width));
+    return network > SIZE_MAX - T3R_ARENA_ALIGN - row ? SIZE_MAX : T3R_UP_(network) + row;
+}
+
 size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width)
 {
-    size_t network = t3r_network_work_bytes(weights, width), row = T3R_UP_(outputs_bytes(width));
-    return network > SIZE_MAX - T3R_ARENA_ALIGN - row ? SIZE_MAX : T3R_UP_(network) + row;
+    return with_outputs(t3r_network_work_bytes(weights, width), width);
+}
+
+size_t t3r_head_learned_packed_bytes(const void *weights, uint32_t width)
+{
+    return with_outputs(t3r_network_packed_work_bytes(weights, width), width);
 }
 
 /* x in units of 2^-shift spacings, to pixels: |x| < 2^20 and spacing < 2^17 */

@@ -53,6 +53,10 @@ typedef struct t3r_network {
 /* Bytes of work for images of this width and any height; SIZE_MAX when that is more than can be counted. */
 size_t t3r_network_work_bytes(const void *weights, uint32_t width);
 
+/* The bytes of work with which the layers are packed by every kernel that takes packed ones. SIZE_MAX: none takes these
+ * layers, whose weights or activations have 16 bits, or of which one is depthwise. */
+size_t t3r_network_packed_work_bytes(const void *weights, uint32_t width);
+
 /* Prepares a pass over the rows of an image from row `begin` (below the height) on. Rows above it that its kernels read
  * are made, too, so that a band has the bits of the whole image. work: at least t3r_network_work_bytes() bytes, aligned
  * to 16. With more of them the layers are packed, where the kernels take packed layers. */

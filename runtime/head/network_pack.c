@@ -3,6 +3,8 @@
 
 #include "core/fixed.h"
 
+#define STRIP_BYTES_MOST 2u /* of an activation in a strip, by any kernel */
+
 t3r_convolution t3r_convolution_of(const t3r_network *net, uint32_t n, uint32_t phase)
 {
     const t3r_layer *layer = &net->layers[n];
@@ -40,21 +42,34 @@ static size_t strip_places(const t3r_network *net)
     return most + T3R_STRIP_BEHIND;
 }
 
-/* Whether the kernels have the layers packed: of 8 bits, none of them depthwise. */
+/* Layers of 8 bits, none of them depthwise. */
 static bool is_packable(const t3r_network *net)
 {
-    bool fits = T3R_VARIANTS_COUNT > 0 && net->kernels->pack_layer != NULL && net->header.weight_bits == 8 &&
-                net->header.activation_bits == 8;
+    bool fits = net->header.weight_bits == 8 && net->header.activation_bits == 8;
     for (uint32_t n = 0; n < net->planes; n++) {
         fits = fits && net->layers[n].kind == T3R_LAYER_CONV;
     }
     return fits;
 }
 
+size_t t3r_network_packed_work_bytes(const void *weights, uint32_t width)
+{
+    t3r_network net;
+    const uint64_t plain = t3r_network_lay_out(&net, weights, width, 1, NULL);
+    if (!is_packable(&net)) {
+        return SIZE_MAX;
+    }
+    size_t packed = T3R_PACKED_ALIGN + strip_places(&net) * STRIP_BYTES_MOST;
+    for (uint32_t n = 0; n < net.header.layers; n++) {
+        packed += packed_bytes(&net.layers[n]) * net.layers[n].phases;
+    }
+    return plain > SIZE_MAX - packed ? SIZE_MAX : (size_t)plain + packed;
+}
+
 void t3r_pack_layers(t3r_network *net, uint8_t *work, size_t bytes)
 {
     size_t at = (0 - (uintptr_t)work) % T3R_PACKED_ALIGN;
-    if (!is_packable(net)) {
+    if (T3R_VARIANTS_COUNT == 0 || net->kernels->pack_layer == NULL || !is_packable(net)) {
         return;
     }
     for (uint32_t n = 0; n < net->header.layers; n++) {

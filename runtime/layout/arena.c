@@ -18,7 +18,8 @@ _Static_assert(sizeof(t3r_cluster_sums) == T3R_CLUSTER_SUMS_BYTES, "trim3r_arena
 _Static_assert(sizeof(t3r_group_count) == T3R_GROUP_COUNT_BYTES, "trim3r_arena.h knows the budget's counts");
 _Static_assert(sizeof(t3r_refine_sums) == T3R_REFINE_SUMS_BYTES, "trim3r_arena.h knows refinement's sums");
 _Static_assert(sizeof(t3r_wanted) == T3R_WANTED_BYTES, "trim3r_arena.h knows the compared tile's size");
-_Static_assert(T3R_KEPT_LEAST * sizeof(uint32_t) == T3R_KEPT_LEAST_BYTES, "trim3r_arena.h knows what a splat of a tile keeps");
+_Static_assert(T3R_KEPT_LEAST * sizeof(uint32_t) == T3R_KEPT_LEAST_BYTES,
+               "trim3r_arena.h knows what a splat of a tile keeps");
 _Static_assert(sizeof(t3r_map_record) == T3R_MAP_RECORD_BYTES, "trim3r_arena.h knows the map record's size");
 _Static_assert(sizeof(t3r_correction) == T3R_CORRECTION_BYTES, "trim3r_arena.h knows the correction's size");
 
@@ -36,20 +37,31 @@ typedef struct buffer_table {
     size_t full_lists, full_refine; /* bytes with which they save all the passes that they can */
 } buffer_table;
 
-static void read_table(const t3r_config *c, buffer_table *table)
-{
-    const uint32_t keep = c->stream != 0 ? T3R_KEEP_MAP : c->keep_analysis;
-    buffer_row *rows = table->row;
+/* Of a configuration `c`. */
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,        \
-               c->head_column_bytes, keep, c->refinements, c->depth == T3R_DEPTH_STEREO, c->workers, c->warm)
+               c->head_column_bytes, c->stream != 0 ? T3R_KEEP_MAP : c->keep_analysis, c->refinements,                 \
+               c->depth == T3R_DEPTH_STEREO, c->workers, c->warm)
+
+static void read_table(const t3r_config *c, buffer_table *table)
+{
+    buffer_row *rows = table->row;
     T3R_BUFFERS(ROW, 0, SHAPE)
     for (int b = 0; b < T3R_BUFFER_COUNT; b++) {
         rows[b].bytes = T3R_UP_(rows[b].bytes);
     }
     table->full_lists = T3R_UP_(T3R_LISTS_BYTES_(SHAPE));
     table->full_refine = T3R_UP_(T3R_REFINE_FULL_BYTES_(SHAPE));
-#undef SHAPE
+}
+
+uint32_t t3r_refine_slices(const t3r_config *c, const t3r_layout *layout)
+{
+    if (layout->refine_bytes == 0) {
+        return 1;
+    }
+    const size_t fixed = T3R_REFINE_FIXED_BYTES_(SHAPE) + T3R_UP_((size_t)c->max_gaussians * sizeof(uint32_t));
+    const size_t slice = (layout->refine_bytes - fixed) / T3R_REFINE_SUMS_BYTES; /* at least every eighth */
+    return slice >= c->gaussians ? 1 : (uint32_t)((c->gaussians + slice - 1) / slice);
 }
 
 static bool alive_together(const buffer_row *a, const buffer_row *b)

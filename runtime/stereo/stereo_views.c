@@ -8,8 +8,7 @@
 #include "stereo_fill.h"
 #include "stereo_fuse.h"
 
-/* Each view is matched with so many others, those of the highest match score. */
-#define PARTNERS 2u
+#define PARTNERS T3R_STEREO_PARTNERS
 
 /* Every pair as a first look has it, symmetric. */
 typedef struct survey {

@@ -6,6 +6,9 @@
 #include "trim3r.h"
 #include "state/views.h"
 
+/* Each view is matched with so many others, those of the highest match score. */
+#define T3R_STEREO_PARTNERS 2u
+
 /* Clears the planes of depth and validity: without a sensor they hold what an earlier analysis made. */
 void t3r_stereo_clear(const t3r_view *views, uint32_t count);
 

@@ -19,6 +19,9 @@ def refused():
     expect(2, "bench", "--depth", "laser", err="--depth")
     expect(2, "bench", "--head", "moment", err="--head moment")
     expect(2, "bench", "--head", "large", err="--head")
+    expect(2, "bench", "--calibrate", err="belong together")
+    expect(2, "bench", "-o", "machine.json", err="belong together")
+    expect(2, "bench", "--calibrate", "-o", "machine.json", "--against", sys.argv[1], err="exclude")
 
 
 sys.exit(in_scratch(refused))

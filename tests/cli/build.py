@@ -33,7 +33,7 @@ def refused():
         "--exposure": ["On"],
         "--seed": ["-1", "4294967296"],
         "--working": ["64", "4x64", "64x5000"],
-        "--arena": ["x", "-1", "1k", ""],
+        "--arena": ["x", "-1", "1x", "1KB", "K", ""],
         "--threads": ["0", "65"],
         "--cpu-mask": ["every", "avx2,", ",avx2", "0x", "-1", "4294967296", ""],
         "--method": ["best", "", "pup+", "+finetune"],

@@ -6,6 +6,41 @@ import xml.dom.minidom
 from program import check, expect, expect_full, expect_json, in_scratch, room, weight_file
 
 
+def shares_and_operations(base, found):
+    check(expect_json(*base[:-2], "--keep", "10%") == found, "--keep 10% is not 13107 of 2 x 256 x 256")
+    expect(2, *base, "--keep", 10, err="exclude")
+    expect(2, *base[:-2], "--keep", 101, err="--keep")
+    operations = found["operations"]
+    check(operations["refine"] > operations["wavelet"] > 0, f"operations: {operations}")
+    analytic = expect_json(*base, "--head", "analytic")["operations"]
+    check(analytic["head"] < operations["head"] and analytic["refine"] == operations["refine"], "a network is no work")
+    check("M operations" in expect(0, *base), "no table of operations")
+    check("build_ms" not in found, "a time of no machine")
+
+
+def lists():
+    """What fits an arena."""
+    listed = expect_json("plan", "--arena", "2M")["choices"]
+    losses = [row["expected_loss_db"] for row in listed]
+    check(losses == sorted(losses) and len(losses) > 1, f"losses: {losses}")
+    check(all(row["min_bytes"] <= 2 << 20 for row in listed) and "build_ms" not in listed[0], f"choices: {listed}")
+    check(len({row["head"] for row in listed}) > 1, "one head alone")
+    small = expect_json("plan", "--arena", "2M", "--head", "small", "--refine", 2, "--size", "128x128")["choices"]
+    check({(row["head"], row["refine"]) for row in small} == {("small", 2)}, f"head small, two passes: {small}")
+    fixed = expect_json("plan", "--arena", "2M", "--gaussians", 777)["choices"]
+    check({row["gaussians"] for row in fixed} == {777}, f"777 Gaussians: {fixed}")
+    check(expect(0, "plan", "--arena", "2M", "--markdown").startswith("| head |"), "the list in Markdown")
+    expect(0, "plan", "--arena", "2M", out="loss dB")
+    expect(3, "plan", "--arena", "10K", err="the smallest arena is of")
+    expect(2, "plan", "--arena", "2M", "--within", "2M", err="--within")
+    expect(2, "plan", "--arena", "2M", "--views", 0, err="--views 0")
+    expect(2, "plan", "--time", "100km", err="--time")
+    for value in ("0", "-1ms", "ms", "1e3ms", "", "99999999s"):
+        expect(2, "plan", f"--time={value}", err="--time")
+    expect(1, "plan", "--time", "1ms", "--machine", "absent.json", err="absent.json")
+    expect(1, "plan", "--time", "1ms", "--machine", "wide.t3w", err="wide.t3w")
+
+
 def plan():
     room("32x32", "tiny.mcap")
     weight_file("wide.t3w", "16")
@@ -59,7 +94,12 @@ def plan():
     expect_json(*base, "--levels", 3, "--bridge-radius", 0, "--allocate", "paper")
     # a head needs what plan says: one with wider activations more, and a closed form nothing
     small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
-    check(small["arena_bytes"] == analytic["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
+    check(small["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
+    check(analytic["head_column_bytes"] == 0 and small["head_column_bytes"] > 0, "a closed form plans a network")
+    tall = ["plan", "--size", "64x512", "--keep", 1, "--refine", 0, "--head"]
+    check(expect_json(*tall, "analytic")["min_bytes"] <= expect_json(*tall, "small")["min_bytes"], "a closed form needs more")
+    shares_and_operations(base, found)
+    lists()
     check(wide["head_column_bytes"] > small["head_column_bytes"], "16-bit activations need no more")
     expect(2, *base, "--head", "big", err="--head")
 

@@ -28,16 +28,40 @@ double option_decimal(struct argp_state *state, const char *option, const char *
     return value;
 }
 
-uint64_t option_bytes(struct argp_state *state, const char *option, const char *text)
+bool bytes_of_text(const char *text, uint64_t *bytes)
 {
     char *end;
-    size_t digits = strspn(text, "0123456789");
-    uint64_t value = strtoull(text, &end, 10);
-    uint32_t shift = *end == 'k' || *end == 'K' ? 10 : *end == 'M' ? 20 : *end == 'G' ? 30 : 0;
-    if (digits == 0 || digits > 9 + (shift == 0) * 8 || end[shift != 0] != '\0' || value == 0) {
+    const size_t digits = strspn(text, "0123456789");
+    const uint64_t value = strtoull(text, &end, 10);
+    const uint32_t shift = *end == 'k' || *end == 'K' ? 10 : *end == 'M' ? 20 : *end == 'G' ? 30 : 0;
+    *bytes = value << shift;
+    return digits > 0 && digits <= 9 + (shift == 0) * 8 && end[shift != 0] == '\0';
+}
+
+uint64_t option_bytes(struct argp_state *state, const char *option, const char *text)
+{
+    uint64_t bytes;
+    if (!bytes_of_text(text, &bytes) || bytes == 0) {
         argp_error(state, "--%s takes a number of bytes, with K, M or G behind it or not, not '%s'", option, text);
     }
-    return value << shift;
+    return bytes;
+}
+
+uint64_t option_time(struct argp_state *state, const char *option, const char *text)
+{
+    const size_t digits = strspn(text, "0123456789.");
+    const char *unit = text + digits;
+    char *end;
+    const double value = strtod(text, &end);
+    const double each = *unit == '\0' || strcmp(unit, "ms") == 0 ? 1e6
+                        : strcmp(unit, "us") == 0                ? 1e3
+                        : strcmp(unit, "s") == 0                 ? 1e9
+                                                                 : 0;
+    const double most = 1e15; /* eleven days */
+    if (digits == 0 || end != unit || !(value * each >= 1 && value * each <= most)) {
+        argp_error(state, "--%s takes a time as 100ms, 0.1s or 900us, not '%s'", option, text);
+    }
+    return (uint64_t)(value * each);
 }
 
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,

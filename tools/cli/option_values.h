@@ -4,6 +4,7 @@
 #define TRIM3R_TOOLS_OPTION_VALUES_H
 
 #include <argp.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "trim3r.h"
@@ -12,8 +13,12 @@
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
 /* A decimal number in [low, high], with an exponent or not. */
 double option_decimal(struct argp_state *state, const char *option, const char *text, double low, double high);
-/* Bytes above 0, with K (2^10), M (2^20) or G (2^30) behind the number or not. */
+/* A number of bytes, with K (2^10), M (2^20) or G (2^30) behind it or not. False: the text is none. */
+bool bytes_of_text(const char *text, uint64_t *bytes);
+/* The same, above 0. */
 uint64_t option_bytes(struct argp_state *state, const char *option, const char *text);
+/* A time above 0 in nanoseconds: a decimal number with ms, us or s behind it, or ms without. */
+uint64_t option_time(struct argp_state *state, const char *option, const char *text);
 /* "WxH", each side in [low, T3R_MAX_SIDE]. */
 void option_size(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t *width,
                  uint32_t *height);

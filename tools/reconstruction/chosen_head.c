@@ -158,7 +158,9 @@ void chosen_head_close(chosen_head *chosen)
 void chosen_head_configure(const chosen_head *chosen, t3r_config *config)
 {
     config->head = chosen->head;
-    if (chosen->weights != NULL) {
+    if (chosen->weights == NULL) {
+        config->head_column_bytes = 0;
+    } else {
         uint32_t needed = t3r_head_column_bytes(chosen->weights, chosen->bytes, config->width);
         config->head_column_bytes = needed > config->head_column_bytes ? needed : config->head_column_bytes;
     }

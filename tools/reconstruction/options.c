@@ -40,7 +40,7 @@ static const struct argp_option settings[] = {
      0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "iterations of the methods with +finetune, 1..100000 (200)", 0},
-    {"arena", KEY_ARENA, "BYTES|min|full", 0,
+    {"arena", KEY_ARENA, "BYTES[K|M|G]|min|full", 0,
      "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {0},
 };
@@ -52,14 +52,11 @@ void reconstruction_parse_arena(struct argp_state *state, const char *text, reco
     } else if (strcmp(text, "min") == 0) {
         o->arena = ARENA_MIN;
     } else {
-        char *end = NULL;
-        size_t digits = strspn(text, "0123456789");
-        uint64_t bytes = strtoull(text, &end, 10);
-        if (digits == 0 || digits > 15 || *end != '\0') {
-            argp_error(state, "--arena takes a number of bytes, min or full, not '%s'", text);
+        if (!bytes_of_text(text, &o->arena_bytes)) {
+            argp_error(state, "--arena takes a number of bytes, with K, M or G behind it or not, min or full, not '%s'",
+                       text);
         }
         o->arena = ARENA_BYTES;
-        o->arena_bytes = bytes;
     }
 }
 

@@ -79,6 +79,7 @@ static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
     reconstruction *r = user;
     r->stage_hash[stage] = r->stage_hashed[stage] ? t3r_hash_u64(r->stage_hash[stage], hash) : hash;
     r->stage_hashed[stage] = true;
+    stage_times_end(&r->stages, stage);
 }
 
 static void run_parallel(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
@@ -422,6 +423,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
         return code;
     }
     double start = cli_now();
+    stage_times_begin(&r->stages, options->processor.threads);
     for (uint32_t v = 0; v < r->context_count; v++) {
         t3r_status status = t3r_add_view(r->runtime, &frames[v].frame, &frames[v].camera);
         if (status != T3R_OK) {

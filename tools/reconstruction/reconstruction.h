@@ -13,6 +13,7 @@
 #include "cli/processor_options.h"
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/method.h"
+#include "reconstruction/stage_times.h"
 #include "recording.h"
 #include "scene/scene_file.h"
 #include "threads.h"
@@ -79,6 +80,7 @@ typedef struct reconstruction {
                                              when all are used */
     double add_views_seconds;             /* image stage */
     double build_seconds;                 /* t3r_reconstruct() */
+    stage_times stages;                   /* of both, where hashes are collected */
     double give_up_at;                    /* cli_now() at which what runs is cancelled; 0 = never */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* a stage that reports several times: its reports chained */
     bool stage_hashed[T3R_STAGE_COUNT];

@@ -36,22 +36,7 @@ t3r_status bench_work_build(bench_work *w, bench_scene kind)
 {
     t3r_runtime *runtime = w->scene[kind].runtime;
     t3r_scene scene;
-    t3r_status status = t3r_reset(runtime);
-    for (uint32_t v = 0; v < BENCH_VIEWS && status == T3R_OK; v++) {
-        t3r_frame frame = {
-            .format = T3R_PIXEL_RGB24,
-            .width = BENCH_SIDE,
-            .height = BENCH_SIDE,
-            .planes = {w->rgb[v]},
-            .stride_bytes = {3 * BENCH_SIDE},
-            .depth = (const uint8_t *)w->depth[v], /* little-endian hosts: the bench compares times, not bits */
-            .depth_width = BENCH_SIDE,
-            .depth_height = BENCH_SIDE,
-            .depth_stride_bytes = 2 * BENCH_SIDE,
-            .depth_unit_q40 = ROOM_DEPTH_UNIT_Q40,
-        };
-        status = t3r_add_view(runtime, &frame, &w->camera[v]);
-    }
+    const t3r_status status = bench_views_add(&w->views, runtime);
     return status == T3R_OK ? t3r_reconstruct(runtime, NULL, &scene) : status;
 }
 
@@ -119,10 +104,7 @@ t3r_status bench_work_draw(bench_work *w, bench_scene kind)
 
 void bench_work_close(bench_work *w)
 {
-    for (uint32_t v = 0; v < BENCH_VIEWS; v++) {
-        free(w->rgb[v]);
-        free(w->depth[v]);
-    }
+    bench_views_free(&w->views);
     for (int kind = 0; kind < BENCH_SCENES; kind++) {
         free(w->scene[kind].arena);
     }
@@ -146,12 +128,7 @@ void bench_work_close(bench_work *w)
 static bool allocate(bench_work *w)
 {
     size_t pixels = (size_t)BENCH_WAVELET_WIDTH * BENCH_WAVELET_HEIGHT;
-    bool ok = true;
-    for (uint32_t v = 0; v < BENCH_VIEWS; v++) {
-        w->rgb[v] = malloc((size_t)BENCH_SIDE * BENCH_SIDE * 3);
-        w->depth[v] = malloc((size_t)BENCH_SIDE * BENCH_SIDE * 2);
-        ok = ok && w->rgb[v] != NULL && w->depth[v] != NULL;
-    }
+    const bool ok = bench_views_draw(&w->views, BENCH_SIDE, BENCH_SIDE, BENCH_VIEWS);
     w->view = malloc((size_t)BENCH_SIDE * BENCH_SIDE * 3);
     w->wavelet_rgb = malloc(pixels * 3);
     w->wavelet_planes = malloc(pixels * 3);
@@ -200,19 +177,15 @@ int bench_work_open(bench_work *w, const bench_settings *o)
     if (o->processor.threads > 1 && (w->threads = t3r_threads_start(o->processor.threads)) == NULL) {
         return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", o->processor.threads);
     }
-    /* context views 0 and 2, seen from view 1 between them */
-    for (uint32_t v = 0; v < BENCH_VIEWS; v++) {
-        room_camera(2 * v, BENCH_SIDE, BENCH_SIDE, &w->camera[v]);
-        room_frame(2 * v, BENCH_SIDE, BENCH_SIDE, SEED, w->rgb[v], w->depth[v]);
-    }
+    /* seen from between them */
     room_camera(1, BENCH_SIDE, BENCH_SIDE, &w->viewpoint);
     room_frame(0, BENCH_WAVELET_WIDTH, BENCH_WAVELET_HEIGHT, SEED, w->wavelet_rgb, NULL);
     size_t pixels = (size_t)BENCH_WAVELET_WIDTH * BENCH_WAVELET_HEIGHT;
     for (size_t i = 0; i < pixels * 3; i++) {
         w->wavelet_planes[i % 3 * pixels + i / 3] = w->wavelet_rgb[i];
     }
-    if (o->points == NULL && bench_points_unproject(&w->points, BENCH_VIEWS, BENCH_SIDE, BENCH_SIDE, w->rgb, w->depth,
-                                                    w->camera, error, sizeof error)) {
+    if (o->points == NULL && bench_points_unproject(&w->points, BENCH_VIEWS, BENCH_SIDE, BENCH_SIDE, w->views.rgb,
+                                                    w->views.depth, w->views.camera, error, sizeof error)) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     return CLI_OK;

@@ -9,6 +9,7 @@
 #include "cli/processor_options.h"
 #include "reconstruction/chosen_head.h"
 #include "study/bench/bench_points.h"
+#include "study/bench/bench_views.h"
 #include "threads.h"
 
 #define BENCH_SIDE 256u
@@ -42,9 +43,7 @@ typedef struct bench_settings {
 
 typedef struct bench_work {
     t3r_depth source;
-    uint8_t *rgb[BENCH_VIEWS];
-    uint16_t *depth[BENCH_VIEWS];
-    t3r_camera camera[BENCH_VIEWS];
+    bench_views views;
     t3r_camera viewpoint;
     struct {
         t3r_runtime *runtime;

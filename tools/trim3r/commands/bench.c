@@ -11,7 +11,9 @@
 #include "study/bench/bench_against.h"
 #include "study/bench/bench_kernels.h"
 #include "study/bench/bench_stages.h"
+#include "study/bench/calibrate.h"
 #include "study/bench/cpu_flags.h"
+#include "study/bench/machine.h"
 #include "study/bench/spread.h"
 #include "reconstruction/chosen_head.h"
 #include "cli/cli.h"
@@ -29,11 +31,12 @@
 typedef struct bench_options {
     bench_settings settings;
     const char *stages, *against;
+    const char *output; /* of a calibration */
     uint32_t runs;
-    bool json;
+    bool calibrate, json;
 } bench_options;
 
-enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_AGAINST, KEY_JSON };
+enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_AGAINST, KEY_CALIBRATE, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", OPTION_READS, "points to cluster instead of the room's: raw float32, N x 6", 0},
@@ -45,6 +48,9 @@ static const struct argp_option options[] = {
     {"runs", KEY_RUNS, "N", 0, "number of timed runs of each stage, 1..101 (7)", 0},
     {"against", KEY_AGAINST, "BINARY", OPTION_READS,
      "another trim3r, to run its bench and this one's in --runs turns: how many times as fast each stage is", 0},
+    {"calibrate", KEY_CALIBRATE, NULL, 0,
+     "measure instead what a unit of each kind of work takes on this machine, for trim3r plan --machine", 0},
+    {"output", 'o', "MACHINE.json", OPTION_WRITES(FILE_OTHER), "file that --calibrate writes", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -74,11 +80,24 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_AGAINST:
         o->against = arg;
         return 0;
+    case KEY_CALIBRATE:
+        o->calibrate = true;
+        return 0;
+    case 'o':
+        o->output = arg;
+        return 0;
     case KEY_JSON:
         o->json = true;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, NULL, 0);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->calibrate != (o->output != NULL)) {
+            argp_error(state, "--calibrate and -o MACHINE.json belong together");
+        } else if (o->calibrate && o->against != NULL) {
+            argp_error(state, "--calibrate and --against exclude each other");
+        }
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -99,7 +118,8 @@ static const struct argp argp = {
         "  trim3r bench --depth stereo\n"
         "  trim3r bench --json --runs 21\n"
         "  trim3r bench --points cloud.f32 --stages kmeans_ms --json\n"
-        "  trim3r bench --against ../older/trim3r --runs 15\n\n"
+        "  trim3r bench --against ../older/trim3r --runs 15\n"
+        "  trim3r bench --calibrate -o machine.json\n\n"
         "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of the "
         "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
         "255; a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
@@ -346,11 +366,45 @@ static int run_against(const bench_options *o, const bool chosen[BENCH_STAGES_MO
     return bench_against(&contest);
 }
 
+/* Prices of this machine, into a file. */
+static int run_calibration(const bench_options *o)
+{
+    machine m = {.threads = o->settings.processor.threads};
+    double errors[T3R_STAGE_COUNT];
+    char error[512] = "";
+    t3r_cpu_describe(o->settings.processor.cpu, m.cpu, sizeof m.cpu);
+    const int code = calibrate(&o->settings.processor, o->runs, &m.prices, errors);
+    if (code != CLI_OK) {
+        return code;
+    }
+    if (machine_write(&m, o->output, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    if (o->json) {
+        cJSON *root = cJSON_CreateObject();
+        cJSON_AddStringToObject(root, "machine", o->output);
+        cJSON *worst = cJSON_AddObjectToObject(root, "largest_errors");
+        for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
+            cJSON_AddNumberToObject(worst, t3r_stage_name((t3r_stage)stage), errors[stage]);
+        }
+        json_print(root);
+        return CLI_OK;
+    }
+    printf("%s: prices of %d kinds of work; largest error of a stage's time in a trial:\n", o->output, T3R_WORK_COUNT);
+    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
+        printf("%-14s %5.1f %%\n", t3r_stage_name((t3r_stage)stage), errors[stage] * 100);
+    }
+    return CLI_OK;
+}
+
 int command_bench(int argc, char **argv)
 {
     bench_options o = {.settings = {.head = CHOSEN_HEAD_DEFAULT, .processor = processor_defaults()}, .runs = 7};
     file_options_parse(&argp, argc, argv, &o);
 
+    if (o.calibrate) {
+        return run_calibration(&o);
+    }
     bool chosen[BENCH_STAGES_MOST];
     int code = choose_stages(o.stages, chosen);
     if (code != CLI_OK) {

@@ -31,11 +31,11 @@ typedef struct build_options {
     const char *colmap; /* NULL = no COLMAP model */
     int flags;          /* SCENE_FILE_... */
     poses_source poses;
-    bool json;
+    bool profile, json;
     reconstruction_options settings;
 } build_options;
 
-enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_UP, KEY_POSES, KEY_JSON };
+enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_UP, KEY_POSES, KEY_PROFILE, KEY_JSON };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
@@ -60,6 +60,8 @@ static const struct argp_option options[] = {
      0},
     {"comments", KEY_COMMENTS, NULL, 0,
      "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
+    {"profile", KEY_PROFILE, NULL, 0,
+     "print the time of each stage: processor time of one thread, or with more of them elapsed time", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -94,6 +96,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "--poses does not know '%s'; there are %s", arg, POSES_NAMES);
         }
         return 0;
+    case KEY_PROFILE:
+        o->profile = true;
+        return 0;
     case KEY_JSON:
         o->json = true;
         return 0;
@@ -113,6 +118,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         } else if (o->settings.points_of != NULL && method_ranks_for_head(o->settings.method)) {
             argp_error(state,
                        "--prune takes no rival with +head: which pixels a file's Gaussians came from is not known");
+        } else if (o->profile && o->settings.method != METHOD_TRIM3R) {
+            argp_error(state, "--profile belongs to the method trim3r, which has stages");
         }
         return 0;
     default:
@@ -210,6 +217,9 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     settings_add_json(cJSON_AddObjectToObject(root, "settings"), &o->settings.config);
     json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
     work_times_add_json(root, times);
+    if (o->profile) {
+        stage_times_add_json(root, &r->stages);
+    }
     cJSON *listed = cJSON_AddObjectToObject(root, "tile_lists");
     json_add_integer(listed, "entries", (int64_t)lists->entries);
     json_add_integer(listed, "usual", (int64_t)lists->usual);
@@ -345,6 +355,9 @@ static void print_text(const build_options *o, const reconstruction_account *tol
         }
     }
     print_lists(lists);
+    if (o->profile) {
+        stage_times_print(stdout, &r->stages);
+    }
 }
 
 /* Spells out the default, the first two frames. */

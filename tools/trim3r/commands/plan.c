@@ -1,4 +1,4 @@
-/* trim3r plan: what an arena holds, before anything runs. */
+/* trim3r plan: what an arena holds and how much work a build is, before anything runs; or which settings fit. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -17,13 +17,20 @@
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/settings.h"
 #include "cli/whole_file.h"
+#include "core/fixed.h"
+#include "trim3r/fitting.h"
+#include "trim3r/work_table.h"
 
 typedef struct plan_options {
     t3r_config config; /* but for the head; a render_width of 0 is the working size */
     uint64_t within;   /* bytes of the arena; 0 = as many as it takes */
+    double keep;       /* the budget as percent of the points; 0 = as a count */
+    fitting_options fitting;
     bool json, markdown;
-    const char *svg, *head;
+    const char *svg, *head; /* head: NULL = the default, or in a list each */
 } plan_options;
+
+#define LISTED_SIDE 256u /* default width and height of a list: what its expected losses were measured at */
 
 enum {
     KEY_SIZE = 0x1000,
@@ -32,6 +39,10 @@ enum {
     KEY_WITHIN,
     KEY_RENDER,
     KEY_KEEP,
+    KEY_KEEP_ANALYSIS,
+    KEY_ARENA,
+    KEY_TIME,
+    KEY_MACHINE,
     KEY_THREADS,
     KEY_SVG,
     KEY_MARKDOWN,
@@ -39,25 +50,64 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"size", KEY_SIZE, "WxH", 0, "working size of the context views (needed)", 0},
+    {"size", KEY_SIZE, "WxH", 0, "working size of the context views (needed; with --arena or --time 256x256)", 0},
     {"views", KEY_VIEWS, "N", 0, "number of context views, 0..16; 0 = an arena that only renders (2)", 0},
-    {"gaussians", KEY_GAUSSIANS, "Z", 0, "budget (needed, or --within)", 0},
-    {"within", KEY_WITHIN, "BYTES[K|M]", 0,
+    {"gaussians", KEY_GAUSSIANS, "Z", 0, "budget (needed, or --keep, --within, --arena or --time)", 0},
+    {"keep", KEY_KEEP, "P%", 0, "budget in percent of the pixels of all views", 0},
+    {"arena", KEY_ARENA, "BYTES[K|M|G]", 0,
+     "bytes of an arena: list the settings that fit, those of the least expected loss first", 0},
+    {"time", KEY_TIME, "TIME", 0, "most time of a build, as 100ms or 0.5s: list the settings that fit", 0},
+    {"machine", KEY_MACHINE, "MACHINE.json", OPTION_READS,
+     "machine, measured by trim3r bench --calibrate, whose times are predicted (with --time this one, measured now)",
+     0},
+    {"within", KEY_WITHIN, "BYTES[K|M|G]", 0,
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
-    {"keep-analysis", KEY_KEEP, NULL, 0, "keep the analysis after the build, so that the budget can change", 0},
+    {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
+     0},
     {"threads", KEY_THREADS, "N|all", 0,
      "number of threads that share the arena's work, 1..16, or all: one for each processor (1)", 0},
     {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture of the arena to write: stages across, bytes upwards", 0},
-    {"markdown", KEY_MARKDOWN, NULL, 0, "print the table in Markdown", 0},
+    {"markdown", KEY_MARKDOWN, NULL, 0, "print the table of the arena, or the list, in Markdown", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
+
+static bool lists(const plan_options *o)
+{
+    return o->fitting.bytes != 0 || o->fitting.nanoseconds != 0;
+}
+
+static void check_options(struct argp_state *state, plan_options *o)
+{
+    t3r_config *c = &o->config;
+    if (lists(o) && c->width == 0) {
+        c->width = c->height = LISTED_SIDE;
+    }
+    if (c->width == 0) {
+        argp_error(state, "--size WxH is missing");
+    } else if (c->gaussians == 0 && o->keep <= 0 && o->within == 0 && !lists(o)) {
+        argp_error(state, "--gaussians Z, --keep P%%, --within BYTES, --arena BYTES or --time TIME is missing");
+    } else if (c->gaussians != 0 && o->keep > 0) {
+        argp_error(state, "--gaussians and --keep exclude each other");
+    } else if (lists(o) && (o->within != 0 || o->svg != NULL)) {
+        argp_error(state, "--%s belongs to one arena, not to a list of settings", o->svg != NULL ? "svg" : "within");
+    } else if (lists(o) && c->views == 0) {
+        argp_error(state, "--views 0 builds nothing that could fit a time or an arena");
+    } else if (o->json && o->markdown) {
+        argp_error(state, "--json and --markdown exclude each other");
+    }
+    if (o->keep > 0) {
+        const uint64_t points = (uint64_t)c->width * c->height * (c->views > 0 ? c->views : 1);
+        c->gaussians = c->max_gaussians = T3R_MIN(reconstruction_budget((uint32_t)points, o->keep), T3R_MAX_GAUSSIANS);
+    }
+}
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     plan_options *o = state->input;
     t3r_config *c = &o->config;
+    uint32_t count;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = c;
@@ -72,13 +122,25 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_GAUSSIANS:
         c->gaussians = c->max_gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
         return 0;
+    case KEY_KEEP:
+        option_keep(state, arg, &o->keep, 1, &count);
+        return 0;
+    case KEY_ARENA:
+        o->fitting.bytes = option_bytes(state, "arena", arg);
+        return 0;
+    case KEY_TIME:
+        o->fitting.nanoseconds = option_time(state, "time", arg);
+        return 0;
+    case KEY_MACHINE:
+        o->fitting.machine = arg;
+        return 0;
     case KEY_WITHIN:
         o->within = option_bytes(state, "within", arg);
         return 0;
     case KEY_RENDER:
         option_size(state, "render", arg, 1, &c->render_width, &c->render_height);
         return 0;
-    case KEY_KEEP:
+    case KEY_KEEP_ANALYSIS:
         c->keep_analysis = 1;
         return 0;
     case KEY_THREADS:
@@ -97,11 +159,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         option_argument(state, arg, NULL, 0);
         return 0;
     case ARGP_KEY_END:
-        if (c->width == 0 || (c->gaussians == 0 && o->within == 0)) {
-            argp_error(state, "%s is missing", c->width == 0 ? "--size WxH" : "--gaussians Z or --within BYTES");
-        } else if (o->json && o->markdown) {
-            argp_error(state, "--json and --markdown exclude each other");
-        }
+        check_options(state, o);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -112,16 +170,26 @@ static const struct argp_child children[] = {{.argp = &settings_argp}, {.argp = 
 static const struct argp argp = {
     .options = options,
     .parser = parse,
-    .doc = "Print an arena's buffers, the least bytes that work, and the bytes for full speed."
-           "\vExamples:\n"
-           "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
-           "  trim3r plan --size 96x96 --within 512K\n"
-           "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
-           "  trim3r plan --size 256x256 --gaussians 13107 --json",
+    .doc =
+        "Print an arena's buffers, the least bytes that work, the bytes for full speed, and a build's operations; or "
+        "list the settings that fit an arena and a time."
+        "\vExamples:\n"
+        "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
+        "  trim3r plan --size 256x256 --keep 10% --head analytic\n"
+        "  trim3r plan --size 96x96 --within 512K\n"
+        "  trim3r plan --arena 2M --time 100ms\n"
+        "  trim3r plan --arena 2M --time 0.5s --head small --machine board.json\n"
+        "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
+        "  trim3r plan --size 256x256 --gaussians 13107 --json\n\n"
+        "A list has one row for each choice of head, budget and passes that no other beats in loss, bytes and time. "
+        "--head, --gaussians, --keep and --refine fix theirs. The expected loss is against the best settings "
+        "measured, on training scenes at 256x256: it orders settings and predicts no scene. Operations are "
+        "instructions of plain C.",
     .children = children,
 };
 
-static void print_json(const t3r_config *config, const t3r_plan_info *plan)
+static void print_json(const t3r_config *config, const t3r_plan_info *plan, const t3r_work_counts *work,
+                       const t3r_prices *prices)
 {
     cJSON *root = cJSON_CreateObject();
     json_add_integer(root, "width", config->width);
@@ -135,6 +203,7 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan)
     json_add_integer(root, "min_bytes", (int64_t)plan->min_bytes);
     json_add_integer(root, "arena_bytes", (int64_t)plan->bytes);
     json_add_integer(root, "most_blends", (int64_t)plan->most_blends);
+    work_table_add_json(root, work, prices);
     cJSON *buffers = cJSON_AddArrayToObject(root, "buffers");
     for (uint32_t i = 0; i < plan->buffer_count; i++) {
         const t3r_plan_buffer *b = &plan->buffers[i];
@@ -201,41 +270,68 @@ static int lower_budget(t3r_config *config, uint64_t bytes)
                      plan.min_bytes);
 }
 
-int command_plan(int argc, char **argv)
+/* The arena of one configuration, and the work in it. */
+static int print_plan(const plan_options *o, const t3r_config *config, const chosen_head *head)
 {
-    plan_options o = {.config = t3r_default_config(0, 0, 2, 0), .head = CHOSEN_HEAD_DEFAULT};
-    file_options_parse(&argp, argc, argv, &o);
-
-    t3r_config config = o.config;
-    chosen_head head;
-    int code = chosen_head_open(&head, o.head);
+    t3r_plan_info plan;
+    t3r_work_counts work;
+    machine m;
+    t3r_status status = t3r_plan(config, &plan);
+    if (status == T3R_OK) {
+        const size_t bytes = o->within != 0 ? (size_t)o->within : plan.bytes;
+        status = t3r_count_work(config, bytes, head->weights, head->bytes, &work);
+    }
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "settings", config, 0);
+    }
+    const t3r_prices *prices = o->fitting.machine != NULL ? &m.prices : NULL;
+    int code = prices != NULL ? fitting_machine(&o->fitting, config->workers, &m) : CLI_OK;
+    if (code == CLI_OK && o->svg != NULL) {
+        code = write_svg(o->svg, &plan);
+    }
     if (code != CLI_OK) {
         return code;
     }
-    chosen_head_configure(&head, &config);
-    chosen_head_close(&head);
+    if (o->json) {
+        print_json(config, &plan, &work, prices);
+        return CLI_OK;
+    }
+    if (o->within != 0) {
+        printf("%" PRIu32 " Gaussians fit into %" PRIu64 " bytes\n\n", config->gaussians, o->within);
+    }
+    print_table(&plan, o->markdown);
+    if (!o->markdown) {
+        putchar('\n');
+        work_table_print(&work, prices);
+    }
+    return CLI_OK;
+}
+
+int command_plan(int argc, char **argv)
+{
+    plan_options o = {.config = t3r_default_config(0, 0, 2, 0)};
+    o.config.refinements = T3R_ANY_REFINEMENTS;
+    file_options_parse(&argp, argc, argv, &o);
+
+    t3r_config config = o.config;
     if (config.render_width == 0) {
         config.render_width = config.width;
         config.render_height = config.height;
     }
-    if (o.within != 0 && (code = lower_budget(&config, o.within)) != CLI_OK) {
+    if (lists(&o)) {
+        return fitting_list(&o.fitting, &config, o.head, o.json, o.markdown);
+    }
+    if (config.refinements == T3R_ANY_REFINEMENTS) {
+        config.refinements = T3R_DEFAULT_REFINEMENTS;
+    }
+    chosen_head head;
+    int code = chosen_head_open(&head, o.head != NULL ? o.head : CHOSEN_HEAD_DEFAULT);
+    if (code != CLI_OK) {
         return code;
     }
-    t3r_plan_info plan;
-    t3r_status status = t3r_plan(&config, &plan);
-    if (status != T3R_OK) {
-        return reconstruction_error(status, "settings", &config, 0);
-    }
-    if (o.svg != NULL && (code = write_svg(o.svg, &plan)) != CLI_OK) {
-        return code;
-    }
-    if (o.json) {
-        print_json(&config, &plan);
-    } else {
-        if (o.within != 0) {
-            printf("%" PRIu32 " Gaussians fit into %" PRIu64 " bytes\n\n", config.gaussians, o.within);
-        }
-        print_table(&plan, o.markdown);
-    }
-    return CLI_OK;
+    chosen_head_configure(&head, &config);
+    code = o.within != 0 ? lower_budget(&config, o.within) : CLI_OK;
+    code = code == CLI_OK ? print_plan(&o, &config, &head) : code;
+    chosen_head_close(&head);
+    return code;
 }

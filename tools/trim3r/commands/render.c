@@ -65,7 +65,7 @@ static const struct argp_option options[] = {
     {"depth", KEY_DEPTH, "d.png", OPTION_WRITES(FILE_PICTURE), "depth along z to write, 16 bits, 0 = none", 0},
     {"depth-unit", KEY_DEPTH_UNIT, "U", 0, "world units in one step of the depth picture (0.001)", 0},
     {"alpha", KEY_ALPHA, "a.png", OPTION_WRITES(FILE_PICTURE), "coverage to write, 16 bits, 65535 = opaque", 0},
-    {"arena", KEY_ARENA, "BYTES|min|full", 0,
+    {"arena", KEY_ARENA, "BYTES[K|M|G]|min|full", 0,
      "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {"max-ms", KEY_MAX_MS, "MS", 0, "give up when a view takes longer (never)", PROCESSOR_GROUP},
     {"tile-splats", KEY_TILE_SPLATS, "N", 0,

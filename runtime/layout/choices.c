@@ -1,0 +1,150 @@
+/* Which settings fit, and which of them are expected to lose least. */
+#include "arena.h"
+#include "core/config.h"
+#include "core/fixed.h"
+#include "head/weights.h"
+#include "quality.h"
+#include "state/state.h"
+
+_Static_assert(T3R_QUALITY_PASSES *T3R_QUALITY_SHARES <= T3R_MAX_CHOICES, "choices are at most those of the table");
+
+/* Rows of T3R_QUALITY_HEADS; a network counts as the shipped one of about its size. */
+enum { ROW_ANALYTIC, ROW_MOMENT, ROW_NANO, ROW_SMALL, ROW_BASE };
+#define NANO_MOST_MACS 2500u /* a pixel */
+#define SMALL_MOST_MACS 8600u
+
+static uint32_t quality_row(t3r_head head, const void *weights)
+{
+    if (head != T3R_HEAD_LEARNED) {
+        return head == T3R_HEAD_MOMENT ? ROW_MOMENT : ROW_ANALYTIC;
+    }
+    const uint32_t macs = t3r_weights_header_of(weights).macs_q8 >> 8;
+    return macs <= NANO_MOST_MACS ? ROW_NANO : macs <= SMALL_MOST_MACS ? ROW_SMALL : ROW_BASE;
+}
+
+/* Of the last row whose passes are no more, and of the first share that is no more once it is rounded, or the last. */
+static uint32_t loss_of(uint32_t row, uint32_t passes, uint32_t gaussians, uint64_t points)
+{
+    uint32_t p = T3R_QUALITY_PASSES - 1, s = 0;
+    while (p > 0 && t3r_quality_passes[p] > passes) {
+        p--;
+    }
+    while (s + 1 < T3R_QUALITY_SHARES && points * t3r_quality_percent[s] > (uint64_t)gaussians * 100 + 50) {
+        s++;
+    }
+    return t3r_quality_loss_q4[row][p][s];
+}
+
+/* Rounded half up, at least 1. */
+static uint32_t share_of(uint64_t points, uint32_t percent)
+{
+    const uint64_t share = (points * percent + 50) / 100;
+    return (uint32_t)T3R_MIN(T3R_MAX(share, 1), T3R_MAX_GAUSSIANS);
+}
+
+typedef struct search {
+    t3r_config config; /* tried */
+    const void *weights;
+    size_t weight_bytes;
+    const t3r_limits *limits;
+    uint32_t row;
+    uint64_t points;
+} search;
+
+/* Whether the configuration fits, which fills the choice. */
+static bool try_one(const search *s, t3r_choice *choice)
+{
+    const t3r_config *c = &s->config;
+    t3r_layout layout;
+    if (t3r_config_check(c) != T3R_OK) {
+        return false;
+    }
+    (void)t3r_lay_out(c, 0, &layout); /* for the two sums */
+    *choice = (t3r_choice){
+        .gaussians = c->gaussians,
+        .refinements = c->refinements,
+        .head = c->head,
+        .weights = s->weights,
+        .min_bytes = layout.min_bytes,
+        .full_bytes = layout.bytes,
+        .loss_q4 = loss_of(s->row, c->refinements, c->gaussians, s->points),
+    };
+    const size_t bytes = s->limits->bytes == 0 ? layout.bytes : s->limits->bytes;
+    t3r_work_counts counts;
+    if (t3r_count_work(c, bytes, s->weights, s->weight_bytes, &counts) != T3R_OK) {
+        return false;
+    }
+    choice->price = s->limits->prices != NULL ? t3r_price_of_build(&counts, s->limits->prices) : 0;
+    return s->limits->most == 0 || choice->price <= s->limits->most;
+}
+
+/* Whether b is as good in every respect and better in one, or the same and comes first. */
+static bool is_beaten(const t3r_choice *a, const t3r_choice *b, bool b_first)
+{
+    const bool as_good = b->loss_q4 <= a->loss_q4 && b->full_bytes <= a->full_bytes && b->price <= a->price;
+    const bool better = b->loss_q4 < a->loss_q4 || b->full_bytes < a->full_bytes || b->price < a->price;
+    return as_good && (better || b_first);
+}
+
+static bool precedes(const t3r_choice *a, const t3r_choice *b)
+{
+    return a->loss_q4 != b->loss_q4 ? a->loss_q4 < b->loss_q4 : a->price < b->price;
+}
+
+/* Adds it, unless it is beaten, without those that it beats. */
+static uint32_t add(t3r_choice *choices, uint32_t count, const t3r_choice *found)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (is_beaten(found, &choices[i], true)) {
+            return count; /* then nothing that stands before it was beaten */
+        }
+        if (!is_beaten(&choices[i], found, false)) {
+            choices[kept++] = choices[i];
+        }
+    }
+    uint32_t at = kept;
+    for (; at > 0 && precedes(found, &choices[at - 1]); at--) {
+        choices[at] = choices[at - 1];
+    }
+    choices[at] = *found;
+    return kept + 1;
+}
+
+static bool are_limits(const t3r_limits *limits)
+{
+    return limits != NULL && (limits->most == 0 || limits->prices != NULL) && limits->gaussians <= T3R_MAX_GAUSSIANS &&
+           (limits->refinements <= T3R_MAX_REFINEMENTS || limits->refinements == T3R_ANY_REFINEMENTS);
+}
+
+t3r_status t3r_plan_choices(const t3r_config *config, const void *weights, size_t weight_bytes,
+                            const t3r_limits *limits, t3r_choice *choices, uint32_t *count)
+{
+    T3R_REFUSE_UNLESS(config != NULL && are_limits(limits) && choices != NULL && count != NULL, T3R_ERR_ARGUMENT);
+    search s = {.config = *config, .weights = weights, .weight_bytes = weight_bytes, .limits = limits};
+    s.config.gaussians = s.config.max_gaussians = 1;
+    s.config.refinements = 0;
+    const t3r_status status = t3r_config_check(&s.config);
+    if (status != T3R_OK || config->stream != 0) {
+        return status != T3R_OK ? status : T3R_ERR_CONFIG;
+    }
+    if (config->head == T3R_HEAD_LEARNED && t3r_weights_check(weights, weight_bytes) != T3R_OK) {
+        return T3R_ERR_WEIGHTS;
+    }
+    s.row = quality_row(config->head, weights);
+    s.points = (uint64_t)config->width * config->height * config->views;
+    for (uint32_t p = 0; p < T3R_QUALITY_PASSES; p++) {
+        for (uint32_t share = 0; share < T3R_QUALITY_SHARES; share++) {
+            t3r_choice found;
+            const bool any = limits->refinements == T3R_ANY_REFINEMENTS;
+            s.config.refinements = any ? t3r_quality_passes[p] : limits->refinements;
+            s.config.gaussians =
+                limits->gaussians != 0 ? limits->gaussians : share_of(s.points, t3r_quality_percent[share]);
+            s.config.max_gaussians = s.config.gaussians;
+            if (try_one(&s, &found)) {
+                *count = add(choices, *count, &found);
+            }
+        }
+    }
+    return T3R_OK;
+}

@@ -1,0 +1,172 @@
+/* How much work a build is, and what that takes at some prices: SPEC, "Work". */
+#include "arena.h"
+#include "core/config.h"
+#include "core/fixed.h"
+#include "head/head.h"
+#include "head/weights.h"
+#include "operations.h"
+#include "state/state.h"
+#include "stereo/stereo_views.h"
+#include "superclusters/superclusters.h"
+
+#define OPERATIONS_OF(NAME, name, stage) [T3R_WORK_##NAME] = T3R_OPERATIONS_##NAME,
+const t3r_prices t3r_operations = {{T3R_WORKS(OPERATIONS_OF)}};
+
+/* Every product here stays below 2^64: pixels of all views are at most 2^28, Gaussians 2^24, passes and slices 2^8, and
+ * KEEPS_ALL 2^10. */
+typedef struct sizes {
+    uint64_t pixels, views, points; /* of a view; of the build */
+    uint64_t gaussians, clusters, batched;
+} sizes;
+
+static sizes sizes_of(const t3r_config *c)
+{
+    const uint64_t pixels = (uint64_t)c->width * c->height, points = pixels * c->views;
+    return (sizes){
+        .pixels = pixels,
+        .views = c->views,
+        .points = points,
+        .gaussians = T3R_MIN(c->gaussians, points),
+        .clusters = c->clusters,
+        .batched = c->cluster_batches * T3R_MIN(points, T3R_CLUSTER_BATCH),
+    };
+}
+
+static void count_analysis(const t3r_config *c, const sizes *s, uint64_t *units)
+{
+    const uint64_t pairs = s->views * (s->views - 1) / 2;
+    units[T3R_WORK_IMAGE] = s->points;
+    if (c->depth == T3R_DEPTH_STEREO) {
+        units[T3R_WORK_STEREO] = T3R_MIN(pairs, T3R_STEREO_PARTNERS * s->views) * s->pixels;
+    } else {
+        units[T3R_WORK_DEPTH] = s->points;
+    }
+    units[T3R_WORK_POINTMAP] = s->points;
+    units[T3R_WORK_COMPARISON] = 2 * pairs * s->pixels;
+    units[T3R_WORK_WAVELET] = s->points;
+    units[T3R_WORK_SEEDING] = T3R_MIN(s->points, T3R_CLUSTER_SAMPLE) * s->clusters;
+    units[T3R_WORK_BATCHES] = s->batched;
+    units[T3R_WORK_LABELS] = s->points;
+    units[T3R_WORK_CENTRES] = (s->batched + s->points) * s->clusters;
+    units[T3R_WORK_NEIGHBOURS] = (c->cluster_batches + 1) * s->clusters * s->clusters;
+    units[T3R_WORK_BUDGET] = s->points;
+}
+
+/* Whether a worker's part of the head's work has room for packed layers. */
+static bool is_packed(const t3r_config *c, const t3r_layout *layout, const void *weights)
+{
+    const size_t room = layout->offset[T3R_BUFFER_SCENE] - layout->offset[T3R_BUFFER_HEAD_WORK];
+    return t3r_head_learned_packed_bytes(weights, c->width) <= room / c->workers;
+}
+
+/* Plane layers run at every cell of their grid, point layers at each Gaussian. */
+static void count_network(const void *weights, const t3r_config *c, const sizes *s, t3r_work macs, uint64_t *units)
+{
+    units[T3R_WORK_FEATURES] = s->points;
+    const uint32_t layers = t3r_weights_header_of(weights).layers;
+    for (uint32_t i = 0; i < layers; i++) {
+        const t3r_layer layer = t3r_weights_layer(weights, i);
+        const uint32_t cell = 1u << layer.level;
+        const uint64_t across = (c->width + cell - 1) / cell, down = (c->height + cell - 1) / cell;
+        const uint64_t places = layer.kind == T3R_LAYER_POINT ? s->gaussians : across * down * s->views;
+        units[T3R_WORK_ACTIVATIONS] += places * layer.outputs;
+        units[macs] += places * layer.outputs * t3r_layer_taps(&layer);
+    }
+}
+
+static void count_head(const t3r_config *c, const t3r_layout *layout, const void *weights, const sizes *s,
+                       uint64_t *units)
+{
+    if (c->head == T3R_HEAD_LEARNED) {
+        const bool packed = is_packed(c, layout, weights);
+        count_network(weights, c, s, packed ? T3R_WORK_MACS : T3R_WORK_UNPACKED_MACS, units);
+        units[T3R_WORK_LIFTS] = s->gaussians;
+    } else if (c->head == T3R_HEAD_MOMENT) {
+        units[T3R_WORK_MOMENT_PIXELS] = s->points;
+        units[T3R_WORK_MOMENT_GAUSSIANS] = s->gaussians;
+    } else {
+        units[T3R_WORK_DISC_PIXELS] = s->points;
+        units[T3R_WORK_DISC_GAUSSIANS] = s->gaussians;
+    }
+}
+
+/* With fewer Gaussians less of a tile's splats is kept while it is drawn, and more is made again. */
+#define KEEPS_ALL 1024u
+
+static void count_drawing(const t3r_config *c, const sizes *s, uint32_t slices, uint64_t *units)
+{
+    const uint64_t drawn = c->refinements * s->views * slices; /* views */
+    units[T3R_WORK_REFINE_PIXELS] = drawn * s->pixels;
+    units[T3R_WORK_REFINE_GAUSSIANS] = drawn * s->gaussians;
+    units[T3R_WORK_CORRECTIONS] = c->refinements * s->gaussians;
+    if (c->max_gaussians < KEEPS_ALL) {
+        units[T3R_WORK_REMADE_PIXELS] = drawn * s->pixels * (KEEPS_ALL - c->max_gaussians) / c->max_gaussians;
+    }
+    units[T3R_WORK_RASTER_PIXELS] = (uint64_t)c->render_width * c->render_height;
+    units[T3R_WORK_RASTER_GAUSSIANS] = c->gaussians;
+}
+
+t3r_status t3r_count_work(const t3r_config *config, size_t bytes, const void *weights, size_t weight_bytes,
+                          t3r_work_counts *counts)
+{
+    T3R_REFUSE_UNLESS(config != NULL && counts != NULL, T3R_ERR_ARGUMENT);
+    const t3r_status status = t3r_config_check(config);
+    if (status != T3R_OK || config->stream != 0) {
+        return status != T3R_OK ? status : T3R_ERR_CONFIG;
+    }
+    if (config->head == T3R_HEAD_LEARNED && t3r_weights_check(weights, weight_bytes) != T3R_OK) {
+        return T3R_ERR_WEIGHTS;
+    }
+    t3r_layout layout;
+    if (t3r_lay_out(config, bytes, &layout) != T3R_OK) {
+        return T3R_ERR_ARENA;
+    }
+    const sizes s = sizes_of(config);
+    *counts = (t3r_work_counts){{0}};
+    if (config->views > 0) {
+        count_analysis(config, &s, counts->units);
+        count_head(config, &layout, weights, &s, counts->units);
+    }
+    count_drawing(config, &s, t3r_refine_slices(config, &layout), counts->units);
+    return T3R_OK;
+}
+
+/* ---- prices ---------------------------------------------------------------------------------------------------- */
+
+static uint64_t add_to_most(uint64_t a, uint64_t b)
+{
+    return a > UINT64_MAX - b ? UINT64_MAX : a + b;
+}
+
+/* units x milli / 1000, rounded down by less than 2. */
+static uint64_t priced(uint64_t units, uint32_t milli)
+{
+    const uint64_t thousands = units / 1000, rest = units % 1000;
+    if (milli != 0 && thousands > UINT64_MAX / milli) {
+        return UINT64_MAX;
+    }
+    return add_to_most(thousands * milli, rest * milli / 1000);
+}
+
+#define STAGE_OF(NAME, name, stage) [T3R_WORK_##NAME] = T3R_STAGE_##stage,
+static const t3r_stage stages[] = {T3R_WORKS(STAGE_OF)};
+
+uint64_t t3r_price_of(const t3r_work_counts *counts, const t3r_prices *prices, t3r_stage stage)
+{
+    uint64_t sum = 0;
+    for (int work = 0; work < T3R_WORK_COUNT; work++) {
+        if (stages[work] == stage) {
+            sum = add_to_most(sum, priced(counts->units[work], prices->milli[work]));
+        }
+    }
+    return sum;
+}
+
+uint64_t t3r_price_of_build(const t3r_work_counts *counts, const t3r_prices *prices)
+{
+    uint64_t sum = 0;
+    for (int stage = 0; stage < T3R_STAGE_RASTER; stage++) {
+        sum = add_to_most(sum, t3r_price_of(counts, prices, (t3r_stage)stage));
+    }
+    return sum;
+}

@@ -1,0 +1,235 @@
+/* The work of builds and the settings that fit: counts follow the configuration, lists hold what they promise. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "weights_maker.h"
+#include "trim3r.h"
+
+static t3r_config config_of(uint32_t gaussians)
+{
+    return t3r_default_config(96, 64, 2, gaussians);
+}
+
+static size_t bytes_of(const t3r_config *config, bool full)
+{
+    t3r_plan_info plan;
+    assert_int_equal(t3r_plan(config, &plan), T3R_OK);
+    return full ? plan.bytes : plan.min_bytes;
+}
+
+static t3r_work_counts counted(const t3r_config *config, const void *weights, size_t weight_bytes)
+{
+    t3r_work_counts work;
+    assert_int_equal(t3r_count_work(config, bytes_of(config, true), weights, weight_bytes, &work), T3R_OK);
+    return work;
+}
+
+/* ---- counts ------------------------------------------------------------------------------------------------------ */
+
+static void counts_follow_the_configuration(void **state)
+{
+    (void)state;
+    t3r_config c = config_of(1000);
+    const t3r_work_counts before = counted(&c, NULL, 0);
+    const uint64_t points = 96 * 64 * 2;
+    assert_int_equal(before.units[T3R_WORK_IMAGE], points);
+    assert_int_equal(before.units[T3R_WORK_COMPARISON], points);
+    assert_int_equal(before.units[T3R_WORK_DISC_GAUSSIANS], 1000);
+    assert_int_equal(before.units[T3R_WORK_MACS] + before.units[T3R_WORK_UNPACKED_MACS], 0);
+    assert_int_equal(before.units[T3R_WORK_REFINE_PIXELS], c.refinements * points);
+    assert_int_equal(before.units[T3R_WORK_CORRECTIONS], c.refinements * 1000);
+    c.refinements *= 2;
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_REFINE_GAUSSIANS],
+                     2 * before.units[T3R_WORK_REFINE_GAUSSIANS]);
+    c.views = 0;
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_LABELS], 0);
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_RASTER_PIXELS], 96 * 64);
+    c = config_of(1000);
+    c.depth = T3R_DEPTH_STEREO;
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_STEREO], 96 * 64);
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DEPTH], 0);
+}
+
+/* What does not fit at once is refined in slices, and each draws the views. */
+static void small_arenas_draw_more_often(void **state)
+{
+    (void)state;
+    const t3r_config c = config_of(4000);
+    t3r_work_counts least;
+    const size_t bytes = bytes_of(&c, false);
+    assert_int_equal(t3r_count_work(&c, bytes, NULL, 0, &least), T3R_OK);
+    const uint64_t times = least.units[T3R_WORK_REFINE_PIXELS] / counted(&c, NULL, 0).units[T3R_WORK_REFINE_PIXELS];
+    assert_in_range(times, 2, 8);
+    assert_int_equal(t3r_count_work(&c, bytes - 1, NULL, 0, &least), T3R_ERR_ARENA);
+}
+
+static void networks_count_by_their_layers(void **state)
+{
+    (void)state;
+    size_t bytes;
+    uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 1, &bytes);
+    t3r_config c = config_of(96 * 64 * 2); /* every point, so that a pixel takes what the header says */
+    c.head = T3R_HEAD_LEARNED;
+    t3r_work_counts work = counted(&c, weights, bytes);
+    const uint64_t macs = work.units[T3R_WORK_MACS] + work.units[T3R_WORK_UNPACKED_MACS];
+    const uint64_t told = (uint64_t)t3r_weights_header_of(weights).macs_q8 * 96 * 64 * 2 / 256;
+    assert_in_range(macs, told - told / 100, told + told / 100);
+    assert_int_equal(t3r_count_work(&c, bytes_of(&c, true), NULL, 0, &work), T3R_ERR_WEIGHTS);
+    weights[bytes - 1] ^= 1;
+    assert_int_equal(t3r_count_work(&c, bytes_of(&c, true), weights, bytes, &work), T3R_ERR_WEIGHTS);
+    free(weights);
+}
+
+static void refuses_what_has_no_count(void **state)
+{
+    (void)state;
+    t3r_config c = config_of(100);
+    t3r_work_counts work;
+    assert_int_equal(t3r_count_work(NULL, 0, NULL, 0, &work), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_count_work(&c, 0, NULL, 0, NULL), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_count_work(&c, 0, NULL, 0, &work), T3R_ERR_ARENA);
+    c.stream = 1;
+    assert_int_equal(t3r_count_work(&c, SIZE_MAX / 2, NULL, 0, &work), T3R_ERR_CONFIG);
+    c.stream = 0;
+    c.clusters = 0;
+    assert_int_equal(t3r_count_work(&c, SIZE_MAX / 2, NULL, 0, &work), T3R_ERR_CONFIG);
+}
+
+static void prices_add_up_and_end_at_the_most(void **state)
+{
+    (void)state;
+    t3r_work_counts work = {{0}};
+    t3r_prices prices = {{0}};
+    work.units[T3R_WORK_IMAGE] = 1999;
+    work.units[T3R_WORK_BUDGET] = 7;
+    work.units[T3R_WORK_RASTER_PIXELS] = 5;
+    prices.milli[T3R_WORK_IMAGE] = 1500;
+    prices.milli[T3R_WORK_BUDGET] = 1000;
+    prices.milli[T3R_WORK_RASTER_PIXELS] = 2000;
+    assert_int_equal(t3r_price_of(&work, &prices, T3R_STAGE_IMAGE), 2998);
+    assert_int_equal(t3r_price_of(&work, &prices, T3R_STAGE_RASTER), 10);
+    assert_int_equal(t3r_price_of(&work, &prices, T3R_STAGE_HEAD), 0);
+    assert_int_equal(t3r_price_of_build(&work, &prices), 2998 + 7);
+    work.units[T3R_WORK_IMAGE] = UINT64_MAX;
+    prices.milli[T3R_WORK_IMAGE] = UINT32_MAX;
+    assert_true(t3r_price_of(&work, &prices, T3R_STAGE_IMAGE) == UINT64_MAX);
+    assert_true(t3r_price_of_build(&work, &prices) == UINT64_MAX);
+}
+
+/* ---- lists ------------------------------------------------------------------------------------------------------- */
+
+static void check_list(const t3r_choice *list, uint32_t count, const t3r_limits *limits)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        assert_true(limits->bytes == 0 || list[i].min_bytes <= limits->bytes);
+        assert_true(limits->most == 0 || list[i].price <= limits->most);
+        assert_true(limits->gaussians == 0 || list[i].gaussians == limits->gaussians);
+        assert_true(limits->refinements == T3R_ANY_REFINEMENTS || list[i].refinements == limits->refinements);
+        for (uint32_t k = 0; k < i; k++) {
+            assert_true(list[k].loss_q4 < list[i].loss_q4 ||
+                        (list[k].loss_q4 == list[i].loss_q4 && list[k].price <= list[i].price));
+            assert_true(list[i].full_bytes < list[k].full_bytes || list[i].price < list[k].price ||
+                        list[i].loss_q4 < list[k].loss_q4);
+        }
+    }
+}
+
+static uint32_t listed(const t3r_config *c, const t3r_limits *limits, t3r_choice list[T3R_MAX_CHOICES])
+{
+    uint32_t count = 0;
+    assert_int_equal(t3r_plan_choices(c, NULL, 0, limits, list, &count), T3R_OK);
+    assert_in_range(count, 0, T3R_MAX_CHOICES);
+    check_list(list, count, limits);
+    return count;
+}
+
+static void lists_what_fits_best_first(void **state)
+{
+    (void)state;
+    const t3r_config c = config_of(1);
+    t3r_choice all[T3R_MAX_CHOICES], some[T3R_MAX_CHOICES];
+    t3r_limits limits = {.prices = &t3r_operations, .refinements = T3R_ANY_REFINEMENTS};
+    const uint32_t count = listed(&c, &limits, all);
+    assert_true(count > 8 && all[0].loss_q4 < 16 && all[0].head == T3R_HEAD_ANALYTIC);
+    /* a row is a configuration: a build in such an arena, and its work */
+    t3r_config chosen = c;
+    chosen.gaussians = chosen.max_gaussians = all[0].gaussians;
+    chosen.refinements = all[0].refinements;
+    const t3r_work_counts work = counted(&chosen, NULL, 0);
+    assert_int_equal(bytes_of(&chosen, true), all[0].full_bytes);
+    assert_int_equal(t3r_price_of_build(&work, &t3r_operations), all[0].price);
+    /* each limit cuts, and all rows of the shorter list are no better than before */
+    limits.most = all[0].price / 2;
+    assert_in_range(listed(&c, &limits, some), 1, count - 1);
+    assert_true(some[0].loss_q4 >= all[0].loss_q4);
+    limits.bytes = all[count - 1].min_bytes;
+    assert_in_range(listed(&c, &limits, some), 1, count - 1);
+    limits.bytes = 1000;
+    assert_int_equal(listed(&c, &limits, some), 0);
+    limits = (t3r_limits){.gaussians = 500, .refinements = 3};
+    assert_int_equal(listed(&c, &limits, some), 1);
+    assert_int_equal(some[0].price, 0);
+}
+
+static void heads_are_compared(void **state)
+{
+    (void)state;
+    t3r_choice list[2 * T3R_MAX_CHOICES];
+    uint32_t count = 0, moments = 0;
+    const t3r_limits limits = {.prices = &t3r_operations, .refinements = T3R_ANY_REFINEMENTS};
+    t3r_config c = config_of(1);
+    assert_int_equal(t3r_plan_choices(&c, NULL, 0, &limits, list, &count), T3R_OK);
+    const uint32_t before = count;
+    c.head = T3R_HEAD_MOMENT;
+    assert_int_equal(t3r_plan_choices(&c, NULL, 0, &limits, list, &count), T3R_OK);
+    check_list(list, count, &limits);
+    for (uint32_t i = 0; i < count; i++) {
+        moments += list[i].head == T3R_HEAD_MOMENT;
+    }
+    assert_true(moments > 0 && moments < count && count < before + T3R_MAX_CHOICES);
+}
+
+static void refuses_limits_out_of_range(void **state)
+{
+    (void)state;
+    t3r_config c = config_of(1);
+    t3r_choice list[T3R_MAX_CHOICES];
+    uint32_t count = 0;
+    const t3r_limits bad[] = {
+        {.most = 5, .refinements = 1}, {.gaussians = T3R_MAX_GAUSSIANS + 1}, {.refinements = T3R_MAX_REFINEMENTS + 1}};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(t3r_plan_choices(&c, NULL, 0, &bad[i], list, &count), T3R_ERR_ARGUMENT);
+    }
+    const t3r_limits good = {.refinements = 1};
+    assert_int_equal(t3r_plan_choices(NULL, NULL, 0, &good, list, &count), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_plan_choices(&c, NULL, 0, NULL, list, &count), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, NULL, &count), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, NULL), T3R_ERR_ARGUMENT);
+    c.head = T3R_HEAD_LEARNED;
+    assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_WEIGHTS);
+    c.wavelet_levels = 0;
+    assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_CONFIG);
+    assert_int_equal(count, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(counts_follow_the_configuration),
+        cmocka_unit_test(small_arenas_draw_more_often),
+        cmocka_unit_test(networks_count_by_their_layers),
+        cmocka_unit_test(refuses_what_has_no_count),
+        cmocka_unit_test(prices_add_up_and_end_at_the_most),
+        cmocka_unit_test(lists_what_fits_best_first),
+        cmocka_unit_test(heads_are_compared),
+        cmocka_unit_test(refuses_limits_out_of_range),
+    };
+    return cmocka_run_group_tests_name("work", tests, NULL, NULL);
+}
