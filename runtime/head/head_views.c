@@ -17,7 +17,8 @@ typedef struct band_job {
     const t3r_runtime *rt;
     const t3r_view *views;
     const t3r_budget_settings *settings;
-    band bands[T3R_MAX_WORKERS]; /* of one round */
+    uint32_t count; /* of the bands of one round: at most as many views as workers, cut between workers */
+    band bands[2 * T3R_MAX_WORKERS];
 } band_job;
 
 /* A worker's share of what lies between here and the scene: at least what the plan gives it. */
@@ -68,22 +69,67 @@ static void make_band(void *context, uint32_t index, uint32_t worker)
     level(b->out, heads[rt->build.head](&input, b->begin, b->end, b->out), rt->gain_q14[b->view]);
 }
 
-static uint32_t count_retained(const t3r_view *view, uint32_t begin, uint32_t end)
+static uint32_t ones(uint32_t x)
 {
+    x -= x >> 1 & 0x55555555;
+    x = (x & 0x33333333) + (x >> 2 & 0x33333333);
+    return ((x + (x >> 4)) & 0x0f0f0f0f) * 0x01010101u >> 24;
+}
+
+static uint32_t count_retained(const t3r_view *view, uint32_t row)
+{
+    const size_t begin = (size_t)row * view->width, last = begin + view->width - 1;
     uint32_t count = 0;
-    for (size_t i = (size_t)begin * view->width; i < (size_t)end * view->width; i++) {
-        count += t3r_retained(view, i);
+    for (size_t word = begin / 32; word <= last / 32; word++) {
+        const uint32_t behind_begin = word == begin / 32 ? UINT32_MAX << begin % 32 : UINT32_MAX;
+        const uint32_t up_to_last = word == last / 32 ? UINT32_MAX >> (31 - last % 32) : UINT32_MAX;
+        count += ones(view->mask[word] & behind_begin & up_to_last);
     }
     return count;
 }
 
-/* Bands of a view: with fewer views than workers, so many that all have work. */
-static uint32_t bands_a_view(const t3r_runtime *rt, const t3r_workers *workers, uint32_t views)
+/* What a row takes beside its retained points, in their time: a network looks at every pixel. */
+static uint32_t row_cost(const t3r_runtime *rt)
 {
-    if (!t3r_is_parallel(workers) || rt->build.head == T3R_HEAD_MOMENT) { /* its sweeps take whole views */
-        return 1;
+    return rt->build.head == T3R_HEAD_LEARNED ? rt->config.width / 6 : 1;
+}
+
+/* Parts into which the work of a round is cut. `moment` sweeps over whole views, and one worker takes view by view. */
+static uint32_t parts_of(const t3r_runtime *rt, const t3r_workers *workers)
+{
+    return t3r_is_parallel(workers) && rt->build.head != T3R_HEAD_MOMENT ? workers->count : 1;
+}
+
+/* Cuts the views first..end - 1 into bands: each view for itself, and where one more of `parts` equal parts of the whole
+ * work is full. Returns how many Gaussians they will make. */
+static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t parts, t3r_gaussian *out)
+{
+    const uint32_t cost = row_cost(job->rt);
+    uint64_t total = 0, done = 0; /* 16 views of 2^24 pixels: below 2^30 */
+    for (uint32_t v = first; v < end && parts > 1; v++) {
+        for (uint32_t y = 0; y < job->views[v].height; y++) {
+            total += cost + count_retained(&job->views[v], y);
+        }
     }
-    return T3R_MIN((workers->count + views - 1) / views, rt->config.height);
+    uint32_t made = 0, full = 1;
+    job->count = 0;
+    for (uint32_t v = first; v < end; v++) {
+        const uint32_t height = job->views[v].height;
+        band b = {v, 0, 0, out + made};
+        for (uint32_t y = 0; y < height; y++) {
+            const uint32_t retained = count_retained(&job->views[v], y);
+            made += retained;
+            done += cost + retained;
+            const bool is_full = full < parts && done * parts >= total * full;
+            full += is_full;
+            if (is_full || y + 1 == height) {
+                b.end = y + 1;
+                job->bands[job->count++] = b;
+                b = (band){v, b.end, 0, out + made};
+            }
+        }
+    }
+    return made;
 }
 
 /* The views first..end - 1; progress is reported when `asks`. */
@@ -91,21 +137,14 @@ static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool a
 {
     const t3r_runtime *rt = job->rt;
     const t3r_workers workers = t3r_workers_of(rt);
-    const uint32_t bands = bands_a_view(rt, &workers, end - first), total = (end - first) * bands;
-    const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1; /* bands between two reports */
+    const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1; /* views between two reports */
     *made = 0;
-    for (uint32_t begin = 0; begin < total; begin += round) {
-        const uint32_t count = T3R_MIN(round, total - begin);
-        if (asks && !t3r_progress(rt, T3R_STAGE_HEAD, first + begin / bands, end)) {
+    for (uint32_t begin = first; begin < end; begin += round) {
+        if (asks && !t3r_progress(rt, T3R_STAGE_HEAD, begin, end)) {
             return T3R_ERR_CANCELLED;
         }
-        for (uint32_t i = 0; i < count; i++) {
-            const uint32_t view = first + (begin + i) / bands;
-            const t3r_share rows = t3r_share_of(job->views[view].height, (begin + i) % bands, bands);
-            job->bands[i] = (band){view, rows.begin, rows.end, out + *made};
-            *made += count_retained(&job->views[view], rows.begin, rows.end);
-        }
-        t3r_run_tasks(&workers, count, make_band, job);
+        *made += cut_bands(job, begin, T3R_MIN(begin + round, end), parts_of(rt, &workers), out + *made);
+        t3r_run_tasks(&workers, job->count, make_band, job);
     }
     return T3R_OK;
 }
