@@ -1,4 +1,4 @@
-/* Numbers as the weight file holds them: little-endian, whatever the machine. */
+/* Numbers as the weight file holds them and as hashes take them: little-endian, whatever the machine. */
 #ifndef T3R_LITTLE_ENDIAN_H
 #define T3R_LITTLE_ENDIAN_H
 
@@ -22,6 +22,18 @@ static inline int32_t t3r_le_i32(const uint8_t *p)
 static inline int64_t t3r_le_i64(const uint8_t *p)
 {
     return (int64_t)((uint64_t)t3r_le_u32(p) | (uint64_t)t3r_le_u32(p + 4) << 32);
+}
+
+static inline void t3r_set_le_u16(uint8_t *p, uint16_t x)
+{
+    p[0] = (uint8_t)x;
+    p[1] = (uint8_t)(x >> 8);
+}
+
+static inline void t3r_set_le_u32(uint8_t *p, uint32_t x)
+{
+    t3r_set_le_u16(p, (uint16_t)x);
+    t3r_set_le_u16(p + 2, (uint16_t)(x >> 16));
 }
 
 /* Two bytes of an aligned table in place, read in one piece so that a loop over them becomes vector loads. */

@@ -14,6 +14,7 @@
 #include "blur.h"
 #include "census.h"
 #include "convolve.h"
+#include "hash_bytes.h"
 #include "image_rows.h"
 #include "keys.h"
 #include "nearest.h"
@@ -84,6 +85,8 @@ typedef struct t3r_kernels {
     t3r_blend_keep_kernel *blend_keep;
     t3r_scatter_kernel *scatter;
     t3r_solve_kernel *solve;
+    /* the hash of each stage */
+    t3r_hash_bytes_kernel *hash_bytes;
 
     uint32_t strip_bytes; /* of an activation that convolve_packed reads: 2 are an int16, 1 is a byte less -128 */
 } t3r_kernels;

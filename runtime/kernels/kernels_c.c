@@ -53,5 +53,6 @@ const t3r_kernels t3r_kernels_c = {
     .scatter = t3r_scatter_c,
     .solve = t3r_solve_c,
 #endif
+    .hash_bytes = t3r_hash_bytes_c,
     .strip_bytes = 2,
 };

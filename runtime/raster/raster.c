@@ -5,7 +5,7 @@
 #include "raster_list.h"
 
 #include "core/fixed.h"
-#include "core/hash.h"
+#include "hash_writer.h"
 #include "state/state.h"
 
 typedef struct tile_job {
@@ -87,23 +87,26 @@ static t3r_status check_target(const t3r_runtime *rt, const t3r_target *t)
     return fits ? T3R_OK : T3R_ERR_ARGUMENT;
 }
 
-static uint64_t hash_target(const t3r_target *target)
+static uint64_t hash_target(const t3r_runtime *rt, const t3r_target *target)
 {
-    uint64_t hash = t3r_hash_u32(t3r_hash_u32(T3R_HASH_START, target->width), target->height);
+    t3r_hash_writer w;
+    t3r_hash_begin(&w, rt->kernels.hash_bytes);
+    t3r_write_u32(&w, target->width);
+    t3r_write_u32(&w, target->height);
     for (uint32_t y = 0; y < target->height && target->rgb != NULL; y++) {
-        hash = t3r_hash_bytes(hash, target->rgb + (size_t)y * target->rgb_stride_bytes, (size_t)3 * target->width);
+        t3r_write_bytes(&w, target->rgb + (size_t)y * target->rgb_stride_bytes, (size_t)3 * target->width);
     }
     for (uint32_t y = 0; y < target->height && target->depth_q20 != NULL; y++) {
         const uint32_t *row = target->depth_q20 + (size_t)y * (target->depth_stride_bytes / sizeof *row);
         for (uint32_t x = 0; x < target->width; x++) {
-            hash = t3r_hash_u32(hash, row[x]);
+            t3r_write_u32(&w, row[x]);
         }
     }
     for (uint32_t y = 0; y < target->height && target->alpha_q15 != NULL; y++) {
         const uint16_t *row = target->alpha_q15 + (size_t)y * (target->alpha_stride_bytes / sizeof *row);
-        hash = t3r_hash_u16s(hash, row, target->width);
+        t3r_write_u16s(&w, row, target->width);
     }
-    return hash;
+    return t3r_hash_end(&w);
 }
 
 t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const t3r_target *target, uint32_t *passes)
@@ -163,7 +166,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     }
     rt->render_passes = passes;
     if (rt->hooks.stage_hash != NULL) {
-        rt->hooks.stage_hash(rt->hooks.user, T3R_STAGE_RASTER, hash_target(target));
+        rt->hooks.stage_hash(rt->hooks.user, T3R_STAGE_RASTER, hash_target(rt, target));
     }
     return T3R_OK;
 }

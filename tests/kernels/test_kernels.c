@@ -55,7 +55,8 @@
     X(blend, check_blend)                                                                                              \
     X(blend_keep, check_blend_keep)                                                                                    \
     X(scatter, check_scatter)                                                                                          \
-    X(solve, check_solve)
+    X(solve, check_solve)                                                                                              \
+    X(hash_bytes, check_hash_bytes)
 
 typedef void any_function(void);
 

@@ -94,7 +94,8 @@
     T3R_X86_OPTIMIZED_(X)                                                                                              \
     T3R_X86_STEREO_VARIANTS_(X)                                                                                        \
     T3R_X86_LEARNED_VARIANTS_(X)                                                                                       \
-    T3R_X86_REFINEMENT_VARIANTS_(X)
+    T3R_X86_REFINEMENT_VARIANTS_(X)                                                       \
+    X(hash_bytes, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_hash_bytes_avx512)
 /* Of an activation that convolve_packed of these features reads. */
 #define T3R_X86_STRIP_BYTES(cpu) (((cpu)&T3R_CPU_X86_VNNI_) == T3R_CPU_X86_VNNI_ ? 1u : 2u)
 #else
