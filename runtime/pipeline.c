@@ -98,7 +98,8 @@ static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
     for (int i = 0; i < 3; i++) {
         frame.origin_q32[i] = rt->camera[0].position_q32[i];
     }
-    t3r_status status = t3r_scene_scale_choose(views, rt->views, &frame.exponent, &rt->median_depth_q20);
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
+    t3r_status status = t3r_scene_scale_choose(views, rt->views, &work, &frame.exponent, &rt->median_depth_q20);
     if (!rt->reuse.centres) {
         rt->frame = frame;
     }
@@ -268,7 +269,8 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     if (rt->config.depth == T3R_DEPTH_STEREO) {
         t3r_stereo_clear(views, rt->views);
     }
-    if (!rt->reuse.centres || !t3r_is_in_frame(views, rt->views, rt->camera, &rt->frame)) {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
+    if (!rt->reuse.centres || !t3r_is_in_frame(views, rt->views, rt->camera, &rt->frame, &work)) {
         t3r_reuse_nothing(rt);
     }
     rt->follows = rt->reuse.centres;

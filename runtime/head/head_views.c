@@ -100,8 +100,8 @@ static uint32_t parts_of(const t3r_runtime *rt, const t3r_workers *workers)
     return t3r_is_parallel(workers) && rt->build.head != T3R_HEAD_MOMENT ? workers->count : 1;
 }
 
-/* Cuts the views first..end - 1 into bands: each view for itself, and where one more of `parts` equal parts of the whole
- * work is full. Returns how many Gaussians they will make. */
+/* Cuts the views first..end - 1 into bands: each view for itself, and where one more of `parts` equal parts of the work
+ * is full. Returns how many Gaussians they will make. */
 static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t parts, t3r_gaussian *out)
 {
     const uint32_t cost = row_cost(job->rt);

@@ -20,10 +20,11 @@ static bool is_near(const t3r_camera *camera, const t3r_scene_frame *frame)
     return true;
 }
 
-bool t3r_is_in_frame(const t3r_view *views, uint32_t count, const t3r_camera *cameras, const t3r_scene_frame *frame)
+bool t3r_is_in_frame(const t3r_view *views, uint32_t count, const t3r_camera *cameras, const t3r_scene_frame *frame,
+                     const t3r_pointmap_work *work)
 {
-    int32_t exponent, median_q20;
-    if (t3r_scene_scale_choose(views, count, &exponent, &median_q20) != T3R_OK || exponent != frame->exponent) {
+    int32_t exponent;
+    if (t3r_scene_exponent(views, count, work, &exponent) != T3R_OK || exponent != frame->exponent) {
         return false;
     }
     for (uint32_t v = 0; v < count; v++) {

@@ -1,6 +1,7 @@
 #include "scene_scale.h"
 
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "core/scene_frame.h"
 
 /* floor(log2) of a raw depth in world units, Q40, offset so that it is never negative: raw < 2^16, unit < 2^64 */
@@ -11,7 +12,77 @@ static uint32_t octave(uint64_t depth_unit_q40, uint16_t raw)
 }
 
 #define OCTAVES 96
+/* Steps between 1 and 2 scene units, then what is nearer. */
 #define STEPS 1024
+#define NEARER STEPS
+#define BINS (STEPS + 64) /* of a worker: its histograms share no cache line with another's */
+
+/* Measured depths of all views, counted by bin: each worker for itself, in the end all by worker 0. */
+typedef struct count_job {
+    const t3r_view *view;
+    int32_t exponent;
+    uint32_t *bins;
+} count_job;
+
+static uint32_t *bins_of(const count_job *job, uint32_t worker)
+{
+    return job->bins + (size_t)worker * BINS;
+}
+
+static void count_octaves(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    const count_job *job = context;
+    const t3r_view view = *job->view;
+    uint32_t *bins = bins_of(job, worker);
+    for (size_t i = (size_t)begin * view.width; i < (size_t)end * view.width; i++) {
+        if (t3r_is_reliable(view.validity[i]) && view.depth[i] != 0) {
+            bins[octave(view.depth_unit_q40, view.depth[i])]++;
+        }
+    }
+}
+
+static void count_steps(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    const count_job *job = context;
+    const t3r_view view = *job->view;
+    const t3r_depth_scale scale = t3r_depth_scale_of(view.depth_unit_q40, job->exponent);
+    uint32_t *bins = bins_of(job, worker);
+    for (size_t i = (size_t)begin * view.width; i < (size_t)end * view.width; i++) {
+        if (!t3r_is_reliable(view.validity[i])) {
+            continue;
+        }
+        const int32_t depth = t3r_depth_q20(scale, view.depth[i]);
+        if (depth < 1 << 20) {
+            bins[NEARER]++;
+        } else if (depth < 2 << 20) {
+            bins[(depth - (1 << 20)) >> 10]++;
+        }
+    }
+}
+
+/* As many workers as the work has room for; one always. */
+static t3r_workers workers_of(const t3r_view *views, const t3r_pointmap_work *work)
+{
+    const size_t room = (size_t)views[0].width * views[0].height + 3 * T3R_RATIO_BINS;
+    return room / BINS >= work->workers.count ? work->workers : (t3r_workers){NULL, 1};
+}
+
+static void count_views(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work, count_job *job,
+                        t3r_rows_task *rows)
+{
+    const t3r_workers workers = workers_of(views, work);
+    job->bins = work->pixels;
+    memset(job->bins, 0, (size_t)workers.count * BINS * sizeof *job->bins);
+    for (uint32_t v = 0; v < count; v++) {
+        job->view = &views[v];
+        t3r_run_rows(&workers, views[v].height, rows, job);
+    }
+    for (uint32_t w = 1; w < workers.count; w++) {
+        for (uint32_t bin = 0; bin < BINS; bin++) {
+            job->bins[bin] += bins_of(job, w)[bin];
+        }
+    }
+}
 
 /* The first index at which the running sum passes half of the total */
 static uint32_t median_bin(const uint32_t *histogram, uint32_t bins, uint64_t total, uint64_t before)
@@ -26,44 +97,35 @@ static uint32_t median_bin(const uint32_t *histogram, uint32_t bins, uint64_t to
     return bins - 1;
 }
 
-t3r_status t3r_scene_scale_choose(const t3r_view *views, uint32_t count, int32_t *exponent, int32_t *median_q20)
+/* The exponent, and how many depths there are. */
+static uint64_t choose_exponent(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work, int32_t *exponent)
 {
-    uint32_t octaves[OCTAVES] = {0};
+    count_job job = {0};
+    count_views(views, count, work, &job, count_octaves);
     uint64_t total = 0;
-    for (uint32_t v = 0; v < count; v++) {
-        uint32_t pixels = views[v].width * views[v].height;
-        for (uint32_t i = 0; i < pixels; i++) {
-            if (t3r_is_reliable(views[v].validity[i]) && views[v].depth[i] != 0) {
-                octaves[octave(views[v].depth_unit_q40, views[v].depth[i])]++;
-                total++;
-            }
-        }
+    for (uint32_t bin = 0; bin < OCTAVES; bin++) {
+        total += job.bins[bin];
     }
+    const uint32_t middle = median_bin(job.bins, OCTAVES, total, 0);
+    *exponent = t3r_clamp32((int32_t)middle - 40, T3R_EXPONENT_LEAST, T3R_EXPONENT_MOST);
+    return total;
+}
+
+t3r_status t3r_scene_exponent(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work, int32_t *exponent)
+{
+    return choose_exponent(views, count, work, exponent) > 0 ? T3R_OK : T3R_ERR_NO_DEPTH;
+}
+
+t3r_status t3r_scene_scale_choose(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work,
+                                  int32_t *exponent, int32_t *median_q20)
+{
+    const uint64_t total = choose_exponent(views, count, work, exponent);
     if (total == 0) {
         return T3R_ERR_NO_DEPTH;
     }
-    uint32_t middle = median_bin(octaves, OCTAVES, total, 0);
-    *exponent = t3r_clamp32((int32_t)middle - 40, T3R_EXPONENT_LEAST, T3R_EXPONENT_MOST);
-
-    /* Inside that octave: 1024 steps between 1 and 2 scene units. */
-    uint32_t steps[STEPS] = {0};
-    uint64_t before = 0;
-    for (uint32_t v = 0; v < count; v++) {
-        t3r_depth_scale scale = t3r_depth_scale_of(views[v].depth_unit_q40, *exponent);
-        uint32_t pixels = views[v].width * views[v].height;
-        for (uint32_t i = 0; i < pixels; i++) {
-            if (!t3r_is_reliable(views[v].validity[i])) {
-                continue;
-            }
-            int32_t depth = t3r_depth_q20(scale, views[v].depth[i]);
-            if (depth < 1 << 20) {
-                before++;
-            } else if (depth < 2 << 20) {
-                steps[(depth - (1 << 20)) >> 10]++;
-            }
-        }
-    }
-    uint32_t bin = median_bin(steps, STEPS, total, before);
+    count_job job = {.exponent = *exponent};
+    count_views(views, count, work, &job, count_steps);
+    const uint32_t bin = median_bin(job.bins, STEPS, total, job.bins[NEARER]);
     *median_q20 = (1 << 20) + (int32_t)(bin << 10) + 512;
     return T3R_OK;
 }

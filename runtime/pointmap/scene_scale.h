@@ -4,10 +4,14 @@
 
 #include <stdint.h>
 
+#include "pointmap_work.h"
 #include "state/views.h"
 
-/* Chooses the frame's exponent from the measured depths of the views, and the median depth in that frame.
- * T3R_ERR_NO_DEPTH when no view has a measured depth. */
-t3r_status t3r_scene_scale_choose(const t3r_view *views, uint32_t count, int32_t *exponent, int32_t *median_q20);
+/* The exponent of the frame that the measured depths of the views ask for. T3R_ERR_NO_DEPTH when no view has one. */
+t3r_status t3r_scene_exponent(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work, int32_t *exponent);
+
+/* The same, and the median depth in that frame. */
+t3r_status t3r_scene_scale_choose(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work,
+                                  int32_t *exponent, int32_t *median_q20);
 
 #endif

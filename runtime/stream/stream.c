@@ -302,7 +302,8 @@ static t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report
     t3r_hash_depth(rt, views, slot, slot + 1);
     if (rt->keyframes == 0) {
         memcpy(rt->frame.origin_q32, rt->camera[slot].position_q32, sizeof rt->frame.origin_q32);
-        t3r_status status = t3r_scene_scale_choose(view, 1, &rt->frame.exponent, &rt->median_depth_q20);
+        const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
+        t3r_status status = t3r_scene_scale_choose(view, 1, &work, &rt->frame.exponent, &rt->median_depth_q20);
         if (status != T3R_OK) {
             return status;
         }
