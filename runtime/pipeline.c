@@ -269,8 +269,7 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     if (rt->config.depth == T3R_DEPTH_STEREO) {
         t3r_stereo_clear(views, rt->views);
     }
-    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
-    if (!rt->reuse.centres || !t3r_is_in_frame(views, rt->views, rt->camera, &rt->frame, &work)) {
+    if (!rt->reuse.centres || !t3r_is_in_frame(rt, views)) {
         t3r_reuse_nothing(rt);
     }
     rt->follows = rt->reuse.centres;

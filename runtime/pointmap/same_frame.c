@@ -20,15 +20,15 @@ static bool is_near(const t3r_camera *camera, const t3r_scene_frame *frame)
     return true;
 }
 
-bool t3r_is_in_frame(const t3r_view *views, uint32_t count, const t3r_camera *cameras, const t3r_scene_frame *frame,
-                     const t3r_pointmap_work *work)
+bool t3r_is_in_frame(const t3r_runtime *rt, const t3r_view *views)
 {
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     int32_t exponent;
-    if (t3r_scene_exponent(views, count, work, &exponent) != T3R_OK || exponent != frame->exponent) {
+    if (t3r_scene_exponent(views, rt->views, &work, &exponent) != T3R_OK || exponent != rt->frame.exponent) {
         return false;
     }
-    for (uint32_t v = 0; v < count; v++) {
-        if (!is_near(&cameras[v], frame)) {
+    for (uint32_t v = 0; v < rt->views; v++) {
+        if (!is_near(&rt->camera[v], &rt->frame)) {
             return false;
         }
     }

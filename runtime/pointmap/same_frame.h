@@ -3,13 +3,11 @@
 #define T3R_SAME_FRAME_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
-#include "pointmap_work.h"
+#include "state/state.h"
 
-/* Whether the frame has the scale that these views would choose, and each camera stands within 512 scene units of its
- * origin along every axis. */
-bool t3r_is_in_frame(const t3r_view *views, uint32_t count, const t3r_camera *cameras, const t3r_scene_frame *frame,
-                     const t3r_pointmap_work *work);
+/* Whether the frame of the runtime has the scale that its views, whose planes these are, would choose, and each camera is
+ * within 512 scene units of its origin along every axis. */
+bool t3r_is_in_frame(const t3r_runtime *rt, const t3r_view *views);
 
 #endif

@@ -5,7 +5,7 @@
 #include "raster_list.h"
 
 #include "core/fixed.h"
-#include "hash_writer.h"
+#include "kernels/hash_writer.h"
 #include "state/state.h"
 
 typedef struct tile_job {

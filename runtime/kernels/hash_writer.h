@@ -4,10 +4,10 @@
 
 #include "core/hash.h"
 #include "core/little_endian.h"
-#include "kernels/hash_bytes.h"
+#include "hash_bytes.h"
 
 /* A multiple of the longest value. */
-#define T3R_HASH_RUN 1024u
+#define T3R_HASH_RUN 512u
 
 typedef struct t3r_hash_writer {
     t3r_hash_bytes_kernel *hash_bytes;
