@@ -7,16 +7,18 @@
 static t3r_head_rows *const heads[] = {T3R_HEADS(FUNCTION_OF)};
 _Static_assert(sizeof heads / sizeof heads[0] == T3R_HEAD_COUNT, "a row in T3R_HEADS for each head");
 
-/* A band is a view's rows `begin`..`end` - 1. */
+/* A band is a view's rows `begin`..`end` - 1, whose Gaussians begin at `place`. The stack holds many. */
 typedef struct band {
-    uint32_t view, begin, end;
-    t3r_gaussian *out;
+    uint16_t view, begin, end;
+    uint32_t place;
 } band;
+_Static_assert(T3R_MAX_SIDE <= UINT16_MAX, "a row fits");
 
 typedef struct band_job {
     const t3r_runtime *rt;
     const t3r_view *views;
     const t3r_budget_settings *settings;
+    t3r_gaussian *out;
     uint32_t count; /* of the bands of one round: at most as many views as workers, cut between workers */
     band bands[2 * T3R_MAX_WORKERS];
 } band_job;
@@ -66,7 +68,8 @@ static void make_band(void *context, uint32_t index, uint32_t worker)
     const band *b = &job->bands[index];
     t3r_head_input input = t3r_head_input_of(rt, job->views, b->view, job->settings);
     input.work = work_of(rt, worker);
-    level(b->out, heads[rt->build.head](&input, b->begin, b->end, b->out), rt->gain_q14[b->view]);
+    t3r_gaussian *out = job->out + b->place;
+    level(out, heads[rt->build.head](&input, b->begin, b->end, out), rt->gain_q14[b->view]);
 }
 
 static uint32_t ones(uint32_t x)
@@ -101,8 +104,8 @@ static uint32_t parts_of(const t3r_runtime *rt, const t3r_workers *workers)
 }
 
 /* Cuts the views first..end - 1 into bands: each view for itself, and where one more of `parts` equal parts of the work
- * is full. Returns how many Gaussians they will make. */
-static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t parts, t3r_gaussian *out)
+ * is full. `made`: Gaussians before them; returns how many there are with theirs. */
+static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t parts, uint32_t made)
 {
     const uint32_t cost = row_cost(job->rt);
     uint64_t total = 0, done = 0; /* 16 views of 2^24 pixels: below 2^30 */
@@ -111,11 +114,11 @@ static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t 
             total += cost + count_retained(&job->views[v], y);
         }
     }
-    uint32_t made = 0, full = 1;
+    uint32_t full = 1;
     job->count = 0;
     for (uint32_t v = first; v < end; v++) {
         const uint32_t height = job->views[v].height;
-        band b = {v, 0, 0, out + made};
+        band b = {(uint16_t)v, 0, 0, made};
         for (uint32_t y = 0; y < height; y++) {
             const uint32_t retained = count_retained(&job->views[v], y);
             made += retained;
@@ -123,9 +126,9 @@ static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t 
             const bool is_full = full < parts && done * parts >= total * full;
             full += is_full;
             if (is_full || y + 1 == height) {
-                b.end = y + 1;
+                b.end = (uint16_t)(y + 1);
                 job->bands[job->count++] = b;
-                b = (band){v, b.end, 0, out + made};
+                b = (band){b.view, b.end, 0, made};
             }
         }
     }
@@ -133,7 +136,7 @@ static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t 
 }
 
 /* The views first..end - 1; progress is reported when `asks`. */
-static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool asks, t3r_gaussian *out, uint32_t *made)
+static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool asks, uint32_t *made)
 {
     const t3r_runtime *rt = job->rt;
     const t3r_workers workers = t3r_workers_of(rt);
@@ -143,7 +146,7 @@ static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool a
         if (asks && !t3r_progress(rt, T3R_STAGE_HEAD, begin, end)) {
             return T3R_ERR_CANCELLED;
         }
-        *made += cut_bands(job, begin, T3R_MIN(begin + round, end), parts_of(rt, &workers), out + *made);
+        *made = cut_bands(job, begin, T3R_MIN(begin + round, end), parts_of(rt, &workers), *made);
         t3r_run_tasks(&workers, job->count, make_band, job);
     }
     return T3R_OK;
@@ -152,15 +155,15 @@ static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool a
 t3r_status t3r_views_to_gaussians(const t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings,
                                   t3r_gaussian *out, uint32_t *made)
 {
-    band_job job = {.rt = rt, .views = views, .settings = settings};
-    return make_views(&job, 0, rt->views, true, out, made);
+    band_job job = {.rt = rt, .views = views, .settings = settings, .out = out};
+    return make_views(&job, 0, rt->views, true, made);
 }
 
 uint32_t t3r_view_to_gaussians(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
                                const t3r_budget_settings *settings, t3r_gaussian *out)
 {
-    band_job job = {.rt = rt, .views = views, .settings = settings};
+    band_job job = {.rt = rt, .views = views, .settings = settings, .out = out};
     uint32_t made;
-    (void)make_views(&job, view_index, view_index + 1, false, out, &made);
+    (void)make_views(&job, view_index, view_index + 1, false, &made);
     return made;
 }

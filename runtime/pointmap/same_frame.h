@@ -6,8 +6,8 @@
 
 #include "state/state.h"
 
-/* Whether the frame of the runtime has the scale that its views, whose planes these are, would choose, and each camera is
- * within 512 scene units of its origin along every axis. */
+/* Whether the views that were added, whose planes these are, ask for the scale of the runtime's frame, and each camera
+ * stands within 512 scene units of its origin along every axis. */
 bool t3r_is_in_frame(const t3r_runtime *rt, const t3r_view *views);
 
 #endif

@@ -6,7 +6,7 @@
  * or. A plane is eight words of 64 bits, a bit a byte. */
 #include "variants.h"
 
-#ifdef T3R_X86
+#ifdef T3R_X86_OPTIMIZED
 
 #include "intrinsics.h"
 #include "kernels/hash_bytes.h"

@@ -12,10 +12,13 @@
 #define T3R_AVX512 __attribute__((target("avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")))
 #define T3R_VNNI __attribute__((target("avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vnni")))
 #define T3R_CPU_X86_VNNI_ (T3R_CPU_AVX2 | T3R_CPU_AVX512 | T3R_CPU_VNNI)
-/* Without optimization each step of projection has a frame of vectors of 64 bytes: 20 KiB of stack. */
+/* Without optimization each step of these has a frame of vectors of 64 bytes: 20 KiB of stack for projection, 6 for the
+ * hash. */
 #ifdef __OPTIMIZE__
 #define T3R_X86_OPTIMIZED 1
-#define T3R_X86_OPTIMIZED_(X) X(project, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_project_avx512)
+#define T3R_X86_OPTIMIZED_(X)                                                                                          \
+    X(project, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_project_avx512)                                                      \
+    X(hash_bytes, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_hash_bytes_avx512)
 #else
 #define T3R_X86_OPTIMIZED_(X)
 #endif
@@ -94,8 +97,7 @@
     T3R_X86_OPTIMIZED_(X)                                                                                              \
     T3R_X86_STEREO_VARIANTS_(X)                                                                                        \
     T3R_X86_LEARNED_VARIANTS_(X)                                                                                       \
-    T3R_X86_REFINEMENT_VARIANTS_(X)                                                       \
-    X(hash_bytes, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_hash_bytes_avx512)
+    T3R_X86_REFINEMENT_VARIANTS_(X)
 /* Of an activation that convolve_packed of these features reads. */
 #define T3R_X86_STRIP_BYTES(cpu) (((cpu)&T3R_CPU_X86_VNNI_) == T3R_CPU_X86_VNNI_ ? 1u : 2u)
 #else
