@@ -28,6 +28,9 @@ static const struct format {
     {".ply", 1e-5, 1e-4, 1e-4, 1e-4, 2e-4, 3}, {".compressed.ply", 4e-3, 2e-2, 3e-3, 3e-3, 0.017, 3},
     {".splat", 1e-5, 3e-2, 3e-3, 3e-3, 0, 0},  {".spz", 1e-5, 4e-2, 5e-3, 3e-3, 0.064, 3},
     {".glb", 1e-5, 1e-3, 1e-4, 1e-4, 2e-4, 3},
+#ifdef T3R_WEBP
+    {".sog", 5e-4, 3e-2, 5e-3, 3e-3, 0, 0},
+#endif
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 

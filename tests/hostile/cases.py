@@ -208,6 +208,11 @@ given("scene", "3-million-nodes.glb",
       lambda: f.glb(json.dumps(f.gaussians(1)).encode()[:-1] + b', "nodes": [' + b"0," * 2900000 + b"0]}", bytes(64)), None)
 given("scene", "moved.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "matrix": [0] * 16}]), bytes(64)), "matrix")
 given("scene", "packed-otherwise.glb", f.glb(f.gaussians(1, extensionsRequired=[f.ESCAPE]), bytes(64)), "needs the extension")
+given("scene", "no-members.sog", lambda: f.sog({}), "")
+given("scene", "meta-of-64-mb.sog", lambda: f.sog({"meta.json": b" " * (64 * MIB)}), "")
+given("scene", "16-million.sog", lambda: f.sog({"meta.json": f.sog_meta(1 << 24)}), "")
+given("scene", "picture-of-16383x16383.sog", lambda: f.sog({"meta.json": f.sog_meta(1000), "x.webp": f.webp(16383, 16383)}), "")
+given("scene", "escapes.sog", lambda: f.sog({"meta.json": f.sog_meta(9, f.ESCAPE)}), "")
 given("scene", "escapes-in-format.ply", b"ply\nformat " + f.ESCAPE.encode() + b"\n", "only binary_little_endian")
 
 

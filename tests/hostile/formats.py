@@ -1,6 +1,8 @@
 """Bytes of every format that trim3r reads, right or wrong as asked: the standard library alone."""
+import io
 import json
 import struct
+import zipfile
 import zlib
 
 ESCAPE = "\x1b]0;owned\x07\x9b31m"  # what a terminal obeys: a title, and a colour by C1
@@ -172,6 +174,27 @@ def gaussians(count, stride=None, **more):
     return {"asset": {"version": "2.0"}, "bufferViews": [view],
             "accessors": [{"bufferView": 0, "componentType": 5126, "count": count, "type": types[name]} for name in types],
             "meshes": [{"primitives": [{"mode": 0, "attributes": attributes, "extensions": extension}]}]} | more
+
+
+def webp(width, height):
+    """The head of a lossless picture without its texels."""
+    data = b"\x2f" + struct.pack("<I", width - 1 | height - 1 << 14) + bytes(27)
+    return b"RIFF" + struct.pack("<I", 12 + len(data)) + b"WEBPVP8L" + struct.pack("<I", len(data)) + data
+
+
+def sog_meta(count, name="x.webp"):
+    book, files = [0] * 256, [name, name]
+    return json.dumps({"version": 2, "count": count, "means": {"mins": [0] * 3, "maxs": [1] * 3, "files": files},
+                       "scales": {"codebook": book, "files": files}, "quats": {"files": files},
+                       "sh0": {"codebook": book, "files": files}}).encode()
+
+
+def sog(members):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, data in members.items():
+            file.writestr(name, data)
+    return out.getvalue()
 
 
 # --- recordings ------------------------------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ static const struct {
     {FILE_SCENE, "a scene", ".spz", "NGSP", false},
     {FILE_SCENE, "a scene", ".spz", "\x1f\x8b", true},
     {FILE_SCENE, "a scene", ".glb", "glTF", false},
+    {FILE_SCENE, "a scene", ".sog", "PK\x03\x04", true},
     {FILE_SCENE, "a scene", ".splat", "", true},
     {FILE_PICTURE, "a PNG picture", ".png", "\x89PNG\r\n\x1a\n", false},
     {FILE_SVG, "an SVG picture", ".svg", "<svg", false},

@@ -10,7 +10,12 @@
 #include "scene/scene_format.h"
 
 /* Every format. Of two with one suffix the first is written; `ply` is that of files which none of them knows. */
-#define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz) FORMAT(spz_gzip) FORMAT(glb)
+#ifdef T3R_WEBP
+#define FORMATS_OF_WEBP FORMAT(sog)
+#else
+#define FORMATS_OF_WEBP
+#endif
+#define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz) FORMAT(spz_gzip) FORMAT(glb) FORMATS_OF_WEBP
 
 #define FORMAT(name) extern const scene_format scene_format_##name;
 FORMATS

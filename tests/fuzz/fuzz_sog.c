@@ -1,0 +1,9 @@
+/* Any bytes as a .sog (scene_bytes.h). */
+#include "scene_bytes.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    return fuzz_scene("scene.sog", data, size);
+}

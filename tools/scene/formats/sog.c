@@ -1,0 +1,5 @@
+#include "scene/formats/sog.h"
+
+#include "scene/scene_format.h"
+
+const scene_format scene_format_sog = {.suffix = ".sog", .magic = "PK\x03\x04", .parse = sog_parse, .write = sog_write};

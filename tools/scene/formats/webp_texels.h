@@ -1,0 +1,21 @@
+/* Lossless WebP as a table of four bytes a texel. A build without libwebp has neither function's success. */
+#ifndef TRIM3R_TOOLS_WEBP_TEXELS_H
+#define TRIM3R_TOOLS_WEBP_TEXELS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct webp_texels {
+    uint32_t width, height;
+    uint8_t *rgba; /* rows without gaps; webp_texels_free() */
+} webp_texels;
+
+/* Each: 0, or -1 with the reason in error[]. Pictures of more than `most` texels are refused before they are decoded.
+ */
+int webp_texels_read(const uint8_t *bytes, size_t count, uint64_t most, webp_texels *out, char *error,
+                     size_t error_bytes);
+/* free() *bytes. */
+int webp_texels_write(const webp_texels *texels, uint8_t **bytes, size_t *count, char *error, size_t error_bytes);
+void webp_texels_free(webp_texels *texels);
+
+#endif
