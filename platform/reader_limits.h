@@ -50,7 +50,7 @@
 
 /* A compressed scene may hold this many Gaussians, whatever its size, and beyond that one for so many of its bytes.
  * Real ones take ten bytes and more. */
-#define T3R_LIMIT_GAUSSIANS_FREE 1048576
+#define T3R_LIMIT_GAUSSIANS_FREE 524288
 #define T3R_LIMIT_GAUSSIAN_BYTES 4
 
 static inline uint64_t t3r_limit_gaussians(uint64_t packed_bytes)

@@ -166,7 +166,7 @@ def link(path):
     os.symlink(path, path)
 
 
-given("path", "odd.splat", bytes(1000 * 32 + 7), "not an MCAP file")
+given("path", "odd.splat", bytes(1000 * 32 + 7), "32 each")
 
 
 # --- scenes ----------------------------------------------------------------------------------------------------------
@@ -187,15 +187,15 @@ given("scene", "escapes.ply", f.ply(before=f"{f.ESCAPE}\n"), "unknown header lin
 given("scene", "4096-vertices-of-2^13-bytes.ply",
       f.ply(before="element face 16777216\n" + "".join(f"property double p{i}\n" for i in range(400))), "cut off")
 given("scene", "16-million-of-zeros.spz", f.spz(1 << 24), "are read from")
-given("large scene", "million-of-zeros.spz", f.spz(1 << 20), None)
-given("large scene", "million-of-degree-3.spz", f.spz(1 << 20, degree=3), None)
+given("large scene", "half-a-million-of-zeros.spz", f.spz(1 << 19), None)
+given("large scene", "half-a-million-of-degree-3.spz", f.spz(1 << 19, degree=3), None)
 given("scene", "streams-of-4-gb.spz", f.spz(1000, stream=f.zstd([(0, 1 << 32)])), "does not unpack")
 given("scene", "table-at-4-gb.spz", f.spz(1000)[:16] + b"\xff" * 4 + f.spz(1000)[20:], "their table")
 given("scene", "stream-of-2^63.spz", f.spz(1000)[:32] + b"\xff" * 8 + f.spz(1000)[40:], "cut off")
 given("scene", "gzip-of-zeros.spz", lambda: gzip.compress(bytes(64 * MIB)), "not an .spz")
 given("scene", "gzip-of-16-million.spz", lambda: gzip.compress(b"NGSP" + struct.pack("<IIBBBB", 3, 1 << 24, 0, 12, 0, 0)), "are read from")
 given("scene", "gzip-cut-off.spz",
-      lambda: gzip.compress(b"NGSP" + struct.pack("<IIBBBB", 2, 1 << 20, 3, 12, 0, 0) + bytes(60 << 20)), "what is packed")
+      lambda: gzip.compress(b"NGSP" + struct.pack("<IIBBBB", 2, 1 << 19, 3, 12, 0, 0) + bytes(30 << 20)), "what is packed")
 given("scene", "not-a-row.splat", bytes(33), "are not those of")
 given("scene", "million-of-zeros.splat", lambda: bytes(32 << 20), "half of the positions")
 given("scene", "chunks-without-bounds.compressed.ply", f.ply(1, before="element chunk 1\n"), "no property min_x")
