@@ -33,6 +33,8 @@ static const struct format {
 #endif
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
+/* As many bytes of a file are tried at most. */
+enum { TRIED = 1500 };
 
 static void *folder;
 
@@ -239,7 +241,7 @@ static void refuse_every_cut(void **state)
         size_t size;
         uint8_t *bytes = bytes_of(f, 3, &size);
         assert_int_equal(parse(f->suffix, bytes, size, error), 0);
-        for (size_t cut = 0; cut < size; cut++) {
+        for (size_t cut = 0; cut < size; cut += 1 + size / TRIED) {
             const bool whole_rows = strcmp(f->suffix, ".splat") == 0 && cut > 0 && cut % 32 == 0;
             if (parse(f->suffix, bytes, cut, error) != (whole_rows ? 0 : -1)) {
                 fail_msg("%s: cut at byte %zu of %zu", f->suffix, cut, size);
@@ -257,7 +259,7 @@ static void survive_every_byte(void **state)
     for (int k = 0; k < FORMATS; k++) {
         size_t size;
         uint8_t *bytes = bytes_of(&formats[k], 3, &size);
-        for (size_t at = 0; at < size; at++) {
+        for (size_t at = 0; at < size; at += 1 + size / TRIED) {
             static const uint8_t values[] = {0, 1, 0x7f, 0x80, 0xff};
             const uint8_t kept = bytes[at];
             for (size_t i = 0; i < sizeof values; i++) {
