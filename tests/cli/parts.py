@@ -32,6 +32,7 @@ LINES = {
     "bench": (["--runs", "1", "--stages", "texture_ns_per_pixel"], []),
     "doctor": ([], []),
     "quantize": ([os.path.join(HEADS, "small.safetensors"), "--calibrate", "room.mcap", "-o", "out.t3w"], ["out.t3w"]),
+    "completion": (["bash", "-o", "out.bash"], ["out.bash"]),
     "head-info": ([os.path.join(HEADS, "small.safetensors")], []),
 }
 

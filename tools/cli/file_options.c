@@ -8,11 +8,12 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/edit_distance.h"
 #include "cli/file_guard.h"
 #include "cli/json_output.h"
 #include "cli/word_list.h"
 
-enum { KEY_LISTING = 0x8000, KEY_FORCE, LONG_OPTION = 0x10000 };
+enum { KEY_LISTING = 0x8000, KEY_COMPLETE, KEY_FORCE, LONG_OPTION = 0x10000 };
 
 /* ---- tables ------------------------------------------------------------------------------------------------------ */
 
@@ -140,11 +141,13 @@ static char *short_options(const option_list *list)
     return letters;
 }
 
+static const char *const of_argp[] = {"help", "usage", "HANG", "program-name"};
+enum { OF_ARGP = sizeof of_argp / sizeof of_argp[0] };
+
 /* `val` of an option is LONG_OPTION and its place in the list. */
 static struct option *long_options(const option_list *list)
 {
-    static const char *const of_argp[] = {"help", "usage", "HANG", "program-name"};
-    struct option *all = must(calloc(list->count + 5, sizeof *all)), *next = all;
+    struct option *all = must(calloc(list->count + OF_ARGP + 1, sizeof *all)), *next = all;
     for (uint32_t i = 0; i < list->count; i++) {
         const struct argp_option *o = list->items[i];
         if (o->name != NULL && (o->flags & OPTION_DOC) == 0) {
@@ -154,7 +157,7 @@ static struct option *long_options(const option_list *list)
             *next++ = (struct option){o->name, takes, NULL, LONG_OPTION + (int)i};
         }
     }
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < OF_ARGP; i++) {
         *next++ = (struct option){of_argp[i], optional_argument, NULL, '?'};
     }
     return all;
@@ -168,6 +171,40 @@ static const struct argp_option *option_of(const option_list *list, int got)
         }
     }
     return NULL;
+}
+
+/* An option that is none: names the one that may be meant, and ends the process. Else argp says what is wrong. */
+static void suggest(const option_list *list, const char *word)
+{
+    char name[64];
+    const size_t length = strcspn(word, "=");
+    const char *nearest = NULL;
+    uint32_t least = EDIT_DISTANCE_NEAR + 1;
+    if (strncmp(word, "--", 2) != 0 || length < 2 || length - 2 >= sizeof name) {
+        return;
+    }
+    snprintf(name, sizeof name, "%.*s", (int)(length - 2), word + 2);
+    for (int i = 0; i < OF_ARGP; i++) {
+        if (strncmp(of_argp[i], name, strlen(name)) == 0) {
+            return;
+        }
+    }
+    for (uint32_t i = 0; i < list->count; i++) {
+        const struct argp_option *o = list->items[i];
+        if (o->name == NULL || (o->flags & (OPTION_HIDDEN | OPTION_DOC)) != 0) {
+            continue;
+        }
+        if (strncmp(o->name, name, strlen(name)) == 0) {
+            return; /* an abbreviation, of one or of several: or its value is missing */
+        }
+        if (edit_distance(o->name, name) < least) {
+            least = edit_distance(o->name, name);
+            nearest = o->name;
+        }
+    }
+    if (nearest != NULL) {
+        exit(cli_error(CLI_BAD_USAGE, "there is no option --%s; did you mean --%s?", name, nearest));
+    }
 }
 
 /* As argp will read the line; false: it will refuse it, or print help. */
@@ -186,6 +223,9 @@ static bool read_line(const option_list *list, int argc, char **argv, file_list 
         } else if ((o->flags & (OPTION_READS | OPTION_WRITES_BIT)) != 0 && optarg != NULL) {
             add_value(files, o, optarg);
         }
+    }
+    if (got == '?' && optind >= 1 && optind <= argc) {
+        suggest(list, line[optind - 1]);
     }
     const struct argp_option *arguments = arguments_of(list);
     for (int i = optind; i < argc && arguments != NULL && got == -1; i++) {
@@ -231,14 +271,36 @@ static void print_listing(const option_list *list)
     json_print(rows);
 }
 
+/* For completion: each option, what its value is ("file", "value" or nothing), and its help, tabs between. */
+static void print_completion(const option_list *list)
+{
+    for (uint32_t i = 0; i < list->count; i++) {
+        const struct argp_option *o = list->items[i];
+        if (o->name == NULL || o->key == 0 || (o->flags & (OPTION_HIDDEN | OPTION_DOC)) != 0) {
+            continue;
+        }
+        const bool file = (o->flags & (OPTION_READS | OPTION_WRITES_BIT)) != 0;
+        const char *kind = o->arg == NULL ? "" : file ? "file" : "value";
+        printf("--%s\t%s\t%s\n", o->name, kind, o->doc != NULL ? o->doc : "");
+        if (has_short(o)) {
+            printf("-%c\t%s\t%s\n", o->key, kind, o->doc != NULL ? o->doc : "");
+        }
+    }
+    puts("--help\t\tgive this help list");
+}
+
 static error_t parse_listing(int key, char *argument, struct argp_state *state)
 {
     (void)argument;
-    if (key != KEY_LISTING) {
+    if (key != KEY_LISTING && key != KEY_COMPLETE) {
         return ARGP_ERR_UNKNOWN;
     }
     option_list list = all_options(state->root_argp);
-    print_listing(&list);
+    if (key == KEY_COMPLETE) {
+        print_completion(&list);
+    } else {
+        print_listing(&list);
+    }
     exit(CLI_OK);
 }
 
@@ -249,7 +311,9 @@ static error_t parse_force(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option listing_options[] = {
-    {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1}, {0}};
+    {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1},
+    {"complete", KEY_COMPLETE, NULL, OPTION_HIDDEN, "all options, for completion", -1},
+    {0}};
 static const struct argp_option force_options[] = {
     {"force", KEY_FORCE, NULL, 0, "replace a file of another kind than the one to be written, too", -1}, {0}};
 static const struct argp listing_argp = {.options = listing_options, .parser = parse_listing};

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "cli/edit_distance.h"
 #include "text.h"
 #include "trim3r/commands/commands.h"
 #include "trim3r.h"
@@ -35,6 +36,7 @@ static const struct {
     {"doctor", command_doctor, "list what this machine and this build have, and check their bits"},
     {"quantize", command_quantize, "turn a trained head into integers: a weight file or a C source"},
     {"head-info", command_head_info, "show a head's layers, multiply-accumulates and bytes"},
+    {"completion", command_completion, "print the script by which a shell completes commands"},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
@@ -44,7 +46,7 @@ static void print_help(FILE *out)
           "Turn a few camera frames into a budgeted set of 3-D Gaussians, and draw views of it, in integers.\n\n",
           out);
     for (int i = 0; i < COMMAND_COUNT; i++) {
-        fprintf(out, "  %-9s %s\n", commands[i].name, commands[i].summary);
+        fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].summary);
     }
     fputs("\nData flow:\n"
           "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
@@ -56,6 +58,28 @@ static void print_help(FILE *out)
           "trim3r COMMAND --help lists a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
           "3 budget or arena too small. With --json a command prints one JSON object on stdout.\n",
           out);
+}
+
+/* For completion: a command and what it does, a tab between. */
+static void print_commands(void)
+{
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        printf("%s\t%s\n", commands[i].name, commands[i].summary);
+    }
+}
+
+/* No command has that name; the one that may be meant is named. */
+static int refuse(const char *name)
+{
+    int nearest = 0;
+    for (int i = 1; i < COMMAND_COUNT; i++) {
+        nearest = edit_distance(name, commands[i].name) < edit_distance(name, commands[nearest].name) ? i : nearest;
+    }
+    if (edit_distance(name, commands[nearest].name) <= EDIT_DISTANCE_NEAR) {
+        return cli_error(CLI_BAD_USAGE, "there is no command '%s'; did you mean %s? trim3r --help lists them", name,
+                         commands[nearest].name);
+    }
+    return cli_error(CLI_BAD_USAGE, "there is no command '%s'; trim3r --help lists them", name);
 }
 
 /* Names of files stand in messages, tables and pages: one that a terminal would obey is refused before any of them. */
@@ -83,6 +107,10 @@ static int run(int argc, char **argv)
         printf("trim3r %s, bits epoch %d\n", T3R_VERSION, T3R_BITS_EPOCH);
         return CLI_OK;
     }
+    if (strcmp(argv[1], "--commands") == 0) {
+        print_commands();
+        return CLI_OK;
+    }
     for (int i = 0; i < COMMAND_COUNT; i++) {
         if (strcmp(argv[1], commands[i].name) == 0) {
             /* argp names the program by argv[0] in its messages */
@@ -93,7 +121,7 @@ static int run(int argc, char **argv)
             return commands[i].run(argc - 1, argv + 1);
         }
     }
-    return cli_error(CLI_BAD_USAGE, "there is no command '%s'; trim3r --help lists them", argv[1]);
+    return refuse(argv[1]);
 }
 
 /* At every end of the process, argp's of --help as well: a result that could not be printed is not a success. */

@@ -21,5 +21,6 @@ int command_bench(int argc, char **argv);
 int command_room(int argc, char **argv);
 int command_quantize(int argc, char **argv);
 int command_head_info(int argc, char **argv);
+int command_completion(int argc, char **argv);
 
 #endif
