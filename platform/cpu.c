@@ -16,8 +16,8 @@ static const struct {
     const char *name;
     uint32_t bit;
 } features[] = {
-    {"avx2", T3R_CPU_AVX2},       {"avx512", T3R_CPU_AVX512}, {"vnni", T3R_CPU_VNNI},       {"neon", T3R_CPU_NEON},
-    {"dotprod", T3R_CPU_DOTPROD}, {"mve", T3R_CPU_MVE},       {"simd128", T3R_CPU_SIMD128},
+    {"sse4.1", T3R_CPU_SSE41}, {"avx2", T3R_CPU_AVX2},       {"avx512", T3R_CPU_AVX512}, {"vnni", T3R_CPU_VNNI},
+    {"neon", T3R_CPU_NEON},    {"dotprod", T3R_CPU_DOTPROD}, {"mve", T3R_CPU_MVE},       {"simd128", T3R_CPU_SIMD128},
 };
 enum { FEATURES = sizeof features / sizeof features[0] };
 
@@ -26,6 +26,9 @@ uint32_t t3r_cpu_features(void)
     uint32_t found = 0;
 #if defined(__x86_64__) && defined(__GNUC__)
     /* these ask cpuid, and xgetbv for the registers that the system saves */
+    if (__builtin_cpu_supports("sse4.1")) {
+        found |= T3R_CPU_SSE41;
+    }
     if (__builtin_cpu_supports("avx2")) {
         found |= T3R_CPU_AVX2;
     }

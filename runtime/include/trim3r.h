@@ -548,6 +548,7 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 #define T3R_CPU_AVX2 (1u << 0)     /* x86-64 */
 #define T3R_CPU_AVX512 (1u << 1)   /* F, BW, CD, DQ and VL of AVX-512 */
 #define T3R_CPU_VNNI (1u << 2)     /* AVX512_VNNI, with T3R_CPU_AVX512 */
+#define T3R_CPU_SSE41 (1u << 3)    /* x86-64: SSE4.1, and what comes before it */
 #define T3R_CPU_NEON (1u << 8)     /* 64-bit Arm */
 #define T3R_CPU_DOTPROD (1u << 9)  /* its dot products of 8 bits */
 #define T3R_CPU_MVE (1u << 10)     /* Arm Cortex-M */

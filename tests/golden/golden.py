@@ -22,7 +22,7 @@ WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--
         ["--tasks", "reverse", "--workers", "3"],
         ["--arena", "min", "--tasks", "reverse", "--workers", "8", "--moved"]]
 REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"],
-               ["--cpu-mask", "avx2"]]
+               ["--cpu-mask", "sse4.1"], ["--cpu-mask", "avx2"]]
 DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", ROOT / "quant" / "heads" / "small.c",
                   *sorted((ROOT / "tools" / "room").glob("*.c"))]
 DRIVER_INCLUDES = [ROOT / "runtime" / "include", ROOT / "runtime", ROOT / "platform", ROOT / "tools", ROOT / "tests",

@@ -23,6 +23,23 @@ kernel_check check_project, check_radix_count, check_radix_pass;
 kernel_check check_place, check_blend, check_blend_keep, check_scatter, check_solve;
 kernel_check check_hash_bytes;
 
+/* The table's entries. */
+typedef struct checked_entry {
+    const char *name;
+    kernel_check *check;
+} checked_entry;
+extern const checked_entry checked_entries[];
+extern const size_t checked_entries_count;
+/* NULL: there is none. */
+const checked_entry *checked_entry_named(const char *name);
+
+/* All variants of this build, and behind the last one NULL. A table that is chosen by just these features has it. */
+typedef struct checked_variant {
+    const char *entry;
+    uint32_t features;
+} checked_variant;
+extern const checked_variant checked_variants[];
+
 /* 0, 1 and small lengths often, else up to `most`. */
 static inline uint32_t any_length(uint64_t *seed, uint32_t most)
 {

@@ -7,76 +7,7 @@
 #include "guarded.h"
 #include "kernels/variants.h"
 
-/* X(entry, check): in the table's order. */
-#define ENTRIES(X)                                                                                                     \
-    X(packed_row, check_packed_row)                                                                                    \
-    X(nv12_row, check_nv12_row)                                                                                        \
-    X(triple_row, check_triple_row)                                                                                    \
-    X(box_sums, check_box_sums)                                                                                        \
-    X(weigh_row, check_weigh_row)                                                                                      \
-    X(divide_row, check_divide_row)                                                                                    \
-    X(unproject, check_unproject)                                                                                      \
-    X(locate, check_locate)                                                                                            \
-    X(ray_row, check_ray_row)                                                                                          \
-    X(census_row, check_census_row)                                                                                    \
-    X(census_costs, check_census_costs)                                                                                \
-    X(path_row, check_path_row)                                                                                        \
-    X(winner_row, check_winner_row)                                                                                    \
-    X(luma_row, check_luma_row)                                                                                        \
-    X(split_row, check_split_row)                                                                                      \
-    X(db2_predict, check_db2_predict)                                                                                  \
-    X(db2_lift, check_db2_lift)                                                                                        \
-    X(db2_split, check_db2_split)                                                                                      \
-    X(db2_join, check_db2_join)                                                                                        \
-    X(subtract_row, check_subtract_row)                                                                                \
-    X(haar_update, check_haar_update)                                                                                  \
-    X(cdf53_predict, check_cdf53_predict)                                                                              \
-    X(cdf53_update, check_cdf53_update)                                                                                \
-    X(texture_finest, check_texture_finest)                                                                            \
-    X(texture_coarse, check_texture_coarse)                                                                            \
-    X(texture_add, check_texture_add)                                                                                  \
-    X(texture_spread, check_texture_spread)                                                                            \
-    X(sample_potential, check_sample_potential)                                                                        \
-    X(sample_approach, check_sample_approach)                                                                          \
-    X(nearest_begin, check_nearest)                                                                                    \
-    X(nearest, check_nearest)                                                                                          \
-    X(blur_row, check_blur_row)                                                                                        \
-    X(blur_column, check_blur_column)                                                                                  \
-    X(wanted_row, check_wanted_row)                                                                                    \
-    X(key_row, check_key_row)                                                                                          \
-    X(convolve, check_convolve)                                                                                        \
-    X(depthwise, check_depthwise)                                                                                      \
-    X(pack_layer, check_convolve_packed)                                                                               \
-    X(convolve_packed, check_convolve_packed)                                                                          \
-    X(project, check_project)                                                                                          \
-    X(radix_count, check_radix_count)                                                                                  \
-    X(radix_pass, check_radix_pass)                                                                                    \
-    X(place, check_place)                                                                                              \
-    X(blend, check_blend)                                                                                              \
-    X(blend_keep, check_blend_keep)                                                                                    \
-    X(scatter, check_scatter)                                                                                          \
-    X(solve, check_solve)                                                                                              \
-    X(hash_bytes, check_hash_bytes)
-
-typedef void any_function(void);
-
-static const struct {
-    const char *name;
-    size_t offset;
-    kernel_check *check;
-} entries[] = {
-#define ROW(entry, function) {#entry, offsetof(t3r_kernels, entry), function},
-    ENTRIES(ROW)};
-enum { ENTRIES_COUNT = sizeof entries / sizeof entries[0], ROUNDS = 400 };
-
-_Static_assert(offsetof(t3r_kernels, strip_bytes) == ENTRIES_COUNT * sizeof(any_function *), "no entry is left out");
-
-static any_function *entry_of(const t3r_kernels *kernels, size_t offset)
-{
-    any_function *function;
-    memcpy(&function, (const uint8_t *)kernels + offset, sizeof function);
-    return function;
-}
+enum { ROUNDS = 400 };
 
 static uint64_t first_seed = 1, rounds = ROUNDS;
 
@@ -96,10 +27,10 @@ static const char *run_trial(void *context)
 }
 
 /* What is wrong with the entry, and the seed; NULL: nothing in all rounds. */
-static const char *judge(const t3r_kernels *kernels, size_t entry, uint64_t *seed)
+static const char *judge(const t3r_kernels *kernels, const checked_entry *entry, uint64_t *seed)
 {
     for (*seed = first_seed; *seed - first_seed < rounds; ++*seed) {
-        trial t = {kernels, entries[entry].check, *seed};
+        trial t = {kernels, entry->check, *seed};
         const char *found = guarded_run(run_trial, &t);
         if (found != NULL) {
             return found;
@@ -108,12 +39,12 @@ static const char *judge(const t3r_kernels *kernels, size_t entry, uint64_t *see
     return NULL;
 }
 
-static bool is_fine(const t3r_kernels *kernels, size_t entry, const char *what)
+static bool is_fine(const t3r_kernels *kernels, const checked_entry *entry, const char *what)
 {
     uint64_t seed;
     const char *found = judge(kernels, entry, &seed);
     if (found != NULL) {
-        print_error("%s, %s: %s (seed %llu)\n", entries[entry].name, what, found, (unsigned long long)seed);
+        print_error("%s, %s: %s (seed %llu)\n", entry->name, what, found, (unsigned long long)seed);
     }
     return found == NULL;
 }
@@ -122,35 +53,28 @@ static void plain_c(void **state)
 {
     (void)state;
     bool fine = true;
-    for (size_t i = 0; i < ENTRIES_COUNT; i++) {
-        fine &= is_fine(&t3r_kernels_c, i, "plain C");
+    for (size_t i = 0; i < checked_entries_count; i++) {
+        fine &= is_fine(&t3r_kernels_c, &checked_entries[i], "plain C");
     }
     assert_true(fine);
 }
 
-/* The table with each feature more: what that changed. */
+/* Every variant whose features the processor has, by just these features. */
 static void variants(void **state)
 {
     (void)state;
-    t3r_kernels before = t3r_kernels_c, now;
-    const uint32_t all = t3r_cpu_features();
+    const uint32_t has = t3r_cpu_features();
     bool fine = true;
-    uint32_t tested = 0, allowed = 0;
-    for (uint32_t bit = 0; bit < 32; bit++) {
-        if ((all >> bit & 1) == 0) {
-            continue;
+    uint32_t tested = 0;
+    for (const checked_variant *v = checked_variants; v->entry != NULL; v++) {
+        if ((v->features & ~has) == 0) {
+            char name[64];
+            t3r_kernels kernels;
+            t3r_cpu_describe(v->features, name, sizeof name);
+            t3r_kernels_choose(&kernels, v->features);
+            fine &= is_fine(&kernels, checked_entry_named(v->entry), name);
+            tested++;
         }
-        char name[32];
-        allowed |= 1u << bit;
-        t3r_cpu_describe(1u << bit, name, sizeof name);
-        t3r_kernels_choose(&now, allowed);
-        for (size_t i = 0; i < ENTRIES_COUNT; i++) {
-            if (entry_of(&now, entries[i].offset) != entry_of(&before, entries[i].offset)) {
-                fine &= is_fine(&now, i, name);
-                tested++;
-            }
-        }
-        before = now;
     }
     print_message("%u variants\n", tested);
     assert_true(fine);
@@ -232,7 +156,8 @@ static void wrong_ones_are_found(void **state)
 {
     (void)state;
     t3r_kernels wrong[6];
-    static const char *const entry[6] = {"blur_column", "subtract_row", "texture_spread", "blend", "nearest", "convolve"};
+    static const char *const entry[6] = {"blur_column", "subtract_row", "texture_spread",
+                                         "blend",       "nearest",      "convolve"};
     for (int i = 0; i < 6; i++) {
         wrong[i] = t3r_kernels_c;
     }
@@ -243,14 +168,10 @@ static void wrong_ones_are_found(void **state)
     wrong[4].nearest = takes_the_last;
     wrong[5].convolve = saturates;
     for (int i = 0; i < 6; i++) {
-        for (size_t k = 0; k < ENTRIES_COUNT; k++) {
-            uint64_t seed;
-            if (strcmp(entries[k].name, entry[i]) == 0) {
-                const char *found = judge(&wrong[i], k, &seed);
-                assert_non_null(found);
-                print_message("%s: %s (seed %llu)\n", entry[i], found, (unsigned long long)seed);
-            }
-        }
+        uint64_t seed;
+        const char *found = judge(&wrong[i], checked_entry_named(entry[i]), &seed);
+        assert_non_null(found);
+        print_message("%s: %s (seed %llu)\n", entry[i], found, (unsigned long long)seed);
     }
 }
 
@@ -259,16 +180,15 @@ static int run_one(const char *name, const char *seed)
 {
     t3r_kernels kernels;
     t3r_kernels_choose(&kernels, t3r_cpu_features());
-    for (size_t i = 0; i < ENTRIES_COUNT; i++) {
-        if (strcmp(entries[i].name, name) == 0) {
-            trial t = {&kernels, entries[i].check, strtoull(seed, NULL, 10)};
-            const char *found = run_trial(&t);
-            printf("%s, seed %s: %s\n", name, seed, found == NULL ? "fine" : found);
-            return found != NULL;
-        }
+    const checked_entry *entry = checked_entry_named(name);
+    if (entry == NULL) {
+        fprintf(stderr, "no entry %s\n", name);
+        return 2;
     }
-    fprintf(stderr, "no entry %s\n", name);
-    return 2;
+    trial t = {&kernels, entry->check, strtoull(seed, NULL, 10)};
+    const char *found = run_trial(&t);
+    printf("%s, seed %s: %s\n", name, seed, found == NULL ? "fine" : found);
+    return found != NULL;
 }
 
 int main(int argc, char **argv)

@@ -99,7 +99,7 @@ def declared_pointers():
     text = re.sub(r"#.*", "", (proof.HERE / "pointers.txt").read_text())
     pointers = {source.strip(): names.split() for source, names in re.findall(r"^(.+?):(.*)$", text, flags=re.M)}
     runtime = {path.name: path.read_text() for path in proof.runtime_sources()}
-    code = "".join(runtime.values())
+    code = "".join([*runtime.values(), *(path.read_text() for path in proof.RUNTIME.rglob("*.h"))])
     stale = [f"{source} is not in the runtime" for source in pointers if source.split()[0] not in runtime]
     stale += [f"{name} is not in the runtime" for names in pointers.values() for name in names
               if not re.search(rf"\b{name}\b", code)]

@@ -13,6 +13,10 @@
 
 #include <cmocka.h>
 
+#ifdef UNIT_RANDOM_IS_DRAWN
+/* A fuzzer's own: what its input says. */
+uint64_t unit_random(uint64_t *state);
+#else
 /* splitmix64: the next 64 bits of the sequence */
 static inline uint64_t unit_random(uint64_t *state)
 {
@@ -21,6 +25,7 @@ static inline uint64_t unit_random(uint64_t *state)
     z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
     return z ^ (z >> 31);
 }
+#endif
 
 /* low..high, both included */
 static inline int64_t unit_between(uint64_t *state, int64_t low, int64_t high)

@@ -2,11 +2,19 @@
 #ifndef T3R_CENSUS_LANES_H
 #define T3R_CENSUS_LANES_H
 
-static inline TARGET bytes larger(bytes a, bytes b);
 /* table[x] of each lane: x 0..15 */
 static inline TARGET bytes look_up(const uint8_t table[16], bytes x);
+
+static inline TARGET bytes larger(bytes a, bytes b)
+{
+    return (bytes)OF(max_epu8)((vector)a, (vector)b);
+}
+
 /* 16-bit lanes, shifted down by 4 */
-static inline TARGET bytes fourth(bytes x);
+static inline TARGET bytes fourth(bytes x)
+{
+    return (bytes)OF(srli_epi16)((vector)x, 4);
+}
 
 static const uint8_t ones[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
 static const uint8_t twice_ones[16] = {0, 2, 2, 4, 2, 4, 4, 6, 2, 4, 4, 6, 4, 6, 6, 8};

@@ -3,11 +3,13 @@
 
 #ifdef T3R_X86
 
-#include "requantize.h"
+#include "lanes_avx2.h"
+
+#include "requantize_lanes.h"
 
 #define INLINE T3R_X86_INLINE T3R_VNNI
 #define EACH(i, count) T3R_X86_UNROLL for (uint32_t i = 0; i < (count); i++)
-#define LANES 16u
+#define OUTPUTS 16u
 #define TAPS T3R_PACKED_TAPS
 #define PIXELS 8u
 #define MOST_VECTORS 2u
@@ -15,7 +17,7 @@
 /* The instruction takes one factor without sign: activations + 128, as strips of bytes have them. */
 T3R_AVX2 void t3r_pack_layer_vnni(const t3r_convolution *layer, uint32_t rows, void *packed)
 {
-    t3r_x86_pack_layer(layer, rows, TAPS, 128, packed);
+    t3r_x86_pack_layer(layer, rows, TAPS, 128, false, packed);
 }
 
 /* Where the outputs from `first` on lie in a packed layer. */
@@ -45,10 +47,10 @@ INLINE void add_up(sums *s, const t3r_block *block, const size_t offset[PIXELS],
     {
         EACH(v, vectors)
         {
-            s->sixteen[p][v] = sixteen(at, T3R_X86_BIAS, at->first + v * LANES);
+            s->sixteen[p][v] = sixteen(at, T3R_X86_BIAS, at->first + v * OUTPUTS);
         }
         if (half) {
-            s->eight[p] = t3r_x86_eight(at->scaling, T3R_X86_BIAS, at->whole, at->first + vectors * LANES);
+            s->eight[p] = t3r_x86_scaling_at(at->scaling, T3R_X86_BIAS, at->whole, at->first + vectors * OUTPUTS);
         }
     }
     for (uint32_t row = 0; row < block->rows; row++) {
@@ -58,10 +60,10 @@ INLINE void add_up(sums *s, const t3r_block *block, const size_t offset[PIXELS],
             __m256i weights_half = _mm256_setzero_si256();
             EACH(v, vectors)
             {
-                weights[v] = _mm512_loadu_si512(w + v * LANES * TAPS);
+                weights[v] = _mm512_loadu_si512(w + v * OUTPUTS * TAPS);
             }
             if (half) {
-                weights_half = _mm256_loadu_si256((const __m256i_u *)(const void *)(w + vectors * LANES * TAPS));
+                weights_half = _mm256_loadu_si256((const __m256i_u *)(const void *)(w + vectors * OUTPUTS * TAPS));
             }
             EACH(p, PIXELS)
             {
@@ -83,9 +85,9 @@ INLINE __m512i scaled(__m512i sum, const place *at, uint32_t first, int16_t zero
 {
     const __m512i limit = sixteen(at, T3R_X86_LIMIT, first), multiplier = sixteen(at, T3R_X86_MULTIPLIER, first);
     const __m512i held = _mm512_max_epi32(_mm512_min_epi32(sum, limit), (__m512i)(-(__v16si)limit));
-    const __v16si wide = (__v16si)held << (__v16si)sixteen(at, T3R_X86_LEFT, first);
-    const __m512i even = _mm512_mul_epi32((__m512i)wide, multiplier);
-    const __m512i odd = _mm512_mul_epi32((__m512i)((__v8du)wide >> 32), (__m512i)((__v8du)multiplier >> 32));
+    const __v16si shifted = (__v16si)held << (__v16si)sixteen(at, T3R_X86_LEFT, first);
+    const __m512i even = _mm512_mul_epi32((__m512i)shifted, multiplier);
+    const __m512i odd = _mm512_mul_epi32((__m512i)((__v8du)shifted >> 32), (__m512i)((__v8du)multiplier >> 32));
     const __m512i high = _mm512_mask_mov_epi32((__m512i)((__v8du)even >> 32), 0xaaaa, odd);
     const __v16si half = (__v16si)sixteen(at, T3R_X86_HALF, first), right = (__v16si)sixteen(at, T3R_X86_RIGHT, first);
     return (__m512i)((((__v16si)high + half) >> right) + zero);
@@ -94,7 +96,7 @@ INLINE __m512i scaled(__m512i sum, const place *at, uint32_t first, int16_t zero
 /* Writes the first `count` activations of x, held within 8 or 16 bits. */
 INLINE void write(__m512i x, uint32_t output_bits, uint32_t count, void *out, size_t at)
 {
-    const unsigned there_bits = count >= LANES ? 0xffffu : (1u << count) - 1;
+    const unsigned there_bits = count >= OUTPUTS ? 0xffffu : (1u << count) - 1;
     const __mmask16 there = (__mmask16)there_bits;
     if (output_bits == 8) {
         _mm_mask_storeu_epi8((int8_t *)out + at, there, _mm512_cvtsepi32_epi8(x));
@@ -119,14 +121,14 @@ INLINE void convolve(const t3r_convolution *layer, const t3r_block *block, const
         {
             EACH(v, vectors)
             {
-                const uint32_t first = at->first + v * LANES;
+                const uint32_t first = at->first + v * OUTPUTS;
                 write(scaled(s.sixteen[p][v], at, first, layer->zero), layer->output_bits, layer->outputs - first, out,
                       pixel[p] * out_pitch + first);
             }
             if (half) {
-                const uint32_t first = at->first + vectors * LANES, left = layer->outputs - first;
+                const uint32_t first = at->first + vectors * OUTPUTS, left = layer->outputs - first;
                 const __m256i x = t3r_x86_scaled(s.eight[p], at->scaling, at->whole, first, layer->zero);
-                write(_mm512_castsi256_si512(x), layer->output_bits, left < LANES / 2 ? left : LANES / 2, out,
+                write(_mm512_castsi256_si512(x), layer->output_bits, left < OUTPUTS / 2 ? left : OUTPUTS / 2, out,
                       pixel[p] * out_pitch + first);
             }
         }

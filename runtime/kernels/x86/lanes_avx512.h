@@ -8,26 +8,29 @@
 #define LANES 16
 #define T3R_LANES_TARGET T3R_AVX512
 #define OF_LANES(instruction) _mm512_##instruction
+#define OF_ALL_BITS(instruction) _mm512_##instruction##_si512
 #define ALL_64 _mm512_set1_epi64
 
 typedef __m512i lanes; /* of 32 bits */
-
-static inline T3R_AVX512 lanes both(lanes a, lanes b)
-{
-    return _mm512_and_si512(a, b);
-}
-
-static inline T3R_AVX512 lanes either(lanes a, lanes b)
-{
-    return _mm512_or_si512(a, b);
-}
-
-static inline T3R_AVX512 lanes different(lanes a, lanes b)
-{
-    return _mm512_xor_si512(a, b);
-}
+typedef __m512i_u lanes_there;
 
 #include "lanes_operations.h"
+
+#include "lanes_shifts.h"
+
+/* One of four vectors of 128 bits. */
+static inline T3R_AVX512 lanes joined(const __m128i x[LANES / 4])
+{
+    lanes all = _mm512_inserti32x4(_mm512_castsi128_si512(x[0]), x[1], 1);
+    all = _mm512_inserti32x4(all, x[2], 2);
+    return _mm512_inserti32x4(all, x[3], 3);
+}
+
+static inline T3R_AVX512 __m128i part(lanes x, int i)
+{
+    const __m256i half = i < 2 ? _mm512_castsi512_si256(x) : _mm512_extracti64x4_epi64(x, 1);
+    return i % 2 == 0 ? _mm256_castsi256_si128(half) : _mm256_extracti128_si256(half, 1);
+}
 
 /* All bits where a is greater, or equal; else none. */
 static inline T3R_AVX512 lanes greater(lanes a, lanes b)

@@ -1,4 +1,4 @@
-/* What lanes_avx2.h and lanes_avx512.h share: they name the type, the target and how its instructions begin. */
+/* What the headers of lanes share: they name the type, the target and how its instructions begin. */
 #ifndef T3R_KERNELS_X86_LANES_OPERATIONS_H
 #define T3R_KERNELS_X86_LANES_OPERATIONS_H
 
@@ -6,6 +6,37 @@
 typedef struct wide {
     lanes even, odd;
 } wide;
+
+static inline T3R_LANES_TARGET lanes load(const void *from)
+{
+    return OF_ALL_BITS(loadu)((const lanes_there *)from);
+}
+
+static inline T3R_LANES_TARGET void store(void *to, lanes x)
+{
+    OF_ALL_BITS(storeu)((lanes_there *)to, x);
+}
+
+static inline T3R_LANES_TARGET lanes both(lanes a, lanes b)
+{
+    return OF_ALL_BITS(and)(a, b);
+}
+
+static inline T3R_LANES_TARGET lanes either(lanes a, lanes b)
+{
+    return OF_ALL_BITS(or)(a, b);
+}
+
+static inline T3R_LANES_TARGET lanes different(lanes a, lanes b)
+{
+    return OF_ALL_BITS(xor)(a, b);
+}
+
+/* Bits of b that a has not. */
+static inline T3R_LANES_TARGET lanes without(lanes a, lanes b)
+{
+    return OF_ALL_BITS(andnot)(a, b);
+}
 
 static inline T3R_LANES_TARGET lanes all(int32_t x)
 {

@@ -7,6 +7,8 @@
 
 #define TARGET T3R_AVX2
 #define BYTES 32
+#define MOST_VECTORS 4
+#define OF(instruction) _mm256_##instruction
 #include "path_lanes.h"
 
 #include "census_lanes.h"
@@ -30,16 +32,6 @@ static inline TARGET void store(uint8_t *to, bytes x, uint32_t count)
 static inline TARGET bytes held(bytes x, bytes other, uint32_t count)
 {
     return count >= BYTES ? x : (bytes)_mm256_blend_epi32((__m256i)x, (__m256i)other, 0xf0);
-}
-
-static inline TARGET bytes minimum(bytes a, bytes b)
-{
-    return (bytes)_mm256_min_epu8((__m256i)a, (__m256i)b);
-}
-
-static inline TARGET bytes all_of(uint8_t x)
-{
-    return (bytes)_mm256_set1_epi8((char)x);
 }
 
 static inline TARGET bytes below(bytes x, bytes next)
@@ -90,20 +82,10 @@ static inline TARGET void sum(int16_t *sums, const bytes values[T3R_PATH_LINKS],
 
 /* ---- census ---- */
 
-static inline TARGET bytes larger(bytes a, bytes b)
-{
-    return (bytes)_mm256_max_epu8((__m256i)a, (__m256i)b);
-}
-
 static inline TARGET bytes look_up(const uint8_t table[16], bytes x)
 {
     const __m256i both = _mm256_broadcastsi128_si256(_mm_loadu_si128((const __m128i *)table));
     return (bytes)_mm256_shuffle_epi8(both, (__m256i)x);
-}
-
-static inline TARGET bytes fourth(bytes x)
-{
-    return (bytes)_mm256_srli_epi16((__m256i)x, 4);
 }
 
 /* ---- winners ---- */
@@ -118,16 +100,6 @@ static inline TARGET void store_words(int16_t *to, words x, uint32_t count)
 {
     (void)count;
     _mm256_storeu_si256((__m256i *)to, (__m256i)x);
-}
-
-static inline TARGET words lesser(words a, words b)
-{
-    return (words)_mm256_min_epi16((__m256i)a, (__m256i)b);
-}
-
-static inline TARGET words where_less(words x, words y, words a, words b)
-{
-    return (words)_mm256_blendv_epi8((__m256i)b, (__m256i)a, _mm256_cmpgt_epi16((__m256i)y, (__m256i)x));
 }
 
 static inline TARGET words word_below(words x, words next)
@@ -148,6 +120,30 @@ static inline TARGET uint32_t first_equal(words x, int16_t value)
     const uint32_t mask = (uint32_t)_mm256_movemask_epi8(same);
     return mask == 0 ? WORDS : (uint32_t)__builtin_ctz(mask) / 2;
 }
+
+/* A function of its own for each number of vectors and of paths keeps everything in registers. */
+#define FOLLOW(name, vectors)                                                                                          \
+    static TARGET void name##_straight(const t3r_path_row *row)                                                        \
+    {                                                                                                                  \
+        follow(row, vectors, 1);                                                                                       \
+    }                                                                                                                  \
+    static TARGET void name##_diagonal(const t3r_path_row *row)                                                        \
+    {                                                                                                                  \
+        follow(row, vectors, 3);                                                                                       \
+    }                                                                                                                  \
+    static TARGET void name(const t3r_path_row *row)                                                                   \
+    {                                                                                                                  \
+        if (row->diagonals) {                                                                                          \
+            name##_diagonal(row);                                                                                      \
+        } else {                                                                                                       \
+            name##_straight(row);                                                                                      \
+        }                                                                                                              \
+    }
+
+FOLLOW(follow_one, 1)
+FOLLOW(follow_two, 2)
+FOLLOW(follow_three, 3)
+FOLLOW(follow_four, 4)
 
 TARGET void t3r_path_row_avx2(const t3r_path_row *row)
 {

@@ -7,7 +7,7 @@
 #include "requantize.h"
 
 /* The scaling of outputs behind the last is zero but for the shift, and so are their sums. */
-static void pack_scaling(const t3r_convolution *layer, int32_t offset, int32_t *scaling)
+static void pack_scaling(const t3r_convolution *layer, int32_t offset, bool factors, int32_t *scaling)
 {
     const uint32_t whole = t3r_x86_whole(layer->outputs);
     for (uint32_t o = 0; o < whole; o++) {
@@ -22,19 +22,19 @@ static void pack_scaling(const t3r_convolution *layer, int32_t offset, int32_t *
         scaling[T3R_X86_BIAS * whole + o] = (int32_t)(bias - (uint32_t)(offset * weights));
         scaling[T3R_X86_MULTIPLIER * whole + o] = is_output ? t3r_le_i32(layer->multiplier + (size_t)o * 4) : 0;
         scaling[T3R_X86_LIMIT * whole + o] = left > 0 ? 1 << (18 - shift) : INT32_MAX;
-        scaling[T3R_X86_LEFT * whole + o] = left;
+        scaling[T3R_X86_LEFT * whole + o] = factors ? 1 << left : left;
         scaling[T3R_X86_HALF * whole + o] = 1 << (right - 1);
-        scaling[T3R_X86_RIGHT * whole + o] = right;
+        scaling[T3R_X86_RIGHT * whole + o] = factors ? 1 << (31 - right) : right;
     }
 }
 
 void t3r_x86_pack_layer(const t3r_convolution *layer, uint32_t rows, uint32_t taps_a_group, int32_t offset,
-                        void *packed)
+                        bool factors, void *packed)
 {
     const uint32_t whole = t3r_x86_whole(layer->outputs), run = layer->taps / rows;
     const uint32_t whole_run = (run + T3R_PACKED_TAPS - 1) / T3R_PACKED_TAPS * T3R_PACKED_TAPS;
     uint8_t *to = (uint8_t *)packed + (size_t)whole * T3R_PACKED_SCALING_BYTES;
-    pack_scaling(layer, offset, packed);
+    pack_scaling(layer, offset, factors, packed);
     for (uint32_t row = 0; row < rows; row++) {
         for (uint32_t tap = 0; tap < whole_run; tap += taps_a_group) {
             for (uint32_t o = 0; o < whole; o++) {

@@ -1,17 +1,16 @@
-/* path_row in vectors of BYTES disparities. The file that includes this defines TARGET, BYTES and, of its instruction
- * set, the functions declared first. The path along the row stays in registers. */
+/* path_row in vectors of BYTES disparities. The file that includes this defines TARGET, BYTES, MOST_VECTORS, how its
+ * instructions begin (OF) and the functions declared first. The path along the row stays in registers. */
 #ifndef T3R_PATH_LANES_H
 #define T3R_PATH_LANES_H
 
 typedef uint8_t bytes __attribute__((vector_size(BYTES)));
+typedef long long vector __attribute__((vector_size(BYTES), may_alias)); /* as instructions take it */
 
 /* `count` may be 16, or BYTES and more: lanes beyond are 0 when loaded and not stored. */
 static inline TARGET bytes load(const uint8_t *from, uint32_t count);
 static inline TARGET void store(uint8_t *to, bytes x, uint32_t count);
 /* Lanes below `count` of x, else of `other`. */
 static inline TARGET bytes held(bytes x, bytes other, uint32_t count);
-static inline TARGET bytes minimum(bytes a, bytes b);
-static inline TARGET bytes all_of(uint8_t x);
 /* Each lane's neighbour below and above; the ends take theirs of the next vector. */
 static inline TARGET bytes below(bytes x, bytes next);
 static inline TARGET bytes above(bytes x, bytes next);
@@ -22,14 +21,23 @@ static inline TARGET uint8_t first_of(bytes x);
 static inline TARGET void sum(int16_t *sums, const bytes values[T3R_PATH_LINKS], uint32_t paths, uint32_t count,
                               bool add);
 
+static inline TARGET bytes minimum(bytes a, bytes b)
+{
+    return (bytes)OF(min_epu8)((vector)a, (vector)b);
+}
+
+static inline TARGET bytes all_of(uint8_t x)
+{
+    return (bytes)OF(set1_epi8)((char)x);
+}
+
 /* What a path adds to the cost. */
 static inline TARGET bytes relaxed(bytes lower, bytes same, bytes upper, bytes least, bytes p1, bytes p2)
 {
     return minimum(minimum(same, minimum(lower, upper) + p1) - least, p2);
 }
 
-/* vectors: as many as hold the disparities, 1..4; paths: from the row before. A function of its own for each of these
- * numbers keeps everything in registers. */
+/* vectors: as many as hold the disparities, 1..MOST_VECTORS; paths: from the row before. */
 static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_row *row, const uint32_t vectors,
                                                                 const uint32_t paths)
 {
@@ -37,7 +45,7 @@ static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_r
     const size_t pitch = (size_t)count + 1, state = T3R_PATH_STATE_BYTES(width, count);
     const size_t leasts = t3r_path_leasts(width, count);
     const bytes guard = all_of(row->costs->guard), p1 = all_of(row->costs->p1);
-    bytes beside[4], least = all_of(0);
+    bytes beside[MOST_VECTORS], least = all_of(0);
     for (uint32_t i = 0; i < vectors; i++) {
         beside[i] = held(least, guard, count - i * BYTES);
     }
@@ -84,29 +92,5 @@ static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_r
         }
     }
 }
-
-/* For as many vectors and both numbers of paths */
-#define FOLLOW(name, vectors)                                                                                          \
-    static TARGET void name##_straight(const t3r_path_row *row)                                                        \
-    {                                                                                                                  \
-        follow(row, vectors, 1);                                                                                       \
-    }                                                                                                                  \
-    static TARGET void name##_diagonal(const t3r_path_row *row)                                                        \
-    {                                                                                                                  \
-        follow(row, vectors, 3);                                                                                       \
-    }                                                                                                                  \
-    static TARGET void name(const t3r_path_row *row)                                                                   \
-    {                                                                                                                  \
-        if (row->diagonals) {                                                                                          \
-            name##_diagonal(row);                                                                                      \
-        } else {                                                                                                       \
-            name##_straight(row);                                                                                      \
-        }                                                                                                              \
-    }
-
-FOLLOW(follow_one, 1)
-FOLLOW(follow_two, 2)
-FOLLOW(follow_three, 3)
-FOLLOW(follow_four, 4)
 
 #endif

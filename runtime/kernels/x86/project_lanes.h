@@ -1,11 +1,12 @@
 /* Projection of LANES Gaussians at a time: project.c step by step, with its bounds. Where a number of project.c has 64
  * bits and that of a usual Gaussian 32, this is the usual one's; the others are marked, and plain C projects them.
- * Comes behind a header of lanes. */
+ * Comes behind a header of lanes, in a file that names the function: PROJECT. */
 #ifndef T3R_KERNELS_X86_PROJECT_LANES_H
 #define T3R_KERNELS_X86_PROJECT_LANES_H
 
-#include "core/fixed_tables.h"
 #include "kernels/project_parts.h"
+#include "logarithm_lanes.h"
+#include "records.h"
 
 static inline T3R_LANES_TARGET lanes held(lanes x, lanes bound)
 {
@@ -18,16 +19,6 @@ static inline T3R_LANES_TARGET wide mixed_product(lanes a, lanes b)
     const lanes beyond = both(a, OF_LANES(srai_epi32)(b, 31)); /* b read as signed lacks 2^32 there */
     const wide high = {OF_LANES(slli_epi64)(beyond, 32), OF_LANES(slli_epi64)(odd_of(beyond), 32)};
     return sum(product(a, b), high);
-}
-
-static inline T3R_LANES_TARGET wide right_by(wide x, wide shift)
-{
-    return (wide){OF_LANES(srlv_epi64)(x.even, shift.even), OF_LANES(srlv_epi64)(x.odd, shift.odd)};
-}
-
-static inline T3R_LANES_TARGET wide left_by(wide x, wide shift)
-{
-    return (wide){OF_LANES(sllv_epi64)(x.even, shift.even), OF_LANES(sllv_epi64)(x.odd, shift.odd)};
 }
 
 /* x / 2^shift, round-half-up, of 64 bits, twice of which 32 bits hold; shift 1..33. */
@@ -45,7 +36,7 @@ static inline T3R_LANES_TARGET lanes round_shift_positive(wide x, lanes shift)
 /* The same of signed ones, |x| < 2^62, from their upper halves; shift 33 and more. */
 static inline T3R_LANES_TARGET lanes round_shift_far(wide x, lanes shift)
 {
-    return OF_LANES(srai_epi32)(add(OF_LANES(srav_epi32)(high_of(x), subtract(shift, all(33))), all(1)), 1);
+    return OF_LANES(srai_epi32)(add(signed_right_each(high_of(x), subtract(shift, all(33))), all(1)), 1);
 }
 
 /* floor(2^62 / normal), normal in 2^31..2^32 - 1: a parabola to 1 %, Newton's step to 14 bits and twice the rest over
@@ -70,32 +61,6 @@ static inline T3R_LANES_TARGET lanes inverted(lanes normal)
     return subtract(add(quotient, OF_LANES(srai_epi32)(high, 31)), either(is_more, is_there));
 }
 
-/* Between an entry of the table and the next. */
-static inline T3R_LANES_TARGET lanes interpolated(const uint32_t *table, lanes index, lanes fraction_q16)
-{
-    lanes entry, next;
-    look_up(table, index, &entry, &next);
-    const lanes step = subtract(next, entry);
-    return add(entry, OF_LANES(srli_epi32)(add(multiply(step, fraction_q16), all(0x8000)), 16));
-}
-
-/* The logarithm's fraction, Q16, of a number whose bit 30 is the highest. */
-static inline T3R_LANES_TARGET lanes log_fraction_q16(lanes normal)
-{
-    const lanes index = both(OF_LANES(srli_epi32)(normal, 23), all(127));
-    const lanes fraction_q16 = both(OF_LANES(srli_epi32)(normal, 7), all(0xffff));
-    const lanes log_q20 = interpolated(t3r_log2_table_q20, index, fraction_q16);
-    return OF_LANES(srli_epi32)(add(log_q20, all(8)), 4);
-}
-
-/* t3r_log2_q16(), x in 2^(31 - 2 first_step)..2^31 - 1 */
-static inline T3R_LANES_TARGET lanes log_q16(lanes x, int first_step)
-{
-    lanes by;
-    const lanes normal = normal_of(x, first_step, &by);
-    return add(OF_LANES(slli_epi32)(subtract(all(30), by), 16), log_fraction_q16(normal));
-}
-
 /* t3r_log2_wide_q16(), x in 2^15..2^52 - 1: by sevens down to 24 bits and more, all that the table reads */
 static inline T3R_LANES_TARGET lanes log_wide_q16(wide x)
 {
@@ -112,8 +77,8 @@ static inline T3R_LANES_TARGET lanes exp_q16(lanes x_q16)
     const lanes fraction_q16 = OF_LANES(slli_epi32)(both(x_q16, all(511)), 7);
     const lanes mantissa_q20 = interpolated(t3r_exp2_table_q20, index, fraction_q16);
     const lanes up = subtract(OF_LANES(srai_epi32)(x_q16, 16), all(4)), down = subtract(all(0), up);
-    const lanes half = OF_LANES(srli_epi32)(OF_LANES(sllv_epi32)(all(1), down), 1);
-    return either(OF_LANES(sllv_epi32)(mantissa_q20, up), OF_LANES(srlv_epi32)(add(mantissa_q20, half), down));
+    const lanes half = OF_LANES(srli_epi32)(left_each(all(1), down), 1);
+    return either(left_each(mantissa_q20, up), right_each(add(mantissa_q20, half), down));
 }
 
 /* t3r_log_level_q16() of more than 128: 255 of it have 16 to 23 bits, and levels 5 to 12; eight times as much, or 2^18,
@@ -264,10 +229,10 @@ static inline T3R_LANES_TARGET covariances covariance_of(const lanes a_q12[3], c
     /* below 2^14 as 2^14: n is 0..10 */
     (void)normal_of(OF_LANES(slli_epi32)(OF_LANES(max_epi32)(largest, all(1 << 14)), 6), 8, &by);
     const lanes n = subtract(all(10), by);
-    const lanes half = OF_LANES(srli_epi32)(OF_LANES(sllv_epi32)(all(1), n), 1);
+    const lanes half = OF_LANES(srli_epi32)(left_each(all(1), n), 1);
     for (int j = 0; j < 3; j++) {
-        a[j] = OF_LANES(srav_epi32)(add(a_q12[j], half), n);
-        b[j] = OF_LANES(srav_epi32)(add(b_q12[j], half), n);
+        a[j] = signed_right_each(add(a_q12[j], half), n);
+        b[j] = signed_right_each(add(b_q12[j], half), n);
     }
     covariances c;
     c.twice = add(n, n);
@@ -295,8 +260,8 @@ static inline T3R_LANES_TARGET covariances covariance_of(const lanes a_q12[3], c
 /* conic_of(); rd = floor(2^62 / determinant). a, c <= 1 / 0.6, and |b| less: twice that is below 2^32. */
 static inline T3R_LANES_TARGET void conic_of(const covariances *c, lanes rd, lanes conic_q30[3])
 {
-    const lanes half = OF_LANES(srli_epi32)(OF_LANES(sllv_epi32)(all(1), c->twice), 1);
-    const lanes dilation = OF_LANES(srlv_epi32)(add(all(T3R_DILATION_Q24), half), c->twice);
+    const lanes half = OF_LANES(srli_epi32)(left_each(all(1), c->twice), 1);
+    const lanes dilation = right_each(add(all(T3R_DILATION_Q24), half), c->twice);
     const lanes shift = add(add(c->twice, c->s), all(9));
     conic_q30[0] = round_shift_positive(unsigned_product(add(c->bb, dilation), rd), shift);
     conic_q30[2] = round_shift_positive(unsigned_product(add(c->aa, dilation), rd), shift);
@@ -346,12 +311,38 @@ static void project_scalar(const t3r_projection *p, const t3r_gaussian *g, t3r_s
     }
 }
 
-/* LANES Gaussians read, projected by project_lanes() and written: what it returns. */
-static uint32_t project_batch(const t3r_projection *p, const t3r_gaussian *gaussians, t3r_splat *splats);
+_Static_assert(offsetof(t3r_gaussian, factor) == 12 && offsetof(t3r_gaussian, factor_exponent) == 30 &&
+                   offsetof(t3r_gaussian, colour_q7) == 32 && offsetof(t3r_gaussian, opacity_q15) == 38,
+               "a Gaussian's first ten words: position, factor and exponent, colours and opacity");
+_Static_assert(offsetof(t3r_splat, a_q30) == 8 && offsetof(t3r_splat, z_q20) == 20 &&
+                   offsetof(t3r_splat, colour_q7) == 24 && offsetof(t3r_splat, opacity_q15) == 30 &&
+                   offsetof(t3r_splat, x0) == 32 && offsetof(t3r_splat, y0) == 34 && offsetof(t3r_splat, x1) == 36,
+               "a splat's ten words: centre, conic, depth, colours and opacity, box");
 
-/* As t3r_project_kernel does. */
-static inline void project_all(const t3r_projection *p, const t3r_gaussian *gaussians, uint32_t count,
-                               t3r_splat *splats)
+/* LANES Gaussians; returns what project_lanes() does. */
+static __attribute__((noinline)) T3R_LANES_TARGET uint32_t project_batch(const t3r_projection *p,
+                                                                         const t3r_gaussian *gaussians,
+                                                                         t3r_splat *splats)
+{
+    const uint8_t *from[LANES];
+    uint8_t *to[LANES];
+    lanes in[10], out[10];
+    T3R_X86_UNROLL for (int i = 0; i < LANES; i++)
+    {
+        from[i] = (const uint8_t *)&gaussians[i];
+        to[i] = (uint8_t *)&splats[i];
+    }
+    read_four(from, 0, in);
+    read_four(from, 16, in + 4);
+    read_two(from, 32, in + 8);
+    const uint32_t beyond = project_lanes(p, in, out);
+    write_four(out, to, 0);
+    write_four(out + 4, to, 16);
+    write_two(out + 8, to, 32);
+    return beyond;
+}
+
+void PROJECT(const t3r_projection *p, const t3r_gaussian *gaussians, uint32_t count, t3r_splat *splats)
 {
     uint32_t i = 0;
     for (; i + LANES <= count; i += LANES) {

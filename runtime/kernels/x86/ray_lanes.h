@@ -1,6 +1,6 @@
-/* ray_row in 32-bit lanes of any number. The file that includes this defines TARGET, LANES and the intrinsics of its
- * instruction set behind multiply(), multiply_signed() and join(). A quotient x / z is made of z's reciprocal and
- * mended by its remainder. */
+/* ray_row in 32-bit lanes of any number. The file that includes this names the function, RAY_ROW, and defines TARGET,
+ * LANES and the intrinsics of its instruction set behind multiply(), multiply_signed() and join(). A quotient
+ * x / z is made of z's reciprocal and mended by its remainder. */
 #ifndef T3R_RAY_LANES_H
 #define T3R_RAY_LANES_H
 
@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 typedef int32_t lanes __attribute__((vector_size(LANES * sizeof(int32_t))));
+typedef int32_t lanes_there __attribute__((vector_size(LANES * sizeof(int32_t)), aligned(4), may_alias));
 typedef uint32_t ulanes __attribute__((vector_size(LANES * sizeof(int32_t))));
 typedef uint64_t pairs __attribute__((vector_size(LANES * sizeof(int32_t))));
 
@@ -110,6 +111,20 @@ static inline TARGET void ray_block(const t3r_ray_map *map, lanes a, lanes b, bo
     *u = any & place(divide(x & any, by, shift + up, inverse), map->scale_q16[0], map->offset_q16[0]);
     *v = any & place(divide(y & any, by, shift + up, inverse), map->scale_q16[1], map->offset_q16[1]);
     *shown = z & any;
+}
+
+TARGET void RAY_ROW(const t3r_ray_map *map, const int32_t *a_q24, const int32_t *b_q24, uint32_t count,
+                    t3r_ray_places *out)
+{
+    const bool sloped = (map->slope_q30[0] | map->slope_q30[1] | map->slope_q30[2]) != 0;
+    for (uint32_t i = 0; i < count; i += LANES) {
+        const lanes a = *(const lanes_there *)(a_q24 + i), b = *(const lanes_there *)(b_q24 + i);
+        lanes u, v, z;
+        ray_block(map, a, b, sloped, &u, &v, &z);
+        *(lanes_there *)(out->x_q16 + i) = u;
+        *(lanes_there *)(out->y_q16 + i) = v;
+        *(lanes_there *)(out->z_q24 + i) = z;
+    }
 }
 
 #endif

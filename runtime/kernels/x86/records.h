@@ -1,75 +1,76 @@
-/* Eight Gaussians read, or eight splats written, a vector a word. */
+/* Words of LANES records, a vector a word, read and written. Comes behind a header of lanes. */
 #ifndef T3R_KERNELS_X86_RECORDS_H
 #define T3R_KERNELS_X86_RECORDS_H
 
 #include <stddef.h>
 
-#include "intrinsics.h"
-#include "kernels/project.h"
-#include "variants.h"
-
-/* Words 0..7 of eight records to a vector a word, or back. */
-static inline T3R_AVX2 void transpose(__m256i v[8])
+/* Four words each, which lie a record a quarter: to a vector a word, or back. */
+static inline T3R_LANES_TARGET void transpose(lanes v[4])
 {
-    __m256i t[8], u[8];
-    for (int i = 0; i < 8; i += 2) {
-        t[i] = _mm256_unpacklo_epi32(v[i], v[i + 1]);
-        t[i + 1] = _mm256_unpackhi_epi32(v[i], v[i + 1]);
+    const lanes a = OF_LANES(unpacklo_epi32)(v[0], v[1]), b = OF_LANES(unpackhi_epi32)(v[0], v[1]);
+    const lanes c = OF_LANES(unpacklo_epi32)(v[2], v[3]), d = OF_LANES(unpackhi_epi32)(v[2], v[3]);
+    v[0] = OF_LANES(unpacklo_epi64)(a, c);
+    v[1] = OF_LANES(unpackhi_epi64)(a, c);
+    v[2] = OF_LANES(unpacklo_epi64)(b, d);
+    v[3] = OF_LANES(unpackhi_epi64)(b, d);
+}
+
+/* Words 0..3 at from[0], from[1]... */
+static inline T3R_LANES_TARGET void read_four(const uint8_t *const from[LANES], size_t at, lanes word[4])
+{
+    T3R_X86_UNROLL for (int i = 0; i < 4; i++)
+    {
+        __m128i x[LANES / 4];
+        T3R_X86_UNROLL for (int k = 0; k < LANES / 4; k++)
+        {
+            x[k] = _mm_loadu_si128((const __m128i_u *)(const void *)(from[i + 4 * k] + at));
+        }
+        word[i] = joined(x);
     }
-    for (int i = 0; i < 8; i += 4) {
-        u[i] = _mm256_unpacklo_epi64(t[i], t[i + 2]);
-        u[i + 1] = _mm256_unpackhi_epi64(t[i], t[i + 2]);
-        u[i + 2] = _mm256_unpacklo_epi64(t[i + 1], t[i + 3]);
-        u[i + 3] = _mm256_unpackhi_epi64(t[i + 1], t[i + 3]);
+    transpose(word);
+}
+
+static inline T3R_LANES_TARGET void read_two(const uint8_t *const from[LANES], size_t at, lanes word[2])
+{
+    lanes two[4];
+    T3R_X86_UNROLL for (int i = 0; i < 4; i++)
+    {
+        __m128i x[LANES / 4];
+        T3R_X86_UNROLL for (int k = 0; k < LANES / 4; k++)
+        {
+            x[k] = _mm_loadl_epi64((const __m128i_u *)(const void *)(from[i + 4 * k] + at));
+        }
+        two[i] = joined(x);
     }
-    for (int i = 0; i < 4; i++) {
-        v[i] = _mm256_permute2x128_si256(u[i], u[i + 4], 0x20);
-        v[i + 4] = _mm256_permute2x128_si256(u[i], u[i + 4], 0x31);
+    const lanes a = OF_LANES(unpacklo_epi32)(two[0], two[1]), b = OF_LANES(unpacklo_epi32)(two[2], two[3]);
+    word[0] = OF_LANES(unpacklo_epi64)(a, b);
+    word[1] = OF_LANES(unpackhi_epi64)(a, b);
+}
+
+static inline T3R_LANES_TARGET void write_four(const lanes word[4], uint8_t *const to[LANES], size_t at)
+{
+    lanes row[4] = {word[0], word[1], word[2], word[3]};
+    transpose(row);
+    T3R_X86_UNROLL for (int i = 0; i < 4; i++)
+    {
+        T3R_X86_UNROLL for (int k = 0; k < LANES / 4; k++)
+        {
+            _mm_storeu_si128((__m128i_u *)(void *)(to[i + 4 * k] + at), part(row[i], k));
+        }
     }
 }
 
-_Static_assert(offsetof(t3r_gaussian, factor) == 12 && offsetof(t3r_gaussian, factor_exponent) == 30 &&
-                   offsetof(t3r_gaussian, colour_q7) == 32 && offsetof(t3r_gaussian, opacity_q15) == 38,
-               "a Gaussian's first ten words");
-
-/* The first ten words: position, factor and exponent, colours and opacity. */
-static inline T3R_AVX2 void read_eight(const t3r_gaussian *gaussians, __m256i word[10])
+static inline T3R_LANES_TARGET void write_two(const lanes word[2], uint8_t *const to[LANES], size_t at)
 {
-    __m256i pair[4];
-    for (int i = 0; i < 8; i++) {
-        word[i] = _mm256_loadu_si256((const __m256i *)(const void *)&gaussians[i]);
-    }
-    transpose(word);
-    for (int i = 0; i < 4; i++) { /* 0 and 4, 1 and 5, 2 and 6, 3 and 7 */
-        const __m128i lower = _mm_loadl_epi64((const __m128i *)(const void *)gaussians[i].colour_q7);
-        const __m128i upper = _mm_loadl_epi64((const __m128i *)(const void *)gaussians[i + 4].colour_q7);
-        pair[i] = _mm256_inserti128_si256(_mm256_castsi128_si256(lower), upper, 1);
-    }
-    const __m256i a = _mm256_unpacklo_epi32(pair[0], pair[1]), b = _mm256_unpacklo_epi32(pair[2], pair[3]);
-    word[8] = _mm256_unpacklo_epi64(a, b);
-    word[9] = _mm256_unpackhi_epi64(a, b);
-}
-
-_Static_assert(offsetof(t3r_splat, a_q30) == 8 && offsetof(t3r_splat, z_q20) == 20 &&
-                   offsetof(t3r_splat, colour_q7) == 24 && offsetof(t3r_splat, opacity_q15) == 30 &&
-                   offsetof(t3r_splat, x0) == 32 && offsetof(t3r_splat, y0) == 34 && offsetof(t3r_splat, x1) == 36,
-               "a splat's ten words");
-
-/* Ten words: centre, conic, depth, colours and opacity, box. */
-static inline T3R_AVX2 void write_eight(__m256i word[10], t3r_splat *splats)
-{
-    const __m256i boxes[2] = {_mm256_unpacklo_epi32(word[8], word[9]), _mm256_unpackhi_epi32(word[8], word[9])};
-    transpose(word);
-    for (int i = 0; i < 8; i++) {
-        _mm256_storeu_si256((__m256i *)(void *)&splats[i], word[i]);
-    }
-    for (int half = 0; half < 2; half++) { /* 0, 1 and 4, 5; 2, 3 and 6, 7 */
-        const __m128i lower = _mm256_castsi256_si128(boxes[half]), upper = _mm256_extracti128_si256(boxes[half], 1);
-        t3r_splat *s = splats + 2 * half;
-        _mm_storel_epi64((__m128i *)(void *)&s[0].x0, lower);
-        _mm_storel_epi64((__m128i *)(void *)&s[1].x0, _mm_unpackhi_epi64(lower, lower));
-        _mm_storel_epi64((__m128i *)(void *)&s[4].x0, upper);
-        _mm_storel_epi64((__m128i *)(void *)&s[5].x0, _mm_unpackhi_epi64(upper, upper));
+    const lanes two[2] = {OF_LANES(unpacklo_epi32)(word[0], word[1]), OF_LANES(unpackhi_epi32)(word[0], word[1])};
+    T3R_X86_UNROLL for (int i = 0; i < 4; i += 2)
+    {
+        T3R_X86_UNROLL for (int k = 0; k < LANES / 4; k++)
+        {
+            const __m128i pair = part(two[i / 2], k);
+            _mm_storel_epi64((__m128i_u *)(void *)(to[i + 4 * k] + at), pair);
+            _mm_storel_epi64((__m128i_u *)(void *)(to[i + 1 + 4 * k] + at), _mm_unpackhi_epi64(pair, pair));
+        }
     }
 }
 

@@ -1,14 +1,14 @@
-/* Scattering by AVX2. */
+/* Scattering, sixteen pixels at a time. */
 #include "variants.h"
 
 #ifdef T3R_X86
 
-#include "intrinsics.h"
+#include "pixels_avx2.h"
 
-#define T3R_SCATTER_NAME t3r_scatter_avx2
+#define SCATTER t3r_scatter_avx2
 #define T3R_SCATTER T3R_AVX2
-#define T3R_SCATTER_ADD(sum, a, b) _mm256_add_epi32(sum, _mm256_madd_epi16(a, b))
-#include "scatter_sixteen.h"
+#define SCATTER_ADD(sum, a, b) add(sum, OF_LANES(madd_epi16)(a, b))
+#include "scatter_pixels.h"
 
 #else
 typedef int t3r_no_scatter_avx2; /* a file may not be empty */

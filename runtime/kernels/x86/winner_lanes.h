@@ -9,14 +9,22 @@ typedef int16_t words __attribute__((vector_size(BYTES)));
 
 static inline TARGET words load_words(const int16_t *from, uint32_t count); /* INT16_MAX from `count` on */
 static inline TARGET void store_words(int16_t *to, words x, uint32_t count);
-static inline TARGET words lesser(words a, words b);
-/* a where x < y, else b */
-static inline TARGET words where_less(words x, words y, words a, words b);
 /* Each lane's neighbour below; the lowest takes that of `next`. */
 static inline TARGET words word_below(words x, words next);
 static inline TARGET int16_t least_word(words x);
 /* The first lane that equals `value`; WORDS and more: none. */
 static inline TARGET uint32_t first_equal(words x, int16_t value);
+
+static inline TARGET words lesser(words a, words b)
+{
+    return (words)OF(min_epi16)((vector)a, (vector)b);
+}
+
+/* a where x < y, else b */
+static inline TARGET words where_less(words x, words y, words a, words b)
+{
+    return (words)OF(blendv_epi8)((vector)b, (vector)a, OF(cmpgt_epi16)((vector)y, (vector)x));
+}
 
 static inline TARGET words all_words(int16_t x)
 {

@@ -9,7 +9,7 @@
 
 #include "kernels/kernels.h"
 
-#define BENCH_KERNELS_MOST 64
+#define BENCH_KERNELS_MOST 128
 
 typedef struct bench_kernel {
     const char *entry;

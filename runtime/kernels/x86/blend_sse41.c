@@ -1,0 +1,14 @@
+/* Blending, eight pixels at a time. */
+#include "variants.h"
+
+#ifdef T3R_X86
+
+#include "pixels_sse41.h"
+
+#define BLEND t3r_blend_sse41
+#define BLEND_KEEP t3r_blend_keep_sse41
+#include "blend_pixels.h"
+
+#else
+typedef int t3r_no_blend_sse41; /* a file may not be empty */
+#endif

@@ -1,0 +1,132 @@
+/* A packed layer, LANES outputs a vector: a pair of activations, in all lanes, times a pair of weights of each. Comes
+ * behind a header of lanes, in a file that names the functions: PACK_LAYER and CONVOLVE_PACKED. */
+#ifndef T3R_KERNELS_X86_CONVOLVE_PACKED_LANES_H
+#define T3R_KERNELS_X86_CONVOLVE_PACKED_LANES_H
+
+#include "requantize_lanes.h"
+
+#define INLINE T3R_X86_INLINE T3R_LANES_TARGET
+#define EACH(i, count) T3R_X86_UNROLL for (uint32_t i = 0; i < (count); i++)
+#define TAPS 2u
+#define MOST_SUMS 8u /* vectors */
+
+T3R_LANES_TARGET void PACK_LAYER(const t3r_convolution *layer, uint32_t rows, void *packed)
+{
+    t3r_x86_pack_layer(layer, rows, TAPS, 0, BY_FACTORS, packed);
+}
+
+/* Where the outputs from `first` on lie in a packed layer. */
+typedef struct place {
+    const uint8_t *scaling, *weights;
+    uint32_t whole, first;
+} place;
+
+/* Not `lanes`: where sums change their type, gcc 12 copies them in every turn of a loop. */
+typedef int32_t ints __attribute__((vector_size(LANES * sizeof(int32_t))));
+
+/* Two activations in all lanes. */
+INLINE lanes two_at(const int16_t *x)
+{
+    return first_of(_mm_loadu_si32(x));
+}
+
+/* The sums of `vectors` vectors of outputs at `pixels` pixels. A sum of two products is at most 2^15. */
+INLINE void add_up(ints sum[MOST_SUMS], const t3r_block *block, const size_t *offset, const place *at, uint32_t vectors,
+                   uint32_t pixels)
+{
+    const uint32_t pairs = (block->run + T3R_PACKED_TAPS - 1) / T3R_PACKED_TAPS * T3R_PACKED_TAPS / TAPS;
+    const uint8_t *w = at->weights + (size_t)at->first * TAPS;
+    EACH(s, vectors * pixels)
+    {
+        sum[s] = (ints)t3r_x86_scaling_at(at->scaling, T3R_X86_BIAS, at->whole, at->first + s % vectors * LANES);
+    }
+    for (uint32_t row = 0; row < block->rows; row++) {
+        const int16_t *x = (const int16_t *)block->x + (size_t)row * block->pitch;
+        for (uint32_t pair = 0; pair < pairs; pair++, x += TAPS, w += (size_t)at->whole * TAPS) {
+            lanes weights[MOST_SUMS];
+            EACH(v, vectors)
+            {
+                weights[v] = load_8(w + v * LANES * TAPS);
+            }
+            EACH(p, pixels)
+            {
+                const lanes two = two_at(x + offset[p]);
+                EACH(v, vectors)
+                {
+                    sum[p * vectors + v] += (ints)OF_LANES(madd_epi16)(two, weights[v]);
+                }
+            }
+        }
+    }
+}
+
+/* Writes the first `count` activations of x, held within 8 or 16 bits. */
+INLINE void write(lanes x, uint32_t output_bits, uint32_t count, void *out, size_t at)
+{
+    const __m128i held = _mm_packs_epi32(part(x, 0), part(x, LANES / 4 - 1));
+    const uint32_t bytes = output_bits / 8;
+    __m128i left = output_bits == 8 ? _mm_packs_epi16(held, held) : held;
+    uint8_t *to = (uint8_t *)out + at * bytes;
+    if (count * bytes >= 16) {
+        _mm_storeu_si128((__m128i_u *)(void *)to, left);
+    } else if (count * bytes == 8) {
+        _mm_storel_epi64((__m128i_u *)(void *)to, left);
+    } else {
+        for (uint32_t i = 0; i < count * bytes / 4; i++, to += 4, left = _mm_srli_si128(left, 4)) {
+            _mm_storeu_si32(to, left);
+        }
+        const uint32_t rest = (uint32_t)_mm_cvtsi128_si32(left);
+        for (uint32_t i = 0; i < count * bytes % 4; i++) {
+            to[i] = (uint8_t)(rest >> (8 * i));
+        }
+    }
+}
+
+/* All pixels, `pixels` at a time; behind the last, it again. */
+INLINE void convolve(const t3r_convolution *layer, const t3r_block *block, const place *at, uint32_t vectors,
+                     uint32_t pixels, void *out, uint32_t out_pitch)
+{
+    for (uint32_t i = 0; i < block->pixels; i += pixels) {
+        size_t offset[MOST_SUMS], pixel[MOST_SUMS];
+        ints sum[MOST_SUMS];
+        for (uint32_t p = 0; p < pixels; p++) {
+            pixel[p] = i + p < block->pixels ? i + p : block->pixels - 1;
+            offset[p] = pixel[p] * block->step;
+        }
+        add_up(sum, block, offset, at, vectors, pixels);
+        EACH(p, pixels)
+        {
+            EACH(v, vectors)
+            {
+                const uint32_t first = at->first + v * LANES, left = layer->outputs - T3R_MIN(first, layer->outputs);
+                write(t3r_x86_scaled((lanes)sum[p * vectors + v], at->scaling, at->whole, first, layer->zero),
+                      layer->output_bits, T3R_MIN(left, LANES), out, pixel[p] * out_pitch + first);
+            }
+        }
+    }
+}
+
+#define CONVOLVE(name, outputs)                                                                                        \
+    static __attribute__((noinline)) T3R_LANES_TARGET void name(const t3r_convolution *layer, const t3r_block *block,  \
+                                                                const place *at, void *out, uint32_t out_pitch)        \
+    {                                                                                                                  \
+        convolve(layer, block, at, (outputs) / LANES, MOST_SUMS * LANES / (outputs), out, out_pitch);                  \
+    }
+
+CONVOLVE(convolve_eight, 8)
+CONVOLVE(convolve_sixteen, 16)
+
+T3R_LANES_TARGET void CONVOLVE_PACKED(const t3r_convolution *layer, const void *packed, const t3r_block *block,
+                                      void *out, uint32_t out_pitch)
+{
+    const uint32_t whole = t3r_x86_whole(layer->outputs);
+    place at = {packed, (const uint8_t *)packed + (size_t)whole * T3R_PACKED_SCALING_BYTES, whole, 0};
+    for (; at.first + 16 <= whole; at.first += 16) {
+        convolve_sixteen(layer, block, &at, out, out_pitch);
+    }
+    if (at.first < whole) {
+        convolve_eight(layer, block, &at, out, out_pitch);
+    }
+}
+
+#endif

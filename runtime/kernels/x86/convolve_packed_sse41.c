@@ -1,0 +1,14 @@
+/* A packed layer, four outputs a vector. */
+#include "variants.h"
+
+#ifdef T3R_X86
+
+#include "lanes_sse41.h"
+
+#define PACK_LAYER t3r_pack_layer_sse41
+#define CONVOLVE_PACKED t3r_convolve_packed_sse41
+#include "convolve_packed_lanes.h"
+
+#else
+typedef int t3r_no_convolve_packed_sse41; /* a file may not be empty */
+#endif

@@ -1,0 +1,33 @@
+/* Logarithms by the table of core/fixed_tables.h. Comes behind a header of lanes. */
+#ifndef T3R_KERNELS_X86_LOGARITHM_LANES_H
+#define T3R_KERNELS_X86_LOGARITHM_LANES_H
+
+#include "core/fixed_tables.h"
+
+/* Between an entry of the table and the next. */
+static inline T3R_LANES_TARGET lanes interpolated(const uint32_t *table, lanes index, lanes fraction_q16)
+{
+    lanes entry, next;
+    look_up(table, index, &entry, &next);
+    const lanes step = subtract(next, entry);
+    return add(entry, OF_LANES(srli_epi32)(add(multiply(step, fraction_q16), all(0x8000)), 16));
+}
+
+/* The logarithm's fraction, Q16, of a number whose bit 30 is the highest. */
+static inline T3R_LANES_TARGET lanes log_fraction_q16(lanes normal)
+{
+    const lanes index = both(OF_LANES(srli_epi32)(normal, 23), all(127));
+    const lanes fraction_q16 = both(OF_LANES(srli_epi32)(normal, 7), all(0xffff));
+    const lanes log_q20 = interpolated(t3r_log2_table_q20, index, fraction_q16);
+    return OF_LANES(srli_epi32)(add(log_q20, all(8)), 4);
+}
+
+/* t3r_log2_q16(), x in 2^(31 - 2 first_step)..2^31 - 1 */
+static inline T3R_LANES_TARGET lanes log_q16(lanes x, int first_step)
+{
+    lanes by;
+    const lanes normal = normal_of(x, first_step, &by);
+    return add(OF_LANES(slli_epi32)(subtract(all(30), by), 16), log_fraction_q16(normal));
+}
+
+#endif

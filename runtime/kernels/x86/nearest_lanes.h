@@ -1,0 +1,114 @@
+/* The nearest centre by looking at all of them, LANES at a time. Comes behind a header of lanes, in a file that names
+ * the functions: NEAREST_BEGIN and NEAREST. */
+#ifndef T3R_KERNELS_X86_NEAREST_LANES_H
+#define T3R_KERNELS_X86_NEAREST_LANES_H
+
+#include "packed_centres.h"
+
+static inline T3R_LANES_TARGET lanes centres_at(const t3r_neighbours *packed, size_t offset, uint32_t k)
+{
+    return load(t3r_packed_at(packed, offset, k));
+}
+
+static inline T3R_LANES_TARGET void put_centres(t3r_neighbours *packed, size_t offset, uint32_t k,
+                                                const int32_t from[LANES])
+{
+    store((uint8_t *)packed + offset + (size_t)k * sizeof(int32_t), load(from));
+}
+
+T3R_LANES_TARGET void NEAREST_BEGIN(const t3r_centres *centres, uint32_t first, uint32_t end,
+                                    t3r_neighbours *neighbours)
+{
+    const uint32_t whole = (end + T3R_CENTRE_GROUP - 1) / T3R_CENTRE_GROUP * T3R_CENTRE_GROUP;
+    for (uint32_t at = first; at < whole; at += LANES) {
+        int32_t pair[T3R_PAIRS][LANES], half_norm[LANES];
+        for (uint32_t i = 0; i < LANES; i++) {
+            const uint32_t k = at + i;
+            const bool is_centre = k < centres->count;
+            for (uint32_t d = 0; d < T3R_PAIRS; d++) {
+                const int16_t two[2] = {is_centre ? centres->feature_q11[2 * d][k] : 0,
+                                        is_centre ? centres->feature_q11[2 * d + 1][k] : 0};
+                pair[d][i] = t3r_pair_of(two, 0);
+            }
+            half_norm[i] = is_centre ? centres->half_norm[k] : INT32_MAX; /* no centre's score is so large */
+        }
+        for (uint32_t d = 0; d < T3R_PAIRS; d++) {
+            put_centres(neighbours, T3R_PACKED_PAIR(d), at, pair[d]);
+        }
+        put_centres(neighbours, T3R_PACKED_HALF_NORM, at, half_norm);
+    }
+}
+
+/* Not `lanes`: where the least so far changes its type, gcc 12 copies it in every turn of a loop. */
+typedef int32_t ints __attribute__((vector_size(LANES * sizeof(int32_t))));
+
+/* A point, and in each lane the least score so far and the first centre of the vector that had it. */
+typedef struct search {
+    lanes pair[T3R_PAIRS];
+    ints least, first;
+} search;
+
+static T3R_LANES_TARGET search search_of(const int16_t p[T3R_DIMENSIONS])
+{
+    search s = {.least = (ints)all(INT32_MAX), .first = (ints)all(0)};
+    for (uint32_t d = 0; d < T3R_PAIRS; d++) {
+        s.pair[d] = all(t3r_pair_of(p, d));
+    }
+    return s;
+}
+
+/* Scores are below 2^31 in size, as are their parts: |p c| is at most 6 x 15000^2. A lane keeps the earlier of equals.
+ */
+static inline T3R_LANES_TARGET void look(search *s, const lanes pair[T3R_PAIRS], lanes half_norm, lanes here)
+{
+    const ints score = (ints)half_norm - (ints)OF_LANES(madd_epi16)(s->pair[0], pair[0]) -
+                       (ints)OF_LANES(madd_epi16)(s->pair[1], pair[1]) -
+                       (ints)OF_LANES(madd_epi16)(s->pair[2], pair[2]);
+    const lanes less = greater((lanes)s->least, (lanes)score);
+    s->least = (ints)OF_LANES(min_epi32)((lanes)s->least, (lanes)score);
+    s->first = (ints)chosen(less, here, (lanes)s->first);
+}
+
+/* The least number of a vector. */
+static inline T3R_LANES_TARGET int32_t least_of(lanes x)
+{
+    __m128i least = part(x, 0);
+    for (int i = 1; i < LANES / 4; i++) {
+        least = _mm_min_epi32(least, part(x, i));
+    }
+    least = _mm_min_epi32(least, _mm_shuffle_epi32(least, 0x4e));
+    return _mm_cvtsi128_si32(_mm_min_epi32(least, _mm_shuffle_epi32(least, 0xb1)));
+}
+
+/* The least index of the least score. */
+static inline T3R_LANES_TARGET uint16_t nearest_of(const search *s)
+{
+    static const int32_t numbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const lanes index = add((lanes)s->first, load(numbers));
+    const lanes has_it = equal((lanes)s->least, all(least_of((lanes)s->least)));
+    return (uint16_t)least_of(chosen(has_it, index, all(INT32_MAX)));
+}
+
+T3R_LANES_TARGET void NEAREST(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,
+                              const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest)
+{
+    (void)guess;
+    for (uint32_t point = 0; point < points; point += 2) { /* two share the loads; behind the last, the last again */
+        const uint32_t other = point + 1 < points ? point + 1 : point;
+        search a = search_of(feature_q11[point]), b = search_of(feature_q11[other]);
+        for (uint32_t k = 0; k < centres->count; k += LANES) {
+            lanes pair[T3R_PAIRS];
+            for (uint32_t d = 0; d < T3R_PAIRS; d++) {
+                pair[d] = centres_at(neighbours, T3R_PACKED_PAIR(d), k);
+            }
+            const lanes half_norm = centres_at(neighbours, T3R_PACKED_HALF_NORM, k);
+            const lanes here = all((int32_t)k);
+            look(&a, pair, half_norm, here);
+            look(&b, pair, half_norm, here);
+        }
+        nearest[point] = nearest_of(&a);
+        nearest[other] = nearest_of(&b);
+    }
+}
+
+#endif
