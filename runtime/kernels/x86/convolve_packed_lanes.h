@@ -106,15 +106,17 @@ INLINE void convolve(const t3r_convolution *layer, const t3r_block *block, const
     }
 }
 
-#define CONVOLVE(name, outputs)                                                                                        \
-    static __attribute__((noinline)) T3R_LANES_TARGET void name(const t3r_convolution *layer, const t3r_block *block,  \
-                                                                const place *at, void *out, uint32_t out_pitch)        \
-    {                                                                                                                  \
-        convolve(layer, block, at, (outputs) / LANES, MOST_SUMS * LANES / (outputs), out, out_pitch);                  \
-    }
+static __attribute__((noinline)) T3R_LANES_TARGET void
+convolve_eight(const t3r_convolution *layer, const t3r_block *block, const place *at, void *out, uint32_t out_pitch)
+{
+    convolve(layer, block, at, 8 / LANES, MOST_SUMS * LANES / 8, out, out_pitch);
+}
 
-CONVOLVE(convolve_eight, 8)
-CONVOLVE(convolve_sixteen, 16)
+static __attribute__((noinline)) T3R_LANES_TARGET void
+convolve_sixteen(const t3r_convolution *layer, const t3r_block *block, const place *at, void *out, uint32_t out_pitch)
+{
+    convolve(layer, block, at, 16 / LANES, MOST_SUMS * LANES / 16, out, out_pitch);
+}
 
 T3R_LANES_TARGET void CONVOLVE_PACKED(const t3r_convolution *layer, const void *packed, const t3r_block *block,
                                       void *out, uint32_t out_pitch)

@@ -48,33 +48,39 @@ static inline T3R_SSE41 uint32_t signs_of(lanes x)
 
 /* Shifts of each lane by its own count: all lanes by each count, as that is what instructions do. Counts beyond the
  * bits give 0, or the sign. */
-#define SHIFT_EACH(name, instruction)                                                                                  \
-    static inline T3R_SSE41 lanes name(lanes x, lanes by)                                                              \
-    {                                                                                                                  \
-        const lanes even = _mm_cvtepu32_epi64(by), odd = _mm_unpackhi_epi32(by, all(0));                               \
-        const lanes first = instruction(x, even), second = instruction(x, odd_of(by));                                 \
-        const lanes third = instruction(x, odd), fourth = instruction(x, _mm_srli_si128(by, 12));                      \
-        return _mm_blend_epi16(alternating(first, second), alternating(third, fourth), 0xf0);                          \
-    }
+#define SHIFTED(instruction, x, by)                                                                                    \
+    _mm_blend_epi16(                                                                                                   \
+        alternating(instruction(x, _mm_cvtepu32_epi64(by)), instruction(x, odd_of(by))),                               \
+        alternating(instruction(x, _mm_unpackhi_epi32(by, all(0))), instruction(x, _mm_srli_si128(by, 12))), 0xf0)
 
-SHIFT_EACH(left_each, _mm_sll_epi32)
-SHIFT_EACH(right_each, _mm_srl_epi32)
-SHIFT_EACH(signed_right_each, _mm_sra_epi32)
+static inline T3R_SSE41 lanes left_each(lanes x, lanes by)
+{
+    return SHIFTED(_mm_sll_epi32, x, by);
+}
+
+static inline T3R_SSE41 lanes right_each(lanes x, lanes by)
+{
+    return SHIFTED(_mm_srl_epi32, x, by);
+}
+
+static inline T3R_SSE41 lanes signed_right_each(lanes x, lanes by)
+{
+    return SHIFTED(_mm_sra_epi32, x, by);
+}
 
 /* Likewise two of 64 bits. */
-#define SHIFT_WIDE(name, instruction)                                                                                  \
-    static inline T3R_SSE41 lanes name##_half(lanes x, lanes by)                                                       \
-    {                                                                                                                  \
-        return _mm_blend_epi16(instruction(x, by), instruction(x, _mm_unpackhi_epi64(by, by)), 0xf0);                  \
-    }                                                                                                                  \
-                                                                                                                       \
-    static inline T3R_SSE41 wide name(wide x, wide by)                                                                 \
-    {                                                                                                                  \
-        return (wide){name##_half(x.even, by.even), name##_half(x.odd, by.odd)};                                       \
-    }
+#define SHIFTED_64(instruction, x, by)                                                                                 \
+    _mm_blend_epi16(instruction(x, by), instruction(x, _mm_unpackhi_epi64(by, by)), 0xf0)
 
-SHIFT_WIDE(right_by, _mm_srl_epi64)
-SHIFT_WIDE(left_by, _mm_sll_epi64)
+static inline T3R_SSE41 wide right_by(wide x, wide by)
+{
+    return (wide){SHIFTED_64(_mm_srl_epi64, x.even, by.even), SHIFTED_64(_mm_srl_epi64, x.odd, by.odd)};
+}
+
+static inline T3R_SSE41 wide left_by(wide x, wide by)
+{
+    return (wide){SHIFTED_64(_mm_sll_epi64, x.even, by.even), SHIFTED_64(_mm_sll_epi64, x.odd, by.odd)};
+}
 
 /* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far. The exponent of the number in floating point
  * says it: without the bits below a 1 that follow it, rounding cannot carry. */
