@@ -16,7 +16,7 @@ from library import FEATURES, ROOT, ended, there
 
 from checks import check, done, run
 
-PACKAGING = ROOT / "packaging"
+PACKAGING = ROOT / "tools" / "packaging"
 OPTIONS = {"T3R_TOOLS", "T3R_TESTS", "T3R_SHARED", *(f"T3R_WITH_{name.upper()}" for name in FEATURES)}
 VERSION = ".".join(re.findall(r"#define T3R_VERSION_\w+ (\d+)", (ROOT / "runtime/include/trim3r.h").read_text()))
 

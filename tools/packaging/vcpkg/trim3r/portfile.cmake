@@ -1,5 +1,5 @@
-# An overlay port: `vcpkg install trim3r --overlay-ports=packaging/vcpkg` in the tree builds the tree itself.
-get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
+# An overlay port: `vcpkg install trim3r --overlay-ports=tools/packaging/vcpkg` in the tree builds the tree itself.
+get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../../.." ABSOLUTE)
 
 vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
   FEATURES

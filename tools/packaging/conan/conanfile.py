@@ -1,4 +1,4 @@
-"""The recipe for Conan 2: `conan create packaging/conan` in the tree."""
+"""The recipe for Conan 2: `conan create tools/packaging/conan` in the tree."""
 import os
 
 from conan import ConanFile
@@ -20,8 +20,9 @@ class Trim3rConan(ConanFile):
     default_options = {"shared": False, **{feature: True for feature in FEATURES}}
 
     def export_sources(self):
-        tree = os.path.join(self.recipe_folder, "..", "..")
-        for pattern in ("CMakeLists.txt", "libraries.cmake", "LICENSE", "runtime/*", "quant/heads/*", "packaging/*", "tools/amalgamate"):
+        tree = os.path.join(self.recipe_folder, "..", "..", "..")
+        for pattern in ("CMakeLists.txt", "libraries.cmake", "LICENSE", "runtime/*", "quant/heads/*", "tools/packaging/*",
+                        "tools/amalgamate"):
             copy(self, pattern, src=tree, dst=self.export_sources_folder)
 
     def configure(self):

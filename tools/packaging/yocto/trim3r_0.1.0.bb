@@ -5,7 +5,7 @@ LIC_FILES_CHKSUM = "file://LICENSE;md5=3b83ef96387f14655fc854ddc3c6bd57"
 
 inherit cmake pkgconfig externalsrc
 
-EXTERNALSRC ?= "${THISDIR}/../.."
+EXTERNALSRC ?= "${THISDIR}/../../.."
 
 PACKAGECONFIG ??= "stereo streams learned moment refinement"
 PACKAGECONFIG[stereo] = "-DT3R_WITH_STEREO=ON,-DT3R_WITH_STEREO=OFF"
