@@ -138,14 +138,16 @@ static uint64_t add_to_most(uint64_t a, uint64_t b)
     return a > UINT64_MAX - b ? UINT64_MAX : a + b;
 }
 
-/* units x milli / 1000, rounded down by less than 2. */
+/* units x milli / 1000, rounded down; by less than milli where the product does not fit, which is below 2^-22 of it. A
+ * quotient and its remainder together would call one more helper on 32-bit cores. */
 static uint64_t priced(uint64_t units, uint32_t milli)
 {
-    const uint64_t thousands = units / 1000, rest = units % 1000;
-    if (milli != 0 && thousands > UINT64_MAX / milli) {
-        return UINT64_MAX;
+    const uint64_t most = milli == 0 ? UINT64_MAX : UINT64_MAX / milli;
+    if (units <= most) {
+        return units * milli / 1000;
     }
-    return add_to_most(thousands * milli, rest * milli / 1000);
+    const uint64_t thousands = units / 1000;
+    return thousands > most ? UINT64_MAX : thousands * milli;
 }
 
 #define STAGE_OF(NAME, name, stage) [T3R_WORK_##NAME] = T3R_STAGE_##stage,
