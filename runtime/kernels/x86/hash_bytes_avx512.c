@@ -137,6 +137,17 @@ static inline T3R_AVX512 __m512i add_word(__m512i sums, const uint8_t *bytes, __
     return _mm512_add_epi64(_mm512_mullo_epi64(sums, _mm512_set1_epi64((long long)powers[0])), of_word);
 }
 
+/* Modulo 2^64: the compiler's own reduction adds signed numbers. */
+static inline T3R_AVX512 uint64_t total(__m512i sums)
+{
+    uint64_t each[GROUP], all = 0;
+    _mm512_storeu_si512(each, sums);
+    for (uint32_t i = 0; i < GROUP; i++) {
+        all += each[i];
+    }
+    return all;
+}
+
 T3R_AVX512 uint64_t t3r_hash_bytes_avx512(uint64_t hash, const uint8_t *bytes, size_t count)
 {
     uint32_t before[PLANES];
@@ -153,7 +164,7 @@ T3R_AVX512 uint64_t t3r_hash_bytes_avx512(uint64_t hash, const uint8_t *bytes, s
             sums = add_word(sums, bytes + done + j * WORD, joined(&low, j));
         }
     }
-    return t3r_hash_bytes_c((uint64_t)_mm512_reduce_add_epi64(sums), bytes + done, count - done);
+    return t3r_hash_bytes_c(total(sums), bytes + done, count - done);
 }
 
 #else
