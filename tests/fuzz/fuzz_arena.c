@@ -19,7 +19,7 @@
 #include "superclusters/superclusters.h"
 #include "weights_maker.h"
 #ifdef T3R_FUZZ_EXPORT
-#include "scene/ply.h"
+#include "scene/formats/ply.h"
 #endif
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
@@ -471,7 +471,12 @@ static void call_export(const t3r_runtime *rt)
         size_t bytes = 0;
         FILE *file = open_memstream(&text, &bytes);
         REQUIRE(file != NULL);
-        ply_write(file, &scene, 0, NULL);
+        /* it is only read */
+        const scene_file made = {
+            .frame = scene.frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene.gaussians, .count = scene.count};
+        const scene_source source = {.scene = &made, .turn = scene_turn_to(SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN)};
+        char error[256];
+        (void)ply_write(file, &source, error, sizeof error);
         REQUIRE(fclose(file) == 0);
         free(text);
     }
