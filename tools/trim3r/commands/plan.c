@@ -18,8 +18,8 @@
 #include "reconstruction/settings.h"
 #include "cli/whole_file.h"
 #include "core/fixed.h"
-#include "trim3r/fitting.h"
-#include "trim3r/work_table.h"
+#include "study/bench/fitting.h"
+#include "study/bench/work_table.h"
 
 typedef struct plan_options {
     t3r_config config; /* but for the head; a render_width of 0 is the working size */

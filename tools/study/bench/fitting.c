@@ -1,4 +1,4 @@
-#include "trim3r/fitting.h"
+#include "study/bench/fitting.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "trim3r/work_table.h"
+#include "study/bench/work_table.h"
 
 #include <stdbool.h>
 #include <stdio.h>
