@@ -160,6 +160,7 @@ void reconstruction_close(reconstruction *r)
     t3r_threads_stop(r->threads);
     free(r->arena);
     chosen_head_close(&r->head);
+    scene_file_free(&r->loaded);
     *r = (reconstruction){0};
 }
 
@@ -497,10 +498,10 @@ int reconstruction_stream(reconstruction *r, const t3r_recording *recording, con
 
 /* ---- from a file ---------------------------------------------------------------------------------------------- */
 
-static int append_scene(reconstruction *r, const scene_file *scene, const t3r_camera *eye)
+static int append_loaded(reconstruction *r, const t3r_camera *eye)
 {
     uint32_t index = 0;
-    t3r_status status = scene_append_all(r->runtime, scene, eye, &index);
+    t3r_status status = scene_append_all(r->runtime, &r->loaded, eye, &index);
     if (status != T3R_OK && index > 0) {
         return cli_error(CLI_BAD_INPUT, "Gaussian %" PRIu32 ": %s", index - 1, t3r_error_text(status));
     }
@@ -510,17 +511,16 @@ static int append_scene(reconstruction *r, const scene_file *scene, const t3r_ca
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "scene", &r->config, r->arena_bytes);
 }
 
-int reconstruction_look_from(reconstruction *r, const scene_file *scene, const t3r_camera *camera)
+int reconstruction_look_from(reconstruction *r, const t3r_camera *camera)
 {
     t3r_pose pose;
-    const bool is_drawn = t3r_pose_in_scene(camera, &scene->frame, &pose) == T3R_OK; /* else t3r_render() refuses */
-    return scene->degree == 0 || !is_drawn ? CLI_OK : append_scene(r, scene, camera);
+    const bool is_drawn = t3r_pose_in_scene(camera, &r->loaded.frame, &pose) == T3R_OK; /* else t3r_render() refuses */
+    return r->loaded.degree == 0 || !is_drawn ? CLI_OK : append_loaded(r, camera);
 }
 
-static int load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
-                const reconstruction_options *options)
+static int load(reconstruction *r, uint32_t width, uint32_t height, const reconstruction_options *options)
 {
-    uint32_t count = scene->count == 0 ? 1 : scene->count;
+    uint32_t count = r->loaded.count == 0 ? 1 : r->loaded.count;
     r->config = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 0, count);
     r->config.render_width = width;
     r->config.render_height = height;
@@ -529,14 +529,15 @@ static int load(reconstruction *r, const scene_file *scene, uint32_t width, uint
     if (code != CLI_OK) {
         return code;
     }
-    return append_scene(r, scene, NULL);
+    return append_loaded(r, NULL);
 }
 
-int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
+int reconstruction_load(reconstruction *r, scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options)
 {
-    *r = (reconstruction){0};
-    int code = load(r, scene, width, height, options);
+    *r = (reconstruction){.loaded = *scene};
+    *scene = (scene_file){0};
+    int code = load(r, width, height, options);
     if (code != CLI_OK) {
         reconstruction_close(r);
     }

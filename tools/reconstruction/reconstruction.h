@@ -72,6 +72,7 @@ typedef struct reconstruction {
     size_t arena_bytes;
     t3r_threads *threads;
     t3r_scene scene;
+    scene_file loaded; /* what reconstruction_load() took; else all zero */
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
     uint32_t valid_points;                /* pixels of the context views with a depth before filling, working size */
@@ -123,11 +124,12 @@ t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *
 t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *options);
 
 /* An arena that only renders, filled with a scene from a file; targets up to width x height. Of the options only
- * arena, threads and hash are read. */
-int reconstruction_load(reconstruction *r, const scene_file *scene, uint32_t width, uint32_t height,
+ * arena, threads and hash are read. The scene is `r`'s from now on, whatever is returned: *scene is left empty. */
+int reconstruction_load(reconstruction *r, scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options);
-/* Gives a loaded scene the colours that its harmonics have from a camera; t3r_render() draws them from now on. */
-int reconstruction_look_from(reconstruction *r, const scene_file *scene, const t3r_camera *camera);
+/* Gives a loaded scene the colours that its harmonics have from a camera; t3r_render() draws them from now on. Other
+ * scenes, which have none, stay as they are. */
+int reconstruction_look_from(reconstruction *r, const t3r_camera *camera);
 
 /* What the frames of a scene hold before one is built: valid points, and by stereo the scene's depth in world units, a
  * power of two times 1.5 (0 by sensor). */

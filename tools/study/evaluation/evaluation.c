@@ -37,6 +37,10 @@ int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluatio
         .alpha_q15 = alpha,
         .alpha_stride_bytes = views->width * 2,
     };
+    int code = reconstruction_look_from(r, camera);
+    if (code != CLI_OK) {
+        return code;
+    }
     t3r_status status = t3r_render(r->runtime, camera, &target);
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "render", &r->config, r->arena_bytes);
 }
@@ -232,9 +236,7 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     if (failed != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    int code = reconstruction_load(loaded, &scene, views->width, views->height, options);
-    scene_file_free(&scene);
-    return code;
+    return reconstruction_load(loaded, &scene, views->width, views->height, options);
 }
 
 void evaluation_name_case(evaluation_row *row, const evaluation_case *what)

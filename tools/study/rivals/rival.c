@@ -76,9 +76,8 @@ static int load_whole(rival_source *source)
     if (code == CLI_OK) {
         code = reconstruction_views(whole, source->recording, source->path, &source->options);
     }
-    whole->valid_points = scene.count;
+    whole->valid_points = whole->scene.count;
     whole->build_seconds = cli_now() - start;
-    scene_file_free(&scene);
     return code;
 }
 
@@ -125,18 +124,32 @@ static int make_score(rival_source *source, method_kind kind)
 
 /* ---- pruning -------------------------------------------------------------------------------------------------- */
 
+/* Room for `count` Gaussians, with harmonics of the unpruned scene's degree. */
+static bool open_scene(const reconstruction *whole, uint32_t count, scene_file *scene)
+{
+    *scene = (scene_file){.frame = whole->scene.frame, .count = count, .degree = whole->loaded.degree};
+    scene->gaussians = malloc(((size_t)count + 1) * sizeof *scene->gaussians);
+    if (scene->degree > 0) {
+        scene->harmonics_q12 = malloc(((size_t)count + 1) * scene_file_harmonics_count(scene) * sizeof(int16_t));
+    }
+    return scene->gaussians != NULL && (scene->degree == 0 || scene->harmonics_q12 != NULL);
+}
+
 /* The `count` best Gaussians of the unpruned scene, unchanged. */
 static int prune(rival_source *source, method_kind kind, uint32_t count, scene_file *scene)
 {
-    const t3r_scene *whole = &source->whole.scene;
+    const reconstruction *whole = &source->whole;
     uint32_t *kept = malloc(((size_t)count + 1) * sizeof *kept);
-    *scene = (scene_file){.frame = whole->frame, .count = count};
-    scene->gaussians = malloc(((size_t)count + 1) * sizeof *scene->gaussians);
-    int code = kept != NULL && scene->gaussians != NULL && rival_choose(source->score[kind], whole->count, count, kept)
+    int code = open_scene(whole, count, scene) && kept != NULL &&
+                       rival_choose(source->score[kind], whole->scene.count, count, kept)
                    ? CLI_OK
                    : cli_error(CLI_BAD_INPUT, "out of memory");
     for (uint32_t n = 0; n < count && code == CLI_OK; n++) {
-        scene->gaussians[n] = whole->gaussians[kept[n]];
+        scene->gaussians[n] = whole->scene.gaussians[kept[n]];
+        if (scene->degree > 0) {
+            memcpy(scene_file_harmonics(scene, n), scene_file_harmonics(&whole->loaded, kept[n]),
+                   scene_file_harmonics_count(scene) * sizeof(int16_t));
+        }
     }
     free(kept);
     return code;
@@ -245,8 +258,10 @@ static int build_by_head(rival_source *source, method_kind kind, const reconstru
 
 /* ---- fine-tuning ------------------------------------------------------------------------------------------------ */
 
+/* Fine-tuning moves colours of degree 0, without the harmonics of a scene from a file. */
 static int tune(const rival_source *source, uint32_t iterations, scene_file *scene)
 {
+    scene->degree = 0;
     finetune_target targets[T3R_MAX_VIEWS];
     uint32_t views = source->options.context_count;
     for (uint32_t v = 0; v < views; v++) {
@@ -301,8 +316,6 @@ int rival_build(rival_source *source, const t3r_recording *recording, const char
         plain.hash = false;
         code = reconstruction_load(made, &scene, width, height, &plain);
     }
-    if (scene.gaussians != NULL) {
-        scene_file_free(&scene);
-    }
+    scene_file_free(&scene);
     return code;
 }

@@ -300,8 +300,8 @@ typedef struct planes {
     uint16_t *grey;
 } planes;
 
-static int render_one(const render_options *o, reconstruction *r, const scene_file *scene, const viewpoint *view,
-                      uint32_t index, uint32_t count, const planes *p, uint64_t *hash, work_times *times)
+static int render_one(const render_options *o, reconstruction *r, const viewpoint *view, uint32_t index, uint32_t count,
+                      const planes *p, uint64_t *hash, work_times *times)
 {
     size_t pixels = (size_t)view->width * view->height;
     t3r_target target = {
@@ -316,7 +316,7 @@ static int render_one(const render_options *o, reconstruction *r, const scene_fi
     };
     r->give_up_at = o->most_ms > 0 ? cli_now() + o->most_ms / 1e3 : 0;
     work_times_pass(times);
-    int code = reconstruction_look_from(r, scene, &view->camera);
+    int code = reconstruction_look_from(r, &view->camera);
     if (code != CLI_OK) {
         return code;
     }
@@ -347,7 +347,7 @@ static int render_one(const render_options *o, reconstruction *r, const scene_fi
     return code;
 }
 
-static int render_all(const render_options *o, const scene_file *scene, const viewpoint_list *views, work_times *times)
+static int render_all(const render_options *o, scene_file *scene, const viewpoint_list *views, work_times *times)
 {
     uint32_t width = 1, height = 1;
     size_t pixels = 1;
@@ -369,7 +369,7 @@ static int render_all(const render_options *o, const scene_file *scene, const vi
         code = cli_error(CLI_BAD_INPUT, "out of memory");
     }
     for (uint32_t i = 0; i < views->count && code == CLI_OK; i++) {
-        code = render_one(o, &r, scene, &views->items[i], i, views->count, &p, &hash, times);
+        code = render_one(o, &r, &views->items[i], i, views->count, &p, &hash, times);
     }
     times->seconds[WORK_DRAW] /= views->count;
     times->seconds[WORK_WRITE] /= views->count;
@@ -380,7 +380,7 @@ static int render_all(const render_options *o, const scene_file *scene, const vi
         json_add_integer(root, "views", views->count);
         json_add_integer(root, "width", views->items[0].width);
         json_add_integer(root, "height", views->items[0].height);
-        json_add_integer(root, "gaussians", scene->count);
+        json_add_integer(root, "gaussians", r.scene.count);
         json_add_integer(root, "arena_bytes", (int64_t)r.arena_bytes);
         json_add_integer(root, "passes", t3r_render_passes(r.runtime));
         work_times_add_json(root, times);
@@ -389,7 +389,7 @@ static int render_all(const render_options *o, const scene_file *scene, const vi
     } else if (code == CLI_OK) {
         char text[WORK_TIMES_BYTES];
         printf("%s: %" PRIu32 " view%s of %" PRIu32 " Gaussians, %" PRIu32 " pass%s; %s%s\n", o->output, views->count,
-               views->count == 1 ? "" : "s", scene->count, t3r_render_passes(r.runtime),
+               views->count == 1 ? "" : "s", r.scene.count, t3r_render_passes(r.runtime),
                t3r_render_passes(r.runtime) == 1 ? "" : "es", work_times_text(times, text),
                views->count == 1 ? "" : " a view");
     }
