@@ -2,8 +2,9 @@
 """Same bits: every stage's hash, against the ones written down in this folder.
 
 golden.py host DRIVER             the driver as built here, in every way that must not matter (arena, tasks, moves)
-golden.py build [--run EMULATOR] COMPILER FLAG...
-                                  the driver built by another compiler, for another processor
+golden.py build [--both-ways] [--run EMULATOR] COMPILER FLAG...
+                                  the driver built by another compiler, for another processor; run in the way that
+                                  differs most from the usual one, with --both-ways in the usual one, too
 golden.py replay TRIM3R           the built-in recording, made and replayed by the program
 Exit 0: the same; 1: other bits, naming the first stage that differs; 77: skipped, a tool is absent.
 """
@@ -69,7 +70,9 @@ def runtime_sources():
 
 
 def check_build(arguments):
-    emulator = []
+    ways, emulator = WAYS[-1:], []
+    if arguments[0] == "--both-ways":
+        ways, arguments = [WAYS[0], WAYS[-1]], arguments[1:]
     if arguments[0] == "--run":
         emulator, arguments = [arguments[1]], arguments[2:]
     for tool in (arguments[0], *emulator):
@@ -81,7 +84,7 @@ def check_build(arguments):
         includes = [word for folder in DRIVER_INCLUDES for word in ("-I", folder)]
         output_of([*arguments, "-std=gnu11", *includes, *runtime_sources(), *DRIVER_SOURCES, "-o", driver])
         expected = STAGES.read_text()
-        for way in ([], WAYS[-1]):
+        for way in ways:
             same(" ".join([*emulator, *arguments, *way]), output_of([*emulator, driver, *way]), expected)
 
 
