@@ -26,6 +26,33 @@ def look(page, folder, name):
         page.shot(os.path.join(folder, f"{name}.png"))
 
 
+PHONE = (390, 844)
+SMALLEST_TEXT, SMALLEST_TARGET = 12, 40  # pixels of CSS
+# Texts that are drawn smaller, and controls that a finger misses: an input counts as its label, the points of a chart take
+# taps beside them.
+TEXTS = """(() => { const found = [], all = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    while (all.nextNode()) {
+        const text = all.currentNode.textContent.trim(), it = all.currentNode.parentElement;
+        if (!text || !it.checkVisibility() || it.closest("script, style, noscript")) continue;
+        const scale = it.getScreenCTM ? it.getScreenCTM().a : 1, size = parseFloat(getComputedStyle(it).fontSize) * scale;
+        found.push([size, text.slice(0, 40)]);
+    } return found; })()"""
+TARGETS = """[...document.querySelectorAll("a[href], button, select, summary, label, input")]
+    .filter((it) => it.checkVisibility() && !(it.tagName === "INPUT" && it.labels.length)).map((it) => {
+        const box = it.getBoundingClientRect(); return [Math.min(box.width, box.height), it.tagName + " " + it.textContent.trim()]; })"""
+
+
+def on_a_phone(page):
+    """What a reader with a phone stumbles over on the page, as lines; the page then has a phone's size."""
+    page.size(*PHONE, mobile=True)
+    page.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    wide, texts, targets = page.value("document.documentElement.scrollWidth"), page.value(TEXTS), page.value(TARGETS)
+    found = [] if wide <= PHONE[0] else [f"the page is {wide} pixels wide"]
+    found += [f"a text of {size:.1f} pixels: {text}" for size, text in texts if size < SMALLEST_TEXT]
+    found += [f"a control of {side:.1f} pixels: {name}" for side, name in targets if side < SMALLEST_TARGET]
+    return found if texts and targets else ["nothing to read or to touch"]
+
+
 class Page:
     """One page: what it logs, throws and asks the network for is kept."""
 

@@ -127,7 +127,21 @@ def phone(page):
     check(page.value("document.documentElement.scrollWidth") <= 360, "nothing is wider than a phone")
     check(page.value("[...document.querySelectorAll('.live text')].every((t) => t.getBoundingClientRect().right <= 361)"),
           "nor are the chart's texts")
+    found = browser.on_a_phone(page)
+    check(found == [], f"readable and touchable: {found}")
     browser.look(page, looks, "phone")
+    first = ".spot[data-point='0'] .mark"
+    x, y = page.place(first)
+    tap = {"button": "left", "clickCount": 1}
+    page.mouse("mousePressed", [x - 40, y - 30], **tap)
+    page.mouse("mouseReleased", [x - 40, y - 30], **tap)
+    check(page.value("document.querySelector('#detail').hidden"), "a tap far from every point opens none")
+    page.mouse("mousePressed", [x - 19, y], **tap)
+    page.mouse("mouseReleased", [x - 19, y], **tap)
+    check(page.value("document.querySelector('#detail h2').textContent").startswith("best, 100 %"), "a tap beside a point opens it")
+    found = browser.on_a_phone(page)
+    check(found == [], f"so is an open point: {found}")
+    page.click("#detail .close")
     page.size(1200, 1000)
     page.wait("document.querySelector('.live').viewBox.baseVal.width > 900")
 

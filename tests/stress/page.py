@@ -111,9 +111,14 @@ def colours(page):
 
 
 def phone(page):
-    page.size(360, 740, mobile=True)
-    check(page.value("document.documentElement.scrollWidth") <= 360, "nothing is wider than a phone")
+    found = browser.on_a_phone(page)
+    check(found == [], f"readable and touchable: {found}")
+    page.value("document.querySelector('section').scrollIntoView()")
+    rows = page.value("[...document.querySelectorAll('section:first-of-type figure')].map((f) => f.getBoundingClientRect().top)")
+    check(len(set(rows)) < len(rows), "pictures stand side by side")
     browser.look(page, looks, "phone")
+    page.size(360, 740, mobile=True)
+    check(page.value("document.documentElement.scrollWidth") <= 360, "nothing is wider than a smaller phone")
 
 
 with tempfile.TemporaryDirectory() as folder:

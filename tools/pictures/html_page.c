@@ -27,13 +27,13 @@ static const char style[] =
     " --accent: #5fc9b8; } }\n"
     "* { box-sizing: border-box; }\n"
     "body { margin: 0 auto; max-width: 92rem; padding: 2.5rem clamp(1rem, 4vw, 3.5rem) 5rem; background: var(--paper);"
-    " color: var(--ink); font: 1rem/1.55 system-ui, sans-serif; }\n"
-    "h1 { font-size: 2rem; line-height: 1.2; letter-spacing: -.02em; margin: 0 0 .5rem; }\n"
+    " color: var(--ink); font: 1rem/1.55 system-ui, sans-serif; -webkit-text-size-adjust: 100%; }\n"
+    "h1 { font-size: clamp(1.6rem, 4vw, 2rem); line-height: 1.2; letter-spacing: -.02em; margin: 0 0 .5rem; }\n"
     "h2 { font-size: 1.25rem; margin: 3rem 0 .75rem; padding-top: 1.25rem; border-top: 1px solid var(--line); }\n"
     "h3 { font-size: .9rem; font-weight: 600; color: var(--accent); margin: 1.25rem 0 .4rem; }\n"
     "p { max-width: 46rem; color: var(--quiet); margin: .25rem 0 1.25rem; }\n"
     "details { margin: 2rem 0 0; padding-top: 1.25rem; border-top: 1px solid var(--line); }\n"
-    "summary { font-size: 1.25rem; font-weight: 700; cursor: pointer; }\n"
+    "summary { font-size: 1.25rem; font-weight: 700; cursor: pointer; padding: .4rem 0; }\n"
     ".scroll { overflow-x: auto; margin-top: .75rem; }\n"
     "table { border-collapse: collapse; font-size: .875rem; font-variant-numeric: tabular-nums; }\n"
     "th, td { padding: .3rem .8rem .3rem 0; text-align: left; white-space: nowrap;"
@@ -48,8 +48,16 @@ static const char style[] =
     " background: var(--reference) 0 0 / 100% 100%; }\n"
     "#errors:checked ~ main .compared { filter: brightness(3); }\n"
     "#errors:checked ~ main .compared::after { display: block; }\n"
-    "label { user-select: none; cursor: pointer; }\n"
-    "input { accent-color: var(--accent); }\n"
+    "#errors { position: fixed; opacity: 0; }\n"
+    "label { position: fixed; right: 1rem; bottom: 1rem; z-index: 2; display: flex; align-items: center; min-height: "
+    "2.75rem;"
+    " padding: 0 1rem; border: 1px solid var(--line); border-radius: 7px; background: var(--paper); user-select: none;"
+    " cursor: pointer; }\n"
+    "#errors:checked + label { border-color: var(--accent); background: var(--accent); color: var(--paper); }\n"
+    "#errors:focus-visible + label { outline: 2px solid var(--accent); outline-offset: 2px; }\n"
+    "@media (max-width: 34rem) { body { padding-top: 1.2rem; } h2 { margin-top: 2rem; }"
+    " table { font-size: .8125rem; } th, td { padding-right: .5rem; } .strip { gap: .7rem; grid-template-columns: 1fr "
+    "1fr; } }\n"
     "</style>\n</head>\n<body>\n";
 
 /* "data:image/png;base64,..." */
@@ -91,12 +99,18 @@ static void end_table(html_page *page)
     }
 }
 
-void html_page_table(html_page *page, const char *heading, int folded)
+void html_page_table(html_page *page, const char *heading, const char *note, int folded)
 {
     end_table(page);
     fprintf(page->table, "<details%s><summary>", folded ? "" : " open");
     markup_text(page->table, heading);
-    fputs("</summary>\n<div class=\"scroll\"><table>\n", page->table);
+    fputs("</summary>\n", page->table);
+    if (note[0] != '\0') {
+        fputs("<p>", page->table);
+        markup_text(page->table, note);
+        fputs("</p>\n", page->table);
+    }
+    fputs("<div class=\"scroll\"><table>\n", page->table);
     page->within_table = true;
     page->heading_done = false;
 }
@@ -179,9 +193,8 @@ static void write_page(html_page *page, FILE *out)
     markup_text(out, page->title);
     fputs("</h1>\n<p>", out);
     markup_text(out, page->introduction);
-    fputs("</p>\n<input type=\"checkbox\" id=\"errors\"> "
-          "<label for=\"errors\">Show errors: difference from the target, three times as bright</label>\n"
-          "<main>\n",
+    fputs(" Errors are differences from the target, three times as bright.</p>\n"
+          "<input type=\"checkbox\" id=\"errors\"><label for=\"errors\">Show errors</label>\n<main>\n",
           out);
     fwrite(page->table_text, 1, page->table_bytes, out);
     fwrite(page->body_text, 1, page->body_bytes, out);

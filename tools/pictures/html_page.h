@@ -1,5 +1,5 @@
 /* One self-contained HTML page of pictures and a table: nothing is fetched, pictures are embedded, texts escaped.
- * It follows the reader's light or dark setting, and a checkbox turns pictures into maps of their error.
+ * It follows the reader's light or dark setting, and a switch turns pictures into maps of their error.
  *
  * Calls come in the order of the page; a failure is kept and told by html_page_write(). */
 #ifndef TRIM3R_TOOLS_HTML_PAGE_H
@@ -14,8 +14,9 @@ typedef struct html_page html_page;
 /* NULL without memory. */
 html_page *html_page_new(const char *title, const char *introduction);
 
-/* A table above the sections; cells of its first row are headings. `folded`: opens at a click. */
-void html_page_table(html_page *page, const char *heading, int folded);
+/* A table above the sections; cells of its first row are headings. `note` stands above it unless it is empty.
+ * `folded`: opens at a click. */
+void html_page_table(html_page *page, const char *heading, const char *note, int folded);
 void html_page_table_cell(html_page *page, const char *text);
 void html_page_table_end_row(html_page *page);
 

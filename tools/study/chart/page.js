@@ -330,12 +330,22 @@
     $("theme").textContent = `Theme: ${next}`;
   }
 
+  /* The point nearest to a tap, within half a finger's width; null where there is none. */
+  function nearest(event) {
+    const svg = $("canvas").firstChild, box = svg.getBoundingClientRect(), ratio = box.width / svg.viewBox.baseVal.width;
+    const away = ([, mark]) => Math.hypot(event.clientX - box.x - mark.x * ratio, event.clientY - box.y - mark.y * ratio);
+    const best = [...marks].reduce((a, b) => (a === null || away(b) < away(a) ? b : a), null);
+    return best !== null && away(best) <= 22 ? best[0] : null;
+  }
   const spotOf = (event) => (event.target.closest ? event.target.closest(".spot") : null);
   $("canvas").addEventListener("pointerover", (e) => { const g = spotOf(e); if (g) tip(Number(g.dataset.point)); });
   $("canvas").addEventListener("pointerout", () => { $("tip").hidden = true; });
   $("canvas").addEventListener("focusin", (e) => { const g = spotOf(e); if (g) tip(Number(g.dataset.point)); });
   $("canvas").addEventListener("focusout", () => { $("tip").hidden = true; });
-  $("canvas").addEventListener("click", (e) => { const g = spotOf(e); if (g) choose(Number(g.dataset.point), true); });
+  $("canvas").addEventListener("click", (e) => {
+    const near = nearest(e), g = spotOf(e); // a click that an aid makes has no place, but a target
+    if (near !== null || g) choose(near ?? Number(g.dataset.point), true);
+  });
   $("canvas").addEventListener("keydown", keys);
   $("theme").onclick = theme;
   const there = (m) => points.some((_, p) => choices[0].spreads[p][m]);

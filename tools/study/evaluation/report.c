@@ -200,20 +200,42 @@ static void print_json(const evaluation_report *report, const evaluation_row *me
     json_print(object);
 }
 
+/* Columns that say the same in every row stand once above the table: a phone shows few columns at a time. */
+static void note_columns(const evaluation_row *rows, uint32_t count, bool planar, bool same[EVALUATION_COLUMNS],
+                         char *note, size_t note_bytes)
+{
+    char first[EVALUATION_CELL_BYTES], other[EVALUATION_CELL_BYTES];
+    size_t length = 0;
+    note[0] = '\0';
+    for (uint32_t c = 0; c < EVALUATION_COLUMNS; c++) {
+        same[c] = count > 1 && evaluation_glance(&rows[0], c, planar, first, sizeof first);
+        for (uint32_t i = 1; i < count && same[c]; i++) {
+            evaluation_glance(&rows[i], c, planar, other, sizeof other);
+            same[c] = strcmp(first, other) == 0;
+        }
+        if (same[c] && first[0] != '\0' && length < note_bytes) {
+            length += (size_t)snprintf(note + length, note_bytes - length, "%s%s %s",
+                                       length == 0 ? "In every row: " : ", ", evaluation_column_name(c), first);
+        }
+    }
+}
+
 static void page_table(html_page *page, const char *heading, const evaluation_row *rows, uint32_t count, bool planar,
                        bool folded)
 {
-    char text[EVALUATION_CELL_BYTES];
-    html_page_table(page, heading, folded);
+    char text[EVALUATION_CELL_BYTES], note[EVALUATION_CELL_BYTES * 4];
+    bool same[EVALUATION_COLUMNS];
+    note_columns(rows, count, planar, same, note, sizeof note);
+    html_page_table(page, heading, note, folded);
     for (uint32_t c = 0; c < EVALUATION_COLUMNS; c++) {
-        if (evaluation_glance(&rows[0], c, planar, text, sizeof text)) {
+        if (evaluation_glance(&rows[0], c, planar, text, sizeof text) && !same[c]) {
             html_page_table_cell(page, evaluation_column_name(c));
         }
     }
     html_page_table_end_row(page);
     for (uint32_t i = 0; i < count; i++) {
         for (uint32_t c = 0; c < EVALUATION_COLUMNS; c++) {
-            if (evaluation_glance(&rows[i], c, planar, text, sizeof text)) {
+            if (evaluation_glance(&rows[i], c, planar, text, sizeof text) && !same[c]) {
                 html_page_table_cell(page, text);
             }
         }
@@ -224,7 +246,7 @@ static void page_table(html_page *page, const char *heading, const evaluation_ro
 static void page_refused(html_page *page, const cJSON *refused)
 {
     const cJSON *told, *cell;
-    html_page_table(page, "Refused", false);
+    html_page_table(page, "Refused", "", false);
     cJSON_ArrayForEach(cell, refused->child)
     {
         html_page_table_cell(page, cell->string);

@@ -194,7 +194,7 @@ static void add_unscored(html_page *page, const stress_row *rows, uint32_t count
     if (!any) {
         return;
     }
-    html_page_table(page, "Refused, or an invariant broken", 0);
+    html_page_table(page, "Refused, or an invariant broken", "", 0);
     add_cells(page, (const char *const[]){"scene", "target", "perturbation", "strength", "method", "", "reason"}, 7);
     for (uint32_t at = 0; at + cell <= count; at += cell) {
         add_why(page, rows + at, cell);
@@ -218,7 +218,7 @@ static void add_table(html_page *page, const stress_row *rows, uint32_t count)
                    {"Gaussians", STRESS_GAUSSIANS, 0}};
     static const char *const names[] = {"scene", "target", "perturbation", "strength", "method", "kept"};
     char text[64];
-    html_page_table(page, "Rows", 1);
+    html_page_table(page, "Rows", "", 1);
     for (uint32_t i = 0; i < sizeof names / sizeof *names; i++) {
         html_page_table_cell(page, names[i]);
     }
