@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bytes.h"
 #include "core/fixed.h"
 #include "file_bytes.h"
 #include "scene/gaussian_shape.h"
@@ -18,7 +19,7 @@
 #include "scene/scene_turn.h"
 #include "scratch.h"
 
-enum { COUNT = 700 };
+enum { COUNT = 700, SETS = 300 };
 
 static const struct format {
     const char *suffix;
@@ -29,7 +30,7 @@ static const struct format {
     {".splat", 1e-5, 3e-2, 3e-3, 3e-3, 0, 0},  {".spz", 1e-5, 4e-2, 5e-3, 3e-3, 0.064, 3},
     {".glb", 1e-5, 1e-3, 1e-4, 1e-4, 2e-4, 3},
 #ifdef T3R_WEBP
-    {".sog", 5e-4, 3e-2, 5e-3, 3e-3, 0, 0},
+    {".sog", 5e-4, 3e-2, 5e-3, 3e-3, 0.01, 3},
 #endif
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -51,7 +52,8 @@ static double share(uint32_t *seed)
     return *seed / 4294967296.0;
 }
 
-/* A helix, so that the order of a file can be undone: x of each Gaussian is its own. */
+/* A helix, so that the order of a file can be undone: x of each Gaussian is its own. Harmonics are of SETS kinds, since
+ * .sog shares them. */
 static void make_scene(scene_file *scene, uint32_t degree)
 {
     uint32_t seed = 5;
@@ -75,8 +77,9 @@ static void make_scene(scene_file *scene, uint32_t degree)
         assert_int_equal(gaussian_shape_set(g, scale, rotation), 0);
         g->opacity_q15 = (uint16_t)(1000 + share(&seed) * 31000);
         g->confidence = 255;
+        uint32_t set = i % SETS;
         for (size_t k = 0; k < scene_file_harmonics_count(scene); k++) {
-            const double value = k < 3 ? (g->colour_q7[k] / 32640.0 - 0.5) / HARMONICS_ZERO : 1.6 * share(&seed) - 0.8;
+            const double value = k < 3 ? (g->colour_q7[k] / 32640.0 - 0.5) / HARMONICS_ZERO : 1.6 * share(&set) - 0.8;
             scene_file_harmonics(scene, i)[k] = (int16_t)nearbyint(value * 4096);
         }
     }
@@ -196,6 +199,77 @@ static void turn_up(void **state)
         scene_file_free(&scene);
         scene_file_free(&back);
     }
+}
+
+/* A .glb whose one node is another; free() it. */
+static uint8_t *with_node(const uint8_t *bytes, size_t count, const char *node, size_t *size)
+{
+    static const char ours[] = "{\"mesh\":0}";
+    const uint32_t text = t3r_load_le32(bytes + 12);
+    const char *json = (const char *)bytes + 20, *found = strstr(json, ours);
+    assert_non_null(found);
+    const size_t before = (size_t)(found - json), longer = strlen(node) - (sizeof ours - 1);
+    assert_int_equal(longer % 4, 0);
+    uint8_t *out = malloc(count + longer);
+    assert_non_null(out);
+    memcpy(out, bytes, 20 + before);
+    memcpy(out + 20 + before, node, strlen(node));
+    memcpy(out + 20 + before + strlen(node), found + sizeof ours - 1, count - 20 - before - (sizeof ours - 1));
+    t3r_store_le32(out + 8, (uint32_t)(count + longer));
+    t3r_store_le32(out + 12, (uint32_t)(text + longer));
+    *size = count + longer;
+    return out;
+}
+
+/* Positions, shapes and harmonics go together: a node that turns, doubles and moves, and the same done by hand. */
+static void nodes_of_glb(void **state)
+{
+    (void)state;
+    const struct format doubled = {".glb", 1e-4, 1e-3, 1e-4, 1e-4, 4e-4, 3};
+    scene_file scene, moved;
+    char error[256] = "";
+    size_t count, size;
+    make_scene(&scene, 3);
+    const char *path = path_of(&doubled, "nodes");
+    must_write(path, &scene, 0);
+    uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, sizeof error);
+    assert_non_null(bytes);
+    /* half a turn about y is x, z to -x, -z, in the file's axes as in the scene's, which are half a turn about z apart
+     */
+    uint8_t *with = with_node(bytes, count,
+                              "{\"mesh\":0,\"rotation\":[0,1,0,0],\"scale\":[2,2,2],\"translation\":[1,2,3 ]}", &size);
+    assert_int_equal(scene_file_parse("scene.glb", with, size, &moved, error, sizeof error), 0);
+    const double turn[4] = {0, 0, 1, 0}, translation[3] = {-1, -2, 3};
+    scene_turn half = scene_turn_of(turn);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        double rest[HARMONICS_REST_MOST][3], position[3], none[4] = {1, 0, 0, 0}, p[9], q[9];
+        for (int k = 0; k < 3; k++) {
+            position[k] = world(&scene, i, k);
+        }
+        for (int k = 0; k < 3 * (int)HARMONICS_REST_MOST; k++) {
+            rest[k / 3][k % 3] = scene_file_harmonics(&scene, i)[3 + k] / 4096.0;
+        }
+        scene_turn_apply(&half, position, none, 3, rest);
+        const struct format *f = &doubled;
+        const uint32_t index = i;
+        for (int k = 0; k < 3; k++) {
+            NEAR(world(&moved, i, k), 2 * position[k] + translation[k], f->position);
+        }
+        for (int k = 0; k < 3 * (int)HARMONICS_REST_MOST; k++) {
+            NEAR(scene_file_harmonics(&moved, i)[3 + k] / 4096.0, rest[k / 3][k % 3], f->harmonic);
+        }
+        gaussian_covariance(&scene.gaussians[i], p);
+        gaussian_covariance(&moved.gaussians[i], q);
+        for (int k = 0; k < 9; k++) { /* the turn keeps y, and changes the signs of x and z */
+            const double sign = (k / 3 == 1) != (k % 3 == 1) ? -1 : 1,
+                         units = 2 * (moved.frame.exponent - scene.frame.exponent);
+            NEAR(ldexp(q[k], (int)units), 4 * sign * p[k], 1e-2 * 4 * (p[0] + p[4] + p[8]));
+        }
+    }
+    scene_file_free(&scene);
+    scene_file_free(&moved);
+    free(bytes);
+    free(with);
 }
 
 static int parse(const char *suffix, const uint8_t *bytes, size_t count, char error[256])
@@ -332,8 +406,10 @@ static void refuse_to_write(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(read_back),          cmocka_unit_test(turn_up), cmocka_unit_test(refuse_every_cut),
-        cmocka_unit_test(survive_every_byte), cmocka_unit_test(say_why), cmocka_unit_test(refuse_to_write),
+        cmocka_unit_test(read_back),          cmocka_unit_test(turn_up),
+        cmocka_unit_test(nodes_of_glb),       cmocka_unit_test(refuse_every_cut),
+        cmocka_unit_test(survive_every_byte), cmocka_unit_test(say_why),
+        cmocka_unit_test(refuse_to_write),
     };
     return cmocka_run_group_tests(tests, make_folder, scratch_teardown);
 }

@@ -43,7 +43,7 @@ static void check_turn(const scene_turn *turn)
     const double *m = turn->matrix;
     const double determinant =
         m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
-    assert_true(determinant == 1);
+    assert_true(fabs(determinant - 1) < 1e-12);
     static const double directions[][3] = {
         {0.6, 0.8, 0}, {0, 0.6, 0.8}, {-0.48, 0.64, 0.6}, {0.36, -0.48, 0.8}, {0, 0, -1}};
     for (size_t i = 0; i < sizeof directions / sizeof directions[0]; i++) {
@@ -69,6 +69,18 @@ static void turns_all_alike(void **state)
             const scene_turn turn = scene_turn_to((scene_axes)axes, (scene_up)up);
             check_turn(&turn);
         }
+    }
+}
+
+/* Not only between axes. */
+static void turns_by_any_angle(void **state)
+{
+    (void)state;
+    static const double rotations[][4] = {
+        {0.5, 0.5, -0.5, 0.5}, {0.8, 0, 0.6, 0}, {0.1, -0.7, 0.1, 0.7}, {0.36, 0.48, 0, -0.8}, {1, 0, 0, 0}};
+    for (size_t i = 0; i < sizeof rotations / sizeof rotations[0]; i++) {
+        const scene_turn turn = scene_turn_of(rotations[i]);
+        check_turn(&turn);
     }
 }
 
@@ -120,6 +132,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(turns_all_alike),
+        cmocka_unit_test(turns_by_any_angle),
         cmocka_unit_test(points_up),
         cmocka_unit_test(knows_the_axes_of_formats),
     };

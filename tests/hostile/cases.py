@@ -206,7 +206,13 @@ given("scene", "deep.glb", f.glb(b"[" * (1 << 20)), "not JSON")
 given("scene", "8-million-values.glb", lambda: f.glb(b"[" + b"0," * 8000000 + b"0]"), "3000000 values")
 given("scene", "3-million-nodes.glb",
       lambda: f.glb(json.dumps(f.gaussians(1)).encode()[:-1] + b', "nodes": [' + b"0," * 2900000 + b"0]}", bytes(64)), None)
-given("scene", "moved.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "matrix": [0] * 16}]), bytes(64)), "matrix")
+given("scene", "moved.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "matrix": [0] * 16}]), bytes(64)), "last row")
+given("scene", "flat.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "scale": [1, 0, 1]}]), bytes(64)), "make them flat")
+given("scene", "far.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "translation": [1e300] * 3}]), bytes(64)), "half of the positions")
+given("scene", "circle.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "children": [1]}, {"children": [0]}]), bytes(64)), "own children")
+given("scene", "700000-nodes-deep.glb",
+      lambda: f.glb(json.dumps(f.gaussians(1)).encode()[:-1] + b', "nodes": [' +
+                    b",".join(b'{"children": [%d]}' % (i + 1) for i in range(700000)) + b', {"mesh": 0}]}', bytes(64)), None)
 given("scene", "packed-otherwise.glb", f.glb(f.gaussians(1, extensionsRequired=[f.ESCAPE]), bytes(64)), "needs the extension")
 given("scene", "no-members.sog", lambda: f.sog({}), "")
 given("scene", "meta-of-64-mb.sog", lambda: f.sog({"meta.json": b" " * (64 * MIB)}), "")

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "posing/quaternion.h"
+
 /* Quaternions w x y z. */
 static const double stays[4] = {1, 0, 0, 0};
 static const double half_about_x[4] = {0, 1, 0, 0}; /* x, -y, -z */
@@ -31,19 +33,31 @@ static void multiply(const double a[4], const double b[4], double out[4])
     out[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
 }
 
-static scene_turn turn_of(const double q[4])
+static scene_turn turn_of(const double q[4], const double matrix[9])
 {
-    const double w = q[0], x = q[1], y = q[2], z = q[3];
-    scene_turn turn = {.rotation = {w, x, y, z},
-                       .matrix = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-                                  2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                                  2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
-    for (int i = 0; i < 9; i++) {
-        turn.matrix[i] = nearbyint(turn.matrix[i]);
-    }
+    scene_turn turn = {.rotation = {q[0], q[1], q[2], q[3]}};
+    memcpy(turn.matrix, matrix, sizeof turn.matrix);
     turn.none = turn.matrix[0] == 1 && turn.matrix[4] == 1;
     turn.harmonics = harmonics_turn_of(turn.matrix);
     return turn;
+}
+
+/* Between axes: entries of the matrix are whole. */
+static scene_turn axes_turn(const double q[4])
+{
+    double matrix[9];
+    quaternion_matrix(q, matrix);
+    for (int i = 0; i < 9; i++) {
+        matrix[i] = nearbyint(matrix[i]);
+    }
+    return turn_of(q, matrix);
+}
+
+scene_turn scene_turn_of(const double rotation[4])
+{
+    double matrix[9];
+    quaternion_matrix(rotation, matrix);
+    return turn_of(rotation, matrix);
 }
 
 static const double *from_scene(scene_axes axes)
@@ -56,12 +70,12 @@ scene_turn scene_turn_to(scene_axes axes, scene_up up)
     double both[4];
     const bool bare = axes == SCENE_AXES_AS_THEY_ARE && up != SCENE_UP_UNKNOWN;
     multiply(bare ? half_about_x : from_scene(axes), ups[up].rotation, both);
-    return turn_of(both);
+    return axes_turn(both);
 }
 
 scene_turn scene_turn_from(scene_axes axes)
 {
-    return turn_of(from_scene(axes)); /* half a turn is its own inverse */
+    return axes_turn(from_scene(axes)); /* half a turn is its own inverse */
 }
 
 void scene_turn_apply(const scene_turn *turn, double position[3], double rotation[4], uint32_t degree,

@@ -30,7 +30,7 @@ typedef enum scene_up {
 typedef struct scene_turn {
     bool none;          /* what follows need not be applied */
     double rotation[4]; /* unit quaternion, w x y z */
-    double matrix[9];   /* the same, row-major; entries are -1, 0 and 1 */
+    double matrix[9];   /* the same, row-major; of axes: entries are -1, 0 and 1 */
     harmonics_turn harmonics;
 } scene_turn;
 
@@ -38,6 +38,8 @@ typedef struct scene_turn {
 scene_turn scene_turn_to(scene_axes axes, scene_up up);
 /* From a file with these axes to a scene. */
 scene_turn scene_turn_from(scene_axes axes);
+/* By a unit quaternion w x y z. */
+scene_turn scene_turn_of(const double rotation[4]);
 /* Turns a Gaussian with harmonics of 0..3 degrees. */
 void scene_turn_apply(const scene_turn *turn, double position[3], double rotation[4], uint32_t degree,
                       double rest[HARMONICS_REST_MOST][3]);

@@ -8,6 +8,7 @@
 #include "reader_limits.h"
 #include "reason.h"
 #include "scene/formats/glb.h"
+#include "scene/formats/glb_nodes.h"
 #include "scene/formats/little_floats.h"
 
 typedef struct reader {
@@ -29,6 +30,7 @@ typedef struct accessor {
 typedef struct glb_file {
     accessor attributes[GLB_ATTRIBUTES_MOST];
     uint32_t degree;
+    glb_placement placement;
 } glb_file;
 
 /* ---- JSON -------------------------------------------------------------------------------------------------------- */
@@ -102,32 +104,6 @@ static int check_extensions(const reader *r, const cJSON *root, const cJSON *pri
     return is_text(gaussians, "kernel", "ellipse") && is_text(gaussians, "colorSpace", "srgb_rec709_display")
                ? 0
                : FAIL(r, "only the kernel ellipse in the colour space srgb_rec709_display is read");
-}
-
-/* Whether a node leaves what it holds as it is: no item but these. */
-static bool is_plain(const cJSON *node)
-{
-    return get(node, "matrix") == NULL && get(node, "translation") == NULL && get(node, "rotation") == NULL &&
-           get(node, "scale") == NULL;
-}
-
-/* The mesh stands once in the scene, and nothing moves it. */
-static int check_nodes(const reader *r, const cJSON *root, uint32_t mesh_index)
-{
-    const cJSON *node;
-    uint32_t uses = 0;
-    cJSON_ArrayForEach(node, get(root, "nodes"))
-    {
-        uint32_t mesh;
-        if (get_whole(r, node, "mesh", UINT32_MAX, &mesh) != 0) {
-            return -1;
-        }
-        uses += mesh == mesh_index;
-        if (!is_plain(node) && (mesh == mesh_index || get(node, "children") != NULL)) {
-            return FAIL(r, "a node with a matrix, translation, rotation or scale: they are not read");
-        }
-    }
-    return uses <= 1 ? 0 : FAIL(r, "%" PRIu32 " nodes show the Gaussians: one is read", uses);
 }
 
 /* ---- numbers ----------------------------------------------------------------------------------------------------- */
@@ -211,6 +187,21 @@ static double number_of(const accessor *a, uint32_t row, uint32_t item)
     }
 }
 
+/* Where the nodes put it: 0, or -1 where its position has no number. */
+static int place_row(const glb_file *file, scene_row *row)
+{
+    const glb_placement *to = &file->placement;
+    scene_turn_apply(&to->turn, row->position, row->rotation, file->degree, row->rest);
+    for (int i = 0; i < 3; i++) {
+        row->position[i] = row->position[i] * to->scale + to->translation[i];
+        row->log_scale[i] += log(to->scale);
+        if (!isfinite(row->position[i])) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
 static int read_row(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
     const glb_file *file = user;
@@ -239,7 +230,9 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
     for (int i = 0; i < 4; i++) { /* x y z w */
         row->rotation[(i + 1) % 4] = value[GLB_ROTATION][i];
     }
-    return 0;
+    return file->placement.none || place_row(file, row) == 0
+               ? 0
+               : t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": nodes put it infinitely far away", index);
 }
 
 /* ---- containers -------------------------------------------------------------------------------------------------- */
@@ -250,7 +243,8 @@ static int parse_json(const reader *r, const cJSON *root, scene_file *out)
     uint32_t mesh_index = 0;
     glb_file file = {0};
     if (find_primitive(r, root, &primitive, &mesh_index) != 0 || check_extensions(r, root, primitive) != 0 ||
-        check_nodes(r, root, mesh_index) != 0 || find_attributes(r, root, primitive, &file) != 0) {
+        glb_find_placement(root, mesh_index, &file.placement, r->error, r->error_bytes) != 0 ||
+        find_attributes(r, root, primitive, &file) != 0) {
         return -1;
     }
     const scene_rows rows = {.count = file.attributes[GLB_POSITION].count,

@@ -2,4 +2,5 @@
 
 #include "scene/scene_format.h"
 
-const scene_format scene_format_sog = {.suffix = ".sog", .magic = "PK\x03\x04", .parse = sog_parse, .write = sog_write};
+const scene_format scene_format_sog = {
+    .suffix = ".sog", .magic = "PK\x03\x04", .degree = 3, .parse = sog_parse, .write = sog_write};

@@ -17,7 +17,7 @@ enum { SOG_MEANS_LOW, SOG_MEANS_HIGH, SOG_SCALES, SOG_ROTATIONS, SOG_COLOURS, SO
 /* Centroids of harmonics in a row of their picture; a texel each coefficient. */
 #define SOG_CENTROIDS_A_ROW 64u
 
-/* As scene_format has them. Harmonics are read, not written. */
+/* As scene_format has them. */
 int sog_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
 int sog_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 

@@ -10,16 +10,20 @@
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/codebook.h"
 #include "scene/formats/sog.h"
+#include "scene/formats/sog_harmonics.h"
 #include "scene/formats/webp_texels.h"
 #include "scene/scene_order.h"
 
 static const char *const names[SOG_PICTURES] = {"means_l.webp", "means_u.webp", "scales.webp", "quats.webp",
                                                 "sh0.webp"};
+static const char *const harmonics_names[] = {"shN_centroids.webp", "shN_labels.webp"};
 
 typedef struct sog_file {
     webp_texels pictures[SOG_PICTURES];
     double low[3], high[3]; /* of the logarithms of positions */
     double scales[CODEBOOK_VALUES], colours[CODEBOOK_VALUES];
+    uint32_t degree; /* 0: no harmonics */
+    sog_harmonics harmonics;
 } sog_file;
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
@@ -111,19 +115,20 @@ static int fill_pictures(const scene_source *source, sog_file *sog)
         scene_source_row(source, order[i], &row);
         put_row(&row, sog, texels);
     }
-    const int result = order != NULL ? 0 : -1;
+    int result = order != NULL ? 0 : -1;
+    if (result == 0 && sog->degree > 0) {
+        const webp_texels *as = &sog->pictures[0];
+        result = sog_harmonics_make(source, order, as->width, as->height, &sog->harmonics);
+    }
     free(order);
     return result;
 }
 
 /* ---- the archive ------------------------------------------------------------------------------------------------- */
 
-static void add_files(cJSON *object, int first, int count)
+static void add_files(cJSON *object, const char *const *first, int count)
 {
-    cJSON *files = cJSON_AddArrayToObject(object, "files");
-    for (int i = first; i < first + count; i++) {
-        cJSON_AddItemToArray(files, cJSON_CreateString(names[i]));
-    }
+    cJSON_AddItemToObject(object, "files", cJSON_CreateStringArray(first, count));
 }
 
 static void add_codebook(cJSON *object, const double values[CODEBOOK_VALUES])
@@ -141,14 +146,21 @@ static char *make_meta(const sog_file *sog, uint32_t count)
     item = cJSON_AddObjectToObject(root, "means");
     cJSON_AddItemToObject(item, "mins", cJSON_CreateDoubleArray(sog->low, 3));
     cJSON_AddItemToObject(item, "maxs", cJSON_CreateDoubleArray(sog->high, 3));
-    add_files(item, SOG_MEANS_LOW, 2);
+    add_files(item, &names[SOG_MEANS_LOW], 2);
     item = cJSON_AddObjectToObject(root, "scales");
     add_codebook(item, sog->scales);
-    add_files(item, SOG_SCALES, 1);
-    add_files(cJSON_AddObjectToObject(root, "quats"), SOG_ROTATIONS, 1);
+    add_files(item, &names[SOG_SCALES], 1);
+    add_files(cJSON_AddObjectToObject(root, "quats"), &names[SOG_ROTATIONS], 1);
     item = cJSON_AddObjectToObject(root, "sh0");
     add_codebook(item, sog->colours);
-    add_files(item, SOG_COLOURS, 1);
+    add_files(item, &names[SOG_COLOURS], 1);
+    if (sog->degree > 0) {
+        item = cJSON_AddObjectToObject(root, "shN");
+        cJSON_AddNumberToObject(item, "count", sog->harmonics.count);
+        cJSON_AddNumberToObject(item, "bands", sog->degree);
+        add_codebook(item, sog->harmonics.codebook);
+        add_files(item, harmonics_names, 2);
+    }
     char *text = cJSON_PrintUnformatted(root);
     cJSON_Delete(root);
     return text;
@@ -174,17 +186,27 @@ static int add_member(zip_t *zip, const char *name, uint8_t *bytes, size_t count
                : -1;
 }
 
+static int add_picture(zip_t *zip, const char *name, const webp_texels *picture, char *error, size_t error_bytes)
+{
+    uint8_t *bytes;
+    size_t size;
+    if (webp_texels_write(picture, &bytes, &size, error, error_bytes) != 0) {
+        return -1;
+    }
+    return add_member(zip, name, bytes, size) == 0 ? 0
+                                                   : t3r_reason(error, error_bytes, "%s: %s", name, zip_strerror(zip));
+}
+
 static int add_members(zip_t *zip, const sog_file *sog, uint32_t count, char *error, size_t error_bytes)
 {
     for (int i = 0; i < SOG_PICTURES; i++) {
-        uint8_t *bytes;
-        size_t size;
-        if (webp_texels_write(&sog->pictures[i], &bytes, &size, error, error_bytes) != 0) {
+        if (add_picture(zip, names[i], &sog->pictures[i], error, error_bytes) != 0) {
             return -1;
         }
-        if (add_member(zip, names[i], bytes, size) != 0) {
-            return t3r_reason(error, error_bytes, "%s: %s", names[i], zip_strerror(zip));
-        }
+    }
+    if (sog->degree > 0 && (add_picture(zip, harmonics_names[0], &sog->harmonics.centroids, error, error_bytes) != 0 ||
+                            add_picture(zip, harmonics_names[1], &sog->harmonics.labels, error, error_bytes) != 0)) {
+        return -1;
     }
     char *meta = make_meta(sog, count);
     return meta != NULL && add_member(zip, SOG_META, (uint8_t *)meta, strlen(meta)) == 0
@@ -234,7 +256,7 @@ static int write_archive(FILE *file, const sog_file *sog, uint32_t count, char *
 int sog_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
 {
     const uint32_t count = source->scene->count;
-    sog_file sog = {0};
+    sog_file sog = {.degree = source->degree};
     int result = survey(source, &sog) == 0 && begin_pictures(&sog, count) == 0 && fill_pictures(source, &sog) == 0
                      ? 0
                      : t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", count);
@@ -244,5 +266,6 @@ int sog_write(FILE *file, const scene_source *source, char *error, size_t error_
     for (int i = 0; i < SOG_PICTURES; i++) {
         webp_texels_free(&sog.pictures[i]);
     }
+    sog_harmonics_free(&sog.harmonics);
     return result;
 }
