@@ -12,6 +12,7 @@ NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome"
 FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-dev-shm-usage", "--no-first-run",
          "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-extensions",
          "--hide-scrollbars", "--remote-debugging-pipe")
+WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")  # by the processor
 
 
 def find():
@@ -56,7 +57,7 @@ def on_a_phone(page):
 class Page:
     """One page: what it logs, throws and asks the network for is kept."""
 
-    def __init__(self, program, width=1200, height=1000, timeout=60):
+    def __init__(self, program, width=1200, height=1000, timeout=60, webgl=False):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         commands, self.write = os.pipe()
         self.read, answers = os.pipe()
@@ -67,7 +68,7 @@ class Page:
             os.dup2(13, 3)
             os.dup2(14, 4)
 
-        self.browser = subprocess.Popen([program, *FLAGS, f"--user-data-dir={self.profile.name}", "about:blank"],
+        self.browser = subprocess.Popen([program, *FLAGS, *(WEBGL if webgl else ()), f"--user-data-dir={self.profile.name}", "about:blank"],
                                         preexec_fn=place, close_fds=False, stdin=subprocess.DEVNULL,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(commands)
@@ -129,9 +130,14 @@ class Page:
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name},
                                                           {"name": "prefers-reduced-motion", "value": "reduce"}])
 
+    def before_all(self, script):
+        """What runs in every page that is opened from here on, before its own scripts."""
+        self.call("Page.addScriptToEvaluateOnNewDocument", source=script)
+
     def open(self, path):
+        """A file, or an address of http."""
         self.events.clear()
-        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        self.call("Page.navigate", url=path if path.startswith("http://") else "file://" + os.path.abspath(path))
         until = time.monotonic() + self.timeout
         while "Page.loadEventFired" not in self.events:
             message = self._message(until)
