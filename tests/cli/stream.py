@@ -4,7 +4,21 @@ import json
 import os
 import sys
 
-from program import check, expect, expect_json, in_scratch, room, write
+from program import check, expect, expect_json, in_scratch, room, run, write
+
+
+def the_map_in_a_file(recording, base):
+    """What is written is the map as it is in the end: a held-back frame drawn from the file is that of the run."""
+    for name, least in (("map.ply", 60), ("map.spz", 30)):
+        told = expect_json(*base, "--gaussians", 500, "-o", name)
+        check(told["scene"] == name and expect_json("info", name)["scenes"][0]["gaussians"] == 500, f"{name} holds no 500 Gaussians")
+        expect(0, "render", name, recording, "--view", 1, "--size", "64x64", "-o", "view.png")
+        same = json.loads(run("diff", "view.png", "held/final_00001.png", "--json")[1])
+        check(same["equal"] or same["psnr"] > least, f"{name} draws another view: {same['psnr']} dB")
+    expect(0, *base, "--gaussians", 500, "-o", "map.ply", out="map.ply: 500 Gaussians")
+    expect(2, *base, "-o", "map.txt", err="scenes are written as")
+    expect(2, *base, "-o", recording, err="one file")
+    expect(2, "replay", recording, "-o", "map.ply", err="belong to --stream")
 
 
 def stream():
@@ -20,6 +34,7 @@ def stream():
     check(all(k["added"] == k["removed"] + k["crowded"] for k in keyframes[1:]), "a full map is to stay full")
     check(found["live_psnr"] > 18 and found["final_psnr"] > 18, f"held-back views are poor: {found['live_psnr']}")
     check(all(os.path.exists(f"held/{what}_00001.png") for what in ("frame", "mask", "live", "final")), "no pictures")
+    the_map_in_a_file(recording, base)
     write("stream.json", json.dumps(found))
     base += ["--gaussians", 500]
     for more in ([], ["--threads", 2], ["--arena", "min"]):

@@ -7,6 +7,7 @@
 
 #include "cli/file_options.h"
 #include "cli/option_values.h"
+#include "scene/scene_options.h"
 
 enum {
     KEY_SOURCE = 0x1000,
@@ -222,14 +223,12 @@ static void check(struct argp_state *state, capture_options *o)
     if (o->list) {
         return;
     }
+    scene_output_option(state, "--build", o->scene);
     bool budget = o->build.gaussians != 0 || o->build.keep_percent > 0 || o->build.automatic;
     if (o->source == NULL) {
         argp_error(state, "--source is missing (--list shows what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {
         argp_error(state, "neither -o REC.mcap nor --build SCENE.ply says what is to become of the frames");
-    } else if (o->scene != NULL && !scene_file_is_written(o->scene)) {
-        argp_error(state, "--build %s: scenes are written as %s", o->scene,
-                   scene_file_suffixes((char[SCENE_FILE_SUFFIXES_BYTES]){0}));
     } else if (o->scene == NULL && (o->every > 0 || budget || o->build.context_count > 0 || o->local)) {
         argp_error(state, "--every, --local, --context and budgets belong to --build");
     } else if (o->scene != NULL && o->build.method != METHOD_TRIM3R) {

@@ -224,6 +224,14 @@ static int run(stream_run *s)
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, s->path, &s->r.config, s->r.arena_bytes);
 }
 
+static int write_map(const stream_run *s)
+{
+    char error[TEXT_BYTES] = "";
+    return scene_file_write(s->options->output, &s->r.scene, 0, NULL, error, sizeof error) == 0
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
 /* ---- what is told ------------------------------------------------------------------------------------------------ */
 
 typedef struct means {
@@ -268,6 +276,9 @@ static void print_json(const stream_run *s, uint64_t hash, const expectation *e,
     const reconstruction *r = &s->r;
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "recording", s->path);
+    if (s->options->output != NULL) {
+        cJSON_AddStringToObject(root, "scene", s->options->output);
+    }
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
     json_add_integer(root, "every", s->every);
     json_add_integer(root, "overlap_q8", s->options->overlap_q8);
@@ -341,6 +352,9 @@ static void print_text(const stream_run *s, uint64_t hash)
         }
         printf(" in the end %.2f | %.2f dB (%" PRIu32 ")\n", m.final, m.final_all, m.final_count);
     }
+    if (s->options->output != NULL) {
+        printf("%s: %" PRIu32 " Gaussians\n", s->options->output, r->scene.count);
+    }
     hash_report_print(r, hash);
 }
 
@@ -385,6 +399,9 @@ int replay_stream(const replay_stream_options *options, const t3r_recording *rec
     code = open_developing(&s);
     if (code == CLI_OK) {
         code = run(&s);
+    }
+    if (code == CLI_OK && options->output != NULL) {
+        code = write_map(&s);
     }
     if (code == CLI_OK) {
         uint64_t hash = t3r_hash_u64(reconstruction_hash(&s.r), s.views_hash);

@@ -9,7 +9,7 @@
 #include "cli/cli.h"
 #include "cli/file_options.h"
 #include "scene/scene_file.h"
-#include "scene/scene_up_option.h"
+#include "scene/scene_options.h"
 #include "scene/colmap_folder.h"
 #include "scene/tile_lists.h"
 #include "reconstruction/developed_frame.h"
@@ -106,13 +106,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         option_argument(state, arg, (const char **[]){&o->recording}, 1);
         return 0;
     case ARGP_KEY_END:
+        scene_output_option(state, "-o", o->output);
         if (o->recording == NULL) {
             argp_error(state, "REC.mcap is missing");
         } else if (o->output == NULL && o->colmap == NULL) {
             argp_error(state, "-o SCENE.ply is missing");
-        } else if (o->output != NULL && !scene_file_is_written(o->output)) {
-            argp_error(state, "-o %s: scenes are written as %s", o->output,
-                       scene_file_suffixes((char[SCENE_FILE_SUFFIXES_BYTES]){0}));
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
             argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
         } else if (o->settings.points_of != NULL && method_ranks_for_head(o->settings.method)) {

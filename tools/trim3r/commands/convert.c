@@ -10,7 +10,7 @@
 #include "cli/json_output.h"
 #include "cli/option_values.h"
 #include "scene/scene_file.h"
-#include "scene/scene_up_option.h"
+#include "scene/scene_options.h"
 
 #define ERROR_BYTES 512
 
@@ -41,10 +41,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (o->scene == NULL || o->output == NULL) {
             argp_error(state, o->scene == NULL ? "SCENE is missing" : "-o SCENE is missing");
-        } else if (!scene_file_is_written(o->output)) {
-            argp_error(state, "-o %s: scenes are written as %s", o->output,
-                       scene_file_suffixes((char[SCENE_FILE_SUFFIXES_BYTES]){0}));
         }
+        scene_output_option(state, "-o", o->output);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -20,6 +20,7 @@
 #include "reconstruction/replay_expectation.h"
 #include "reconstruction/replay_slide.h"
 #include "reconstruction/replay_stream.h"
+#include "scene/scene_options.h"
 
 #define ERROR_BYTES 512
 
@@ -76,15 +77,17 @@ static const struct argp_option options[] = {
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
      0},
+    {"output", 'o', "MAP.ply", OPTION_WRITES(FILE_SCENE), "scene to write: the map as it is in the end", 0},
     {0},
 };
 
 static void check_stream(struct argp_state *state, const replay_options *o)
 {
     if (!o->streams && (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || o->has_half_life ||
-                        o->stream.images != NULL)) {
-        argp_error(state, "--every, --overlap, --at-hand, --half-life and --images belong to --stream");
+                        o->stream.images != NULL || o->stream.output != NULL)) {
+        argp_error(state, "--every, --overlap, --at-hand, --half-life, --images and -o belong to --stream");
     }
+    scene_output_option(state, "-o", o->stream.output);
     if (o->streams &&
         (o->settings.context_count > 0 || o->settings.automatic || o->settings.config.depth == T3R_DEPTH_STEREO ||
          o->settings.config.allocation == T3R_ALLOCATE_GIVEN)) {
@@ -131,6 +134,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_IMAGES:
         o->stream.images = arg;
         return 0;
+    case 'o':
+        o->stream.output = arg;
+        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->recording}, 1);
         return 0;
@@ -171,7 +177,7 @@ static const struct argp argp = {
         "  trim3r replay room.mcap --json > golden.json\n"
         "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n"
         "  trim3r replay walk.mcap --slide --warm on\n"
-        "  trim3r replay walk.mcap --stream --every 3 --gaussians 10000\n\n"
+        "  trim3r replay walk.mcap --stream --every 3 --gaussians 10000 -o map.ply\n\n"
         "With a file to compare with, the first stage that differs is named, and for the raster the first 16x16 tile.",
     .children = children,
 };
