@@ -21,6 +21,7 @@ def refused():
     expect(2, "bench", "--head", "large", err="--head")
     expect(2, "bench", "--calibrate", err="belong together")
     expect(2, "bench", "-o", "machine.json", err="belong together")
+    expect(2, "bench", "--profile", "--against", sys.argv[1], err="--profile")
     expect(2, "bench", "--calibrate", "-o", "machine.json", "--against", sys.argv[1], err="exclude")
 
 

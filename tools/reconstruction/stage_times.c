@@ -29,9 +29,41 @@ double stage_times_sum(const stage_times *times)
     return sum;
 }
 
-void stage_times_add_json(cJSON *object, const stage_times *times)
+void stage_times_keep_least(stage_times *times, const stage_times *other)
 {
-    cJSON *stages = cJSON_AddObjectToObject(object, "stages_ms");
+    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
+        if (times->seconds[stage] <= 0 || other->seconds[stage] < times->seconds[stage]) {
+            times->seconds[stage] = other->seconds[stage];
+        }
+    }
+}
+
+static void end_stage(void *user, t3r_stage stage, uint64_t hash)
+{
+    (void)hash;
+    stage_clock *clock = user;
+    stage_times_end(&clock->times, stage);
+}
+
+static void run_parallel(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                         void *context)
+{
+    stage_clock *clock = user;
+    t3r_threads_run(clock->threads, count, task, context);
+}
+
+t3r_hooks stage_clock_hooks(stage_clock *clock)
+{
+    return (t3r_hooks){
+        .user = clock,
+        .stage_hash = end_stage,
+        .parallel_for = clock->threads != NULL ? run_parallel : NULL,
+    };
+}
+
+void stage_times_add_json(cJSON *object, const char *key, const stage_times *times)
+{
+    cJSON *stages = cJSON_AddObjectToObject(object, key);
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         if (times->seconds[stage] > 0) {
             cJSON_AddNumberToObject(stages, t3r_stage_name((t3r_stage)stage), times->seconds[stage] * 1e3);

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <time.h>
 
+#include "threads.h"
 #include "trim3r.h"
 
 typedef struct stage_times {
@@ -19,9 +20,20 @@ void stage_times_begin(stage_times *times, uint32_t threads);
 /* A stage is done, as the hook stage_hash says: it took the time since the one before. */
 void stage_times_end(stage_times *times, t3r_stage stage);
 double stage_times_sum(const stage_times *times);
+/* Each stage's time becomes that of `other` where that is less, or where it has none. */
+void stage_times_keep_least(stage_times *times, const stage_times *other);
 
-/* "stages_ms": milliseconds by the stages' names, of those that ran. */
-void stage_times_add_json(cJSON *object, const stage_times *times);
+/* A runtime whose stages are timed, and nothing else is wanted of it. */
+typedef struct stage_clock {
+    stage_times times;
+    t3r_threads *threads; /* the caller's; NULL: none */
+} stage_clock;
+
+/* The hooks that keep the times; the clock must stay where it is. */
+t3r_hooks stage_clock_hooks(stage_clock *clock);
+
+/* Under `key`: milliseconds by the stages' names, of those that ran. */
+void stage_times_add_json(cJSON *object, const char *key, const stage_times *times);
 /* A line a stage that ran: its name, milliseconds, and percent of the sum. */
 void stage_times_print(FILE *out, const stage_times *times);
 

@@ -180,6 +180,11 @@ bool bench_stage_is_rate(const char *key)
     return ends_with(key, "_per_s");
 }
 
+bool bench_stage_is_build(const char *key)
+{
+    return strncmp(key, "build_", 6) == 0;
+}
+
 double bench_stage_figure(const bench_stage *stage, double seconds, double items)
 {
     if (bench_stage_is_rate(stage->key)) {

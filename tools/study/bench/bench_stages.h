@@ -20,6 +20,8 @@ extern const bench_stage bench_stages[BENCH_STAGES_MOST + 1];
 
 /* A row whose figure is the better the higher it is. */
 bool bench_stage_is_rate(const char *key);
+/* A row whose run is a whole build, of stages that take their times. */
+bool bench_stage_is_build(const char *key);
 /* What a run of so many seconds is in the row's unit. */
 double bench_stage_figure(const bench_stage *stage, double seconds, double items);
 

@@ -40,6 +40,23 @@ t3r_status bench_work_build(bench_work *w, bench_scene kind)
     return status == T3R_OK ? t3r_reconstruct(runtime, NULL, &scene) : status;
 }
 
+static t3r_hooks hooks_of(bench_work *w)
+{
+    return (t3r_hooks){.user = w->threads, .parallel_for = w->threads != NULL ? t3r_threads_run : NULL};
+}
+
+t3r_status bench_work_profile(bench_work *w, bench_scene kind, stage_times *times)
+{
+    t3r_runtime *runtime = w->scene[kind].runtime;
+    stage_clock clock = {.threads = w->threads};
+    const t3r_hooks timed = stage_clock_hooks(&clock), usual = hooks_of(w);
+    t3r_status status = t3r_set_hooks(runtime, &timed);
+    stage_times_begin(&clock.times, w->threads != NULL ? t3r_threads_count(w->threads) : 1);
+    status = status == T3R_OK ? bench_work_build(w, kind) : status;
+    *times = clock.times;
+    return status == T3R_OK ? t3r_set_hooks(runtime, &usual) : status;
+}
+
 static t3r_status open_scene(bench_work *w, bench_scene kind)
 {
     t3r_config config = t3r_default_config(BENCH_SIDE, BENCH_SIDE, BENCH_VIEWS, scene_settings[kind].gaussians);
@@ -59,7 +76,7 @@ static t3r_status open_scene(bench_work *w, bench_scene kind)
         return T3R_ERR_ARENA;
     }
     status = t3r_init(&w->scene[kind].runtime, w->scene[kind].arena, plan.bytes, &config);
-    t3r_hooks hooks = {.user = w->threads, .parallel_for = w->threads != NULL ? t3r_threads_run : NULL};
+    const t3r_hooks hooks = hooks_of(w);
     if (status == T3R_OK) {
         (void)t3r_set_cpu(w->scene[kind].runtime, w->cpu);
         status = t3r_set_hooks(w->scene[kind].runtime, &hooks);

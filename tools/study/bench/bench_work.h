@@ -8,6 +8,7 @@
 
 #include "cli/processor_options.h"
 #include "reconstruction/chosen_head.h"
+#include "reconstruction/stage_times.h"
 #include "study/bench/bench_points.h"
 #include "study/bench/bench_views.h"
 #include "threads.h"
@@ -72,6 +73,8 @@ int bench_work_open(bench_work *work, const bench_settings *settings);
 t3r_status bench_work_open_scene(bench_work *work, bench_scene scene);
 /* Once more from the frames. */
 t3r_status bench_work_build(bench_work *work, bench_scene scene);
+/* The same, with the time that each stage takes; hashes are collected, so the whole takes longer. */
+t3r_status bench_work_profile(bench_work *work, bench_scene scene, stage_times *times);
 /* Seen from between the context views. */
 t3r_status bench_work_draw(bench_work *work, bench_scene scene);
 void bench_work_close(bench_work *work);

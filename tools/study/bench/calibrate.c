@@ -49,24 +49,9 @@ typedef struct trial {
     void *arena;
     bench_views views;
     uint8_t *picture;
-    t3r_threads *threads; /* the calibration's */
-    stage_times times;
-    double least[T3R_STAGE_COUNT]; /* seconds, of all runs */
+    stage_clock clock; /* with the calibration's threads */
+    stage_times least; /* of all runs */
 } trial;
-
-static void end_stage(void *user, t3r_stage stage, uint64_t hash)
-{
-    (void)hash;
-    trial *t = user;
-    stage_times_end(&t->times, stage);
-}
-
-static void run_parallel(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
-                         void *context)
-{
-    trial *t = user;
-    t3r_threads_run(t->threads, count, task, context);
-}
 
 static t3r_config config_of(uint32_t index, const processor_options *processor)
 {
@@ -89,8 +74,7 @@ static t3r_status open_runtime(trial *t, const processor_options *processor)
         t->arena = NULL;
         return status != T3R_OK ? status : T3R_ERR_ARENA;
     }
-    const t3r_hooks hooks = {
-        .user = t, .stage_hash = end_stage, .parallel_for = t->threads != NULL ? run_parallel : NULL};
+    const t3r_hooks hooks = stage_clock_hooks(&t->clock);
     status = t3r_init(&t->runtime, t->arena, plan.bytes, &t->config);
     if (status == T3R_OK) {
         (void)t3r_set_cpu(t->runtime, processor->cpu);
@@ -141,15 +125,11 @@ static t3r_status build_and_draw(trial *t)
     return status == T3R_OK ? t3r_render(t->runtime, &camera, &target) : status;
 }
 
-static int run_trial(trial *t, bool first)
+static int run_trial(trial *t)
 {
-    stage_times_begin(&t->times, t->config.workers);
+    stage_times_begin(&t->clock.times, t->config.workers);
     const t3r_status status = build_and_draw(t);
-    for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
-        if (first || t->times.seconds[stage] < t->least[stage]) {
-            t->least[stage] = t->times.seconds[stage];
-        }
-    }
+    stage_times_keep_least(&t->least, &t->clock.times);
     return room_error(status);
 }
 
@@ -175,13 +155,13 @@ static double fit_stage(const trial *trials, t3r_stage stage, t3r_prices *prices
         }
     }
     for (uint32_t i = 0; i < TRIALS; i++) {
-        if (trials[i].least[stage] <= 0) {
+        if (trials[i].least.seconds[stage] <= 0) {
             continue;
         }
         for (uint32_t k = 0; k < fit.kinds; k++) {
             fit.units[fit.times][k] = (double)trials[i].work.units[kinds[k]];
         }
-        fit.seconds[fit.times++] = trials[i].least[stage];
+        fit.seconds[fit.times++] = trials[i].least.seconds[stage];
     }
     const double error = price_fit_solve(&fit, found);
     for (uint32_t k = 0; k < fit.kinds; k++) {
@@ -196,7 +176,7 @@ static int run_all(trial *trials, uint32_t rounds)
     int code = CLI_OK;
     for (uint32_t i = 0; i < rounds * TRIALS && code == CLI_OK; i++) {
         cli_progress("calibrating", i, rounds * TRIALS);
-        code = run_trial(&trials[i % TRIALS], i < TRIALS);
+        code = run_trial(&trials[i % TRIALS]);
     }
     cli_progress_end();
     return code;
@@ -211,7 +191,7 @@ int calibrate(const processor_options *processor, uint32_t rounds, t3r_prices *p
         code = cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", processor->threads);
     }
     for (uint32_t i = 0; i < TRIALS && code == CLI_OK; i++) {
-        trials[i].threads = threads;
+        trials[i].clock.threads = threads;
         code = open_trial(&trials[i], i, processor);
     }
     code = code == CLI_OK ? run_all(trials, rounds) : code;

@@ -33,10 +33,20 @@ typedef struct bench_options {
     const char *stages, *against;
     const char *output; /* of a calibration */
     uint32_t runs;
-    bool calibrate, json;
+    bool calibrate, profile, json;
 } bench_options;
 
-enum { KEY_POINTS = 0x1000, KEY_HEAD, KEY_DEPTH, KEY_STAGES, KEY_RUNS, KEY_AGAINST, KEY_CALIBRATE, KEY_JSON };
+enum {
+    KEY_POINTS = 0x1000,
+    KEY_HEAD,
+    KEY_DEPTH,
+    KEY_STAGES,
+    KEY_RUNS,
+    KEY_AGAINST,
+    KEY_CALIBRATE,
+    KEY_PROFILE,
+    KEY_JSON
+};
 
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", OPTION_READS, "points to cluster instead of the room's: raw float32, N x 6", 0},
@@ -51,6 +61,7 @@ static const struct argp_option options[] = {
     {"calibrate", KEY_CALIBRATE, NULL, 0,
      "measure instead what a unit of each kind of work takes on this machine, for trim3r plan --machine", 0},
     {"output", 'o', "MACHINE.json", OPTION_WRITES(FILE_OTHER), "file that --calibrate writes", 0},
+    {"profile", KEY_PROFILE, NULL, 0, "print for each whole build the time of each of its stages, too", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -86,6 +97,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'o':
         o->output = arg;
         return 0;
+    case KEY_PROFILE:
+        o->profile = true;
+        return 0;
     case KEY_JSON:
         o->json = true;
         return 0;
@@ -97,6 +111,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "--calibrate and -o MACHINE.json belong together");
         } else if (o->calibrate && o->against != NULL) {
             argp_error(state, "--calibrate and --against exclude each other");
+        } else if (o->profile && (o->calibrate || o->against != NULL)) {
+            argp_error(state, "--profile belongs to the rows, not to --calibrate or --against");
         }
         return 0;
     default:
@@ -117,6 +133,7 @@ static const struct argp argp = {
         "  trim3r bench --head base\n"
         "  trim3r bench --depth stereo\n"
         "  trim3r bench --json --runs 21\n"
+        "  trim3r bench --stages build_small_ms --profile\n"
         "  trim3r bench --points cloud.f32 --stages kmeans_ms --json\n"
         "  trim3r bench --against ../older/trim3r --runs 15\n"
         "  trim3r bench --calibrate -o machine.json\n\n"
@@ -166,7 +183,8 @@ typedef struct row {
     const bench_stage *stage; /* NULL: it is not chosen */
     double items;             /* that a run handles; 0 = they are not counted */
     double seconds[MAX_RUNS];
-    spread taken; /* of them */
+    spread taken;        /* of them */
+    stage_times profile; /* the least of each stage; all 0 where none is wanted */
 } row;
 
 static int open_rows(bench_work *w, const bool chosen[BENCH_STAGES_MOST], row rows[BENCH_STAGES_MOST])
@@ -191,6 +209,20 @@ static double seconds_of(clockid_t clock)
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
+/* One more build, by stages, where that is wanted. */
+static bool profile_row(bench_work *w, const bench_options *o, row *r)
+{
+    stage_times times;
+    if (!o->profile || !bench_stage_is_build(r->stage->key)) {
+        return true;
+    }
+    const bool good = bench_work_profile(w, r->stage->scene, &times) == T3R_OK;
+    if (good) {
+        stage_times_keep_least(&r->profile, &times);
+    }
+    return good;
+}
+
 /* Round after round through all rows, so that a slow moment of the machine hits each alike; the first is not counted.
  */
 static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGES_MOST])
@@ -203,11 +235,13 @@ static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGE
                 continue;
             }
             double start = seconds_of(clock);
-            if (!stage->run(w)) {
+            const bool good = stage->run(w);
+            const double end = seconds_of(clock);
+            if (!good || !profile_row(w, o, &rows[s])) {
                 return cli_error(CLI_BAD_INPUT, "%s: the stage failed", stage->key);
             }
             if (run > 0) {
-                rows[s].seconds[run - 1] = seconds_of(clock) - start;
+                rows[s].seconds[run - 1] = end - start;
             }
             cli_progress(stage->key, run * BENCH_STAGES_MOST + s, (o->runs + 1) * BENCH_STAGES_MOST);
         }
@@ -250,6 +284,29 @@ static bool are_clustered(const row rows[BENCH_STAGES_MOST])
     return false;
 }
 
+static void print_profiles(const row rows[BENCH_STAGES_MOST])
+{
+    for (int s = 0; s < BENCH_STAGES_MOST; s++) {
+        if (stage_times_sum(&rows[s].profile) > 0) {
+            printf("\n%s, the least time of each stage, that of its hash included:\n", rows[s].stage->key);
+            stage_times_print(stdout, &rows[s].profile);
+        }
+    }
+}
+
+/* "build_small_stages_ms" for the row build_small_ms. */
+static void add_profiles(cJSON *root, const row rows[BENCH_STAGES_MOST])
+{
+    for (int s = 0; s < BENCH_STAGES_MOST; s++) {
+        if (stage_times_sum(&rows[s].profile) > 0) {
+            const char *name = rows[s].stage->key;
+            char key[64];
+            snprintf(key, sizeof key, "%.*s_stages_ms", (int)(strlen(name) - strlen("_ms")), name);
+            stage_times_add_json(root, key, &rows[s].profile);
+        }
+    }
+}
+
 static void print_text(const bench_work *w, const row rows[BENCH_STAGES_MOST])
 {
     char flags[CPU_FLAGS_BYTES];
@@ -276,6 +333,7 @@ static void print_text(const bench_work *w, const row rows[BENCH_STAGES_MOST])
     printf("%-22s %s\n", "cpu_flags", flags);
     printf("%-22s", "kernels");
     bench_kernels_print(&w->kernels, stdout);
+    print_profiles(rows);
 }
 
 static void print_json(const bench_work *w, const bench_options *o, const row rows[BENCH_STAGES_MOST])
@@ -311,6 +369,7 @@ static void print_json(const bench_work *w, const bench_options *o, const row ro
     cJSON_AddStringToObject(root, "cpu_used", flags_used);
     bench_kernels_add_json(root, &w->kernels);
     json_add_integer(root, "runs", o->runs);
+    add_profiles(root, rows);
     json_print(root);
 }
 

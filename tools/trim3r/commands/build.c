@@ -216,7 +216,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
     work_times_add_json(root, times);
     if (o->profile) {
-        stage_times_add_json(root, &r->stages);
+        stage_times_add_json(root, "stages_ms", &r->stages);
     }
     cJSON *listed = cJSON_AddObjectToObject(root, "tile_lists");
     json_add_integer(listed, "entries", (int64_t)lists->entries);
