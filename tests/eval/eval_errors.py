@@ -37,7 +37,7 @@ with tempfile.TemporaryDirectory() as folder:
     one = [room, "--context", "0,2", "--target", "1"]
 
     refuse(USAGE, "REC.mcap is missing", ["--keep", "10"])
-    refuse(USAGE, "--keep is missing", one)
+    refuse(USAGE, "the budget is missing", one)
     refuse(USAGE, "--context and --target", [room, "--context", "0,2", "--keep", "10"])
     refuse(USAGE, "--context and --target", [room, "--target", "1", "--keep", "10"])
     for keep in ("0", "101", "10,", "ten", "-5", ""):

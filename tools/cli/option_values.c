@@ -94,6 +94,19 @@ void option_keep(struct argp_state *state, const char *text, double *percents, u
     }
 }
 
+void option_counts(struct argp_state *state, const char *option, const char *text, uint32_t high, uint32_t *counts,
+                   uint32_t most, uint32_t *count)
+{
+    bool good = cli_parse_list_u32(text, counts, most, count) == 0;
+    for (uint32_t i = 0; good && i < *count; i++) {
+        good = counts[i] >= 1 && counts[i] <= high;
+    }
+    if (!good) {
+        argp_error(state, "--%s takes at most %" PRIu32 " counts of 1..%" PRIu32 " with commas between, not '%s'",
+                   option, most, high, text);
+    }
+}
+
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count)
 {
     if (cli_parse_list_u32(text, frames, T3R_MAX_VIEWS, count) != 0) {

@@ -27,6 +27,9 @@ void option_percents(struct argp_state *state, const char *option, const char *t
                      uint32_t *count);
 /* The percentages of --keep: likewise, with a word on stderr where one below 1 may be meant as a share. */
 void option_keep(struct argp_state *state, const char *text, double *percents, uint32_t most, uint32_t *count);
+/* 1 to `most` counts in [1, high] with commas between. */
+void option_counts(struct argp_state *state, const char *option, const char *text, uint32_t high, uint32_t *counts,
+                   uint32_t most, uint32_t *count);
 /* 1 to T3R_MAX_VIEWS frame indices with commas between. */
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
 /* All arguments that are no options; of ARGP_KEY_ARGS. */

@@ -83,3 +83,16 @@ int recording_estimate_poses(t3r_recording *recording, const char *path, const u
     free(cameras);
     return code;
 }
+
+int recording_pose_views(t3r_recording *recording, const char *path, const uint32_t *frames, uint32_t count,
+                         poses_source source, pose_account *accounts)
+{
+    char why[ERROR_BYTES];
+    const int code = recording_estimate_poses(recording, path, frames, count, source, accounts);
+    const uint32_t left = code == CLI_OK ? poses_find(accounts, 0, count, false) : count;
+    if (left == count) {
+        return code;
+    }
+    (void)pose_refusal(accounts, left, frames, why, sizeof why);
+    return cli_error(CLI_BAD_INPUT, "%s: %s", path, why);
+}

@@ -12,4 +12,9 @@
 int recording_estimate_poses(t3r_recording *recording, const char *path, const uint32_t *frames, uint32_t count,
                              poses_source source, pose_account *accounts);
 
+/* The same for all views of a scene: one that gets no pose is an error, as a scene of the others would not be the one
+ * that was asked for. */
+int recording_pose_views(t3r_recording *recording, const char *path, const uint32_t *frames, uint32_t count,
+                         poses_source source, pose_account *accounts);
+
 #endif

@@ -13,20 +13,6 @@
 #define DEEP_LEAST 20u  /* matching corners with depth in both views, or colour decides */
 #define SHARED_LEAST 8u /* depths that must agree on a scale */
 #define PARALLAX 0.01   /* radians between rays whose meeting place is kept as a depth */
-#define NAME_COUNT 3
-
-static const char *const names_of[NAME_COUNT] = {"given", "estimate", "estimate-colour"};
-
-bool poses_named(const char *name, poses_source *source)
-{
-    for (int i = 0; i < NAME_COUNT; i++) {
-        if (strcmp(name, names_of[i]) == 0) {
-            *source = (poses_source)i;
-            return true;
-        }
-    }
-    return false;
-}
 
 /* ---- pairs ------------------------------------------------------------------------------------------------------ */
 

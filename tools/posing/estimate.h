@@ -5,21 +5,11 @@
 #include <stddef.h>
 
 #include "posing/motion.h"
+#include "posing/poses_source.h"
 #include "posing/view.h"
 
 #define POSES_MOST 1000u
 #define POSES_WINDOW 16u /* views further apart in their order are not compared */
-
-/* How poses come about, as the option --poses names it. */
-typedef enum poses_source {
-    POSES_GIVEN,          /* they come with the frames */
-    POSES_ESTIMATE,       /* estimated, with depth where two frames have it */
-    POSES_ESTIMATE_COLOUR /* from colour alone; depth, where there is some, only sets the scale */
-} poses_source;
-
-#define POSES_NAMES "given, estimate, estimate-colour"
-/* false: no such name. */
-bool poses_named(const char *name, poses_source *source);
 
 #define POSES_WHY_BYTES 256
 

@@ -14,6 +14,7 @@
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/method.h"
 #include "reconstruction/stage_times.h"
+#include "posing/poses_source.h"
 #include "recording.h"
 #include "scene/scene_file.h"
 #include "threads.h"
@@ -31,6 +32,7 @@ typedef struct reconstruction_options {
     uint32_t context[T3R_MAX_VIEWS]; /* frame indices of the context views */
     uint32_t context_count;          /* 0 = the first two frames */
     uint32_t context_views;          /* of `eval --views`: the frames of a case; 2 = the triplet's own */
+    poses_source poses;              /* for callers: where the poses of the context views come from */
     uint32_t gaussians;              /* budget as a count; 0 = keep_percent decides */
     double keep_percent;             /* budget as percent of the valid points, (0, 100]; 0 = not given */
     bool automatic;                  /* fewer than the budget where they lose less than max_loss */

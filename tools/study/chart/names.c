@@ -1,5 +1,6 @@
 #include "study/chart/names.h"
 
+#include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,8 +32,9 @@ static const char *setting(const chart_points *points, uint32_t point, chart_set
 void chart_setting_text(const chart_points *points, uint32_t point, chart_setting s, char *text, size_t bytes)
 {
     const char *value = setting(points, point, s);
-    bool told = value[0] != '\0';
-    snprintf(text, bytes, "%s%s%s", told ? chart_settings[s].before : "", value, told ? chart_settings[s].behind : "");
+    bool told = value[0] != '\0', number = told && isdigit((unsigned char)value[strlen(value) - 1]);
+    snprintf(text, bytes, "%s%s%s", told ? chart_settings[s].before : "", value,
+             number ? chart_settings[s].behind : "");
 }
 
 static uint32_t first_of(const chart_points *points, uint32_t series)

@@ -84,11 +84,15 @@ static int by_place(const void *left, const void *right)
     return order != 0 ? order : compare(a->is.row, b->is.row);
 }
 
+/* The number that the text begins with: a percentage, or a count of Gaussians. */
 static double budget_of(const chart_table *table, const chart_row *row)
 {
+    const char *text = table->texts.text[row->setting[CHART_KEEP]];
+    char number[32];
     double budget;
     bool given;
-    return csv_number(table->texts.text[row->setting[CHART_KEEP]], &budget, &given) == 0 && given ? budget : -1;
+    snprintf(number, sizeof number, "%.*s", (int)strcspn(text, " "), text);
+    return csv_number(number, &budget, &given) == 0 && given ? budget : -1;
 }
 
 /* The rows [from, to) of one point and case as one cell. */

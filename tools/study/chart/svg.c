@@ -183,7 +183,7 @@ static void write_budget(FILE *out, panel *p, const chart_points *points, const 
     p->label_y = y;
     fprintf(out, "<text class='quiet small' x='%.1f' y='%.1f' text-anchor='%s'>", x, y, at_edge ? "start" : "end");
     markup_text(out, budget);
-    fprintf(out, "%s</text>\n", isdigit((unsigned char)budget[0]) ? " %" : "");
+    fprintf(out, "%s</text>\n", isdigit((unsigned char)budget[strlen(budget) - 1]) ? " %" : "");
 }
 
 static void write_spot(FILE *out, panel *p, const chart_points *points, const chart_view *view, uint32_t point,

@@ -11,6 +11,7 @@
 #include "reason.h"
 
 #define NO_COLUMN UINT32_MAX
+#define BUDGET_BYTES 40
 
 const chart_setting_about chart_settings[CHART_SETTINGS] = {
     [CHART_METHOD] = {"method", "", ""},       [CHART_HEAD] = {"head", "", ""},
@@ -35,7 +36,7 @@ const chart_measure_about chart_measures[CHART_MEASURES] = {
 
 /* Which cell holds what. */
 typedef struct layout {
-    uint32_t scene, context, target, picture;
+    uint32_t scene, context, target, requested, picture;
     uint32_t setting[CHART_SETTINGS], measure[CHART_MEASURES];
     uint32_t cells;
 } layout;
@@ -66,6 +67,7 @@ static int read_heading(csv_reader *reader, layout *l, char *error, size_t error
     l->scene = column(reader, "scene");
     l->context = column(reader, "context");
     l->target = column(reader, "target");
+    l->requested = column(reader, "requested");
     l->picture = column(reader, "picture");
     for (int s = 0; s < CHART_SETTINGS; s++) {
         l->setting[s] = column(reader, chart_settings[s].column);
@@ -119,15 +121,17 @@ static int number_case(chart_table *table, const csv_reader *reader, const layou
     return 0;
 }
 
-/* 5 and "5.0" are one budget; what is no number (auto) stays a text. */
-static const char *budget_text(const char *text, char own[32])
+/* 5 and "5.0" are one budget; what is no number (auto) stays a text. A count stands where there is no percentage. */
+static const char *budget_text(const char *percent, const char *count, char own[BUDGET_BYTES])
 {
+    const bool counted = percent[0] == '\0';
+    const char *text = counted ? count : percent;
     double number;
     bool given;
     if (csv_number(text, &number, &given) != 0 || !given) {
         return text;
     }
-    snprintf(own, 32, "%.10g", number);
+    snprintf(own, BUDGET_BYTES, counted ? "%.10g Gaussians" : "%.10g", number);
     return own;
 }
 
@@ -195,12 +199,13 @@ static int read_row(chart_table *table, const csv_reader *reader, const layout *
     }
     int failed = number_case(table, reader, l, &row->scene_case);
     for (int s = 0; s < CHART_SETTINGS && failed == 0; s++) {
-        char own[32];
+        char own[BUDGET_BYTES];
         const char *text = cell(reader, l->setting[s]);
         if (strlen(text) > CHART_SETTING_BYTES_MOST) {
             return fail(reader, error, error_bytes, chart_settings[s].column, ": more than 160 bytes");
         }
-        failed = chart_texts_number(&table->texts, s == CHART_KEEP ? budget_text(text, own) : text, &row->setting[s]);
+        text = s == CHART_KEEP ? budget_text(text, cell(reader, l->requested), own) : text;
+        failed = chart_texts_number(&table->texts, text, &row->setting[s]);
     }
     const char *picture = cell(reader, l->picture);
     if (!stays_within(picture) || (picture[0] != '\0' && !stays_within(cell(reader, l->scene)))) {

@@ -22,7 +22,7 @@ bool ablation_applies(uint32_t ablation, const chosen_head *head, bool planar);
 /* Changes the settings, and nothing else of them. */
 void ablation_apply(uint32_t ablation, reconstruction_options *settings);
 
-/* A Markdown table of the means of an evaluation: a line for each scene and ablation, a column for each keep, cells
+/* A Markdown table of the means of an evaluation: a line for each scene and ablation, a column for each budget, cells
  * "PSNR / SSIM". Several scenes end in lines of their means, every scene counting once. False without memory. */
 bool ablation_table(FILE *out, const evaluation_row *means, uint32_t count, bool planar);
 

@@ -1,21 +1,22 @@
 /* The table of `trim3r eval --ablate`. */
 #include "study/evaluation/ablation.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "study/evaluation/table.h"
 
-typedef enum part { SCENE, ABLATION, KEEP } part;
+typedef enum part { SCENE, ABLATION, BUDGET } part;
 
 static bool alike(const evaluation_row *a, const evaluation_row *b, part p)
 {
     return p == SCENE      ? strcmp(a->scene, b->scene) == 0
            : p == ABLATION ? strcmp(a->ablation, b->ablation) == 0
-                           : a->value[EVALUATION_KEEP] == b->value[EVALUATION_KEEP];
+                           : evaluation_same_budget(a, b);
 }
 
-/* Whether no row before it has the same scene, ablation or keep. */
+/* Whether no row before it has the same scene, ablation or budget. */
 static bool is_first(const evaluation_row *rows, uint32_t index, part p)
 {
     for (uint32_t i = 0; i < index; i++) {
@@ -30,7 +31,7 @@ static void print_cell(FILE *out, const evaluation_row *rows, uint32_t count, co
                        const evaluation_row *column, bool planar)
 {
     for (uint32_t i = 0; i < count; i++) {
-        if (alike(&rows[i], line, SCENE) && alike(&rows[i], line, ABLATION) && alike(&rows[i], column, KEEP)) {
+        if (alike(&rows[i], line, SCENE) && alike(&rows[i], line, ABLATION) && alike(&rows[i], column, BUDGET)) {
             double psnr = rows[i].value[planar ? EVALUATION_PLANAR_PSNR : EVALUATION_PSNR];
             fprintf(out, " %.2f / %.3f |", psnr, rows[i].value[EVALUATION_SSIM]);
             return;
@@ -52,7 +53,7 @@ static void print_scene(FILE *out, const evaluation_row *rows, uint32_t count, c
         fprintf(out, "| %-26s | %-21s |", name, line.ablation);
         name = "";
         for (uint32_t k = 0; k < count; k++) {
-            if (is_first(rows, k, KEEP)) {
+            if (is_first(rows, k, BUDGET)) {
                 print_cell(out, rows, count, &line, &rows[k], planar);
             }
         }
@@ -80,13 +81,15 @@ bool ablation_table(FILE *out, const evaluation_row *means, uint32_t count, bool
     }
     fprintf(out, "| %-26s | %-21s |", "scene", "ablation");
     for (uint32_t i = 0; i < count; i++) {
-        if (is_first(means, i, KEEP)) {
-            fprintf(out, " %11.10g %% |", means[i].value[EVALUATION_KEEP]);
+        if (is_first(means, i, BUDGET)) {
+            const double requested = means[i].value[EVALUATION_REQUESTED];
+            fprintf(out, isnan(requested) ? " %11.10g %% |" : " %13.10g |",
+                    isnan(requested) ? means[i].value[EVALUATION_KEEP] : requested);
         }
     }
     fprintf(out, "\n|---|---|");
     for (uint32_t i = 0; i < count; i++) {
-        fputs(is_first(means, i, KEEP) ? "---|" : "", out);
+        fputs(is_first(means, i, BUDGET) ? "---|" : "", out);
     }
     fputc('\n', out);
     if (print_scenes(out, means, count, planar) > 1) {

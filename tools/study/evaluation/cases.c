@@ -7,6 +7,7 @@
 
 #include "cli/cli.h"
 #include "import/planar_recording.h"
+#include "import/recording_poses.h"
 #include "cli/recorded_frame.h"
 #include "study/evaluation/nearest_views.h"
 #include "text.h"
@@ -250,6 +251,7 @@ int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint3
 {
     const uint32_t context_count = settings->context_count;
     int code = begin(cases, inputs, count);
+    cases->poses = settings->poses;
     code = code == CLI_OK ? open_recordings(cases) : code;
     if (code == CLI_OK) {
         code = context_count > 0 ? list_given(cases, settings->context, context_count, target) : list_triplets(cases);
@@ -287,13 +289,32 @@ void evaluation_cases_close(evaluation_cases *cases)
     *cases = (evaluation_cases){0};
 }
 
+/* The case's recording once more, as its frames are targets of other cases; NULL after a message. */
+static t3r_recording *posed_anew(const evaluation_case *what, poses_source source)
+{
+    char error[512] = "";
+    pose_account accounts[T3R_MAX_VIEWS];
+    t3r_recording *recording = t3r_recording_open(what->path, error, sizeof error);
+    if (recording == NULL) {
+        (void)cli_error(CLI_BAD_INPUT, "%s", error);
+    } else if (recording_pose_views(recording, what->path, what->context, what->context_count, source, accounts) !=
+               CLI_OK) {
+        t3r_recording_close(recording);
+        recording = NULL;
+    }
+    return recording;
+}
+
 int evaluation_case_enter(evaluation_entered *entered, const evaluation_cases *cases, uint32_t index)
 {
     *entered = (evaluation_entered){.what = cases->list[index]};
-    if (!cases->planar) {
+    if (cases->planar) {
+        entered->own = planar_recording(cases->inputs[index], cases->width, cases->height, &entered->bytes);
+    } else if (cases->poses != POSES_GIVEN) {
+        entered->own = posed_anew(&entered->what, cases->poses);
+    } else {
         return CLI_OK;
     }
-    entered->own = planar_recording(cases->inputs[index], cases->width, cases->height, &entered->bytes);
     entered->what.recording = entered->own;
     return entered->own != NULL ? CLI_OK : CLI_BAD_INPUT;
 }

@@ -12,6 +12,7 @@ typedef struct evaluation_cases {
     uint32_t input_count;
     bool planar;
     uint32_t width, height; /* of planar images */
+    poses_source poses;     /* of the context views of recordings */
     char (*names)[EVALUATION_NAME_BYTES];
     t3r_recording **recordings; /* of each input; none of an image */
     evaluation_case *list;      /* an image's recording is NULL until entered */
@@ -34,11 +35,12 @@ void evaluation_cases_close(evaluation_cases *cases);
 /* A case with its recording open. */
 typedef struct evaluation_entered {
     evaluation_case what;
-    t3r_recording *own; /* an image's */
+    t3r_recording *own; /* an image's; or the case's, where its context views have poses of their own */
     uint8_t *bytes;
 } evaluation_entered;
 
-/* An exit status of cli.h; evaluation_case_leave() after CLI_OK. */
+/* Estimates the poses of the context views where that is wanted: the first view and the target keep theirs. An exit
+ * status of cli.h; evaluation_case_leave() after CLI_OK. */
 int evaluation_case_enter(evaluation_entered *entered, const evaluation_cases *cases, uint32_t index);
 void evaluation_case_leave(evaluation_entered *entered);
 

@@ -252,7 +252,7 @@ void evaluation_name_case(evaluation_row *row, const evaluation_case *what)
     }
 }
 
-int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method_id m, double keep,
+int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method_id m, evaluation_budget budget,
                         const reconstruction_options *settings)
 {
     *row = (evaluation_row){0};
@@ -278,7 +278,11 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
                                                : t3r_depth_name(settings->config.depth);
     row->ablation = "";
     evaluation_settings_rest(settings, row->settings);
-    row->value[EVALUATION_KEEP] = keep;
+    if (budget.gaussians > 0) {
+        row->value[EVALUATION_REQUESTED] = budget.gaussians;
+    } else {
+        row->value[EVALUATION_KEEP] = budget.keep;
+    }
     if (!built) {
         return CLI_OK;
     }
@@ -319,24 +323,25 @@ int evaluation_build(reconstruction *built, reconstruction_account *told, const 
 }
 
 int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
-                       method_id m, double keep, bool from_file, const reconstruction_options *settings)
+                       method_id m, evaluation_budget budget, bool from_file, const reconstruction_options *settings)
 {
     reconstruction_options options = *settings;
-    options.gaussians = 0;
-    options.keep_percent = keep;
+    options.gaussians = budget.gaussians;
+    options.keep_percent = budget.keep;
     options.hash = false; /* timed without */
     options.context_count = what->context_count;
     memcpy(options.context, what->context, sizeof options.context);
 
     reconstruction built, loaded = {0};
     reconstruction_account told;
-    int code = evaluation_name_row(row, what, m, keep, settings);
+    int code = evaluation_name_row(row, what, m, budget, settings);
     if (code == CLI_OK) {
         code = evaluation_build(&built, &told, views, what, m, &options);
     }
     if (code != CLI_OK) {
         return code;
     }
+    reconstruction_warn_of_budget(&options, told.requested, built.scene.count);
     row->value[EVALUATION_GAUSSIANS] = built.scene.count;
     row->value[EVALUATION_BUILD_MS] = told.seconds * 1000;
     row->value[EVALUATION_ARENA_BYTES] = (double)told.arena_bytes;

@@ -17,6 +17,12 @@
 
 #define EVALUATION_NAME_BYTES 256 /* of a scene */
 
+/* How many Gaussians a row has. */
+typedef struct evaluation_budget {
+    double keep;        /* percent of the valid points, where no count is given */
+    uint32_t gaussians; /* a count, or all valid points where they are fewer; 0 = not given */
+} evaluation_budget;
+
 typedef struct evaluation_case {
     const t3r_recording *recording;
     const char *path;                /* of the recording or image, for messages */
@@ -49,7 +55,8 @@ void evaluation_views_free(evaluation_views *views);
 
 /* The numbers of a row; NaN = does not apply. */
 typedef enum evaluation_value {
-    EVALUATION_KEEP,      /* percent of the valid points */
+    EVALUATION_KEEP,      /* percent of the valid points; NaN of a budget that is a count */
+    EVALUATION_REQUESTED, /* that count */
     EVALUATION_GAUSSIANS, /* count used */
     EVALUATION_PSNR,      /* on the mask, dB */
     EVALUATION_SSIM,
@@ -79,16 +86,16 @@ typedef struct evaluation_row {
 /* The row's scene, context and target. */
 void evaluation_name_case(evaluation_row *row, const evaluation_case *what);
 
-/* All of the row that is known before it is made: every text but the ablation and the picture, and keep; other values
- * are NaN. An exit status of cli.h: the head is looked at. */
-int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method_id m, double keep,
+/* All of the row that is known before it is made: every text but the ablation and the picture, and the budget; other
+ * values are NaN. An exit status of cli.h: the head is looked at. */
+int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method_id m, evaluation_budget budget,
                         const reconstruction_options *settings);
 
-/* Builds `what` with `keep` percent of the valid points, draws and scores it. The rivals of a case share its unpruned
+/* Builds `what` with so many Gaussians, draws and scores it. The rivals of a case share its unpruned
  * scene, so `settings` must be the same for all of their rows. With from_file the scene is written as
  * .ply, read back and drawn from that. `render` (width x height x 3) gets the target view. */
 int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
-                       method_id m, double keep, bool from_file, const reconstruction_options *settings);
+                       method_id m, evaluation_budget budget, bool from_file, const reconstruction_options *settings);
 
 /* The steps of evaluation_measure(), for callers that build from other frames than those that the views were made of
  * (stress/measure.h). evaluation_build(): the scene of a method at the budget of `options`, to be closed, and what is

@@ -89,13 +89,15 @@ void evaluation_page_views(html_page *page, const evaluation_views *views, const
 void evaluation_page_render(html_page *page, const evaluation_views *views, const evaluation_row *row,
                             const uint8_t *render)
 {
-    char text[160], psnr[32] = "nothing to compare";
+    char text[160], kept[32] = "", psnr[32] = "nothing to compare";
     double db =
         isnan(row->value[EVALUATION_PLANAR_PSNR]) ? row->value[EVALUATION_PSNR] : row->value[EVALUATION_PLANAR_PSNR];
     if (!isnan(db)) {
         snprintf(psnr, sizeof psnr, "%.2f dB", db);
     }
-    snprintf(text, sizeof text, "%.10g %% kept: %s, %.0f Gaussians", row->value[EVALUATION_KEEP], psnr,
-             row->value[EVALUATION_GAUSSIANS]);
+    if (!isnan(row->value[EVALUATION_KEEP])) {
+        snprintf(kept, sizeof kept, "%.10g %% kept: ", row->value[EVALUATION_KEEP]);
+    }
+    snprintf(text, sizeof text, "%s%s, %.0f Gaussians", kept, psnr, row->value[EVALUATION_GAUSSIANS]);
     html_page_picture(page, text, views->width, views->height, 3, render, 1);
 }

@@ -1,6 +1,7 @@
 #include "study/evaluation/report.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,8 +113,9 @@ static int name_picture(const evaluation_report *report, const char *label, eval
 {
     char folder[EVALUATION_CELL_BYTES];
     int code = case_folder(report, row, folder, sizeof folder);
-    int length = snprintf(row->picture, sizeof row->picture, "%s%s%s_%.10g.png", folder, label, report->to.suffix,
-                          row->value[EVALUATION_KEEP]);
+    const bool counted = !isnan(row->value[EVALUATION_REQUESTED]);
+    int length = snprintf(row->picture, sizeof row->picture, "%s%s%s_%s%.10g.png", folder, label, report->to.suffix,
+                          counted ? "gaussians-" : "", row->value[counted ? EVALUATION_REQUESTED : EVALUATION_KEEP]);
     if (code == CLI_OK && (length < 0 || (size_t)length >= sizeof row->picture)) {
         code = cli_error(CLI_BAD_INPUT, "%s: too long for a picture's name", folder);
     }

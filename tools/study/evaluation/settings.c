@@ -72,6 +72,9 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     }
     add_settings(w, false, &s->config, &usual->config);
     add_number(w, "views", s->context_views, usual->context_views);
+    if (s->poses != POSES_GIVEN) {
+        add(w, "poses-%s", poses_name(s->poses));
+    }
     if (s->points_of != NULL) {
         add_text(w, "prune", s->points_of, false);
     }

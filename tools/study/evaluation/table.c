@@ -51,6 +51,7 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"clusters", CLUSTERS, 0, 0, NEVER},
     {"settings", SETTINGS, 0, 0, NEVER},
     {"keep", EVALUATION_KEEP, -1, 5, ALWAYS},
+    {"requested", EVALUATION_REQUESTED, 0, 0, NEVER},
     {"gaussians", EVALUATION_GAUSSIANS, 0, 10, ALWAYS},
     {"psnr", EVALUATION_PSNR, 4, 7, RECORDING},
     {"ssim", EVALUATION_SSIM, 5, 7, ALWAYS},
@@ -187,6 +188,17 @@ cJSON *evaluation_json(const evaluation_row *row)
     return object;
 }
 
+/* A cell that does not apply is like another one. */
+static bool same_value(const evaluation_row *a, const evaluation_row *b, evaluation_value value)
+{
+    return a->value[value] == b->value[value] || (isnan(a->value[value]) && isnan(b->value[value]));
+}
+
+bool evaluation_same_budget(const evaluation_row *a, const evaluation_row *b)
+{
+    return same_value(a, b, EVALUATION_KEEP) && same_value(a, b, EVALUATION_REQUESTED);
+}
+
 static bool belong_together(const evaluation_row *a, const evaluation_row *b, bool by_scene)
 {
     return (!by_scene || strcmp(a->scene, b->scene) == 0) && strcmp(a->method, b->method) == 0 &&
@@ -194,7 +206,7 @@ static bool belong_together(const evaluation_row *a, const evaluation_row *b, bo
            strcmp(a->allocate, b->allocate) == 0 && strcmp(a->depth, b->depth) == 0 &&
            strcmp(a->ablation, b->ablation) == 0 && strcmp(a->wavelet, b->wavelet) == 0 &&
            strcmp(a->levels, b->levels) == 0 && strcmp(a->clusters, b->clusters) == 0 &&
-           strcmp(a->settings, b->settings) == 0 && a->value[EVALUATION_KEEP] == b->value[EVALUATION_KEEP];
+           strcmp(a->settings, b->settings) == 0 && evaluation_same_budget(a, b);
 }
 
 bool evaluation_same(const evaluation_row *a, const evaluation_row *b)

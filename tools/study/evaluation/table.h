@@ -11,7 +11,7 @@
 #include "cli/csv.h"
 #include "study/evaluation/evaluation.h"
 
-#define EVALUATION_COLUMNS 29u
+#define EVALUATION_COLUMNS 30u
 #define EVALUATION_CELL_BYTES 512u /* of any cell, the end included */
 
 /* Stable order; NULL past the last. */
@@ -24,6 +24,8 @@ void evaluation_csv_row(csv_table *table, const evaluation_row *row);
 /* A row of evaluation_cell()'s texts; those of method, allocate, depth, wavelet and ablation must outlive it. False
  * where a number is none or a text too long. */
 bool evaluation_row_read(evaluation_row *row, const char *const cells[EVALUATION_COLUMNS]);
+/* Whether two rows have the same budget. */
+bool evaluation_same_budget(const evaluation_row *a, const evaluation_row *b);
 /* Whether two rows are of the same case, contestant, budget and settings. */
 bool evaluation_same(const evaluation_row *a, const evaluation_row *b);
 /* An object of all columns, null where one does not apply; NULL without memory. */

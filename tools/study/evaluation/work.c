@@ -32,7 +32,7 @@ typedef struct worker {
 
 /* What is sent of a row; its render follows when the report shows pictures, or the reason why its case is refused. */
 typedef struct made_row {
-    uint32_t contestant, keep;
+    uint32_t contestant, budget;
     bool known, refused;
     evaluation_row row;
 } made_row;
@@ -75,10 +75,10 @@ static int measure_row(worker *w, uint32_t index, made_row *made)
 {
     const evaluation_work *work = w->work;
     const evaluation_contestant *it = &work->contestants->list[made->contestant];
-    const double keep = work->keep[made->keep];
+    const evaluation_budget budget = work->budgets[made->budget];
     desk *d = &w->desk;
     reconstruction_options settings = evaluation_contestant_settings(it, work->settings);
-    int code = evaluation_name_row(&made->row, &work->cases->list[index], it->method, keep, &settings);
+    int code = evaluation_name_row(&made->row, &work->cases->list[index], it->method, budget, &settings);
     made->row.ablation = it->ablated ? ablation_name(it->ablation) : "";
     if (code != CLI_OK) {
         return code;
@@ -91,8 +91,8 @@ static int measure_row(worker *w, uint32_t index, made_row *made)
     }
     code = turn_to(w, index);
     if (code == CLI_OK) {
-        code = evaluation_measure(&made->row, d->render, &d->views, &d->entered.what, it->method, keep, work->from_file,
-                                  &settings);
+        code = evaluation_measure(&made->row, d->render, &d->views, &d->entered.what, it->method, budget,
+                                  work->from_file, &settings);
         made->row.ablation = it->ablated ? ablation_name(it->ablation) : "";
     }
     return code;
@@ -134,12 +134,12 @@ static int make_row(worker *w, uint32_t item, made_row *made, process_pool_line 
 static int make_item(void *context, uint32_t item, process_pool_line *line)
 {
     worker *w = context;
-    const uint32_t count = w->work->contestants->count, each = count / w->shares, keeps = w->work->keep_count;
-    const uint32_t first = item % w->shares * each * keeps;
+    const uint32_t count = w->work->contestants->count, each = count / w->shares, budgets = w->work->budget_count;
+    const uint32_t first = item % w->shares * each * budgets;
     made_row made = {.refused = false};
     int code = CLI_OK;
-    for (uint32_t i = first; i < first + each * keeps && code == CLI_OK && !made.refused; i++) {
-        made = (made_row){.contestant = i / keeps, .keep = i % keeps};
+    for (uint32_t i = first; i < first + each * budgets && code == CLI_OK && !made.refused; i++) {
+        made = (made_row){.contestant = i / budgets, .budget = i % budgets};
         code = make_row(w, item, &made, line);
     }
     return code;
@@ -155,7 +155,7 @@ static int announce(worker *w, uint32_t item, const made_row *made)
         w->announced = true;
         w->announced_case = index;
     }
-    if (made->keep == 0) {
+    if (made->budget == 0) {
         evaluation_report_strip(w->report, w->work->contestants->list[made->contestant].label);
     }
     return code;

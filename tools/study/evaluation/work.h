@@ -11,8 +11,8 @@ typedef struct evaluation_work {
     const evaluation_cases *cases;
     const evaluation_contestants *contestants;
     const reconstruction_options *settings;
-    const double *keep; /* percent */
-    uint32_t keep_count;
+    const evaluation_budget *budgets;
+    uint32_t budget_count;
     bool from_file;
     uint32_t processes;
     evaluation_resume *resume; /* rows that need not be made again; empty: none */
@@ -20,7 +20,7 @@ typedef struct evaluation_work {
 
 static inline uint32_t evaluation_work_rows_each(const evaluation_work *work)
 {
-    return work->contestants->count * work->keep_count;
+    return work->contestants->count * work->budget_count;
 }
 
 /* Rows go to the report as they are made, in the order case, contestant, budget however many processes there are. Of

@@ -18,6 +18,7 @@
 #include "cli/option_values.h"
 #include "cli/work_times.h"
 #include "import/poses_output.h"
+#include "reconstruction/poses_option.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/settings.h"
 #include "import/recording_poses.h"
@@ -30,12 +31,11 @@ typedef struct build_options {
     const char *output; /* NULL = no scene file */
     const char *colmap; /* NULL = no COLMAP model */
     int flags;          /* SCENE_FILE_... */
-    poses_source poses;
     bool profile, json;
     reconstruction_options settings;
 } build_options;
 
-enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_UP, KEY_POSES, KEY_PROFILE, KEY_JSON };
+enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_UP, KEY_PROFILE, KEY_JSON };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
@@ -47,10 +47,6 @@ static const struct argp_option options[] = {
     {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
      "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names those it "
      "was made of; percents are of its Gaussians",
-     0},
-    {"poses", KEY_POSES, "SOURCE", 0,
-     "source of the poses of the context views: given (default), those of the recording; estimate, from corners that "
-     "views share, with depth where two of them have it; estimate-colour, the same from colour alone",
      0},
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
@@ -72,6 +68,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
+        state->child_inputs[1] = &o->settings.poses;
         return 0;
     case 'o':
         o->output = arg;
@@ -90,11 +87,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_COMMENTS:
         o->flags |= SCENE_FILE_COMMENTS;
-        return 0;
-    case KEY_POSES:
-        if (!poses_named(arg, &o->poses)) {
-            argp_error(state, "--poses does not know '%s'; there are %s", arg, POSES_NAMES);
-        }
         return 0;
     case KEY_PROFILE:
         o->profile = true;
@@ -125,7 +117,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {0}};
+static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {.argp = &poses_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
@@ -223,7 +215,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     json_add_integer(listed, "usual", (int64_t)lists->usual);
     json_add_integer(listed, "widest", lists->widest);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
-    if (o->poses != POSES_GIVEN) {
+    if (o->settings.poses != POSES_GIVEN) {
         poses_add_json(root, recording, told->context, told->context_count, accounts);
     }
     /* where float32 positions lose the world's origin: --local and this */
@@ -338,7 +330,7 @@ static void print_text(const build_options *o, const reconstruction_account *tol
                        const pose_account *accounts, const tile_lists *lists, const work_times *times)
 {
     char text[WORK_TIMES_BYTES];
-    if (o->poses != POSES_GIVEN) {
+    if (o->settings.poses != POSES_GIVEN) {
         poses_print(told->context, told->context_count, accounts);
     }
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes; %s\n",
@@ -368,20 +360,6 @@ static void name_context(reconstruction_options *settings, const t3r_recording *
     }
 }
 
-/* Of all context views: a scene of some of them would not be the one that was asked for. */
-static int estimate_poses(t3r_recording *recording, const build_options *o, pose_account *accounts)
-{
-    char why[512];
-    const uint32_t *frames = o->settings.context, count = o->settings.context_count;
-    int code = recording_estimate_poses(recording, o->recording, frames, count, o->poses, accounts);
-    const uint32_t left = code == CLI_OK ? poses_find(accounts, 0, count, false) : count;
-    if (left < count) {
-        (void)pose_refusal(accounts, left, frames, why, sizeof why);
-        code = cli_error(CLI_BAD_INPUT, "%s: %s", o->recording, why);
-    }
-    return code;
-}
-
 int command_build(int argc, char **argv)
 {
     build_options o = {0};
@@ -402,9 +380,10 @@ int command_build(int argc, char **argv)
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     pose_account accounts[T3R_MAX_VIEWS];
-    if (code == CLI_OK && o.poses != POSES_GIVEN) {
+    if (code == CLI_OK && o.settings.poses != POSES_GIVEN) {
         name_context(&o.settings, recording);
-        code = estimate_poses(recording, &o, accounts);
+        code = recording_pose_views(recording, o.recording, o.settings.context, o.settings.context_count,
+                                    o.settings.poses, accounts);
         work_times_end(&times, WORK_POSES);
     }
     reconstruction r;

@@ -16,10 +16,11 @@
 #include "cli/word_list.h"
 #include "reconstruction/option_names.h"
 #include "cli/process_pool.h"
+#include "reconstruction/poses_option.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/scene_frames.h"
 
-#define MOST_KEEPS 64u
+#define BUDGETS_MOST 64u /* percents, and counts */
 #define ABLATE_KEEPS "60,40,20,10,5"
 
 typedef struct options {
@@ -29,8 +30,10 @@ typedef struct options {
     bool planar, has_target, from_file;
     uint32_t width, height; /* --size */
     uint32_t target;
-    double keep[MOST_KEEPS];
+    double keep[BUDGETS_MOST];
     uint32_t keep_count;
+    uint32_t gaussians[BUDGETS_MOST];
+    uint32_t gaussians_count;
     method_id methods[METHOD_COUNT];
     uint32_t method_count;
     char *heads[EVALUATION_HEADS_MOST]; /* --heads; parts of one heap string */
@@ -47,6 +50,7 @@ enum {
     KEY_TARGET,
     KEY_VIEWS,
     KEY_KEEP,
+    KEY_GAUSSIANS,
     KEY_METHODS,
     KEY_PRUNE,
     KEY_HEADS,
@@ -146,6 +150,9 @@ static void check_options(struct argp_state *state, options *o)
     if (o->settings.context_views > 2 && o->settings.context_count > o->settings.context_views) {
         argp_error(state, "--context names more frames than --views");
     }
+    if (o->planar && o->settings.poses != POSES_GIVEN) {
+        argp_error(state, "--poses belongs to a recording, not to --planar");
+    }
     if (o->planar && o->settings.config.depth != T3R_DEPTH_SENSOR) {
         argp_error(state, "--depth belongs to a recording, not to --planar");
     }
@@ -165,14 +172,15 @@ static void check_options(struct argp_state *state, options *o)
     if (o->ablate && (o->method_count > 0 || o->head_count > 0)) {
         argp_error(state, "--ablate is of the method trim3r with one --head: it excludes --methods and --heads");
     }
-    if (o->ablate && o->keep_count == 0) {
-        (void)cli_parse_list_percent(ABLATE_KEEPS, o->keep, MOST_KEEPS, &o->keep_count);
+    const bool budgeted = o->keep_count > 0 || o->gaussians_count > 0;
+    if (o->ablate && !budgeted) {
+        (void)cli_parse_list_percent(ABLATE_KEEPS, o->keep, BUDGETS_MOST, &o->keep_count);
     }
-    if (o->keep_count == 0 && o->settings.automatic) {
+    if (!budgeted && o->settings.automatic) {
         o->keep[o->keep_count++] = 100;
     }
-    if (o->keep_count == 0) {
-        argp_error(state, "--keep is missing, or --auto");
+    if (o->keep_count == 0 && o->gaussians_count == 0) {
+        argp_error(state, "the budget is missing: --keep P, --gaussians Z or --auto");
     }
     if (o->method_count == 0) {
         o->methods[o->method_count++] = METHOD_TRIM3R;
@@ -202,6 +210,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
+        state->child_inputs[1] = &o->settings.poses;
         return 0;
     case KEY_CONTEXT:
         option_frames(state, "context", arg, o->settings.context, &o->settings.context_count);
@@ -214,7 +223,10 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         o->settings.context_views = option_number(state, "views", arg, 2, T3R_MAX_VIEWS);
         return 0;
     case KEY_KEEP:
-        option_keep(state, arg, o->keep, MOST_KEEPS, &o->keep_count);
+        option_keep(state, arg, o->keep, BUDGETS_MOST, &o->keep_count);
+        return 0;
+    case KEY_GAUSSIANS:
+        option_counts(state, "gaussians", arg, T3R_MAX_GAUSSIANS, o->gaussians, BUDGETS_MOST, &o->gaussians_count);
         return 0;
     case KEY_METHODS:
         option_methods(state, "methods", arg, o->methods, &o->method_count);
@@ -280,6 +292,8 @@ static const struct argp_option argp_options[] = {
      "frames of every context, 2..16 (2: the triplet's own, or --context); those nearest to the target are added", 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points, one row each; with --auto the upper bound (100)",
      0},
+    {"gaussians", KEY_GAUSSIANS, "Z,Z,...", 0,
+     "numbers of Gaussians, one row each, behind those of --keep: all valid points where there are fewer", 0},
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
     {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
      "scene, made elsewhere of the views of --context, to prune: percents are of its Gaussians; trim3r makes new ones "
@@ -322,7 +336,26 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
-static const struct argp_child children[] = {{&reconstruction_settings_argp, 0, NULL, 0}, {0}};
+/* Apart from the other texts: a string has at most 4095 characters. */
+static const char examples[] =
+    "Examples:\n"
+    "  trim3r eval room.mcap --keep 100,20,10\n"
+    "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images dir\n"
+    "  trim3r eval room.mcap --keep 20,5 --views 4\n"
+    "  trim3r eval room.mcap --gaussians 20000,5000 --poses estimate\n"
+    "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune,pup+head\n"
+    "  trim3r eval room.mcap --keep 10,5 --heads analytic,small,my.t3w\n  trim3r eval room.mcap "
+    "--ablate=full,no-mask,no-adaptation --keep 10,5\n  trim3r eval room.mcap --prune s.ply --context 0,2 "
+    "--target 1 --keep 20\n  trim3r eval *.mcap --keep 40,10 --jobs all --csv all.csv --resume\n"
+    "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html";
+
+static char *add_examples(int key, const char *text, void *input)
+{
+    (void)input;
+    return key == ARGP_KEY_HELP_EXTRA ? strdup(examples) : (char *)(uintptr_t)text;
+}
+
+static const struct argp_child children[] = {{.argp = &reconstruction_settings_argp}, {.argp = &poses_argp}, {0}};
 
 static const struct argp parser = {
     .options = argp_options,
@@ -331,6 +364,8 @@ static const struct argp parser = {
     .doc = "Score views of a reconstruction against recorded ones.\v"
            "A row is one scene, context, target, method, head and budget. Cells that do not apply are empty. Several "
            "cases end in lines of means, which the CSV leaves out.\n"
+           "  keep          percent of the valid points that was asked for\n"
+           "  requested     number of Gaussians that was asked for instead\n"
            "  bits          of a network's weights, and of its activations if not the same\n"
            "  psnr, ssim    on the mask; decibels are averaged as decibels\n"
            "  sharp         mean gradient over the target's, on the mask\n"
@@ -361,6 +396,9 @@ static const struct argp parser = {
            "  +finetune      N iterations of Adam follow, on all parameters\n"
            "  +head          --head makes new Gaussians of the points they came from\n"
            "\n"
+           "--poses estimate: the first context view and the target keep their recorded poses, so that an error of the "
+           "others is seen. build_ms does not count the estimate.\n"
+           "\n"
            "--ablate: each row changes one thing of the settings given.\n"
            "  full                      nothing\n"
            "  no-adaptation             the head works as if nothing had been pruned; what\n"
@@ -378,17 +416,8 @@ static const struct argp parser = {
            "mean, each counting once.\n"
            "\n"
            "Refused cases (without depth or stereo match) are left out and reported, and --resume tries them again. "
-           "Where no case is left the exit status is 1.\n"
-           "\n"
-           "Examples:\n"
-           "  trim3r eval room.mcap --keep 100,20,10\n"
-           "  trim3r eval room.mcap --context 0,2 --target 1 --keep 20 --images dir\n"
-           "  trim3r eval room.mcap --keep 20,5 --views 4\n"
-           "  trim3r eval room.mcap --keep 20,5 --methods trim3r,pup,pup+finetune,pup+head\n"
-           "  trim3r eval room.mcap --keep 10,5 --heads analytic,small,my.t3w\n  trim3r eval room.mcap "
-           "--ablate=full,no-mask,no-adaptation --keep 10,5\n  trim3r eval room.mcap --prune s.ply --context 0,2 "
-           "--target 1 --keep 20\n  trim3r eval *.mcap --keep 40,10 --jobs all --csv all.csv --resume\n"
-           "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html",
+           "Where no case is left the exit status is 1.\n",
+    .help_filter = add_examples,
     .children = children,
 };
 
@@ -441,8 +470,21 @@ static int report_all(const options *o, const evaluation_work *work)
     return evaluation_report_close(&report, code);
 }
 
+/* Percents first, then counts. */
+static uint32_t list_budgets(const options *o, evaluation_budget budgets[2 * BUDGETS_MOST])
+{
+    for (uint32_t i = 0; i < o->keep_count; i++) {
+        budgets[i] = (evaluation_budget){.keep = o->keep[i]};
+    }
+    for (uint32_t i = 0; i < o->gaussians_count; i++) {
+        budgets[o->keep_count + i] = (evaluation_budget){.gaussians = o->gaussians[i]};
+    }
+    return o->keep_count + o->gaussians_count;
+}
+
 static int evaluate(const options *o)
 {
+    evaluation_budget budgets[2 * BUDGETS_MOST];
     evaluation_contestants contestants;
     evaluation_cases cases = {0};
     evaluation_resume resume = {0};
@@ -460,8 +502,8 @@ static int evaluate(const options *o)
             .cases = &cases,
             .contestants = &contestants,
             .settings = &o->settings,
-            .keep = o->keep,
-            .keep_count = o->keep_count,
+            .budgets = budgets,
+            .budget_count = list_budgets(o, budgets),
             .from_file = o->from_file,
             .processes = o->processes,
             .resume = &resume,
