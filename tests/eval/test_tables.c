@@ -188,12 +188,12 @@ static void test_page_escapes_and_embeds(void **state)
     const uint8_t rgb[2 * 2 * 3] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 9, 9}, grey[4] = {0, 255, 255, 0};
     html_page *page = html_page_new("<script>", "a & b");
     assert_non_null(page);
-    html_page_table(page, "t1", 0);
+    html_page_table(page, "t1", "", 0);
     html_page_table_cell(page, "name");
     html_page_table_end_row(page);
     html_page_table_cell(page, "\"x\" < 'y'");
     html_page_table_end_row(page);
-    html_page_table(page, "t2", 1);
+    html_page_table(page, "t2", "", 1);
     html_page_table_cell(page, "other");
     html_page_table_end_row(page);
     html_page_section(page, "one", 2, 2, rgb);
