@@ -26,6 +26,11 @@ def points():
 
 def stages():
     found = expect_json("bench", "--runs", 1)
+    check("stages" not in "".join(found), "bench tells stages that nobody asked for")
+    profiled = expect_json("bench", "--runs", 1, "--stages", "build_analytic_ms,kmeans_ms", "--profile")
+    parts = profiled["build_analytic_stages_ms"]
+    check({"image", "head", "refine"} < set(parts) and min(parts.values()) > 0, f"the stages of a build: {parts}")
+    check("kmeans_stages_ms" not in profiled, "a stage has no stages")
     for key in ("raster_131k_ms", "raster_13k_ms", "refine_ms", "kmeans_ms", "texture_ns_per_pixel", "build_analytic_ms",
                 "build_unrefined_ms", "build_small_ms", "stereo_ms", "stereo_8_paths_ms", "head_gmac_per_s", "network_ms", "machine_gmac_per_s",
                 "machine_copy_gb_per_s"):

@@ -19,7 +19,8 @@ def built(*options):
     """PSNR of the view that a scene of `build` gives, over all pixels."""
     run(trim3r, "build", "room.mcap", "--context", "0,2", *map(str, options), "-o", "scene.ply")
     run(trim3r, "render", "scene.ply", "room.mcap", "--view", "1", "-o", "view.png")
-    run(trim3r, "eval", "room.mcap", *map(str, ONE), "--keep", "1", "--images", "recorded")
+    if not os.path.exists("recorded"):
+        run(trim3r, "eval", "room.mcap", *map(str, ONE), "--keep", "1", "--refine", "0", "--images", "recorded")
     return json.loads(run(trim3r, "diff", "view.png", "recorded/1/target.png", "--json", expect=1).stdout)["psnr"]
 
 
@@ -36,7 +37,7 @@ def counts():
         "--images", "dir")
     with open("rows.csv", encoding="utf-8") as file:
         check(file.read() == table, "rows with a count are made again")
-    means = json.loads(run(trim3r, "eval", "room.mcap", "--gaussians", "500,400", "--json").stdout)["means"]
+    means = json.loads(run(trim3r, "eval", "room.mcap", "--gaussians", "500,400", "--refine", "0", "--json").stdout)["means"]
     check([m["requested"] for m in means] == [500, 400], f"means of counts: {means}")
     over = run(trim3r, "eval", "room.mcap", *map(str, ONE), "--gaussians", "9999", "--json")
     row = json.loads(over.stdout)["rows"][0]
