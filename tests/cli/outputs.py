@@ -172,6 +172,33 @@ def strange_inputs():
     os.rmdir("folder.t3w")
 
 
+def missing_folders():
+    """Of a path through a folder that is not there, that folder is named; inputs that are not there are, too."""
+    os.makedirs("is/here")
+    write("is/file", "")
+    rows = 0
+    ways = {"is/here/not//such/x.t3w": "there is no folder 'is/here/not'", "none/x.t3w": "folder 'none'",
+            "/none/x.t3w": "folder '/none'", "is/file/x.t3w": "is/file: Not a directory"}
+    for command in commands():
+        for row in (row for row in table(command) if not row["device"]):
+            for path, words in list(ways.items())[:len(ways) if command == "build" else 1]:
+                code, printed, message = run(command, *given(row, path))
+                check((code, printed) == (1, "") and f"{named(row)} {path}: " in message and words in message,
+                      f"{command} {path}: {code} {message}")
+            rows += 1
+    check(rows > 40, f"only {rows} options were tried")
+    os.symlink("is/here", "way")
+    check("no folder" not in run("build", "way/../x.mcap", "--keep", 10, "-o", "way/x.ply/")[2], "a link is a way")
+    for line in (["build", "absent.mcap", "--keep", 10, "-o", "x.ply"], ["render", "absent.ply", "x.mcap", "--view", 1, "-o", "x.png"],
+                 ["plan", "--size", "64x64", "--views", 2, "--gaussians", 9, "--machine", "absent.json"],
+                 ["build", "x.mcap", "--keep", 10, "--allocate", "given", "--importance", "absent.png", "-o", "x.ply"]):
+        write("x.mcap", "")
+        expect(1, *line, err=": No such file or directory")
+    for path in ("way", "x.mcap", "is/file"):
+        os.unlink(path)
+    os.removedirs("is/here")
+
+
 def in_folders():
     """Names that are made of an option's value, and files in a folder that is read."""
     recording = room()
@@ -223,4 +250,4 @@ def names_of_others():
 
 
 if __name__ == "__main__":
-    sys.exit(in_scratch(all_are_named, every_pair, to_standard_output, other_kinds, strange_inputs, in_folders, names_of_others))
+    sys.exit(in_scratch(all_are_named, every_pair, to_standard_output, other_kinds, strange_inputs, missing_folders, in_folders, names_of_others))

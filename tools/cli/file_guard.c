@@ -1,6 +1,7 @@
 /* The state here is the process's own: the files of its command line. */
 #include "cli/file_guard.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -36,6 +37,22 @@ static bool is_sink(const file_place *place)
 }
 
 /* ---- each by itself ---------------------------------------------------------------------------------------------- */
+
+/* A folder on the way that is not there, by its name; words and devices are no paths. */
+static int check_way(const named_file *file)
+{
+    int error;
+    const size_t bytes = (file->flags & OPTION_OR_DEVICE) != 0 ? 0 : file_place_ends(file->path, &error);
+    if (bytes == 0) {
+        return CLI_OK;
+    }
+    if (error == ENOENT) {
+        return cli_error(CLI_BAD_INPUT, "%s %s: there is no folder '%.*s'", file->option, file->path, (int)bytes,
+                         file->path);
+    }
+    return cli_error(CLI_BAD_INPUT, "%s %s: %.*s: %s", file->option, file->path, (int)bytes, file->path,
+                     strerror(error));
+}
 
 static int check_input(const named_file *file, const file_place *place)
 {
@@ -119,6 +136,18 @@ static int check_pairs(uint32_t output)
     return CLI_OK;
 }
 
+int file_guard_find(void)
+{
+    const int named_otherwise = OPTION_OR_WORD | OPTION_OR_DEVICE;
+    for (uint32_t i = 0; i < guard.count; i++) {
+        const named_file *file = &guard.files[i];
+        if (!writes(file) && *file->path != '\0' && (file->flags & named_otherwise) == 0 && guard.places[i].mode == 0) {
+            return cli_error(CLI_BAD_INPUT, "%s: %s", file->path, strerror(ENOENT));
+        }
+    }
+    return CLI_OK;
+}
+
 int file_guard_begin(named_file *files, uint32_t count, bool force)
 {
     guard.files = files;
@@ -133,6 +162,9 @@ int file_guard_begin(named_file *files, uint32_t count, bool force)
     int code = CLI_OK;
     for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
         code = writes(&files[i]) ? check_pairs(i) : CLI_OK;
+    }
+    for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
+        code = check_way(&files[i]);
     }
     for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
         code = writes(&files[i]) ? check_output(&files[i], &guard.places[i]) : check_input(&files[i], &guard.places[i]);

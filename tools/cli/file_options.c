@@ -363,5 +363,9 @@ void file_options_parse(const struct argp *argp, int argc, char **argv, void *in
     }
     free(list.items);
     argp_parse(&whole, argc, argv, 0, NULL, input);
+    int code = file_guard_find();
+    if (code != CLI_OK) {
+        exit(code);
+    }
     free(children);
 }

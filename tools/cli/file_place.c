@@ -1,5 +1,6 @@
 #include "cli/file_place.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,6 +49,31 @@ bool file_place_same(const file_place *a, const file_place *b)
 {
     return a->device == b->device && a->inode == b->inode && a->below_bytes == b->below_bytes &&
            memcmp(a->below, b->below, a->below_bytes) == 0;
+}
+
+size_t file_place_ends(const char *path, int *error)
+{
+    char folder[PATH_MAX];
+    struct stat there;
+    *error = 0;
+    for (size_t end = strcspn(path, "/"); path[end] == '/' && end < sizeof folder;) {
+        const size_t next = end + strspn(path + end, "/");
+        memcpy(folder, path, end);
+        folder[end] = '\0';
+        if (path[next] == '\0') {
+            return 0; /* slashes behind the last part */
+        }
+        if (end > 0 && stat(folder, &there) != 0) {
+            *error = errno;
+            return end;
+        }
+        if (end > 0 && !S_ISDIR(there.st_mode)) {
+            *error = ENOTDIR;
+            return end;
+        }
+        end = next + strcspn(path + next, "/");
+    }
+    return 0;
 }
 
 bool file_place_dangles(const char *path)

@@ -16,6 +16,9 @@ typedef struct file_place {
 
 file_place file_place_of(const char *path);
 bool file_place_same(const file_place *a, const file_place *b);
+/* The folder among those that the path leads through at which it ends: the number of the path's bytes that name it, and
+ * why in *error, as errno has it. 0: all are there. Of a path's last part nothing is asked. */
+size_t file_place_ends(const char *path, int *error);
 /* Whether the path is a symbolic link to nothing. */
 bool file_place_dangles(const char *path);
 /* Whether the path's folder is that folder or lies beneath it. */
