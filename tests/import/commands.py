@@ -197,7 +197,7 @@ def test_room():
     info = json.loads(out)
     check(info["triplets"][0] == {"context": [0, 2], "target": 1} and len(info["triplets"]) == 3, "the room's triplets")
     status, _, error = run("room", "-o", f"{work}/no/room.mcap")
-    check(status == 1 and "room.mcap: No such file" in error, "room: unwritable target")
+    check(status == 1 and "/no'" in error and "room.mcap" in error, "room: unwritable target")
 
 
 def test_info_refuses():
