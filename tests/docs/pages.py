@@ -48,6 +48,11 @@ def given_in(text):
     return [name for match in re.finditer(r"<!-- given: (.*?) -->", text) for name in match.group(1).split()]
 
 
+def needed_by(text):
+    """What must have been built for the page: <!-- needs: build/release/NAME -->."""
+    return [name for match in re.finditer(r"<!-- needs: (.*?) -->", text) for name in match.group(1).split()]
+
+
 def without_blocks(text):
     """The page with fenced blocks, comments and tables blanked, line for line."""
     text = re.sub(FENCE, lambda match: "\n" * match.group(0).count("\n"), text)

@@ -3,6 +3,7 @@
 
 The blocks of a page run in order in an empty folder that holds what the page names as given. A text block right after a
 shell block is its output, line by line; `...` stands for anything within a line, and alone in a line for any lines.
+A page that needs what was not built, as <!-- needs: build/release/NAME -->, is left out.
 """
 import os
 import pathlib
@@ -13,7 +14,7 @@ import tempfile
 import time
 
 from given import MAKERS, Given
-from pages import ROOT, all_pages, blocks_of, given_in
+from pages import ROOT, all_pages, blocks_of, given_in, needed_by
 
 LIMIT = 300  # seconds of one block
 
@@ -59,9 +60,13 @@ def run_page(name, text, program, made, folder):
         return 0, findings
     with tempfile.TemporaryDirectory(prefix="page-", dir=folder) as place:
         place = pathlib.Path(place)
+        link_the_tree(place, program)
+        lacking = [needed for needed in needed_by(text) if not (place / needed).exists()]
+        if lacking:
+            print(f"{name}: left out, {', '.join(lacking)} was not built")
+            return 0, []
         for wanted in given_in(text):
             made.put(wanted, place)
-        link_the_tree(place, program)
         blocks = [block for block in blocks_of(text) if block.runs]
         for block in blocks:
             finding = run_block(block, place, program)
@@ -79,7 +84,8 @@ def link_the_tree(place, program):
 
 
 def run_block(block, place, program):
-    environment = dict(os.environ, PATH=f"{program.parent}:{os.environ['PATH']}", TERM="dumb")
+    path = f"{program.parent}:{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}"
+    environment = dict(os.environ, PATH=path, TERM="dumb")
     script = "set -e\n" + block.body
     try:
         ended = subprocess.run(["bash", "-c", script], cwd=place, env=environment, timeout=LIMIT, text=True,

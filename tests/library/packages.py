@@ -21,6 +21,10 @@ FILES = {
 }
 NEEDS = {"libtrim3r0.1": ["libc6"], "libtrim3r-dev": [f"libtrim3r0.1 (= {VERSION})"],
          "trim3r": ["libc6", "libcjson1", "libjpeg", "liblapacke", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
+if any(pathlib.Path(sys.argv[1]).glob("python/trim3r/*.so")): # where the Python package was built
+    FILES["python3-trim3r"] = sorted(f"lib/python3/dist-packages/trim3r/{path.name}"
+                                     for path in pathlib.Path(sys.argv[1]).glob("python/trim3r/*") if path.is_file())
+    NEEDS["python3-trim3r"] = ["libc6", "python3-cffi-backend", "python3-numpy", "libzstd1"]
 CAMERAS = "trim3r-cameras" # only where the libraries for them are
 
 

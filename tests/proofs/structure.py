@@ -43,6 +43,7 @@ tool("study/evaluation", "study/rivals")
 tool("study/stress", "study/evaluation")
 tool("study/train", "study/rivals")
 tool("trim3r", "capture", "viewer", "room", "study/bench", "study/chart", "study/stress")
+tool("python", "room", "scene", base=("platform", "quant"))
 tool("examples", base=("platform", "quant"))
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)

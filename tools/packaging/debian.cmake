@@ -1,5 +1,5 @@
-# Debian packages, by `cpack` in the build folder: the shared library, what builds programs, the program,
-# and its modules for cameras, which need much and are therefore apart.
+# Debian packages, by `cpack` in the build folder: the shared library, what builds programs, the program, its modules for
+# cameras, which need much and are therefore apart, and the Python package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME trim3r)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -18,6 +18,9 @@ if(TARGET trim3r)
 endif()
 if(modules)
   list(APPEND CPACK_COMPONENTS_ALL cameras)
+endif()
+if(TARGET trim3r_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -39,4 +42,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_CAMERAS_PACKAGE_NAME trim3r-cameras)
 set(CPACK_DEBIAN_CAMERAS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_CAMERAS_PACKAGE_ENHANCES trim3r)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-trim3r)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-cffi-backend, python3-numpy")
 include(CPack)

@@ -1,0 +1,49 @@
+"""What the tests of the Python package share: the package itself, as it was built."""
+import contextlib
+import pathlib
+import sys
+
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
+
+from checks import check, skip
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PACKAGE = pathlib.Path(sys.argv[1]).resolve().parent # of the shared library, which is the first argument
+
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(PACKAGE.parent)]
+try:
+    import _cffi_backend as _
+    import numpy as np
+except ImportError as error:
+    skip(f"no {error.name} (Debian: python3-cffi, python3-numpy)")
+
+import trim3r
+
+SIDE = 64
+FRAMES = trim3r.room(3, SIDE, SIDE)
+
+
+def small(views=2, **options):
+    """A reconstructor of small views, quick to build."""
+    return trim3r.Reconstructor(SIDE, SIDE, views=views, **{"head": "nano", **options})
+
+
+def with_views(frames=(FRAMES[0], FRAMES[2]), **options):
+    """One with these views added."""
+    made = small(len(frames), **options)
+    for frame in frames:
+        made.add_view(frame)
+    return made
+
+
+@contextlib.contextmanager
+def refused(kind, *words):
+    """What is inside raises that kind of error, and its text has these words."""
+    try:
+        yield
+    except kind as error:
+        for word in words:
+            check(word in str(error), f"{error!r} does not say {word!r}")
+        return
+    check(False, f"no {kind.__name__} with {words}")

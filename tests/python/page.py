@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""page.py LIBRARY: the Python on docs/python.md runs, block after block, and so does that in the package's docstring."""
+import contextlib
+import io
+import os
+import re
+import sys
+import tempfile
+import textwrap
+
+from common import ROOT, check, trim3r
+
+from checks import done
+
+sys.path[:0] = [str(ROOT / "tests" / "docs")]
+from pages import blocks_of
+
+
+def said(source, names):
+    """What it prints."""
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        exec(compile(source, "docs/python.md", "exec"), names)
+    return out.getvalue()
+
+
+def main():
+    blocks = [block.body for block in blocks_of((ROOT / "docs" / "python.md").read_text()) if block.language == "python"]
+    check(len(blocks) == 3, f"{len(blocks)} blocks of Python")
+    names, before = {}, os.getcwd()
+    with tempfile.TemporaryDirectory(prefix="trim3r-python-") as folder:
+        os.chdir(folder)
+        first = said(blocks[0], names).split()
+        check(first[0] == "13107" and 25 < float(first[1]) < 35, f"the first scene: {first}")
+        depth, alpha = map(float, said(blocks[1], names).split())
+        check(1.9 < depth < 2.1 and alpha > 0.9, f"a wall two metres away: {depth}, {alpha}")
+        rows = said(blocks[2], names).splitlines()
+        check([row.split()[1] for row in rows] == ["13107", "2621"], f"rows: {rows}")
+        shown = re.search(r"::\n\n(.*?)\n\n[A-Z]", trim3r.__doc__, re.S)[1]
+        check(25 < float(said(textwrap.dedent(shown), {})) < 35, "the docstring's")
+        os.chdir(before)
+    done()
+
+
+if __name__ == "__main__":
+    main()

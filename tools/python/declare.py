@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""declare.py HEADER ROOT PACKAGE BUILD COMPILER OPTION...: what the Python package knows of C, out of the headers.
+
+PACKAGE/_declarations.py has every type and constant that HEADER leads to below ROOT, and the functions of the headers
+that HEADER itself includes, in the form that cffi loads. BUILD/exports.ld makes the linker take these functions and
+data from their archives, and BUILD/exports.map exports nothing else.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+import cffi
+
+MODULE = "_declarations"
+MARKER = re.compile(r'^# \d+ "([^"]*)"')
+NUMBER = re.compile(r"#define ([A-Z][A-Z0-9_]*[A-Z0-9]) (\d+|0x[0-9a-fA-F]+)[uU]?$")
+INLINE = re.compile(r"static inline [^;{]*\{.*?^\}$", re.M | re.S)
+FUNCTION = re.compile(r"^(?!typedef)[a-z_][\w \n*]*?\b(\w+)\([^;{}]*\);", re.M)
+DATA = re.compile(r"^extern const [\w *]*?\b(\w+)(?:\[\w*\])?;", re.M)
+
+
+def passages_of(header, root, compiler):
+    """(path, text) of every passage below the root, in the order in which the compiler sees them."""
+    text = subprocess.run([*compiler, "-E", "-dD", str(header)], check=True, capture_output=True, text=True).stdout
+    path, lines = None, []
+    for line in [*text.splitlines(), '# 1 ""']:
+        marker = MARKER.match(line)
+        if not marker:
+            lines.append(line)
+            continue
+        entered = pathlib.Path(marker[1]).resolve()
+        if entered == path: # a macro of a system's header, within a declaration perhaps
+            continue
+        if path is not None and path.is_relative_to(root):
+            yield path, "\n".join(lines) + "\n"
+        path, lines = entered, []
+
+
+def declarations(text):
+    """Without what cffi does not take: bodies of functions, pragmas, macros that are no whole number."""
+    kept = [line for line in text.splitlines() if not line.startswith("#") or NUMBER.match(line)]
+    kept = [NUMBER.sub(r"#define \1 \2", line) for line in kept]
+    return INLINE.sub("", "\n".join(kept) + "\n")
+
+
+def main():
+    header, root, package, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:5])
+    compiler = sys.argv[5:]
+    direct = set(re.findall(r'^#include "(?:.*/)?([^"/]+)"$', header.read_text(), re.M))
+    whole, exports = "", []
+    for path, text in passages_of(header, root, compiler):
+        text = declarations(text)
+        if path.name in direct:
+            exports += FUNCTION.findall(text) + DATA.findall(text)
+        else:
+            text = FUNCTION.sub("", text)
+        whole += text
+    ffi = cffi.FFI()
+    ffi.cdef(whole)
+    ffi.set_source(MODULE, None)
+    ffi.emit_python_code(str(package / f"{MODULE}.py"))
+    (build / "exports.ld").write_text(f"EXTERN({' '.join(exports)})\n")
+    (build / "exports.map").write_text("{ global: " + " ".join(f"{name};" for name in exports) + " local: *; };\n")
+
+
+if __name__ == "__main__":
+    main()

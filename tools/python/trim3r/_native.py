@@ -1,0 +1,62 @@
+"""The package's shared library, and what calls of it have in common."""
+import pathlib
+from typing import Any, Callable
+
+import numpy as np
+
+from ._declarations import ffi as _ffi
+from .errors import error_of
+
+ffi: Any = _ffi
+lib: Any = ffi.dlopen(str(pathlib.Path(__file__).with_name("libtrim3r_python.so")))
+ERROR_BYTES = 512
+
+
+def text_of(pointer: Any) -> str:
+    """A text of the library; "" for NULL."""
+    return "" if pointer == ffi.NULL else str(ffi.string(pointer).decode("utf-8", "replace"))
+
+
+def check(status: int, what: str = "") -> None:
+    """Raises the error of a t3r_status that is not T3R_OK; `what` is put before the library's words."""
+    if status != lib.T3R_OK:
+        name = ffi.string(ffi.cast("t3r_status", status))
+        raise error_of(name, (f"{what}: " if what else "") + text_of(lib.t3r_error_text(status)))
+
+
+def value_named(kind: str, name_of: Callable[[int], Any], count: int, name: str) -> int:
+    """The value of an enumeration that the library gives this name.
+
+    Raises ValueError, which lists the names, where there is none.
+    """
+    names = {text_of(name_of(value)): value for value in range(count)}
+    names.pop("", None)
+    if name not in names:
+        raise ValueError(f"{kind} is one of {', '.join(names)}, not {name!r}")
+    return names[name]
+
+
+def address(array: "np.ndarray[Any, Any]", kind: str) -> Any:
+    """A C pointer to the first element. The array must outlive its use."""
+    return ffi.cast(kind, array.__array_interface__["data"][0])
+
+
+def dtype_of(name: str) -> "np.dtype[Any]":
+    """The structured dtype with the layout of a C struct of numbers."""
+    ctype = ffi.typeof(name)
+    names, formats, offsets = [], [], []
+    for field, told in ctype.fields:
+        length = (told.type.length,) if told.type.kind == "array" else ()
+        element = told.type.item if length else told.type
+        names.append(field)
+        formats.append((np.dtype(element.cname.removesuffix("_t")), length))
+        offsets.append(told.offset)
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": ffi.sizeof(name)})
+
+
+def borrowed(pointer: Any, count: int, owner: Any, dtype: "np.dtype[Any]") -> "np.ndarray[Any, Any]":
+    """`count` elements at a C pointer as a read-only array, which keeps `owner` alive."""
+    kept = ffi.gc(ffi.cast("uint8_t *", pointer), lambda _: owner)
+    array = np.frombuffer(ffi.buffer(kept, count * dtype.itemsize), dtype=dtype)
+    array.setflags(write=False)
+    return array

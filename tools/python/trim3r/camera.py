@@ -1,0 +1,167 @@
+"""Cameras: intrinsics, lens and pose."""
+import dataclasses
+from typing import Any, Sequence, Tuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._native import ffi, lib
+from .fixed import fixed
+
+_LENSES = {"none": lib.T3R_DISTORTION_NONE, "radtan": lib.T3R_DISTORTION_RADTAN,
+           "fisheye": lib.T3R_DISTORTION_FISHEYE}
+_COEFFICIENTS = {"none": 0, "radtan": 5, "fisheye": 4}
+_NEAR_ENOUGH = 1e-3  # of an entry of R R^T to the identity: poses of 32-bit floats pass, scaled or sheared ones do not
+
+
+@dataclasses.dataclass(frozen=True)
+class Camera:
+    """A calibrated, posed pinhole camera, for the pixel grid of the frame or picture that it comes with.
+
+    It holds the library's fixed-point numbers, so that cameras out of a recording keep their bits. `calibrated()` makes
+    one of floats. The properties are floats, too.
+
+    Attributes
+    ----------
+    fx_q16, fy_q16 : int
+        Focal lengths in pixels, in 1/2**16; from 8 up to, but not including, 16384 pixels.
+    cx_q16, cy_q16 : int
+        Principal point in pixels, in 1/2**16; between -16384 and 16384 pixels.
+    position_q32 : tuple of 3 int
+        The centre in world units, in 1/2**32.
+    rotation_q30 : tuple of 4 int
+        Camera to world, a quaternion w x y z, in 1/2**30.
+    distortion : str
+        "none", "radtan" (k1 k2 p1 p2 k3) or "fisheye" (k1 k2 k3 k4).
+    distortion_q24 : tuple of 5 int
+        The coefficients of the lens, in 1/2**24; those that it lacks are 0.
+    """
+
+    fx_q16: int
+    fy_q16: int
+    cx_q16: int
+    cy_q16: int
+    position_q32: Tuple[int, int, int] = (0, 0, 0)
+    rotation_q30: Tuple[int, int, int, int] = (1 << 30, 0, 0, 0)
+    distortion: str = "none"
+    distortion_q24: Tuple[int, int, int, int, int] = (0, 0, 0, 0, 0)
+
+    @classmethod
+    def calibrated(cls, fx: float, fy: float, cx: float, cy: float, pose: ArrayLike, distortion: str = "none",
+                   coefficients: Sequence[float] = ()) -> "Camera":
+        """A camera of floats.
+
+        Parameters
+        ----------
+        fx, fy, cx, cy : float
+            Focal lengths and principal point in pixels; (0, 0) is the centre of the top-left pixel.
+        pose : array_like, shape (4, 4) or (3, 4)
+            Camera to world: a rotation, and the camera's centre in world units.
+        distortion : str
+            The lens: "none", "radtan" or "fisheye".
+        coefficients : sequence of float
+            Those of the lens in its order, at most as many as it has.
+
+        Raises
+        ------
+        ValueError
+            A number is not finite or out of range, or the pose is no rigid motion.
+        """
+        if distortion not in _LENSES:
+            raise ValueError(f"distortion is one of {', '.join(_LENSES)}, not {distortion!r}")
+        if len(coefficients) > _COEFFICIENTS[distortion]:
+            raise ValueError(f"distortion {distortion!r} has {_COEFFICIENTS[distortion]} coefficients, "
+                             f"not {len(coefficients)}")
+        matrix = _rigid(pose)
+        k = [fixed(c, 24, f"coefficient {i}") for i, c in enumerate(coefficients)] + [0] * (5 - len(coefficients))
+        x, y, z = (fixed(c, 32, "the pose's position", 64) for c in matrix[:3, 3])
+        w, i, j, l = (fixed(c, 30, "the pose's rotation") for c in _quaternion(matrix[:3, :3]))
+        return cls(fixed(fx, 16, "fx"), fixed(fy, 16, "fy"), fixed(cx, 16, "cx"), fixed(cy, 16, "cy"), (x, y, z),
+                   (w, i, j, l), distortion, (k[0], k[1], k[2], k[3], k[4]))
+
+    def at(self, pose: ArrayLike) -> "Camera":
+        """The same camera at another pose, (4, 4) or (3, 4), camera to world. Raises ValueError as calibrated()."""
+        posed = Camera.calibrated(self.fx, self.fy, self.cx, self.cy, pose)
+        return dataclasses.replace(self, position_q32=posed.position_q32, rotation_q30=posed.rotation_q30)
+
+    @property
+    def fx(self) -> float:
+        """Focal length across, in pixels."""
+        return self.fx_q16 / 65536
+
+    @property
+    def fy(self) -> float:
+        """Focal length down, in pixels."""
+        return self.fy_q16 / 65536
+
+    @property
+    def cx(self) -> float:
+        """Principal point across, in pixels."""
+        return self.cx_q16 / 65536
+
+    @property
+    def cy(self) -> float:
+        """Principal point down, in pixels."""
+        return self.cy_q16 / 65536
+
+    @property
+    def pose(self) -> "NDArray[np.float64]":
+        """Camera to world, shape (4, 4), in world units."""
+        w, x, y, z = np.array(self.rotation_q30) / np.linalg.norm(self.rotation_q30)
+        matrix = np.eye(4)
+        matrix[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                          [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                          [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+        matrix[:3, 3] = np.ldexp(np.array(self.position_q32, dtype=np.float64), -32)
+        return matrix
+
+    def native(self) -> Any:
+        """A t3r_camera. Raises ValueError where a number does not fit its field."""
+        try:
+            return ffi.new("t3r_camera *", {
+                "fx_q16": self.fx_q16, "fy_q16": self.fy_q16, "cx_q16": self.cx_q16, "cy_q16": self.cy_q16,
+                "distortion": _LENSES[self.distortion], "distortion_q24": self.distortion_q24,
+                "position_q32": self.position_q32, "rotation_q30": self.rotation_q30})
+        except (OverflowError, IndexError, KeyError) as error:
+            raise ValueError(f"camera: {error}") from error
+
+    @classmethod
+    def from_native(cls, camera: Any) -> "Camera":
+        """Of a t3r_camera."""
+        lens = next(name for name, value in _LENSES.items() if value == camera.distortion)
+        x, y, z = camera.position_q32
+        w, i, j, k = camera.rotation_q30
+        a, b, c, d, e = camera.distortion_q24
+        return cls(camera.fx_q16, camera.fy_q16, camera.cx_q16, camera.cy_q16, (x, y, z), (w, i, j, k), lens,
+                   (a, b, c, d, e))
+
+
+def _rigid(pose: ArrayLike) -> "NDArray[np.float64]":
+    """The pose as a matrix of 3 x 4, checked."""
+    matrix = np.asarray(pose, dtype=np.float64)
+    if matrix.shape not in ((4, 4), (3, 4)):
+        raise ValueError(f"a pose has the shape (4, 4) or (3, 4), not {matrix.shape}")
+    if not np.isfinite(matrix).all():
+        raise ValueError("the pose holds what is not a finite number")
+    if matrix.shape == (4, 4) and not np.array_equal(matrix[3], [0, 0, 0, 1]):
+        raise ValueError("the last row of a pose is 0 0 0 1")
+    rotation = matrix[:3, :3]
+    with np.errstate(over="ignore"):
+        far = np.abs(rotation @ rotation.T - np.eye(3)).max()
+    if not far <= _NEAR_ENOUGH or np.linalg.det(rotation) < 0:
+        raise ValueError("the pose's first three columns are no rotation")
+    return matrix[:3]
+
+
+def _quaternion(rotation: "NDArray[np.float64]") -> "NDArray[np.float64]":
+    """Of unit length, w x y z, w >= 0. The largest of the four is found first: the others are divided by it."""
+    m = rotation
+    trace = m[0, 0] + m[1, 1] + m[2, 2]
+    squares = np.array([1 + trace, *(1 + 2 * m[i, i] - trace for i in range(3))])
+    w = (m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1])
+    xy, xz, yz = m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], m[1, 2] + m[2, 1]
+    rows = np.array([[squares[0], *w], [w[0], squares[1], xy, xz],
+                     [w[1], xy, squares[2], yz], [w[2], xz, yz, squares[3]]])
+    row = rows[int(np.argmax(squares))]
+    unit: "NDArray[np.float64]" = row / np.linalg.norm(row) * (-1 if row[0] < 0 else 1)
+    return unit

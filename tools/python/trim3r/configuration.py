@@ -1,0 +1,42 @@
+"""Settings: a t3r_config of names and numbers."""
+from typing import Any, Mapping, Optional, Union
+
+from ._native import ffi, lib, text_of, value_named
+from .errors import InputError
+from .heads import Head
+from .image_stage import default_config
+
+Settings = Mapping[str, Union[int, str]]
+
+NAMES = {  # of settings that take a name, too
+    "allocation": (lib.t3r_allocation_name, lib.T3R_ALLOCATE_COUNT),
+    "depth": (lib.t3r_depth_name, lib.T3R_DEPTH_COUNT),
+    "wavelet": (lib.t3r_wavelet_name, lib.T3R_WAVELET_COUNT),
+}
+_GAUSSIANS_MOST = 1 << 24
+
+
+def configuration(width: int, height: int, views: int, gaussians: Optional[int], head: Head,
+                  settings: Settings) -> Any:
+    """A t3r_config of these settings.
+
+    Raises ValueError where one is out of its range, or there is no such setting.
+    """
+    most = min(width * height * max(views, 1), _GAUSSIANS_MOST) if gaussians is None else gaussians
+    config = default_config(width, height, views, most)
+    config.head, config.head_column_bytes = head.value, head.column_bytes(width)
+    for name, value in settings.items():
+        if name not in (field for field, _ in ffi.typeof("t3r_config").fields):
+            raise ValueError(f"there is no setting {name!r}: trim3r.h lists those of t3r_config")
+        if isinstance(value, str):
+            if name not in NAMES:
+                raise ValueError(f"{name} is a number, not {value!r}")
+            value = value_named(name, *NAMES[name], value)
+        try:
+            setattr(config, name, value)
+        except (OverflowError, TypeError) as error:
+            raise ValueError(f"{name}: {error}") from error
+    reason = lib.t3r_config_error(config)
+    if reason != ffi.NULL:
+        raise InputError(text_of(reason), "T3R_ERR_CONFIG")
+    return config

@@ -1,0 +1,124 @@
+"""Frames: one captured instant as arrays, handed to the library where they lie."""
+import dataclasses
+from typing import Any, Optional, Tuple, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._native import address, ffi, lib, value_named
+from .camera import Camera
+from .fixed import fixed
+
+_CHANNELS = {"rgb24": 3, "bgr24": 3, "grey": 1, "yuyv": 2, "uyvy": 2, "nv12": 1}
+_STEPS_MOST = 65535
+_STRIDE_LIMIT = 1 << 19  # bytes; rows lie less apart
+
+Colour = Union["NDArray[np.uint8]", Tuple["NDArray[np.uint8]", "NDArray[np.uint8]"]]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Frame:
+    """One captured instant. Its arrays are the caller's: they are borrowed, never copied or changed.
+
+    Rows may lie apart (a crop of a larger picture, every second row), but the pixels of a row must follow one another.
+    Pixels are read during the call that takes the frame, and not before or after it.
+
+    Attributes
+    ----------
+    colour : ndarray of uint8, shape (H, W, 3), (H, W, 2) or (H, W)
+        The picture: (H, W, 3) of "rgb24" and "bgr24"; (H, W, 2) of "yuyv" and "uyvy"; (H, W) of "grey". Of "nv12" a
+        pair: Y of (H, W), and U and V of (H / 2, W / 2, 2). Sides are 2..4096.
+    camera : Camera, optional
+        For the pixel grid of `colour`. None: not known.
+    depth : ndarray of uint16, float32 or float64, shape (h, w), optional
+        Depth along z, registered to the colour; its size may differ. uint16: steps of `depth_unit`, 0 = not measured.
+        Floats are world units; they become steps in a copy, and what is not a positive number in range is not measured.
+    depth_unit : float
+        The length of a step of depth in world units; 0.001 is a millimetre.
+    format : str
+        "rgb24", "bgr24", "grey", "yuyv", "uyvy" or "nv12".
+    """
+
+    colour: Colour = dataclasses.field(repr=False)
+    camera: Optional[Camera] = None
+    depth: Optional["NDArray[Any]"] = dataclasses.field(default=None, repr=False)
+    depth_unit: float = 0.001
+    format: str = "rgb24"
+
+    @property
+    def size(self) -> Tuple[int, int]:
+        """Width and height of the colour picture in pixels."""
+        plane = self.colour[0] if isinstance(self.colour, tuple) else self.colour
+        return plane.shape[1], plane.shape[0]
+
+    def native(self) -> Tuple[Any, Any]:
+        """A t3r_frame and what must outlive its use.
+
+        Raises ValueError where an array has another type, shape or layout than it must have.
+        """
+        frame = ffi.new("t3r_frame *")
+        frame.format = value_named("format", lib.t3r_pixel_format_name, lib.T3R_PIXEL_FORMAT_COUNT, self.format)
+        kept = [self._put_colour(frame)]
+        if self.depth is not None:
+            kept.append(self._put_depth(frame, self.depth))
+        return frame, kept
+
+    def _put_colour(self, frame: Any) -> Any:
+        planes = self.colour if isinstance(self.colour, tuple) else (self.colour,)
+        if len(planes) != (2 if self.format == "nv12" else 1):
+            raise ValueError("colour is a pair of arrays with the format nv12, and one array with any other")
+        for i, plane in enumerate(planes):
+            check_plane(f"colour of {self.format}", plane, np.dtype(np.uint8), 2 if i == 1 else _CHANNELS[self.format])
+            frame.planes[i] = address(plane, "const uint8_t *")
+            frame.stride_bytes[i] = plane.strides[0]
+        frame.height, frame.width = planes[0].shape[:2]
+        if len(planes) == 2 and planes[1].shape[:2] != (frame.height // 2, frame.width // 2):
+            raise ValueError(f"the second plane of nv12 has half the sides of the first, not {planes[1].shape}")
+        return planes
+
+    def _put_depth(self, frame: Any, depth: "NDArray[Any]") -> Any:
+        steps = _steps(depth, self.depth_unit) if _is_float(depth) else depth
+        check_plane("depth", steps, np.dtype("<u2"), 1)
+        frame.depth = address(steps, "const uint8_t *")
+        frame.depth_height, frame.depth_width = steps.shape
+        frame.depth_stride_bytes = steps.strides[0]
+        frame.depth_unit_q40 = _unit_q40(self.depth_unit)
+        return steps
+
+
+def _is_float(array: Any) -> bool:
+    return isinstance(array, np.ndarray) and array.dtype.kind == "f"
+
+
+def _unit_q40(unit: float) -> int:
+    unit_q40 = fixed(unit, 40, "depth_unit", 48)
+    if unit_q40 < 1:
+        raise ValueError(f"depth_unit is {unit}, not a positive length")
+    return unit_q40
+
+
+def _steps(depth: "NDArray[Any]", unit: float) -> "NDArray[np.uint16]":
+    """Depth in world units as whole steps, 0 where there is none or it is out of range."""
+    _unit_q40(unit)
+    with np.errstate(all="ignore"):
+        steps = np.rint(depth.astype(np.float64) / unit)
+        return np.where((steps >= 1) & (steps <= _STEPS_MOST), steps, 0).astype("<u2")
+
+
+def check_plane(what: str, array: Any, dtype: "np.dtype[Any]", channels: int) -> None:
+    """Raises ValueError unless the array is a picture of that type whose rows have no gaps inside."""
+    if not isinstance(array, np.ndarray):
+        raise ValueError(f"{what} is a {type(array).__name__}, not an array")
+    if array.dtype != dtype:
+        raise ValueError(f"{what} has elements of {array.dtype}, not {dtype.name}")
+    wanted = "(H, W)" if channels == 1 else f"(H, W, {channels})"
+    if array.ndim != (2 if channels == 1 else 3) or (channels > 1 and array.shape[2] != channels):
+        raise ValueError(f"{what} has the shape {array.shape}, not {wanted}")
+    sides = array.shape[:2]
+    if not all(1 <= side <= lib.T3R_MAX_SIDE for side in sides):
+        raise ValueError(f"{what} has the shape {array.shape}: its sides are not 1..{lib.T3R_MAX_SIDE}")
+    pixel = channels * dtype.itemsize
+    inside = (pixel,) if channels == 1 else (pixel, dtype.itemsize)
+    if array.strides[1:] != inside or not pixel * sides[1] <= array.strides[0] < _STRIDE_LIMIT:
+        raise ValueError(f"the pixels of a row of {what} do not follow one another in memory, or its rows overlap, run "
+                         f"upwards or lie {_STRIDE_LIMIT} bytes apart: numpy.ascontiguousarray() makes a copy")
