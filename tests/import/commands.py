@@ -129,24 +129,7 @@ def test_bad_folders():
     refused("skewed", scene(f"{work}/b4", change=frame(transform_matrix=[[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0],
                                                                           [0, 0, 0, 1]])),
             where + ["frames[1]: transform_matrix", "orthonormal"])
-    refused("no_picture", scene(f"{work}/b5", change=frame(file_path="x.png")), ["frame 1: ", "x.png: No such file"])
-    refused("no_depth", scene(f"{work}/b6", change=frame(depth_path="x.png")), ["frame 1: ", "x.png: No such file"])
     refused("size", scene(f"{work}/b7", change=frame(w=41)), ["frame 1: c1.png: w: 41", "40 pixels wide"])
-
-    def cut(folder, name, keep):
-        with open(f"{folder}/{name}", "rb") as file:
-            content = file.read()
-        write(f"{folder}/{name}", content[:int(len(content) * keep)])
-        return folder
-
-    refused("cut_picture", cut(scene(f"{work}/b8"), "c2.png", 0.6), ["frame 2: ", "c2.png: PNG: "])
-    refused("cut_depth", cut(scene(f"{work}/b9"), "d0.png", 0.6), ["frame 0: ", "d0.png: PNG: "])
-    folder = scene(f"{work}/b10")
-    write(f"{folder}/c1.png", b"\xff\xd8\xff\xe0\0\x10JFIF\0\1\1\0\0\1\0\1\0\0")
-    refused("cut_jpeg", folder, ["frame 1: ", "c1.png: JPEG: "])
-    folder = scene(f"{work}/b11")
-    write(f"{folder}/d1.png", png(40, 30, 8, 1))
-    refused("depth_bits", folder, ["frame 1: ", "d1.png: 8-bit grey, but depth is a 16-bit grey PNG"])
     folder = scene(f"{work}/b12", change=lambda top: [top.pop(k) for k in ("w", "h", "cx", "cy")])
     write(f"{folder}/c2.png", png(44, 30))
     refused("sizes_differ", folder, ["frame 2: c2.png: 44x30 pixels, but frame 0 has 40x30; give --size"])

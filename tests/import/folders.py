@@ -231,7 +231,6 @@ def test_colmap_refusals():
     refused(changed("unknown", "cameras.txt", "PINHOLE", "WIDE"), "an unknown camera model")
     refused(changed("no_camera", "cameras.txt", "7 ", "8 "), "camera 7 of view_0.png: it is not among the cameras")
     refused(changed("sides", "cameras.txt", " 64 48 ", " 65 48 "), "w: 65, but the picture is 64 pixels wide")
-    refused(changed("gone", "images.txt", "view_1.png", "view_9.png"), "images/view_9.png: No such file")
     path = colmap("cut", lists=colmap_binary)
     with open(f"{path}/sparse/0/images.bin", "rb") as file:
         data = file.read()
@@ -332,9 +331,126 @@ def test_pose_file_refusals():
     refused(changed("word", "pose/1.txt", "1 0 0 x"), "pose/1.txt: a word that is no number")
     refused(changed("skewed", "pose/1.txt", "1 0.1 0 0 0 1 0 0 0 0 1 0 0 0 0 1"), "pose/1.txt: ")
     refused(changed("no_lens", "intrinsic/intrinsic_color.txt", "0 0 0 0 0 0 0 0 1"), "not a camera matrix")
+    refused(changed("mirror", "intrinsic/extrinsic_depth.txt", "-1 0 0 0 0 1 0 0 0 0 1 0"), "extrinsic_depth.txt: the rotation mirrors")
+    path = changed("apart", "intrinsic/extrinsic_depth.txt", "1 0 0 1 0 1 0 0 0 0 1 0")
+    os.remove(f"{path}/intrinsic/intrinsic_depth.txt")
+    refused(path, "depth's has no intrinsic_depth.txt")
+
+
+def test_depth_from_beside():
+    """A depth camera 4 cm to the right of colour's, both a step forward of the device: a plane at 2 m moves by its disparity."""
+    path = pose_files("beside")
+    k = ROOM["camera_info"][0]
+    colour, beside = np.eye(4), np.eye(4)
+    colour[2, 3] = beside[2, 3] = 0.01
+    beside[0, 3] = 0.04
+    write(f"{path}/intrinsic/extrinsic_color.txt", matrix_text(colour))
+    write(f"{path}/intrinsic/extrinsic_depth.txt", matrix_text(beside))
+    depth = np.full((HEIGHT, WIDTH), 2000, np.uint16)
+    depth[:, :WIDTH // 2] = 4000
+    for i in range(FRAMES):
+        write(f"{path}/depth/{i}.png", png(depth))
+    seen = imported(path)[1]["depth"][0]
+    check(set(np.unique(seen)) == {0, 2000, 4000}, f"beside: {np.unique(seen)}")
+    # what depth sees in its middle lies to the right of colour's
+    edge = np.argmax(seen == 2000, axis=1)
+    want = WIDTH / 2 + k[0, 0] * 0.04 / 2
+    check(abs(edge - want).max() <= 1, f"beside: the edge is at {edge}, not {want}")
+
+
+def seven_scenes(path, lens=True):
+    """As 7-Scenes has a sequence: all in one folder, and 65535 where nothing was measured."""
+    pictures(path, "frame-{:06d}.color.png")
+    for i, pose in enumerate(ROOM["pose"]):
+        depth = np.array(ROOM["depth"][i])
+        depth[depth == 0] = 65535
+        depth[0, :5] = 65535
+        write(f"{path}/frame-{i:06d}.depth.png", png(depth))
+        write(f"{path}/frame-{i:06d}.pose.txt", matrix_text(pose))
+    if lens:
+        write(f"{path}/camera-intrinsics.txt", matrix_text(np.array(ROOM["camera_info"][0])))
+    return path
+
+
+def test_seven_scenes():
+    _, got = imported(seven_scenes("seven"))
+    holes = np.array(ROOM["depth"])
+    holes[:, 0, :5] = 0
+    check(np.array_equal(got["depth"], holes), "7-Scenes: depth")
+    same("7-Scenes", got | {"depth": ROOM["depth"]})
+    refused(seven_scenes("seven_blind", False), "no camera-intrinsics.txt; give --intrinsics fx,fy,cx,cy, which are 585,585,320,240")
+    write("sequences/camera-intrinsics.txt", matrix_text(np.array(ROOM["camera_info"][0])))
+    same("a sequence below its lens", imported(seven_scenes("sequences/seq-01", False))[1] | {"depth": ROOM["depth"]})
+
+
+# --- dense maps of COLMAP --------------------------------------------------------------------------------------------
+
+
+def dense(path, ending="geometric", change=lambda data: data):
+    """As COLMAP's patch_match_stereo leaves it; lengths are those of the room."""
+    path = colmap(path, "sparse", colmap_binary)
+    for i in range(FRAMES):
+        metres = (ROOM["depth"][i] * UNIT).astype("<f4")
+        write(f"{path}/stereo/depth_maps/view_{i}.png.{ending}.bin", change(b"%d&%d&1&" % (WIDTH, HEIGHT) + metres.tobytes()))
+    return path
+
+
+def test_dense_depth():
+    for ending in ("geometric", "photometric"):
+        report, got = imported(dense(ending, ending), "--depth-unit", str(UNIT))
+        same(f"dense maps, {ending}", got)
+        check(report["depth_frames"] == FRAMES, f"dense maps: {report}")
+    path = dense("own_unit")
+    _, got = imported(path)
+    unit = json.loads(run("info", f"{path}.mcap", "--json")[1])["depth_unit"]
+    off = np.abs(np.array(got["depth"]) * unit - np.array(ROOM["depth"]) * UNIT)
+    check(off.max() <= unit, f"dense maps in steps of {unit}: off by {off.max()}")
+    path = colmap("above")
+    os.makedirs(f"{path}/dense/stereo/depth_maps")
+    check("dense holds depth maps of undistorted pictures; import above/dense reads them" in imported(path)[0]["remarks"], "dense below")
+    for name, change, why in (("head", lambda d: b"x" + d, "does not begin with width&height&1&"),
+                              ("channels", lambda d: d.replace(b"&1&", b"&3&", 1), "does not begin with"),
+                              ("huge", lambda d: b"99999999999&" + d, "does not begin with"),
+                              ("cut", lambda d: d[:-1], "fewer bytes"), ("long", lambda d: d + b"x", "more bytes"),
+                              ("empty", lambda d: b"", "does not begin with")):
+        refused(dense(f"dense_{name}", change=change), f"view_0.png.geometric.bin: ")
+        refused(f"dense_{name}", why)
+
+
+# --- pictures that cannot be read ------------------------------------------------------------------------------------
+
+
+def test_unreadable():
+    """One bad picture is named and left out, with triplets of it; bad depth is left out alone. All bad: refused."""
+    triplets = [{"context": [0, 2], "target": 1}, {"context": [0, 1], "target": 2}]
+    jpeg = b"\xff\xd8\xff\xe0\0\x10JFIF\0\1\1\0\0\1\0\1\0\0"
+    for name, content, why in (("cut", png(ROOM["image"][1])[:900], "PNG: "), ("jpeg", jpeg, "JPEG: "), ("none", None, "No such file")):
+        path = transforms(f"bad_{name}", trim3r_triplets=triplets + [{"context": [0, 2], "target": 0}])
+        bad = f"{path}/images/frame_00001.png"
+        os.remove(bad) if content is None else write(bad, content)
+        report, got = imported(path)
+        check((report["frames"], report["triplets"], report["skipped"]) == (2, 1, 1), f"{name}: {report}")
+        check(report["left_out"][0].startswith(f"{bad}: {why}"), f"{name}: {report}")
+        check("2 triplets are left out with frames of theirs" in report["remarks"], f"{name}: {report}")
+        check(np.array_equal(got["image"], [ROOM["image"][i] for i in (0, 2)]), f"{name}: other pictures")
+        told = json.loads(run("info", f"{path}.mcap", "--json")[1])["triplets"]
+        check([t["context"] + [t["target"]] for t in told] == [[0, 1, 0]], f"{name}: {told}")
+    for i in (0, 2):
+        os.remove(f"bad_none/images/frame_{i:05d}.png")
+    os.remove("bad_none.mcap")
+    refused("bad_none", "frame_00000.png: No such file")
+    path = transforms("bad_depth")
+    write(f"{path}/depth/00001.png", png(ROOM["depth"][1])[:900])
+    report, got = imported(path)
+    check((report["frames"], report["depth_frames"]) == (3, 2), f"bad depth: {report}")
+    check(any(r.startswith(f"depth is left out: {path}/depth/00001.png: PNG: ") for r in report["remarks"]), f"bad depth: {report}")
+    for i in range(FRAMES):
+        write(f"{path}/depth/{i:05d}.png", png(ROOM["image"][0]))
+    os.remove("bad_depth.mcap")
+    refused(path, "8-bit colour, but depth is a 16-bit grey PNG")
     path = pose_files("no_picture")
     os.remove(f"{path}/color/1.png")
-    refused(path, "pose/1.txt: there is no picture of that name in color")
+    check(imported(path)[0]["left_out"] == ["pose/1.txt: there is no picture of that name"], "a pose without its picture")
 
 
 # --- Record3D --------------------------------------------------------------------------------------------------------
@@ -374,10 +490,11 @@ def test_record3d():
     refused(record3d("no_sides", change=lambda c: c.pop("dw")), "dw, dh: missing")
     refused(record3d("k_of_8", change=lambda c: c["K"].pop()), "K: not 9 finite numbers")
     refused(record3d("pose_of_6", change=lambda c: c["poses"][1].pop()), "poses[1]: not 7 finite numbers")
-    refused(record3d("more_poses", change=lambda c: c["poses"].append(c["poses"][0])), "rgbd/3.jpg: No such file")
+    report, _ = imported(record3d("more_poses", change=lambda c: c["poses"].append(c["poses"][0])))
+    check(report["left_out"] == ["more_poses/rgbd/3.jpg: No such file or directory"], f"more poses: {report}")
 
 
-TESTS = [test_record3d, test_pictures_without_pose, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
+TESTS = [test_record3d, test_pictures_without_pose, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_depth_from_beside, test_seven_scenes, test_dense_depth, test_unreadable, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

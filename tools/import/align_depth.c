@@ -58,7 +58,7 @@ int align_depth(const posed_frame *frame, const picture *colour, picture *depth,
                       .depth_width = depth->width,
                       .depth_height = depth->height,
                       .depth_stride_bytes = depth->width * 2,
-                      .depth_unit_q40 = UINT64_C(1) << 40}; /* of no matter: both cameras are at one place */
+                      .depth_unit_q40 = UINT64_C(1) << 40}; /* as from_depth has it */
     picture drawn = {.channels = 1, .bits = 16};
     register_depth_size(&seen, &drawn.width, &drawn.height);
     const size_t drawn_count = (size_t)drawn.width * drawn.height;
@@ -72,7 +72,7 @@ int align_depth(const posed_frame *frame, const picture *colour, picture *depth,
         for (size_t i = 0; i < count; i++) {
             t3r_store_le16(measured + 2 * i, samples[i]);
         }
-        register_depth(&seen, &rays, &to, &rigid_identity, drawn.samples);
+        register_depth(&seen, &rays, &to, &frame->from_depth, drawn.samples);
         samples = drawn.samples;
         for (size_t i = 0; i < drawn_count; i++) {
             samples[i] = t3r_load_le16((const uint8_t *)&samples[i]);

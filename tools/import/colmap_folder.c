@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "file_bytes.h"
+#include "import/colmap_depth.h"
 #include "import/colmap_model.h"
 #include "import/picture_folder.h"
 #include "reason.h"
@@ -141,7 +142,7 @@ static int add_depth(const char *directory, const posed_folder_options *options,
     depth_name(image, name);
     const char *place = place_of(directory, depth_places, sizeof depth_places / sizeof *depth_places, name);
     if (place == NULL) {
-        return 0;
+        return colmap_depth_find(directory, image, frame) == 0 ? 0 : t3r_reason(error, error_bytes, "out of memory");
     }
     if (options == NULL || options->depth_unit == 0) {
         return t3r_reason(error, error_bytes,
@@ -216,6 +217,8 @@ int colmap_folder_read(const char *directory, const posed_folder_options *option
     }
     if (status == 0) {
         tell_others(directory, place, out);
+        colmap_depth_set_unit(directory, out);
+        (void)colmap_depth_tell(directory, out);
         (void)text_list_add(&out->remarks, "lengths are in the model's own unit: COLMAP cannot know metres");
     }
     colmap_model_free(&model);

@@ -115,10 +115,8 @@ static int read_colour(const char *path, picture *out, char *error, size_t error
 
 static int read_depth(const char *path, const raw_depth *raw, picture *out, char *error, size_t error_bytes)
 {
-    if (raw->width != 0) {
-        return raw_depth_read(path, raw, out, error, error_bytes);
-    }
-    if (picture_read(path, out, error, error_bytes) != 0) {
+    if ((raw->kind != RAW_DEPTH_NONE ? raw_depth_read(path, raw, out, error, error_bytes)
+                                     : picture_read(path, out, error, error_bytes)) != 0) {
         return -1;
     }
     if (out->bits != 16 || out->channels != 1) {
@@ -129,6 +127,27 @@ static int read_depth(const char *path, const raw_depth *raw, picture *out, char
         return t3r_reason(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
     }
     return 0;
+}
+
+/* A picture of a frame; raw: it is one of depth. */
+static int read_named(const char *directory, const char *name, const raw_depth *raw, picture *out, char *error,
+                      size_t error_bytes)
+{
+    char *path = find_picture(directory, name);
+    const int status = path == NULL  ? t3r_reason(error, error_bytes, "out of memory")
+                       : raw == NULL ? read_colour(path, out, error, error_bytes)
+                                     : read_depth(path, raw, out, error, error_bytes);
+    free(path);
+    return status;
+}
+
+/* Samples that stand for no depth become 0. */
+static void forget_samples(picture *depth, uint16_t no_depth)
+{
+    uint16_t *samples = depth->samples;
+    for (size_t i = 0; i < (size_t)depth->width * depth->height; i++) {
+        samples[i] = samples[i] == no_depth ? 0 : samples[i];
+    }
 }
 
 /* ---- adapting -------------------------------------------------------------------------------------------------- */
@@ -219,17 +238,29 @@ static int check_camera(const t3r_recorded_camera *camera, const char *name, cha
                                              : "distortion: the coefficients fold more than half of the picture");
 }
 
+int import_check_picture(const char *directory, const posed_frame *frame, char *error, size_t error_bytes)
+{
+    picture colour = {0};
+    const int status = read_named(directory, frame->image, NULL, &colour, error, error_bytes);
+    picture_free(&colour);
+    return status;
+}
+
+int import_check_depth(const char *directory, const posed_frame *frame, char *error, size_t error_bytes)
+{
+    picture depth = {0};
+    const int status = read_named(directory, frame->depth, &frame->depth_raw, &depth, error, error_bytes);
+    picture_free(&depth);
+    return status;
+}
+
 static int adapt(const char *directory, const posed_frame *frame, uint32_t width, uint32_t height, picture *colour,
                  picture *depth, import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
 {
-    char *path = find_picture(directory, frame->image);
-    int status =
-        path == NULL ? t3r_reason(error, error_bytes, "out of memory") : read_colour(path, colour, error, error_bytes);
-    free(path);
-    if (status != 0) {
-        return -1;
-    }
     char reason[256];
+    if (read_named(directory, frame->image, NULL, colour, error, error_bytes) != 0) {
+        return IMPORT_UNREADABLE;
+    }
     if (posed_frame_camera(frame, colour->width, colour->height, &out->camera, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
     }
@@ -260,12 +291,11 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
         return 0;
     }
     if (!made) {
-        path = find_picture(directory, frame->depth);
-        status = path == NULL ? t3r_reason(error, error_bytes, "out of memory")
-                              : read_depth(path, &frame->depth_raw, depth, error, error_bytes);
-        free(path);
-        if (status != 0) {
-            return -1;
+        if (read_named(directory, frame->depth, &frame->depth_raw, depth, error, error_bytes) != 0) {
+            return IMPORT_UNREADABLE;
+        }
+        if (frame->no_depth != 0) {
+            forget_samples(depth, frame->no_depth);
         }
         if (frame->depth_lens.fx != 0 && align_depth(frame, colour, depth, reason, sizeof reason) != 0) {
             return t3r_reason(error, error_bytes, "%s: its lens: %s", frame->depth, reason);

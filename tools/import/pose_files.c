@@ -1,6 +1,5 @@
-/* pose/N.txt: camera to world, 4x4 or 3x4, x right, y down, z forward. color/N.jpg: the picture. depth/N.png: 16-bit,
- * in millimetres if nothing else is said. intrinsic/intrinsic_color.txt and intrinsic_depth.txt: 4x4 or 3x3, pixel (0,
- * 0) being the centre of the top-left pixel. */
+/* A pose is camera to world, 4x4 or 3x4, x right, y down, z forward. Depth pictures have 16 bits, in millimetres if
+ * nothing else is said. Camera matrices are 4x4 or 3x3, pixel (0, 0) being the centre of the top-left pixel. */
 #define _GNU_SOURCE /* versionsort() */
 #include "import/pose_files.h"
 
@@ -15,61 +14,30 @@
 #include "import/align_depth.h"
 #include "import/frame.h"
 #include "import/matrix_text.h"
+#include "import/pose_layout.h"
 #include "import/pose_matrix.h"
 #include "reader_limits.h"
 #include "reason.h"
 
 #define PATH_BYTES 1024
+#define ERROR_BYTES 1024
 #define FILE_BYTES 65536u /* of a matrix */
 #define MILLIMETRE 0.001
 
-static const char *const pose_folders[] = {"pose", "poses", NULL};
-static const char *const colour_folders[] = {"color", "colour", "rgb", "image", "images", NULL};
-static const char *const depth_folders[] = {"depth", "depths", NULL};
-static const char *const colour_endings[] = {".jpg", ".png", ".jpeg", NULL};
-static const char *const depth_endings[] = {".png", NULL};
-static const char *const colour_lenses[] = {"intrinsic/intrinsic_color.txt",
-                                            "intrinsic/intrinsic.txt",
-                                            "intrinsic_color.txt",
-                                            "intrinsics.txt",
-                                            "intrinsic.txt",
-                                            "camera-intrinsics.txt",
-                                            NULL};
-static const char *const depth_lenses[] = {"intrinsic/intrinsic_depth.txt", "intrinsic_depth.txt", NULL};
+/* Where a camera stands among those of the device: its own frame to one that both share. */
+static const char *const colour_places[] = {"intrinsic/extrinsic_color.txt", "extrinsic_color.txt", NULL};
+static const char *const depth_places[] = {"intrinsic/extrinsic_depth.txt", "extrinsic_depth.txt", NULL};
 
-static int is_text(const struct dirent *entry)
-{
-    const char *dot = strrchr(entry->d_name, '.');
-    return entry->d_name[0] != '.' && dot != NULL && strcmp(dot, ".txt") == 0;
-}
-
-/* The first of the names that is there; NULL: none. */
-static const char *first_of(const char *directory, const char *const *names)
-{
-    while (*names != NULL && !posed_exists(directory, *names)) {
-        names++;
-    }
-    return *names;
-}
-
-/* The file of that name in one of the folders, on the heap; NULL: there is none. */
-static char *find(const char *directory, const char *const *folders, const char *stem, const char *const *endings)
-{
-    for (; *folders != NULL; folders++) {
-        for (const char *const *ending = endings; *ending != NULL; ending++) {
-            char path[PATH_BYTES];
-            snprintf(path, sizeof path, "%s/%s%s", *folders, stem, *ending);
-            if (posed_exists(directory, path)) {
-                return strdup(path);
-            }
-        }
-    }
-    return NULL;
-}
+/* What all frames of a folder share. */
+typedef struct cameras {
+    posed_intrinsics colour, depth; /* depth.fx 0: it sees what colour sees */
+    rigid from_depth;               /* to colour's camera, in steps of depth */
+    bool is_moved;                  /* from_depth is not nothing */
+} cameras;
 
 bool pose_files_are_there(const char *directory)
 {
-    return first_of(directory, pose_folders) != NULL && first_of(directory, colour_folders) != NULL;
+    return pose_layout_of(directory) != NULL;
 }
 
 /* A matrix as 4x4; rows and columns that the file lacks are those of the unit matrix. columns: 3 of a lens, 4 of a
@@ -117,42 +85,81 @@ static int read_lens(const char *directory, const char *name, posed_intrinsics *
 }
 
 /* Colour's lens, and depth's where it has one of its own. */
-static int read_lenses(const char *directory, const posed_folder_options *options, posed_intrinsics *colour,
-                       posed_intrinsics *depth, char *error, size_t error_bytes)
+static int read_lenses(const char *directory, const pose_layout *layout, const posed_folder_options *options,
+                       cameras *out, char *error, size_t error_bytes)
 {
-    const char *colour_name = first_of(directory, colour_lenses), *depth_name = first_of(directory, depth_lenses);
-    *depth = (posed_intrinsics){0};
+    const char *colour = pose_layout_first(directory, layout->colour_lenses);
+    const char *depth = pose_layout_first(directory, layout->depth_lenses);
     if (options != NULL && options->intrinsics_count != 0) {
         double numbers[9] = {0};
         memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
-        *colour = posed_intrinsics_of(numbers);
-    } else if (colour_name == NULL) {
-        return t3r_reason(error, error_bytes,
-                          "%s: no intrinsic/intrinsic_color.txt; give --intrinsics fx,fy,cx,cy[,k1,k2,p1,p2,k3]",
-                          directory);
-    } else if (read_lens(directory, colour_name, colour, error, error_bytes) != 0) {
+        out->colour = posed_intrinsics_of(numbers);
+    } else if (colour == NULL) {
+        return t3r_reason(error, error_bytes, "%s: %s", directory, layout->lens_hint);
+    } else if (read_lens(directory, colour, &out->colour, error, error_bytes) != 0) {
         return -1;
     }
-    return depth_name != NULL ? read_lens(directory, depth_name, depth, error, error_bytes) : 0;
+    return depth != NULL ? read_lens(directory, depth, &out->depth, error, error_bytes) : 0;
 }
 
-/* 1: its pose was lost. */
-static int add_frame(const char *directory, const char *pose_name, const char *stem, posed_frame *frame, char *error,
-                     size_t error_bytes)
+/* The first of the files that is there; without one the camera stands at the device's own place. */
+static int read_place(const char *directory, const char *const *names, rigid *out, char *error, size_t error_bytes)
+{
+    double matrix[16];
+    const char *name = pose_layout_first(directory, names);
+    *out = rigid_identity;
+    if (name == NULL) {
+        return 0;
+    }
+    if (read_matrix(directory, name, 4, matrix, error, error_bytes) != 0) {
+        return -1;
+    }
+    const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, out->position, out->rotation);
+    return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s/%s: %s", directory, name, wrong);
+}
+
+/* Depth's camera among colour's: first to what both share, then back. */
+static int read_places(const char *directory, double depth_unit, cameras *out, char *error, size_t error_bytes)
+{
+    rigid colour, depth;
+    if (read_place(directory, colour_places, &colour, error, error_bytes) != 0 ||
+        read_place(directory, depth_places, &depth, error, error_bytes) != 0) {
+        return -1;
+    }
+    colour = rigid_inverse(&colour);
+    out->from_depth = rigid_compose(&colour, &depth);
+    for (int i = 0; i < 3; i++) {
+        out->is_moved =
+            out->is_moved || fabs(out->from_depth.position[i]) > 1e-6 || fabs(out->from_depth.rotation[1 + i]) > 1e-6;
+        out->from_depth.position[i] /= depth_unit;
+    }
+    return out->is_moved && out->depth.fx == 0
+               ? t3r_reason(error, error_bytes,
+                            "%s: extrinsic_*.txt part the cameras of colour and depth, but depth's has no "
+                            "intrinsic_depth.txt",
+                            directory)
+               : 0;
+}
+
+/* 1: it is left out, with the reason in error[]. */
+static int add_frame(const char *directory, const pose_layout *layout, const char *pose_name, const char *stem,
+                     posed_frame *frame, char *error, size_t error_bytes)
 {
     double matrix[16];
     if (read_matrix(directory, pose_name, 4, matrix, error, error_bytes) != 0) {
         return -1;
     }
-    frame->image = find(directory, colour_folders, stem, colour_endings);
-    frame->depth = find(directory, depth_folders, stem, depth_endings);
-    if (frame->image == NULL) {
-        return t3r_reason(error, error_bytes, "%s/%s: there is no picture of that name in %s", directory, pose_name,
-                          first_of(directory, colour_folders));
-    }
+    frame->image = pose_layout_find(directory, layout->colours, stem, layout->colour_endings);
+    frame->depth = pose_layout_find(directory, layout->depths, stem, layout->depth_endings);
+    frame->no_depth = layout->no_depth;
     frame->rotation[0] = 1;
+    if (frame->image == NULL) {
+        (void)t3r_reason(error, error_bytes, "%s: there is no picture of that name", pose_name);
+        return 1;
+    }
     for (int i = 0; i < 16; i++) {
         if (!isfinite(matrix[i])) {
+            (void)t3r_reason(error, error_bytes, "%s: %s is not finite: the pose was lost", frame->image, pose_name);
             return 1;
         }
     }
@@ -161,72 +168,93 @@ static int add_frame(const char *directory, const char *pose_name, const char *s
     return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s/%s: %s", directory, pose_name, wrong);
 }
 
-/* Where depth's lens sees what colour's does, it is forgotten. */
-static int compare_lenses(const char *directory, const posed_frame *frame, posed_intrinsics *depth, char *error,
+/* Where depth's lens sees what colour's does, from the same place, it is forgotten. */
+static int compare_lenses(const char *directory, const posed_frame *frame, cameras *shared, char *error,
                           size_t error_bytes)
 {
     uint32_t width, height, depth_width, depth_height;
     const posed_frame measured = {.image = frame->depth};
-    if (frame->depth == NULL || depth->fx == 0) {
+    if (frame->depth == NULL || shared->depth.fx == 0 || shared->is_moved) {
         return 0;
     }
     if (import_picture_size(directory, frame, &width, &height, error, error_bytes) != 0 ||
         import_picture_size(directory, &measured, &depth_width, &depth_height, error, error_bytes) != 0) {
-        return -1;
+        return 1;
     }
-    if (align_depth_same(&frame->intrinsics, depth, width, height, depth_width, depth_height)) {
-        *depth = (posed_intrinsics){0};
+    if (align_depth_same(&frame->intrinsics, &shared->depth, width, height, depth_width, depth_height)) {
+        shared->depth = (posed_intrinsics){0};
     }
     return 0;
 }
 
-static int add_all(const char *directory, const char *folder, struct dirent **entries, int count,
-                   const posed_folder_options *options, posed_folder *out, char *error, size_t error_bytes)
+static int add_all(const char *directory, const char *folder, const pose_layout *layout, struct dirent **entries,
+                   int count, const posed_folder_options *options, posed_folder *out, char *error, size_t error_bytes)
 {
-    posed_intrinsics colour, depth;
-    if (read_lenses(directory, options, &colour, &depth, error, error_bytes) != 0) {
+    cameras shared = {0};
+    char reason[ERROR_BYTES] = "";
+    if (read_lenses(directory, layout, options, &shared, error, error_bytes) != 0 ||
+        read_places(directory, out->depth_unit, &shared, error, error_bytes) != 0) {
         return -1;
     }
     const bool without_poses = options != NULL && options->without_poses;
     bool compared = false;
     for (int i = 0; i < count; i++) {
         char pose_name[PATH_BYTES], stem[256]; /* of a file name, which has 255 bytes at most */
-        snprintf(pose_name, sizeof pose_name, "%s/%s", folder, entries[i]->d_name);
-        snprintf(stem, sizeof stem, "%.*s", (int)(strlen(entries[i]->d_name) - strlen(".txt")), entries[i]->d_name);
+        const bool here = strcmp(folder, ".") == 0;
+        snprintf(pose_name, sizeof pose_name, "%s%s%s", here ? "" : folder, here ? "" : "/", entries[i]->d_name);
+        snprintf(stem, sizeof stem, "%.*s", (int)(strlen(entries[i]->d_name) - strlen(layout->pose_ending)),
+                 entries[i]->d_name);
         posed_frame *frame = &out->frames[out->frame_count++];
-        int status = add_frame(directory, pose_name, stem, frame, error, error_bytes);
+        int status = add_frame(directory, layout, pose_name, stem, frame, reason, sizeof reason);
         if (status < 0) {
-            return -1;
+            return t3r_reason(error, error_bytes, "%s", reason);
         }
-        if (status > 0 && !without_poses) {
-            (void)text_list_add(&out->left_out, "%s: %s is not finite: the pose was lost", frame->image, pose_name);
-            free(frame->image);
-            free(frame->depth);
-            *frame = (posed_frame){0};
+        if (status > 0 && (frame->image == NULL || !without_poses)) {
+            (void)text_list_add(&out->left_out, "%s", reason);
+            posed_frame_free(frame);
             out->frame_count--;
             continue;
         }
-        frame->intrinsics = colour;
-        if (!compared && compare_lenses(directory, frame, &depth, error, error_bytes) != 0) {
-            return -1;
-        }
-        compared = compared || frame->depth != NULL;
-        frame->depth_lens = depth;
+        frame->intrinsics = shared.colour;
+        /* pictures that cannot be read are told where they are read */
+        compared =
+            compared || (frame->depth != NULL && compare_lenses(directory, frame, &shared, reason, sizeof reason) == 0);
+        frame->depth_lens = shared.depth;
+        frame->from_depth = shared.from_depth;
     }
-    return out->frame_count > 0 ? 0 : t3r_reason(error, error_bytes, "%s/%s: no pose is finite", directory, folder);
+    return out->frame_count > 0
+               ? 0
+               : t3r_reason(error, error_bytes, "%s/%s: no pose is finite and has a picture; the last: %s", directory,
+                            folder, reason);
+}
+
+/* Frees the entries that are no poses, and returns the number of the others, which keep their order. */
+static int keep_poses(const pose_layout *layout, struct dirent **entries, int count)
+{
+    int kept = 0;
+    for (int i = 0; i < count; i++) {
+        if (pose_layout_is_pose(layout, entries[i]->d_name)) {
+            entries[kept++] = entries[i];
+        } else {
+            free(entries[i]);
+        }
+    }
+    return kept;
 }
 
 int pose_files_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                     size_t error_bytes)
 {
     struct dirent **entries;
-    const char *name = first_of(directory, pose_folders);
+    const pose_layout *layout = pose_layout_of(directory);
+    const char *name = pose_layout_first(directory, layout->poses);
     char *folder = posed_path(directory, name);
-    int count = folder == NULL ? -1 : scandir(folder, &entries, is_text, versionsort);
+    int count = folder == NULL ? -1 : scandir(folder, &entries, NULL, versionsort);
     free(folder);
     if (count < 0) {
         return t3r_reason(error, error_bytes, "%s/%s: %s", directory, name, strerror(errno));
     }
+    count = keep_poses(layout, entries, count);
     out->depth_unit = options != NULL && options->depth_unit != 0 ? options->depth_unit : MILLIMETRE;
     out->depth_unit_given = true;
     int status = 0;
@@ -236,8 +264,9 @@ int pose_files_read(const char *directory, const posed_folder_options *options, 
                                        : T3R_LIMIT_TEXT("more than ", T3R_LIMIT_FRAMES, " poses"));
     } else {
         out->frames = calloc((size_t)count, sizeof *out->frames);
-        status = out->frames == NULL ? t3r_reason(error, error_bytes, "out of memory")
-                                     : add_all(directory, name, entries, count, options, out, error, error_bytes);
+        status = out->frames == NULL
+                     ? t3r_reason(error, error_bytes, "out of memory")
+                     : add_all(directory, name, layout, entries, count, options, out, error, error_bytes);
     }
     for (int i = 0; i < count; i++) {
         free(entries[i]);

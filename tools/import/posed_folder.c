@@ -84,7 +84,7 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
     }
     return t3r_reason(
         error, error_bytes,
-        "%s: neither transforms.json nor rgb.txt and groundtruth.txt (TUM RGB-D) nor a model of COLMAP is "
-        "there",
+        "%s: neither transforms.json nor rgb.txt and groundtruth.txt (TUM RGB-D) nor a model of COLMAP nor poses as "
+        "texts (ScanNet, 7-Scenes) are there",
         directory);
 }

@@ -95,13 +95,19 @@ int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height
     return 0;
 }
 
+void posed_frame_free(posed_frame *frame)
+{
+    free(frame->image);
+    free(frame->depth);
+    free(frame->pointmap);
+    free(frame->confidence);
+    *frame = (posed_frame){0};
+}
+
 void posed_folder_close(posed_folder *folder)
 {
     for (uint32_t i = 0; i < folder->frame_count; i++) {
-        free(folder->frames[i].image);
-        free(folder->frames[i].depth);
-        free(folder->frames[i].pointmap);
-        free(folder->frames[i].confidence);
+        posed_frame_free(&folder->frames[i]);
     }
     free(folder->frames);
     free(folder->triplets);

@@ -8,6 +8,7 @@
 
 #include "cli/text_list.h"
 #include "import/raw_depth.h"
+#include "import/rigid.h"
 #include "recording.h"
 
 /* What a folder says of a camera; a number that it does not give is NAN. Pixels, with the principal point measured
@@ -25,10 +26,12 @@ typedef struct posed_frame {
     char *image;                 /* path, relative to the folder as the folder spells it */
     char *depth;                 /* likewise; NULL = none */
     raw_depth depth_raw;         /* how depth is stored where it is no picture */
+    uint16_t no_depth;           /* a sample of it that stands for none, as 0 does; 0: there is no other */
     char *pointmap, *confidence; /* likewise: depth made elsewhere (pointmaps.h) */
     bool posed;                  /* false: position 0, rotation none */
     posed_intrinsics intrinsics;
-    posed_intrinsics depth_lens; /* of the depth picture's camera, which is where colour's is; fx 0: it sees the same */
+    posed_intrinsics depth_lens; /* of the depth picture's camera; fx 0: it sees what colour's sees */
+    rigid from_depth;            /* from that camera to colour's, in steps of depth; only where depth_lens has an fx */
     double position[3];          /* camera centre, world units */
     double rotation[4];          /* unit quaternion w x y z; camera (x right, y down, z forward) to world */
 } posed_frame;
@@ -55,6 +58,8 @@ typedef struct posed_folder_options {
 } posed_folder_options;
 
 void posed_folder_close(posed_folder *folder);
+/* What one frame holds; the frame becomes empty. */
+void posed_frame_free(posed_frame *frame);
 
 /* The frame's camera for a picture of width x height pixels, fit for the recorder: sizes agree, gaps filled (focal
  * length from the field of view, principal point in the middle), numbers finite. Pixel (0, 0) is the centre of the

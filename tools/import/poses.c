@@ -62,8 +62,10 @@ static int estimate(const char *directory, posed_folder *folder, poses_source so
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         char reason[512];
         cli_progress("looking for corners", i, folder->frame_count);
-        if (look_at(directory, folder, i, &views[i], &cameras[i], reason, sizeof reason) != 0) {
-            return t3r_reason(error, error_bytes, "frame %u: %s", i, reason);
+        const int status = look_at(directory, folder, i, &views[i], &cameras[i], reason, sizeof reason);
+        if (status != 0) {
+            (void)t3r_reason(error, error_bytes, "frame %u: %s", i, reason);
+            return status;
         }
     }
     if (poses_estimate(views, folder->frame_count, source, NULL, poses, accounts, error, error_bytes) != 0) {

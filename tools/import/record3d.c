@@ -224,7 +224,7 @@ static int add_depth(const char *directory, const layout *l, uint32_t index, con
                           l->metadata, name);
     }
     frame->depth = strdup(name);
-    frame->depth_raw = (raw_depth){sides[0], sides[1], MILLIMETRE};
+    frame->depth_raw = (raw_depth){RAW_DEPTH_PLAIN, sides[0], sides[1], MILLIMETRE};
     return frame->depth != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
 }
 
@@ -250,7 +250,8 @@ static int add_names(const char *directory, const layout *l, const uint32_t dept
     if (packed > 0) {
         (void)text_list_add(&out->remarks,
                             strcmp(l->depth_ending, ".exr") == 0
-                                ? "depth of %u frames is left out: depth/N.exr is OpenEXR, which is not read"
+                                ? "depth of %u frames is left out: depth/N.exr is OpenEXR, which is not read; "
+                                  "export the .r3d and unpack its depth by lzfse -decode"
                                 : "depth of %u frames is left out: rgbd/N.depth is packed with LZFSE, which is not "
                                   "read; lzfse -decode unpacks it",
                             packed);

@@ -21,6 +21,7 @@
 #include "reason.h"
 #include "recording.h"
 #include "import/recording_import.h"
+#include "import/unreadable.h"
 #include "trim3r.h"
 #include "cli/whole_file.h"
 
@@ -181,12 +182,14 @@ static const struct argp parser = {
         "  rgb.txt, groundtruth.txt and optionally depth.txt (TUM RGB-D); pictures\n"
         "    without a pose are left out\n"
         "  sparse/0 or sparse with a model of COLMAP, text or binary, and images; depth\n"
-        "    with 16-bit PNG of their names, if --depth-unit is given\n"
+        "    with 16-bit PNG of their names, if --depth-unit is given, else\n"
+        "    stereo/depth_maps as COLMAP's patch_match_stereo leaves them\n"
         "  metadata and rgbd, an unpacked .r3d of Record3D; depth must not be packed\n"
         "  pose, color, intrinsic and optionally depth (ScanNet): a text for each pose\n"
+        "  frame-N.pose.txt, .color.png, .depth.png (7-Scenes, 3DMatch)\n"
         "  pictures alone, in the order of their names, with --poses estimate or\n"
         "    --pointmaps\n"
-        "Frames get stamps 1/30 s apart.\n"
+        "Frames get stamps 1/30 s apart. Pictures that cannot be read are left out and named.\n"
         "\n"
         "A pointmap, as DUSt3R, MASt3R and VGGT make them, is a point for each pixel of a frame, in the first "
         "frame's camera, x right, y down, z forward. It is the file pointmap_path of a frame, or one of N in the "
@@ -246,7 +249,7 @@ static int write_frame(t3r_recorder *recorder, const options *o, material *m, ui
     int status =
         import_frame(o->directory, frame, &depth, o->width, o->height, &buffers, &recorded, reason, sizeof reason);
     if (status != 0) {
-        t3r_reason(error, ERROR_BYTES, "%s: frame %u: %.700s", o->directory, index, reason);
+        (void)t3r_reason(error, ERROR_BYTES, "%s: frame %u: %.700s", o->directory, index, reason);
     } else if (index > 0 && (recorded.width != t->width || recorded.height != t->height)) {
         status = t3r_reason(error, ERROR_BYTES, "%s: frame %u: %s: %ux%u pixels, but frame 0 has %ux%u; give --size",
                             o->directory, index, frame->image, recorded.width, recorded.height, t->width, t->height);
@@ -274,8 +277,9 @@ static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, 
     }
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         cli_progress("importing", i, folder->frame_count);
-        if (write_frame(recorder, o, m, i, t, error) != 0) {
-            return -1;
+        const int status = write_frame(recorder, o, m, i, t, error);
+        if (status != 0) {
+            return status;
         }
     }
     if (t3r_recorder_end(recorder) != 0) {
@@ -402,18 +406,41 @@ static int prepare(const options *o, material *m, char *error)
                           "%s: --depth-unit is for pointmaps and for depth whose unit the folder does not tell",
                           o->directory);
     }
-    if (!estimate) {
-        return 0;
-    }
-    char reason[ERROR_BYTES - 300];
-    m->accounts = calloc(m->folder.frame_count, sizeof *m->accounts);
-    if (m->accounts == NULL) {
-        return t3r_reason(error, ERROR_BYTES, "out of memory");
-    }
-    if (import_estimate_poses(o->directory, &m->folder, o->poses, m->accounts, reason, sizeof reason) != 0) {
-        return t3r_reason(error, ERROR_BYTES, "%s: %s", o->directory, reason);
-    }
     return 0;
+}
+
+/* Poses, where they are to be estimated, and the recording: 0, IMPORT_UNREADABLE, or -1. */
+static int make(const options *o, material *m, totals *t, char *error)
+{
+    char reason[ERROR_BYTES - 300];
+    *t = (totals){0};
+    if (o->poses != POSES_GIVEN && m->pointmaps.count == 0) {
+        free(m->accounts);
+        m->accounts = calloc(m->folder.frame_count, sizeof *m->accounts);
+        if (m->accounts == NULL) {
+            return t3r_reason(error, ERROR_BYTES, "out of memory");
+        }
+        const int status =
+            import_estimate_poses(o->directory, &m->folder, o->poses, m->accounts, reason, sizeof reason);
+        if (status != 0) {
+            (void)t3r_reason(error, ERROR_BYTES, "%s: %s", o->directory, reason);
+            return status;
+        }
+    }
+    return write_recording(o, m, t, error);
+}
+
+/* The same without pictures that cannot be read, where there are such. Pointmaps go with all pictures. */
+static int make_of_what_can_be_read(const options *o, material *m, totals *t, char *error)
+{
+    char reason[ERROR_BYTES - 300];
+    const int status = make(o, m, t, error);
+    if (status != IMPORT_UNREADABLE || m->pointmaps.count > 0) {
+        return status;
+    }
+    return unreadable_leave_out(o->directory, &m->folder, reason, sizeof reason) == 0
+               ? make(o, m, t, error)
+               : t3r_reason(error, ERROR_BYTES, "%s: %s", o->directory, reason);
 }
 
 /* ---- a recording or a bag --------------------------------------------------------------------------------------- */
@@ -462,7 +489,7 @@ int command_import(int argc, char **argv)
     char error[ERROR_BYTES] = "";
     int status = prepare(&o, &m, error);
     if (status == 0) {
-        status = write_recording(&o, &m, &t, error);
+        status = make_of_what_can_be_read(&o, &m, &t, error);
     }
     cli_progress_end();
     if (status == 0 && t.depth_frames == 0) {
