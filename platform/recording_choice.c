@@ -216,23 +216,30 @@ static void mark_all(t3r_recording *recording)
     }
 }
 
+static void remark_reason(t3r_recording *recording, const char **reason, const char *why, const char *what)
+{
+    *reason = why;
+    t3r_recording_remark(recording, "%s: trim3r import %s", why, what);
+}
+
 /* What a frame that is read as it stands lacks. */
 static void remark_import(t3r_recording *recording)
 {
     const t3r_stream *colour = &recording->streams[recording->colour];
     const t3r_stream *depth = recording->depth == NO_STREAM ? NULL : &recording->streams[recording->depth];
     const t3r_stream *pose = recording->pose == NO_STREAM ? NULL : &recording->streams[recording->pose];
+    if (depth != NULL && !t3r_text_same(depth->frame_id, colour->frame_id)) {
+        remark_reason(recording, &recording->import_reason, "depth is of another frame than colour", "registers it");
+    }
     if (colour->compressed || (depth != NULL && depth->compressed)) {
-        t3r_recording_remark(recording, "images are compressed: trim3r import decodes them");
+        remark_reason(recording, &recording->import_reason, "images are compressed", "decodes them");
     }
     if (pose == NULL && t3r_recording_stream_for(recording, T3R_USE_TRANSFORMS) != NO_STREAM) {
-        t3r_recording_remark(recording, "poses are transforms: trim3r import composes them");
+        remark_reason(recording, &recording->import_pose_reason, "poses are transforms", "composes them");
     }
     if (pose != NULL && pose->child_frame_id.count > 0 && !t3r_text_same(pose->child_frame_id, colour->frame_id)) {
-        t3r_recording_remark(recording, "poses are of another frame than colour: trim3r import composes them");
-    }
-    if (depth != NULL && !t3r_text_same(depth->frame_id, colour->frame_id)) {
-        t3r_recording_remark(recording, "depth is of another frame than colour: trim3r import registers it");
+        remark_reason(recording, &recording->import_pose_reason, "poses are of another frame than colour",
+                      "composes them");
     }
 }
 

@@ -84,6 +84,7 @@ struct t3r_recording {
     t3r_triplet *triplets;
     uint32_t triplet_count;
     char note[T3R_NOTE_BYTES];
+    const char *import_reason, *import_pose_reason; /* static texts; NULL: none */
 };
 
 /* Adds a remark to the note. */

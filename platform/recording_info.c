@@ -18,6 +18,12 @@ t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index
     return index < recording->triplet_count ? recording->triplets[index] : (t3r_triplet){{0, 0}, 0};
 }
 
+const char *t3r_recording_import_reason(const t3r_recording *recording)
+{
+    const char *poses = recording->set_poses == NULL ? recording->import_pose_reason : NULL;
+    return recording->import_reason != NULL ? recording->import_reason : poses != NULL ? poses : "";
+}
+
 const char *t3r_recording_note(const t3r_recording *recording)
 {
     return recording->note;

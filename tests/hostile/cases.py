@@ -398,6 +398,30 @@ def colmap_pipe(path):
     os.mkfifo(f"{path}/sparse/0/images.bin")
 
 
+def dense(path, data):
+    """A model with one dense map."""
+    colmap(path)
+    for name, content in (("images/a.png", f.png(16, 16)), ("stereo/depth_maps/a.png.geometric.bin", data)):
+        os.makedirs(os.path.dirname(f"{path}/{name}"))
+        with open(f"{path}/{name}", "wb") as file:
+            file.write(content)
+
+
+@case("folder", "colmap-map-of-4096x4096", "fewer bytes than its sides need")
+def short_map(path):
+    dense(path, b"4096&4096&1&" + bytes(64))
+
+
+@case("folder", "colmap-map-of-2^64x2^64", "does not begin with")
+def wide_map(path):
+    dense(path, b"18446744073709551616&18446744073709551616&1&" + bytes(64))
+
+
+@case("folder", "colmap-map-of-100-mb", "too large")
+def long_map(path):
+    dense(path, b"16&16&1&" + bytes(100 * MIB))
+
+
 def pose_files(path, pose="1 0 0 0 0 1 0 0 0 0 1 0", lens="20 0 8 0 20 8 0 0 1", name="0"):
     """A folder of one pose, as ScanNet has them."""
     for folder, file, content in (("pose", f"{name}.txt", pose), ("intrinsic", "intrinsic_color.txt", lens)):
@@ -427,6 +451,31 @@ def far_pose(path):
 @case("folder", "pose-files-lens-of-1e300", "8 to 16384 pixels")
 def long_lens(path):
     return pose_files(path, lens="1e300 0 8 0 1e300 8 0 0 1")
+
+
+@case("folder", "pose-files-depth-far-beside", "2^30 or more")
+def far_depth(path):
+    pose_files(path)
+    with open(f"{path}/intrinsic/extrinsic_depth.txt", "w", encoding="utf-8") as text:
+        text.write("1 0 0 1e300 0 1 0 0 0 0 1 0")
+
+
+def seven_scenes(path, pose, name="frame-0"):
+    """A sequence of one frame, as 7-Scenes has them."""
+    os.makedirs(path)
+    for file, content in (("camera-intrinsics.txt", b"20 0 8 0 20 8 0 0 1"), (f"{name}.pose.txt", pose), (f"{name}.color.png", f.png(16, 16))):
+        with open(f"{path}/{file}", "wb") as out:
+            out.write(content)
+
+
+@case("folder", "sequence-of-escapes", "a word that is no number")
+def escaped_sequence(path):
+    seven_scenes(path, f.ESCAPE.encode(), f.ESCAPE)
+
+
+@case("folder", "sequence-of-100-mb", "too large")
+def long_sequence(path):
+    seven_scenes(path, b"0 " * (50 * MIB))
 
 
 @case("folder", "101000-pose-files", "more than 100000 poses")

@@ -160,14 +160,14 @@ static void test_depth_of_another_resolution(void **state)
     import_buffers_free(&buffers);
 }
 
-static void refuse(scratch *s, const posed_frame *frame, uint32_t side, const char *why)
+static void refuse(scratch *s, const posed_frame *frame, uint32_t side, int status_due, const char *why)
 {
     char error[512] = "";
     import_buffers buffers;
     t3r_recorded_frame out;
     int status = import_frame(s->directory, frame, NULL, side, side, &buffers, &out, error, sizeof error);
     import_buffers_free(&buffers);
-    assert_int_equal(status, -1);
+    assert_int_equal(status, status_due);
     if (strstr(error, why) == NULL) {
         fail_msg("'%s' does not say '%s'", error, why);
     }
@@ -180,27 +180,27 @@ static void test_bad_pictures_are_named(void **state)
     posed_frame frame = ramp_frame();
     char other[] = "other";
     frame.image = other;
-    refuse(s, &frame, 16, "/other: No such file");
+    refuse(s, &frame, 16, IMPORT_UNREADABLE, "/other: No such file");
     frame = ramp_frame();
     frame.depth = other;
-    refuse(s, &frame, 16, "/other: No such file");
+    refuse(s, &frame, 16, IMPORT_UNREADABLE, "/other: No such file");
     frame.depth = frame.image;
-    refuse(s, &frame, 16, "colour.png: 8-bit colour, but depth is a 16-bit grey PNG");
+    refuse(s, &frame, 16, IMPORT_UNREADABLE, "colour.png: 8-bit colour, but depth is a 16-bit grey PNG");
     frame = ramp_frame();
     frame.image = frame.depth;
-    refuse(s, &frame, 16, "depth.png: 16-bit grey, but a colour picture has 8 bits");
+    refuse(s, &frame, 16, IMPORT_UNREADABLE, "depth.png: 16-bit grey, but a colour picture has 8 bits");
     frame = ramp_frame();
     frame.intrinsics.width = 65;
-    refuse(s, &frame, 16, "colour.png: w: 65, but the picture is 64 pixels wide");
+    refuse(s, &frame, 16, -1, "colour.png: w: 65, but the picture is 64 pixels wide");
     frame = ramp_frame();
     frame.intrinsics.fx = 30000;
-    refuse(s, &frame, 0, "fl_x");
+    refuse(s, &frame, 0, -1, "fl_x");
     frame = ramp_frame();
     frame.intrinsics.cx = 1e6;
-    refuse(s, &frame, 0, "cx");
+    refuse(s, &frame, 0, -1, "cx");
     frame = ramp_frame();
     frame.intrinsics.coefficients[0] = 200;
-    refuse(s, &frame, 0, "distortion");
+    refuse(s, &frame, 0, -1, "distortion");
 }
 
 static void test_the_ending_may_be_left_out(void **state)

@@ -187,8 +187,10 @@ def robot(packing):
     check(other["registered"] == 0 and other["depth_frames"] == 4, "the camera's own frame needs no registration")
     info = json.loads(run(TRIM3R, "info", "robot.mcap", "--json").stdout)
     check("images are compressed" in info["note"] and "poses are transforms" in info["note"], info["note"])
-    refused = run(TRIM3R, "build", "robot.mcap", "--context", "0,2", "--keep", "10%", "-o", "s.ply", expect=1)
-    check("trim3r import" in refused.stderr, refused.stderr)
+    for command in (("build", "--context", "0,2", "--keep", "10%", "-o", "s.ply"), ("eval", "--keep", "10"), ("replay", ),
+                    ("eval", "--context", "0,2", "--target", "1", "--keep", "10")):
+        refused = run(TRIM3R, command[0], "robot.mcap", *command[1:], expect=1)
+        check("trim3r import robot.mcap -o NAME.mcap" in refused.stderr, f"{command}: {refused.stderr}")
     text = run(TRIM3R, "import", "robot.mcap", "-o", "out.mcap").stdout
     check("not used             /imu (sensor_msgs/msg/Imu, 1 messages): its type is none that is read" in text, text)
 

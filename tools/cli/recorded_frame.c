@@ -4,8 +4,20 @@
 
 #include "cli/cli.h"
 
+int recorded_frames_check(const t3r_recording *recording, const char *path)
+{
+    const char *reason = t3r_recording_import_reason(recording);
+    return reason[0] == '\0'
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "%s: %s; first make a recording of it: trim3r import %s -o NAME.mcap", path,
+                           reason, path);
+}
+
 int recorded_frame_read(const t3r_recording *recording, const char *path, uint32_t index, t3r_capture_frame *frame)
 {
+    if (recorded_frames_check(recording, path) != CLI_OK) {
+        return CLI_BAD_INPUT;
+    }
     uint32_t count = t3r_recording_frame_count(recording);
     if (index >= count) {
         return cli_error(CLI_BAD_INPUT,

@@ -77,8 +77,9 @@ int raw_depth_parse(const uint8_t *bytes, size_t count, const raw_depth *raw, pi
 
 static uint8_t *read_bytes(const char *path, const raw_depth *raw, size_t *count, char *error, size_t error_bytes)
 {
-    const size_t most = raw->kind == RAW_DEPTH_PLAIN ? (size_t)raw->width * raw->height : T3R_MAX_SIDE * T3R_MAX_SIDE;
-    return t3r_file_bytes(path, most * 4 + HEADER_BYTES_MOST, count, error, error_bytes);
+    const size_t most = raw->kind == RAW_DEPTH_PLAIN ? (size_t)raw->width * raw->height * 4
+                                                     : (size_t)T3R_MAX_SIDE * T3R_MAX_SIDE * 4 + HEADER_BYTES_MOST;
+    return t3r_file_bytes(path, most, count, error, error_bytes);
 }
 
 int raw_depth_read(const char *path, const raw_depth *raw, picture *out, char *error, size_t error_bytes)

@@ -88,6 +88,10 @@ static int open_recordings(evaluation_cases *cases)
         if (cases->recordings[i] == NULL) {
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }
+        const int code = recorded_frames_check(cases->recordings[i], cases->inputs[i]);
+        if (code != CLI_OK) {
+            return code;
+        }
     }
     return CLI_OK;
 }
