@@ -10,8 +10,8 @@ from common import FRAMES, SIDE, check, np, small, trim3r, with_views
 from checks import done, near, run
 
 # the program's digits
-FIGURES = {"psnr": ("psnr", 4), "ssim": ("ssim", 5), "sharp": ("sharp", 5), "holes": ("holes", 5), "psnr_all": ("psnr_all", 4),
-           "context_psnr": ("context_psnr", 4), "flip": ("perceptual", 5)}
+FIGURES = {"psnr": ("psnr", 4), "ssim": ("ssim", 5), "sharp": ("sharp", 5), "holes": ("holes", 5),
+           "psnr_all": ("psnr_all", 4), "context_psnr": ("context_psnr", 4), "flip": ("perceptual", 5)}
 
 
 def program(*arguments):
@@ -28,8 +28,9 @@ def check_frames(recording):
 
 def check_build(recording, folder, path):
     """Hashes of each stage, of the whole, and every byte of the file."""
-    replayed = json.loads(program("replay", path, "--context", "0,2", "--gaussians", "400", "--json"))
-    built = json.loads(program("build", path, "--context", "0,2", "--gaussians", "400", "-o", folder / "theirs.ply", "--json"))
+    settings = ("--context", "0,2", "--gaussians", "400", "--json")
+    replayed = json.loads(program("replay", path, *settings))
+    built = json.loads(program("build", path, *settings, "-o", folder / "theirs.ply"))
     with small(head="small") as made:
         made.add_view(recording[0])
         made.add_view(recording[2])
@@ -62,9 +63,10 @@ def check_scene(folder):
     """Means in the world, a file that is read again, and what was read drawn."""
     with with_views() as made, small(0, gaussians=4096) as drawn:
         scene = made.build(keep=50)
-        near(np.median(np.linalg.norm(scene.positions - FRAMES[0].camera.pose[:3, 3], axis=1)), 3, 1.5, "metres to the means")
+        away = np.linalg.norm(scene.positions - FRAMES[0].camera.pose[:3, 3], axis=1)
+        near(np.median(away), 3, 1.5, "metres to the means")
         check((np.linalg.eigvalsh(scene.covariances) > -1e-9).all(), "covariances")
-        check(scene.colours.min() >= 0 and scene.colours.max() <= 1 and scene.opacities.max() < 1, "colours and opacities")
+        check(0 <= scene.colours.min() <= scene.colours.max() <= 1 and scene.opacities.max() < 1, "colours, opacities")
         scene.save(folder / "scene.ply", comments=True)
         read = trim3r.Scene.read(folder / "scene.ply")
         check(read.exponent == scene.exponent and read.origin_q32 == scene.origin_q32, "the frame")

@@ -29,7 +29,8 @@ def by_cmake(there):
 def by_pip(there):
     source = there.with_name("source") # pip leaves folders of its own where it builds
     shutil.copytree(PACKAGE.parent, source)
-    run(sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--no-build-isolation", "--target", there, source)
+    run(sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--no-build-isolation", "--target", there,
+        source)
 
 
 def check_installed(install, folder):

@@ -32,7 +32,8 @@ def program():
     for name, ctype in structs():
         lines.append(f'printf("{name}: %zu\\n", sizeof({name}));')
         for field, _ in ctype.fields:
-            lines.append(f'printf("{name}.{field}: %zu %zu\\n", offsetof({name}, {field}), sizeof((({name} *)0)->{field}));')
+            place = f"offsetof({name}, {field}), sizeof((({name} *)0)->{field})"
+            lines.append(f'printf("{name}.{field}: %zu %zu\\n", {place});')
     lines += [f'printf("{name}: %lld\\n", (long long){name});' for name in constants()]
     return "\n".join([*lines, "return 0;", "}", ""])
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""memory.py LIBRARY TRIM3R: pixels are handed over where they lie, results lie in the arena, and nothing is freed too early."""
+"""memory.py LIBRARY TRIM3R: pixels are handed over where they lie, results lie in the arena, and nothing is freed too
+early."""
 import dataclasses
 import gc
 import pathlib
@@ -59,7 +60,8 @@ def check_crops():
         colour[::2, 4:SIDE + 4], depth[::2, 4:SIDE + 4] = frame.colour, frame.depth
         apart.append(dataclasses.replace(frame, colour=colour[::2, 4:SIDE + 4], depth=depth[::2, 4:SIDE + 4]))
     check(hashes_of(*apart) == wanted, "rows apart")
-    turned = [dataclasses.replace(f, colour=np.ascontiguousarray(f.colour[..., ::-1]), format="bgr24") for f in FRAMES[:2]]
+    turned = [dataclasses.replace(frame, colour=np.ascontiguousarray(frame.colour[..., ::-1]), format="bgr24")
+              for frame in FRAMES[:2]]
     check(hashes_of(*turned) == wanted, "blue first")
     metres = [dataclasses.replace(f, depth=f.depth * f.depth_unit) for f in FRAMES[:2]]
     check(hashes_of(*metres) == wanted, "depth in metres")

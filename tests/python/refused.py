@@ -65,7 +65,8 @@ def check_cameras():
     for what, *words in (((NAN, 60, 32, 32, pose), "fx"), ((60, float("inf"), 32, 32, pose), "fy"),
                          ((60, 60, 1e9, 32, pose), "cx"), ((60, 60, 32, 32, nan), "finite"),
                          ((60, 60, 32, 32, scaled), "rotation"), ((60, 60, 32, 32, mirrored), "rotation"),
-                         ((60, 60, 32, 32, np.zeros((4, 4))), "last row"), ((60, 60, 32, 32, np.zeros((3, 4))), "rotation"),
+                         ((60, 60, 32, 32, np.zeros((4, 4))), "last row"),
+                         ((60, 60, 32, 32, np.zeros((3, 4))), "rotation"),
                          ((60, 60, 32, 32, np.eye(3)), "(3, 3)"), ((60, 60, 32, 32, np.full((4, 4), 1e300)), ""),
                          ((60, 60, 32, 32, pose, "wide"), "radtan"), ((60, 60, 32, 32, pose, "radtan", [0] * 6), "5"),
                          ((60, 60, 32, 32, pose, "radtan", [NAN]), "coefficient 0")):
@@ -97,7 +98,8 @@ def check_settings():
                            ("nano, small, base", {"head": "huge"}), ("sensor, stereo", {"depth": "lidar"}),
                            ("workers", {"workers": 17}), ("too small", {"arena_bytes": 1000}),
                            ("render", {"render_size": (5000, 5)}), ("no setting", {"settings": {"refinement": 3}}),
-                           ("refinements", {"settings": {"refinements": 17}}), ("clusters", {"settings": {"clusters": -1}}),
+                           ("refinements", {"settings": {"refinements": 17}}),
+                           ("clusters", {"settings": {"clusters": -1}}),
                            ("db2", {"settings": {"wavelet": "db4"}}), ("number", {"settings": {"seed": "one"}})):
         with refused((ValueError, TypeError), words):
             trim3r.Reconstructor(**{"width": SIDE, "height": SIDE, **options})
@@ -132,9 +134,10 @@ def check_builds():
     with with_views() as made:
         with refused(trim3r.StateError):
             made.rebuild(100)
-        for options, word in (({"gaussians": 0}, "gaussians"), ({"gaussians": 1 << 30}, "gaussians"), ({"keep": 0}, "keep"),
-                              ({"keep": 101}, "keep"), ({"keep": NAN}, "keep"), ({"gaussians": 1, "keep": 1}, "either"),
-                              ({"max_loss": -1}, "max_loss"), ({"max_loss": 11}, "max_loss"), ({"max_loss": NAN}, "max_loss"),
+        for options, word in (({"gaussians": 0}, "gaussians"), ({"gaussians": 1 << 30}, "gaussians"),
+                              ({"keep": 0}, "keep"), ({"keep": 101}, "keep"), ({"keep": NAN}, "keep"),
+                              ({"gaussians": 1, "keep": 1}, "either"), ({"max_loss": -1}, "max_loss"),
+                              ({"max_loss": 11}, "max_loss"), ({"max_loss": NAN}, "max_loss"),
                               ({"allocation": "best"}, "density"),
                               ({"importance": [np.zeros((3, 3), np.uint16)] * 2}, "importance"),
                               ({"importance": [np.zeros((SIDE, SIDE))] * 2}, "importance"),
@@ -149,7 +152,8 @@ def check_builds():
         check((scene.gaussians["view"] == 0).all(), "the points that are important")
         view = FRAMES[1].camera
         for options in ({"size": (SIDE + 1, SIDE)}, {"size": (0, 0)}, {"out": np.zeros((SIDE, SIDE), np.uint8)},
-                        {"out": np.zeros((SIDE, SIDE, 3), np.float32)}, {"out": np.zeros((SIDE, SIDE, 3), np.uint8)[:, ::-1]},
+                        {"out": np.zeros((SIDE, SIDE, 3), np.float32)},
+                        {"out": np.zeros((SIDE, SIDE, 3), np.uint8)[:, ::-1]},
                         {"out": np.broadcast_to(np.uint8(0), (SIDE, SIDE, 3))},
                         {"size": (9, 9), "out": np.zeros((SIDE, SIDE, 3), np.uint8)}):
             with refused(ValueError):
@@ -170,7 +174,8 @@ def check_builds():
 
 def check_measures():
     a, b = FRAMES[0].colour, FRAMES[1].colour
-    check(trim3r.psnr(a, a) == 99 and trim3r.ssim(a, a) == 1 and trim3r.flip(a, a) == 0 and trim3r.sharp(a, a) == 1, "equal")
+    equal = [measure(a, a) for measure in (trim3r.psnr, trim3r.ssim, trim3r.flip, trim3r.sharp)]
+    check(equal == [99, 1, 0, 1], f"equal pictures: {equal}")
     half = np.zeros((SIDE, SIDE), bool)
     check(np.isnan(trim3r.psnr(a, b, half)), "no pixel counts")
     half[:, ::2] = True

@@ -35,7 +35,8 @@ def check_types(folder):
                             "--cache-dir", folder, "--python-executable", sys.executable, "trim3r",
                             ROOT / "tools" / "python" / "examples" / "room.py", used],
                            capture_output=True, text=True, check=False, cwd=PACKAGE.parent).stdout
-    check("numpy.ndarray[Any, numpy.dtype[numpy.unsignedinteger[numpy._typing._8Bit]]]" in found, f"a picture's type: {found}")
+    picture = "numpy.ndarray[Any, numpy.dtype[numpy.unsignedinteger[numpy._typing._8Bit]]]"
+    check(picture in found, f"a picture's type: {found}")
     wrong = [line for line in found.splitlines() if ": error:" in line]
     check(len(wrong) == len(MISUSE), f"{len(MISUSE)} were planted: {found}")
     for line, (call, code) in zip(wrong, MISUSE.items()):

@@ -136,6 +136,17 @@ def check_end():
         check(np.array_equal(again.build(100).copy().gaussians, again.rebuild(100).gaussians), "built twice")
 
 
+def check_warm():
+    """A pair that slides: a view takes the place of the oldest, and the scene before is gone."""
+    with with_views(settings={"warm": 1}) as made:
+        before = made.build(keep=10)
+        made.add_view(FRAMES[1])
+        check(made.valid_points == 2 * SIDE * SIDE, f"two views, not three: {made.valid_points}")
+        with refused(trim3r.StateError, "copy()"):
+            before.positions.sum()
+        check(len(made.build(keep=10)) == round(2 * SIDE * SIDE / 10), "a tenth of both views")
+
+
 def main():
     check_progress()
     check_stopping()
@@ -143,6 +154,7 @@ def main():
     check_reentry()
     check_threads()
     check_end()
+    check_warm()
     done()
 
 

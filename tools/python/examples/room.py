@@ -55,7 +55,8 @@ print("from", scene.positions.min(axis=0).round(2), "to", scene.positions.max(ax
 assert held_out.camera is not None and isinstance(held_out.colour, np.ndarray) and held_out.depth is not None
 picture = room.picture(held_out.camera)
 difference = np.abs(picture.colour.astype(int) - held_out.colour).mean(axis=2)
-panels = {"recorded": held_out.colour, "drawn": picture.colour, "depth in metres": picture.depth, "difference": difference}
+panels = {"recorded": held_out.colour, "drawn": picture.colour, "depth in metres": picture.depth,
+          "difference": difference}
 
 figure, places = plt.subplots(1, len(panels), figsize=(12, 3.4), layout="constrained")
 for place, (name, panel) in zip(places, panels.items()):

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from ._native import address, check, ffi, lib, text_of
 from .camera import Camera
 from .configuration import Settings, configuration
-from .image_stage import arena_of, camera_of, develop
-from .picture import Picture, put_planes, target_of
-from .request import Importance, request_of
 from .errors import DepthError, InputError, StateError
 from .frame import Frame, check_plane
 from .heads import head_of
 from .hooks import Hooks, Progress
+from .image_stage import arena_of, camera_of, develop
+from .picture import Picture, put_planes, target_of
+from .request import Importance, request_of
 from .scene import GAUSSIAN, Scene
 
 
@@ -114,6 +114,8 @@ class Reconstructor:
         with self._at_work() as runtime:
             native, kept = frame.native()
             camera = camera_of(frame).native()
+            if self._config.warm: # which discards the scene, and makes room
+                self._go_on()
             self._check(lib.t3r_add_view, runtime, native, camera)
             del kept
             self._points.append(_measured(frame, self._config))
@@ -136,7 +138,8 @@ class Reconstructor:
         gaussians : int, optional
             The budget. The scene has exactly so many, or all valid points where they are fewer.
         keep : float, optional
-            The budget in percent of the valid points, above 0, at most 100. Without either: that of the constructor.
+            The budget in percent of the valid points, above 0, at most 100; never more than the arena has room for.
+            Without either: that of the constructor.
         max_loss : float
             Where above 0: as few Gaussians, at most the budget, as are predicted to lose so many dB at most, 0..10.
         allocation : str, optional
