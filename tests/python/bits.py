@@ -59,6 +59,17 @@ def check_same_bits():
         check(0.5 < picture.alpha.mean() < 1, f"alpha {picture.alpha.mean()}")
 
 
+def check_heads():
+    """Heads of single builds on one analysis, and behind them the constructor's again."""
+    with with_views(head="small") as made:
+        wanted = made.build(300).gaussians.tobytes()
+        for head in ("analytic", "moment", "nano", "base", None):
+            ours = made.rebuild(300, head=head).gaussians.tobytes()
+            with with_views(head=head or "small") as alone:
+                check(ours == alone.build(300).gaussians.tobytes(), f"the head {head}")
+            check((ours == wanted) == (head is None), f"the head {head} makes a scene of its own")
+
+
 def check_scene(folder):
     """Means in the world, a file that is read again, and what was read drawn."""
     with with_views() as made, small(0, gaussians=4096) as drawn:
@@ -116,6 +127,7 @@ def main():
         check_frames(recording)
         check_build(recording, folder, path)
         check_same_bits()
+        check_heads()
         check_scene(folder)
         check_figures(path)
         check_stereo(path)

@@ -138,7 +138,7 @@ def check_builds():
                               ({"keep": 0}, "keep"), ({"keep": 101}, "keep"), ({"keep": NAN}, "keep"),
                               ({"gaussians": 1, "keep": 1}, "either"), ({"max_loss": -1}, "max_loss"),
                               ({"max_loss": 11}, "max_loss"), ({"max_loss": NAN}, "max_loss"),
-                              ({"allocation": "best"}, "density"),
+                              ({"allocation": "best"}, "density"), ({"head": "huge"}, "nano, small, base"),
                               ({"importance": [np.zeros((3, 3), np.uint16)] * 2}, "importance"),
                               ({"importance": [np.zeros((SIDE, SIDE))] * 2}, "importance"),
                               ({"importance": [np.zeros((SIDE, SIDE), np.uint16)]}, "importance")):

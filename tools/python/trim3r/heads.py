@@ -8,9 +8,12 @@ from ._native import address, ffi, lib, text_of
 from .image_stage import arena_of
 from .errors import InputError
 
+HeadName = Union[str, "os.PathLike[str]"]
+
 _SHIPPED = {"nano": (lib.t3r_head_nano, lib.t3r_head_nano_bytes), "small": (lib.t3r_head_small, lib.t3r_head_small_bytes),
             "base": (lib.t3r_head_base, lib.t3r_head_base_bytes)}
 _CLOSED = {"analytic": lib.T3R_HEAD_ANALYTIC, "moment": lib.T3R_HEAD_MOMENT}
+_BYTES_MOST = 1 << 24  # of a file of weights; one byte more is refused
 
 
 class Head(NamedTuple):
@@ -29,7 +32,7 @@ class Head(NamedTuple):
         return int(max(needed, lib.T3R_HEAD_COLUMN_BYTES))
 
 
-def head_of(name: Union[str, "os.PathLike[str]"]) -> Head:
+def head_of(name: HeadName) -> Head:
     """The head of a name, or of a path that ends in .t3w.
 
     Raises
@@ -48,7 +51,7 @@ def head_of(name: Union[str, "os.PathLike[str]"]) -> Head:
     if not text.endswith(".t3w"):
         raise InputError(f"a head is one of {', '.join([*_SHIPPED, *_CLOSED])} or a file that ends in .t3w, not {text!r}")
     with open(text, "rb") as file:
-        read = np.frombuffer(file.read(), dtype=np.uint8)
+        read = np.frombuffer(file.read(_BYTES_MOST + 1), dtype=np.uint8)
     owner = arena_of(read.nbytes) # aligned
     owner[:] = read
     head = Head(lib.T3R_HEAD_LEARNED, address(owner, "const void *"), owner.nbytes, owner)

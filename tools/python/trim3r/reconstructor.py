@@ -3,7 +3,7 @@ import collections
 import contextlib
 import os
 import threading
-from typing import Any, Callable, Deque, Dict, Iterator, Optional, Tuple, Union
+from typing import Any, Callable, Deque, Dict, Iterator, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from .camera import Camera
 from .configuration import Settings, configuration
 from .errors import DepthError, InputError, StateError
 from .frame import Frame, check_plane
-from .heads import head_of
+from .heads import HeadName, head_of
 from .hooks import Hooks, Progress
 from .image_stage import arena_of, camera_of, develop
 from .picture import Picture, put_planes, target_of
@@ -66,7 +66,7 @@ class Reconstructor:
     """
 
     def __init__(self, width: int, height: int, *, views: int = 2, gaussians: Optional[int] = None,
-                 head: Union[str, "os.PathLike[str]"] = "small", render_size: Optional[Tuple[int, int]] = None,
+                 head: HeadName = "small", render_size: Optional[Tuple[int, int]] = None,
                  depth: str = "sensor", workers: int = 1, arena_bytes: Optional[int] = None,
                  progress: Optional[Progress] = None, settings: Settings = {}) -> None:
         self._lock = threading.Lock()
@@ -130,7 +130,8 @@ class Reconstructor:
     # ---- scenes ----
 
     def build(self, gaussians: Optional[int] = None, *, keep: Optional[float] = None, max_loss: float = 0,
-              allocation: Optional[str] = None, importance: Optional[Importance] = None) -> Scene:
+              allocation: Optional[str] = None, head: Optional[HeadName] = None,
+              importance: Optional[Importance] = None) -> Scene:
         """Makes a scene of the views.
 
         Parameters
@@ -145,6 +146,8 @@ class Reconstructor:
         allocation : str, optional
             How the budget is spread: "density", "paper", "pixel", "uniform", "random". That of the constructor without
             it.
+        head : str or path-like, optional
+            The head of this scene alone, as the constructor names it. A network needs an arena that was made for one.
         importance : sequence of ndarray of uint16, shape (height, width), optional
             A plane a view, at the working size: the points of the highest are kept.
 
@@ -160,15 +163,16 @@ class Reconstructor:
         StateError
             There are no views.
         """
-        return self._make(lib.t3r_reconstruct, gaussians, keep, max_loss, allocation, importance)
+        return self._make(lib.t3r_reconstruct, gaussians, keep, max_loss, allocation, head, importance)
 
     def rebuild(self, gaussians: Optional[int] = None, *, keep: Optional[float] = None, max_loss: float = 0,
-                allocation: Optional[str] = None, importance: Optional[Importance] = None) -> Scene:
+                allocation: Optional[str] = None, head: Optional[HeadName] = None,
+                importance: Optional[Importance] = None) -> Scene:
         """Makes another scene of the views analysed last, without a new analysis. Otherwise as build().
 
         Raises StateError also where there is no analysis.
         """
-        return self._make(lib.t3r_rebuild, gaussians, keep, max_loss, allocation, importance)
+        return self._make(lib.t3r_rebuild, gaussians, keep, max_loss, allocation, head, importance)
 
     def load(self, scene: Scene) -> None:
         """Takes a scene from elsewhere to be drawn, in the place of views and scene.
@@ -301,10 +305,11 @@ class Reconstructor:
         self._generation += 1
 
     def _make(self, function: Callable[..., int], gaussians: Optional[int], keep: Optional[float], max_loss: float,
-              allocation: Optional[str], importance: Optional[Importance]) -> Scene:
-        with self._at_work() as runtime:
+              allocation: Optional[str], head: Optional[HeadName], importance: Optional[Importance]) -> Scene:
+        with self._at_work() as runtime, self._bound(runtime, head) as head_value:
             budget = self._budget(runtime, gaussians, keep)
             request, kept = request_of(self._config, len(self._points), budget, max_loss, allocation, importance)
+            request.head = head_value
             self._go_on()
             if function == lib.t3r_reconstruct:
                 self._hooks.hashes.clear()
@@ -312,6 +317,21 @@ class Reconstructor:
             self._check_build(function, runtime, request, scene)
             del kept
             return self._scene(scene)
+
+    @contextlib.contextmanager
+    def _bound(self, runtime: Any, name: Optional[HeadName]) -> Iterator[int]:
+        """The head of one request, as a t3r_head. A network's weights are bound for as long."""
+        if name is None:
+            yield lib.T3R_HEAD_CONFIGURED
+            return
+        head = head_of(name)
+        try:
+            if head.nbytes:
+                check(lib.t3r_bind_head(runtime, head.weights, head.nbytes), os.fspath(name))
+            yield head.value
+        finally:
+            if head.nbytes:
+                lib.t3r_bind_head(runtime, self._head.weights, self._head.nbytes)
 
     def _check_build(self, function: Callable[..., int], runtime: Any, request: Any, scene: Any) -> None:
         status = self._hooks.run(function, runtime, request, scene)
