@@ -48,6 +48,7 @@ typedef struct reconstruction_options {
     bool hide_mask;        /* the network is told that every pixel was retained: hidden_mask.h */
     const char *points_of; /* a .ply whose Gaussians are the depth instead (scene_frames.h), and of which percents
                               are; NULL = none */
+    const char *scene;     /* for callers: a scene file that is judged, where nothing is built; NULL = none */
     bool hash;             /* collect the stages' hashes */
     arena_choice arena;
     uint64_t arena_bytes; /* for ARENA_BYTES */

@@ -53,6 +53,11 @@ int evaluation_contestants_methods(evaluation_contestants *chosen, const method_
     return code;
 }
 
+void evaluation_contestants_scene(evaluation_contestants *chosen)
+{
+    *chosen = (evaluation_contestants){.count = 1, .list = {{.method = METHOD_TRIM3R, .label = EVALUATION_SCENE}}};
+}
+
 static void add_ablation(evaluation_contestants *chosen, uint32_t ablation)
 {
     evaluation_contestant *it = &chosen->list[chosen->count++];

@@ -31,6 +31,9 @@ int evaluation_contestants_methods(evaluation_contestants *chosen, const method_
 int evaluation_contestants_ablations(evaluation_contestants *chosen, const uint32_t *ablations, uint32_t count,
                                      bool planar, const reconstruction_options *settings);
 
+/* The settings' scene file alone. */
+void evaluation_contestants_scene(evaluation_contestants *chosen);
+
 /* The settings with what the contestant changes of them. */
 reconstruction_options evaluation_contestant_settings(const evaluation_contestant *it,
                                                       const reconstruction_options *settings);

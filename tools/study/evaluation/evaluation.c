@@ -261,7 +261,15 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
     }
     evaluation_name_case(row, what);
     row->method = method_name(m);
-    row->allocate = row->wavelet = "";
+    row->allocate = row->wavelet = row->ablation = "";
+    row->depth = what->planar                  ? "plane"
+                 : settings->points_of != NULL ? "scene"
+                                               : t3r_depth_name(settings->config.depth);
+    evaluation_settings_rest(settings, row->settings);
+    if (settings->scene != NULL) {
+        row->method = EVALUATION_SCENE;
+        return CLI_OK;
+    }
     bool ours = method_kind_of(m) == METHOD_TRIM3R;
     bool built = ours || settings->points_of == NULL; /* no rival's scene out of a file */
     if (built) {
@@ -273,11 +281,6 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
         row->allocate = t3r_allocation_name(settings->config.allocation);
         snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, settings->config.clusters);
     }
-    row->depth = what->planar                  ? "plane"
-                 : settings->points_of != NULL ? "scene"
-                                               : t3r_depth_name(settings->config.depth);
-    row->ablation = "";
-    evaluation_settings_rest(settings, row->settings);
     if (budget.gaussians > 0) {
         row->value[EVALUATION_REQUESTED] = budget.gaussians;
     } else {
@@ -322,6 +325,28 @@ int evaluation_build(reconstruction *built, reconstruction_account *told, const 
     return code;
 }
 
+/* A row of the settings' scene file. */
+static int measure_scene(evaluation_row *row, uint8_t *render, const evaluation_views *views,
+                         const evaluation_case *what, const reconstruction_options *options)
+{
+    scene_file scene;
+    reconstruction loaded;
+    char error[512] = "";
+    if (scene_file_read(options->scene, &scene, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    row->value[EVALUATION_GAUSSIANS] = scene.count;
+    row->value[EVALUATION_SCENE_BYTES] = (double)scene.count * T3R_GAUSSIAN_BYTES;
+    int code = reconstruction_load(&loaded, &scene, views->width, views->height, options);
+    scene_file_free(&scene);
+    if (code == CLI_OK) {
+        row->value[EVALUATION_ARENA_BYTES] = (double)loaded.arena_bytes;
+        code = evaluation_score(row, render, views, what, &loaded);
+        reconstruction_close(&loaded);
+    }
+    return code;
+}
+
 int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
                        method_id m, evaluation_budget budget, bool from_file, const reconstruction_options *settings)
 {
@@ -335,6 +360,9 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_vi
     reconstruction built, loaded = {0};
     reconstruction_account told;
     int code = evaluation_name_row(row, what, m, budget, settings);
+    if (code == CLI_OK && options.scene != NULL) {
+        return measure_scene(row, render, views, what, &options);
+    }
     if (code == CLI_OK) {
         code = evaluation_build(&built, &told, views, what, m, &options);
     }

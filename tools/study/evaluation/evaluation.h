@@ -16,6 +16,7 @@
 #include "trim3r.h"
 
 #define EVALUATION_NAME_BYTES 256 /* of a scene */
+#define EVALUATION_SCENE "scene"  /* in the place of a method: a scene file as it is */
 
 /* How many Gaussians a row has. */
 typedef struct evaluation_budget {
@@ -93,7 +94,8 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
 
 /* Builds `what` with so many Gaussians, draws and scores it. The rivals of a case share its unpruned
  * scene, so `settings` must be the same for all of their rows. With from_file the scene is written as
- * .ply, read back and drawn from that. `render` (width x height x 3) gets the target view. */
+ * .ply, read back and drawn from that. Where the settings name a scene file, that is drawn and nothing is built.
+ * `render` (width x height x 3) gets the target view. */
 int evaluation_measure(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
                        method_id m, evaluation_budget budget, bool from_file, const reconstruction_options *settings);
 

@@ -114,8 +114,12 @@ static int name_picture(const evaluation_report *report, const char *label, eval
     char folder[EVALUATION_CELL_BYTES];
     int code = case_folder(report, row, folder, sizeof folder);
     const bool counted = !isnan(row->value[EVALUATION_REQUESTED]);
-    int length = snprintf(row->picture, sizeof row->picture, "%s%s%s_%s%.10g.png", folder, label, report->to.suffix,
-                          counted ? "gaussians-" : "", row->value[counted ? EVALUATION_REQUESTED : EVALUATION_KEEP]);
+    char budget[48] = "";
+    if (counted || !isnan(row->value[EVALUATION_KEEP])) {
+        snprintf(budget, sizeof budget, "_%s%.10g", counted ? "gaussians-" : "",
+                 row->value[counted ? EVALUATION_REQUESTED : EVALUATION_KEEP]);
+    }
+    int length = snprintf(row->picture, sizeof row->picture, "%s%s%s%s.png", folder, label, report->to.suffix, budget);
     if (code == CLI_OK && (length < 0 || (size_t)length >= sizeof row->picture)) {
         code = cli_error(CLI_BAD_INPUT, "%s: too long for a picture's name", folder);
     }

@@ -106,13 +106,13 @@ static int read_table(evaluation_resume *resume, const char *path, const char *t
 }
 
 int evaluation_resume_open(evaluation_resume *resume, const char *path, char *const *inputs, uint32_t input_count,
-                           const char *pruned, bool with_pictures)
+                           const char *scene, bool with_pictures)
 {
     *resume = (evaluation_resume){0};
     if (access(path, F_OK) != 0) {
         return CLI_OK;
     }
-    int code = check_age(path, inputs, input_count, pruned);
+    int code = check_age(path, inputs, input_count, scene);
     if (code != CLI_OK) {
         return code;
     }

@@ -78,6 +78,9 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     if (s->points_of != NULL) {
         add_text(w, "prune", s->points_of, false);
     }
+    if (s->scene != NULL) {
+        add_text(w, "file", s->scene, false);
+    }
     if (s->importance != NULL) {
         add_text(w, "importance", s->importance, false);
     }

@@ -2,6 +2,7 @@
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,6 +54,7 @@ enum {
     KEY_GAUSSIANS,
     KEY_METHODS,
     KEY_PRUNE,
+    KEY_SCENE,
     KEY_HEADS,
     KEY_MASK_HEAD,
     KEY_ABLATE,
@@ -132,6 +134,17 @@ static void check_prune(struct argp_state *state, const options *o)
     }
 }
 
+static void check_scene(struct argp_state *state, const options *o)
+{
+    if (o->planar || o->from_file || o->ablate || o->method_count > 0 || o->head_count > 0 || o->keep_count > 0 ||
+        o->gaussians_count > 0 || o->settings.automatic || o->settings.points_of != NULL ||
+        o->settings.poses != POSES_GIVEN) {
+        argp_error(state,
+                   "--scene is scored as it is: it excludes --planar, --from-file, --ablate, --methods, --heads, "
+                   "--keep, --gaussians, --auto, --prune and --poses");
+    }
+}
+
 static void check_options(struct argp_state *state, options *o)
 {
     if (o->input_count == 0) {
@@ -172,14 +185,17 @@ static void check_options(struct argp_state *state, options *o)
     if (o->ablate && (o->method_count > 0 || o->head_count > 0)) {
         argp_error(state, "--ablate is of the method trim3r with one --head: it excludes --methods and --heads");
     }
-    const bool budgeted = o->keep_count > 0 || o->gaussians_count > 0;
+    if (o->settings.scene != NULL) {
+        check_scene(state, o);
+    }
+    const bool budgeted = o->keep_count > 0 || o->gaussians_count > 0 || o->settings.scene != NULL;
     if (o->ablate && !budgeted) {
         (void)cli_parse_list_percent(ABLATE_KEEPS, o->keep, BUDGETS_MOST, &o->keep_count);
     }
     if (!budgeted && o->settings.automatic) {
         o->keep[o->keep_count++] = 100;
     }
-    if (o->keep_count == 0 && o->gaussians_count == 0) {
+    if (!budgeted && o->keep_count == 0) {
         argp_error(state, "the budget is missing: --keep P, --gaussians Z or --auto");
     }
     if (o->method_count == 0) {
@@ -233,6 +249,9 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_PRUNE:
         o->settings.points_of = arg;
+        return 0;
+    case KEY_SCENE:
+        o->settings.scene = arg;
         return 0;
     case KEY_HEADS:
         parse_heads(state, o, arg);
@@ -299,6 +318,11 @@ static const struct argp_option argp_options[] = {
      "scene, made elsewhere of the views of --context, to prune: percents are of its Gaussians; trim3r makes new ones "
      "of points among their means, the rivals keep some; where a view has no depth, the mask is of the means",
      0},
+    {"scene", KEY_SCENE, "SCENE", OPTION_READS,
+     "scene file, of trim3r or made elsewhere, to score as it is: nothing is built; it stands in the recording's "
+     "world, "
+     "and the frames of --context, or of the triplets, make the mask alone",
+     0},
     {"heads", KEY_HEADS, "H,H,...", OPTION_READS | OPTION_LIST | OPTION_OR_WORD,
      "heads to compare, as --head takes them: rows of the method trim3r for each", 0},
     {"mask-head", KEY_MASK_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
@@ -347,6 +371,7 @@ static const char examples[] =
     "  trim3r eval room.mcap --keep 10,5 --heads analytic,small,my.t3w\n  trim3r eval room.mcap "
     "--ablate=full,no-mask,no-adaptation --keep 10,5\n  trim3r eval room.mcap --prune s.ply --context 0,2 "
     "--target 1 --keep 20\n  trim3r eval *.mcap --keep 40,10 --jobs all --csv all.csv --resume\n"
+    "  trim3r eval room.mcap --scene mine.ply\n"
     "  trim3r eval --planar photo.jpg --keep 10,5 --html photo.html";
 
 static char *add_examples(int key, const char *text, void *input)
@@ -433,6 +458,10 @@ static int open_cases(const options *o, evaluation_cases *cases)
 
 static int choose_contestants(const options *o, evaluation_contestants *chosen)
 {
+    if (o->settings.scene != NULL) {
+        evaluation_contestants_scene(chosen);
+        return CLI_OK;
+    }
     if (o->ablate) {
         return evaluation_contestants_ablations(chosen, o->ablations, o->ablation_count, o->planar, &o->settings);
     }
@@ -470,7 +499,19 @@ static int report_all(const options *o, const evaluation_work *work)
     return evaluation_report_close(&report, code);
 }
 
-/* Percents first, then counts. */
+/* Opens the scene to be scored, for the same reason. */
+static int look_at_judged(const char *path)
+{
+    scene_file scene;
+    char error[512] = "";
+    if (scene_file_read(path, &scene, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    scene_file_free(&scene);
+    return CLI_OK;
+}
+
+/* Percents first, then counts; a scene that is there has a row, too. */
 static uint32_t list_budgets(const options *o, evaluation_budget budgets[2 * BUDGETS_MOST])
 {
     for (uint32_t i = 0; i < o->keep_count; i++) {
@@ -478,6 +519,10 @@ static uint32_t list_budgets(const options *o, evaluation_budget budgets[2 * BUD
     }
     for (uint32_t i = 0; i < o->gaussians_count; i++) {
         budgets[o->keep_count + i] = (evaluation_budget){.gaussians = o->gaussians[i]};
+    }
+    if (o->settings.scene != NULL) {
+        budgets[0] = (evaluation_budget){.keep = NAN};
+        return 1;
     }
     return o->keep_count + o->gaussians_count;
 }
@@ -493,9 +538,12 @@ static int evaluate(const options *o)
     if (code == CLI_OK && o->settings.points_of != NULL) {
         code = look_at_scene(o->settings.points_of, &cases);
     }
+    if (code == CLI_OK && o->settings.scene != NULL) {
+        code = look_at_judged(o->settings.scene);
+    }
     if (code == CLI_OK && o->to.resume) {
-        code = evaluation_resume_open(&resume, o->to.csv, o->inputs, o->input_count, o->settings.points_of,
-                                      o->to.images != NULL);
+        const char *made = o->settings.scene != NULL ? o->settings.scene : o->settings.points_of;
+        code = evaluation_resume_open(&resume, o->to.csv, o->inputs, o->input_count, made, o->to.images != NULL);
     }
     if (code == CLI_OK) {
         evaluation_work work = {
