@@ -96,7 +96,7 @@ void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *
             if (metres) {
                 steps = steps_of_metres(image->is_bigendian ? t3r_load_be32(sample) : t3r_load_le32(sample), unit_q40);
             } else {
-                steps = image->is_bigendian ? (uint16_t)(sample[0] << 8 | sample[1]) : t3r_load_le16(sample);
+                steps = (uint16_t)(image->is_bigendian ? sample[0] << 8 | sample[1] : t3r_load_le16(sample));
             }
             t3r_store_le16(out, steps);
         }

@@ -17,7 +17,8 @@ FILES = {
                       "lib/cmake/trim3r/trim3r-config-release.cmake", "lib/cmake/trim3r/trim3r-config-version.cmake",
                       "lib/cmake/trim3r/trim3r-config.cmake", "lib/libtrim3r.a", "lib/libtrim3r.so",
                       "lib/libtrim3r_heads.a", "lib/pkgconfig/trim3r-heads.pc", "lib/pkgconfig/trim3r.pc"],
-    "trim3r": ["bin/trim3r"],
+    "trim3r": ["bin/trim3r", "share/bash-completion/completions/trim3r", "share/fish/vendor_completions.d/trim3r.fish",
+               "share/man/man1/trim3r.1", "share/zsh/site-functions/_trim3r", "share/zsh/vendor-completions/_trim3r"],
 }
 NEEDS = {"libtrim3r0.1": ["libc6"], "libtrim3r-dev": [f"libtrim3r0.1 (= {VERSION})"],
          "trim3r": ["libc6", "libcjson1", "libjpeg", "liblapacke", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
@@ -76,6 +77,9 @@ def main():
         packages = {}
         for path in (folder / "packages").glob("*.deb"):
             packages[fields_of(path)["Package"]] = path
+        commands = [line.split("\t")[0] for line in run(build / "trim3r", "--commands").stdout.splitlines()]
+        FILES["trim3r"] += [f"share/man/man1/trim3r-{command}.1" for command in commands]
+        FILES["trim3r"].sort()
         check(set(packages) - {CAMERAS} == set(FILES), f"packages: {sorted(packages)}")
         for name in FILES:
             check_package(packages[name], fields_of(packages[name]))

@@ -14,7 +14,7 @@
 
 #define MESSAGE_BYTES 2048
 
-static const char *command_name;
+static const char *command_name, *command_summary;
 
 static struct {
     char *text; /* NULL: errors go to stderr */
@@ -32,9 +32,20 @@ static struct {
     } outer;
 } progress;
 
-void cli_set_command(const char *name)
+void cli_set_command(const char *name, const char *summary)
 {
     command_name = name;
+    command_summary = summary;
+}
+
+const char *cli_command(void)
+{
+    return command_name;
+}
+
+const char *cli_command_summary(void)
+{
+    return command_summary;
 }
 
 void cli_keep_errors(char *text, size_t bytes)

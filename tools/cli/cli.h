@@ -13,8 +13,10 @@ int cli_error(int code, const char *format, ...) __attribute__((format(printf, 2
 /* From here on cli_error() puts its messages, without the names before them, into text[] in the place of stderr, each
  * over the one before; NULL: stderr again. For callers to whom an error is a result. */
 void cli_keep_errors(char *text, size_t bytes);
-/* The command named in messages; set by main. */
-void cli_set_command(const char *name);
+/* The command named in messages, and what it does; set by main. */
+void cli_set_command(const char *name, const char *summary);
+const char *cli_command(void);
+const char *cli_command_summary(void);
 
 /* A progress line on stderr, drawn only when stderr is a terminal and the work is long (over half a second). */
 void cli_progress(const char *what, uint32_t done, uint32_t total);

@@ -1,5 +1,5 @@
-/* Comma-separated tables (RFC 4180, with plain newlines): a text that needs it is quoted. Bytes that csv_read.h refuses,
- * control characters and what is not UTF-8, become '?'. */
+/* Comma-separated tables (RFC 4180, with plain newlines): a text that needs it is quoted. Bytes that csv_read.h
+ * refuses, control characters and what is not UTF-8, become '?'. */
 #ifndef TRIM3R_TOOLS_CSV_H
 #define TRIM3R_TOOLS_CSV_H
 

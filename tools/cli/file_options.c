@@ -1,6 +1,5 @@
 #include "cli/file_options.h"
 
-#include <ctype.h>
 #include <getopt.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -11,35 +10,11 @@
 #include "cli/edit_distance.h"
 #include "cli/file_guard.h"
 #include "cli/json_output.h"
+#include "cli/man_page.h"
+#include "cli/option_list.h"
 #include "cli/word_list.h"
 
-enum { KEY_LISTING = 0x8000, KEY_COMPLETE, KEY_FORCE, LONG_OPTION = 0x10000 };
-
-/* ---- tables ------------------------------------------------------------------------------------------------------ */
-
-typedef struct option_list {
-    const struct argp_option **items; /* NULL: none yet */
-    uint32_t count;
-} option_list;
-
-static bool ends(const struct argp_option *o)
-{
-    return o->key == 0 && o->name == NULL && o->doc == NULL && o->group == 0;
-}
-
-/* The rows of a table and of its children's, behind those that are there. */
-static void list_options(const struct argp *argp, option_list *list)
-{
-    for (const struct argp_option *o = argp->options; o != NULL && !ends(o); o++) {
-        if (list->items != NULL) {
-            list->items[list->count] = o;
-        }
-        list->count++;
-    }
-    for (const struct argp_child *c = argp->children; c != NULL && c->argp != NULL; c++) {
-        list_options(c->argp, list);
-    }
-}
+enum { KEY_LISTING = 0x8000, KEY_COMPLETE, KEY_MAN_PAGE, KEY_FORCE, LONG_OPTION = 0x10000 };
 
 static void *must(void *memory)
 {
@@ -47,31 +22,6 @@ static void *must(void *memory)
         exit(cli_error(CLI_BAD_INPUT, "out of memory"));
     }
     return memory;
-}
-
-static option_list all_options(const struct argp *argp)
-{
-    option_list list = {0};
-    list_options(argp, &list);
-    list.items = must(calloc(list.count + 1, sizeof *list.items));
-    list.count = 0;
-    list_options(argp, &list);
-    return list;
-}
-
-static bool has_short(const struct argp_option *o)
-{
-    return o->key > 0 && o->key < 0x80 && isprint(o->key);
-}
-
-/* "-o", or "--csv". */
-static void name_option(const struct argp_option *o, char name[32])
-{
-    if (has_short(o)) {
-        snprintf(name, 32, "-%c", o->key);
-    } else {
-        snprintf(name, 32, "--%s", o->name);
-    }
 }
 
 /* ---- what the command line names --------------------------------------------------------------------------------- */
@@ -94,7 +44,7 @@ static void add_path(file_list *files, const named_file *named, const char *path
 static void add_value(file_list *files, const struct argp_option *o, const char *value)
 {
     named_file named = {.flags = o->flags};
-    name_option(o, named.option);
+    option_name(o, named.option);
     const char *colon = strchr(value, ':');
     if ((o->flags & OPTION_WRITES_BIT) != 0) {
         /* of the same option twice the last one counts */
@@ -118,8 +68,8 @@ static void add_value(file_list *files, const struct argp_option *o, const char 
 static const struct argp_option *arguments_of(const option_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {
-        if (list->items[i]->key == 0 && (list->items[i]->flags & OPTION_READS) != 0) {
-            return list->items[i];
+        if (list->rows[i].option->key == 0 && (list->rows[i].option->flags & OPTION_READS) != 0) {
+            return list->rows[i].option;
         }
     }
     return NULL;
@@ -130,8 +80,8 @@ static char *short_options(const option_list *list)
 {
     char *letters = must(calloc(list->count + 1, 3)), *end = letters;
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->items[i];
-        if (has_short(o)) {
+        const struct argp_option *o = list->rows[i].option;
+        if (option_has_short(o)) {
             *end++ = (char)o->key;
             *end = ':';
             end += o->arg != NULL;
@@ -149,7 +99,7 @@ static struct option *long_options(const option_list *list)
 {
     struct option *all = must(calloc(list->count + OF_ARGP + 1, sizeof *all)), *next = all;
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->items[i];
+        const struct argp_option *o = list->rows[i].option;
         if (o->name != NULL && (o->flags & OPTION_DOC) == 0) {
             int takes = o->arg == NULL                          ? no_argument
                         : (o->flags & OPTION_ARG_OPTIONAL) != 0 ? optional_argument
@@ -166,8 +116,9 @@ static struct option *long_options(const option_list *list)
 static const struct argp_option *option_of(const option_list *list, int got)
 {
     for (uint32_t i = 0; i < list->count; i++) {
-        if (got == LONG_OPTION + (int)i || (has_short(list->items[i]) && list->items[i]->key == got)) {
-            return list->items[i];
+        if (got == LONG_OPTION + (int)i ||
+            (option_has_short(list->rows[i].option) && list->rows[i].option->key == got)) {
+            return list->rows[i].option;
         }
     }
     return NULL;
@@ -190,8 +141,8 @@ static void suggest(const option_list *list, const char *word)
         }
     }
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->items[i];
-        if (o->name == NULL || (o->flags & (OPTION_HIDDEN | OPTION_DOC)) != 0) {
+        const struct argp_option *o = list->rows[i].option;
+        if (!option_is_shown(o)) {
             continue;
         }
         if (strncmp(o->name, name, strlen(name)) == 0) {
@@ -244,13 +195,13 @@ static void print_listing(const option_list *list)
 {
     cJSON *rows = cJSON_CreateArray();
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->items[i];
+        const struct argp_option *o = list->rows[i].option;
         if ((o->flags & (OPTION_READS | OPTION_WRITES_BIT)) == 0) {
             continue;
         }
         char name[32] = "";
         if (o->key != 0) {
-            name_option(o, name);
+            option_name(o, name);
         }
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "option", name);
@@ -275,14 +226,14 @@ static void print_listing(const option_list *list)
 static void print_completion(const option_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->items[i];
-        if (o->name == NULL || o->key == 0 || (o->flags & (OPTION_HIDDEN | OPTION_DOC)) != 0) {
+        const struct argp_option *o = list->rows[i].option;
+        if (!option_is_shown(o)) {
             continue;
         }
         const bool file = (o->flags & (OPTION_READS | OPTION_WRITES_BIT)) != 0;
         const char *kind = o->arg == NULL ? "" : file ? "file" : "value";
         printf("--%s\t%s\t%s\n", o->name, kind, o->doc != NULL ? o->doc : "");
-        if (has_short(o)) {
+        if (option_has_short(o)) {
             printf("-%c\t%s\t%s\n", o->key, kind, o->doc != NULL ? o->doc : "");
         }
     }
@@ -292,10 +243,15 @@ static void print_completion(const option_list *list)
 static error_t parse_listing(int key, char *argument, struct argp_state *state)
 {
     (void)argument;
-    if (key != KEY_LISTING && key != KEY_COMPLETE) {
+    if (key != KEY_LISTING && key != KEY_COMPLETE && key != KEY_MAN_PAGE) {
         return ARGP_ERR_UNKNOWN;
     }
-    option_list list = all_options(state->root_argp);
+    if (key == KEY_MAN_PAGE) {
+        /* argp puts its own options beside ours */
+        man_page_of_command(cli_command(), cli_command_summary(), state->root_argp->children[0].argp);
+        exit(CLI_OK);
+    }
+    option_list list = option_list_of(state->root_argp);
     if (key == KEY_COMPLETE) {
         print_completion(&list);
     } else {
@@ -313,6 +269,7 @@ static error_t parse_force(int key, char *argument, struct argp_state *state)
 static const struct argp_option listing_options[] = {
     {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1},
     {"complete", KEY_COMPLETE, NULL, OPTION_HIDDEN, "all options, for completion", -1},
+    {"man-page", KEY_MAN_PAGE, NULL, OPTION_HIDDEN, "the page for man(1)", -1},
     {0}};
 static const struct argp_option force_options[] = {
     {"force", KEY_FORCE, NULL, 0, "replace a file of another kind than the one to be written, too", -1}, {0}};
@@ -323,12 +280,12 @@ static const struct argp force_argp = {.options = force_options, .parser = parse
 
 static bool any_is_written(const struct argp *argp)
 {
-    option_list list = all_options(argp);
+    option_list list = option_list_of(argp);
     bool written = false;
     for (uint32_t i = 0; i < list.count; i++) {
-        written = written || (list.items[i]->flags & OPTION_WRITES_BIT) != 0;
+        written = written || (list.rows[i].option->flags & OPTION_WRITES_BIT) != 0;
     }
-    free(list.items);
+    option_list_free(&list);
     return written;
 }
 
@@ -353,7 +310,7 @@ void file_options_parse(const struct argp *argp, int argc, char **argv, void *in
     struct argp whole = *argp;
     struct argp_child *children = all_children(argp);
     whole.children = children;
-    option_list list = all_options(&whole);
+    option_list list = option_list_of(&whole);
     file_list files = {0};
     if (read_line(&list, argc, argv, &files)) {
         int code = file_guard_begin(files.items, files.count, files.force); /* keeps them */
@@ -361,7 +318,7 @@ void file_options_parse(const struct argp *argp, int argc, char **argv, void *in
             exit(code);
         }
     }
-    free(list.items);
+    option_list_free(&list);
     argp_parse(&whole, argc, argv, 0, NULL, input);
     int code = file_guard_find();
     if (code != CLI_OK) {

@@ -9,6 +9,7 @@
 
 #include "cli/cli.h"
 #include "cli/edit_distance.h"
+#include "cli/man_page.h"
 #include "text.h"
 #include "trim3r/commands/commands.h"
 #include "trim3r.h"
@@ -40,24 +41,46 @@ static const struct {
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
+#define SUMMARY "turn a few camera frames into a budgeted set of 3-D Gaussians"
+static const char about[] =
+    "Turn a few camera frames into a budgeted set of 3-D Gaussians, and draw views of it, in integers.\n";
+static const char data_flow[] = "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
+                                "                        REC.mcap > eval > scores > chart > report.html\n"
+                                "                        REC.mcap > replay > hashes\n\n"
+                                "  trim3r room -o room.mcap\n"
+                                "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+                                "  trim3r render scene.ply room.mcap --view 1 -o view.png\n";
+
 static void print_help(FILE *out)
 {
-    fputs("Usage: trim3r COMMAND [OPTION...]\n"
-          "Turn a few camera frames into a budgeted set of 3-D Gaussians, and draw views of it, in integers.\n\n",
-          out);
+    fprintf(out, "Usage: trim3r COMMAND [OPTION...]\n%s\n", about);
     for (int i = 0; i < COMMAND_COUNT; i++) {
         fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].summary);
     }
-    fputs("\nData flow:\n"
-          "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
-          "                        REC.mcap > eval > scores > chart > report.html\n"
-          "                        REC.mcap > replay > hashes\n\n"
-          "  trim3r room -o room.mcap\n"
-          "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
-          "  trim3r render scene.ply room.mcap --view 1 -o view.png\n\n"
-          "trim3r COMMAND --help lists a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
-          "3 budget or arena too small. With --json a command prints one JSON object on stdout.\n",
-          out);
+    fprintf(out,
+            "\nData flow:\n%s\n"
+            "trim3r COMMAND --help lists a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
+            "3 budget or arena too small. With --json a command prints one JSON object on stdout.\n",
+            data_flow);
+}
+
+/* For man(1); commands have pages of their own. */
+static void print_man_page(void)
+{
+    man_page_begin("trim3r", SUMMARY);
+    man_page_section("SYNOPSIS");
+    puts(".B trim3r\n\\fICOMMAND\\fR [\\fIOPTION\\fR...]");
+    man_page_section("DESCRIPTION");
+    man_page_text(about);
+    man_page_section("COMMANDS");
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        char page[64];
+        snprintf(page, sizeof page, "trim3r-%s(1)", commands[i].name);
+        man_page_item(page, commands[i].summary);
+    }
+    man_page_section("EXAMPLES");
+    man_page_text(data_flow);
+    man_page_end();
 }
 
 /* For completion: a command and what it does, a tab between. */
@@ -111,13 +134,17 @@ static int run(int argc, char **argv)
         print_commands();
         return CLI_OK;
     }
+    if (strcmp(argv[1], "--man-page") == 0) {
+        print_man_page();
+        return CLI_OK;
+    }
     for (int i = 0; i < COMMAND_COUNT; i++) {
         if (strcmp(argv[1], commands[i].name) == 0) {
             /* argp names the program by argv[0] in its messages */
             static char name[32];
             snprintf(name, sizeof name, "trim3r %s", commands[i].name);
             argv[1] = name;
-            cli_set_command(commands[i].name);
+            cli_set_command(commands[i].name, commands[i].summary);
             return commands[i].run(argc - 1, argv + 1);
         }
     }
