@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""man_pages.py TRIM3R: the page of each command for man(1) has every option of its help, and mandoc or man takes it without
-a warning."""
+"""man_pages.py TRIM3R: the page of each command for man(1) has every option of its help, and mandoc or man takes it
+without a warning."""
 import re
 import shutil
 import subprocess
@@ -8,6 +8,7 @@ import sys
 
 from program import check, expect, in_scratch
 
+SECTIONS = {".SH NAME", ".SH SYNOPSIS", ".SH DESCRIPTION", '.SH "EXIT STATUS"'}
 LINT = ["mandoc", "-Tlint", "-Wwarning"] if shutil.which("mandoc") else ["man", "--warnings=w", "-E", "UTF-8", "-l", "-Z"]
 
 
@@ -31,7 +32,7 @@ def every_page():
         plain = page.replace("\\-", "-").replace("\\fB", "").replace("\\fR", "").replace("\\fI", "")
         for words in wanted:
             check(words in plain, f"{name} lacks {words}")
-        check({".SH NAME", ".SH SYNOPSIS", ".SH DESCRIPTION", '.SH "EXIT STATUS"'} <= set(page.splitlines()), f"{name}: sections")
+        check(SECTIONS <= set(page.splitlines()), f"{name}: sections")
         lost = [word for word in words_of(text.split("Examples:")[0]) if word not in plain]
         check(lost == [], f"{name} lacks words: {lost[:9]}")
         with open(f"{name}.1", "w", encoding="utf-8") as file:

@@ -28,7 +28,8 @@ def on_terminal(*command, expect=0):
 
     reader = threading.Thread(target=read)
     reader.start()
-    ended = subprocess.run([TRIM3R, *map(str, command)], stdout=subprocess.DEVNULL, stderr=theirs, timeout=300)
+    ended = subprocess.run([TRIM3R, *map(str, command)], stdout=subprocess.DEVNULL, stderr=theirs, timeout=300,
+                           env=os.environ | {"NO_COLOR": "1"})
     os.close(theirs)
     reader.join()
     os.close(ours)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""eval_scene.py TRIM3R: `trim3r eval --scene` gives a file the scores of what `render` draws from it, harmonics included."""
+"""eval_scene.py TRIM3R: `trim3r eval --scene` gives a file the scores of what `render` draws from it, with
+its harmonics."""
 import json
 import os
 import struct
@@ -59,16 +60,18 @@ def scored():
     run(trim3r, "convert", "theirs.ply", "-o", "theirs.spz")
     for name in ("theirs.ply", "theirs.spz"):
         cases = rows("--scene", name, "--images", "pictures")
-        check(len(cases) == CASES and abs(cases[0]["psnr_all"] - found["psnr_all"]) > 0.5, f"{name}: no harmonics are drawn")
+        check(len(cases) == CASES, f"{name}: {cases}")
+        check(abs(cases[0]["psnr_all"] - found["psnr_all"]) > 0.5, f"{name}: no harmonics are drawn")
         for row in cases[:2]:
             near(row["psnr_all"], drawn(name, row["target"]), 1e-3, f"{name}: harmonics of target {row['target']}")
 
 
 def refused():
-    for more in (("--keep", "5"), ("--gaussians", "5"), ("--methods", "random"), ("--planar",), ("--ablate",), ("--auto",)):
-        check("--scene is scored as it is" in run(trim3r, "eval", "room.mcap", "--scene", "mine.ply", *more, expect=2).stderr,
-              f"--scene with {more}")
-    check("room.mcap" in run(trim3r, "eval", "room.mcap", "--scene", "room.mcap", expect=1).stderr, "a recording is no scene")
+    line = (trim3r, "eval", "room.mcap", "--scene")
+    for more in ("--keep=5", "--gaussians=5", "--methods=random", "--planar", "--ablate", "--auto"):
+        said = run(*line, "mine.ply", more, expect=2).stderr
+        check("--scene is scored as it is" in said, f"--scene with {more}: {said}")
+    check("room.mcap" in run(*line, "room.mcap", expect=1).stderr, "a recording is no scene")
 
 
 with tempfile.TemporaryDirectory() as folder:

@@ -9,10 +9,12 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/style.h"
 #include "cli/time_left.h"
 #include "text.h"
 
 #define MESSAGE_BYTES 2048
+#define WARNING "warning:"
 
 static const char *command_name, *command_summary;
 
@@ -66,8 +68,12 @@ int cli_error(int code, const char *format, ...)
     if (kept.text != NULL) {
         snprintf(kept.text, kept.bytes, "%s", message);
     } else {
-        fprintf(stderr, "trim3r%s%s: %s\n", command_name != NULL ? " " : "", command_name != NULL ? command_name : "",
-                message);
+        const size_t warning = strncmp(message, WARNING, strlen(WARNING)) == 0 ? strlen(WARNING) : 0;
+        const char *end = style_end(stderr);
+        fprintf(stderr, "%strim3r%s%s:%s ", code != CLI_OK ? style_begin(stderr, STYLE_ERROR) : "",
+                command_name != NULL ? " " : "", command_name != NULL ? command_name : "", code != CLI_OK ? end : "");
+        fprintf(stderr, "%s%.*s%s%s\n", warning > 0 ? style_begin(stderr, STYLE_WARNING) : "", (int)warning, message,
+                warning > 0 ? end : "", message + warning);
     }
     return code;
 }

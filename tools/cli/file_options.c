@@ -12,9 +12,10 @@
 #include "cli/json_output.h"
 #include "cli/man_page.h"
 #include "cli/option_list.h"
+#include "cli/style.h"
 #include "cli/word_list.h"
 
-enum { KEY_LISTING = 0x8000, KEY_COMPLETE, KEY_MAN_PAGE, KEY_FORCE, LONG_OPTION = 0x10000 };
+enum { KEY_LISTING = 0x8000, KEY_COMPLETE, KEY_MAN_PAGE, KEY_COLOR, KEY_FORCE, LONG_OPTION = 0x10000 };
 
 static void *must(void *memory)
 {
@@ -124,8 +125,9 @@ static const struct argp_option *option_of(const option_list *list, int got)
     return NULL;
 }
 
-/* An option that is none: names the one that may be meant, and ends the process. Else argp says what is wrong. */
-static void suggest(const option_list *list, const char *word)
+/* A long option that is none, or that lacks its value: says so, names the one that may be meant, and ends the process.
+ * Of anything else argp says what is wrong. */
+static void refuse_option(const option_list *list, const char *word)
 {
     char name[64];
     const size_t length = strcspn(word, "=");
@@ -146,7 +148,10 @@ static void suggest(const option_list *list, const char *word)
             continue;
         }
         if (strncmp(o->name, name, strlen(name)) == 0) {
-            return; /* an abbreviation, of one or of several: or its value is missing */
+            if (strcmp(o->name, name) == 0 && o->arg != NULL && word[length] == '\0') {
+                exit(cli_error(CLI_BAD_USAGE, "option '--%s' requires an argument: %s", name, o->arg));
+            }
+            return; /* an abbreviation, of one or of several */
         }
         if (edit_distance(o->name, name) < least) {
             least = edit_distance(o->name, name);
@@ -156,6 +161,7 @@ static void suggest(const option_list *list, const char *word)
     if (nearest != NULL) {
         exit(cli_error(CLI_BAD_USAGE, "there is no option --%s; did you mean --%s?", name, nearest));
     }
+    exit(cli_error(CLI_BAD_USAGE, "unrecognized option '--%s'; trim3r %s --help lists them", name, cli_command()));
 }
 
 /* As argp will read the line; false: it will refuse it, or print help. */
@@ -171,12 +177,14 @@ static bool read_line(const option_list *list, int argc, char **argv, file_list 
         const struct argp_option *o = option_of(list, got);
         if (o->key == KEY_FORCE) {
             files->force = true;
+        } else if (o->key == KEY_COLOR && !style_choose(optarg)) {
+            exit(cli_error(CLI_BAD_USAGE, "--color takes auto, always or never, not '%s'", optarg));
         } else if ((o->flags & (OPTION_READS | OPTION_WRITES_BIT)) != 0 && optarg != NULL) {
             add_value(files, o, optarg);
         }
     }
     if (got == '?' && optind >= 1 && optind <= argc) {
-        suggest(list, line[optind - 1]);
+        refuse_option(list, line[optind - 1]);
     }
     const struct argp_option *arguments = arguments_of(list);
     for (int i = optind; i < argc && arguments != NULL && got == -1; i++) {
@@ -243,6 +251,13 @@ static void print_completion(const option_list *list)
 static error_t parse_listing(int key, char *argument, struct argp_state *state)
 {
     (void)argument;
+    if (key == ARGP_KEY_INIT) {
+        style_argp(state);
+        return 0;
+    }
+    if (key == KEY_COLOR) {
+        return 0; /* read_line() has it */
+    }
     if (key != KEY_LISTING && key != KEY_COMPLETE && key != KEY_MAN_PAGE) {
         return ARGP_ERR_UNKNOWN;
     }
@@ -267,6 +282,8 @@ static error_t parse_force(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option listing_options[] = {
+    {"color", KEY_COLOR, "WHEN", 0,
+     "use of colours in messages and headings: auto (default), on terminals alone; always; never", -1},
     {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1},
     {"complete", KEY_COMPLETE, NULL, OPTION_HIDDEN, "all options, for completion", -1},
     {"man-page", KEY_MAN_PAGE, NULL, OPTION_HIDDEN, "the page for man(1)", -1},

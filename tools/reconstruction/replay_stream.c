@@ -12,6 +12,7 @@
 #include "reconstruction/hash_report.h"
 #include "reconstruction/reconstruction_error.h"
 #include "cli/recorded_frame.h"
+#include "cli/style.h"
 #include "core/hash.h"
 #include "cli/json_output.h"
 #include "pictures/metrics.h"
@@ -337,7 +338,8 @@ static void print_text(const stream_run *s, uint64_t hash)
     printf("%s: %" PRIu32 " keyframes, one in %" PRIu32 " frames at least, %" PRIu32 " at hand, at most %" PRIu32
            " Gaussians, head %s, arena %zu bytes\n",
            s->path, s->keyframe_count, s->every, r->config.views, r->config.gaussians, r->head.name, r->arena_bytes);
-    printf("%8s %10s %8s %8s %8s %8s %8s\n", "keyframe", "Gaussians", "added", "removed", "crowded", "shown, %", "ms");
+    printf("%s%8s %10s %8s %8s %8s %8s %8s%s\n", style_begin(stdout, STYLE_HEADING), "keyframe", "Gaussians", "added",
+           "removed", "crowded", "shown, %", "ms", style_end(stdout));
     for (uint32_t i = 0; i < s->keyframe_count; i++) {
         const keyframe *k = &s->keyframes[i];
         printf("%8" PRIu32 " %10" PRIu32 " %8" PRIu32 " %8" PRIu32 " %8" PRIu32 " %8.1f %8.1f\n", k->frame,

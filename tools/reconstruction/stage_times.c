@@ -1,5 +1,7 @@
 #include "reconstruction/stage_times.h"
 
+#include "cli/style.h"
+
 static double seconds_of(clockid_t clock)
 {
     struct timespec now;
@@ -74,7 +76,7 @@ void stage_times_add_json(cJSON *object, const char *key, const stage_times *tim
 void stage_times_print(FILE *out, const stage_times *times)
 {
     const double sum = stage_times_sum(times);
-    fprintf(out, "%-14s %10s %6s\n", "stage", "ms", "%");
+    fprintf(out, "%s%-14s %10s %6s%s\n", style_begin(out, STYLE_HEADING), "stage", "ms", "%", style_end(out));
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         if (times->seconds[stage] > 0) {
             fprintf(out, "%-14s %10.2f %6.1f\n", t3r_stage_name((t3r_stage)stage), times->seconds[stage] * 1e3,

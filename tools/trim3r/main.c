@@ -10,6 +10,7 @@
 #include "cli/cli.h"
 #include "cli/edit_distance.h"
 #include "cli/man_page.h"
+#include "cli/style.h"
 #include "text.h"
 #include "trim3r/commands/commands.h"
 #include "trim3r.h"
@@ -53,15 +54,16 @@ static const char data_flow[] = "  import|capture|room > REC.mcap > build > SCEN
 
 static void print_help(FILE *out)
 {
-    fprintf(out, "Usage: trim3r COMMAND [OPTION...]\n%s\n", about);
+    const char *heading = style_begin(out, STYLE_HEADING), *end = style_end(out);
+    fprintf(out, "%sUsage:%s trim3r COMMAND [OPTION...]\n%s\n", heading, end, about);
     for (int i = 0; i < COMMAND_COUNT; i++) {
         fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].summary);
     }
     fprintf(out,
-            "\nData flow:\n%s\n"
+            "\n%sData flow:%s\n%s\n"
             "trim3r COMMAND --help lists a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
             "3 budget or arena too small. With --json a command prints one JSON object on stdout.\n",
-            data_flow);
+            heading, end, data_flow);
 }
 
 /* For man(1); commands have pages of their own. */

@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "cli/style.h"
 #include "cli/json_output.h"
 
 static double milliseconds_of(const t3r_work_counts *work, const t3r_prices *prices, t3r_stage stage)
@@ -41,7 +42,8 @@ static void print_row(const char *name, uint64_t operations, double milliseconds
 void work_table_print(const t3r_work_counts *work, const t3r_prices *prices)
 {
     const bool timed = prices != NULL;
-    printf("%-30s %12s%s\n", "stage", "M operations", timed ? "           ms" : "");
+    printf("%s%-30s %12s%s%s\n", style_begin(stdout, STYLE_HEADING), "stage", "M operations",
+           timed ? "           ms" : "", style_end(stdout));
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         print_row(t3r_stage_name((t3r_stage)stage), t3r_price_of(work, &t3r_operations, (t3r_stage)stage),
                   timed ? milliseconds_of(work, prices, (t3r_stage)stage) : 0, timed);

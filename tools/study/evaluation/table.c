@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/csv_read.h"
+#include "cli/style.h"
 #include "text.h"
 
 typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */
@@ -280,12 +281,13 @@ static void print_cell(FILE *out, const column *c, const char *text)
 
 void evaluation_print_header(FILE *out, bool planar)
 {
+    fputs(style_begin(out, STYLE_HEADING), out);
     for (uint32_t i = 0; i < EVALUATION_COLUMNS; i++) {
         if (at_a_glance(&columns[i], planar, false)) {
             print_cell(out, &columns[i], columns[i].name);
         }
     }
-    fputc('\n', out);
+    fprintf(out, "%s\n", style_end(out));
 }
 
 void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar)

@@ -16,6 +16,7 @@
 #include "cli/json_output.h"
 #include "cli/recorded_frame.h"
 #include "cli/option_values.h"
+#include "cli/style.h"
 #include "cli/work_times.h"
 #include "import/poses_output.h"
 #include "reconstruction/poses_option.h"
@@ -320,9 +321,9 @@ static int account_for_lists(const build_options *o, const t3r_recording *record
 static void print_lists(const tile_lists *lists)
 {
     if (lists->entries > lists->usual) {
-        printf("warning: the Gaussians are unusually wide, the widest %" PRIu32 " tiles: a view lists %" PRIu64
+        printf("%swarning:%s the Gaussians are unusually wide, the widest %" PRIu32 " tiles: a view lists %" PRIu64
                " splats in its tiles, %" PRIu64 " are usual; it takes long to draw (--tile-splats)\n",
-               lists->widest, lists->entries, lists->usual);
+               style_begin(stdout, STYLE_WARNING), style_end(stdout), lists->widest, lists->entries, lists->usual);
     }
 }
 

@@ -301,11 +301,11 @@ static int report(const chart *c, const options *o)
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     if (o->folder_count > 0 && !c->table.has_pictures) {
-        fprintf(stderr, "trim3r chart: no table names pictures; eval --images with --csv does\n");
+        (void)cli_error(CLI_OK, "warning: no table names pictures; eval --images with --csv does");
     }
     if (pictures.missing > 0) {
-        fprintf(stderr, "trim3r chart: %u of the pictures that the tables name are not in the folders\n",
-                (unsigned)pictures.missing);
+        (void)cli_error(CLI_OK, "warning: %u of the pictures that the tables name are not in the folders",
+                        (unsigned)pictures.missing);
     }
     int code = write_page(c, &pictures, o->page);
     chart_pictures_free(&pictures);

@@ -334,8 +334,8 @@ static void warn_of_epoch(const replay_options *o, const t3r_recording *recordin
 {
     uint32_t epoch = t3r_recording_bits_epoch(recording);
     if (epoch != 0 && epoch != T3R_BITS_EPOCH) {
-        fprintf(stderr, "trim3r replay: %s is of bits epoch %" PRIu32 ", this is %d: hashes of then do not hold\n",
-                o->recording, epoch, T3R_BITS_EPOCH);
+        (void)cli_error(CLI_OK, "warning: %s is of bits epoch %" PRIu32 ", this is %d: hashes of then do not hold",
+                        o->recording, epoch, T3R_BITS_EPOCH);
     }
 }
 
