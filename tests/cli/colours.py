@@ -44,10 +44,12 @@ def colours():
         "a heading of help": (["build", "--help"], "\x1b[1mExamples:\x1b[0m\n"),
         "the program's help": (["--help"], "\x1b[1mData flow:\x1b[0m\n")}
     for what, (command, wanted) in lines.items():
-        check(wanted in shown(*command), f"{what}: {shown(*command)[:200]!r}")
-        for more in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
+        text = shown(*command)
+        check(wanted in text, f"{what}: {text[:200]!r}")
+        plain = re.sub(r"\x1b\[[0-9;]*m", "", wanted).strip()
+        for more in ({"NO_COLOR": "1"}, {"TERM": "dumb"}) if command[0] in ("info", "plan", "--help") else ():
             text = shown(*command, **more)
-            check("\x1b[1" not in text and re.sub(r"\x1b\[[0-9;]*m", "", wanted).strip() in text, f"{what} with {more}: {text[:200]!r}")
+            check("\x1b[1" not in text and plain in text, f"{what} with {more}: {text[:200]!r}")
         piped = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, env=TERMINAL)
         check(ESCAPE not in piped.stdout + piped.stderr, f"{what} in a pipe: {piped.stdout[:99]}{piped.stderr[:99]}")
     always = subprocess.run([TRIM3R, *map(str, build), "--profile", "--color", "always"], capture_output=True, text=True)

@@ -4,7 +4,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static enum { AUTO, ALWAYS, NEVER } chosen;
+enum { AUTO, ALWAYS, NEVER };
+
+static int chosen = AUTO;
 
 bool style_choose(const char *when)
 {
