@@ -141,8 +141,10 @@ int file_guard_find(void)
     const int named_otherwise = OPTION_OR_WORD | OPTION_OR_DEVICE;
     for (uint32_t i = 0; i < guard.count; i++) {
         const named_file *file = &guard.files[i];
-        if (!writes(file) && *file->path != '\0' && (file->flags & named_otherwise) == 0 && guard.places[i].mode == 0) {
-            return cli_error(CLI_BAD_INPUT, "%s: %s", file->path, strerror(ENOENT));
+        const bool is_path = *file->path != '\0' && (file->flags & named_otherwise) == 0;
+        struct stat there;
+        if (!writes(file) && is_path && stat(file->path, &there) != 0) {
+            return cli_error(CLI_BAD_INPUT, "%s: %s", file->path, strerror(errno));
         }
     }
     return CLI_OK;
