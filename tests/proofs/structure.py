@@ -36,6 +36,7 @@ tool("scene", "pictures", "posing")
 tool("reconstruction", "import", "scene", base=("platform", "quant"))
 tool("capture", "reconstruction")
 tool("viewer", "reconstruction")
+tool("ros", "reconstruction")
 tool("study/bench", "reconstruction", "room", base=("platform", "quant"))
 tool("study/chart", "pictures")
 tool("study/rivals", "reconstruction")
@@ -74,7 +75,7 @@ def resolve(root, path, name):
 def sources(root):
     for part in ("runtime", "quant", "platform", "tools"):
         for path in sorted((root / part).rglob("*")):
-            if path.suffix in (".c", ".h", ".cpp"):
+            if path.suffix in (".c", ".h", ".cpp", ".hpp"):
                 yield path.relative_to(root)
 
 

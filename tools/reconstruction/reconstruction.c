@@ -496,6 +496,34 @@ int reconstruction_stream(reconstruction *r, const t3r_recording *recording, con
     return code;
 }
 
+static int open_live_stream(reconstruction *r, const reconstruction_options *options, uint32_t keyframes)
+{
+    int code = chosen_head_open(&r->head, options->head);
+    if (code != CLI_OK) {
+        return code;
+    }
+    reconstruction_configure(r, options);
+    r->config.stream = 1;
+    r->config.views = keyframes;
+    r->config.gaussians = r->config.max_gaussians = r->requested = options->gaussians;
+    if (t3r_config_error(&r->config) != NULL) {
+        return reconstruction_error(T3R_ERR_CONFIG, "settings", &r->config, 0);
+    }
+    code = open_arena(r, options);
+    return code == CLI_OK ? bind_head(r, options) : code;
+}
+
+int reconstruction_live_stream(reconstruction *r, uint32_t width, uint32_t height,
+                               const reconstruction_options *options, uint32_t keyframes)
+{
+    *r = (reconstruction){.config = {.width = width, .height = height}};
+    int code = open_live_stream(r, options, keyframes);
+    if (code != CLI_OK) {
+        reconstruction_close(r);
+    }
+    return code;
+}
+
 /* ---- from a file ---------------------------------------------------------------------------------------------- */
 
 static int append_loaded(reconstruction *r, const t3r_camera *eye)

@@ -116,6 +116,9 @@ int reconstruction_build(reconstruction *r, const t3r_recording *recording, cons
  * of the valid points of the context frames, which nothing else is made of. */
 int reconstruction_stream(reconstruction *r, const t3r_recording *recording, const char *path,
                           const reconstruction_options *options, uint32_t keyframes);
+/* The same without a recording: frames come at that working size, and the options give the budget as a count. */
+int reconstruction_live_stream(reconstruction *r, uint32_t width, uint32_t height,
+                               const reconstruction_options *options, uint32_t keyframes);
 /* For those who build without a recording (live_build.h). The configuration of the options for the working size in
  * r->config, r->context_count views and r->head; its budget is left to the next. */
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options);

@@ -1,0 +1,392 @@
+/* Messages of a camera, in any order and of any content, to frames: pairs by time, bounded queues, reasons. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pictures/png_bytes.h"
+#include "ros/frame_feed.h"
+
+enum { SIDE = 16 };
+#define MS INT64_C(1000000)
+
+static uint8_t colour[SIDE][SIDE][3];
+static uint8_t depth[SIDE][SIDE][2];
+static float metres[SIDE][SIDE];
+
+typedef struct heard {
+    frame_feed *feed;
+    uint32_t frames, warnings, held; /* held: messages that are not released yet */
+    int64_t stamp_ns;
+    char reason[FRAME_FEED_REASON_BYTES], world[FRAME_FEED_NAME_BYTES];
+    frame_feed_topic topic;
+    uint8_t first[3], first_depth[2];
+    t3r_camera camera;
+    frame_feed_found found; /* what locate() answers */
+} heard;
+
+static void hear_frame(void *user, int64_t stamp_ns, const char *world, const t3r_frame *frame,
+                       const t3r_camera *camera, int64_t now_ns)
+{
+    (void)now_ns;
+    heard *h = user;
+    assert_true(stamp_ns > h->stamp_ns || h->frames == 0);
+    assert_int_equal(frame->width, SIDE);
+    assert_int_equal(frame->depth_width, SIDE);
+    h->frames++;
+    h->stamp_ns = stamp_ns;
+    h->camera = *camera;
+    strcpy(h->world, world);
+    memcpy(h->first, frame->planes[0], sizeof h->first);
+    memcpy(h->first_depth, frame->depth, sizeof h->first_depth);
+}
+
+static void hear_warning(void *user, frame_feed_topic topic, const char *reason)
+{
+    heard *h = user;
+    h->warnings++;
+    h->topic = topic;
+    strcpy(h->reason, reason);
+}
+
+static void hear_release(void *user, void *owner)
+{
+    heard *h = user;
+    assert_ptr_equal(owner, h);
+    assert_true(h->held > 0);
+    h->held--;
+}
+
+static frame_feed_found answer(void *user, int64_t stamp_ns, const char *camera, t3r_ros_pose *pose)
+{
+    heard *h = user;
+    assert_string_equal(camera, "lens");
+    assert_true(stamp_ns > 0);
+    const double one = 1;
+    *pose = (t3r_ros_pose){0};
+    memcpy(&pose->rotation_f64[3], &one, sizeof one);
+    return h->found;
+}
+
+static void begin(heard *h, bool locate, uint32_t queue)
+{
+    frame_feed_settings s = frame_feed_defaults();
+    char error[128];
+    *h = (heard){0};
+    s.user = h;
+    s.frame = hear_frame;
+    s.warn = hear_warning;
+    s.release = hear_release;
+    s.locate = locate ? answer : NULL;
+    s.world = locate ? "map" : "";
+    s.queue = queue;
+    h->feed = frame_feed_open(&s, error, sizeof error);
+    assert_non_null(h->feed);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        memset(colour[i / SIDE][i % SIDE], 77, 3);
+        depth[i / SIDE][i % SIDE][0] = 0xd0; /* 2000 */
+        depth[i / SIDE][i % SIDE][1] = 0x07;
+        metres[i / SIDE][i % SIDE] = 2;
+    }
+}
+
+static void finish(heard *h)
+{
+    frame_feed_close(h->feed);
+    assert_int_equal(h->held, 0);
+}
+
+/* The colour image of that time in milliseconds, or the depth image. */
+static t3r_ros_image image_of(frame_feed_topic topic, int64_t ms)
+{
+    const bool is_colour = topic == FRAME_FEED_COLOUR;
+    return (t3r_ros_image){.header = {ms * MS, {"lens", 4}},
+                           .height = SIDE,
+                           .width = SIDE,
+                           .encoding = {is_colour ? "rgb8" : "16UC1", is_colour ? 4 : 5},
+                           .step = SIDE * (is_colour ? 3 : 2),
+                           .data = is_colour ? &colour[0][0][0] : &depth[0][0][0],
+                           .data_bytes = SIDE * SIDE * (is_colour ? 3 : 2)};
+}
+
+static void send(heard *h, frame_feed_topic topic, int64_t ms, int64_t now_ms)
+{
+    const t3r_ros_image image = image_of(topic, ms);
+    h->held++;
+    frame_feed_image(h->feed, topic, &image, h, now_ms * MS);
+}
+
+static t3r_ros_camera_info good_info(void)
+{
+    t3r_ros_camera_info info = {.height = SIDE, .width = SIDE, .distortion_model = {"plumb_bob", 9}};
+    const double k[9] = {SIDE, 0, 7.5, 0, SIDE, 7.5, 0, 0, 1};
+    memcpy(info.k_f64, k, sizeof k);
+    return info;
+}
+
+static void send_info(heard *h)
+{
+    const t3r_ros_camera_info info = good_info();
+    frame_feed_camera_info(h->feed, &info, 0);
+}
+
+static void send_pose(heard *h, int64_t ms, double x, const char *child, int64_t now_ms)
+{
+    t3r_ros_pose pose = {.header = {ms * MS, {"map", 3}}, .child_frame_id = {child, strlen(child)}};
+    const double one = 1;
+    memcpy(&pose.position_f64[0], &x, sizeof x);
+    memcpy(&pose.rotation_f64[3], &one, sizeof one);
+    frame_feed_pose(h->feed, &pose, now_ms * MS);
+}
+
+static void settings_are_checked(void **state)
+{
+    (void)state;
+    char error[128];
+    frame_feed_settings s = frame_feed_defaults();
+    s.queue = 1;
+    assert_null(frame_feed_open(&s, error, sizeof error));
+    s.queue = 33;
+    assert_null(frame_feed_open(&s, error, sizeof error));
+    assert_string_equal(error, "queue is outside 2..32");
+    s = frame_feed_defaults();
+    s.pair_ns = -1;
+    assert_null(frame_feed_open(&s, error, sizeof error));
+    s = frame_feed_defaults();
+    s.depth_unit_q40 = 0;
+    assert_null(frame_feed_open(&s, error, sizeof error));
+}
+
+static void any_order_makes_a_frame(void **state)
+{
+    (void)state;
+    for (int order = 0; order < 6; order++) {
+        static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+        heard h;
+        begin(&h, false, 8);
+        send_info(&h);
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(h.frames, 0);
+            if (orders[order][i] == 2) {
+                send_pose(&h, 100, 0.5, "", i);
+            } else {
+                send(&h, (frame_feed_topic)orders[order][i], 100, i);
+            }
+        }
+        assert_int_equal(h.frames, 1);
+        assert_int_equal(h.held, 0);
+        assert_int_equal(h.stamp_ns, 100 * MS);
+        assert_string_equal(h.world, "map");
+        assert_int_equal(h.camera.position_q32[0], INT64_C(1) << 31);
+        assert_int_equal(h.camera.fx_q16, SIDE << 16);
+        assert_int_equal(h.first[0], 77);
+        assert_int_equal(h.warnings, 0);
+        finish(&h);
+    }
+}
+
+static void the_nearest_pose_counts(void **state)
+{
+    (void)state;
+    heard h;
+    begin(&h, false, 8);
+    send_info(&h);
+    send_pose(&h, 92, 1, "", 0);
+    send(&h, FRAME_FEED_DEPTH, 103, 1);
+    send(&h, FRAME_FEED_COLOUR, 100, 2);
+    assert_int_equal(h.frames, 0); /* a nearer pose may come */
+    send_pose(&h, 104, 2, "lens", 3);
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.camera.position_q32[0], INT64_C(2) << 32);
+    send(&h, FRAME_FEED_DEPTH, 200, 4);
+    send(&h, FRAME_FEED_COLOUR, 200, 5);
+    send_pose(&h, 230, 3, "", 6); /* too late: none was near */
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.topic, FRAME_FEED_POSE);
+    assert_int_equal(frame_feed_counts_of(h.feed).refused, 1);
+    send(&h, FRAME_FEED_DEPTH, 300, 7);
+    send(&h, FRAME_FEED_COLOUR, 300, 8);
+    send_pose(&h, 300, 3, "base_link", 9);
+    assert_int_equal(h.frames, 1);
+    assert_string_equal(h.reason, "the pose is of \"base_link\", the image of \"lens\"");
+    finish(&h);
+}
+
+static void patience_ends(void **state)
+{
+    (void)state;
+    heard h;
+    begin(&h, true, 8);
+    send_info(&h);
+    send(&h, FRAME_FEED_DEPTH, 100, 0);
+    send(&h, FRAME_FEED_COLOUR, 100, 0);
+    frame_feed_tick(h.feed, 499 * MS);
+    assert_int_equal(h.held, 2);
+    h.found = FRAME_FEED_FOUND;
+    frame_feed_tick(h.feed, 499 * MS);
+    assert_int_equal(h.frames, 1);
+    h.found = FRAME_FEED_NOT_YET;
+    send(&h, FRAME_FEED_DEPTH, 200, 500);
+    send(&h, FRAME_FEED_COLOUR, 200, 500);
+    frame_feed_tick(h.feed, 1000 * MS);
+    assert_int_equal(h.held, 0);
+    assert_int_equal(h.topic, FRAME_FEED_POSE);
+    send(&h, FRAME_FEED_COLOUR, 300, 1000);
+    frame_feed_tick(h.feed, 1500 * MS);
+    assert_int_equal(h.held, 0);
+    assert_int_equal(h.topic, FRAME_FEED_DEPTH);
+    assert_int_equal(frame_feed_counts_of(h.feed).refused, 2);
+    finish(&h);
+}
+
+static void queues_are_bounded(void **state)
+{
+    (void)state;
+    for (uint32_t queue = 2; queue <= 32; queue += 10) {
+        heard h;
+        begin(&h, true, queue);
+        send_info(&h);
+        for (int i = 1; i < 200; i++) { /* no pose ever, and time stands still */
+            send(&h, FRAME_FEED_COLOUR, i * 33, 0);
+            send(&h, FRAME_FEED_DEPTH, i * 33, 0);
+            assert_true(h.held <= 2 * queue + 2);
+        }
+        h.found = FRAME_FEED_FOUND;
+        frame_feed_tick(h.feed, 0);
+        assert_true(h.frames > 0 && h.frames <= queue + 1);
+        for (int i = 200; i < 300; i++) {
+            send(&h, FRAME_FEED_DEPTH, i * 33, 0); /* and none of colour */
+        }
+        assert_true(h.held <= queue);
+        const frame_feed_counts counts = frame_feed_counts_of(h.feed);
+        assert_int_equal(counts.images, 199);
+        assert_int_equal(counts.frames + counts.refused, 199);
+        finish(&h);
+    }
+}
+
+static void time_goes_on(void **state)
+{
+    (void)state;
+    heard h;
+    begin(&h, true, 8);
+    h.found = FRAME_FEED_FOUND;
+    send_info(&h);
+    send(&h, FRAME_FEED_COLOUR, 5000, 0);
+    send(&h, FRAME_FEED_COLOUR, 5000, 0); /* twice */
+    assert_string_equal(h.reason, "the stamp is not behind that of the message before");
+    assert_int_equal(h.held, 1);
+    send(&h, FRAME_FEED_COLOUR, 1000, 1); /* a clock that was set */
+    assert_non_null(strstr(h.reason, "time went back"));
+    assert_int_equal(h.held, 1);
+    h.stamp_ns = 0;
+    send(&h, FRAME_FEED_DEPTH, 1000, 2);
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.warnings, 2);
+    finish(&h);
+}
+
+static void wrong_messages_have_a_reason(void **state)
+{
+    (void)state;
+    heard h;
+    begin(&h, true, 8);
+    h.found = FRAME_FEED_FOUND;
+    send(&h, FRAME_FEED_COLOUR, 100, 0);
+    send(&h, FRAME_FEED_DEPTH, 100, 0);
+    assert_int_equal(h.topic, FRAME_FEED_CAMERA_INFO);
+    assert_string_equal(h.reason, "there is none yet");
+    t3r_ros_camera_info info = good_info();
+    info.header.frame_id = (t3r_text){"other", 5};
+    frame_feed_camera_info(h.feed, &info, 0);
+    send(&h, FRAME_FEED_COLOUR, 200, 0);
+    send(&h, FRAME_FEED_DEPTH, 200, 0);
+    assert_string_equal(h.reason, "header.frame_id is \"other\", that of the colour image \"lens\"");
+    assert_int_equal(h.frames, 0);
+    send_info(&h);
+    t3r_ros_image image = image_of(FRAME_FEED_DEPTH, 300); /* metres become steps of the unit */
+    image.encoding = (t3r_text){"32FC1", 5};
+    image.step = SIDE * 4;
+    image.data = (const uint8_t *)&metres[0][0];
+    image.data_bytes = sizeof metres;
+    h.held++;
+    frame_feed_image(h.feed, FRAME_FEED_DEPTH, &image, &h, 0);
+    send(&h, FRAME_FEED_COLOUR, 300, 0);
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.first_depth[0] | h.first_depth[1] << 8, 2000);
+    finish(&h);
+}
+
+static void lines_are_held_back(void **state)
+{
+    (void)state;
+    heard h;
+    begin(&h, true, 8);
+    for (int i = 0; i < 100; i++) { /* three seconds of frames without intrinsics */
+        send(&h, FRAME_FEED_DEPTH, 1 + i * 30, i * 30);
+        send(&h, FRAME_FEED_COLOUR, 1 + i * 30, i * 30);
+    }
+    h.found = FRAME_FEED_FOUND;
+    frame_feed_tick(h.feed, 4000 * MS);
+    const uint32_t before = h.warnings;
+    assert_true(before <= 2); /* no pose, no intrinsics */
+    frame_feed_warn(h.feed, FRAME_FEED_CAMERA_INFO, "frame 7 is odd", 4001 * MS);
+    frame_feed_warn(h.feed, FRAME_FEED_CAMERA_INFO, "frame 18 is odd", 4002 * MS);
+    frame_feed_warn(h.feed, FRAME_FEED_CAMERA_INFO, "frame 19 is odd", 9001 * MS);
+    assert_int_equal(h.warnings, before + 2);
+    assert_non_null(strstr(h.reason, "frame 19 is odd (1 more"));
+    finish(&h);
+}
+
+static void compressed_images_are_decoded(void **state)
+{
+    (void)state;
+    heard h;
+    size_t count;
+    begin(&h, true, 8);
+    h.found = FRAME_FEED_FOUND;
+    send_info(&h);
+    uint8_t *png = png_bytes(SIDE, SIDE, 3, &colour[0][0][0], &count);
+    assert_non_null(png);
+    t3r_ros_compressed image = {.header = {100 * MS, {"lens", 4}},
+                                .format = {"rgb8; png compressed rgb8", 25},
+                                .data = png,
+                                .data_bytes = (uint32_t)count};
+    h.held++;
+    frame_feed_compressed(h.feed, FRAME_FEED_COLOUR, &image, &h, 0);
+    assert_int_equal(h.held, 0); /* its bytes are not needed any more */
+    send(&h, FRAME_FEED_DEPTH, 100, 1);
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.first[1], 77);
+    for (uint32_t cut = 0; cut < count; cut += 7) {
+        image.header.stamp_ns += 30 * MS;
+        image.data_bytes = cut;
+        h.held++;
+        frame_feed_compressed(h.feed, FRAME_FEED_COLOUR, &image, &h, 2);
+        assert_int_equal(h.held, 0);
+    }
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.topic, FRAME_FEED_COLOUR);
+    free(png);
+    finish(&h);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(settings_are_checked),
+        cmocka_unit_test(any_order_makes_a_frame),
+        cmocka_unit_test(the_nearest_pose_counts),
+        cmocka_unit_test(patience_ends),
+        cmocka_unit_test(queues_are_bounded),
+        cmocka_unit_test(time_goes_on),
+        cmocka_unit_test(wrong_messages_have_a_reason),
+        cmocka_unit_test(lines_are_held_back),
+        cmocka_unit_test(compressed_images_are_decoded),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

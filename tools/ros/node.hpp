@@ -1,0 +1,135 @@
+// The node without ROS: messages of a camera in, the map and its clouds out. A shell for a version of ROS feeds it from
+// one thread and says what is done with clouds and lines.
+#ifndef TRIM3R_TOOLS_ROS_NODE_HPP
+#define TRIM3R_TOOLS_ROS_NODE_HPP
+
+#include <cinttypes>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "ros/frame_feed.h"
+#include "ros/keyframe_map.h"
+#include "ros/mapping.hpp"
+
+namespace trim3r_ros
+{
+
+// What a user sets. The first value is the default.
+struct parameters {
+    int width = 256, height = 256; // the working size
+    int gaussians = 10000;         // the most in the map
+    int at_hand = 4, every = 3, overlap = 0, half_life = 32, refine = T3R_DEFAULT_REFINEMENTS, threads = 1;
+    bool warm = false;
+    std::string head = "small";
+    int queue = 8;
+    double pair_ms = 20, patience_ms = 500;
+    double depth_unit = 0.001; // of 16-bit depth
+    std::string pose = "pose"; // or odometry, transform, tf: the type of message that poses come by
+    std::string world;         // the frame of poses; empty: that of the first pose, which tf does not have
+    std::string scene;         // where the scene is saved at the end and by the service; empty: nowhere
+};
+
+// Calls `visit(name, field)` for each, so that every shell has the same parameters.
+template <class Visit> void visit_parameters(parameters &p, Visit visit)
+{
+    visit("width", p.width);
+    visit("height", p.height);
+    visit("gaussians", p.gaussians);
+    visit("at_hand", p.at_hand);
+    visit("every", p.every);
+    visit("overlap", p.overlap);
+    visit("half_life", p.half_life);
+    visit("refine", p.refine);
+    visit("threads", p.threads);
+    visit("warm", p.warm);
+    visit("head", p.head);
+    visit("queue", p.queue);
+    visit("pair_ms", p.pair_ms);
+    visit("patience_ms", p.patience_ms);
+    visit("depth_unit", p.depth_unit);
+    visit("pose", p.pose);
+    visit("world", p.world);
+    visit("scene", p.scene);
+}
+
+// What the shell does for the node.
+class outlet
+{
+  public:
+    virtual ~outlet() = default;
+    virtual void cloud(const t3r_scene &scene, int64_t stamp_ns, const char *world) = 0;
+    virtual void info(const std::string &line) = 0;
+    virtual void warn(const std::string &line) = 0;
+    // With poses by tf alone: the pose of `camera` in the world at that time.
+    virtual frame_feed_found locate(int64_t stamp_ns, const std::string &world, const char *camera,
+                                    t3r_ros_pose &pose) = 0;
+};
+
+class node
+{
+  public:
+    // Throws std::runtime_error with the reason where parameters cannot be used.
+    node(const parameters &given, outlet &out);
+    ~node();
+    node(const node &) = delete;
+    node &operator=(const node &) = delete;
+
+    // `message`: a shared pointer, boost's or the standard library's; now_ns: of any steady clock.
+    template <class Pointer> void image(frame_feed_topic topic, const Pointer &message, int64_t now_ns)
+    {
+        const t3r_ros_image image = image_of(*message);
+        frame_feed_image(feed_, topic, &image, own(message), now_ns);
+    }
+    template <class Pointer> void compressed(frame_feed_topic topic, const Pointer &message, int64_t now_ns)
+    {
+        const t3r_ros_compressed image = compressed_of(*message);
+        frame_feed_compressed(feed_, topic, &image, own(message), now_ns);
+    }
+    template <class Info> void camera_info(const Info &message, int64_t now_ns)
+    {
+        const t3r_ros_camera_info info = camera_info_of(message);
+        frame_feed_camera_info(feed_, &info, now_ns);
+    }
+    void pose(const t3r_ros_pose &pose, int64_t now_ns)
+    {
+        frame_feed_pose(feed_, &pose, now_ns);
+    }
+    void tick(int64_t now_ns)
+    {
+        frame_feed_tick(feed_, now_ns);
+    }
+
+    // Writes the scene to the parameter's file; false, and `told` says why not.
+    bool save(std::string &told) const;
+    std::string summary() const;
+
+  private:
+    // Keeps a message alive until the feed releases it.
+    struct kept {
+        virtual ~kept() = default;
+    };
+    template <class Pointer> struct kept_message : kept {
+        explicit kept_message(const Pointer &message) : pointer(message)
+        {
+        }
+        Pointer pointer;
+    };
+    template <class Pointer> static void *own(const Pointer &message)
+    {
+        return static_cast<kept *>(new kept_message<Pointer>(message));
+    }
+
+    void frame(int64_t stamp_ns, const char *world, const t3r_frame &frame, const t3r_camera &camera, int64_t now_ns);
+    void warn(frame_feed_topic topic, const char *reason) const;
+
+    parameters parameters_;
+    outlet &out_;
+    keyframe_map *map_ = nullptr;
+    frame_feed *feed_ = nullptr;
+};
+
+} // namespace trim3r_ros
+
+#endif

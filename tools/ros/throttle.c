@@ -1,0 +1,29 @@
+#include "ros/throttle.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Numbers in a line change from one to the next: what counts as the same line are its other characters. */
+static bool is_alike(const char *a, const char *b)
+{
+    static const char digits[] = "0123456789";
+    for (;; a++, b++) {
+        a += strspn(a, digits);
+        b += strspn(b, digits);
+        if (*a != *b || *a == '\0') {
+            return *a == *b;
+        }
+    }
+}
+
+bool throttle_tells(throttle *t, const char *text, int64_t now_ns, uint64_t *more)
+{
+    if (t->last[0] != '\0' && is_alike(t->last, text) && now_ns - t->told_ns < THROTTLE_INTERVAL_NS) {
+        t->held_back++;
+        return false;
+    }
+    *more = t->held_back;
+    *t = (throttle){.told_ns = now_ns};
+    snprintf(t->last, sizeof t->last, "%s", text);
+    return true;
+}
