@@ -9,7 +9,7 @@ import sys
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from checks import check, done, near, run, skip  # noqa: E402, F401
 
-SIDE, FRAMES, GAUSSIANS = 96, 10, 2000
+SIDE, FRAMES, GAUSSIANS = 64, 10, 1000
 EVERY = 1  # with frames between keyframes, `replay` draws these, and its hashes hold the pictures
 FIELDS = ("x", "y", "z", "rgb", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3")
 FLOAT32 = 7

@@ -149,9 +149,9 @@ void drive(char **argv)
 {
     const std::string kind = argv[4];
     const auto options =
-        rclcpp::NodeOptions().parameter_overrides({{"width", 96},
-                                                   {"height", 96},
-                                                   {"gaussians", 2000},
+        rclcpp::NodeOptions().parameter_overrides({{"width", 64},
+                                                   {"height", 64},
+                                                   {"gaussians", 1000},
                                                    {"every", 1},
                                                    {"scene", std::string(argv[3])},
                                                    {"pose", kind == "faults" ? std::string("pose") : kind},

@@ -306,7 +306,15 @@ static void drop_pair(frame_feed *feed)
     feed->has_pair = false;
 }
 
-/* False: the pair still waits for its pose. */
+/* Whether what is not there yet may still come: messages of several topics arrive in any order. */
+static bool may_wait(const frame_feed *feed, int64_t now_ns)
+{
+    const t3r_pairing *pairing = &feed->pairing;
+    const bool full = pairing->colour.count >= pairing->most || pairing->depth.count >= pairing->most;
+    return !full && now_ns - feed->pair_since_ns < feed->settings.patience_ns;
+}
+
+/* False: the pair still waits for its pose, or for the first intrinsics. */
 static bool finish_pair(frame_feed *feed, int64_t now_ns)
 {
     const image_slot *colour = &feed->slots[FRAME_FEED_COLOUR][feed->pair[FRAME_FEED_COLOUR]];
@@ -316,9 +324,7 @@ static bool finish_pair(frame_feed *feed, int64_t now_ns)
     char reason[FRAME_FEED_REASON_BYTES] = "";
     frame_feed_topic topic = FRAME_FEED_TOPICS;
     const frame_feed_found found = locate(feed, colour, &camera, reason);
-    const bool full =
-        feed->pairing.colour.count >= feed->pairing.most || feed->pairing.depth.count >= feed->pairing.most;
-    if (found == FRAME_FEED_NOT_YET && !full && now_ns - feed->pair_since_ns < feed->settings.patience_ns) {
+    if ((found == FRAME_FEED_NOT_YET || (found == FRAME_FEED_FOUND && !feed->has_info)) && may_wait(feed, now_ns)) {
         return false;
     }
     if (found != FRAME_FEED_FOUND) {

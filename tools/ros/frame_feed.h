@@ -30,9 +30,10 @@ typedef enum frame_feed_topic {
 typedef enum frame_feed_found { FRAME_FEED_NEVER = -1, FRAME_FEED_NOT_YET, FRAME_FEED_FOUND } frame_feed_found;
 
 typedef struct frame_feed_settings {
-    uint32_t queue;          /* images of either kind that may wait, 2..32 [8] */
-    int64_t pair_ns;         /* what is of one instant lies at most so far apart [20 ms] */
-    int64_t patience_ns;     /* so long a colour image waits for its depth, and a pair for its pose [500 ms] */
+    uint32_t queue;      /* images of either kind that may wait, 2..32 [8] */
+    int64_t pair_ns;     /* what is of one instant lies at most so far apart [20 ms] */
+    int64_t patience_ns; /* so long a colour image waits for its depth, and a pair for its pose and the first intrinsics
+                            [500 ms] */
     uint64_t depth_unit_q40; /* of 16-bit depth in metres, above 0 [0.001] */
     const char *world;       /* the frame of poses; copied. "" = that of the first pose [""] */
 
