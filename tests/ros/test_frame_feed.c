@@ -327,6 +327,12 @@ static void wrong_messages_have_a_reason(void **state)
     send(&h, FRAME_FEED_COLOUR, 200, 0);
     send(&h, FRAME_FEED_DEPTH, 200, 0);
     assert_string_equal(h.reason, "header.frame_id is \"other\", that of the colour image \"lens\"");
+    info = good_info();
+    info.width++;
+    frame_feed_camera_info(h.feed, &info, 0);
+    send(&h, FRAME_FEED_COLOUR, 250, 0);
+    send(&h, FRAME_FEED_DEPTH, 250, 0);
+    assert_string_equal(h.reason, "width x height is 17x16, that of the image 16x16");
     assert_int_equal(h.frames, 0);
     send_info(&h);
     t3r_ros_image image = image_of(FRAME_FEED_DEPTH, 300); /* metres become steps of the unit */

@@ -7,10 +7,10 @@
 
 #include "frame_pairing.h"
 #include "import/bag_pictures.h"
+#include "message_frame.h"
 #include "pixel_layout.h"
 #include "reason.h"
 #include "ros/throttle.h"
-#include "ros_frame.h"
 
 #define POSES_MOST 256u
 #define JUMP_NS INT64_C(1000000000) /* stamps that go back so far are those of a clock that was set */
@@ -49,6 +49,12 @@ struct frame_feed {
     size_t z16_bytes;
     frame_feed_counts counts;
 };
+
+/* 0, or -1 with what is wrong as the reason. */
+static int verdict(const char *wrong, char *reason)
+{
+    return wrong == NULL ? 0 : t3r_reason(reason, FRAME_FEED_REASON_BYTES, "%s", wrong);
+}
 
 /* ---- opening and closing ------------------------------------------------------------------------------------------
  */
@@ -245,7 +251,7 @@ static frame_feed_found locate(frame_feed *feed, const image_slot *colour, t3r_c
         t3r_reason(reason, FRAME_FEED_REASON_BYTES, "there is none at the time of a colour image");
         return found;
     }
-    return t3r_ros_to_pose(pose, camera, reason, FRAME_FEED_REASON_BYTES) == 0 ? FRAME_FEED_FOUND : FRAME_FEED_NEVER;
+    return verdict(t3r_message_pose(pose, camera), reason) == 0 ? FRAME_FEED_FOUND : FRAME_FEED_NEVER;
 }
 
 /* ---- a pair to a frame ---------------------------------------------------------------------------------------------
@@ -253,12 +259,11 @@ static frame_feed_found locate(frame_feed *feed, const image_slot *colour, t3r_c
 
 static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame, char *reason)
 {
-    bool converts;
     frame->depth_unit_q40 = feed->settings.depth_unit_q40;
-    if (t3r_ros_to_depth(&slot->image, frame, &converts, reason, FRAME_FEED_REASON_BYTES) != 0) {
+    if (verdict(t3r_message_depth(&slot->image, frame), reason) != 0) {
         return -1;
     }
-    if (!converts) {
+    if (frame->depth != NULL) {
         return 0;
     }
     const size_t bytes = (size_t)slot->image.width * slot->image.height * 2;
@@ -270,9 +275,8 @@ static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame
     if (feed->z16 == NULL) {
         return t3r_reason(reason, FRAME_FEED_REASON_BYTES, "out of memory");
     }
-    t3r_ros_convert_depth(&slot->image, feed->settings.depth_unit_q40, feed->z16);
+    t3r_message_to_z16(&slot->image, feed->settings.depth_unit_q40, feed->z16);
     frame->depth = feed->z16;
-    frame->depth_stride_bytes = slot->image.width * 2;
     return 0;
 }
 
@@ -291,11 +295,16 @@ static int take_intrinsics(frame_feed *feed, const image_slot *colour, t3r_camer
     if (!feed->has_info) {
         return t3r_reason(reason, FRAME_FEED_REASON_BYTES, "there is none yet");
     }
+    if (check_frame(colour, feed->info_frame, reason) != 0) {
+        return -1;
+    }
+    if (feed->info.width != colour->image.width || feed->info.height != colour->image.height) {
+        return t3r_reason(reason, FRAME_FEED_REASON_BYTES,
+                          "width x height is %" PRIu32 "x%" PRIu32 ", that of the image %" PRIu32 "x%" PRIu32,
+                          feed->info.width, feed->info.height, colour->image.width, colour->image.height);
+    }
     feed->info.distortion_model = t3r_text_of(feed->info_model);
-    return check_frame(colour, feed->info_frame, reason) != 0
-               ? -1
-               : t3r_ros_to_intrinsics(&feed->info, colour->image.width, colour->image.height, camera, reason,
-                                       FRAME_FEED_REASON_BYTES);
+    return verdict(t3r_message_intrinsics(&feed->info, camera), reason);
 }
 
 static void drop_pair(frame_feed *feed)
@@ -329,7 +338,7 @@ static bool finish_pair(frame_feed *feed, int64_t now_ns)
     }
     if (found != FRAME_FEED_FOUND) {
         topic = FRAME_FEED_POSE;
-    } else if (t3r_ros_to_colour(&colour->image, &frame, reason, sizeof reason) != 0) {
+    } else if (verdict(t3r_message_colour(&colour->image, &frame), reason) != 0) {
         topic = FRAME_FEED_COLOUR;
     } else if (check_frame(colour, depth->frame, reason) != 0 || take_depth(feed, depth, &frame, reason) != 0) {
         topic = FRAME_FEED_DEPTH;
