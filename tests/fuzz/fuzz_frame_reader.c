@@ -1,0 +1,65 @@
+/* libFuzzer: recordings from memory by the reader for firmware, every byte of a frame read. */
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "frame_reader.h"
+#include "pixel_layout.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { ROOM = 4096 };
+
+/* Written, so that the reads are not optimised away. */
+extern volatile uint32_t fuzz_frame_reader_sum;
+volatile uint32_t fuzz_frame_reader_sum;
+
+typedef struct input {
+    const uint8_t *bytes;
+    size_t count;
+} input;
+
+static int read_bytes(void *user, uint64_t offset, void *bytes, size_t count)
+{
+    const input *from = user;
+    if (offset > from->count || count > from->count - offset) {
+        abort(); /* it may ask for what there is alone */
+    }
+    memcpy(bytes, from->bytes + offset, count);
+    return 0;
+}
+
+static void touch(const uint8_t *rows, uint32_t stride, uint32_t row_bytes, uint32_t count)
+{
+    for (uint32_t y = 0; y < count; y++) {
+        for (uint32_t x = 0; x < row_bytes; x++) {
+            fuzz_frame_reader_sum += rows[(size_t)y * stride + x];
+        }
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    /* On the heap, so that the sanitizer sees what lies beyond. */
+    uint8_t *colour = malloc(ROOM), *depth = malloc(ROOM);
+    t3r_frame_reader reader;
+    input from = {data, size};
+    const t3r_byte_source source = {read_bytes, &from, size};
+    t3r_capture_frame frame;
+    if (colour != NULL && depth != NULL && t3r_frame_reader_open(&reader, &source, colour, ROOM, depth, ROOM) == 0) {
+        while (t3r_frame_reader_next(&reader, &frame) == T3R_CAPTURE_FRAME) {
+            const t3r_frame *f = &frame.frame;
+            for (uint32_t p = 0; p < 2; p++) {
+                touch(f->planes[p], f->stride_bytes[p], t3r_pixel_row_bytes(f->format, f->width),
+                      t3r_pixel_rows(f->format, p, f->height));
+            }
+            if (f->depth != NULL) {
+                touch(f->depth, f->depth_stride_bytes, f->depth_width * 2, f->depth_height);
+            }
+        }
+    }
+    free(colour);
+    free(depth);
+    return 0;
+}
