@@ -3,6 +3,7 @@
  * It reads what trim3r records and imports: chunks that are not compressed, or none, and images as pixels. The messages
  * of one instant have one header.stamp and follow one another. Depth and pose of another stamp than their colour
  * image's are passed over; `trim3r import` pairs them. CRCs are not checked, because most records are passed over. */
+#ifndef T3R_PLATFORM_FRAME_READER_H
 #define T3R_PLATFORM_FRAME_READER_H
 
 #include "capture.h"
