@@ -18,6 +18,7 @@ MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, r
 RUNTIME = set(MAY)
 MAY["quant"] = RUNTIME
 MAY["platform"] = RUNTIME
+MAY["platform/baremetal"] = RUNTIME | {"platform", "quant"}
 
 
 def tool(name, *uses, base=("platform",)):
@@ -37,6 +38,7 @@ tool("reconstruction", "import", "scene", base=("platform", "quant"))
 tool("capture", "reconstruction")
 tool("viewer", "reconstruction")
 tool("ros", "reconstruction")
+tool("study/boards")
 tool("study/bench", "reconstruction", "room", base=("platform", "quant"))
 tool("study/chart", "pictures")
 tool("study/rivals", "reconstruction")
@@ -60,6 +62,8 @@ def area_of(path):
         return "/".join(folder.split("/")[:3])
     if folder.startswith("tools"):
         return "/".join(folder.split("/")[:2])
+    if folder.startswith("platform/baremetal"):
+        return "platform/baremetal"
     return folder.split("/")[0]
 
 

@@ -1,0 +1,169 @@
+/* The firmware of every board: a recording in; Gaussians, a view and every stage's hash out. Words on the command line,
+ * each KEY=NUMBER, say what is built; the defaults are those of t3r_default_config().
+ *
+ *     frames=IN.mcap view=OUT.ppm scene=OUT.t3g width=64 height=64 views=2 gaussians=819 clusters=32 batches=4
+ *     refinements=2 learned=1 hashes=1 arena=BYTES
+ *
+ * The first `views` frames are the context; the next one's camera is drawn. */
+#include <stdbool.h>
+#include <string.h>
+
+#include "frame_reader.h"
+#include "marks.h"
+#include "options.h"
+#include "report.h"
+#include "semihost.h"
+#include "stack.h"
+#include "trim3r.h"
+#ifdef HEAD
+#include "trim3r_heads.h"
+#endif
+
+extern uint8_t memory_begin_at[], memory_end_at[];
+
+/* The memory between data and stack, dealt out from its front. */
+typedef struct memory {
+    uint8_t *at, *end;
+} memory;
+
+static uint8_t *deal(memory *m, size_t bytes)
+{
+    uint8_t *dealt = m->at;
+    bytes = (bytes + T3R_ARENA_ALIGN - 1) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
+    if ((size_t)(m->end - m->at) < bytes) {
+        report_failure("the memory lacks this many bytes:", (uint32_t)(bytes - (size_t)(m->end - m->at)));
+    }
+    m->at += bytes;
+    return dealt;
+}
+
+static void check(t3r_status status, const char *what)
+{
+    if (status != T3R_OK) {
+        report_text("error: ", what, ": ", t3r_error_text(status));
+        semihost_exit(1);
+    }
+}
+
+static int read_file(void *user, uint64_t offset, void *bytes, size_t count)
+{
+    return semihost_read(*(const int32_t *)user, (uint32_t)offset, bytes, count);
+}
+
+static int on_progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    (void)user, (void)done, (void)total;
+    mark_stage(stage);
+    return 0;
+}
+
+static void on_hash(void *user, t3r_stage stage, uint64_t hash)
+{
+    (void)user;
+    report_hash(t3r_stage_name(stage), hash);
+}
+
+static t3r_config configure(const options *o)
+{
+    t3r_config config = t3r_default_config(o->width, o->height, o->views, o->gaussians);
+    config.clusters = o->clusters != 0 ? o->clusters : config.clusters;
+    config.cluster_batches = o->batches != 0 ? o->batches : config.cluster_batches;
+    config.refinements = o->refinements;
+#ifdef HEAD
+    if (o->learned != 0) {
+        config.head = T3R_HEAD_LEARNED;
+        config.head_column_bytes = t3r_head_column_bytes(HEAD, HEAD_BYTES, o->width);
+    }
+#endif
+    return config;
+}
+
+static void next_frame(t3r_frame_reader *reader, t3r_capture_frame *frame)
+{
+    if (t3r_frame_reader_next(reader, frame) != T3R_CAPTURE_FRAME) {
+        report_text("error: frames: ", reader->error != NULL ? reader->error : "there are too few", "", "");
+        semihost_exit(1);
+    }
+    if (!frame->has_pose || !frame->has_intrinsics) {
+        report_failure("frame without a pose or intrinsics", frame->index);
+    }
+}
+
+static void write_file(const char *path, const char *head, const void *bytes, size_t count)
+{
+    const int32_t file = semihost_open(path, SEMIHOST_WRITE);
+    if (file <= 0 || semihost_write(file, head, strlen(head)) != 0 || semihost_write(file, bytes, count) != 0) {
+        report_text("error: ", path, ": it cannot be written", "");
+        semihost_exit(1);
+    }
+    semihost_close(file);
+}
+
+int main(void)
+{
+    static t3r_frame_reader reader;
+    static options o;
+    memory m = {memory_begin_at, memory_end_at};
+    options_read(&o);
+    int32_t file = semihost_open(o.frames, SEMIHOST_READ);
+    if (file <= 0) {
+        report_text("error: ", o.frames, ": it cannot be read", "");
+        return 1;
+    }
+    const t3r_byte_source source = {read_file, &file, (uint64_t)semihost_length(file)};
+    const size_t pixels = (size_t)o.width * o.height;
+    const size_t colour_room = pixels * 3 + T3R_FRAME_READER_HEAD_BYTES;
+    const size_t depth_room = pixels * 2 + T3R_FRAME_READER_HEAD_BYTES;
+    uint8_t *colour = deal(&m, colour_room), *depth = deal(&m, depth_room);
+    if (t3r_frame_reader_open(&reader, &source, colour, colour_room, depth, depth_room) != 0) {
+        report_text("error: ", o.frames, ": ", reader.error);
+        return 1;
+    }
+
+    const t3r_config config = configure(&o);
+    static t3r_plan_info plan; /* too large for a small stack */
+    check(t3r_plan(&config, &plan), "plan");
+    const size_t room = (size_t)(m.end - m.at) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
+    const size_t bytes = o.arena != 0 ? o.arena : plan.bytes < room ? plan.bytes : room;
+    if (bytes < plan.min_bytes) {
+        report_failure("the arena lacks this many bytes:", (uint32_t)(plan.min_bytes - bytes));
+    }
+    t3r_runtime *rt;
+    check(t3r_init(&rt, deal(&m, bytes), bytes, &config), "init");
+    const t3r_hooks hooks = {.progress = on_progress, .stage_hash = o.hashes != 0 ? on_hash : NULL};
+    check(t3r_set_hooks(rt, &hooks), "hooks");
+#ifdef HEAD
+    if (o.learned != 0) {
+        check(t3r_bind_head(rt, HEAD, HEAD_BYTES), "head");
+    }
+#endif
+
+    t3r_capture_frame frame;
+    for (uint32_t view = 0; view < o.views; view++) {
+        mark_other();
+        next_frame(&reader, &frame);
+        mark_stage(T3R_STAGE_IMAGE);
+        check(t3r_add_view(rt, &frame.frame, &frame.camera), "view");
+    }
+    t3r_scene scene;
+    check(t3r_reconstruct(rt, NULL, &scene), "reconstruct");
+    mark_other();
+    if (o.scene[0] != '\0') {
+        write_file(o.scene, "", scene.gaussians, scene.count * sizeof *scene.gaussians);
+    }
+    next_frame(&reader, &frame);
+    const t3r_target target = {.width = o.width, .height = o.height, .rgb = colour, .rgb_stride_bytes = o.width * 3};
+    check(t3r_render(rt, &frame.camera, &target), "render");
+    mark_other();
+    if (o.view[0] != '\0') {
+        write_file(o.view, report_ppm_head(o.width, o.height), colour, pixels * 3);
+    }
+    report_number("gaussians", scene.count);
+    report_number("arena_bytes", (uint32_t)bytes);
+    report_number("arena_min_bytes", (uint32_t)plan.min_bytes);
+    report_number("memory_bytes", (uint32_t)(m.at - memory_begin_at));
+    report_number("stack_bytes", stack_used_bytes());
+    report_number("stack_room_bytes", stack_bytes());
+    semihost_close(file);
+    return 0;
+}

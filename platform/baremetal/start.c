@@ -1,0 +1,43 @@
+/* From reset to main() on a Cortex-M: the vector table, initialised data, the painted stack. Symbols that end in
+ * _at are places that sections.ld names. */
+#include <stdint.h>
+
+#include "semihost.h"
+#include "stack.h"
+
+extern uint32_t data_load_at[], data_begin_at[], data_end_at[], zero_begin_at[], zero_end_at[];
+extern uint32_t stack_top_at[];
+
+int main(void);
+_Noreturn void reset(void);
+_Noreturn void fault(void);
+
+_Noreturn void fault(void)
+{
+    semihost_print("error: the processor faulted\n");
+    semihost_exit(2);
+}
+
+_Noreturn void reset(void)
+{
+    for (uint32_t *from = data_load_at, *to = data_begin_at; to < data_end_at;) {
+        *to++ = *from++;
+    }
+    for (uint32_t *to = zero_begin_at; to < zero_end_at;) {
+        *to++ = 0;
+    }
+    stack_paint();
+    semihost_exit(main());
+}
+
+typedef void vector(void);
+__attribute__((section(".vectors"), used)) static vector *const vectors[16] = {
+    (vector *)(uintptr_t)stack_top_at,
+    reset,
+    fault, /* NMI */
+    fault, /* hard fault */
+    fault, /* memory management */
+    fault, /* bus */
+    fault, /* usage */
+    fault, /* secure */
+};
