@@ -36,6 +36,9 @@ with tempfile.TemporaryDirectory() as folder:
     run(trim3r, "import", folder, "-o", f"{folder}/views.mcap")
     rows = json.loads(run(trim3r, "eval", f"{folder}/views.mcap", "--prune", scene, "--context", "0,2", "--target", "1",
                           "--keep", "100,20,10", "--methods", "trim3r,random,eagles", "--json").stdout)["rows"]
+    whole = json.loads(run(trim3r, "eval", f"{folder}/views.mcap", "--scene", scene, "--context", "0,2", "--target", "1",
+                           "--json").stdout)["rows"][0]
+    check(whole["gaussians"] == GAUSSIANS and whole["psnr_all"] > 60, f"the pictures are of the file: {whole}")
     psnr = {(row["method"], row["keep"]): row["psnr"] for row in rows}
     for row in rows:
         check(row["gaussians"] == (GAUSSIANS * row["keep"] + 50) // 100, f"exactly so many of the file's: {row}")

@@ -127,6 +127,10 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     }
     options.config.depth = sensed ? T3R_DEPTH_SENSOR : settings->config.depth;
     options.points_of = sensed ? NULL : settings->points_of;
+    /* frames without depth: the mask is of the scene's own means */
+    if (!sensed && settings->config.depth == T3R_DEPTH_SENSOR && settings->scene != NULL) {
+        options.points_of = settings->scene;
+    }
     options.gaussians = 0;
     options.keep_percent = 100;
     options.automatic = false;

@@ -321,7 +321,8 @@ static const struct argp_option argp_options[] = {
     {"scene", KEY_SCENE, "SCENE", OPTION_READS,
      "scene file, of trim3r or made elsewhere, to score as it is: nothing is built; it stands in the recording's "
      "world, "
-     "and the frames of --context, or of the triplets, make the mask alone",
+     "and the frames of --context, or of the triplets, make the mask alone; where one has no depth, the mask is of the "
+     "scene's means",
      0},
     {"heads", KEY_HEADS, "H,H,...", OPTION_READS | OPTION_LIST | OPTION_OR_WORD,
      "heads to compare, as --head takes them: rows of the method trim3r for each", 0},
