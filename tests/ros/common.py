@@ -49,7 +49,8 @@ def check_clouds(lines, replayed, name):
     clouds = [json.loads(line) for line in lines]
     check([c["cloud"] for c in clouds] == [k["gaussians"] for k in replayed["keyframes"]], f"{name}: a cloud a keyframe")
     for cloud in clouds:
-        check(cloud["fields"] == [[field, 4 * at, FLOAT32, 1] for at, field in enumerate(FIELDS)], f"{name}: {cloud['fields']}")
+        fields = [[field, 4 * at, FLOAT32, 1] for at, field in enumerate(FIELDS)]
+        check(cloud["fields"] == fields, f"{name}: {cloud['fields']}")
         check((cloud["height"], cloud["step"], cloud["row"], cloud["bytes"]) ==
               (1, 48, 48 * cloud["cloud"], 48 * cloud["cloud"]), f"{name}: its sizes: {cloud}")
         check((cloud["big"], cloud["dense"], cloud["frame"]) == (0, 1, "world"), f"{name}: its frame: {cloud}")

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""ros1.py TRIM3R ros1_node|none ros1_play|none: the node for ROS 1 as a process of its own beside Debian's master, fed with a
-recording as messages over the network of this machine: clouds and hashes against `trim3r replay --stream`, with poses of
-their own and by tf."""
+"""ros1.py TRIM3R ros1_node|none ros1_play|none: the node for ROS 1 as a process of its own beside Debian's master. It gets a
+recording as messages over TCP: clouds and hashes against `trim3r replay --stream`, with poses of their own and by tf."""
 import os
 import pathlib
 import shutil
@@ -45,13 +44,15 @@ def stop(process):
 def session(folder, environment, recording, replayed, kind):
     """One run of the node: what the player heard, what the node said."""
     scene, cloud = f"{folder}/{kind}.ply", f"{folder}/{kind}.cloud"
-    given = {"width": SIDE, "height": SIDE, "gaussians": GAUSSIANS, "every": EVERY, "queue": 32, "patience_ms": 20000.0, "world": "world",
-             "scene": scene, "pose": kind}
+    given = {"width": SIDE, "height": SIDE, "gaussians": GAUSSIANS, "every": EVERY, "queue": 32,
+             "patience_ms": 20000.0, "world": "world", "scene": scene, "pose": kind}
     settings = [f"_{name}:={value}" for name, value in given.items()]
-    running = subprocess.Popen([node, *settings], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    running = subprocess.Popen([node, *settings], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               text=True)
     try:
-        heard = subprocess.run([play, recording, str(len(replayed["keyframes"])), cloud] + (["tf"] if kind == "tf" else []),
-                               env=environment, capture_output=True, text=True, timeout=120)
+        by_tf = ["tf"] if kind == "tf" else []
+        heard = subprocess.run([play, recording, str(len(replayed["keyframes"])), cloud, *by_tf], env=environment,
+                               capture_output=True, text=True, timeout=120)
         check(running.poll() is None, "the node runs")
     finally:
         log = stop(running)

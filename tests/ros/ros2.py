@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """ros2.py TRIM3R ros2_drive|none: the shell for ROS 2 in one process, on messages that Debian's rosidl generates and the
-stand-in of rclcpp: clouds and hashes against `trim3r replay --stream`, whatever way poses come; wrong messages are refused
-with a reason and change nothing."""
+stand-in of rclcpp. Clouds and hashes are those of `trim3r replay --stream`, whatever way poses come. Wrong messages are
+refused with a reason and change nothing."""
 import sys
 import tempfile
 
@@ -11,9 +11,9 @@ trim3r, drive = sys.argv[1:]
 if drive == "none":
     skip("the messages of ROS 2 cannot be generated: rosidl or ROS 1's definitions are missing (tools/setup --tests)")
 
-FAULTS = ("colour: encoding is none of", "colour: step is less than", "colour: data hold fewer",
-          "depth: header.frame_id is \"elsewhere\"", "depth: encoding is none of", "camera_info: K[0] (fx) is not a number",
-          "pose: position.y is not a number", "camera_info: D has terms beyond", "colour: width or height")
+FAULTS = ("colour: encoding is none of", "colour: step is less than", "colour: data hold fewer", "colour: width or height",
+          "depth: header.frame_id is \"elsewhere\"", "depth: encoding is none of",
+          "camera_info: K[0] (fx) is not a number", "pose: position.y is not a number", "camera_info: D has terms beyond")
 
 with tempfile.TemporaryDirectory() as folder:
     recording, replayed = walk(trim3r, folder)
