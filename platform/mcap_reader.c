@@ -13,6 +13,8 @@
 #include "mcap.h"
 #include "reason.h"
 
+#define REST_BYTES (UINT64_C(32) << 20) /* of a file in the spill that are read before their pages may go */
+
 typedef struct walk {
     const t3r_mcap_visitor *visitor;
     t3r_mcap_chunks *chunks;
@@ -180,6 +182,10 @@ static int read_attachment(walk *w, fields *in, t3r_mcap_place place)
 
 static int count_message(walk *w)
 {
+    if (w->chunks->spill != NULL) {
+        w->chunks->message_bytes += T3R_LIMIT_MESSAGE_BYTES;
+        return w->chunks->message_bytes <= T3R_LIMIT_INDEX_BYTES ? 0 : -1;
+    }
     w->chunks->bytes += T3R_LIMIT_MESSAGE_BYTES;
     return w->chunks->bytes <= t3r_limit_unpacked_whole(w->limit) ? 0 : -1;
 }
@@ -238,7 +244,8 @@ static int reserve_chunk(walk *w)
 /* What a chunk of that many bytes may not become, or 0: asked before memory is. */
 static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
 {
-    const uint64_t most = t3r_limit_unpacked_whole(w->limit), all = w->chunks->bytes;
+    const uint64_t most = w->chunks->spill != NULL ? t3r_limit_unpacked(w->limit) : t3r_limit_unpacked_whole(w->limit);
+    const uint64_t all = w->chunks->bytes;
     if (all <= most && bytes <= most - all) {
         return 0;
     }
@@ -260,9 +267,41 @@ typedef struct chunk {
     bool cut;
 } chunk;
 
-/* Its records, in memory of their own: *unpacked, to be freed also when it fails, and *count of its bytes. NULL, or
- * what is wrong with the data, which a cut chunk may have; or -1 in *status, the reason given. */
-static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, uint8_t **unpacked, size_t *count,
+/* A chunk's records. */
+typedef struct unpacked {
+    uint8_t *bytes; /* NULL: none */
+    size_t room;
+    bool spilled;
+} unpacked;
+
+static unpacked take_room(walk *w, size_t room)
+{
+    const t3r_mcap_chunks *chunks = w->chunks;
+    unpacked out = {.room = room > 0 ? room : 1};
+    out.spilled = chunks->spill != NULL && chunks->heap_bytes + out.room > T3R_LIMIT_UNPACKED_HEAP;
+    out.bytes = reserve_chunk(w) != 0 ? NULL : out.spilled ? t3r_spill_take(chunks->spill, out.room) : malloc(out.room);
+    return out;
+}
+
+/* Keeps what messages point into, or frees it. */
+static void leave_room(walk *w, const unpacked *u, bool is_kept)
+{
+    t3r_mcap_chunks *chunks = w->chunks;
+    if (u->spilled && is_kept) {
+        t3r_spill_rest(chunks->spill);
+    } else if (u->spilled && u->bytes != NULL) {
+        t3r_spill_return(chunks->spill, u->room);
+    } else if (is_kept) {
+        chunks->data[chunks->count++] = u->bytes;
+        chunks->heap_bytes += u->room;
+    } else {
+        free(u->bytes);
+    }
+}
+
+/* Its records, in memory of their own, for leave_room() also when it fails, and *count of its bytes. NULL, or what is
+ * wrong with the data, which a cut chunk may have; or -1 in *status, the reason given. */
+static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, unpacked *out, size_t *count,
                                 int *status)
 {
     if (!t3r_chunk_codec_known(c->compression)) {
@@ -281,37 +320,35 @@ static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, u
         return "its uncompressed_size is more than its data can hold";
     }
     uint64_t room = c->unpacked_bytes < most ? c->unpacked_bytes : most;
-    *unpacked = reserve_chunk(w) == 0 ? malloc(room > 0 ? (size_t)room : 1) : NULL;
-    if (*unpacked == NULL) {
-        *status = malformed(w, T3R_MCAP_CHUNK, place, "out of memory");
+    *out = take_room(w, (size_t)room);
+    if (out->bytes == NULL) {
+        *status = malformed(w, T3R_MCAP_CHUNK, place,
+                            out->spilled ? "there is no room on the disk for what it unpacks to (TMPDIR names another)"
+                                         : "out of memory");
         return NULL;
     }
     w->chunks->bytes += room;
     const char *wrong =
-        t3r_chunk_decompress(c->compression, c->packed, c->packed_bytes, *unpacked, (size_t)room, count);
+        t3r_chunk_decompress(c->compression, c->packed, c->packed_bytes, out->bytes, (size_t)room, count);
     return wrong == NULL && *count != c->unpacked_bytes ? "its data are shorter than its uncompressed_size" : wrong;
 }
 
 static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
 {
-    uint8_t *unpacked = NULL;
+    unpacked own = {.bytes = NULL};
     size_t count = c->packed_bytes;
     int status = 0;
-    const char *wrong = c->compression.count > 0 ? unpack_chunk(w, c, place, &unpacked, &count, &status) : NULL;
-    const uint8_t *records = unpacked != NULL ? unpacked : c->packed;
+    const char *wrong = c->compression.count > 0 ? unpack_chunk(w, c, place, &own, &count, &status) : NULL;
+    const uint8_t *records = own.bytes != NULL ? own.bytes : c->packed;
     if (status == 0 && wrong == NULL && !c->cut && c->crc != 0 && c->crc != t3r_crc32(0, records, count)) {
         wrong = "its CRC does not match its records";
     }
     w->damaged = status == 0 && wrong != NULL && w->cut && !c->cut;
     if (status == 0 && !w->damaged) {
         status = wrong != NULL && !c->cut ? malformed(w, T3R_MCAP_CHUNK, place, wrong)
-                                          : walk_chunk(w, records, count, place.offset, c->cut, unpacked != NULL);
+                                          : walk_chunk(w, records, count, place.offset, c->cut, own.bytes != NULL);
     }
-    if (unpacked != NULL && status == T3R_MCAP_KEPT) {
-        w->chunks->data[w->chunks->count++] = unpacked;
-    } else {
-        free(unpacked);
-    }
+    leave_room(w, &own, own.bytes != NULL && status == T3R_MCAP_KEPT);
     return status < 0 ? -1 : 0;
 }
 
@@ -341,13 +378,26 @@ static int read_chunk(walk *w, fields *in, t3r_mcap_place place, bool cut)
 
 /* ---- the file ---- */
 
+/* The same of a file that lies in the spill, without all of it in memory at once. */
+static uint32_t crc_of(const walk *w, const uint8_t *bytes, uint64_t count)
+{
+    uint32_t crc = 0;
+    for (uint64_t at = 0; at < count; at += REST_BYTES) {
+        crc = t3r_crc32(crc, bytes + at, (size_t)(count - at < REST_BYTES ? count - at : REST_BYTES));
+        if (w->chunks->spill != NULL) {
+            t3r_spill_rest(w->chunks->spill);
+        }
+    }
+    return crc;
+}
+
 static int read_data_end(walk *w, fields *in, t3r_mcap_place place)
 {
     uint32_t crc = get_u32(in);
     if (in->failed) {
         return malformed(w, T3R_MCAP_DATA_END, place, short_fields);
     }
-    if (crc != 0 && crc != t3r_crc32(0, w->bytes, (size_t)place.offset)) {
+    if (crc != 0 && crc != crc_of(w, w->bytes, place.offset)) {
         return malformed(w, T3R_MCAP_DATA_END, place, "the data section's CRC does not match its bytes");
     }
     w->data_end = place.offset + T3R_MCAP_RECORD_HEAD_BYTES + in->count;
@@ -463,8 +513,12 @@ int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *vi
         .error_bytes = error_bytes,
     };
     *end = (t3r_mcap_end){false, 0};
-    uint64_t at = T3R_MCAP_MAGIC_BYTES;
+    uint64_t at = T3R_MCAP_MAGIC_BYTES, rested = 0;
     while (at < w.limit) {
+        if (chunks->spill != NULL && at - rested > REST_BYTES) {
+            t3r_spill_rest(chunks->spill);
+            rested = at;
+        }
         t3r_mcap_place place = {at, false, 0};
         uint8_t opcode = bytes[at];
         uint64_t rest = w.limit - at;

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "spill.h"
 #include "text.h"
 
 /* Where a record starts. */
@@ -55,7 +56,10 @@ typedef struct t3r_mcap_visitor {
 typedef struct t3r_mcap_chunks {
     uint8_t **data;
     size_t count, capacity;
-    uint64_t bytes; /* decompressed so far, kept or not, and what a visitor needs for messages that it keeps */
+    uint64_t bytes; /* decompressed so far, kept or not; without a spill, with what a visitor needs for messages that it
+                       keeps */
+    t3r_spill *spill; /* where chunks go for which there is no room in memory; NULL: they are refused */
+    uint64_t heap_bytes, message_bytes; /* with a spill: of chunks that are kept on the heap, and for messages */
 } t3r_mcap_chunks;
 void t3r_mcap_chunks_free(t3r_mcap_chunks *chunks);
 

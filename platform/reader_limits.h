@@ -42,11 +42,17 @@
 #define T3R_LIMIT_UNPACKED_FREE (UINT64_C(128) << 20)
 #define T3R_LIMIT_UNPACKED_RATIO 32
 
-/* A recording with compressed chunks, which is read whole, is held to this many bytes in memory, its own among them.
- * Each message in those chunks counts for more than its data: its entry in the index, once more while that is sorted,
- * and what links it to its frame. */
+/* A recording with compressed chunks that is not read from a file, but from memory, is held to this many bytes in
+ * memory, its own among them. Each message in those chunks counts for more than its data: its entry in the index, once
+ * more while that is sorted, and what links it to its frame. */
 #define T3R_LIMIT_UNPACKED_WHOLE (UINT64_C(320) << 20)
 #define T3R_LIMIT_MESSAGE_BYTES 160
+
+/* A recording in a file keeps this much of what its chunks unpack to in memory, and this much of its index; what goes
+ * beyond the first lies on the disk (spill.h), where it is held to T3R_LIMIT_UNPACKED_RATIO alone. So does a file that
+ * is larger than the first. */
+#define T3R_LIMIT_UNPACKED_HEAP (UINT64_C(128) << 20)
+#define T3R_LIMIT_INDEX_BYTES (UINT64_C(192) << 20)
 
 /* A compressed scene may hold this many Gaussians, whatever its size, and beyond that one for so many of its bytes.
  * Real ones take ten bytes and more. */

@@ -143,6 +143,7 @@ int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capt
                    recording->pairing.frames);
         return T3R_CAPTURE_FAILED;
     }
+    t3r_spill_rest(&recording->spill); /* of frames that were read before; their addresses stay */
     const reading r = {recording, index, error, error_bytes};
     const t3r_frame_links *links = &recording->links[index];
     const t3r_set_pose *set =

@@ -60,7 +60,8 @@ typedef struct t3r_set_pose {
 } t3r_set_pose;
 
 struct t3r_recording {
-    uint8_t *file; /* owned, or NULL */
+    uint8_t *file;   /* owned, or NULL */
+    t3r_spill spill; /* a large file, and chunks for which there is no room in memory */
     t3r_mcap_chunks chunks;
     uint64_t file_bytes;
     t3r_mcap_end cut;
@@ -68,7 +69,7 @@ struct t3r_recording {
     t3r_stream *streams;
     size_t stream_count, stream_capacity;
     size_t colour, depth, pose, camera_info, depth_camera_info; /* the streams chosen, or T3R_NO_STREAM */
-    size_t transforms; /* the first of them */
+    size_t transforms;                                          /* the first of them */
     int64_t pair_ns;
     t3r_image_decoder decoder; /* decode NULL: none */
 

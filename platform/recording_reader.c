@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "file_bytes.h"
 #include "fixed_text.h"
@@ -18,6 +19,7 @@
 #define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
 #define MAX_DEPTH_UNIT_Q40 ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40)
 #define MAX_LOG_NS ((uint64_t)1 << 62)
+#define PIECE_BYTES ((size_t)16 << 20) /* of a large file that are read at once */
 #define DEFAULT_PAIR_NS 20000000 /* messages of one instant that do not share a stamp are at most this far apart */
 
 /* State of one pass over the records. */
@@ -282,8 +284,9 @@ static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t co
     return status;
 }
 
-static t3r_recording *parse(const uint8_t *bytes, size_t count, const t3r_recording_choice *choice, char *error,
-                            size_t error_bytes)
+/* spill: becomes the recording's, and is empty then; NULL: all is to stay in memory. */
+static t3r_recording *parse(const uint8_t *bytes, size_t count, t3r_spill *spill, const t3r_recording_choice *choice,
+                            char *error, size_t error_bytes)
 {
     t3r_recording *recording = calloc(1, sizeof *recording);
     if (recording == NULL) {
@@ -294,6 +297,11 @@ static t3r_recording *parse(const uint8_t *bytes, size_t count, const t3r_record
     recording->camera_info = recording->depth_camera_info = recording->transforms = T3R_NO_STREAM;
     recording->depth_unit_q40 = DEFAULT_DEPTH_UNIT_Q40;
     memcpy(recording->clock, "unknown", sizeof "unknown");
+    if (spill != NULL) {
+        recording->spill = *spill;
+        recording->chunks.spill = &recording->spill;
+        *spill = (t3r_spill){0};
+    }
     if (index_bytes(recording, bytes, count, choice, error, error_bytes) != 0) {
         t3r_recording_close(recording);
         return NULL;
@@ -303,25 +311,73 @@ static t3r_recording *parse(const uint8_t *bytes, size_t count, const t3r_record
 
 t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
 {
-    return parse(bytes, count, &(t3r_recording_choice){0}, error, error_bytes);
+    return parse(bytes, count, NULL, &(t3r_recording_choice){0}, error, error_bytes);
+}
+
+/* The bytes of a large file, in the spill; NULL with the reason. */
+static uint8_t *spill_file(FILE *file, size_t count, t3r_spill *spill, size_t *got, const char **why)
+{
+    uint8_t *bytes = t3r_spill_take(spill, count);
+    *why = bytes == NULL ? "there is no room on the disk for a copy (TMPDIR names another)" : NULL;
+    *got = 0;
+    for (size_t some = 1; bytes != NULL && some > 0 && *got < count;) {
+        some = fread(bytes + *got, 1, count - *got < PIECE_BYTES ? count - *got : PIECE_BYTES, file);
+        *got += some;
+        if (*got <= PIECE_BYTES) {
+            *why = t3r_mcap_magic_error(bytes, *got);
+            bytes = *why == NULL ? bytes : NULL;
+        }
+        t3r_spill_rest(spill);
+    }
+    if (bytes != NULL && ferror(file)) {
+        *why = "it cannot be read to its end";
+        bytes = NULL;
+    }
+    return bytes;
+}
+
+/* A file that is too large for memory goes to the spill, any other one to *heap. NULL with the reason in error[]. */
+static const uint8_t *read_file(const char *path, uint8_t **heap, t3r_spill *spill, size_t *count, char *error,
+                                size_t error_bytes)
+{
+    struct stat about;
+    *heap = NULL;
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size < 0 ||
+        (uint64_t)about.st_size <= T3R_LIMIT_UNPACKED_HEAP || (uint64_t)about.st_size > SIZE_MAX / 2) {
+        *heap = t3r_file_bytes_checked(path, SIZE_MAX, t3r_mcap_magic_error, count, error, error_bytes);
+        return *heap;
+    }
+    FILE *file = t3r_file_open(path, error, error_bytes);
+    if (file == NULL) {
+        return NULL;
+    }
+    const char *why;
+    const uint8_t *bytes = spill_file(file, (size_t)about.st_size, spill, count, &why);
+    if (bytes == NULL) {
+        (void)t3r_reason(error, error_bytes, "%s: %s", path, why);
+    }
+    fclose(file);
+    return bytes;
 }
 
 t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_choice *choice, char *error,
                                          size_t error_bytes)
 {
     size_t count;
-    uint8_t *bytes = t3r_file_bytes_checked(path, SIZE_MAX, t3r_mcap_magic_error, &count, error, error_bytes);
-    if (bytes == NULL) {
-        return NULL;
-    }
+    uint8_t *heap;
+    t3r_spill spill = {0};
     char what[256];
-    t3r_recording *recording = parse(bytes, count, choice, what, sizeof what);
+    const uint8_t *bytes = read_file(path, &heap, &spill, &count, error, error_bytes);
+    t3r_recording *recording = bytes == NULL ? NULL : parse(bytes, count, &spill, choice, what, sizeof what);
     if (recording == NULL) {
-        t3r_reason(error, error_bytes, "%s: %s", path, what);
-        free(bytes);
+        if (bytes != NULL) {
+            t3r_reason(error, error_bytes, "%s: %s", path, what);
+        }
+        free(heap);
+        t3r_spill_free(&spill);
         return NULL;
     }
-    recording->file = bytes;
+    recording->file = heap;
     return recording;
 }
 
@@ -351,6 +407,7 @@ void t3r_recording_close(t3r_recording *recording)
     free(recording->set_poses);
     free(recording->triplets);
     t3r_mcap_chunks_free(&recording->chunks);
+    t3r_spill_free(&recording->spill);
     free(recording->file);
     free(recording);
 }
