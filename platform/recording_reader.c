@@ -19,6 +19,7 @@
 #define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
 #define MAX_DEPTH_UNIT_Q40 ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40)
 #define MAX_LOG_NS ((uint64_t)1 << 62)
+#define FIRST_BYTES 8                  /* of a file: what tells that it is a recording */
 #define PIECE_BYTES ((size_t)16 << 20) /* of a large file that are read at once */
 #define DEFAULT_PAIR_NS 20000000 /* messages of one instant that do not share a stamp are at most this far apart */
 
@@ -314,26 +315,25 @@ t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *err
     return parse(bytes, count, NULL, &(t3r_recording_choice){0}, error, error_bytes);
 }
 
-/* The bytes of a large file, in the spill; NULL with the reason. */
+/* The bytes of a large file, in the spill, once the first of them are those of a recording; NULL with the reason. */
 static uint8_t *spill_file(FILE *file, size_t count, t3r_spill *spill, size_t *got, const char **why)
 {
-    uint8_t *bytes = t3r_spill_take(spill, count);
-    *why = bytes == NULL ? "there is no room on the disk for a copy (TMPDIR names another)" : NULL;
-    *got = 0;
-    for (size_t some = 1; bytes != NULL && some > 0 && *got < count;) {
+    uint8_t first[FIRST_BYTES];
+    *why = t3r_mcap_magic_error(first, fread(first, 1, sizeof first, file));
+    uint8_t *bytes = *why == NULL ? t3r_spill_take(spill, count) : NULL;
+    if (bytes == NULL) {
+        *why = *why != NULL ? *why : "there is no room on the disk for a copy (TMPDIR names another)";
+        return NULL;
+    }
+    memcpy(bytes, first, sizeof first); /* the file is larger */
+    *got = sizeof first;
+    for (size_t some = 1; some > 0 && *got < count;) {
         some = fread(bytes + *got, 1, count - *got < PIECE_BYTES ? count - *got : PIECE_BYTES, file);
         *got += some;
-        if (*got <= PIECE_BYTES) {
-            *why = t3r_mcap_magic_error(bytes, *got);
-            bytes = *why == NULL ? bytes : NULL;
-        }
         t3r_spill_rest(spill);
     }
-    if (bytes != NULL && ferror(file)) {
-        *why = "it cannot be read to its end";
-        bytes = NULL;
-    }
-    return bytes;
+    *why = ferror(file) ? "it cannot be read to its end" : NULL;
+    return *why == NULL ? bytes : NULL;
 }
 
 /* A file that is too large for memory goes to the spill, any other one to *heap. NULL with the reason in error[]. */
