@@ -531,6 +531,42 @@ def many_record3d_poses(path):
     return record3d(path, poses=[[]] * 1000000)
 
 
+def exr_depth(path, depth):
+    """A folder of one frame, as nerfstudio has them, whose depth is OpenEXR. Builds without the library refuse it."""
+    os.makedirs(path)
+    for name, content in (("0.png", f.png(16, 16)), ("0.exr", depth)):
+        with open(f"{path}/{name}", "wb") as file:
+            file.write(content)
+    frame = {"file_path": "0.png", "depth_file_path": "0.exr", "transform_matrix": UNIT}
+    with open(f"{path}/transforms.json", "w", encoding="utf-8") as file:
+        json.dump({"fl_x": 16, "frames": [frame]}, file)
+
+
+@case("folder", "exr-64-mb-of-70-kb", None)
+def exr_zeros(path):
+    return exr_depth(path, f.exr(4096, 4096))
+
+
+@case("folder", "exr-262144-tiles", None)
+def exr_tiles(path):
+    return exr_depth(path, f.exr(4096, 4096, 8))
+
+
+@case("folder", "exr-tiles-of-4", "OpenEXR")
+def exr_small_tiles(path):
+    return exr_depth(path, f.exr(256, 256, 4))
+
+
+@case("folder", "exr-cut", "OpenEXR")
+def exr_cut(path):
+    return exr_depth(path, f.exr(4096, 4096, 0, 3))
+
+
+@case("folder", "exr-of-2^31", "OpenEXR")
+def exr_wide(path):
+    return exr_depth(path, f.exr(1 << 31, 1 << 31, 0, 1))
+
+
 @case("folder", "tum-escapes", "")
 def tum(path):
     os.makedirs(path)

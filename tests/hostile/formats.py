@@ -15,6 +15,29 @@ def png_chunk(name, data, crc=None):
     return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data) if crc is None else crc)
 
 
+def exr(width, height, tile=0, chunks=None):
+    """Zeros as float, packed by ZIP: lines of a picture, or its tiles. chunks: how many of them are there."""
+    def attribute(name, kind, data):
+        return name + b"\0" + kind + b"\0" + struct.pack("<I", len(data)) + data
+
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    head = (b"\x76\x2f\x31\x01" + struct.pack("<I", 2 | (0x200 if tile else 0))
+            + attribute(b"channels", b"chlist", b"Z\0" + struct.pack("<iIii", 2, 0, 1, 1) + b"\0")
+            + attribute(b"compression", b"compression", b"\3") + attribute(b"dataWindow", b"box2i", window)
+            + attribute(b"displayWindow", b"box2i", window) + attribute(b"lineOrder", b"lineOrder", b"\0")
+            + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1))
+            + attribute(b"screenWindowCenter", b"v2f", bytes(8)) + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1))
+            + (attribute(b"tiles", b"tiledesc", struct.pack("<IIB", tile, tile, 0)) if tile else b"") + b"\0")
+    places = ([(x, y, 0, 0) for y in range(height // tile) for x in range(width // tile)] if tile else
+              [(y,) for y in range(0, min(height, 4096), 16)])[:chunks]
+    size = min(4 * (tile * tile if tile else 16 * width), 1 << 20)
+    packed = zlib.compress(b"\0" + b"\x80" * (size - 1), 9)  # differences of bytes
+    bodies = [struct.pack(f"<{len(place)}i", *place) + struct.pack("<I", len(packed)) + packed for place in places]
+    first = len(head) + 8 * len(bodies)
+    size = len(bodies[0]) if bodies else 0
+    return head + struct.pack(f"<{len(bodies)}Q", *(first + i * size for i in range(len(bodies)))) + b"".join(bodies)
+
+
 def png(width, height, depth=8, colour=2, interlaced=0, rows=None, before=b"", crc=None):
     """Zeros, unless rows (the raw bytes) are given; rows of a huge picture that is not to be read are left out."""
     if rows is None:

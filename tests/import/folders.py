@@ -19,7 +19,7 @@ except ImportError:
     sys.exit(77)
 
 from common import check, done, run  # noqa: E402
-from frames import png, read  # noqa: E402
+from frames import exr, png, read  # noqa: E402
 
 WIDTH, HEIGHT, FRAMES = 64, 48, 3
 OPENGL = np.diag([1, -1, -1, 1])  # axes of its cameras in ours
@@ -456,9 +456,9 @@ def test_unreadable():
 # --- Record3D --------------------------------------------------------------------------------------------------------
 
 
-def record3d(path, exr=False, packed=False, change=None):
+def record3d(path, as_exr=False, packed=False, change=None):
     """As Record3D exports it; the depth of an .r3d as `lzfse -decode` leaves it, or packed."""
-    pictures(path, "rgb/{}.png" if exr else "rgbd/{}.png")
+    pictures(path, "rgb/{}.png" if as_exr else "rgbd/{}.png")
     k = np.array(ROOM["camera_info"][0])
     k[:2, 2] += 0.5
     poses = []
@@ -468,12 +468,12 @@ def record3d(path, exr=False, packed=False, change=None):
         metres = (ROOM["depth"][i] * UNIT).astype("<f4")
         metres[ROOM["depth"][i] == 0] = np.nan
         raw = b"bvx2" + bytes(99) if packed else metres.tobytes()
-        write(f"{path}/depth/{i}.exr" if exr else f"{path}/rgbd/{i}.depth", raw)
+        write(f"{path}/depth/{i}.exr" if as_exr else f"{path}/rgbd/{i}.depth", exr(metres) if as_exr else raw)
     content = {"w": WIDTH, "h": HEIGHT, "dw": WIDTH, "dh": HEIGHT, "fps": 60, "K": k.T.flatten().tolist(), "poses": poses,
                "perFrameIntrinsicCoeffs": [[k[0, 0], k[1, 1], k[0, 2], k[1, 2]]] * FRAMES}
     if change:
         change(content)
-    write(f"{path}/{'metadata.json' if exr else 'metadata'}", json.dumps(content))
+    write(f"{path}/{'metadata.json' if as_exr else 'metadata'}", json.dumps(content))
     return path
 
 
@@ -482,10 +482,12 @@ def test_record3d():
     same("Record3D", got)
     check(report["remarks"] == [], f"Record3D: {report}")
     same("Record3D with K alone", imported(record3d("k_alone", change=lambda c: c.pop("perFrameIntrinsicCoeffs")))[1])
-    for name, exr, said in (("packed", False, "packed with LZFSE, which is not read"), ("exr", True, "OpenEXR, which is not read")):
-        report, got = imported(record3d(name, exr, True))
-        same(f"Record3D {name}", got, depth=False)
-        check(f"depth of {FRAMES} frames is left out" in report["remarks"][0] and said in report["remarks"][0], f"{name}: {report}")
+    report, got = imported(record3d("packed", packed=True))
+    same("Record3D packed", got, depth=False)
+    said = report["remarks"][0]
+    check(f"depth of {FRAMES} frames is left out" in said and "packed with LZFSE, which is not read" in said, f"packed: {report}")
+    report, got = imported(record3d("steps"), "--depth-unit", "0.002")
+    check(np.array_equal(got["depth"], [steps_of(depth * UNIT, 0.002) for depth in ROOM["depth"]]), "Record3D: --depth-unit")
     refused(record3d("cut_depth", change=lambda c: c.update(dw=WIDTH + 1)), "rgbd/0.depth: fewer bytes")
     refused(record3d("no_sides", change=lambda c: c.pop("dw")), "dw, dh: missing")
     refused(record3d("k_of_8", change=lambda c: c["K"].pop()), "K: not 9 finite numbers")
@@ -494,7 +496,88 @@ def test_record3d():
     check(report["left_out"] == ["more_poses/rgbd/3.jpg: No such file or directory"], f"more poses: {report}")
 
 
-TESTS = [test_record3d, test_pictures_without_pose, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_depth_from_beside, test_seven_scenes, test_dense_depth, test_unreadable, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
+# --- OpenEXR ---------------------------------------------------------------------------------------------------------
+
+
+def steps_of(lengths, unit):
+    """Floats of 32 bits in steps: halves to even, what is no length 0."""
+    steps = np.rint(lengths.astype(np.float32).astype(float) / unit)
+    return np.where((steps >= 1) & (steps <= 65535), steps, 0).astype(np.uint16)
+
+
+def metres_of(depth, kind="<f4"):
+    """Without depth: NaN, infinity, 0 or a negative number, whichever comes next."""
+    metres = (depth * UNIT).astype(kind)
+    gaps = np.argwhere(depth == 0)
+    for i, (y, x) in enumerate(gaps):
+        metres[y, x] = (np.nan, np.inf, 0, -1, 300)[i % 5]
+    return metres
+
+
+def with_exr(path, place="depth/{:05d}", kind="<f4"):
+    """The folder's depth pictures, as OpenEXR in their place."""
+    for i, depth in enumerate(ROOM["depth"]):
+        os.remove(f"{path}/{place.format(i)}.png")
+        write(f"{path}/{place.format(i)}.exr", exr(metres_of(depth, kind)))
+    return path
+
+
+def to_exr(content):
+    for frame in content["frames"]:
+        frame["depth_file_path"] = frame["depth_file_path"].replace(".png", ".exr")
+
+
+def without_exr():
+    """A build without the library says what to install, and reads all but depth."""
+    report, got = imported(record3d("no_library", True))
+    same("Record3D without OpenEXR", got, depth=False)
+    check("Debian: libopenexr-dev" in report["remarks"][0], f"without OpenEXR: {report}")
+    refused(with_exr(transforms("nerfstudio_no_library", change=to_exr)), "Debian: libopenexr-dev")
+
+
+def test_exr():
+    report, got = imported(record3d("exr", True))
+    if any("does not read OpenEXR" in said for said in report["remarks"]):
+        return without_exr()
+    same("Record3D's OpenEXR", got)
+    check(report["remarks"] == [], f"Record3D's OpenEXR: {report}")
+    report, got = imported(with_exr(transforms("nerfstudio_exr", change=to_exr)))
+    same("nerfstudio's OpenEXR", got)
+    check(report["remarks"] == ["depth_unit_scale_factor: missing; depth in OpenEXR is taken as metres"], f"{report}")
+    report, got = imported(with_exr(transforms("exr_factor", change=to_exr, depth_unit_scale_factor=1)))
+    same("OpenEXR with a factor of 1", got)
+    report, got = imported("exr_factor", "--depth-unit", "0.004")
+    check(np.array_equal(got["depth"], [steps_of(depth * UNIT, 0.004) for depth in ROOM["depth"]]), "OpenEXR: --depth-unit")
+    refused(with_exr(transforms("exr_far", change=to_exr, depth_unit_scale_factor=100)), "no length in it is from 1 to 65535 steps")
+    same("ScanNet with OpenEXR", imported(with_exr(pose_files("scannet_exr"), "depth/{}"))[1])
+    path = with_exr(colmap("colmap_exr", depth="depth/view_{}.png"), "depth/view_{}")
+    same("COLMAP with OpenEXR", imported(path, "--depth-unit", str(UNIT))[1])
+    report, got = imported(with_exr(pose_files("exr_half"), "depth/{}", "<f2"))
+    check(np.array_equal(got["depth"], [steps_of(metres_of(d, "<f2"), UNIT) for d in ROOM["depth"]]), "OpenEXR of half")
+    path = with_exr(pose_files("exr_cut"), "depth/{}")
+    with open(f"{path}/depth/1.exr", "r+b") as file:
+        file.truncate(2000)
+    report, _ = imported(path)
+    check(any(r.startswith(f"depth is left out: {path}/depth/1.exr: OpenEXR: ") for r in report["remarks"]), f"cut OpenEXR: {report}")
+    exr_of_opencv()
+
+
+def exr_of_opencv():
+    """What another program writes: packed by ZIP."""
+    os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
+    try:
+        import cv2
+    except ImportError:
+        print("without OpenCV's own files: cv2 is not there")
+        return
+    path = pose_files("exr_of_opencv")
+    for i, depth in enumerate(ROOM["depth"]):
+        os.remove(f"{path}/depth/{i}.png")
+        check(cv2.imwrite(f"{path}/depth/{i}.exr", metres_of(depth)), "OpenCV writes OpenEXR")
+    same("OpenCV's OpenEXR", imported(path)[1])
+
+
+TESTS = [test_record3d, test_exr, test_pictures_without_pose, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_depth_from_beside, test_seven_scenes, test_dense_depth, test_unreadable, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

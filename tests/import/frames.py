@@ -91,3 +91,24 @@ def png(pixels):
     rows = b"".join(b"\0" + (row.astype(">u2") if grey else row).tobytes() for row in pixels)
     header = struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 16 if grey else 8, 0 if grey else 2, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+def exr(numbers):
+    """OpenEXR of one channel, of half or float as the array has them: lines without compression."""
+    height, width = numbers.shape
+    half = numbers.dtype == np.float16
+
+    def attribute(name, kind, content):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<I", len(content)) + content
+
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    header = (b"\x76\x2f\x31\x01\x02\0\0\0"
+              + attribute("channels", "chlist", b"R\0" + struct.pack("<iIii", 1 if half else 2, 0, 1, 1) + b"\0")
+              + attribute("compression", "compression", b"\0") + attribute("dataWindow", "box2i", window)
+              + attribute("displayWindow", "box2i", window) + attribute("lineOrder", "lineOrder", b"\0")
+              + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+              + attribute("screenWindowCenter", "v2f", bytes(8)) + attribute("screenWindowWidth", "float", struct.pack("<f", 1))
+              + b"\0")
+    lines = [struct.pack("<iI", y, row.nbytes) + row.tobytes() for y, row in enumerate(numbers)]
+    first = len(header) + 8 * height
+    return header + struct.pack(f"<{height}Q", *(first + y * len(lines[0]) for y in range(height))) + b"".join(lines)

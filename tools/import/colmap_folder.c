@@ -31,6 +31,7 @@ static const char *const model_places[] = {"sparse", "colmap/sparse", "."};
 /* Where pictures lie, with a model in the folder itself last. */
 static const char *const picture_places[] = {"images", "input", "rgb", "color", ".", "../images", "../../images"};
 static const char *const depth_places[] = {"depth", "depths"};
+static const char *const depth_endings[] = {".png", ".exr"};
 
 /* FOLDER/NAME; "" where it is too long, which is nowhere. */
 static void join(char path[PATH_BYTES], const char *folder, const char *name)
@@ -127,20 +128,23 @@ static const char *place_of(const char *directory, const char *const *places, si
     return NULL;
 }
 
-/* The depth picture that goes with a picture: of its name, ending in .png. */
-static void depth_name(const char *image, char name[PATH_BYTES])
+/* The depth that goes with a picture: of its name, with an ending of its own. */
+static void depth_name(const char *image, const char *depth_ending, char name[PATH_BYTES])
 {
     const char *slash = strrchr(image, '/'), *dot = strrchr(image, '.');
     bool ending = dot != NULL && (slash == NULL || dot > slash);
-    snprintf(name, PATH_BYTES, "%.*s.png", (int)(ending ? (size_t)(dot - image) : strlen(image)), image);
+    snprintf(name, PATH_BYTES, "%.*s%s", (int)(ending ? (size_t)(dot - image) : strlen(image)), image, depth_ending);
 }
 
 static int add_depth(const char *directory, const posed_folder_options *options, const char *image, posed_frame *frame,
                      char *error, size_t error_bytes)
 {
     char name[PATH_BYTES], path[PATH_BYTES];
-    depth_name(image, name);
-    const char *place = place_of(directory, depth_places, sizeof depth_places / sizeof *depth_places, name);
+    const char *place = NULL;
+    for (size_t i = 0; i < sizeof depth_endings / sizeof *depth_endings && place == NULL; i++) {
+        depth_name(image, depth_endings[i], name);
+        place = place_of(directory, depth_places, sizeof depth_places / sizeof *depth_places, name);
+    }
     if (place == NULL) {
         return colmap_depth_find(directory, image, frame) == 0 ? 0 : t3r_reason(error, error_bytes, "out of memory");
     }

@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "image/undistort.h"
 #include "import/align_depth.h"
+#include "import/exr_depth.h"
 #include "pictures/picture.h"
 #include "reader_limits.h"
 #include "reason.h"
@@ -89,14 +90,27 @@ static char *find_picture(const char *directory, const char *name)
     return path;
 }
 
+static int size_of(const char *directory, const char *name, uint32_t *width, uint32_t *height, char *error,
+                   size_t error_bytes)
+{
+    char *path = find_picture(directory, name);
+    const int status = path == NULL         ? t3r_reason(error, error_bytes, "out of memory")
+                       : exr_depth_is(path) ? exr_depth_size(path, width, height, error, error_bytes)
+                                            : picture_size(path, width, height, error, error_bytes);
+    free(path);
+    return status;
+}
+
 int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                         size_t error_bytes)
 {
-    char *path = find_picture(directory, frame->image);
-    int status = path == NULL ? t3r_reason(error, error_bytes, "out of memory")
-                              : picture_size(path, width, height, error, error_bytes);
-    free(path);
-    return status;
+    return size_of(directory, frame->image, width, height, error, error_bytes);
+}
+
+int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                      size_t error_bytes)
+{
+    return size_of(directory, frame->depth, width, height, error, error_bytes);
 }
 
 static int read_colour(const char *path, picture *out, char *error, size_t error_bytes)
@@ -115,8 +129,9 @@ static int read_colour(const char *path, picture *out, char *error, size_t error
 
 static int read_depth(const char *path, const raw_depth *raw, picture *out, char *error, size_t error_bytes)
 {
-    if ((raw->kind != RAW_DEPTH_NONE ? raw_depth_read(path, raw, out, error, error_bytes)
-                                     : picture_read(path, out, error, error_bytes)) != 0) {
+    if ((raw->kind == RAW_DEPTH_EXR    ? exr_depth_read(path, raw->unit, out, error, error_bytes)
+         : raw->kind != RAW_DEPTH_NONE ? raw_depth_read(path, raw, out, error, error_bytes)
+                                       : picture_read(path, out, error, error_bytes)) != 0) {
         return -1;
     }
     if (out->bits != 16 || out->channels != 1) {

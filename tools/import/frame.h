@@ -26,6 +26,10 @@ import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_wid
 int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                         size_t error_bytes);
 
+/* The same of its depth, which it has. */
+int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                      size_t error_bytes);
+
 /* Whether the frame's picture, or its depth, can be read: 0, or -1 with "picture: what" in error[]. */
 int import_check_picture(const char *directory, const posed_frame *frame, char *error, size_t error_bytes);
 int import_check_depth(const char *directory, const posed_frame *frame, char *error, size_t error_bytes);

@@ -173,12 +173,11 @@ static int compare_lenses(const char *directory, const posed_frame *frame, camer
                           size_t error_bytes)
 {
     uint32_t width, height, depth_width, depth_height;
-    const posed_frame measured = {.image = frame->depth};
     if (frame->depth == NULL || shared->depth.fx == 0 || shared->is_moved) {
         return 0;
     }
     if (import_picture_size(directory, frame, &width, &height, error, error_bytes) != 0 ||
-        import_picture_size(directory, &measured, &depth_width, &depth_height, error, error_bytes) != 0) {
+        import_depth_size(directory, frame, &depth_width, &depth_height, error, error_bytes) != 0) {
         return 1;
     }
     if (align_depth_same(&frame->intrinsics, &shared->depth, width, height, depth_width, depth_height)) {

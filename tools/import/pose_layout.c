@@ -16,7 +16,7 @@ static const pose_layout folders = {
     .depths = NAMES("depth", "depths"),
     .pose_ending = ".txt",
     .colour_endings = NAMES(".jpg", ".png", ".jpeg"),
-    .depth_endings = NAMES(".png"),
+    .depth_endings = NAMES(".png", ".exr"),
     .colour_lenses = NAMES("intrinsic/intrinsic_color.txt", "intrinsic/intrinsic.txt", "intrinsic_color.txt",
                            "intrinsics.txt", "intrinsic.txt", "camera-intrinsics.txt"),
     .depth_lenses = NAMES("intrinsic/intrinsic_depth.txt", "intrinsic_depth.txt"),

@@ -9,6 +9,7 @@
 
 #include "file_bytes.h"
 #include "import/colmap_folder.h"
+#include "import/exr_depth.h"
 #include "import/picture_folder.h"
 #include "import/pose_files.h"
 #include "import/record3d.h"
@@ -65,6 +66,18 @@ static const struct folder_kind {
     {"pose files", pose_files_are_there, pose_files_read},
 };
 
+/* Any kind of folder may name depth that is OpenEXR. */
+static void mark_exr(posed_folder *folder)
+{
+    const double length = folder->exr_length != 0 ? folder->exr_length : 1;
+    for (uint32_t i = 0; i < folder->frame_count; i++) {
+        posed_frame *frame = &folder->frames[i];
+        if (frame->depth != NULL && exr_depth_is(frame->depth)) {
+            frame->depth_raw = (raw_depth){.kind = RAW_DEPTH_EXR, .unit = folder->depth_unit / length};
+        }
+    }
+}
+
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                       size_t error_bytes)
 {
@@ -76,6 +89,7 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
         if (kinds[i].is(directory)) {
             int status = kinds[i].read(directory, options, out, error, error_bytes);
             out->kind = kinds[i].name;
+            mark_exr(out);
             return status;
         }
     }

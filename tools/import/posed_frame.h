@@ -44,6 +44,7 @@ typedef struct posed_folder {
     uint32_t triplet_count;
     double depth_unit; /* world units a step; 0.001 where no frame has depth and none is given */
     bool depth_unit_given;
+    double exr_length;  /* world units that a 1 of depth in OpenEXR is; 0: the folder does not say, it is 1 */
     text_list left_out; /* "picture: why", one a picture that is no frame */
     text_list remarks;  /* what a user should know of how the folder was read */
 } posed_folder;

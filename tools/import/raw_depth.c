@@ -58,6 +58,12 @@ static const char *find_numbers(const uint8_t *bytes, size_t count, const raw_de
                                             : NULL;
 }
 
+uint16_t raw_depth_step(float length, double unit)
+{
+    const double steps = nearbyint((double)length / unit);
+    return steps >= 1 && steps <= UINT16_MAX ? (uint16_t)steps : 0;
+}
+
 int raw_depth_parse(const uint8_t *bytes, size_t count, const raw_depth *raw, picture *out, char *error,
                     size_t error_bytes)
 {
@@ -68,8 +74,7 @@ int raw_depth_parse(const uint8_t *bytes, size_t count, const raw_depth *raw, pi
         return t3r_reason(error, error_bytes, "%s", wrong != NULL ? wrong : "out of memory");
     }
     for (size_t i = 0; i < count_of(&n); i++) {
-        const double steps = nearbyint((double)number_of(&n, i) / raw->unit);
-        samples[i] = steps >= 1 && steps <= UINT16_MAX ? (uint16_t)steps : 0;
+        samples[i] = raw_depth_step(number_of(&n, i), raw->unit);
     }
     *out = (picture){.width = n.width, .height = n.height, .channels = 1, .bits = 16, .samples = samples};
     return 0;

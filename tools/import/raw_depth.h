@@ -11,6 +11,7 @@ typedef enum raw_depth_kind {
     RAW_DEPTH_NONE,   /* the file is a picture */
     RAW_DEPTH_PLAIN,  /* nothing but numbers */
     RAW_DEPTH_COLMAP, /* "width&height&1&" before them, as COLMAP's dense maps have it */
+    RAW_DEPTH_EXR,    /* OpenEXR, which exr_depth.h reads: nothing below takes it */
 } raw_depth_kind;
 
 /* Of one file: width x height little-endian numbers, in the folder's lengths. */
@@ -20,8 +21,10 @@ typedef struct raw_depth {
     double unit;            /* of the steps that they are rounded to */
 } raw_depth;
 
-/* As 16-bit grey, rounded to the nearest step. What is not a number, not positive or beyond 65535 steps becomes 0. 0,
- * or -1 with "path: what" in error[]. */
+/* A length in steps of `unit`, to the nearest, halves to even. What is not a number, not positive or beyond 65535 steps
+ * becomes 0. */
+uint16_t raw_depth_step(float length, double unit);
+/* A file as 16-bit grey, each number by raw_depth_step(). 0, or -1 with "path: what" in error[]. */
 int raw_depth_read(const char *path, const raw_depth *raw, picture *out, char *error, size_t error_bytes);
 /* The same of bytes in memory; the reason has no path. */
 int raw_depth_parse(const uint8_t *bytes, size_t count, const raw_depth *raw, picture *out, char *error,

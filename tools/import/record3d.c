@@ -11,6 +11,7 @@
 
 #include "cli/json_input.h"
 #include "file_bytes.h"
+#include "import/exr_depth.h"
 #include "import/picture_folder.h"
 #include "import/pose_between.h"
 #include "reader_limits.h"
@@ -203,28 +204,29 @@ static int is_packed(const char *directory, const char *name, bool *packed, char
     return 0;
 }
 
-static int add_depth(const char *directory, const layout *l, uint32_t index, const uint32_t sides[2],
+static int add_depth(const char *directory, const layout *l, uint32_t index, const uint32_t sides[2], double unit,
                      posed_frame *frame, uint32_t *packed_count, char *error, size_t error_bytes)
 {
     char name[NAME_BYTES];
-    bool packed = strcmp(l->depth_ending, ".exr") == 0;
+    const bool exr = exr_depth_is(l->depth_ending);
+    bool packed = exr && exr_depth_missing() != NULL;
     snprintf(name, sizeof name, "%s/%u%s", l->depth, index, l->depth_ending);
     if (!posed_exists(directory, name)) {
         return 0;
     }
-    if (!packed && is_packed(directory, name, &packed, error, error_bytes) != 0) {
+    if (!exr && is_packed(directory, name, &packed, error, error_bytes) != 0) {
         return -1;
     }
     *packed_count += packed;
     if (packed) {
         return 0;
     }
-    if (sides[0] == 0 || sides[1] == 0) {
+    if (!exr && (sides[0] == 0 || sides[1] == 0)) {
         return t3r_reason(error, error_bytes, "%s/%s: dw, dh: missing, but there is depth in %s", directory,
                           l->metadata, name);
     }
     frame->depth = strdup(name);
-    frame->depth_raw = (raw_depth){RAW_DEPTH_PLAIN, sides[0], sides[1], MILLIMETRE};
+    frame->depth_raw = (raw_depth){RAW_DEPTH_PLAIN, sides[0], sides[1], unit};
     return frame->depth != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
 }
 
@@ -243,18 +245,15 @@ static int add_names(const char *directory, const layout *l, const uint32_t dept
         if (frame->image == NULL) {
             return t3r_reason(error, error_bytes, "out of memory");
         }
-        if (add_depth(directory, l, i, depth_sides, frame, &packed, error, error_bytes) != 0) {
+        if (add_depth(directory, l, i, depth_sides, out->depth_unit, frame, &packed, error, error_bytes) != 0) {
             return -1;
         }
     }
     if (packed > 0) {
-        (void)text_list_add(&out->remarks,
-                            strcmp(l->depth_ending, ".exr") == 0
-                                ? "depth of %u frames is left out: depth/N.exr is OpenEXR, which is not read; "
-                                  "export the .r3d and unpack its depth by lzfse -decode"
-                                : "depth of %u frames is left out: rgbd/N.depth is packed with LZFSE, which is not "
-                                  "read; lzfse -decode unpacks it",
-                            packed);
+        (void)text_list_add(&out->remarks, "depth of %u frames is left out: %s", packed,
+                            exr_depth_is(l->depth_ending)
+                                ? exr_depth_missing()
+                                : "rgbd/N.depth is packed with LZFSE, which is not read; lzfse -decode unpacks it");
     }
     return picture_folder_rest(directory, l->pictures, "there is no pose of it", out, error, error_bytes);
 }
@@ -284,5 +283,8 @@ int record3d_read(const char *directory, const posed_folder_options *options, po
     }
     free(text);
     free(path);
+    if (options != NULL && options->depth_unit != 0) {
+        out->depth_unit = options->depth_unit;
+    }
     return status == 0 ? add_names(directory, l, depth_sides, out, error, error_bytes) : -1;
 }

@@ -10,6 +10,7 @@
 
 #include "cli/json_input.h"
 #include "fixed_camera.h"
+#include "import/exr_depth.h"
 #include "import/pose_matrix.h"
 #include "reader_limits.h"
 #include "reason.h"
@@ -386,11 +387,40 @@ static int read_unit(reader *r, const char *name, double *unit)
                : fail(r, name, T3R_LIMIT_TEXT("not between 1e-12 and ", T3R_LIMIT_DEPTH_UNIT, ""));
 }
 
+static bool all_depth_is_exr(const posed_folder *folder)
+{
+    bool all = true, some = false;
+    for (uint32_t i = 0; i < folder->frame_count; i++) {
+        const char *depth = folder->frames[i].depth;
+        some = some || depth != NULL;
+        all = all && (depth == NULL || exr_depth_is(depth));
+    }
+    return all && some;
+}
+
+/* Floats have no step of their own: the user's, else that of integers, else the default. nerfstudio multiplies them by
+ * its factor all the same. */
+static void settle_exr(reader *r, double integer_unit, posed_folder *out)
+{
+    out->depth_unit = r->options->depth_unit != 0 ? r->options->depth_unit
+                      : !isnan(integer_unit)      ? integer_unit
+                                                  : NERFSTUDIO_UNIT;
+    out->depth_unit_given = true;
+    if (r->nerfstudio && out->exr_length == 0) {
+        (void)text_list_add(r->remarks, "depth_unit_scale_factor: missing; depth in OpenEXR is taken as metres");
+    }
+}
+
 static int read_depth_unit(reader *r, posed_folder *out)
 {
     double unit, other;
     if (read_unit(r, "integer_depth_scale", &unit) != 0 || read_unit(r, "depth_unit_scale_factor", &other) != 0) {
         return -1;
+    }
+    out->exr_length = isnan(other) ? 0 : other;
+    if (all_depth_is_exr(out)) {
+        settle_exr(r, unit, out);
+        return 0;
     }
     if (!isnan(unit) && !isnan(other) && unit != other) {
         return fail(r, "depth_unit_scale_factor", "not the integer_depth_scale that is there too");

@@ -158,7 +158,8 @@ static const struct argp_option argp_options[] = {
     {"min-confidence", KEY_CONFIDENCE, "C", 0,
      "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
     {"depth-unit", KEY_UNIT, "U", 0,
-     "length of one step of depth: of depth pictures beside a model of COLMAP (needed), or of depth made from "
+     "length of one step of depth: of depth beside a model of COLMAP (needed), of depth in floats (0.001), or of depth "
+     "made from "
      "pointmaps "
      "(integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 steps)",
      0},
@@ -185,10 +186,12 @@ static const struct argp parser = {
         "    with 16-bit PNG of their names, if --depth-unit is given, else\n"
         "    stereo/depth_maps as COLMAP's patch_match_stereo leaves them\n"
         "  metadata and rgbd, an unpacked .r3d of Record3D; depth must not be packed\n"
+        "  metadata.json, rgb and depth, its export with EXR\n"
         "  pose, color, intrinsic and optionally depth (ScanNet): a text for each pose\n"
         "  frame-N.pose.txt, .color.png, .depth.png (7-Scenes, 3DMatch)\n"
         "  pictures alone, in the order of their names, with --poses estimate or\n"
         "    --pointmaps\n"
+        "In all of them depth may be .exr in the place of .png: OpenEXR of one channel.\n"
         "Frames get stamps 1/30 s apart. Pictures that cannot be read are left out and named.\n"
         "\n"
         "A pointmap, as DUSt3R, MASt3R and VGGT make them, is a point for each pixel of a frame, in the first "
