@@ -550,6 +550,7 @@ def test_exr():
     check(np.array_equal(got["depth"], [steps_of(depth * UNIT, 0.004) for depth in ROOM["depth"]]), "OpenEXR: --depth-unit")
     refused(with_exr(transforms("exr_far", change=to_exr, depth_unit_scale_factor=100)), "no length in it is from 1 to 65535 steps")
     same("ScanNet with OpenEXR", imported(with_exr(pose_files("scannet_exr"), "depth/{}"))[1])
+    same("7-Scenes with OpenEXR", imported(with_exr(seven_scenes("seven_exr"), "frame-{:06d}.depth"))[1])
     path = with_exr(colmap("colmap_exr", depth="depth/view_{}.png"), "depth/view_{}")
     same("COLMAP with OpenEXR", imported(path, "--depth-unit", str(UNIT))[1])
     report, got = imported(with_exr(pose_files("exr_half"), "depth/{}", "<f2"))

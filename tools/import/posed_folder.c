@@ -74,6 +74,7 @@ static void mark_exr(posed_folder *folder)
         posed_frame *frame = &folder->frames[i];
         if (frame->depth != NULL && exr_depth_is(frame->depth)) {
             frame->depth_raw = (raw_depth){.kind = RAW_DEPTH_EXR, .unit = folder->depth_unit / length};
+            frame->no_depth = 0; /* floats have their own ways to say that */
         }
     }
 }
