@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """declare.py HEADER ROOT PACKAGE BUILD COMPILER OPTION...: what the Python package knows of C, out of the headers.
 
 PACKAGE/_declarations.py has every type and constant that HEADER leads to below ROOT, and the functions of the headers
