@@ -23,7 +23,9 @@ typedef struct t3r_head_input {
     const void *weights; /* of `learned`, checked; NULL for the others */
     void *work;          /* two bytes a pixel; `learned`: at least t3r_head_learned_work_bytes() */
     size_t work_bytes;
-    bool unadapted; /* the head takes every point for retained, spacing 1 */
+    bool unadapted;                 /* the head takes every point for retained, spacing 1 */
+    bool (*goes_on)(void *context); /* asked before each row; NULL: the head is not to be stopped */
+    void *context;                  /* of goes_on */
 } t3r_head_input;
 
 /* A total footprint in the image plane: mean and covariance in pixels, as the source view shall show it. */
@@ -46,9 +48,16 @@ void t3r_pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gau
 /* Kept neighbours are this far apart about a retained pixel: pixels, Q12, at least 1; 1 when unadapted. */
 uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel);
 
+static inline bool t3r_head_goes_on(const t3r_head_input *input)
+{
+    return input->goes_on == NULL || input->goes_on(input->context);
+}
+
+#define T3R_HEAD_STOPPED UINT32_MAX
+
 /* Each writes the Gaussians of the retained points in the rows begin..end - 1, in raster order, to `out` and returns
- * their number. The bands of a view together give what the whole view gives. `moment` sweeps over the whole view: its
- * range must be 0..height. */
+ * their number, or T3R_HEAD_STOPPED. The bands of a view together give what the whole view gives. `moment` sweeps over
+ * the whole view: its range must be 0..height. */
 typedef uint32_t t3r_head_rows(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out);
 
 /* X(enumerator of t3r_head, name, function), a row a head. */

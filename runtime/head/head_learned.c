@@ -118,6 +118,9 @@ uint32_t t3r_head_learned(const t3r_head_input *input, uint32_t begin, uint32_t 
                       t3r_cut_left(&cut));
     uint32_t count = 0;
     for (int32_t y = t3r_network_first(&network); y < (int32_t)end; y++) {
+        if (!t3r_head_goes_on(input)) {
+            return T3R_HEAD_STOPPED;
+        }
         while (t3r_network_wants_features(&network, y)) {
             uint32_t row;
             int8_t *features = t3r_network_feature_row(&network, &row);

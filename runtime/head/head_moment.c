@@ -147,6 +147,9 @@ uint32_t t3r_head_moment(const t3r_head_input *input, uint32_t begin, uint32_t e
     }
     uint32_t count = 0;
     for (uint32_t v = begin; v < end; v++) {
+        if (!t3r_head_goes_on(input)) {
+            return T3R_HEAD_STOPPED;
+        }
         for (uint32_t u = 0; u < view->width; u++) {
             size_t pixel = (size_t)v * view->width + u;
             if (!t3r_retained(view, pixel)) {

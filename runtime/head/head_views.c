@@ -19,7 +19,10 @@ typedef struct band_job {
     const t3r_view *views;
     const t3r_budget_settings *settings;
     t3r_gaussian *out;
-    uint32_t count; /* of the bands of one round: at most as many views as workers, cut between workers */
+    uint32_t first, end; /* views of the call, for the progress hook */
+    bool asks;           /* this thread may ask the hook from within a band: there is no other */
+    bool stopped;        /* the hook wants no more */
+    uint32_t count;      /* of the bands of one round: at most as many views as workers, cut between workers */
     band bands[2 * T3R_MAX_WORKERS];
 } band_job;
 
@@ -61,15 +64,30 @@ static void level(t3r_gaussian *gaussians, uint32_t count, const uint16_t gain_q
     }
 }
 
-static void make_band(void *context, uint32_t index, uint32_t worker)
+static bool goes_on(void *context)
 {
     const band_job *job = context;
+    return t3r_progress(job->rt, T3R_STAGE_HEAD, job->first, job->end);
+}
+
+static void make_band(void *context, uint32_t index, uint32_t worker)
+{
+    band_job *job = context;
     const t3r_runtime *rt = job->rt;
     const band *b = &job->bands[index];
     t3r_head_input input = t3r_head_input_of(rt, job->views, b->view, job->settings);
     input.work = work_of(rt, worker);
+    if (job->asks) {
+        input.goes_on = goes_on;
+        input.context = job;
+    }
     t3r_gaussian *out = job->out + b->place;
-    level(out, heads[rt->build.head](&input, b->begin, b->end, out), rt->gain_q14[b->view]);
+    const uint32_t made = heads[rt->build.head](&input, b->begin, b->end, out);
+    if (made == T3R_HEAD_STOPPED) {
+        job->stopped = true;
+    } else {
+        level(out, made, rt->gain_q14[b->view]);
+    }
 }
 
 static uint32_t ones(uint32_t x)
@@ -135,19 +153,25 @@ static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t 
     return made;
 }
 
-/* The views first..end - 1; progress is reported when `asks`. */
+/* The views first..end - 1; progress is reported when `asks`, by one worker before each row. */
 static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool asks, uint32_t *made)
 {
     const t3r_runtime *rt = job->rt;
     const t3r_workers workers = t3r_workers_of(rt);
     const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1; /* views between two reports */
+    job->asks = asks && !t3r_is_parallel(&workers);
+    job->end = end;
     *made = 0;
     for (uint32_t begin = first; begin < end; begin += round) {
         if (asks && !t3r_progress(rt, T3R_STAGE_HEAD, begin, end)) {
             return T3R_ERR_CANCELLED;
         }
+        job->first = begin;
         *made = cut_bands(job, begin, T3R_MIN(begin + round, end), parts_of(rt, &workers), *made);
         t3r_run_tasks(&workers, job->count, make_band, job);
+        if (job->stopped) {
+            return T3R_ERR_CANCELLED;
+        }
     }
     return T3R_OK;
 }

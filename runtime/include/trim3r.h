@@ -368,8 +368,9 @@ typedef struct t3r_target {
 typedef struct t3r_hooks {
     /* The caller's own, handed to each callback. */
     void *user;
-    /* Called between bounded pieces of long work: a view, a batch, 64 tiles (of refinement 256), 65,536 splats blended
-     * into tiles. A return other than 0 cancels it. */
+    /* Called between bounded pieces of long work: a view, a row of a head, a batch, 8 first centres of SuperClusters, 64
+     * tiles, 65,536 splats blended into tiles. Of refinement a piece is 256 splats blended into tiles. With several
+     * workers it is 256 tiles, and of a head the views that they share. A return other than 0 cancels the work. */
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
     /* Called with the hash of every stage of t3r_reconstruct(), t3r_rebuild() and t3r_render() (SPEC, "Hash"). */
     void (*stage_hash)(void *user, t3r_stage stage, uint64_t hash);

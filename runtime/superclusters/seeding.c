@@ -5,6 +5,7 @@
 
 #define PART 256u /* points of the sample whose distances are summed up, so that a draw passes them in one step */
 #define PARTS (T3R_CLUSTER_SAMPLE / PART)
+#define CENTRES_A_STEP 8u /* about 7 million instructions of plain C, with the whole sample */
 
 /* Valid points spread evenly over the source, at most T3R_CLUSTER_SAMPLE; returns how many. */
 static uint32_t draw_sample(const t3r_point_source *source, t3r_sample *sample)
@@ -110,12 +111,12 @@ static bool add_staying(seeding *s, uint32_t count, const bool *stays, const t3r
     return any;
 }
 
-void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, const bool *stays,
-                      t3r_cluster *clusters, t3r_sample *sample)
+bool t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, const bool *stays,
+                      t3r_cluster *clusters, t3r_sample *sample, const t3r_cluster_host *host, uint32_t total)
 {
     seeding s = {.kernels = settings->kernels, .sample = sample, .count = draw_sample(source, sample)};
     if (s.count == 0) {
-        return;
+        return true;
     }
     s.parts = (s.count + PART - 1) / PART;
     uint32_t random = t3r_mix32(settings->seed + 0x9e3779b9u);
@@ -123,6 +124,9 @@ void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings
     sample_point(sample, random % s.count, centre);
     bool any = add_staying(&s, settings->clusters, stays, clusters);
     for (uint32_t k = 0; k < settings->clusters; k++) {
+        if (k % CENTRES_A_STEP == 0 && !t3r_cluster_step(host, 0, total)) {
+            return false;
+        }
         if (stays != NULL && stays[k]) {
             continue;
         }
@@ -135,4 +139,5 @@ void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings
             clusters[k].centre_q19[d] = centre[d] * (1 << T3R_CENTRE_FRACTION);
         }
     }
+    return true;
 }

@@ -6,8 +6,9 @@
 #include "superclusters.h"
 
 /* Places the settings' number of centres on points of the source. Those that stay are left as they are, and the others
- * are drawn far from them (NULL: none stays). Without a valid point all are left as they are. */
-void t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, const bool *stays,
-                      t3r_cluster *clusters, t3r_sample *sample);
+ * are drawn far from them (NULL: none stays). Without a valid point all are left as they are. The host's step, 0 of
+ * `total`, is called between centres. False: it wants no more. */
+bool t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, const bool *stays,
+                      t3r_cluster *clusters, t3r_sample *sample, const t3r_cluster_host *host, uint32_t total);
 
 #endif

@@ -27,11 +27,6 @@ static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint
 
 /* --- means ------------------------------------------------------------------------------------------------------ */
 
-static bool step(const t3r_cluster_host *host, uint32_t done, uint32_t total)
-{
-    return host->step == NULL || host->step(host->context, done, total);
-}
-
 /* A run over points that workers share: each adds to sums of its own, and these are added up in the end. */
 typedef struct means_job {
     const t3r_kernels *kernels;
@@ -201,7 +196,7 @@ static uint32_t assign(means_job *job, t3r_cluster *clusters, uint32_t done, uin
     begin_means(job, clusters);
     const uint32_t tasks = tasks_of(job->points), chunk = T3R_CLUSTER_BATCH / TASK_POINTS;
     for (job->first = 0; job->first < tasks; job->first += chunk) {
-        if (!step(job->host, done + job->first / chunk, total)) {
+        if (!t3r_cluster_step(job->host, done + job->first / chunk, total)) {
             return T3R_CLUSTERS_CANCELLED;
         }
         t3r_run_tasks(&job->host->workers, T3R_MIN(tasks - job->first, chunk), assign_task, job);
@@ -227,16 +222,21 @@ static void set_weights(t3r_cluster_work *work, uint32_t points)
     }
 }
 
-static void place_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
-                          t3r_cluster_work *work)
+/* False: cancelled. */
+static bool place_centres(const means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters,
+                          uint32_t total)
 {
     memset(clusters, 0, settings->clusters * sizeof *clusters);
-    t3r_seed_centres(source, settings, NULL, clusters, &work->u.sample);
-    set_weights(work, 0);
+    if (!t3r_seed_centres(job->source, settings, NULL, clusters, &job->work->u.sample, job->host, total)) {
+        return false;
+    }
+    set_weights(job->work, 0);
+    return true;
 }
 
-/* The first batch of centres that were taken over: those that get none of its points are placed anew. */
-static void follow_centres(means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters)
+/* The first batch of centres that were taken over: those that get none of its points are placed anew. False: cancelled.
+ */
+static bool follow_centres(means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters, uint32_t total)
 {
     bool stays[T3R_MAX_CLUSTERS];
     bool all = true;
@@ -247,12 +247,15 @@ static void follow_centres(means_job *job, const t3r_cluster_settings *settings,
         all = all && stays[k];
     }
     if (all) {
-        return;
+        return true;
     }
-    t3r_seed_centres(job->source, settings, stays, clusters, &job->work->u.sample);
+    if (!t3r_seed_centres(job->source, settings, stays, clusters, &job->work->u.sample, job->host, total)) {
+        return false;
+    }
     for (uint32_t k = 0; k < settings->clusters; k++) {
         job->work->u.means.weight[k] = stays[k] ? FOLLOW_WEIGHT : 0;
     }
+    return true;
 }
 
 uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
@@ -267,16 +270,18 @@ uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_set
                      .work = work,
                      .count = settings->clusters,
                      .labels = labels};
-    if (!settings->follows) {
-        place_centres(source, settings, clusters, work);
+    if (!settings->follows && !place_centres(&job, settings, clusters, total)) {
+        return T3R_CLUSTERS_CANCELLED;
     }
     for (uint32_t batch = 0; batch < batches; batch++) {
-        if (!step(host, batch, total)) {
+        if (!t3r_cluster_step(host, batch, total)) {
             return T3R_CLUSTERS_CANCELLED;
         }
-        if (settings->follows && batch == 0) {
-            follow_centres(&job, settings, clusters);
-        } else {
+        const bool follows = settings->follows && batch == 0;
+        if (follows && !follow_centres(&job, settings, clusters, total)) {
+            return T3R_CLUSTERS_CANCELLED;
+        }
+        if (!follows) {
             run_batch(&job, batch, clusters);
         }
     }

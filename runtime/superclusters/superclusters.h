@@ -66,13 +66,19 @@ typedef struct t3r_cluster_settings {
     bool follows; /* the clusters are those of similar points: their centres are where to begin */
 } t3r_cluster_settings;
 
-/* Who runs the K-means: its workers, and a step that is called between batches and chunks of the assignment pass. */
+/* Who runs the K-means: its workers, and a step that is called between batches, chunks of the
+ * assignment pass, and a few first centres. */
 typedef struct t3r_cluster_host {
     t3r_workers workers;
     t3r_cluster_sums *sums; /* one each of workers 1 and up; NULL with one worker */
     void *context;
     bool (*step)(void *context, uint32_t done, uint32_t total); /* false = stop; NULL: never stops */
 } t3r_cluster_host;
+
+static inline bool t3r_cluster_step(const t3r_cluster_host *host, uint32_t done, uint32_t total)
+{
+    return host->step == NULL || host->step(host->context, done, total);
+}
 
 /* Clusters the source's points: clusters[0..K-1] and a label a point. Returns the number of valid points, or
  * T3R_CLUSTERS_CANCELLED. */

@@ -48,6 +48,7 @@ for i, row in enumerate(said["boards"]):
     for stage in STAGES:
         figure = shown(f"{stage}, M")[i]
         near(row["instructions"][stage] / 1e6, figure, TOLERANCE * figure + 0.06, f"{row['board']}: {stage}")
+    check(row["longest_stretch"] <= 20_000_000, f"{row['board']}: a watchdog is fed every 20 million instructions")
     check(row["stack_bytes"] <= 12288, f"{row['board']}: the stack is bounded")
     picture = pathlib.Path(row["view"]).read_bytes()
     check(picture.startswith(b"P6 64 64 255\n") and len(picture) == 13 + 64 * 64 * 3, "the view is a picture")
