@@ -3,8 +3,8 @@
 
 golden.py host DRIVER             the driver as built here, in every way that must not matter (arena, tasks, moves)
 golden.py build [--both-ways] [--run EMULATOR] COMPILER FLAG...
-                                  the driver built by another compiler, for another processor; run in the way that
-                                  differs most from the usual one, with --both-ways in the usual one, too
+                                  the driver built by another compiler, for another processor; run in the usual way,
+                                  with --both-ways in the one that differs most from it, too
 golden.py replay TRIM3R           the built-in recording, made and replayed by the program
 Exit 0: the same; 1: other bits, naming the first stage that differs; 77: skipped, a tool is absent.
 """
@@ -70,7 +70,7 @@ def runtime_sources():
 
 
 def check_build(arguments):
-    ways, emulator = WAYS[-1:], []
+    ways, emulator = WAYS[:1], []
     if arguments[0] == "--both-ways":
         ways, arguments = [WAYS[0], WAYS[-1]], arguments[1:]
     if arguments[0] == "--run":
