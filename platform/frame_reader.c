@@ -6,6 +6,7 @@
 #include "cdr.h"
 #include "fixed_text.h"
 #include "mcap.h"
+#include "mcap_fields.h"
 #include "message_frame.h"
 #include "reader_limits.h"
 
@@ -73,44 +74,12 @@ static void pass_over(t3r_frame_reader *reader, const record *r)
     reader->at = r->at + r->bytes;
 }
 
-/* The first bytes of a record, as many as there is room for, as a text of CDR's kind: little-endian counts. */
-typedef struct fields {
-    const uint8_t *bytes;
-    size_t count, at;
-    bool failed;
-} fields;
-
-static int open_fields(t3r_frame_reader *reader, const record *r, fields *in)
+/* The first bytes of a record, as many as there is room for. */
+static int open_fields(t3r_frame_reader *reader, const record *r, t3r_mcap_fields *in)
 {
     const size_t count = r->bytes < sizeof reader->small ? (size_t)r->bytes : sizeof reader->small;
-    *in = (fields){reader->small, count, 0, false};
+    *in = (t3r_mcap_fields){reader->small, count, 0, false};
     return read_at(reader, r->at, reader->small, count);
-}
-
-static const uint8_t *take(fields *in, size_t count)
-{
-    in->failed = in->failed || in->count - in->at < count;
-    in->at += in->failed ? 0 : count;
-    return in->failed ? NULL : in->bytes + in->at - count;
-}
-
-static uint16_t take_u16(fields *in)
-{
-    const uint8_t *bytes = take(in, 2);
-    return bytes == NULL ? 0 : t3r_load_le16(bytes);
-}
-
-static uint32_t take_u32(fields *in)
-{
-    const uint8_t *bytes = take(in, 4);
-    return bytes == NULL ? 0 : t3r_load_le32(bytes);
-}
-
-static t3r_text take_text(fields *in)
-{
-    const uint32_t count = take_u32(in);
-    const uint8_t *bytes = take(in, count);
-    return bytes == NULL ? (t3r_text){"", 0} : (t3r_text){(const char *)bytes, count};
 }
 
 /* ---- what the file says of its messages ---- */
@@ -145,12 +114,12 @@ static void keep(t3r_frame_reader_name *names, uint32_t *count, uint16_t id, uin
 
 static int read_schema(t3r_frame_reader *reader, const record *r)
 {
-    fields in;
+    t3r_mcap_fields in;
     if (open_fields(reader, r, &in) != 0) {
         return -1;
     }
-    const uint16_t id = take_u16(&in);
-    const t3r_text name = take_text(&in);
+    const uint16_t id = t3r_mcap_take_u16(&in);
+    const t3r_text name = t3r_mcap_take_text(&in);
     if (!in.failed) {
         keep(reader->schemas, &reader->schema_count, id, type_named(name));
     }
@@ -159,13 +128,13 @@ static int read_schema(t3r_frame_reader *reader, const record *r)
 
 static int read_channel(t3r_frame_reader *reader, const record *r)
 {
-    fields in;
+    t3r_mcap_fields in;
     if (open_fields(reader, r, &in) != 0) {
         return -1;
     }
-    const uint16_t id = take_u16(&in), schema = take_u16(&in);
-    take_text(&in); /* topic */
-    const t3r_text encoding = take_text(&in);
+    const uint16_t id = t3r_mcap_take_u16(&in), schema = t3r_mcap_take_u16(&in);
+    t3r_mcap_take_text(&in); /* topic */
+    const t3r_text encoding = t3r_mcap_take_text(&in);
     if (!in.failed && t3r_text_is(encoding, "cdr")) {
         keep(reader->channels, &reader->channel_count, id, type_of(reader->schemas, reader->schema_count, schema));
     }
@@ -174,14 +143,14 @@ static int read_channel(t3r_frame_reader *reader, const record *r)
 
 static int read_metadata(t3r_frame_reader *reader, const record *r)
 {
-    fields in;
+    t3r_mcap_fields in;
     if (open_fields(reader, r, &in) != 0) {
         return -1;
     }
-    const bool ours = t3r_text_is(take_text(&in), "trim3r");
-    take_u32(&in); /* bytes of the map */
+    const bool ours = t3r_text_is(t3r_mcap_take_text(&in), "trim3r");
+    t3r_mcap_take_u32(&in); /* bytes of the map */
     while (ours && !in.failed && in.at < in.count) {
-        const t3r_text key = take_text(&in), value = take_text(&in);
+        const t3r_text key = t3r_mcap_take_text(&in), value = t3r_mcap_take_text(&in);
         if (in.failed || !t3r_text_is(key, "depth_unit")) {
             continue;
         }

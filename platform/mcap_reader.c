@@ -11,6 +11,7 @@
 #include "grow.h"
 #include "reader_limits.h"
 #include "mcap.h"
+#include "mcap_fields.h"
 #include "reason.h"
 
 #define REST_BYTES (UINT64_C(32) << 20) /* of a file in the spill that are read before their pages may go */
@@ -26,50 +27,6 @@ typedef struct walk {
     char *error;
     size_t error_bytes;
 } walk;
-
-/* ---- fields: the first step past the end sets `failed`; later calls give zeros ---- */
-
-typedef struct fields {
-    const uint8_t *bytes;
-    size_t count, at;
-    bool failed;
-} fields;
-
-static const uint8_t *take(fields *in, uint64_t count)
-{
-    if (in->failed || in->count - in->at < count) {
-        in->failed = true;
-        return NULL;
-    }
-    const uint8_t *bytes = in->bytes + in->at;
-    in->at += (size_t)count;
-    return bytes;
-}
-
-static uint16_t get_u16(fields *in)
-{
-    const uint8_t *bytes = take(in, 2);
-    return bytes == NULL ? 0 : t3r_load_le16(bytes);
-}
-
-static uint32_t get_u32(fields *in)
-{
-    const uint8_t *bytes = take(in, 4);
-    return bytes == NULL ? 0 : t3r_load_le32(bytes);
-}
-
-static uint64_t get_u64(fields *in)
-{
-    const uint8_t *bytes = take(in, 8);
-    return bytes == NULL ? 0 : t3r_load_le64(bytes);
-}
-
-static t3r_text get_text(fields *in)
-{
-    uint32_t count = get_u32(in);
-    const uint8_t *bytes = take(in, count);
-    return bytes == NULL ? (t3r_text){"", 0} : (t3r_text){(const char *)bytes, count};
-}
 
 /* ---- reasons ---- */
 
@@ -104,12 +61,12 @@ static const char *const short_fields = "a field reaches past the record's end";
 
 /* ---- records that visitors see ---- */
 
-static int read_schema(walk *w, fields *in, t3r_mcap_place place)
+static int read_schema(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    t3r_mcap_schema_record schema = {.id = get_u16(in)};
-    schema.name = get_text(in);
-    schema.encoding = get_text(in);
-    schema.definition = get_text(in);
+    t3r_mcap_schema_record schema = {.id = t3r_mcap_take_u16(in)};
+    schema.name = t3r_mcap_take_text(in);
+    schema.encoding = t3r_mcap_take_text(in);
+    schema.definition = t3r_mcap_take_text(in);
     if (in->failed) {
         return malformed(w, T3R_MCAP_SCHEMA, place, short_fields);
     }
@@ -117,25 +74,25 @@ static int read_schema(walk *w, fields *in, t3r_mcap_place place)
     return schema.id == 0 ? 0 : w->visitor->schema(w->visitor->user, &schema, place);
 }
 
-static int read_channel(walk *w, fields *in, t3r_mcap_place place)
+static int read_channel(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    t3r_mcap_channel_record channel = {.id = get_u16(in)};
-    channel.schema = get_u16(in);
-    channel.topic = get_text(in);
-    channel.encoding = get_text(in);
-    get_text(in); /* the map of metadata, unused */
+    t3r_mcap_channel_record channel = {.id = t3r_mcap_take_u16(in)};
+    channel.schema = t3r_mcap_take_u16(in);
+    channel.topic = t3r_mcap_take_text(in);
+    channel.encoding = t3r_mcap_take_text(in);
+    t3r_mcap_take_text(in); /* the map of metadata, unused */
     if (in->failed) {
         return malformed(w, T3R_MCAP_CHANNEL, place, short_fields);
     }
     return w->visitor->channel(w->visitor->user, &channel, place);
 }
 
-static int read_message(walk *w, fields *in, t3r_mcap_place place)
+static int read_message(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    t3r_mcap_message_record message = {.channel = get_u16(in)};
-    message.sequence = get_u32(in);
-    message.log_ns = get_u64(in);
-    message.publish_ns = get_u64(in);
+    t3r_mcap_message_record message = {.channel = t3r_mcap_take_u16(in)};
+    message.sequence = t3r_mcap_take_u32(in);
+    message.log_ns = t3r_mcap_take_u64(in);
+    message.publish_ns = t3r_mcap_take_u64(in);
     if (in->failed) {
         return malformed(w, T3R_MCAP_MESSAGE, place, short_fields);
     }
@@ -144,14 +101,14 @@ static int read_message(walk *w, fields *in, t3r_mcap_place place)
     return w->visitor->message(w->visitor->user, &message, place);
 }
 
-static int read_metadata(walk *w, fields *in, t3r_mcap_place place)
+static int read_metadata(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    t3r_text name = get_text(in);
-    t3r_text map = get_text(in);
-    fields pairs = {(const uint8_t *)map.chars, map.count, 0, in->failed};
+    t3r_text name = t3r_mcap_take_text(in);
+    t3r_text map = t3r_mcap_take_text(in);
+    t3r_mcap_fields pairs = {(const uint8_t *)map.chars, map.count, 0, in->failed};
     while (!pairs.failed && pairs.at < pairs.count) {
-        t3r_text key = get_text(&pairs);
-        t3r_text value = get_text(&pairs);
+        t3r_text key = t3r_mcap_take_text(&pairs);
+        t3r_text value = t3r_mcap_take_text(&pairs);
         if (!pairs.failed && w->visitor->metadata(w->visitor->user, name, key, value, place) < 0) {
             return -1;
         }
@@ -159,16 +116,16 @@ static int read_metadata(walk *w, fields *in, t3r_mcap_place place)
     return pairs.failed ? malformed(w, T3R_MCAP_METADATA, place, short_fields) : 0;
 }
 
-static int read_attachment(walk *w, fields *in, t3r_mcap_place place)
+static int read_attachment(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    get_u64(in); /* log_time */
-    get_u64(in); /* create_time */
-    get_text(in);
-    get_text(in);
-    uint64_t bytes = get_u64(in);
-    take(in, bytes);
+    t3r_mcap_take_u64(in); /* log_time */
+    t3r_mcap_take_u64(in); /* create_time */
+    t3r_mcap_take_text(in);
+    t3r_mcap_take_text(in);
+    uint64_t bytes = t3r_mcap_take_u64(in);
+    t3r_mcap_take(in, bytes);
     size_t checked = in->at;
-    uint32_t crc = get_u32(in);
+    uint32_t crc = t3r_mcap_take_u32(in);
     if (in->failed) {
         return malformed(w, T3R_MCAP_ATTACHMENT, place, short_fields);
     }
@@ -204,7 +161,7 @@ static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chun
         if (!has_head || length > count - at - T3R_MCAP_RECORD_HEAD_BYTES) {
             return cut ? kept : malformed(w, opcode, place, "it reaches past the chunk's end");
         }
-        fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
+        t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
         int status = 0;
         switch (opcode) {
         case T3R_MCAP_SCHEMA:
@@ -353,14 +310,14 @@ static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
 }
 
 /* `in` holds the content, or as much of it as a cut file has left. */
-static int read_chunk(walk *w, fields *in, t3r_mcap_place place, bool cut)
+static int read_chunk(walk *w, t3r_mcap_fields *in, t3r_mcap_place place, bool cut)
 {
-    get_u64(in); /* message_start_time */
-    get_u64(in); /* message_end_time */
-    chunk c = {.unpacked_bytes = get_u64(in), .cut = cut};
-    c.crc = get_u32(in);
-    c.compression = get_text(in);
-    uint64_t packed_bytes = get_u64(in);
+    t3r_mcap_take_u64(in); /* message_start_time */
+    t3r_mcap_take_u64(in); /* message_end_time */
+    chunk c = {.unpacked_bytes = t3r_mcap_take_u64(in), .cut = cut};
+    c.crc = t3r_mcap_take_u32(in);
+    c.compression = t3r_mcap_take_text(in);
+    uint64_t packed_bytes = t3r_mcap_take_u64(in);
     if (in->failed) {
         return cut ? 0 : malformed(w, T3R_MCAP_CHUNK, place, short_fields);
     }
@@ -391,9 +348,9 @@ static uint32_t crc_of(const walk *w, const uint8_t *bytes, uint64_t count)
     return crc;
 }
 
-static int read_data_end(walk *w, fields *in, t3r_mcap_place place)
+static int read_data_end(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    uint32_t crc = get_u32(in);
+    uint32_t crc = t3r_mcap_take_u32(in);
     if (in->failed) {
         return malformed(w, T3R_MCAP_DATA_END, place, short_fields);
     }
@@ -404,11 +361,11 @@ static int read_data_end(walk *w, fields *in, t3r_mcap_place place)
     return 0;
 }
 
-static int read_footer(walk *w, fields *in, t3r_mcap_place place)
+static int read_footer(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    uint64_t summary = get_u64(in);
-    uint64_t summary_offset = get_u64(in);
-    uint32_t crc = get_u32(in);
+    uint64_t summary = t3r_mcap_take_u64(in);
+    uint64_t summary_offset = t3r_mcap_take_u64(in);
+    uint32_t crc = t3r_mcap_take_u32(in);
     if (in->failed || in->at != in->count) {
         return malformed(w, T3R_MCAP_FOOTER, place, "its length is not 20 bytes");
     }
@@ -427,7 +384,7 @@ static int read_footer(walk *w, fields *in, t3r_mcap_place place)
     return 0;
 }
 
-static int read_record(walk *w, uint8_t opcode, fields *in, t3r_mcap_place place)
+static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_place place)
 {
     bool in_summary = w->data_end != 0;
     switch (opcode) {
@@ -435,8 +392,8 @@ static int read_record(walk *w, uint8_t opcode, fields *in, t3r_mcap_place place
         if (place.offset != T3R_MCAP_MAGIC_BYTES) {
             return malformed(w, opcode, place, "it is not the first record");
         }
-        get_text(in); /* profile */
-        get_text(in); /* library */
+        t3r_mcap_take_text(in); /* profile */
+        t3r_mcap_take_text(in); /* library */
         return in->failed ? malformed(w, opcode, place, short_fields) : 0;
     case T3R_MCAP_FOOTER:
         return read_footer(w, in, place);
@@ -528,8 +485,8 @@ int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *vi
         if (w.cut && (!fits || opcode == 0)) {
             *end = (t3r_mcap_end){true, at};
             if (opcode == T3R_MCAP_CHUNK && rest > T3R_MCAP_RECORD_HEAD_BYTES && w.data_end == 0) {
-                fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)(rest - T3R_MCAP_RECORD_HEAD_BYTES), 0,
-                             false};
+                t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES,
+                                      (size_t)(rest - T3R_MCAP_RECORD_HEAD_BYTES), 0, false};
                 return read_chunk(&w, &in, place, true);
             }
             return 0;
@@ -540,7 +497,7 @@ int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *vi
         if (at == T3R_MCAP_MAGIC_BYTES && opcode != T3R_MCAP_HEADER) {
             return malformed(&w, opcode, place, "the first record is not a Header");
         }
-        fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
+        t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
         if (read_record(&w, opcode, &in, place) < 0) {
             return -1;
         }
