@@ -7,7 +7,7 @@
 
 #define BLEND t3r_blend_avx2
 #define BLEND_KEEP t3r_blend_keep_avx2
-#include "blend_pixels.h"
+#include "kernels/lanes/blend_pixels.h"
 
 #else
 typedef int t3r_no_blend_avx2; /* a file may not be empty */

@@ -3,11 +3,13 @@
 
 #ifdef T3R_X86
 
-#include "pixels_sse41.h"
+#include "lanes_sse41.h"
+
+#include "kernels/lanes/pixels_of_eight.h"
 
 #define BLEND t3r_blend_sse41
 #define BLEND_KEEP t3r_blend_keep_sse41
-#include "blend_pixels.h"
+#include "kernels/lanes/blend_pixels.h"
 
 #else
 typedef int t3r_no_blend_sse41; /* a file may not be empty */

@@ -7,7 +7,7 @@
 
 #define PACK_LAYER t3r_pack_layer_avx2
 #define CONVOLVE_PACKED t3r_convolve_packed_avx2
-#include "convolve_packed_lanes.h"
+#include "kernels/lanes/convolve_packed_lanes.h"
 
 #else
 typedef int t3r_no_convolve_packed_avx2; /* a file may not be empty */

@@ -7,7 +7,7 @@
 
 #define PACK_LAYER t3r_pack_layer_sse41
 #define CONVOLVE_PACKED t3r_convolve_packed_sse41
-#include "convolve_packed_lanes.h"
+#include "kernels/lanes/convolve_packed_lanes.h"
 
 #else
 typedef int t3r_no_convolve_packed_sse41; /* a file may not be empty */

@@ -5,10 +5,10 @@
 
 #include "lanes_avx2.h"
 
-#include "requantize_lanes.h"
+#include "kernels/lanes/requantize_lanes.h"
 
-#define INLINE T3R_X86_INLINE T3R_VNNI
-#define EACH(i, count) T3R_X86_UNROLL for (uint32_t i = 0; i < (count); i++)
+#define INLINE T3R_LANES_INLINE T3R_VNNI
+#define EACH(i, count) T3R_LANES_UNROLL for (uint32_t i = 0; i < (count); i++)
 #define OUTPUTS 16u
 #define TAPS T3R_PACKED_TAPS
 #define PIXELS 8u
@@ -17,7 +17,7 @@
 /* The instruction takes one factor without sign: activations + 128, as strips of bytes have them. */
 T3R_AVX2 void t3r_pack_layer_vnni(const t3r_convolution *layer, uint32_t rows, void *packed)
 {
-    t3r_x86_pack_layer(layer, rows, TAPS, 128, false, packed);
+    t3r_pack_layer_with(layer, rows, TAPS, 128, false, packed);
 }
 
 /* Where the outputs from `first` on lie in a packed layer. */
@@ -32,7 +32,7 @@ typedef struct sums {
     __m256i eight[PIXELS];
 } sums;
 
-INLINE __m512i sixteen(const place *at, t3r_x86_scaling which, uint32_t first)
+INLINE __m512i sixteen(const place *at, t3r_packed_scaling which, uint32_t first)
 {
     return _mm512_loadu_si512((const int32_t *)(const void *)at->scaling + which * at->whole + first);
 }
@@ -47,10 +47,11 @@ INLINE void add_up(sums *s, const t3r_block *block, const size_t offset[PIXELS],
     {
         EACH(v, vectors)
         {
-            s->sixteen[p][v] = sixteen(at, T3R_X86_BIAS, at->first + v * OUTPUTS);
+            s->sixteen[p][v] = sixteen(at, T3R_SCALING_BIAS, at->first + v * OUTPUTS);
         }
         if (half) {
-            s->eight[p] = t3r_x86_scaling_at(at->scaling, T3R_X86_BIAS, at->whole, at->first + vectors * OUTPUTS);
+            s->eight[p] =
+                t3r_packed_scaling_at(at->scaling, T3R_SCALING_BIAS, at->whole, at->first + vectors * OUTPUTS);
         }
     }
     for (uint32_t row = 0; row < block->rows; row++) {
@@ -80,16 +81,18 @@ INLINE void add_up(sums *s, const t3r_block *block, const size_t offset[PIXELS],
     }
 }
 
-/* t3r_x86_scaled() of sixteen. Operators, as without optimisation intrinsics take stack for each operand. */
+/* t3r_packed_scaled() of sixteen. Operators, as without optimisation intrinsics take stack for each operand. */
 INLINE __m512i scaled(__m512i sum, const place *at, uint32_t first, int16_t zero)
 {
-    const __m512i limit = sixteen(at, T3R_X86_LIMIT, first), multiplier = sixteen(at, T3R_X86_MULTIPLIER, first);
+    const __m512i limit = sixteen(at, T3R_SCALING_LIMIT, first),
+                  multiplier = sixteen(at, T3R_SCALING_MULTIPLIER, first);
     const __m512i held = _mm512_max_epi32(_mm512_min_epi32(sum, limit), (__m512i)(-(__v16si)limit));
-    const __v16si shifted = (__v16si)held << (__v16si)sixteen(at, T3R_X86_LEFT, first);
+    const __v16si shifted = (__v16si)held << (__v16si)sixteen(at, T3R_SCALING_LEFT, first);
     const __m512i even = _mm512_mul_epi32((__m512i)shifted, multiplier);
     const __m512i odd = _mm512_mul_epi32((__m512i)((__v8du)shifted >> 32), (__m512i)((__v8du)multiplier >> 32));
     const __m512i high = _mm512_mask_mov_epi32((__m512i)((__v8du)even >> 32), 0xaaaa, odd);
-    const __v16si half = (__v16si)sixteen(at, T3R_X86_HALF, first), right = (__v16si)sixteen(at, T3R_X86_RIGHT, first);
+    const __v16si half = (__v16si)sixteen(at, T3R_SCALING_HALF, first),
+                  right = (__v16si)sixteen(at, T3R_SCALING_RIGHT, first);
     return (__m512i)((((__v16si)high + half) >> right) + zero);
 }
 
@@ -127,7 +130,7 @@ INLINE void convolve(const t3r_convolution *layer, const t3r_block *block, const
             }
             if (half) {
                 const uint32_t first = at->first + vectors * OUTPUTS, left = layer->outputs - first;
-                const __m256i x = t3r_x86_scaled(s.eight[p], at->scaling, at->whole, first, layer->zero);
+                const __m256i x = t3r_packed_scaled(s.eight[p], at->scaling, at->whole, first, layer->zero);
                 write(_mm512_castsi256_si512(x), layer->output_bits, left < OUTPUTS / 2 ? left : OUTPUTS / 2, out,
                       pixel[p] * out_pitch + first);
             }
@@ -150,7 +153,7 @@ CONVOLVE(convolve_32, 2, false)
 T3R_VNNI void t3r_convolve_packed_vnni(const t3r_convolution *layer, const void *packed, const t3r_block *block,
                                        void *out, uint32_t out_pitch)
 {
-    const uint32_t whole = t3r_x86_whole(layer->outputs);
+    const uint32_t whole = t3r_packed_outputs(layer->outputs);
     place at = {packed, (const uint8_t *)packed + (size_t)whole * T3R_PACKED_SCALING_BYTES, whole, 0};
     for (; at.first + 32 <= whole; at.first += 32) {
         convolve_32(layer, block, &at, out, out_pitch);

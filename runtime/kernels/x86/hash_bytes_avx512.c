@@ -77,7 +77,7 @@ static inline T3R_AVX512 void find_low(const __m512i byte[PLANES], uint32_t befo
 {
     const __m512i none = _mm512_setzero_si512();
     __m512i x[PLANES], t[PLANES], carry_t = none, carry_u = none;
-    T3R_X86_UNROLL
+    T3R_LANES_UNROLL
     for (uint32_t k = 0; k < PLANES; k++) {
         const __m512i doubled = k == 0 ? none : x[k - 1], shifted = k < 4 ? none : t[k - 4];
         __m512i from_below = exclusive_or(doubled, carry_t, _mm512_xor_si512(shifted, carry_u));
@@ -99,7 +99,7 @@ static inline T3R_AVX512 void split(const uint8_t *bytes, planes *byte)
 {
     for (uint32_t j = 0; j < WORDS; j++) {
         __m512i left = _mm512_loadu_si512(bytes + j * WORD); /* each byte's highest bit is the next plane's */
-        T3R_X86_UNROLL
+        T3R_LANES_UNROLL
         for (uint32_t k = PLANES; k-- > 0;) {
             byte->word[k][j] = _mm512_movepi8_mask(left);
             left = _mm512_add_epi8(left, left);
@@ -110,7 +110,7 @@ static inline T3R_AVX512 void split(const uint8_t *bytes, planes *byte)
 static inline T3R_AVX512 __m512i joined(const planes *low, uint32_t j)
 {
     __m512i bytes = _mm512_setzero_si512();
-    T3R_X86_UNROLL
+    T3R_LANES_UNROLL
     for (uint32_t k = 0; k < PLANES; k++) {
         bytes = _mm512_mask_add_epi8(bytes, low->word[k][j], bytes, _mm512_set1_epi8((char)(1 << k)));
     }
@@ -129,7 +129,7 @@ static inline T3R_AVX512 __m512i add_word(__m512i sums, const uint8_t *bytes, __
     _mm512_storeu_si512(low, low_bytes);
     _mm512_storeu_si512(mixed, _mm512_xor_si512(low_bytes, _mm512_loadu_si512(bytes)));
     __m512i of_word = _mm512_setzero_si512();
-    T3R_X86_UNROLL
+    T3R_LANES_UNROLL
     for (uint32_t i = 0; i < WORD; i += GROUP) {
         const __m512i difference = _mm512_sub_epi64(widened(mixed + i), widened(low + i));
         of_word = _mm512_add_epi64(of_word, _mm512_mullo_epi64(difference, _mm512_loadu_si512(powers + i)));

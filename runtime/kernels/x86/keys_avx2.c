@@ -7,7 +7,7 @@
 
 #define WANTED_ROW t3r_wanted_row_avx2
 #define KEY_ROW t3r_key_row_avx2
-#include "keys_lanes.h"
+#include "kernels/lanes/keys_lanes.h"
 
 #else
 typedef int t3r_no_keys_avx2; /* a file may not be empty */

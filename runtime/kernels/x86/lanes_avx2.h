@@ -2,7 +2,7 @@
 #ifndef T3R_KERNELS_X86_LANES_AVX2_H
 #define T3R_KERNELS_X86_LANES_AVX2_H
 
-#include "intrinsics.h"
+#include "quads.h"
 #include "variants.h"
 
 #define LANES 8
@@ -14,10 +14,10 @@
 typedef __m256i lanes; /* of 32 bits */
 typedef __m256i_u lanes_there;
 
-#include "lanes_operations.h"
+#include "kernels/lanes/operations.h"
 
-#include "lanes_masks.h"
-#include "lanes_shifts.h"
+#include "kernels/lanes/masks.h"
+#include "kernels/lanes/shifts.h"
 
 static inline T3R_AVX2 lanes alternating(lanes even, lanes odd)
 {
@@ -25,18 +25,18 @@ static inline T3R_AVX2 lanes alternating(lanes even, lanes odd)
 }
 
 /* One of two vectors of 128 bits. */
-static inline T3R_AVX2 lanes joined(const __m128i x[LANES / 4])
+static inline T3R_AVX2 lanes joined(const quad x[LANES / 4])
 {
     return _mm256_inserti128_si256(_mm256_castsi128_si256(x[0]), x[1], 1);
 }
 
-static inline T3R_AVX2 __m128i part(lanes x, int i)
+static inline T3R_AVX2 quad part(lanes x, int i)
 {
     return i == 0 ? _mm256_castsi256_si128(x) : _mm256_extracti128_si256(x, 1);
 }
 
 /* The same 128 bits throughout. */
-static inline T3R_AVX2 lanes repeated(__m128i x)
+static inline T3R_AVX2 lanes repeated(quad x)
 {
     return _mm256_broadcastsi128_si256(x);
 }
@@ -60,7 +60,7 @@ static inline T3R_AVX2 lanes normal_of(lanes x, int first_step, lanes *by)
 }
 
 /* The first 32 bits in all lanes. */
-static inline T3R_AVX2 lanes first_of(__m128i x)
+static inline T3R_AVX2 lanes first_of(quad x)
 {
     return _mm256_broadcastd_epi32(x);
 }

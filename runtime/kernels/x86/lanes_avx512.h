@@ -2,7 +2,7 @@
 #ifndef T3R_KERNELS_X86_LANES_AVX512_H
 #define T3R_KERNELS_X86_LANES_AVX512_H
 
-#include "intrinsics.h"
+#include "quads.h"
 #include "variants.h"
 
 #define LANES 16
@@ -14,19 +14,19 @@
 typedef __m512i lanes; /* of 32 bits */
 typedef __m512i_u lanes_there;
 
-#include "lanes_operations.h"
+#include "kernels/lanes/operations.h"
 
-#include "lanes_shifts.h"
+#include "kernels/lanes/shifts.h"
 
 /* One of four vectors of 128 bits. */
-static inline T3R_AVX512 lanes joined(const __m128i x[LANES / 4])
+static inline T3R_AVX512 lanes joined(const quad x[LANES / 4])
 {
     lanes all = _mm512_inserti32x4(_mm512_castsi128_si512(x[0]), x[1], 1);
     all = _mm512_inserti32x4(all, x[2], 2);
     return _mm512_inserti32x4(all, x[3], 3);
 }
 
-static inline T3R_AVX512 __m128i part(lanes x, int i)
+static inline T3R_AVX512 quad part(lanes x, int i)
 {
     const __m256i half = i < 2 ? _mm512_castsi512_si256(x) : _mm512_extracti64x4_epi64(x, 1);
     return i % 2 == 0 ? _mm256_castsi256_si128(half) : _mm256_extracti128_si256(half, 1);

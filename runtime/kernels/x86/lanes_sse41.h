@@ -2,7 +2,7 @@
 #ifndef T3R_KERNELS_X86_LANES_SSE41_H
 #define T3R_KERNELS_X86_LANES_SSE41_H
 
-#include "intrinsics.h"
+#include "quads.h"
 #include "variants.h"
 
 #define LANES 4
@@ -14,28 +14,28 @@
 typedef __m128i lanes; /* of 32 bits */
 typedef __m128i_u lanes_there;
 
-#include "lanes_operations.h"
+#include "kernels/lanes/operations.h"
 
-#include "lanes_masks.h"
+#include "kernels/lanes/masks.h"
 
 static inline T3R_SSE41 lanes alternating(lanes even, lanes odd)
 {
     return _mm_blend_epi16(even, odd, 0xcc);
 }
 
-static inline T3R_SSE41 lanes joined(const __m128i x[LANES / 4])
+static inline T3R_SSE41 lanes joined(const quad x[LANES / 4])
 {
     return x[0];
 }
 
-static inline T3R_SSE41 __m128i part(lanes x, int i)
+static inline T3R_SSE41 quad part(lanes x, int i)
 {
     (void)i; /* 0 */
     return x;
 }
 
 /* The same 128 bits throughout. */
-static inline T3R_SSE41 lanes repeated(__m128i x)
+static inline T3R_SSE41 lanes repeated(quad x)
 {
     return x;
 }
@@ -95,7 +95,7 @@ static inline T3R_SSE41 lanes normal_of(lanes x, int first_step, lanes *by)
 }
 
 /* The first 32 bits in all lanes. */
-static inline T3R_SSE41 lanes first_of(__m128i x)
+static inline T3R_SSE41 lanes first_of(quad x)
 {
     return _mm_shuffle_epi32(x, 0);
 }

@@ -9,10 +9,10 @@
 #define BYTES 32
 #define MOST_VECTORS 4
 #define OF(instruction) _mm256_##instruction
-#include "path_lanes.h"
+#include "kernels/lanes/path_lanes.h"
 
-#include "census_lanes.h"
-#include "winner_lanes.h"
+#include "kernels/lanes/census_lanes.h"
+#include "kernels/lanes/winner_lanes.h"
 
 static inline TARGET bytes load(const uint8_t *from, uint32_t count)
 {

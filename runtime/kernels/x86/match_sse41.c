@@ -9,10 +9,10 @@
 #define BYTES 16
 #define MOST_VECTORS (T3R_PATH_MOST / BYTES)
 #define OF(instruction) _mm_##instruction
-#include "path_lanes.h"
+#include "kernels/lanes/path_lanes.h"
 
-#include "census_lanes.h"
-#include "winner_lanes.h"
+#include "kernels/lanes/census_lanes.h"
+#include "kernels/lanes/winner_lanes.h"
 
 /* Any count is a multiple of 16. */
 static inline TARGET bytes load(const uint8_t *from, uint32_t count)

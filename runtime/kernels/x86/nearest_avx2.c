@@ -7,7 +7,7 @@
 
 #define NEAREST_BEGIN t3r_nearest_begin_avx2
 #define NEAREST t3r_nearest_avx2
-#include "nearest_lanes.h"
+#include "kernels/lanes/nearest_lanes.h"
 
 #else
 typedef int t3r_no_nearest_avx2; /* a file may not be empty */

@@ -4,7 +4,7 @@
 #ifdef T3R_X86
 
 #include "intrinsics.h"
-#include "packed_centres.h"
+#include "kernels/lanes/packed_centres.h"
 
 #define LANES 16u
 #define POINTS 4u /* that share a centre's loads */

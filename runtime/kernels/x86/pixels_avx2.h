@@ -4,7 +4,7 @@
 
 #include "kernels/blend.h"
 #include "lanes_avx2.h"
-#include "tile_planes.h"
+#include "kernels/lanes/tile_planes.h"
 
 #define PIXELS 16
 #define PIXELS_USUAL T3R_TWO_ROWS

@@ -6,7 +6,7 @@
 #include "lanes_sse41.h"
 
 #define PLACE t3r_place_sse41
-#include "place_lanes.h"
+#include "kernels/lanes/place_lanes.h"
 
 #else
 typedef int t3r_no_place_sse41; /* a file may not be empty */

@@ -43,7 +43,7 @@ static inline T3R_AVX2 int any(four mask)
     return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
 }
 
-#include "points_lanes.h"
+#include "kernels/lanes/points_lanes.h"
 
 #else
 typedef int t3r_no_points_avx2; /* a file may not be empty */

@@ -42,7 +42,7 @@ static inline T3R_AVX512 int any(eight mask)
     return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
 }
 
-#include "points_lanes.h"
+#include "kernels/lanes/points_lanes.h"
 
 #else
 typedef int t3r_no_points_avx512; /* a file may not be empty */

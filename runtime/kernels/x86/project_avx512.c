@@ -6,7 +6,7 @@
 #include "lanes_avx512.h"
 
 #define PROJECT t3r_project_avx512
-#include "project_lanes.h"
+#include "kernels/lanes/project_lanes.h"
 
 #else
 typedef int t3r_no_project_avx512; /* a file may not be empty */

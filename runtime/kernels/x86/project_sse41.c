@@ -6,7 +6,7 @@
 #include "lanes_sse41.h"
 
 #define PROJECT t3r_project_sse41
-#include "project_lanes.h"
+#include "kernels/lanes/project_lanes.h"
 
 #else
 typedef int t3r_no_project_sse41; /* a file may not be empty */

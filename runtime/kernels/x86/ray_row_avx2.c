@@ -8,7 +8,7 @@
 #define TARGET T3R_AVX2
 #define LANES 8
 #define RAY_ROW t3r_ray_row_avx2
-#include "ray_lanes.h"
+#include "kernels/lanes/ray_lanes.h"
 
 static inline TARGET pairs multiply(ulanes a, ulanes b)
 {

@@ -8,7 +8,7 @@
 #define TARGET T3R_AVX512
 #define LANES 16
 #define RAY_ROW t3r_ray_row_avx512
-#include "ray_lanes.h"
+#include "kernels/lanes/ray_lanes.h"
 
 static inline TARGET pairs multiply(ulanes a, ulanes b)
 {

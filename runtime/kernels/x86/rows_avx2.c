@@ -26,7 +26,7 @@
 #include "kernels/convolve.c"
 #endif
 
-#include "rows.h"
+#include "kernels/lanes/rows.h"
 
 #if defined(__clang__)
 #pragma clang attribute pop

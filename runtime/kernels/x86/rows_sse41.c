@@ -25,7 +25,7 @@ LEAVE_OUT(subtract_row)
 LEAVE_OUT(cdf53_predict)
 LEAVE_OUT(texture_spread)
 
-#include "rows.h"
+#include "kernels/lanes/rows.h"
 
 #if defined(__clang__)
 #pragma clang attribute pop

@@ -8,7 +8,7 @@
 #define SCATTER t3r_scatter_avx2
 #define T3R_SCATTER T3R_AVX2
 #define SCATTER_ADD(sum, a, b) add(sum, OF_LANES(madd_epi16)(a, b))
-#include "scatter_pixels.h"
+#include "kernels/lanes/scatter_pixels.h"
 
 #else
 typedef int t3r_no_scatter_avx2; /* a file may not be empty */

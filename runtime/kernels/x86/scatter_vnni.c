@@ -8,7 +8,7 @@
 #define SCATTER t3r_scatter_vnni
 #define T3R_SCATTER T3R_VNNI
 #define SCATTER_ADD(sum, a, b) _mm256_dpwssd_epi32(sum, a, b)
-#include "scatter_pixels.h"
+#include "kernels/lanes/scatter_pixels.h"
 
 #else
 typedef int t3r_no_scatter_vnni; /* a file may not be empty */

@@ -6,7 +6,7 @@
 #include "lanes_avx2.h"
 
 #define SOLVE t3r_solve_avx2
-#include "solve_lanes.h"
+#include "kernels/lanes/solve_lanes.h"
 
 #else
 typedef int t3r_no_solve_avx2; /* a file may not be empty */

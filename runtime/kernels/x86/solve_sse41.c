@@ -6,7 +6,7 @@
 #include "lanes_sse41.h"
 
 #define SOLVE t3r_solve_sse41
-#include "solve_lanes.h"
+#include "kernels/lanes/solve_lanes.h"
 
 #else
 typedef int t3r_no_solve_sse41; /* a file may not be empty */

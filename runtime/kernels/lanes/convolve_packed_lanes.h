@@ -1,18 +1,18 @@
 /* A packed layer, LANES outputs a vector: a pair of activations, in all lanes, times a pair of weights of each. Comes
  * behind a header of lanes, in a file that names the functions: PACK_LAYER and CONVOLVE_PACKED. */
-#ifndef T3R_KERNELS_X86_CONVOLVE_PACKED_LANES_H
-#define T3R_KERNELS_X86_CONVOLVE_PACKED_LANES_H
+#ifndef T3R_KERNELS_LANES_CONVOLVE_PACKED_LANES_H
+#define T3R_KERNELS_LANES_CONVOLVE_PACKED_LANES_H
 
 #include "requantize_lanes.h"
 
-#define INLINE T3R_X86_INLINE T3R_LANES_TARGET
-#define EACH(i, count) T3R_X86_UNROLL for (uint32_t i = 0; i < (count); i++)
+#define INLINE T3R_LANES_INLINE T3R_LANES_TARGET
+#define EACH(i, count) T3R_LANES_UNROLL for (uint32_t i = 0; i < (count); i++)
 #define TAPS 2u
 #define MOST_SUMS 8u /* vectors */
 
 T3R_LANES_TARGET void PACK_LAYER(const t3r_convolution *layer, uint32_t rows, void *packed)
 {
-    t3r_x86_pack_layer(layer, rows, TAPS, 0, BY_FACTORS, packed);
+    t3r_pack_layer_with(layer, rows, TAPS, 0, BY_FACTORS, packed);
 }
 
 /* Where the outputs from `first` on lie in a packed layer. */
@@ -27,7 +27,7 @@ typedef int32_t ints __attribute__((vector_size(LANES * sizeof(int32_t))));
 /* Two activations in all lanes. */
 INLINE lanes two_at(const int16_t *x)
 {
-    return first_of(_mm_loadu_si32(x));
+    return first_of(load_quarter_quad(x));
 }
 
 /* The sums of `vectors` vectors of outputs at `pixels` pixels. A sum of two products is at most 2^15. */
@@ -38,7 +38,7 @@ INLINE void add_up(ints sum[MOST_SUMS], const t3r_block *block, const size_t *of
     const uint8_t *w = at->weights + (size_t)at->first * TAPS;
     EACH(s, vectors * pixels)
     {
-        sum[s] = (ints)t3r_x86_scaling_at(at->scaling, T3R_X86_BIAS, at->whole, at->first + s % vectors * LANES);
+        sum[s] = (ints)t3r_packed_scaling_at(at->scaling, T3R_SCALING_BIAS, at->whole, at->first + s % vectors * LANES);
     }
     for (uint32_t row = 0; row < block->rows; row++) {
         const int16_t *x = (const int16_t *)block->x + (size_t)row * block->pitch;
@@ -63,19 +63,19 @@ INLINE void add_up(ints sum[MOST_SUMS], const t3r_block *block, const size_t *of
 /* Writes the first `count` activations of x, held within 8 or 16 bits. */
 INLINE void write(lanes x, uint32_t output_bits, uint32_t count, void *out, size_t at)
 {
-    const __m128i held = _mm_packs_epi32(part(x, 0), part(x, LANES / 4 - 1));
+    const quad held = OF_QUAD(packs_epi32)(part(x, 0), part(x, LANES / 4 - 1));
     const uint32_t bytes = output_bits / 8;
-    __m128i left = output_bits == 8 ? _mm_packs_epi16(held, held) : held;
+    quad left = output_bits == 8 ? OF_QUAD(packs_epi16)(held, held) : held;
     uint8_t *to = (uint8_t *)out + at * bytes;
     if (count * bytes >= 16) {
-        _mm_storeu_si128((__m128i_u *)(void *)to, left);
+        store_quad(to, left);
     } else if (count * bytes == 8) {
-        _mm_storel_epi64((__m128i_u *)(void *)to, left);
+        store_half_quad(to, left);
     } else {
-        for (uint32_t i = 0; i < count * bytes / 4; i++, to += 4, left = _mm_srli_si128(left, 4)) {
-            _mm_storeu_si32(to, left);
+        for (uint32_t i = 0; i < count * bytes / 4; i++, to += 4, left = OF_QUAD(srli_si128)(left, 4)) {
+            store_quarter_quad(to, left);
         }
-        const uint32_t rest = (uint32_t)_mm_cvtsi128_si32(left);
+        const uint32_t rest = (uint32_t)OF_QUAD(cvtsi128_si32)(left);
         for (uint32_t i = 0; i < count * bytes % 4; i++) {
             to[i] = (uint8_t)(rest >> (8 * i));
         }
@@ -99,7 +99,7 @@ INLINE void convolve(const t3r_convolution *layer, const t3r_block *block, const
             EACH(v, vectors)
             {
                 const uint32_t first = at->first + v * LANES, left = layer->outputs - T3R_MIN(first, layer->outputs);
-                write(t3r_x86_scaled((lanes)sum[p * vectors + v], at->scaling, at->whole, first, layer->zero),
+                write(t3r_packed_scaled((lanes)sum[p * vectors + v], at->scaling, at->whole, first, layer->zero),
                       layer->output_bits, T3R_MIN(left, LANES), out, pixel[p] * out_pitch + first);
             }
         }
@@ -121,7 +121,7 @@ convolve_sixteen(const t3r_convolution *layer, const t3r_block *block, const pla
 T3R_LANES_TARGET void CONVOLVE_PACKED(const t3r_convolution *layer, const void *packed, const t3r_block *block,
                                       void *out, uint32_t out_pitch)
 {
-    const uint32_t whole = t3r_x86_whole(layer->outputs);
+    const uint32_t whole = t3r_packed_outputs(layer->outputs);
     place at = {packed, (const uint8_t *)packed + (size_t)whole * T3R_PACKED_SCALING_BYTES, whole, 0};
     for (; at.first + 16 <= whole; at.first += 16) {
         convolve_sixteen(layer, block, &at, out, out_pitch);

@@ -1,7 +1,7 @@
 /* Splats in a tile, LANES at a time. Those centred far from it, whose quadratic takes more bits, are left to plain C.
  * Comes behind a header of lanes, in a file that names the function: PLACE. */
-#ifndef T3R_KERNELS_X86_PLACE_LANES_H
-#define T3R_KERNELS_X86_PLACE_LANES_H
+#ifndef T3R_KERNELS_LANES_PLACE_LANES_H
+#define T3R_KERNELS_LANES_PLACE_LANES_H
 
 #include "core/fixed.h"
 #include "kernels/place.h"
@@ -17,7 +17,7 @@ static inline T3R_LANES_TARGET void take(const t3r_splat *splats, const uint32_t
 {
     const uint8_t *from[LANES];
     lanes word[10];
-    T3R_X86_UNROLL for (uint32_t i = 0; i < LANES; i++)
+    T3R_LANES_UNROLL for (uint32_t i = 0; i < LANES; i++)
     {
         from[i] = (const uint8_t *)&splats[list[i]];
     }
@@ -163,7 +163,7 @@ static T3R_LANES_TARGET uint32_t place_lanes(const t3r_splat *splats, const uint
 {
     uint8_t *to[LANES];
     fields e;
-    T3R_X86_UNROLL for (int i = 0; i < LANES; i++)
+    T3R_LANES_UNROLL for (int i = 0; i < LANES; i++)
     {
         to[i] = (uint8_t *)&placed[i];
     }

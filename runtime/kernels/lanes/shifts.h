@@ -1,6 +1,6 @@
 /* Shifts of each lane by its own count, where instructions have them: counts beyond the bits give 0, or the sign. */
-#ifndef T3R_KERNELS_X86_LANES_SHIFTS_H
-#define T3R_KERNELS_X86_LANES_SHIFTS_H
+#ifndef T3R_KERNELS_LANES_SHIFTS_H
+#define T3R_KERNELS_LANES_SHIFTS_H
 
 static inline T3R_LANES_TARGET lanes left_each(lanes x, lanes by)
 {

@@ -1,15 +1,11 @@
 /* Layers in the order of the packed kernels. */
-#include "variants.h"
-
-#ifdef T3R_X86
-
 #include "core/little_endian.h"
-#include "requantize.h"
+#include "packed_scaling.h"
 
 /* The scaling of outputs behind the last is zero but for the shift, and so are their sums. */
 static void pack_scaling(const t3r_convolution *layer, int32_t offset, bool factors, int32_t *scaling)
 {
-    const uint32_t whole = t3r_x86_whole(layer->outputs);
+    const uint32_t whole = t3r_packed_outputs(layer->outputs);
     for (uint32_t o = 0; o < whole; o++) {
         const bool is_output = o < layer->outputs;
         const int32_t shift = is_output ? (int8_t)layer->shift[o] : 0;
@@ -19,19 +15,19 @@ static void pack_scaling(const t3r_convolution *layer, int32_t offset, bool fact
             weights += (int8_t)layer->weights[(size_t)o * layer->taps + t];
         }
         const uint32_t bias = is_output ? (uint32_t)t3r_le_i32(layer->bias + (size_t)o * 4) : 0;
-        scaling[T3R_X86_BIAS * whole + o] = (int32_t)(bias - (uint32_t)(offset * weights));
-        scaling[T3R_X86_MULTIPLIER * whole + o] = is_output ? t3r_le_i32(layer->multiplier + (size_t)o * 4) : 0;
-        scaling[T3R_X86_LIMIT * whole + o] = left > 0 ? 1 << (18 - shift) : INT32_MAX;
-        scaling[T3R_X86_LEFT * whole + o] = factors ? 1 << left : left;
-        scaling[T3R_X86_HALF * whole + o] = 1 << (right - 1);
-        scaling[T3R_X86_RIGHT * whole + o] = factors ? 1 << (31 - right) : right;
+        scaling[T3R_SCALING_BIAS * whole + o] = (int32_t)(bias - (uint32_t)(offset * weights));
+        scaling[T3R_SCALING_MULTIPLIER * whole + o] = is_output ? t3r_le_i32(layer->multiplier + (size_t)o * 4) : 0;
+        scaling[T3R_SCALING_LIMIT * whole + o] = left > 0 ? 1 << (18 - shift) : INT32_MAX;
+        scaling[T3R_SCALING_LEFT * whole + o] = factors ? 1 << left : left;
+        scaling[T3R_SCALING_HALF * whole + o] = 1 << (right - 1);
+        scaling[T3R_SCALING_RIGHT * whole + o] = factors ? 1 << (31 - right) : right;
     }
 }
 
-void t3r_x86_pack_layer(const t3r_convolution *layer, uint32_t rows, uint32_t taps_a_group, int32_t offset,
-                        bool factors, void *packed)
+void t3r_pack_layer_with(const t3r_convolution *layer, uint32_t rows, uint32_t taps_a_group, int32_t offset,
+                         bool factors, void *packed)
 {
-    const uint32_t whole = t3r_x86_whole(layer->outputs), run = layer->taps / rows;
+    const uint32_t whole = t3r_packed_outputs(layer->outputs), run = layer->taps / rows;
     const uint32_t whole_run = (run + T3R_PACKED_TAPS - 1) / T3R_PACKED_TAPS * T3R_PACKED_TAPS;
     uint8_t *to = (uint8_t *)packed + (size_t)whole * T3R_PACKED_SCALING_BYTES;
     pack_scaling(layer, offset, factors, packed);
@@ -46,7 +42,3 @@ void t3r_x86_pack_layer(const t3r_convolution *layer, uint32_t rows, uint32_t ta
         }
     }
 }
-
-#else
-typedef int t3r_no_pack_layer; /* a file may not be empty */
-#endif

@@ -1,7 +1,7 @@
 /* What instruction sets without mask registers share: a mask has all bits of a lane, or none. Comes behind
  * lanes_operations.h. */
-#ifndef T3R_KERNELS_X86_LANES_MASKS_H
-#define T3R_KERNELS_X86_LANES_MASKS_H
+#ifndef T3R_KERNELS_LANES_MASKS_H
+#define T3R_KERNELS_LANES_MASKS_H
 
 /* Even lanes of one, odd ones of the other. */
 static inline T3R_LANES_TARGET lanes alternating(lanes even, lanes odd);
@@ -41,20 +41,20 @@ static inline T3R_LANES_TARGET lanes high_of(wide x)
 }
 
 /* Two neighbours in the table. */
-static inline T3R_LANES_TARGET __m128i pair_at(const uint32_t *table, const uint32_t *index)
+static inline T3R_LANES_TARGET quad pair_at(const uint32_t *table, const uint32_t *index)
 {
-    return _mm_loadl_epi64((const __m128i *)(const void *)&table[*index]);
+    return load_half_quad(&table[*index]);
 }
 
 /* A vector of parts of 128 bits. */
-static inline T3R_LANES_TARGET lanes joined(const __m128i x[LANES / 4]);
+static inline T3R_LANES_TARGET lanes joined(const quad x[LANES / 4]);
 
 /* Pairs of every other entry. */
 static inline T3R_LANES_TARGET lanes pairs_at(const uint32_t *table, const uint32_t *index)
 {
-    __m128i x[LANES / 4];
+    quad x[LANES / 4];
     for (int i = 0; i < LANES / 4; i++) {
-        x[i] = _mm_unpacklo_epi64(pair_at(table, index + 4 * i), pair_at(table, index + 4 * i + 2));
+        x[i] = OF_QUAD(unpacklo_epi64)(pair_at(table, index + 4 * i), pair_at(table, index + 4 * i + 2));
     }
     return joined(x);
 }

@@ -1,11 +1,11 @@
-/* What nearest_begin of x86 leaves in the place of the neighbours: features by pairs of dimensions, as pmaddwd takes
+/* What nearest_begin leaves in the place of the neighbours: features by pairs of dimensions, as pmaddwd takes
  * them, and half norms; up to a multiple of sixteen, centres that are nearest to nothing. */
-#ifndef T3R_KERNELS_X86_PACKED_CENTRES_H
-#define T3R_KERNELS_X86_PACKED_CENTRES_H
+#ifndef T3R_KERNELS_LANES_PACKED_CENTRES_H
+#define T3R_KERNELS_LANES_PACKED_CENTRES_H
 
 #include <stddef.h>
 
-#include "variants.h"
+#include "kernels/nearest.h"
 
 #define T3R_PAIRS (T3R_DIMENSIONS / 2)
 

@@ -1,12 +1,12 @@
 /* Pixels of a tile by one number, row by row. */
-#ifndef T3R_KERNELS_X86_TILE_PLANES_H
-#define T3R_KERNELS_X86_TILE_PLANES_H
+#ifndef T3R_KERNELS_LANES_TILE_PLANES_H
+#define T3R_KERNELS_LANES_TILE_PLANES_H
 
-#include "intrinsics.h"
+#include "inline.h"
 #include "kernels/blend.h"
 
 /* Where pixel `place` of a plane lies, and those after it. */
-T3R_X86_INLINE void *plane_at(void *plane, uint32_t place)
+T3R_LANES_INLINE void *plane_at(void *plane, uint32_t place)
 {
     return (uint16_t *)plane + place;
 }

@@ -1,6 +1,6 @@
 /* Logarithms by the table of core/fixed_tables.h. Comes behind a header of lanes. */
-#ifndef T3R_KERNELS_X86_LOGARITHM_LANES_H
-#define T3R_KERNELS_X86_LOGARITHM_LANES_H
+#ifndef T3R_KERNELS_LANES_LOGARITHM_LANES_H
+#define T3R_KERNELS_LANES_LOGARITHM_LANES_H
 
 #include "core/fixed_tables.h"
 

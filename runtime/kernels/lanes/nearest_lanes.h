@@ -1,7 +1,7 @@
 /* The nearest centre by looking at all of them, LANES at a time. Comes behind a header of lanes, in a file that names
  * the functions: NEAREST_BEGIN and NEAREST. */
-#ifndef T3R_KERNELS_X86_NEAREST_LANES_H
-#define T3R_KERNELS_X86_NEAREST_LANES_H
+#ifndef T3R_KERNELS_LANES_NEAREST_LANES_H
+#define T3R_KERNELS_LANES_NEAREST_LANES_H
 
 #include "packed_centres.h"
 
@@ -72,12 +72,11 @@ static inline T3R_LANES_TARGET void look(search *s, const lanes pair[T3R_PAIRS],
 /* The least number of a vector. */
 static inline T3R_LANES_TARGET int32_t least_of(lanes x)
 {
-    __m128i least = part(x, 0);
+    quad least = part(x, 0);
     for (int i = 1; i < LANES / 4; i++) {
-        least = _mm_min_epi32(least, part(x, i));
+        least = OF_QUAD(min_epi32)(least, part(x, i));
     }
-    least = _mm_min_epi32(least, _mm_shuffle_epi32(least, 0x4e));
-    return _mm_cvtsi128_si32(_mm_min_epi32(least, _mm_shuffle_epi32(least, 0xb1)));
+    return least_of_quad(least);
 }
 
 /* The least index of the least score. */

@@ -1,8 +1,8 @@
 /* Scattering, PIXELS at a time: two rows of eight columns or a row of the tile, or eight columns of a row. Sums are
  * modulo 2^32, so that lanes do not show. Comes behind a header of pixels, in a file that names the function (SCATTER),
  * its target (T3R_SCATTER) and how products of pairs are added (SCATTER_ADD). */
-#ifndef T3R_KERNELS_X86_SCATTER_PIXELS_H
-#define T3R_KERNELS_X86_SCATTER_PIXELS_H
+#ifndef T3R_KERNELS_LANES_SCATTER_PIXELS_H
+#define T3R_KERNELS_LANES_SCATTER_PIXELS_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,13 +29,13 @@ static inline T3R_SCATTER lanes size_bits(lanes x)
 }
 
 /* The sums of both halves' lanes. */
-static inline T3R_SCATTER __m128i folded(lanes x)
+static inline T3R_SCATTER quad folded(lanes x)
 {
-    return LANES == 4 ? part(x, 0) : _mm_add_epi32(part(x, 0), part(x, 1));
+    return LANES == 4 ? part(x, 0) : OF_QUAD(add_epi32)(part(x, 0), part(x, 1));
 }
 
 /* The sums of the lanes of four vectors. */
-static inline T3R_SCATTER __m128i sums_of_four(lanes x0, lanes x1, lanes x2, lanes x3)
+static inline T3R_SCATTER quad sums_of_four(lanes x0, lanes x1, lanes x2, lanes x3)
 {
     const lanes a = add(OF_LANES(unpacklo_epi32)(x0, x1), OF_LANES(unpackhi_epi32)(x0, x1));
     const lanes b = add(OF_LANES(unpacklo_epi32)(x2, x3), OF_LANES(unpackhi_epi32)(x2, x3));
@@ -46,7 +46,7 @@ static inline T3R_SCATTER __m128i sums_of_four(lanes x0, lanes x1, lanes x2, lan
 typedef struct off_job {
     t3r_wanted *tile;
     lanes colour[3];
-    __m128i scale, less;
+    quad scale, less;
     lanes squares, products, squares_sum, products_sum; /* as terms_of() in scatter.c has them */
     lanes lacking[3], weight;
 } off_job;
@@ -58,9 +58,9 @@ typedef struct taken_pixels {
 
 /* Takes a vector's pixels off, of which these are the rows of the low and the high half; fills `out` unless it is NULL.
  */
-T3R_X86_INLINE T3R_SCATTER void take_off(const off_job *job, const t3r_blended_row *low_row,
-                                         const t3r_blended_row *high_row, uint32_t place, shape which,
-                                         taken_pixels *out)
+T3R_LANES_INLINE T3R_SCATTER void take_off(const off_job *job, const t3r_blended_row *low_row,
+                                           const t3r_blended_row *high_row, uint32_t place, shape which,
+                                           taken_pixels *out)
 {
     lanes weights, alpha;
     load_kept(low_row, high_row, which, &weights, &alpha);
@@ -81,8 +81,8 @@ T3R_X86_INLINE T3R_SCATTER void take_off(const off_job *job, const t3r_blended_r
 }
 
 /* Half of them: squares and products of four columns of each part. */
-T3R_X86_INLINE T3R_SCATTER void note_half(off_job *job, lanes two_moves, lanes last_move, lanes two_lacks,
-                                          lanes last_lack, lanes *square_out, lanes *product_out)
+T3R_LANES_INLINE T3R_SCATTER void note_half(off_job *job, lanes two_moves, lanes last_move, lanes two_lacks,
+                                            lanes last_lack, lanes *square_out, lanes *product_out)
 {
     lanes square = OF_LANES(madd_epi16)(two_moves, two_moves);
     lanes product = OF_LANES(madd_epi16)(two_moves, two_lacks);
@@ -97,7 +97,7 @@ T3R_X86_INLINE T3R_SCATTER void note_half(off_job *job, lanes two_moves, lanes l
     job->products_sum = add(job->products_sum, OF_LANES(srli_epi32)(size, 8));
 }
 
-T3R_X86_INLINE T3R_SCATTER void note_terms(off_job *job, const taken_pixels *x, step_terms *terms)
+T3R_LANES_INLINE T3R_SCATTER void note_terms(off_job *job, const taken_pixels *x, step_terms *terms)
 {
     const lanes zero = all(0), share = OF_LANES(sra_epi16)(x->w, job->less);
     const lanes *moves = x->moves, *lacks = x->lacks;
@@ -114,8 +114,8 @@ T3R_X86_INLINE T3R_SCATTER void note_terms(off_job *job, const taken_pixels *x, 
 }
 
 /* Both; without `terms` it is taken off alone. */
-T3R_X86_INLINE T3R_SCATTER void step(off_job *job, const t3r_blended_row *low_row, const t3r_blended_row *high_row,
-                                     uint32_t place, shape which, step_terms *terms)
+T3R_LANES_INLINE T3R_SCATTER void step(off_job *job, const t3r_blended_row *low_row, const t3r_blended_row *high_row,
+                                       uint32_t place, shape which, step_terms *terms)
 {
     taken_pixels x;
     take_off(job, low_row, high_row, place, which, terms == NULL ? NULL : &x);
@@ -127,12 +127,12 @@ T3R_X86_INLINE T3R_SCATTER void step(off_job *job, const t3r_blended_row *low_ro
 /* A rounding right shift: squares are below 3 x 2^30, products' sizes below 3 x 2^27, so that halves fit. */
 typedef struct rounding {
     lanes half;
-    __m128i shift;
+    quad shift;
 } rounding;
 
 static inline T3R_SCATTER rounding rounding_of(uint32_t shift)
 {
-    return (rounding){all((int32_t)((1u << shift) >> 1)), _mm_cvtsi32_si128((int)shift)};
+    return (rounding){all((int32_t)((1u << shift) >> 1)), OF_QUAD(cvtsi32_si128)((int)shift)};
 }
 
 static inline T3R_SCATTER lanes packed_squares(const lanes square[2], const rounding *by)
@@ -153,22 +153,22 @@ typedef struct places {
 } places;
 
 /* Modulo 2^16. */
-static inline T3R_SCATTER __m128i all_16(int32_t x)
+static inline T3R_SCATTER quad all_16(int32_t x)
 {
-    return _mm_set1_epi16((int16_t)(uint16_t)x);
+    return OF_QUAD(set1_epi16)((int16_t)(uint16_t)x);
 }
 
 /* From the group on. */
 static inline T3R_SCATTER places places_of(const t3r_scatter_splat *splat, uint32_t group)
 {
     const bool whole = PIXELS == T3R_TILE_SIDE && splat->span->groups == 2;
-    const lanes column = repeated(_mm_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7));
+    const lanes column = repeated(OF_QUAD(setr_epi16)(0, 1, 2, 3, 4, 5, 6, 7));
     places p;
     for (int k = 0; k < 2; k++) {
         const int32_t right = splat->right_q13[k], down = splat->down_q13[k];
         const int32_t first = splat->origin_q13[k] + (int32_t)group * T3R_LANES * right;
         /* the high half is beside or below the low one */
-        const __m128i halves[2] = {all_16(first), all_16(first + (whole ? T3R_LANES * right : down))};
+        const quad halves[2] = {all_16(first), all_16(first + (whole ? T3R_LANES * right : down))};
         p.at[k] = OF_LANES(add_epi16)(joined(halves), OF_LANES(mullo_epi16)(column, repeated(all_16(right))));
         p.down[k] = repeated(all_16(whole ? down : PIXELS / T3R_LANES * down));
     }
@@ -208,8 +208,8 @@ typedef struct moments {
 } moments;
 
 /* Adds the sums that are asked for, which is known where this is inlined. */
-T3R_X86_INLINE T3R_SCATTER void sum_moments(places at, const step_terms *terms, uint32_t steps, rounding square_by,
-                                            rounding product_by, bool low, bool high, moments *to)
+T3R_LANES_INLINE T3R_SCATTER void sum_moments(places at, const step_terms *terms, uint32_t steps, rounding square_by,
+                                              rounding product_by, bool low, bool high, moments *to)
 {
     moments m = *to; /* in registers */
     for (uint32_t i = 0; i < steps; i++) {
@@ -240,8 +240,8 @@ static inline T3R_SCATTER void add_scaled(lanes x, lanes right, lanes most, int3
 
 /* Takes the splat off from the group on, and notes the terms of every step unless `terms` is NULL; returns how many
  * there are. */
-T3R_X86_INLINE T3R_SCATTER uint32_t collect_terms(off_job *job, const t3r_scatter_splat *splat, uint32_t group,
-                                                  step_terms *terms)
+T3R_LANES_INLINE T3R_SCATTER uint32_t collect_terms(off_job *job, const t3r_scatter_splat *splat, uint32_t group,
+                                                    step_terms *terms)
 {
     enum { ROWS = PIXELS / T3R_LANES };
     const t3r_tile_splat *span = splat->span;
@@ -275,36 +275,37 @@ _Static_assert(offsetof(t3r_refine_sums, gradient) == 4 * sizeof(int32_t) &&
                "sums lie one behind the other");
 
 /* fine: what is lacking, and the weight. */
-static inline T3R_SCATTER void add_sums(__m128i fine, const moments *m, const t3r_sum_shifts *by, int32_t most,
+static inline T3R_SCATTER void add_sums(quad fine, const moments *m, const t3r_sum_shifts *by, int32_t most,
                                         t3r_refine_sums *to)
 {
     enum { X = T3R_X_FRACTION, X2 = T3R_X2_FRACTION, X3 = T3R_X3_FRACTION, X4 = T3R_X4_FRACTION, SUMS = 24 };
     static const int32_t fraction[SUMS] = {0, 0,  0,  0,  0,  X,  X,  X2, X2, X2, 0,  X,
                                            X, X2, X2, X2, X3, X3, X3, X3, X4, X4, X4, X4};
     const lanes *g = m->gradient, *c = m->curvature;
-    const __m128i gradient = _mm_set1_epi32(by->gradient), curvature = _mm_set1_epi32(by->curvature);
-    const __m128i held = _mm_set1_epi32(most);
-    const __m128i sums[SUMS / 4] = {fine,
-                                    sums_of_four(g[0], g[1], g[2], g[3]),
-                                    sums_of_four(g[4], g[5], c[0], c[1]),
-                                    sums_of_four(c[2], c[3], c[4], c[5]),
-                                    sums_of_four(c[6], c[7], c[8], c[9]),
-                                    sums_of_four(c[10], c[11], c[12], c[13])};
-    const __m128i right[SUMS / 4] = {_mm_setr_epi32(by->colour, by->colour, by->colour, by->weight),
-                                     gradient,
-                                     _mm_unpacklo_epi64(gradient, curvature),
-                                     curvature,
-                                     curvature,
-                                     curvature};
-    const __m128i bound[SUMS / 4] = {_mm_set1_epi32(INT32_MAX), held, held, held, held, held};
+    const quad gradient = OF_QUAD(set1_epi32)(by->gradient), curvature = OF_QUAD(set1_epi32)(by->curvature);
+    const quad held = OF_QUAD(set1_epi32)(most);
+    const quad sums[SUMS / 4] = {fine,
+                                 sums_of_four(g[0], g[1], g[2], g[3]),
+                                 sums_of_four(g[4], g[5], c[0], c[1]),
+                                 sums_of_four(c[2], c[3], c[4], c[5]),
+                                 sums_of_four(c[6], c[7], c[8], c[9]),
+                                 sums_of_four(c[10], c[11], c[12], c[13])};
+    const quad right[SUMS / 4] = {OF_QUAD(setr_epi32)(by->colour, by->colour, by->colour, by->weight),
+                                  gradient,
+                                  OF_QUAD(unpacklo_epi64)(gradient, curvature),
+                                  curvature,
+                                  curvature,
+                                  curvature};
+    const quad bound[SUMS / 4] = {OF_QUAD(set1_epi32)(INT32_MAX), held, held, held, held, held};
     int32_t *first = (int32_t *)(void *)to;
-    T3R_X86_UNROLL for (int i = 0; i < SUMS; i += LANES)
+    T3R_LANES_UNROLL for (int i = 0; i < SUMS; i += LANES)
     {
         add_scaled(joined(sums + i / 4), add(joined(right + i / 4), load(fraction + i)), joined(bound + i / 4),
                    first + i);
     }
     const lanes zero = all(0);
-    const int32_t last = t3r_scale32(_mm_cvtsi128_si32(sums_of_four(c[14], zero, zero, zero)), -(by->curvature + X4));
+    const int32_t last =
+        t3r_scale32(OF_QUAD(cvtsi128_si32)(sums_of_four(c[14], zero, zero, zero)), -(by->curvature + X4));
     to->curvature[T3R_M_Y4] += t3r_clamp32(last, -most, most);
 }
 
@@ -320,27 +321,27 @@ static inline T3R_SCATTER term_shifts shifts_of(const off_job *job, uint32_t row
                         OF_LANES(unpackhi_epi32)(job->squares, job->products));
     lanes sums = add(OF_LANES(unpacklo_epi32)(job->squares_sum, job->products_sum),
                      OF_LANES(unpackhi_epi32)(job->squares_sum, job->products_sum));
-    const __m128i bit = _mm_or_si128(part(bits, 0), part(bits, LANES / 4 - 1)), sum = folded(sums);
-    const uint64_t all_bits = (uint64_t)_mm_cvtsi128_si64(_mm_or_si128(bit, _mm_srli_si128(bit, 8)));
-    const uint64_t size = (uint64_t)_mm_cvtsi128_si64(_mm_add_epi32(sum, _mm_srli_si128(sum, 8)));
+    const quad bit = OF_QUAD(or_si128)(part(bits, 0), part(bits, LANES / 4 - 1)), sum = folded(sums);
+    const uint64_t all_bits = (uint64_t)OF_QUAD(cvtsi128_si64)(OF_QUAD(or_si128)(bit, OF_QUAD(srli_si128)(bit, 8)));
+    const uint64_t size = (uint64_t)OF_QUAD(cvtsi128_si64)(OF_QUAD(add_epi32)(sum, OF_QUAD(srli_si128)(sum, 8)));
     return (term_shifts){t3r_term_shift((uint32_t)all_bits, (uint32_t)size, rows),
                          t3r_term_shift((uint32_t)(all_bits >> 32), (uint32_t)(size >> 32), rows)};
 }
 
 /* What the steps leave beside their terms. */
 typedef struct taken {
-    __m128i fine; /* what is lacking, and the weight */
+    quad fine; /* what is lacking, and the weight */
     term_shifts shift;
     uint32_t steps;
 } taken;
 
-T3R_X86_INLINE T3R_SCATTER taken take_splat_off(t3r_wanted *restrict tile, const t3r_scatter_splat *splat,
-                                                uint32_t less, step_terms *terms)
+T3R_LANES_INLINE T3R_SCATTER taken take_splat_off(t3r_wanted *restrict tile, const t3r_scatter_splat *splat,
+                                                  uint32_t less, step_terms *terms)
 {
     off_job job;
     job.tile = tile;
-    job.scale = _mm_cvtsi32_si128((int)splat->scale);
-    job.less = _mm_cvtsi32_si128((int)less);
+    job.scale = OF_QUAD(cvtsi32_si128)((int)splat->scale);
+    job.less = OF_QUAD(cvtsi32_si128)((int)less);
     job.squares = job.products = job.squares_sum = job.products_sum = job.weight = all(0);
     for (int c = 0; c < 3; c++) {
         job.colour[c] = OF_LANES(set1_epi16)((int16_t)splat->span->colour_q7[c]);
@@ -357,8 +358,8 @@ T3R_X86_INLINE T3R_SCATTER taken take_splat_off(t3r_wanted *restrict tile, const
     return t;
 }
 
-T3R_X86_INLINE T3R_SCATTER void add_terms(const t3r_scatter_splat *splat, const step_terms *terms, const taken *t,
-                                          uint32_t less, t3r_refine_sums *to)
+T3R_LANES_INLINE T3R_SCATTER void add_terms(const t3r_scatter_splat *splat, const step_terms *terms, const taken *t,
+                                            uint32_t less, t3r_refine_sums *to)
 {
     const rounding square_by = rounding_of(t->shift.square), product_by = rounding_of(t->shift.product);
     const uint32_t passes = passes_of(splat), steps = t->steps / passes;

@@ -1,6 +1,6 @@
 /* What the headers of lanes share: they name the type, the target and how its instructions begin. */
-#ifndef T3R_KERNELS_X86_LANES_OPERATIONS_H
-#define T3R_KERNELS_X86_LANES_OPERATIONS_H
+#ifndef T3R_KERNELS_LANES_OPERATIONS_H
+#define T3R_KERNELS_LANES_OPERATIONS_H
 
 /* 64 bits of each lane: of lanes 0, 2, 4... and of 1, 3, 5... */
 typedef struct wide {

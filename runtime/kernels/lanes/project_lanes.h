@@ -1,8 +1,8 @@
 /* Projection of LANES Gaussians at a time: project.c step by step, with its bounds. Where a number of project.c has 64
  * bits and that of a usual Gaussian 32, this is the usual one's; the others are marked, and plain C projects them.
  * Comes behind a header of lanes, in a file that names the function: PROJECT. */
-#ifndef T3R_KERNELS_X86_PROJECT_LANES_H
-#define T3R_KERNELS_X86_PROJECT_LANES_H
+#ifndef T3R_KERNELS_LANES_PROJECT_LANES_H
+#define T3R_KERNELS_LANES_PROJECT_LANES_H
 
 #include "kernels/project_parts.h"
 #include "logarithm_lanes.h"
@@ -327,7 +327,7 @@ static __attribute__((noinline)) T3R_LANES_TARGET uint32_t project_batch(const t
     const uint8_t *from[LANES];
     uint8_t *to[LANES];
     lanes in[10], out[10];
-    T3R_X86_UNROLL for (int i = 0; i < LANES; i++)
+    T3R_LANES_UNROLL for (int i = 0; i < LANES; i++)
     {
         from[i] = (const uint8_t *)&gaussians[i];
         to[i] = (uint8_t *)&splats[i];

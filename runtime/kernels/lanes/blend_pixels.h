@@ -1,7 +1,7 @@
 /* Blending, PIXELS at a time: two rows of eight columns or a row of the tile, or eight columns of a row. Comes behind a
  * header of pixels, in a file that names the functions: BLEND and BLEND_KEEP. */
-#ifndef T3R_KERNELS_X86_BLEND_PIXELS_H
-#define T3R_KERNELS_X86_BLEND_PIXELS_H
+#ifndef T3R_KERNELS_LANES_BLEND_PIXELS_H
+#define T3R_KERNELS_LANES_BLEND_PIXELS_H
 
 #include "core/memory.h"
 #include "kernels/alpha.h"
@@ -32,7 +32,7 @@ static inline T3R_LANES_TARGET lanes at_least_16(lanes a, lanes b)
 /* A number for each part of 128 bits. */
 static inline T3R_LANES_TARGET lanes each_half(int32_t low, int32_t high)
 {
-    const __m128i both_of[2] = {_mm_set1_epi32(low), _mm_set1_epi32(high)};
+    const quad both_of[2] = {OF_QUAD(set1_epi32)(low), OF_QUAD(set1_epi32)(high)};
     return joined(both_of);
 }
 
@@ -66,7 +66,7 @@ static inline T3R_LANES_TARGET quadratic quadratic_of(const t3r_tile_splat *s, u
         each_half(every * (gy[0] + (2 * row[0] + every) * s->c), every * (gy[1] + (2 * row[1] + every) * s->c));
     quadratic out = {.bend = all(2 * every * every * s->c)};
     for (int k = 0; k < 2; k++) {
-        const lanes i = add(repeated(_mm_setr_epi32(0, 1, 2, 3)), all(4 * k));
+        const lanes i = add(repeated(OF_QUAD(setr_epi32)(0, 1, 2, 3)), all(4 * k));
         const lanes across = multiply(i, add(slope, multiply(i, a)));
         out.left[k] = subtract(at, across);
         out.step[k] = add(down, multiply(i, b));
@@ -99,7 +99,7 @@ typedef struct blend_job {
     t3r_blended_row *rows, *high_rows; /* of both halves, or NULL; known where this is inlined */
 } blend_job;
 
-T3R_X86_INLINE T3R_LANES_TARGET void blend_step(blend_job *job, const quadratic *q, uint32_t place, shape which)
+T3R_LANES_INLINE T3R_LANES_TARGET void blend_step(blend_job *job, const quadratic *q, uint32_t place, shape which)
 {
     uint16_t *transmittance = plane_at(job->tile->transmittance_q16, place);
     const lanes t = load_pixels(transmittance, which);
@@ -125,7 +125,7 @@ T3R_X86_INLINE T3R_LANES_TARGET void blend_step(blend_job *job, const quadratic 
 }
 
 /* One group, as many of its rows at a time as a vector takes. */
-T3R_X86_INLINE T3R_LANES_TARGET void blend_group(blend_job *job, const t3r_tile_splat *splat, uint32_t group)
+T3R_LANES_INLINE T3R_LANES_TARGET void blend_group(blend_job *job, const t3r_tile_splat *splat, uint32_t group)
 {
     enum { ROWS = PIXELS / T3R_LANES };
     quadratic q = quadratic_of(splat, group, group, 1, ROWS);
@@ -140,7 +140,7 @@ T3R_X86_INLINE T3R_LANES_TARGET void blend_group(blend_job *job, const t3r_tile_
 }
 
 /* Both groups, a whole row of the tile at a time. */
-T3R_X86_INLINE T3R_LANES_TARGET void blend_rows(blend_job *job, const t3r_tile_splat *splat)
+T3R_LANES_INLINE T3R_LANES_TARGET void blend_rows(blend_job *job, const t3r_tile_splat *splat)
 {
     quadratic q = quadratic_of(splat, 0, 1, 0, 1);
     for (uint32_t row = splat->first; row <= splat->last; row++) {
@@ -162,10 +162,10 @@ static inline T3R_LANES_TARGET blend_job begun(t3r_tile *tile, const t3r_tile_sp
 /* Of all pixels. */
 static inline T3R_LANES_TARGET uint16_t all_bits(lanes x)
 {
-    __m128i bits = _mm_or_si128(part(x, 0), part(x, LANES / 4 - 1));
-    bits = _mm_or_si128(bits, _mm_srli_si128(bits, 8));
-    bits = _mm_or_si128(bits, _mm_srli_si128(bits, 4));
-    return (uint16_t)((uint32_t)_mm_cvtsi128_si32(bits) | (uint32_t)_mm_cvtsi128_si32(bits) >> 16);
+    quad bits = OF_QUAD(or_si128)(part(x, 0), part(x, LANES / 4 - 1));
+    bits = OF_QUAD(or_si128)(bits, OF_QUAD(srli_si128)(bits, 8));
+    bits = OF_QUAD(or_si128)(bits, OF_QUAD(srli_si128)(bits, 4));
+    return (uint16_t)((uint32_t)OF_QUAD(cvtsi128_si32)(bits) | (uint32_t)OF_QUAD(cvtsi128_si32)(bits) >> 16);
 }
 
 T3R_LANES_TARGET void BLEND(t3r_tile *tile, const t3r_tile_splat *splat)

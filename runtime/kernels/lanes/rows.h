@@ -1,7 +1,7 @@
 /* Plain C's loops over rows once more: the compiler vectorizes them as well as a hand would. A file that compiles for
  * an instruction set includes this and says what they are called there: ROW(name). */
-#ifndef T3R_KERNELS_X86_ROWS_H
-#define T3R_KERNELS_X86_ROWS_H
+#ifndef T3R_KERNELS_LANES_ROWS_H
+#define T3R_KERNELS_LANES_ROWS_H
 
 #define t3r_packed_row_c ROW(packed_row)
 #define t3r_nv12_row_c ROW(nv12_row)

@@ -1,7 +1,7 @@
 /* Corrections, LANES Gaussians at a time: solve.c step by step, a Gaussian a lane of 32 bits. Comes behind a header of
  * lanes, in a file that names the function: SOLVE. */
-#ifndef T3R_KERNELS_X86_SOLVE_LANES_H
-#define T3R_KERNELS_X86_SOLVE_LANES_H
+#ifndef T3R_KERNELS_LANES_SOLVE_LANES_H
+#define T3R_KERNELS_LANES_SOLVE_LANES_H
 
 #include "core/fixed.h"
 #include "kernels/solve_parts.h"
@@ -59,7 +59,7 @@ static inline T3R_LANES_TARGET ints scaled(ints x, ints up)
 /* t3r_msb32(), and 0 of 0 */
 static inline T3R_LANES_TARGET ints highest_bit(ints x)
 {
-    const __m128i of_nibble = _mm_setr_epi8(0, 0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3);
+    const quad of_nibble = OF_QUAD(setr_epi8)(0, 0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3);
     ints bit = {0};
     for (int32_t by = 16; by >= 4; by /= 2) {
         const ints high = (ints)((uints)x >> by), some = high > 0;

@@ -1,7 +1,7 @@
 /* Keys, LANES at a time: keys.c step by step. Comes behind a header of lanes, in a file that names the functions:
  * WANTED_ROW and KEY_ROW. */
-#ifndef T3R_KERNELS_X86_KEYS_LANES_H
-#define T3R_KERNELS_X86_KEYS_LANES_H
+#ifndef T3R_KERNELS_LANES_KEYS_LANES_H
+#define T3R_KERNELS_LANES_KEYS_LANES_H
 
 #include "kernels/keys.h"
 #include "logarithm_lanes.h"

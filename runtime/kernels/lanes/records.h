@@ -1,6 +1,6 @@
 /* Words of LANES records, a vector a word, read and written. Comes behind a header of lanes. */
-#ifndef T3R_KERNELS_X86_RECORDS_H
-#define T3R_KERNELS_X86_RECORDS_H
+#ifndef T3R_KERNELS_LANES_RECORDS_H
+#define T3R_KERNELS_LANES_RECORDS_H
 
 #include <stddef.h>
 
@@ -18,12 +18,12 @@ static inline T3R_LANES_TARGET void transpose(lanes v[4])
 /* Words 0..3 at from[0], from[1]... */
 static inline T3R_LANES_TARGET void read_four(const uint8_t *const from[LANES], size_t at, lanes word[4])
 {
-    T3R_X86_UNROLL for (int i = 0; i < 4; i++)
+    T3R_LANES_UNROLL for (int i = 0; i < 4; i++)
     {
-        __m128i x[LANES / 4];
-        T3R_X86_UNROLL for (int k = 0; k < LANES / 4; k++)
+        quad x[LANES / 4];
+        T3R_LANES_UNROLL for (int k = 0; k < LANES / 4; k++)
         {
-            x[k] = _mm_loadu_si128((const __m128i_u *)(const void *)(from[i + 4 * k] + at));
+            x[k] = load_quad(from[i + 4 * k] + at);
         }
         word[i] = joined(x);
     }
@@ -33,12 +33,12 @@ static inline T3R_LANES_TARGET void read_four(const uint8_t *const from[LANES], 
 static inline T3R_LANES_TARGET void read_two(const uint8_t *const from[LANES], size_t at, lanes word[2])
 {
     lanes two[4];
-    T3R_X86_UNROLL for (int i = 0; i < 4; i++)
+    T3R_LANES_UNROLL for (int i = 0; i < 4; i++)
     {
-        __m128i x[LANES / 4];
-        T3R_X86_UNROLL for (int k = 0; k < LANES / 4; k++)
+        quad x[LANES / 4];
+        T3R_LANES_UNROLL for (int k = 0; k < LANES / 4; k++)
         {
-            x[k] = _mm_loadl_epi64((const __m128i_u *)(const void *)(from[i + 4 * k] + at));
+            x[k] = load_half_quad(from[i + 4 * k] + at);
         }
         two[i] = joined(x);
     }
@@ -51,11 +51,11 @@ static inline T3R_LANES_TARGET void write_four(const lanes word[4], uint8_t *con
 {
     lanes row[4] = {word[0], word[1], word[2], word[3]};
     transpose(row);
-    T3R_X86_UNROLL for (int i = 0; i < 4; i++)
+    T3R_LANES_UNROLL for (int i = 0; i < 4; i++)
     {
-        T3R_X86_UNROLL for (int k = 0; k < LANES / 4; k++)
+        T3R_LANES_UNROLL for (int k = 0; k < LANES / 4; k++)
         {
-            _mm_storeu_si128((__m128i_u *)(void *)(to[i + 4 * k] + at), part(row[i], k));
+            store_quad(to[i + 4 * k] + at, part(row[i], k));
         }
     }
 }
@@ -63,13 +63,13 @@ static inline T3R_LANES_TARGET void write_four(const lanes word[4], uint8_t *con
 static inline T3R_LANES_TARGET void write_two(const lanes word[2], uint8_t *const to[LANES], size_t at)
 {
     const lanes two[2] = {OF_LANES(unpacklo_epi32)(word[0], word[1]), OF_LANES(unpackhi_epi32)(word[0], word[1])};
-    T3R_X86_UNROLL for (int i = 0; i < 4; i += 2)
+    T3R_LANES_UNROLL for (int i = 0; i < 4; i += 2)
     {
-        T3R_X86_UNROLL for (int k = 0; k < LANES / 4; k++)
+        T3R_LANES_UNROLL for (int k = 0; k < LANES / 4; k++)
         {
-            const __m128i pair = part(two[i / 2], k);
-            _mm_storel_epi64((__m128i_u *)(void *)(to[i + 4 * k] + at), pair);
-            _mm_storel_epi64((__m128i_u *)(void *)(to[i + 1 + 4 * k] + at), _mm_unpackhi_epi64(pair, pair));
+            const quad pair = part(two[i / 2], k);
+            store_half_quad(to[i + 4 * k] + at, pair);
+            store_half_quad(to[i + 1 + 4 * k] + at, OF_QUAD(unpackhi_epi64)(pair, pair));
         }
     }
 }
