@@ -8,9 +8,11 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "core/hash.h"
 #include "frame_reader.h"
 #include "marks.h"
 #include "options.h"
+#include "ram.h"
 #include "report.h"
 #include "semihost.h"
 #include "stack.h"
@@ -19,21 +21,21 @@
 #include "trim3r_heads.h"
 #endif
 
-extern uint8_t memory_begin_at[], memory_end_at[];
+/* What each stage said of itself: a stage that reports several times has its reports chained. */
+typedef struct hashes {
+    uint64_t of[T3R_STAGE_COUNT];
+    bool there[T3R_STAGE_COUNT];
+} hashes;
 
-/* The memory between data and stack, dealt out from its front. */
-typedef struct memory {
-    uint8_t *at, *end;
-} memory;
-
-static uint8_t *deal(memory *m, size_t bytes)
+/* The front of what is free. */
+static uint8_t *deal(ram_part *left, size_t bytes)
 {
-    uint8_t *dealt = m->at;
+    uint8_t *dealt = left->begin;
     bytes = (bytes + T3R_ARENA_ALIGN - 1) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
-    if ((size_t)(m->end - m->at) < bytes) {
-        report_failure("the memory lacks this many bytes:", (uint32_t)(bytes - (size_t)(m->end - m->at)));
+    if ((size_t)(left->end - left->begin) < bytes) {
+        report_failure("the memory lacks this many bytes:", (uint32_t)(bytes - (size_t)(left->end - left->begin)));
     }
-    m->at += bytes;
+    left->begin += bytes;
     return dealt;
 }
 
@@ -59,8 +61,22 @@ static int on_progress(void *user, t3r_stage stage, uint32_t done, uint32_t tota
 
 static void on_hash(void *user, t3r_stage stage, uint64_t hash)
 {
-    (void)user;
-    report_hash(t3r_stage_name(stage), hash);
+    hashes *h = user;
+    h->of[stage] = h->there[stage] ? t3r_hash_u64(h->of[stage], hash) : hash;
+    h->there[stage] = true;
+}
+
+/* Each stage's, and one for all and the view: that of `trim3r replay`. */
+static void report_hashes(const hashes *h, const uint8_t *view, size_t bytes)
+{
+    uint64_t whole = T3R_HASH_START;
+    for (uint32_t stage = 0; stage < T3R_STAGE_COUNT; stage++) {
+        if (h->there[stage]) {
+            report_hash(t3r_stage_name((t3r_stage)stage), h->of[stage]);
+            whole = t3r_hash_u64(t3r_hash_u8(whole, (uint8_t)stage), h->of[stage]);
+        }
+    }
+    report_hash("final", t3r_hash_bytes(whole, view, bytes));
 }
 
 static t3r_config configure(const options *o)
@@ -103,7 +119,7 @@ int main(void)
 {
     static t3r_frame_reader reader;
     static options o;
-    memory m = {memory_begin_at, memory_end_at};
+    ram_part left = ram_free();
     options_read(&o);
     int32_t file = semihost_open(o.frames, SEMIHOST_READ);
     if (file <= 0) {
@@ -114,7 +130,7 @@ int main(void)
     const size_t pixels = (size_t)o.width * o.height;
     const size_t colour_room = pixels * 3 + T3R_FRAME_READER_HEAD_BYTES;
     const size_t depth_room = pixels * 2 + T3R_FRAME_READER_HEAD_BYTES;
-    uint8_t *colour = deal(&m, colour_room), *depth = deal(&m, depth_room);
+    uint8_t *colour = deal(&left, colour_room), *depth = deal(&left, depth_room);
     if (t3r_frame_reader_open(&reader, &source, colour, colour_room, depth, depth_room) != 0) {
         report_text("error: ", o.frames, ": ", reader.error);
         return 1;
@@ -123,14 +139,15 @@ int main(void)
     const t3r_config config = configure(&o);
     static t3r_plan_info plan; /* too large for a small stack */
     check(t3r_plan(&config, &plan), "plan");
-    const size_t room = (size_t)(m.end - m.at) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
+    const size_t room = (size_t)(left.end - left.begin) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
     const size_t bytes = o.arena != 0 ? o.arena : plan.bytes < room ? plan.bytes : room;
     if (bytes < plan.min_bytes) {
         report_failure("the arena lacks this many bytes:", (uint32_t)(plan.min_bytes - bytes));
     }
     t3r_runtime *rt;
-    check(t3r_init(&rt, deal(&m, bytes), bytes, &config), "init");
-    const t3r_hooks hooks = {.progress = on_progress, .stage_hash = o.hashes != 0 ? on_hash : NULL};
+    check(t3r_init(&rt, deal(&left, bytes), bytes, &config), "init");
+    static hashes heard;
+    const t3r_hooks hooks = {.user = &heard, .progress = on_progress, .stage_hash = o.hashes != 0 ? on_hash : NULL};
     check(t3r_set_hooks(rt, &hooks), "hooks");
 #ifdef HEAD
     if (o.learned != 0) {
@@ -158,10 +175,14 @@ int main(void)
     if (o.view[0] != '\0') {
         write_file(o.view, report_ppm_head(o.width, o.height), colour, pixels * 3);
     }
+    if (o.hashes != 0) {
+        report_hashes(&heard, colour, pixels * 3);
+    }
     report_number("gaussians", scene.count);
     report_number("arena_bytes", (uint32_t)bytes);
     report_number("arena_min_bytes", (uint32_t)plan.min_bytes);
-    report_number("memory_bytes", (uint32_t)(m.at - memory_begin_at));
+    report_number("data_bytes", (uint32_t)(ram_data().end - ram_data().begin));
+    report_number("memory_bytes", (uint32_t)(left.begin - ram_free().begin));
     report_number("stack_bytes", stack_used_bytes());
     report_number("stack_room_bytes", stack_bytes());
     semihost_close(file);

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "semihost_call.h"
+
 enum {
     SYS_OPEN = 0x01,
     SYS_CLOSE = 0x02,
@@ -15,43 +17,35 @@ enum {
 
 #define EXIT_REASON 0x20026u /* ADP_Stopped_ApplicationExit */
 
-static int32_t call(uint32_t operation, const void *block)
-{
-    register uint32_t r0 __asm__("r0") = operation;
-    register const void *r1 __asm__("r1") = block;
-    __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
-    return (int32_t)r0;
-}
-
 int32_t semihost_open(const char *path, uint32_t mode)
 {
     const uint32_t block[3] = {(uint32_t)(uintptr_t)path, mode, (uint32_t)strlen(path)};
-    return call(SYS_OPEN, block);
+    return semihost_call(SYS_OPEN, block);
 }
 
 void semihost_close(int32_t handle)
 {
     const uint32_t block[1] = {(uint32_t)handle};
-    call(SYS_CLOSE, block);
+    semihost_call(SYS_CLOSE, block);
 }
 
 int semihost_read(int32_t handle, uint32_t offset, void *bytes, size_t count)
 {
     const uint32_t seek[2] = {(uint32_t)handle, offset};
     const uint32_t read[3] = {(uint32_t)handle, (uint32_t)(uintptr_t)bytes, (uint32_t)count};
-    return call(SYS_SEEK, seek) == 0 && call(SYS_READ, read) == 0 ? 0 : -1; /* what is left to read */
+    return semihost_call(SYS_SEEK, seek) == 0 && semihost_call(SYS_READ, read) == 0 ? 0 : -1; /* what is left to read */
 }
 
 int semihost_write(int32_t handle, const void *bytes, size_t count)
 {
     const uint32_t block[3] = {(uint32_t)handle, (uint32_t)(uintptr_t)bytes, (uint32_t)count};
-    return call(SYS_WRITE, block) == 0 ? 0 : -1;
+    return semihost_call(SYS_WRITE, block) == 0 ? 0 : -1;
 }
 
 int32_t semihost_length(int32_t handle)
 {
     const uint32_t block[1] = {(uint32_t)handle};
-    return call(SYS_FLEN, block);
+    return semihost_call(SYS_FLEN, block);
 }
 
 void semihost_print(const char *text)
@@ -66,7 +60,7 @@ void semihost_print(const char *text)
 int semihost_command_line(char *text, size_t room)
 {
     uint32_t block[2] = {(uint32_t)(uintptr_t)text, (uint32_t)room};
-    if (call(SYS_GET_CMDLINE, block) != 0) {
+    if (semihost_call(SYS_GET_CMDLINE, block) != 0) {
         return -1;
     }
     const char *behind = strchr(text, ' ');
@@ -77,7 +71,7 @@ int semihost_command_line(char *text, size_t room)
 _Noreturn void semihost_exit(int status)
 {
     const uint32_t block[2] = {EXIT_REASON, (uint32_t)status};
-    call(SYS_EXIT_EXTENDED, block);
+    semihost_call(SYS_EXIT_EXTENDED, block);
     for (;;) {
     }
 }

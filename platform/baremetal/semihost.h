@@ -1,4 +1,4 @@
-/* Semihosting: the debugger's (or the emulator's) files and console, by breakpoint 0xAB. "Semihosting for AArch32 and
+/* Semihosting: the files and the console of a debugger, an emulator or what stands for it. "Semihosting for AArch32 and
  * AArch64", Arm. */
 #ifndef T3R_BAREMETAL_SEMIHOST_H
 #define T3R_BAREMETAL_SEMIHOST_H

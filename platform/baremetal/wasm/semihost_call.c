@@ -1,0 +1,8 @@
+#include "semihost_call.h"
+
+#include "host.h"
+
+int32_t semihost_call(uint32_t operation, const void *block)
+{
+    return host_semihost(operation, block);
+}

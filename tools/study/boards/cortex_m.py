@@ -1,0 +1,65 @@
+"""Cortex-M boards in QEMU: instructions are counted one by one."""
+import pathlib
+
+from firmware import BAREMETAL, BOARDS, STAGES, build, row, run, said_by, words
+
+COMPILER, EMULATOR = "arm-none-eabi-gcc", "qemu-system-arm"
+PLUGIN_SOURCE = pathlib.Path(__file__).resolve().parent / "instructions.c"
+TOOLS = (COMPILER, EMULATOR, "cc")
+
+
+def lacks():
+    """What else is absent."""
+    return None
+
+
+def made_with():
+    return [run(COMPILER, "--version").splitlines()[0], run(EMULATOR, "--version").splitlines()[0]]
+
+
+def plugin(options):
+    library = options.out / "libinstructions.so"
+    if not library.exists() or library.stat().st_mtime < PLUGIN_SOURCE.stat().st_mtime:
+        run("cc", "-std=c11", "-O2", "-shared", "-fPIC", PLUGIN_SOURCE, "-o", library)
+    return library
+
+
+def start(board, elf, line, *more):
+    config = ",".join(["enable=on,target=native,arg=trim3r", *(f"arg={word}" for word in line)])
+    return said_by(board, EMULATOR, "-M", BOARDS[board]["machine"], "-nographic", "-monitor", "none", "-serial", "none",
+                   "-semihosting-config", config, *more, "-kernel", elf)
+
+
+def flash_of(elf):
+    text, data, _ = map(int, run("arm-none-eabi-size", elf).splitlines()[1].split()[:3])
+    return text + data
+
+
+def marks_of(elf):
+    symbols = (line.split() for line in run("arm-none-eabi-nm", elf).splitlines())
+    places = {parts[-1]: parts[0] for parts in symbols if len(parts) == 3}
+    return "".join(f",mark={stage}:0x{places[f'mark_{stage}']}" for stage in (*STAGES, "other"))
+
+
+def count(board, elf, line, options):
+    """{stage: instructions}, and the longest stretch without a call of progress."""
+    table = options.out / f"{elf.stem}.counts"
+    start(board, elf, [*line, "hashes=0"], "-plugin", f"{plugin(options)}{marks_of(elf)}", "-d", "plugin", "-D", table)
+    rows = [parts for parts in map(str.split, table.read_text().splitlines()) if parts[0] in STAGES]
+    return {parts[0]: int(parts[1]) for parts in rows}, max(int(parts[2]) for parts in rows)
+
+
+def prepare(options):
+    """What all boards share."""
+    plugin(options)
+
+
+def measure(board, path, options):
+    link = ["-L", BAREMETAL / "cortex_m", "-T", BAREMETAL / "boards" / board / "board.ld",
+            *([f"-Wl,--defsym=RAM_BYTES={options.ram}"] if options.ram else [])]
+    elf = build(board, ".elf", [COMPILER], link, options)
+    line, view = words(path, options), elf.with_suffix(".ppm")
+    said = start(board, elf, [*line, "hashes=1", f"view={view}"])
+    instructions, longest = count(board, elf, line, options)
+    return {**row(board, said, flash_of(elf), view), "instructions": sum(instructions.values()),
+            "instructions_of": instructions, "longest_stretch": longest}
