@@ -2,7 +2,7 @@
  * each KEY=NUMBER, say what is built; the defaults are those of t3r_default_config().
  *
  *     frames=IN.mcap view=OUT.ppm scene=OUT.t3g width=64 height=64 views=2 gaussians=819 clusters=32 batches=4
- *     refinements=2 learned=1 hashes=1 arena=BYTES
+ *     refinements=2 learned=1 hashes=1 plain=0 arena=BYTES
  *
  * The first `views` frames are the context; the next one's camera is drawn. */
 #include <stdbool.h>
@@ -94,6 +94,20 @@ static t3r_config configure(const options *o)
     return config;
 }
 
+/* What this core has: the compiler was told. */
+static uint32_t features_of_core(void)
+{
+#if defined(__ARM_FEATURE_MVE)
+    return T3R_CPU_MVE;
+#elif defined(__ARM_FEATURE_DSP)
+    return T3R_CPU_DSP;
+#elif defined(__wasm_simd128__)
+    return T3R_CPU_SIMD128;
+#else
+    return 0;
+#endif
+}
+
 static void next_frame(t3r_frame_reader *reader, t3r_capture_frame *frame)
 {
     if (t3r_frame_reader_next(reader, frame) != T3R_CAPTURE_FRAME) {
@@ -146,6 +160,9 @@ int main(void)
     }
     t3r_runtime *rt;
     check(t3r_init(&rt, deal(&left, bytes), bytes, &config), "init");
+    if (o.plain == 0) {
+        check(t3r_set_cpu(rt, features_of_core()), "processor");
+    }
     static hashes heard;
     const t3r_hooks hooks = {.user = &heard, .progress = on_progress, .stage_hash = o.hashes != 0 ? on_hash : NULL};
     check(t3r_set_hooks(rt, &hooks), "hooks");

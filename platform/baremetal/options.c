@@ -23,6 +23,7 @@ static const number_option numbers[] = {
     {"refinements", offsetof(options, refinements)},
     {"learned", offsetof(options, learned)},
     {"hashes", offsetof(options, hashes)},
+    {"plain", offsetof(options, plain)},
     {"arena", offsetof(options, arena)},
 };
 

@@ -552,7 +552,8 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 #define T3R_CPU_SSE41 (1u << 3)    /* x86-64: SSE4.1, and what comes before it */
 #define T3R_CPU_NEON (1u << 8)     /* 64-bit Arm */
 #define T3R_CPU_DOTPROD (1u << 9)  /* its dot products of 8 bits */
-#define T3R_CPU_MVE (1u << 10)     /* Arm Cortex-M */
+#define T3R_CPU_MVE (1u << 10)     /* Arm Cortex-M with vectors (Helium), as the M55 */
+#define T3R_CPU_DSP (1u << 11)     /* Arm Cortex-M with sums of two products, as the M4 and the M7 */
 #define T3R_CPU_SIMD128 (1u << 16) /* WebAssembly */
 
 /* Chooses the inner loops for a processor that has these T3R_CPU_... features; 0 = plain C, as after t3r_init() and

@@ -161,17 +161,6 @@ static void add_group(const factors *f, uint32_t rows, uint32_t gradient[T3R_REF
     curvature[T3R_M_Y4] += dot(f->square_yy, f->yy, rows);
 }
 
-/* Adds sums of the orders 0, 1, 2 and so on, whose fractions are these. */
-static void add_moments(const uint32_t *moments, uint32_t orders, int32_t right, int32_t most, int32_t *sums)
-{
-    static const int8_t fraction[] = {0, T3R_X_FRACTION, T3R_X2_FRACTION, T3R_X3_FRACTION, T3R_X4_FRACTION};
-    for (uint32_t order = 0, k = 0; order < orders; order++) {
-        for (uint32_t i = 0; i <= order; i++, k++) {
-            sums[k] += t3r_clamp32(t3r_scale32((int32_t)moments[k], -(right + fraction[order])), -most, most);
-        }
-    }
-}
-
 void t3r_scatter_c(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, t3r_refine_sums *restrict sums)
 {
     const t3r_tile_splat *span = splat->span;
@@ -192,11 +181,5 @@ void t3r_scatter_c(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, t3
     }
 
     const t3r_sum_shifts by = t3r_sum_shifts_of(sums->area, splat->scale, less, square_shift, product_shift);
-    const int32_t most = t3r_moment_most(sums->area, splat->pixels);
-    for (int c = 0; c < 3; c++) {
-        sums->colour[c] += t3r_scale32(colour[c], -by.colour);
-    }
-    sums->weight += t3r_scale32(weight, -by.weight);
-    add_moments(gradient, 3, by.gradient, most, sums->gradient);
-    add_moments(curvature, 5, by.curvature, most, sums->curvature);
+    t3r_add_scattered(colour, weight, gradient, curvature, &by, t3r_moment_most(sums->area, splat->pixels), sums);
 }

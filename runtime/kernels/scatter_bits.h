@@ -75,4 +75,29 @@ static inline int32_t t3r_moment_most(uint32_t area, uint32_t pixels)
     return t3r_scale32(T3R_MOMENT_MOST_Q7, -(int32_t)t3r_refine_shift(area)) * (int32_t)pixels;
 }
 
+/* Adds sums of the orders 0, 1, 2 and so on, whose fractions are these. */
+static inline void t3r_add_moments(const uint32_t *moments, uint32_t orders, int32_t right, int32_t most, int32_t *sums)
+{
+    static const int8_t fraction[] = {0, T3R_X_FRACTION, T3R_X2_FRACTION, T3R_X3_FRACTION, T3R_X4_FRACTION};
+    for (uint32_t order = 0, k = 0; order < orders; order++) {
+        for (uint32_t i = 0; i <= order; i++, k++) {
+            sums[k] += t3r_clamp32(t3r_scale32((int32_t)moments[k], -(right + fraction[order])), -most, most);
+        }
+    }
+}
+
+/* Adds what the pixels of a splat come to: lacking colour, weight, and moments modulo 2^32. */
+static inline void t3r_add_scattered(const int32_t colour[3], int32_t weight,
+                                     const uint32_t gradient[T3R_REFINE_MOMENTS_2],
+                                     const uint32_t curvature[T3R_REFINE_MOMENTS_4], const t3r_sum_shifts *by,
+                                     int32_t most, t3r_refine_sums *sums)
+{
+    for (int c = 0; c < 3; c++) {
+        sums->colour[c] += t3r_scale32(colour[c], -by->colour);
+    }
+    sums->weight += t3r_scale32(weight, -by->weight);
+    t3r_add_moments(gradient, 3, by->gradient, most, sums->gradient);
+    t3r_add_moments(curvature, 5, by->curvature, most, sums->curvature);
+}
+
 #endif

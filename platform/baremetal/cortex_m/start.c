@@ -18,8 +18,23 @@ _Noreturn void fault(void)
     semihost_exit(2);
 }
 
+#if defined(__ARM_FP) || defined(__ARM_FEATURE_MVE)
+/* Vectors lie in the registers of the floating-point unit, which is off after a reset. */
+static void enable_vectors(void)
+{
+    volatile uint32_t *const access_control = (volatile uint32_t *)0xe000ed88; /* CPACR */
+    *access_control |= 0xfu << 20;
+    __asm__ volatile("dsb\n\tisb" ::: "memory");
+}
+#else
+static void enable_vectors(void)
+{
+}
+#endif
+
 _Noreturn void reset(void)
 {
+    enable_vectors();
     for (uint32_t *from = data_load_at, *to = data_begin_at; to < data_end_at;) {
         *to++ = *from++;
     }

@@ -1,8 +1,66 @@
-/* The variants for Arm: none so far. */
+/* The variants for Arm. Those of a Cortex-M are there where the whole build is for one that has them: a firmware knows
+ * its core. */
 #ifndef T3R_ARM_VARIANTS_H
 #define T3R_ARM_VARIANTS_H
 
+#include "kernels/kernels.h"
+#include "trim3r.h"
+
+#if defined(__ARM_FEATURE_MVE) && (__ARM_FEATURE_MVE & 1) != 0 && !defined(__ARM_BIG_ENDIAN)
+#define T3R_MVE 1
+#if T3R_FEATURE_LEARNED
+#define T3R_MVE_LEARNED_VARIANTS_(X) X(convolve, T3R_CPU_MVE, t3r_convolve_mve)
+#else
+#define T3R_MVE_LEARNED_VARIANTS_(X)
+#endif
+#if T3R_FEATURE_REFINEMENT
+#define T3R_MVE_REFINEMENT_VARIANTS_(X)                                                                                \
+    X(blend_keep, T3R_CPU_MVE, t3r_blend_keep_mve)                                                                     \
+    X(scatter, T3R_CPU_MVE, t3r_scatter_mve)
+#else
+#define T3R_MVE_REFINEMENT_VARIANTS_(X)
+#endif
+#define T3R_MVE_VARIANTS_(X)                                                                                           \
+    X(sample_potential, T3R_CPU_MVE, t3r_sample_potential_mve)                                                         \
+    X(sample_approach, T3R_CPU_MVE, t3r_sample_approach_mve)                                                           \
+    X(nearest_begin, T3R_CPU_MVE, t3r_nearest_begin_mve)                                                               \
+    X(nearest, T3R_CPU_MVE, t3r_nearest_mve)                                                                           \
+    X(blend, T3R_CPU_MVE, t3r_blend_mve)                                                                               \
+    T3R_MVE_LEARNED_VARIANTS_(X)                                                                                       \
+    T3R_MVE_REFINEMENT_VARIANTS_(X)
+#else
+#define T3R_MVE_VARIANTS_(X)
+#endif
+
+#if defined(__ARM_FEATURE_DSP) && __ARM_ARCH_PROFILE == 'M' && !defined(T3R_MVE) && !defined(__ARM_BIG_ENDIAN)
+#define T3R_DSP 1
+#if T3R_FEATURE_LEARNED
+#define T3R_DSP_LEARNED_VARIANTS_(X) X(convolve, T3R_CPU_DSP, t3r_convolve_dsp)
+#else
+#define T3R_DSP_LEARNED_VARIANTS_(X)
+#endif
+#if T3R_FEATURE_REFINEMENT
+#define T3R_DSP_REFINEMENT_VARIANTS_(X)                                                                                \
+    X(blend_keep, T3R_CPU_DSP, t3r_blend_keep_dsp)                                                                     \
+    X(scatter, T3R_CPU_DSP, t3r_scatter_dsp)
+#else
+#define T3R_DSP_REFINEMENT_VARIANTS_(X)
+#endif
+#define T3R_DSP_VARIANTS_(X)                                                                                           \
+    X(nearest_begin, T3R_CPU_DSP, t3r_nearest_begin_dsp)                                                               \
+    X(nearest, T3R_CPU_DSP, t3r_nearest_dsp)                                                                           \
+    X(blend, T3R_CPU_DSP, t3r_blend_dsp)                                                                               \
+    T3R_DSP_LEARNED_VARIANTS_(X)                                                                                       \
+    T3R_DSP_REFINEMENT_VARIANTS_(X)
+#else
+#define T3R_DSP_VARIANTS_(X)
+#endif
+
 /* X(entry, features, function), as x86/variants.h has it. */
-#define T3R_ARM_VARIANTS(X)
+#define T3R_ARM_VARIANTS(X) T3R_DSP_VARIANTS_(X) T3R_MVE_VARIANTS_(X)
+
+#define T3R_DECLARE_(entry, features, function) __attribute__((visibility("hidden"))) t3r_##entry##_kernel function;
+T3R_ARM_VARIANTS(T3R_DECLARE_)
+#undef T3R_DECLARE_
 
 #endif

@@ -5,6 +5,7 @@ from firmware import BAREMETAL, BOARDS, STAGES, build, row, run, said_by, words
 
 COMPILER, EMULATOR = "arm-none-eabi-gcc", "qemu-system-arm"
 PLUGIN_SOURCE = pathlib.Path(__file__).resolve().parent / "instructions.c"
+PLAIN = "plain C"
 TOOLS = (COMPILER, EMULATOR, "cc")
 
 
@@ -54,12 +55,20 @@ def prepare(options):
     plugin(options)
 
 
+def measured_with(board, kernels, elf, line, options):
+    """A row of the firmware that runs plain C, or the kernels for its core."""
+    line = [*line, f"plain={int(kernels == PLAIN)}"]
+    view = elf.with_name(f"{elf.stem}-{kernels.replace(' ', '-')}.ppm")
+    said = start(board, elf, [*line, "hashes=1", f"view={view}"])
+    instructions, longest = count(board, elf, line, options)
+    name = BOARDS[board]["name"] + (f", {kernels}" if "kernels" in BOARDS[board] else "")
+    return {**row(board, said, flash_of(elf), view), "name": name, "kernels": kernels,
+            "instructions": sum(instructions.values()), "instructions_of": instructions, "longest_stretch": longest}
+
+
 def measure(board, path, options):
     link = ["-L", BAREMETAL / "cortex_m", "-T", BAREMETAL / "boards" / board / "board.ld",
             *([f"-Wl,--defsym=RAM_BYTES={options.ram}"] if options.ram else [])]
     elf = build(board, ".elf", [COMPILER], link, options)
-    line, view = words(path, options), elf.with_suffix(".ppm")
-    said = start(board, elf, [*line, "hashes=1", f"view={view}"])
-    instructions, longest = count(board, elf, line, options)
-    return {**row(board, said, flash_of(elf), view), "instructions": sum(instructions.values()),
-            "instructions_of": instructions, "longest_stretch": longest}
+    ways = [PLAIN, *([BOARDS[board]["kernels"]] if "kernels" in BOARDS[board] else [])]
+    return [measured_with(board, kernels, elf, words(path, options), options) for kernels in ways]

@@ -40,7 +40,7 @@ def measure(board, path, options):
     made = module(board, options)
     view = made.with_suffix(".ppm")
     said = start(board, made, 1, [*words(path, options), "hashes=1", f"view={view}"])
-    return row(board, said, made.stat().st_size, view)
+    return [row(board, said, made.stat().st_size, view)]
 
 
 def native_milliseconds(path, cpu_mask, options):

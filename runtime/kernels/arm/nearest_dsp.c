@@ -1,0 +1,74 @@
+/* The nearest centre for a Cortex-M with sums of two products: of a few centres by looking at all of them. With more,
+ * plain C's neighbours are quicker. */
+#include "variants.h"
+
+#ifdef T3R_DSP
+
+#include <arm_acle.h>
+#include <stdbool.h>
+
+#include "kernels/nearest.h"
+
+enum { FEW = 96, PAIRS = T3R_DIMENSIONS / 2 };
+
+/* In the place of the neighbours. */
+typedef struct packed_centre {
+    int32_t half_norm;
+    int16x2_t less_pair[PAIRS]; /* of features, negative */
+} packed_centre;
+
+_Static_assert(sizeof(packed_centre) * FEW <= sizeof(t3r_neighbours), "they lie in their place");
+
+static inline int16x2_t pair_of(int32_t low, int32_t high)
+{
+    return (int16x2_t)((uint32_t)low & 0xffff) | (int16x2_t)((uint32_t)high << 16);
+}
+
+void t3r_nearest_begin_dsp(const t3r_centres *centres, uint32_t first, uint32_t end, t3r_neighbours *neighbours)
+{
+    if (centres->count > FEW) {
+        t3r_nearest_begin_c(centres, first, end, neighbours);
+        return;
+    }
+    packed_centre *packed = (void *)neighbours;
+    for (uint32_t k = first; k < end; k++) {
+        packed[k].half_norm = centres->half_norm[k];
+        for (uint32_t d = 0; d < PAIRS; d++) {
+            packed[k].less_pair[d] = pair_of(-centres->feature_q11[2 * d][k], -centres->feature_q11[2 * d + 1][k]);
+        }
+    }
+}
+
+/* Scores are below 2^31 in size, as are their parts (nearest.h). */
+static inline uint32_t nearest_of(const packed_centre *c, uint32_t count, const int16_t p[T3R_DIMENSIONS])
+{
+    const int16x2_t p01 = pair_of(p[0], p[1]), p23 = pair_of(p[2], p[3]), p45 = pair_of(p[4], p[5]);
+    int32_t least = INT32_MAX;
+    uint32_t nearest = 0;
+    for (uint32_t k = 0; k < count; k++, c++) {
+        int32_t score = __smlad(p01, c->less_pair[0], c->half_norm);
+        score = __smlad(p23, c->less_pair[1], score);
+        score = __smlad(p45, c->less_pair[2], score);
+        if (score < least) {
+            least = score;
+            nearest = k;
+        }
+    }
+    return nearest;
+}
+
+void t3r_nearest_dsp(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,
+                     const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest)
+{
+    if (centres->count > FEW) {
+        t3r_nearest_c(centres, neighbours, points, feature_q11, guess, nearest);
+        return;
+    }
+    for (uint32_t point = 0; point < points; point++) {
+        nearest[point] = (uint16_t)nearest_of((const void *)neighbours, centres->count, feature_q11[point]);
+    }
+}
+
+#else
+typedef int t3r_no_nearest_dsp; /* a file may not be empty */
+#endif

@@ -1,0 +1,214 @@
+/* Scattering for a Cortex-M with sums of two products: pixels in which the splat has no weight add nothing, the others
+ * are gathered and summed two at a time. */
+#include "variants.h"
+
+#if defined(T3R_DSP) && T3R_FEATURE_REFINEMENT
+
+#include <arm_acle.h>
+#include <stdbool.h>
+
+#include "core/fixed.h"
+#include "kernels/scatter_bits.h"
+
+enum { PIXELS_MOST = T3R_BLENDED_ROWS_MOST * T3R_LANES };
+
+/* What a pixel adds, before it is brought to 16 bits, and where it is: terms_of() in scatter.c. */
+typedef struct pixel_term {
+    uint32_t square;
+    int32_t product;
+    int16_t x_q13, y_q13;
+} pixel_term;
+
+typedef struct off_job {
+    t3r_wanted *tile;
+    int32_t colour[3];
+    uint32_t scale, less;
+    uint32_t squares, products, squares_sum, products_sum;
+    int32_t lacking[3], weight;
+} off_job;
+
+static inline int32_t mulr_q15(int32_t a, int32_t b)
+{
+    return __smlabb(a, b, 1 << 14) >> 15;
+}
+
+/* Takes a pixel off; false where it counts for nothing, and otherwise its term, unless `term` is NULL. */
+static inline __attribute__((always_inline)) bool take_pixel_off(off_job *job, uint32_t weight, int32_t alpha,
+                                                                 uint32_t row, uint32_t column, pixel_term *term)
+{
+    const int32_t w = (uint16_t)((weight & job->tile->counts[row][column]) << job->scale) >> 1;
+    const int32_t share = w >> job->less;
+    uint32_t square = 0;
+    int32_t product = 0;
+    for (int c = 0; c < 3; c++) {
+        uint16_t *behind = &job->tile->pixels.colour_q7[c][row][column];
+        const int32_t step = job->colour[c] - *behind;
+        *behind = (uint16_t)(*behind + mulr_q15(alpha, step));
+        if (term != NULL) {
+            const int32_t moves = mulr_q15(w, step), lacks = job->tile->residual_q4[c][row][column];
+            square += (uint32_t)(moves * moves);
+            product += moves * lacks;
+            job->lacking[c] += share * lacks;
+        }
+    }
+    if (term == NULL || w == 0) {
+        return false;
+    }
+    const uint32_t size = (uint32_t)(product ^ (product >> 31));
+    job->weight += share;
+    job->squares |= square;
+    job->squares_sum += square >> 8;
+    job->products |= size;
+    job->products_sum += size >> 8;
+    term->square = square;
+    term->product = product;
+    return true;
+}
+
+/* Takes the splat off, and notes the terms of its pixels unless `terms` is NULL; returns how many. */
+static inline __attribute__((always_inline)) uint32_t take_splat_off(off_job *job, const t3r_scatter_splat *splat,
+                                                                     pixel_term *terms)
+{
+    const t3r_tile_splat *span = splat->span;
+    const t3r_blended_row *at = splat->rows;
+    pixel_term *term = terms;
+    for (uint32_t group = 0; group < span->groups; group++) {
+        for (uint32_t row = span->first; row <= span->last; row++, at++) {
+            const int32_t down = (int32_t)(row - span->first), across = (int32_t)(group * T3R_LANES);
+            const int32_t x = splat->origin_q13[0] + down * splat->down_q13[0] + across * splat->right_q13[0];
+            const int32_t y = splat->origin_q13[1] + down * splat->down_q13[1] + across * splat->right_q13[1];
+            for (int32_t i = 0; i < T3R_LANES; i++) {
+                const uint32_t weight = at->weight_q16[i], column = span->column + (uint32_t)(across + i);
+                if (weight != 0 && take_pixel_off(job, weight, at->alpha_q15[i], row, column, term)) {
+                    term->x_q13 = (int16_t)(uint16_t)(x + i * splat->right_q13[0]); /* modulo 2^16 */
+                    term->y_q13 = (int16_t)(uint16_t)(y + i * splat->right_q13[1]);
+                    term++;
+                }
+            }
+        }
+    }
+    return terms == NULL ? 0 : (uint32_t)(term - terms);
+}
+
+/* Factors of two pixels, one in each half. */
+typedef struct pair_factors {
+    int16x2_t product, square, x, y, xx, xy, yy;
+    int16x2_t square_x, square_y, square_xx, square_xy, square_yy;
+} pair_factors;
+
+enum { CHUNK = 32 }; /* pairs whose factors are kept at a time */
+
+static inline int16x2_t pair_of(int32_t low, int32_t high)
+{
+    return (int16x2_t)(((uint32_t)low & 0xffff) | (uint32_t)high << 16);
+}
+
+static inline __attribute__((always_inline)) void factors_of(const pixel_term term[2], const t3r_shift_steps *square_by,
+                                                             const t3r_shift_steps *product_by, pair_factors *f)
+{
+    int32_t m[2], p[2], x[2], y[2], xx[2], xy[2], yy[2];
+    for (int k = 0; k < 2; k++) {
+        m[k] = (int32_t)(((term[k].square >> square_by->first) + square_by->half) >> square_by->half);
+        p[k] = ((term[k].product >> product_by->first) + (int32_t)product_by->half) >> product_by->half;
+        x[k] = term[k].x_q13;
+        y[k] = term[k].y_q13;
+        xx[k] = mulr_q15(x[k], x[k]);
+        xy[k] = mulr_q15(x[k], y[k]);
+        yy[k] = mulr_q15(y[k], y[k]);
+    }
+    f->product = pair_of(p[0], p[1]);
+    f->square = pair_of(m[0], m[1]);
+    f->x = pair_of(x[0], x[1]);
+    f->y = pair_of(y[0], y[1]);
+    f->xx = pair_of(xx[0], xx[1]);
+    f->xy = pair_of(xy[0], xy[1]);
+    f->yy = pair_of(yy[0], yy[1]);
+    f->square_x = pair_of(mulr_q15(m[0], x[0]), mulr_q15(m[1], x[1]));
+    f->square_y = pair_of(mulr_q15(m[0], y[0]), mulr_q15(m[1], y[1]));
+    f->square_xx = pair_of(mulr_q15(m[0], xx[0]), mulr_q15(m[1], xx[1]));
+    f->square_xy = pair_of(mulr_q15(m[0], xy[0]), mulr_q15(m[1], xy[1]));
+    f->square_yy = pair_of(mulr_q15(m[0], yy[0]), mulr_q15(m[1], yy[1]));
+}
+
+/* A sum with the products of two pixels; modulo 2^32. */
+static inline uint32_t added(uint32_t sum, int16x2_t a, int16x2_t b)
+{
+    return (uint32_t)__smlad(a, b, (int32_t)sum);
+}
+
+/* Orders 0 to 2 */
+static inline __attribute__((always_inline)) void add_low(const pair_factors *f, uint32_t pairs, bool of_squares,
+                                                          uint32_t sums[T3R_REFINE_MOMENTS_2])
+{
+    const int16x2_t one = pair_of(1, 1);
+    uint32_t s0 = sums[T3R_M_1], s1 = sums[T3R_M_X], s2 = sums[T3R_M_Y];
+    uint32_t s3 = sums[T3R_M_X2], s4 = sums[T3R_M_XY], s5 = sums[T3R_M_Y2];
+    for (const pair_factors *end = f + pairs; f != end; f++) {
+        const int16x2_t term = of_squares ? f->square : f->product;
+        s0 = added(s0, term, one);
+        s1 = added(s1, term, f->x);
+        s2 = added(s2, term, f->y);
+        s3 = added(s3, term, f->xx);
+        s4 = added(s4, term, f->xy);
+        s5 = added(s5, term, f->yy);
+    }
+    sums[T3R_M_1] = s0, sums[T3R_M_X] = s1, sums[T3R_M_Y] = s2;
+    sums[T3R_M_X2] = s3, sums[T3R_M_XY] = s4, sums[T3R_M_Y2] = s5;
+}
+
+/* Orders 3 and 4 */
+static void add_high(const pair_factors *f, uint32_t pairs, uint32_t sums[T3R_REFINE_MOMENTS_4])
+{
+    uint32_t s0 = sums[T3R_M_X3], s1 = sums[T3R_M_X2Y], s2 = sums[T3R_M_XY2], s3 = sums[T3R_M_Y3];
+    uint32_t s4 = sums[T3R_M_X4], s5 = sums[T3R_M_X3Y], s6 = sums[T3R_M_X2Y2], s7 = sums[T3R_M_XY3];
+    uint32_t s8 = sums[T3R_M_Y4];
+    for (const pair_factors *end = f + pairs; f != end; f++) {
+        s0 = added(s0, f->square_x, f->xx);
+        s1 = added(s1, f->square_x, f->xy);
+        s2 = added(s2, f->square_x, f->yy);
+        s3 = added(s3, f->square_y, f->yy);
+        s4 = added(s4, f->square_xx, f->xx);
+        s5 = added(s5, f->square_xx, f->xy);
+        s6 = added(s6, f->square_xx, f->yy);
+        s7 = added(s7, f->square_xy, f->yy);
+        s8 = added(s8, f->square_yy, f->yy);
+    }
+    sums[T3R_M_X3] = s0, sums[T3R_M_X2Y] = s1, sums[T3R_M_XY2] = s2, sums[T3R_M_Y3] = s3;
+    sums[T3R_M_X4] = s4, sums[T3R_M_X3Y] = s5, sums[T3R_M_X2Y2] = s6, sums[T3R_M_XY3] = s7, sums[T3R_M_Y4] = s8;
+}
+
+void t3r_scatter_dsp(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, t3r_refine_sums *restrict to)
+{
+    const uint32_t all_rows = t3r_rows_of(splat->span), less = t3r_count_bits(all_rows);
+    off_job job = {.tile = tile, .scale = splat->scale, .less = less};
+    for (int c = 0; c < 3; c++) {
+        job.colour[c] = splat->span->colour_q7[c];
+    }
+    if (to == NULL) {
+        (void)take_splat_off(&job, splat, NULL);
+        return;
+    }
+    pixel_term terms[PIXELS_MOST + 1];
+    const uint32_t count = take_splat_off(&job, splat, terms);
+    terms[count] = (pixel_term){0, 0, 0, 0}; /* behind the last, for a whole pair */
+    const uint32_t square_shift = t3r_term_shift(job.squares, job.squares_sum, all_rows);
+    const uint32_t product_shift = t3r_term_shift(job.products, job.products_sum, all_rows);
+    const t3r_shift_steps square_by = t3r_shift_steps_of(square_shift), product_by = t3r_shift_steps_of(product_shift);
+    uint32_t gradient[T3R_REFINE_MOMENTS_2] = {0}, curvature[T3R_REFINE_MOMENTS_4] = {0};
+    for (uint32_t first = 0; first < count; first += 2 * CHUNK) {
+        pair_factors f[CHUNK];
+        const uint32_t pairs = T3R_MIN((count - first + 1) / 2, CHUNK);
+        for (uint32_t i = 0; i < pairs; i++) {
+            factors_of(&terms[first + 2 * i], &square_by, &product_by, &f[i]);
+        }
+        add_low(f, pairs, false, gradient);
+        add_low(f, pairs, true, curvature);
+        add_high(f, pairs, curvature);
+    }
+    const t3r_sum_shifts by = t3r_sum_shifts_of(to->area, splat->scale, less, square_shift, product_shift);
+    t3r_add_scattered(job.lacking, job.weight, gradient, curvature, &by, t3r_moment_most(to->area, splat->pixels), to);
+}
+
+#else
+typedef int t3r_no_scatter_dsp; /* a file may not be empty */
+#endif
