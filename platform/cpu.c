@@ -16,9 +16,9 @@ static const struct {
     const char *name;
     uint32_t bit;
 } features[] = {
-    {"sse4.1", T3R_CPU_SSE41}, {"avx2", T3R_CPU_AVX2},       {"avx512", T3R_CPU_AVX512}, {"vnni", T3R_CPU_VNNI},
-    {"neon", T3R_CPU_NEON},    {"dotprod", T3R_CPU_DOTPROD}, {"mve", T3R_CPU_MVE},       {"dsp", T3R_CPU_DSP},
-    {"simd128", T3R_CPU_SIMD128},
+    {"sse4.1", T3R_CPU_SSE41}, {"avx2", T3R_CPU_AVX2}, {"avx512", T3R_CPU_AVX512},
+    {"vnni", T3R_CPU_VNNI},    {"neon", T3R_CPU_NEON}, {"dotprod", T3R_CPU_DOTPROD},
+    {"mve", T3R_CPU_MVE},      {"dsp", T3R_CPU_DSP},   {"simd128", T3R_CPU_SIMD128},
 };
 enum { FEATURES = sizeof features / sizeof features[0] };
 

@@ -18,8 +18,8 @@ static void masks_are_read(void **state)
                 {"sse4.1", T3R_CPU_SSE41},
                 {"avx2", T3R_CPU_AVX2},
                 {"vnni,avx2", T3R_CPU_VNNI | T3R_CPU_AVX2},
-                {"neon,dotprod,mve,simd128,avx512",
-                 T3R_CPU_NEON | T3R_CPU_DOTPROD | T3R_CPU_MVE | T3R_CPU_SIMD128 | T3R_CPU_AVX512}};
+                {"neon,dotprod,mve,dsp,simd128,avx512",
+                 T3R_CPU_NEON | T3R_CPU_DOTPROD | T3R_CPU_MVE | T3R_CPU_DSP | T3R_CPU_SIMD128 | T3R_CPU_AVX512}};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
         uint32_t mask = 12345;
         assert_true(t3r_cpu_parse_mask(good[i].text, &mask));

@@ -6,7 +6,7 @@
 #include <arm_mve.h>
 #include <stdbool.h>
 
-#include "kernels/nearest.h"
+#include "packed_at.h"
 
 enum { FOUR = 4 };
 
@@ -16,25 +16,24 @@ typedef struct four_centres {
     int16_t less_feature_q11[T3R_DIMENSIONS][FOUR]; /* negative */
 } four_centres;
 
-_Static_assert(sizeof(four_centres) * (T3R_MAX_CLUSTERS / FOUR) <= sizeof(t3r_neighbours), "they lie in their place");
+_Static_assert(sizeof(four_centres) * (T3R_MAX_CLUSTERS / FOUR) <= T3R_PACKED_ROOM, "they lie in their place");
 _Static_assert(T3R_CENTRE_GROUP % FOUR == 0 && T3R_MAX_CLUSTERS % FOUR == 0, "whole vectors");
 
 void t3r_nearest_begin_mve(const t3r_centres *centres, uint32_t first, uint32_t end, t3r_neighbours *neighbours)
 {
+    four_centres *packed = t3r_packed_at(neighbours);
     for (uint32_t k = first; k < (end + FOUR - 1) / FOUR * FOUR; k++) {
-        uint8_t *to = (uint8_t *)neighbours + k / FOUR * sizeof(four_centres);
         const bool is_centre = k < centres->count;
-        ((four_centres *)(void *)to)->half_norm[k % FOUR] = is_centre ? centres->half_norm[k] : INT32_MAX;
+        packed[k / FOUR].half_norm[k % FOUR] = is_centre ? centres->half_norm[k] : INT32_MAX;
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-            ((four_centres *)(void *)to)->less_feature_q11[d][k % FOUR] =
-                (int16_t)(is_centre ? -centres->feature_q11[d][k] : 0);
+            packed[k / FOUR].less_feature_q11[d][k % FOUR] = (int16_t)(is_centre ? -centres->feature_q11[d][k] : 0);
         }
     }
 }
 
 static uint16_t nearest_of(const t3r_neighbours *packed, uint32_t count, const int16_t p[T3R_DIMENSIONS])
 {
-    const four_centres *c = (const void *)packed;
+    const four_centres *c = t3r_packed_at(packed);
     const int32_t p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3], p4 = p[4], p5 = p[5];
     const uint32_t groups = (count + FOUR - 1) / FOUR;
     int32x4_t here = vreinterpretq_s32_u32(vidupq_n_u32(0, 1)), first = here, least = vdupq_n_s32(INT32_MAX);
