@@ -35,11 +35,13 @@ static uint16_t nearest_of(const t3r_neighbours *packed, uint32_t count, const i
 {
     const four_centres *c = t3r_packed_at(packed);
     const int32_t p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3], p4 = p[4], p5 = p[5];
-    const uint32_t groups = (count + FOUR - 1) / FOUR;
+    uint32_t predicate, groups = (count + FOUR - 1) / FOUR;
     int32x4_t here = vreinterpretq_s32_u32(vidupq_n_u32(0, 1)), first = here, least = vdupq_n_s32(INT32_MAX);
     /* Scores are below 2^31 in size, as are their parts (nearest.h). A lane keeps the earlier of equals. From
      * intrinsics gcc 12 has loads ahead of all sums, and no registers left. */
-    __asm__("dls lr, %[groups]\n"
+    __asm__("vmrs %[predicate], p0\n\t" /* compilers have no common name for it */
+            "dls lr, %[groups]\n\t"
+            "mov %[groups], #4\n"
             "1:\n\t"
             "vldrw.u32 q0, [%[c]], #16\n\t"
             "vldrh.s32 q1, [%[c]], #8\n\t"
@@ -57,12 +59,13 @@ static uint16_t nearest_of(const t3r_neighbours *packed, uint32_t count, const i
             "vptt.s32 gt, %q[least], q0\n\t"
             "vmovt %q[least], q0\n\t"
             "vmovt %q[first], %q[here]\n\t"
-            "vadd.i32 %q[here], %q[here], %[four]\n\t"
-            "le lr, 1b"
-            : [c] "+l"(c), [least] "+w"(least), [first] "+w"(first), [here] "+w"(here)
-            : [groups] "r"(groups), [four] "r"(FOUR), [p0] "r"(p0), [p1] "r"(p1), [p2] "r"(p2), [p3] "r"(p3),
-              [p4] "r"(p4), [p5] "r"(p5)
-            : "lr", "q0", "q1", "q2", "p0", "memory");
+            "vadd.i32 %q[here], %q[here], %[groups]\n\t"
+            "le lr, 1b\n\t"
+            "vmsr p0, %[predicate]"
+            : [predicate] "=&r"(predicate), [c] "+l"(c), [groups] "+r"(groups), [least] "+w"(least),
+              [first] "+w"(first), [here] "+w"(here)
+            : [p0] "r"(p0), [p1] "r"(p1), [p2] "r"(p2), [p3] "r"(p3), [p4] "r"(p4), [p5] "r"(p5)
+            : "lr", "q0", "q1", "q2", "memory");
     const int32_t score = vminvq_s32(INT32_MAX, least);
     return (uint16_t)vminvq_p_s32(INT32_MAX, first, vcmpeqq_n_s32(least, score));
 }

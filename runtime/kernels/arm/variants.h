@@ -6,7 +6,8 @@
 #include "kernels/kernels.h"
 #include "trim3r.h"
 
-#if defined(__ARM_FEATURE_MVE) && (__ARM_FEATURE_MVE & 1) != 0 && !defined(__ARM_BIG_ENDIAN)
+/* Without optimization gcc has no registers left for the operands. */
+#if defined(__ARM_FEATURE_MVE) && (__ARM_FEATURE_MVE & 1) != 0 && !defined(__ARM_BIG_ENDIAN) && defined(__OPTIMIZE__)
 #define T3R_MVE 1
 #if T3R_FEATURE_LEARNED
 #define T3R_MVE_LEARNED_VARIANTS_(X) X(convolve, T3R_CPU_MVE, t3r_convolve_mve)
