@@ -7,35 +7,45 @@
 
 #include "core/fixed.h"
 #include "core/little_endian.h"
-#include "core/memory.h"
 
 typedef const int16_t *columns[T3R_BLOCK_PIXELS]; /* behind the last pixel, the last again */
 
-/* Two products with activations at x, which is aligned to 4. */
-static inline int32_t added(int32_t sum, const int16_t *x, int16x2_t weights)
-{
-    int16x2_t pair;
-    memcpy(&pair, __builtin_assume_aligned(x, 4), sizeof pair);
-    return __smlad(pair, weights, sum);
-}
-
+/* Four taps at a time; x is aligned to 4. From intrinsics gcc 12 takes half as many instructions more. */
 static inline void dot(const columns x, const uint8_t *weights, uint32_t taps, int32_t sum[T3R_BLOCK_PIXELS])
 {
     const int16_t *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3];
+    const uint8_t *end = weights + (taps & ~3u);
     int32_t s0 = sum[0], s1 = sum[1], s2 = sum[2], s3 = sum[3];
-    uint32_t left = taps;
-    for (; left >= 4; left -= 4, x0 += 4, x1 += 4, x2 += 4, x3 += 4, weights += 4) {
-        uint32_t four;
-        memcpy(&four, weights, sizeof four);
-        const uint32_t even = (uint32_t)__sxtb16((int8x4_t)four), odd = (uint32_t)__sxtb16((int8x4_t)(four >> 8));
-        const int16x2_t first = (int16x2_t)((even & 0xffff) | odd << 16),
-                        last = (int16x2_t)(even >> 16 | (odd & ~0xffffu));
-        s0 = added(added(s0, x0, first), x0 + 2, last);
-        s1 = added(added(s1, x1, first), x1 + 2, last);
-        s2 = added(added(s2, x2, first), x2 + 2, last);
-        s3 = added(added(s3, x3, first), x3 + 2, last);
+    while (weights != end) {
+        uint32_t first, last, rest;
+        __asm__(
+            "ldr %[rest], [%[weights]], #4\n\t"
+            "sxtb16 %[last], %[rest]\n\t"
+            "sxtb16 %[rest], %[rest], ror #8\n\t"
+            "pkhbt %[first], %[last], %[rest], lsl #16\n\t"
+            "pkhtb %[last], %[rest], %[last], asr #16\n\t"
+            "ldr %[rest], [%[x0]], #4\n\t"
+            "smlad %[s0], %[rest], %[first], %[s0]\n\t"
+            "ldr %[rest], [%[x0]], #4\n\t"
+            "smlad %[s0], %[rest], %[last], %[s0]\n\t"
+            "ldr %[rest], [%[x1]], #4\n\t"
+            "smlad %[s1], %[rest], %[first], %[s1]\n\t"
+            "ldr %[rest], [%[x1]], #4\n\t"
+            "smlad %[s1], %[rest], %[last], %[s1]\n\t"
+            "ldr %[rest], [%[x2]], #4\n\t"
+            "smlad %[s2], %[rest], %[first], %[s2]\n\t"
+            "ldr %[rest], [%[x2]], #4\n\t"
+            "smlad %[s2], %[rest], %[last], %[s2]\n\t"
+            "ldr %[rest], [%[x3]], #4\n\t"
+            "smlad %[s3], %[rest], %[first], %[s3]\n\t"
+            "ldr %[rest], [%[x3]], #4\n\t"
+            "smlad %[s3], %[rest], %[last], %[s3]"
+            : [first] "=&r"(first), [last] "=&r"(last), [rest] "=&r"(rest), [weights] "+r"(weights), [x0] "+r"(x0),
+              [x1] "+r"(x1), [x2] "+r"(x2), [x3] "+r"(x3), [s0] "+r"(s0), [s1] "+r"(s1), [s2] "+r"(s2), [s3] "+r"(s3)
+            :
+            : "memory");
     }
-    for (uint32_t i = 0; i < left; i++) {
+    for (uint32_t i = 0; i < taps % 4; i++) {
         const int32_t w = (int8_t)weights[i];
         s0 += x0[i] * w;
         s1 += x1[i] * w;

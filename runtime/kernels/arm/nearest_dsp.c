@@ -39,22 +39,26 @@ void t3r_nearest_begin_dsp(const t3r_centres *centres, uint32_t first, uint32_t 
     }
 }
 
-/* Scores are below 2^31 in size, as are their parts (nearest.h). */
+/* Scores are below 2^31 in size, as are their parts (nearest.h). From intrinsics gcc 12 has a load for each word. */
 static inline uint32_t nearest_of(const packed_centre *c, uint32_t count, const int16_t p[T3R_DIMENSIONS])
 {
     const int16x2_t p01 = pair_of(p[0], p[1]), p23 = pair_of(p[2], p[3]), p45 = pair_of(p[4], p[5]);
+    const packed_centre *end = c + count, *first = c, *behind = c;
     int32_t least = INT32_MAX;
-    uint32_t nearest = 0;
-    for (uint32_t k = 0; k < count; k++, c++) {
-        int32_t score = __smlad(p01, c->less_pair[0], c->half_norm);
-        score = __smlad(p23, c->less_pair[1], score);
-        score = __smlad(p45, c->less_pair[2], score);
-        if (score < least) {
-            least = score;
-            nearest = k;
-        }
+    while (c != end) {
+        __asm__("ldmia %[c]!, {r3, r4, r5, r6}\n\t"
+                "smlad r3, %[p01], r4, r3\n\t"
+                "smlad r3, %[p23], r5, r3\n\t"
+                "smlad r3, %[p45], r6, r3\n\t"
+                "cmp r3, %[least]\n\t"
+                "itt lt\n\t"
+                "movlt %[least], r3\n\t"
+                "movlt %[behind], %[c]"
+                : [c] "+r"(c), [least] "+r"(least), [behind] "+r"(behind)
+                : [p01] "r"(p01), [p23] "r"(p23), [p45] "r"(p45)
+                : "r3", "r4", "r5", "r6", "cc", "memory");
     }
-    return nearest;
+    return (uint32_t)(behind - first) - 1;
 }
 
 void t3r_nearest_dsp(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,

@@ -8,7 +8,9 @@
 #include <stdbool.h>
 
 #include "core/fixed.h"
+#include "kernels/lanes/inline.h"
 #include "kernels/scatter_bits.h"
+#include "products.h"
 
 enum { PIXELS_MOST = T3R_BLENDED_ROWS_MOST * T3R_LANES };
 
@@ -21,9 +23,8 @@ typedef struct pixel_term {
 
 typedef struct off_job {
     t3r_wanted *tile;
-    int32_t colour[3];
+    int32_t twice_colour[3];
     uint32_t scale, less;
-    uint32_t squares, products, squares_sum, products_sum;
     int32_t lacking[3], weight;
 } off_job;
 
@@ -37,15 +38,16 @@ static inline __attribute__((always_inline)) bool take_pixel_off(off_job *job, u
                                                                  uint32_t row, uint32_t column, pixel_term *term)
 {
     const int32_t w = (uint16_t)((weight & job->tile->counts[row][column]) << job->scale) >> 1;
-    const int32_t share = w >> job->less;
+    const int32_t share = w >> job->less, w_q31 = w << 16, alpha_q31 = alpha * (1 << 16);
     uint32_t square = 0;
     int32_t product = 0;
-    for (int c = 0; c < 3; c++) {
+    T3R_LANES_UNROLL for (int c = 0; c < 3; c++)
+    {
         uint16_t *behind = &job->tile->pixels.colour_q7[c][row][column];
-        const int32_t step = job->colour[c] - *behind;
-        *behind = (uint16_t)(*behind + mulr_q15(alpha, step));
+        const int32_t twice_step = job->twice_colour[c] - 2 * *behind;
+        *behind = (uint16_t)t3r_add_high_product(*behind, alpha_q31, twice_step); /* alpha x step, rounded */
         if (term != NULL) {
-            const int32_t moves = mulr_q15(w, step), lacks = job->tile->residual_q4[c][row][column];
+            const int32_t moves = t3r_high_product(w_q31, twice_step), lacks = job->tile->residual_q4[c][row][column];
             square += (uint32_t)(moves * moves);
             product += moves * lacks;
             job->lacking[c] += share * lacks;
@@ -54,12 +56,7 @@ static inline __attribute__((always_inline)) bool take_pixel_off(off_job *job, u
     if (term == NULL || w == 0) {
         return false;
     }
-    const uint32_t size = (uint32_t)(product ^ (product >> 31));
     job->weight += share;
-    job->squares |= square;
-    job->squares_sum += square >> 8;
-    job->products |= size;
-    job->products_sum += size >> 8;
     term->square = square;
     term->product = product;
     return true;
@@ -90,61 +87,77 @@ static inline __attribute__((always_inline)) uint32_t take_splat_off(off_job *jo
     return terms == NULL ? 0 : (uint32_t)(term - terms);
 }
 
-/* Factors of two pixels, one in each half. */
+/* The sizes of all terms: their bits, and their sum, each less its last 8 bits. */
+typedef struct term_sizes {
+    uint32_t squares, products, squares_sum, products_sum;
+} term_sizes;
+
+static term_sizes sizes_of(const pixel_term *terms, uint32_t count)
+{
+    term_sizes s = {0, 0, 0, 0};
+    for (const pixel_term *end = terms + count; terms != end; terms++) {
+        const uint32_t size = (uint32_t)(terms->product ^ (terms->product >> 31));
+        s.squares |= terms->square;
+        s.squares_sum += terms->square >> 8;
+        s.products |= size;
+        s.products_sum += size >> 8;
+    }
+    return s;
+}
+
+/* A factor of two pixels. */
+typedef union factor {
+    int16_t one[2];
+    int16x2_t both;
+} factor;
+
 typedef struct pair_factors {
-    int16x2_t product, square, x, y, xx, xy, yy;
-    int16x2_t square_x, square_y, square_xx, square_xy, square_yy;
+    factor product, square, x, y, xx, xy, yy;
+    factor square_x, square_y, square_xx, square_xy, square_yy;
 } pair_factors;
 
 enum { CHUNK = 32 }; /* pairs whose factors are kept at a time */
 
-static inline int16x2_t pair_of(int32_t low, int32_t high)
+static void factors_of(const pixel_term *term, uint32_t count, const t3r_shift_steps square_by,
+                       const t3r_shift_steps product_by, pair_factors *f)
 {
-    return (int16x2_t)(((uint32_t)low & 0xffff) | (uint32_t)high << 16);
-}
-
-static inline __attribute__((always_inline)) void factors_of(const pixel_term term[2], const t3r_shift_steps *square_by,
-                                                             const t3r_shift_steps *product_by, pair_factors *f)
-{
-    int32_t m[2], p[2], x[2], y[2], xx[2], xy[2], yy[2];
-    for (int k = 0; k < 2; k++) {
-        m[k] = (int32_t)(((term[k].square >> square_by->first) + square_by->half) >> square_by->half);
-        p[k] = ((term[k].product >> product_by->first) + (int32_t)product_by->half) >> product_by->half;
-        x[k] = term[k].x_q13;
-        y[k] = term[k].y_q13;
-        xx[k] = mulr_q15(x[k], x[k]);
-        xy[k] = mulr_q15(x[k], y[k]);
-        yy[k] = mulr_q15(y[k], y[k]);
+    for (uint32_t i = 0; i < count; i++, term++) {
+        const uint32_t k = i % 2;
+        pair_factors *to = f + i / 2;
+        const int32_t x = term->x_q13, y = term->y_q13;
+        const int32_t xx = mulr_q15(x, x), xy = mulr_q15(x, y), yy = mulr_q15(y, y);
+        const int32_t m = (int32_t)(((term->square >> square_by.first) + square_by.half) >> square_by.half);
+        const int32_t p = ((term->product >> product_by.first) + (int32_t)product_by.half) >> product_by.half;
+        to->product.one[k] = (int16_t)p;
+        to->square.one[k] = (int16_t)m;
+        to->x.one[k] = (int16_t)x;
+        to->y.one[k] = (int16_t)y;
+        to->xx.one[k] = (int16_t)xx;
+        to->xy.one[k] = (int16_t)xy;
+        to->yy.one[k] = (int16_t)yy;
+        to->square_x.one[k] = (int16_t)mulr_q15(m, x);
+        to->square_y.one[k] = (int16_t)mulr_q15(m, y);
+        to->square_xx.one[k] = (int16_t)mulr_q15(m, xx);
+        to->square_xy.one[k] = (int16_t)mulr_q15(m, xy);
+        to->square_yy.one[k] = (int16_t)mulr_q15(m, yy);
     }
-    f->product = pair_of(p[0], p[1]);
-    f->square = pair_of(m[0], m[1]);
-    f->x = pair_of(x[0], x[1]);
-    f->y = pair_of(y[0], y[1]);
-    f->xx = pair_of(xx[0], xx[1]);
-    f->xy = pair_of(xy[0], xy[1]);
-    f->yy = pair_of(yy[0], yy[1]);
-    f->square_x = pair_of(mulr_q15(m[0], x[0]), mulr_q15(m[1], x[1]));
-    f->square_y = pair_of(mulr_q15(m[0], y[0]), mulr_q15(m[1], y[1]));
-    f->square_xx = pair_of(mulr_q15(m[0], xx[0]), mulr_q15(m[1], xx[1]));
-    f->square_xy = pair_of(mulr_q15(m[0], xy[0]), mulr_q15(m[1], xy[1]));
-    f->square_yy = pair_of(mulr_q15(m[0], yy[0]), mulr_q15(m[1], yy[1]));
 }
 
 /* A sum with the products of two pixels; modulo 2^32. */
-static inline uint32_t added(uint32_t sum, int16x2_t a, int16x2_t b)
+static inline uint32_t added(uint32_t sum, factor a, factor b)
 {
-    return (uint32_t)__smlad(a, b, (int32_t)sum);
+    return (uint32_t)__smlad(a.both, b.both, (int32_t)sum);
 }
 
 /* Orders 0 to 2 */
 static inline __attribute__((always_inline)) void add_low(const pair_factors *f, uint32_t pairs, bool of_squares,
                                                           uint32_t sums[T3R_REFINE_MOMENTS_2])
 {
-    const int16x2_t one = pair_of(1, 1);
+    const factor one = {.one = {1, 1}};
     uint32_t s0 = sums[T3R_M_1], s1 = sums[T3R_M_X], s2 = sums[T3R_M_Y];
     uint32_t s3 = sums[T3R_M_X2], s4 = sums[T3R_M_XY], s5 = sums[T3R_M_Y2];
     for (const pair_factors *end = f + pairs; f != end; f++) {
-        const int16x2_t term = of_squares ? f->square : f->product;
+        const factor term = of_squares ? f->square : f->product;
         s0 = added(s0, term, one);
         s1 = added(s1, term, f->x);
         s2 = added(s2, term, f->y);
@@ -156,25 +169,30 @@ static inline __attribute__((always_inline)) void add_low(const pair_factors *f,
     sums[T3R_M_X2] = s3, sums[T3R_M_XY] = s4, sums[T3R_M_Y2] = s5;
 }
 
-/* Orders 3 and 4 */
-static void add_high(const pair_factors *f, uint32_t pairs, uint32_t sums[T3R_REFINE_MOMENTS_4])
+static void add_order_3(const pair_factors *f, uint32_t pairs, uint32_t sums[T3R_REFINE_MOMENTS_4])
 {
     uint32_t s0 = sums[T3R_M_X3], s1 = sums[T3R_M_X2Y], s2 = sums[T3R_M_XY2], s3 = sums[T3R_M_Y3];
-    uint32_t s4 = sums[T3R_M_X4], s5 = sums[T3R_M_X3Y], s6 = sums[T3R_M_X2Y2], s7 = sums[T3R_M_XY3];
-    uint32_t s8 = sums[T3R_M_Y4];
     for (const pair_factors *end = f + pairs; f != end; f++) {
         s0 = added(s0, f->square_x, f->xx);
         s1 = added(s1, f->square_x, f->xy);
         s2 = added(s2, f->square_x, f->yy);
         s3 = added(s3, f->square_y, f->yy);
-        s4 = added(s4, f->square_xx, f->xx);
-        s5 = added(s5, f->square_xx, f->xy);
-        s6 = added(s6, f->square_xx, f->yy);
-        s7 = added(s7, f->square_xy, f->yy);
-        s8 = added(s8, f->square_yy, f->yy);
     }
     sums[T3R_M_X3] = s0, sums[T3R_M_X2Y] = s1, sums[T3R_M_XY2] = s2, sums[T3R_M_Y3] = s3;
-    sums[T3R_M_X4] = s4, sums[T3R_M_X3Y] = s5, sums[T3R_M_X2Y2] = s6, sums[T3R_M_XY3] = s7, sums[T3R_M_Y4] = s8;
+}
+
+static void add_order_4(const pair_factors *f, uint32_t pairs, uint32_t sums[T3R_REFINE_MOMENTS_4])
+{
+    uint32_t s0 = sums[T3R_M_X4], s1 = sums[T3R_M_X3Y], s2 = sums[T3R_M_X2Y2], s3 = sums[T3R_M_XY3];
+    uint32_t s4 = sums[T3R_M_Y4];
+    for (const pair_factors *end = f + pairs; f != end; f++) {
+        s0 = added(s0, f->square_xx, f->xx);
+        s1 = added(s1, f->square_xx, f->xy);
+        s2 = added(s2, f->square_xx, f->yy);
+        s3 = added(s3, f->square_xy, f->yy);
+        s4 = added(s4, f->square_yy, f->yy);
+    }
+    sums[T3R_M_X4] = s0, sums[T3R_M_X3Y] = s1, sums[T3R_M_X2Y2] = s2, sums[T3R_M_XY3] = s3, sums[T3R_M_Y4] = s4;
 }
 
 void t3r_scatter_dsp(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, t3r_refine_sums *restrict to)
@@ -182,7 +200,7 @@ void t3r_scatter_dsp(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, 
     const uint32_t all_rows = t3r_rows_of(splat->span), less = t3r_count_bits(all_rows);
     off_job job = {.tile = tile, .scale = splat->scale, .less = less};
     for (int c = 0; c < 3; c++) {
-        job.colour[c] = splat->span->colour_q7[c];
+        job.twice_colour[c] = 2 * splat->span->colour_q7[c];
     }
     if (to == NULL) {
         (void)take_splat_off(&job, splat, NULL);
@@ -191,19 +209,19 @@ void t3r_scatter_dsp(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, 
     pixel_term terms[PIXELS_MOST + 1];
     const uint32_t count = take_splat_off(&job, splat, terms);
     terms[count] = (pixel_term){0, 0, 0, 0}; /* behind the last, for a whole pair */
-    const uint32_t square_shift = t3r_term_shift(job.squares, job.squares_sum, all_rows);
-    const uint32_t product_shift = t3r_term_shift(job.products, job.products_sum, all_rows);
+    const term_sizes sizes = sizes_of(terms, count);
+    const uint32_t square_shift = t3r_term_shift(sizes.squares, sizes.squares_sum, all_rows);
+    const uint32_t product_shift = t3r_term_shift(sizes.products, sizes.products_sum, all_rows);
     const t3r_shift_steps square_by = t3r_shift_steps_of(square_shift), product_by = t3r_shift_steps_of(product_shift);
     uint32_t gradient[T3R_REFINE_MOMENTS_2] = {0}, curvature[T3R_REFINE_MOMENTS_4] = {0};
     for (uint32_t first = 0; first < count; first += 2 * CHUNK) {
         pair_factors f[CHUNK];
         const uint32_t pairs = T3R_MIN((count - first + 1) / 2, CHUNK);
-        for (uint32_t i = 0; i < pairs; i++) {
-            factors_of(&terms[first + 2 * i], &square_by, &product_by, &f[i]);
-        }
+        factors_of(terms + first, 2 * pairs, square_by, product_by, f);
         add_low(f, pairs, false, gradient);
         add_low(f, pairs, true, curvature);
-        add_high(f, pairs, curvature);
+        add_order_3(f, pairs, curvature);
+        add_order_4(f, pairs, curvature);
     }
     const t3r_sum_shifts by = t3r_sum_shifts_of(to->area, splat->scale, less, square_shift, product_shift);
     t3r_add_scattered(job.lacking, job.weight, gradient, curvature, &by, t3r_moment_most(to->area, splat->pixels), to);

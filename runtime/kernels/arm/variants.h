@@ -33,7 +33,9 @@
 #define T3R_MVE_VARIANTS_(X)
 #endif
 
-#if defined(__ARM_FEATURE_DSP) && __ARM_ARCH_PROFILE == 'M' && !defined(T3R_MVE) && !defined(__ARM_BIG_ENDIAN)
+/* Likewise. */
+#if defined(__ARM_FEATURE_DSP) && defined(__OPTIMIZE__) && __ARM_ARCH_PROFILE == 'M' && !defined(T3R_MVE) &&           \
+    !defined(__ARM_BIG_ENDIAN)
 #define T3R_DSP 1
 #if T3R_FEATURE_LEARNED
 #define T3R_DSP_LEARNED_VARIANTS_(X) X(convolve, T3R_CPU_DSP, t3r_convolve_dsp)

@@ -1,0 +1,23 @@
+/* The upper halves of products of 32 bits, which a Cortex-M with DSP instructions rounds in one. */
+#ifndef T3R_KERNELS_ARM_PRODUCTS_H
+#define T3R_KERNELS_ARM_PRODUCTS_H
+
+#include <stdint.h>
+
+/* sum + (a b + 2^31) / 2^32, rounded down */
+static inline int32_t t3r_add_high_product(int32_t sum, int32_t a, int32_t b)
+{
+    int32_t to;
+    __asm__("smmlar %0, %1, %2, %3" : "=r"(to) : "r"(a), "r"(b), "r"(sum));
+    return to;
+}
+
+/* The same without a sum. */
+static inline int32_t t3r_high_product(int32_t a, int32_t b)
+{
+    int32_t to;
+    __asm__("smmulr %0, %1, %2" : "=r"(to) : "r"(a), "r"(b));
+    return to;
+}
+
+#endif
