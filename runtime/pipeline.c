@@ -13,6 +13,7 @@
 #include "depth/depth.h"
 #include "pointmap/exposure.h"
 #include "core/cut.h"
+#include "core/features.h"
 #include "core/fixed.h"
 #include "core/memory.h"
 #include "pointmap/flying_pixels.h"
@@ -229,7 +230,7 @@ static void view_texture(void *context, uint32_t index, uint32_t worker)
         return;
     }
     texture_of(rt, &job->views[v], worker);
-    if (rt->config.warm) {
+    if (t3r_is_warm(&rt->config)) {
         memcpy(t3r_kept_texture(rt, v), job->views[v].texture, bytes);
     }
 }
@@ -269,7 +270,7 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     if (rt->config.depth == T3R_DEPTH_STEREO) {
         t3r_stereo_clear(views, rt->views);
     }
-    if (!rt->reuse.centres || !t3r_is_in_frame(rt, views)) {
+    if (!t3r_is_warm(&rt->config) || !rt->reuse.centres || !t3r_is_in_frame(rt, views)) {
         t3r_reuse_nothing(rt);
     }
     rt->follows = rt->reuse.centres;
@@ -334,7 +335,7 @@ t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view
 static void budget(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings,
                    const t3r_importance *importance)
 {
-    if (importance != NULL) {
+    if (t3r_allocates(settings, T3R_ALLOCATE_GIVEN)) {
         t3r_importance_keys(views, rt->views, importance);
     }
     const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK), &rt->kernels};

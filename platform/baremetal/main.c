@@ -6,16 +6,16 @@
  *
  * The first `views` frames are the context; the next one's camera is drawn. */
 #include <stdbool.h>
-#include <string.h>
 
 #include "core/hash.h"
-#include "frame_reader.h"
+#include "frames.h"
 #include "marks.h"
 #include "options.h"
 #include "ram.h"
 #include "report.h"
 #include "semihost.h"
 #include "stack.h"
+#include "text_length.h"
 #include "trim3r.h"
 #ifdef HEAD
 #include "trim3r_heads.h"
@@ -42,14 +42,8 @@ static uint8_t *deal(ram_part *left, size_t bytes)
 static void check(t3r_status status, const char *what)
 {
     if (status != T3R_OK) {
-        report_text("error: ", what, ": ", t3r_error_text(status));
-        semihost_exit(1);
+        report_failure(what, (uint32_t) - (int32_t)status); /* t3r_error_text() would take more than a kilobyte */
     }
-}
-
-static int read_file(void *user, uint64_t offset, void *bytes, size_t count)
-{
-    return semihost_read(*(const int32_t *)user, (uint32_t)offset, bytes, count);
 }
 
 static int on_progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
@@ -94,35 +88,27 @@ static t3r_config configure(const options *o)
     return config;
 }
 
-/* What this core has: the compiler was told. */
-static uint32_t features_of_core(void)
+/* The kernels for this core, as far as the compiler knows it. PLAIN_C links none, for firmwares that must be small. */
+static t3r_status choose_kernels(t3r_runtime *rt)
 {
-#if defined(__ARM_FEATURE_MVE)
-    return T3R_CPU_MVE;
+    (void)rt;
+#if defined(PLAIN_C)
+    return T3R_OK;
+#elif defined(__ARM_FEATURE_MVE)
+    return t3r_set_cpu(rt, T3R_CPU_MVE);
 #elif defined(__ARM_FEATURE_DSP)
-    return T3R_CPU_DSP;
+    return t3r_set_cpu(rt, T3R_CPU_DSP);
 #elif defined(__wasm_simd128__)
-    return T3R_CPU_SIMD128;
+    return t3r_set_cpu(rt, T3R_CPU_SIMD128);
 #else
-    return 0;
+    return T3R_OK;
 #endif
-}
-
-static void next_frame(t3r_frame_reader *reader, t3r_capture_frame *frame)
-{
-    if (t3r_frame_reader_next(reader, frame) != T3R_CAPTURE_FRAME) {
-        report_text("error: frames: ", reader->error != NULL ? reader->error : "there are too few", "", "");
-        semihost_exit(1);
-    }
-    if (!frame->has_pose || !frame->has_intrinsics) {
-        report_failure("frame without a pose or intrinsics", frame->index);
-    }
 }
 
 static void write_file(const char *path, const char *head, const void *bytes, size_t count)
 {
     const int32_t file = semihost_open(path, SEMIHOST_WRITE);
-    if (file <= 0 || semihost_write(file, head, strlen(head)) != 0 || semihost_write(file, bytes, count) != 0) {
+    if (file <= 0 || semihost_write(file, head, text_length(head)) != 0 || semihost_write(file, bytes, count) != 0) {
         report_text("error: ", path, ": it cannot be written", "");
         semihost_exit(1);
     }
@@ -131,77 +117,69 @@ static void write_file(const char *path, const char *head, const void *bytes, si
 
 int main(void)
 {
-    static t3r_frame_reader reader;
     static options o;
     ram_part left = ram_free();
     options_read(&o);
-    int32_t file = semihost_open(o.frames, SEMIHOST_READ);
-    if (file <= 0) {
-        report_text("error: ", o.frames, ": it cannot be read", "");
-        return 1;
-    }
-    const t3r_byte_source source = {read_file, &file, (uint64_t)semihost_length(file)};
     const size_t pixels = (size_t)o.width * o.height;
-    const size_t colour_room = pixels * 3 + T3R_FRAME_READER_HEAD_BYTES;
-    const size_t depth_room = pixels * 2 + T3R_FRAME_READER_HEAD_BYTES;
-    uint8_t *colour = deal(&left, colour_room), *depth = deal(&left, depth_room);
-    if (t3r_frame_reader_open(&reader, &source, colour, colour_room, depth, depth_room) != 0) {
-        report_text("error: ", o.frames, ": ", reader.error);
-        return 1;
-    }
+    frames_room room_of_frame = {.colour_bytes = pixels * 3 + frames_head_bytes,
+                                 .depth_bytes = pixels * 2 + frames_head_bytes};
+    room_of_frame.colour = deal(&left, room_of_frame.colour_bytes);
+    room_of_frame.depth = deal(&left, room_of_frame.depth_bytes);
+    frames_open(o.frames, o.width, o.height, &room_of_frame);
 
     const t3r_config config = configure(&o);
-    static t3r_plan_info plan; /* too large for a small stack */
-    check(t3r_plan(&config, &plan), "plan");
+    size_t least = 0, most = 0;
+    check(t3r_plan_bytes(&config, &least, &most), "t3r_plan_bytes() returned minus");
     const size_t room = (size_t)(left.end - left.begin) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
-    const size_t bytes = o.arena != 0 ? o.arena : plan.bytes < room ? plan.bytes : room;
-    if (bytes < plan.min_bytes) {
-        report_failure("the arena lacks this many bytes:", (uint32_t)(plan.min_bytes - bytes));
+    const size_t bytes = o.arena != 0 ? o.arena : most < room ? most : room;
+    if (bytes < least) {
+        report_failure("the arena lacks this many bytes:", (uint32_t)(least - bytes));
     }
     t3r_runtime *rt;
-    check(t3r_init(&rt, deal(&left, bytes), bytes, &config), "init");
+    check(t3r_init(&rt, deal(&left, bytes), bytes, &config), "t3r_init() returned minus");
     if (o.plain == 0) {
-        check(t3r_set_cpu(rt, features_of_core()), "processor");
+        check(choose_kernels(rt), "t3r_set_cpu() returned minus");
     }
     static hashes heard;
     const t3r_hooks hooks = {.user = &heard, .progress = on_progress, .stage_hash = o.hashes != 0 ? on_hash : NULL};
-    check(t3r_set_hooks(rt, &hooks), "hooks");
+    check(t3r_set_hooks(rt, &hooks), "t3r_set_hooks() returned minus");
 #ifdef HEAD
     if (o.learned != 0) {
-        check(t3r_bind_head(rt, HEAD, HEAD_BYTES), "head");
+        check(t3r_bind_head(rt, HEAD, HEAD_BYTES), "t3r_bind_head() returned minus");
     }
 #endif
 
-    t3r_capture_frame frame;
+    t3r_frame frame;
+    t3r_camera camera;
     for (uint32_t view = 0; view < o.views; view++) {
         mark_other();
-        next_frame(&reader, &frame);
+        frames_next(&frame, &camera);
         mark_stage(T3R_STAGE_IMAGE);
-        check(t3r_add_view(rt, &frame.frame, &frame.camera), "view");
+        check(t3r_add_view(rt, &frame, &camera), "t3r_add_view() returned minus");
     }
     t3r_scene scene;
-    check(t3r_reconstruct(rt, NULL, &scene), "reconstruct");
+    check(t3r_reconstruct(rt, NULL, &scene), "t3r_reconstruct() returned minus");
     mark_other();
     if (o.scene[0] != '\0') {
         write_file(o.scene, "", scene.gaussians, scene.count * sizeof *scene.gaussians);
     }
-    next_frame(&reader, &frame);
-    const t3r_target target = {.width = o.width, .height = o.height, .rgb = colour, .rgb_stride_bytes = o.width * 3};
-    check(t3r_render(rt, &frame.camera, &target), "render");
+    frames_next(&frame, &camera);
+    uint8_t *picture = room_of_frame.colour;
+    const t3r_target target = {.width = o.width, .height = o.height, .rgb = picture, .rgb_stride_bytes = o.width * 3};
+    check(t3r_render(rt, &camera, &target), "t3r_render() returned minus");
     mark_other();
     if (o.view[0] != '\0') {
-        write_file(o.view, report_ppm_head(o.width, o.height), colour, pixels * 3);
+        write_file(o.view, report_ppm_head(o.width, o.height), picture, pixels * 3);
     }
     if (o.hashes != 0) {
-        report_hashes(&heard, colour, pixels * 3);
+        report_hashes(&heard, picture, pixels * 3);
     }
     report_number("gaussians", scene.count);
     report_number("arena_bytes", (uint32_t)bytes);
-    report_number("arena_min_bytes", (uint32_t)plan.min_bytes);
+    report_number("arena_min_bytes", (uint32_t)least);
     report_number("data_bytes", (uint32_t)(ram_data().end - ram_data().begin));
     report_number("memory_bytes", (uint32_t)(left.begin - ram_free().begin));
     report_number("stack_bytes", stack_used_bytes());
     report_number("stack_room_bytes", stack_bytes());
-    semihost_close(file);
     return 0;
 }

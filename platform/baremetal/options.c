@@ -1,7 +1,6 @@
 #include "options.h"
 
 #include <stddef.h>
-#include <string.h>
 
 #include "report.h"
 #include "semihost.h"
@@ -36,8 +35,11 @@ static _Noreturn void refuse(const char *word, const char *why)
 /* The text behind "key=", or NULL. */
 static const char *value_of(const char *word, const char *key)
 {
-    const size_t count = strlen(key);
-    return strncmp(word, key, count) == 0 && word[count] == '=' ? word + count + 1 : NULL;
+    while (*key != '\0' && *word == *key) {
+        word++;
+        key++;
+    }
+    return *key == '\0' && *word == '=' ? word + 1 : NULL;
 }
 
 static uint32_t number(const char *word, const char *text)
@@ -82,11 +84,12 @@ void options_read(options *o)
         refuse("command line", "too long");
     }
     for (char *word = line; *word != '\0';) {
-        char *end = strchr(word, ' ');
-        char *next = end != NULL ? end + 1 : word + strlen(word);
-        if (end != NULL) {
-            *end = '\0';
+        char *end = word;
+        while (*end != ' ' && *end != '\0') {
+            end++;
         }
+        char *next = *end == ' ' ? end + 1 : end;
+        *end = '\0';
         if (*word != '\0') {
             take(o, word);
         }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "semihost.h"
+#include "text_length.h"
 
 enum { LINE_BYTES = 256, NUMBER_BYTES = 11 };
 
@@ -20,7 +21,7 @@ static const char *decimal(uint32_t value, char text[NUMBER_BYTES])
 
 static void append(char *line, const char *text)
 {
-    const size_t used = strlen(line), count = strlen(text), room = LINE_BYTES - 1 - used;
+    const size_t used = text_length(line), count = text_length(text), room = LINE_BYTES - 1 - used;
     memcpy(line + used, text, count < room ? count : room);
     line[used + (count < room ? count : room)] = '\0';
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "semihost_call.h"
+#include "text_length.h"
 
 enum {
     SYS_OPEN = 0x01,
@@ -19,7 +20,7 @@ enum {
 
 int32_t semihost_open(const char *path, uint32_t mode)
 {
-    const uint32_t block[3] = {(uint32_t)(uintptr_t)path, mode, (uint32_t)strlen(path)};
+    const uint32_t block[3] = {(uint32_t)(uintptr_t)path, mode, (uint32_t)text_length(path)};
     return semihost_call(SYS_OPEN, block);
 }
 
@@ -52,7 +53,7 @@ void semihost_print(const char *text)
 {
     const int32_t console = semihost_open(":tt", SEMIHOST_WRITE);
     if (console > 0) {
-        semihost_write(console, text, strlen(text));
+        semihost_write(console, text, text_length(text));
         semihost_close(console);
     }
 }
@@ -63,8 +64,12 @@ int semihost_command_line(char *text, size_t room)
     if (semihost_call(SYS_GET_CMDLINE, block) != 0) {
         return -1;
     }
-    const char *behind = strchr(text, ' ');
-    memmove(text, behind != NULL ? behind + 1 : "", behind != NULL ? strlen(behind + 1) + 1 : 1);
+    const char *behind = text; /* the program's name */
+    while (*behind != ' ' && *behind != '\0') {
+        behind++;
+    }
+    behind += *behind == ' ';
+    memmove(text, behind, text_length(behind) + 1);
     return 0;
 }
 

@@ -1,4 +1,5 @@
 /* Context views: frames to planes, and what stereo found of them. */
+#include "core/features.h"
 #include "core/memory.h"
 #include "layout/arena.h"
 #include "state/state.h"
@@ -26,7 +27,7 @@ static uint32_t slot_of_next(const t3r_runtime *rt)
 static bool takes_view(const t3r_runtime *rt)
 {
     return !rt->config.stream &&
-           (rt->config.warm ? rt->config.views > 0 : rt->views < rt->config.views && !rt->has_scene);
+           (t3r_is_warm(&rt->config) ? rt->config.views > 0 : rt->views < rt->config.views && !rt->has_scene);
 }
 
 /* Whether the frame's depth has no measurement at all. What cannot be read is for others to refuse. */

@@ -127,20 +127,21 @@ bool t3r_are_ranked(const t3r_cluster *clusters, uint32_t cluster_count)
 
 /* --- keys --------------------------------------------------------------------------------------------------------- */
 
-static bool follows_texture(t3r_allocation allocation)
+static bool follows_texture(const t3r_budget_settings *settings)
 {
-    return allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL;
+    return !T3R_FEATURE_ALLOCATIONS || t3r_allocates(settings, T3R_ALLOCATE_DENSITY) ||
+           t3r_allocates(settings, T3R_ALLOCATE_PIXEL);
 }
 
-static bool by_cluster(t3r_allocation allocation)
+static bool by_cluster(const t3r_budget_settings *settings)
 {
-    return allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PAPER;
+    return t3r_allocates(settings, T3R_ALLOCATE_DENSITY) || t3r_allocates(settings, T3R_ALLOCATE_PAPER);
 }
 
 /* gamma log2(texture + floor), at most 32 */
 int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings)
 {
-    if (!follows_texture(settings->allocation)) {
+    if (!follows_texture(settings)) {
         return 0;
     }
     int64_t log_q16 = t3r_log2_q16((uint32_t)texture_q4 + T3R_TEXTURE_FLOOR_Q4);
@@ -150,7 +151,7 @@ int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *setti
 /* gamma log2(texture + floor) of a run. */
 static void find_wanted(const rows_of_view *job, const uint16_t *texture_q4, uint32_t count, uint16_t *wanted_q10)
 {
-    if (follows_texture(job->settings->allocation)) {
+    if (follows_texture(job->settings)) {
         job->kernels->wanted_row(texture_q4, count, job->settings->gamma_q8, wanted_q10);
     } else {
         memset(wanted_q10, 0, count * sizeof *wanted_q10);
@@ -186,7 +187,7 @@ static void key_rows(void *context, uint32_t begin, uint32_t end, uint32_t worke
     const rows_of_view *job = context;
     const t3r_view *view = job->view;
     const uint32_t number = job->settings->shift + job->number, seed = t3r_mix32(job->settings->seed);
-    const bool is_white = job->settings->allocation == T3R_ALLOCATE_RANDOM;
+    const bool is_white = t3r_allocates(job->settings, T3R_ALLOCATE_RANDOM);
     for (uint32_t y = begin; y < end; y++) {
         uint16_t rank[T3R_BLUE_NOISE_SIDE], wanted_q10[T3R_KEY_RUN];
         find_ranks(number, y, rank);
@@ -329,8 +330,7 @@ typedef struct grouping {
 
 static inline grouping grouping_of(const t3r_budget_settings *settings)
 {
-    return (grouping){settings->clusters, by_cluster(settings->allocation) ? UINT32_MAX : 0,
-                      t3r_deferring_marks(settings)};
+    return (grouping){settings->clusters, by_cluster(settings) ? UINT32_MAX : 0, t3r_deferring_marks(settings)};
 }
 
 static inline uint32_t group_of(const t3r_view *view, size_t pixel, const grouping *groups)
@@ -534,9 +534,9 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
         clusters[k].quota = 0;
     }
     uint64_t budget = T3R_MIN(settings->gaussians, valid);
-    if (settings->allocation == T3R_ALLOCATE_DENSITY) {
+    if (t3r_allocates(settings, T3R_ALLOCATE_DENSITY)) {
         quotas_by_density(clusters, settings->clusters, settings, budget);
-    } else if (settings->allocation == T3R_ALLOCATE_PAPER) {
+    } else if (t3r_allocates(settings, T3R_ALLOCATE_PAPER)) {
         quotas_by_paper(clusters, settings->clusters, settings, budget, valid);
     } else {
         clusters[0].quota = (uint32_t)budget;
@@ -544,7 +544,7 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     t3r_cluster *deferred = &clusters[settings->clusters];
     deferred->quota = (uint32_t)T3R_MIN(settings->gaussians - budget, deferred->points);
     hold_quotas(clusters, settings->clusters + 1, settings->gaussians);
-    const bool given = settings->allocation == T3R_ALLOCATE_GIVEN;
+    const bool given = t3r_allocates(settings, T3R_ALLOCATE_GIVEN);
     if (!given) {
         t3r_budget_keys(views, count, settings, work);
     }
@@ -566,7 +566,7 @@ int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget
     if (g >= settings->clusters) {
         return 0; /* retained where all others are, so that nothing about it is left for it to cover */
     }
-    if (settings->allocation == T3R_ALLOCATE_GIVEN) {
+    if (t3r_allocates(settings, T3R_ALLOCATE_GIVEN)) {
         return t3r_log_share_q10(view, pixel, clusters);
     }
     const t3r_cluster *group = &clusters[g];

@@ -44,11 +44,18 @@ typedef struct t3r_budget_work {
     const t3r_kernels *kernels;
 } t3r_budget_work;
 
+/* Whether the settings are those of an allocation. The compiler knows that they are not of one that is left out. */
+static inline bool t3r_allocates(const t3r_budget_settings *settings, t3r_allocation allocation)
+{
+    const bool is_by_density = allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL;
+    return (T3R_FEATURE_ALLOCATIONS || is_by_density) && settings->allocation == allocation;
+}
+
 /* The marks of points that are retained only once all others are. */
 static inline uint8_t t3r_deferring_marks(const t3r_budget_settings *settings)
 {
     const uint8_t covered = settings->pass_over_covered ? T3R_MARK_COVERED : 0;
-    return settings->allocation == T3R_ALLOCATE_GIVEN ? 0 : (uint8_t)(T3R_MARK_DOUBTFUL | covered);
+    return t3r_allocates(settings, T3R_ALLOCATE_GIVEN) ? 0 : (uint8_t)(T3R_MARK_DOUBTFUL | covered);
 }
 
 /* Whether a point is retained only once all others are: the doubtful ones, and with pass_over_covered those that

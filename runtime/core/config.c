@@ -81,7 +81,12 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
     X("this library was built without stereo", c->depth == T3R_DEPTH_STEREO ? T3R_HAS_STEREO : 0u)                     \
     X("this library was built without streams", c->stream ? T3R_HAS_STREAMS : 0u)                                      \
     X("this library was built without this head", t3r_feature_of_head(c->head))                                        \
-    X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)
+    X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)                       \
+    X("this library was built without comparison of views", c->views > 1 || c->stream ? T3R_HAS_COMPARISON : 0u)       \
+    X("this library was built without this allocation", t3r_feature_of_allocation(c->allocation))                      \
+    X("this library was built without this wavelet", t3r_feature_of_wavelet(c->wavelet))                               \
+    X("this library was built without several workers", c->workers > 1 ? T3R_HAS_WORKERS : 0u)                         \
+    X("this library was built without builds that follow one another", c->warm ? T3R_HAS_WARM : 0u)
 
 #define BOUNDS(text, value, low, high) {(uint32_t)(value), (low), (high)},
 #define TEXT(text, value, low, high) text,
@@ -92,7 +97,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
 static const char *const texts[] = {
     "no configuration", RANGES(TEXT) "the arena would be larger than this machine can address", NEEDS(NEED_TEXT)};
 
-enum { NEEDS_COUNT = 4, FAULTS = sizeof texts / sizeof texts[0], FIRST_NEED = FAULTS - NEEDS_COUNT };
+enum { NEEDS_COUNT = 9, FAULTS = sizeof texts / sizeof texts[0], FIRST_NEED = FAULTS - NEEDS_COUNT };
 
 uint64_t t3r_most_arena_bytes(const t3r_config *c)
 {

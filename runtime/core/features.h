@@ -9,7 +9,10 @@
 #define T3R_FEATURES_BUILT                                                                                             \
     ((T3R_FEATURE_STEREO ? T3R_HAS_STEREO : 0u) | (T3R_FEATURE_STREAMS ? T3R_HAS_STREAMS : 0u) |                       \
      (T3R_FEATURE_LEARNED ? T3R_HAS_LEARNED : 0u) | (T3R_FEATURE_MOMENT ? T3R_HAS_MOMENT : 0u) |                       \
-     (T3R_FEATURE_REFINEMENT ? T3R_HAS_REFINEMENT : 0u))
+     (T3R_FEATURE_REFINEMENT ? T3R_HAS_REFINEMENT : 0u) | (T3R_FEATURE_LENSES ? T3R_HAS_LENSES : 0u) |                 \
+     (T3R_FEATURE_COMPARISON ? T3R_HAS_COMPARISON : 0u) | (T3R_FEATURE_ALLOCATIONS ? T3R_HAS_ALLOCATIONS : 0u) |       \
+     (T3R_FEATURE_WAVELETS ? T3R_HAS_WAVELETS : 0u) | (T3R_FEATURE_WORKERS ? T3R_HAS_WORKERS : 0u) |                   \
+     (T3R_FEATURE_WARM ? T3R_HAS_WARM : 0u) | (T3R_FEATURE_LOSS ? T3R_HAS_LOSS : 0u))
 
 /* Whether this library has all of these T3R_HAS_... */
 static inline bool t3r_has(uint32_t features)
@@ -21,6 +24,24 @@ static inline bool t3r_has(uint32_t features)
 static inline uint32_t t3r_feature_of_head(t3r_head head)
 {
     return head == T3R_HEAD_LEARNED ? T3R_HAS_LEARNED : head == T3R_HEAD_MOMENT ? T3R_HAS_MOMENT : 0u;
+}
+
+/* Whether builds follow one another; the compiler knows that they do not where that is left out. */
+static inline bool t3r_is_warm(const t3r_config *config)
+{
+    return T3R_FEATURE_WARM && config->warm != 0;
+}
+
+/* What an allocation needs. */
+static inline uint32_t t3r_feature_of_allocation(t3r_allocation allocation)
+{
+    return allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL ? 0u : T3R_HAS_ALLOCATIONS;
+}
+
+/* What a wavelet needs. */
+static inline uint32_t t3r_feature_of_wavelet(t3r_wavelet wavelet)
+{
+    return wavelet == T3R_WAVELET_DB2 ? 0u : T3R_HAS_WAVELETS;
 }
 
 #endif

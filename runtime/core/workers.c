@@ -30,7 +30,11 @@ static void run_band(void *context, uint32_t index, uint32_t worker)
 
 void t3r_run_rows(const t3r_workers *workers, uint32_t rows, t3r_rows_task *task, void *context)
 {
-    const uint32_t bands = t3r_is_parallel(workers) ? workers->count * BANDS_A_WORKER : 1;
+    if (!t3r_is_parallel(workers)) {
+        task(context, 0, rows, 0);
+        return;
+    }
+    const uint32_t bands = workers->count * BANDS_A_WORKER;
     rows_job job = {task, context, rows, T3R_MAX(T3R_MIN(bands, rows), 1u)};
     t3r_run_tasks(workers, job.bands, run_band, &job);
 }

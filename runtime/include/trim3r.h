@@ -368,8 +368,8 @@ typedef struct t3r_target {
 typedef struct t3r_hooks {
     /* The caller's own, handed to each callback. */
     void *user;
-    /* Called between bounded pieces of long work: a view, a row of a head, a batch, 8 first centres of SuperClusters, 64
-     * tiles, 65,536 splats blended into tiles. Of refinement a piece is 256 splats blended into tiles. With several
+    /* Called between bounded pieces of long work: a view, a row of a head, a batch, 8 first centres of SuperClusters,
+     * 64 tiles, 65,536 splats blended into tiles. Of refinement a piece is 256 splats blended into tiles. With several
      * workers it is 256 tiles, and of a head the views that they share. A return other than 0 cancels the work. */
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
     /* Called with the hash of every stage of t3r_reconstruct(), t3r_rebuild() and t3r_render() (SPEC, "Hash"). */
@@ -465,6 +465,10 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
 /* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does.
  * T3R_ERR_UNSUPPORTED: it is in range, but this library was built without what it asks for. */
 t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan);
+
+/* The two sums of t3r_plan() alone: a firmware that sizes its arena when it runs links no names of buffers then. Errors
+ * are those of t3r_plan(). */
+t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_bytes, size_t *bytes);
 
 /* The inverse: lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, and the
  * budget `gaussians` along with it. It never raises them: begin with the most that you could use, which is width x
@@ -586,9 +590,9 @@ uint32_t t3r_head_crc(const t3r_runtime *rt);
  * and pixels with r = g = b = 0 count as empty.
  *
  * T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than half of the picture lies beyond what the lens can show.
- * T3R_ERR_NO_DEPTH: there is no depth plane, or not one measurement in it. T3R_ERR_STATE: there is no room for another
- * view, or there is a scene already (t3r_reset()). After an error no view is added, and an analysis that was kept is
- * discarded.
+ * T3R_ERR_UNSUPPORTED: a lens that distorts, and this library has none. T3R_ERR_NO_DEPTH: no depth plane, or not one
+ * measurement in it. T3R_ERR_STATE: there is no room for another view, or there is a scene already (t3r_reset()).
+ * After an error no view is added, and an analysis that was kept is discarded.
  *
  * With `warm` a view may follow a scene, which it discards, and there is always room: the oldest view is replaced, and
  * the new one takes its number. T3R_ERR_NO_DEPTH of a frame whose measurements are lost in resizing discards all. */
@@ -610,7 +614,7 @@ t3r_status t3r_reset(t3r_runtime *rt);
  * the time of two builds and more, and the trials' stages are hashed too.
  *
  * T3R_ERR_ARGUMENT: a field of the request is out of its range. T3R_ERR_UNSUPPORTED: this library was built without the
- * head, or without the refinement that a bounded loss needs. T3R_ERR_STATE: there are no views (by stereo, fewer
+ * head, without the allocation, or without bounded losses. T3R_ERR_STATE: there are no views (by stereo, fewer
  * than two); the learned head has no weights; the allocation is `given` and no importance came; or a bounded loss
  * without keep_analysis and refinements. After these three everything is as it was. T3R_ERR_CAMERA: a view stands more
  * than 1,024 scene units from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() has the

@@ -24,9 +24,46 @@
 #define T3R_FEATURE_MOMENT 1
 #endif
 
-/* Refinement on the context views, and budgets by a bounded loss, which need it. */
+/* Refinement on the context views. */
 #ifndef T3R_FEATURE_REFINEMENT
 #define T3R_FEATURE_REFINEMENT 1
+#endif
+
+/* Budgets by a bounded loss, which refinement measures: t3r_request.max_loss_q8. */
+#ifndef T3R_FEATURE_LOSS
+#define T3R_FEATURE_LOSS T3R_FEATURE_REFINEMENT
+#elif T3R_FEATURE_LOSS && !T3R_FEATURE_REFINEMENT
+#error "T3R_FEATURE_LOSS needs T3R_FEATURE_REFINEMENT"
+#endif
+
+/* Lenses with distortion: t3r_camera.distortion. */
+#ifndef T3R_FEATURE_LENSES
+#define T3R_FEATURE_LENSES 1
+#endif
+
+/* Comparison of views: t3r_config.views above 1, and streams, which need it. */
+#ifndef T3R_FEATURE_COMPARISON
+#define T3R_FEATURE_COMPARISON 1
+#endif
+
+/* Allocations of the budget other than by density: `paper`, `uniform`, `random` and `given`. */
+#ifndef T3R_FEATURE_ALLOCATIONS
+#define T3R_FEATURE_ALLOCATIONS 1
+#endif
+
+/* Wavelets other than db2. */
+#ifndef T3R_FEATURE_WAVELETS
+#define T3R_FEATURE_WAVELETS 1
+#endif
+
+/* Several workers: t3r_config.workers above 1. */
+#ifndef T3R_FEATURE_WORKERS
+#define T3R_FEATURE_WORKERS 1
+#endif
+
+/* Builds that follow one another: t3r_config.warm. */
+#ifndef T3R_FEATURE_WARM
+#define T3R_FEATURE_WARM 1
 #endif
 
 /* The features as bits: what t3r_features() returns. */
@@ -35,5 +72,12 @@
 #define T3R_HAS_LEARNED (1u << 2)
 #define T3R_HAS_MOMENT (1u << 3)
 #define T3R_HAS_REFINEMENT (1u << 4)
+#define T3R_HAS_LENSES (1u << 5)
+#define T3R_HAS_COMPARISON (1u << 6)
+#define T3R_HAS_ALLOCATIONS (1u << 7)
+#define T3R_HAS_WAVELETS (1u << 8)
+#define T3R_HAS_WORKERS (1u << 9)
+#define T3R_HAS_WARM (1u << 10)
+#define T3R_HAS_LOSS (1u << 11)
 
 #endif

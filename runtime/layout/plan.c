@@ -4,18 +4,28 @@
 #include "core/fixed.h"
 #include "state/state.h"
 
+t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_bytes, size_t *bytes)
+{
+    T3R_REFUSE_UNLESS(config != NULL && min_bytes != NULL && bytes != NULL, T3R_ERR_ARGUMENT);
+    const t3r_status status = t3r_config_check(config);
+    if (status == T3R_OK) {
+        t3r_layout layout;
+        (void)t3r_lay_out(config, 0, &layout); /* for the two sums */
+        *min_bytes = layout.min_bytes;
+        *bytes = layout.bytes;
+    }
+    return status;
+}
+
 t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
 {
-    T3R_REFUSE_UNLESS(config != NULL && plan != NULL, T3R_ERR_ARGUMENT);
-    const t3r_status status = t3r_config_check(config);
+    T3R_REFUSE_UNLESS(plan != NULL, T3R_ERR_ARGUMENT);
+    const t3r_status status = t3r_plan_bytes(config, &plan->min_bytes, &plan->bytes);
     if (status != T3R_OK) {
         return status;
     }
     t3r_layout layout;
-    (void)t3r_lay_out(config, 0, &layout); /* for the two sums */
-    (void)t3r_lay_out(config, layout.bytes, &layout);
-    plan->min_bytes = layout.min_bytes;
-    plan->bytes = layout.bytes;
+    (void)t3r_lay_out(config, plan->bytes, &layout);
     plan->most_blends = (uint64_t)T3R_TILES_(config->render_width, config->render_height) *
                         T3R_MIN(t3r_tile_splats_of(config), config->max_gaussians);
     plan->buffer_count = T3R_BUFFER_COUNT;

@@ -1,8 +1,7 @@
-/* A bounded loss where refinement, which measures it, is left out: no request is allowed to ask for one (api/build.c).
- */
+/* A bounded loss where it is left out: no request is allowed to ask for one (api/build.c). */
 #include "budget_choice.h"
 
-#if !T3R_FEATURE_REFINEMENT
+#if !T3R_FEATURE_LOSS
 
 t3r_status t3r_choose_budget(t3r_runtime *rt, const t3r_view *views, uint32_t max_loss_q8, t3r_build *build,
                              const t3r_importance *importance)

@@ -7,7 +7,6 @@
 #include <stdint.h>
 
 #include "pointmap_work.h"
-#include "reproject.h"
 #include "state/views.h"
 
 /* Marks the doubtful pixels of view v (t3r_is_doubtful) and returns how many they are:
@@ -19,9 +18,5 @@
  * Depths stay. What is marked does not depend on the order of the views. */
 uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed,
                          const t3r_pointmap_work *work);
-
-/* Whether `to` measured the pixel that the point falls on, and everything measured about it is deeper by more than
- * 1/16; with `filled`, every depth counts as measured. */
-bool t3r_seen_through(const t3r_pointmap *to, const t3r_projected_pixel *projected, bool filled);
 
 #endif

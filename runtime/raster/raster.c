@@ -4,6 +4,7 @@
  * room for (one tile always fits), and a tile's pixels depend on nothing but its own list. */
 #include "raster_list.h"
 
+#include "core/features.h"
 #include "core/fixed.h"
 #include "kernels/hash_writer.h"
 #include "state/state.h"
@@ -143,7 +144,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     if (status != T3R_OK) {
         return status;
     }
-    if (!rt->config.keep_analysis && !rt->config.stream && !rt->config.warm) {
+    if (!rt->config.keep_analysis && !rt->config.stream && !t3r_is_warm(&rt->config)) {
         rt->views = 0; /* the raster's buffers lie where the planes were */
         rt->analysed = 0;
     }

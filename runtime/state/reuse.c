@@ -1,11 +1,12 @@
 #include "reuse.h"
 
+#include "core/features.h"
 #include "core/memory.h"
 #include "state.h"
 
 bool t3r_is_reused(const t3r_runtime *rt, uint32_t v)
 {
-    return (rt->reuse.views >> v & 1) != 0;
+    return t3r_is_warm(&rt->config) && (rt->reuse.views >> v & 1) != 0;
 }
 
 void t3r_reuse_no_view(t3r_runtime *rt, uint32_t v)
@@ -20,7 +21,7 @@ void t3r_reuse_nothing(t3r_runtime *rt)
 
 void t3r_reuse_all(t3r_runtime *rt)
 {
-    if (!rt->config.warm) {
+    if (!t3r_is_warm(&rt->config)) {
         return;
     }
     memcpy(t3r_buffer_at(rt, T3R_BUFFER_KEPT_CLUSTERS), t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),

@@ -2,7 +2,7 @@
 
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "pointmap/flying_pixels.h"
+#include "pointmap/contradiction.h"
 #include "head/head.h"
 #include "state/state.h"
 

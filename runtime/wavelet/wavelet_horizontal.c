@@ -32,7 +32,8 @@ static void store_halves(int16_t *row, halves x)
     memcpy(row + x.lows, x.high, x.highs * sizeof(int16_t));
 }
 
-/* ---- db2: low[n - 1] holds a[n], high[n - 1] b[n], then d1[n]; the row gets s[n], then d[n - 1] ---------------------- */
+/* ---- db2: low[n - 1] holds a[n], high[n - 1] b[n], then d1[n]; the row gets s[n], then d[n - 1]
+ * ---------------------- */
 
 static void forward_db2(int16_t *row, halves x)
 {
@@ -95,9 +96,9 @@ void t3r_wavelet_row_forward(const t3r_level *level, int16_t *row)
     if (level->width < 2) {
         return;
     }
-    if (level->kind == T3R_WAVELET_HAAR) {
+    if (t3r_kind_of(level) == T3R_WAVELET_HAAR) {
         forward_haar(row, x);
-    } else if (level->kind == T3R_WAVELET_CDF53) {
+    } else if (t3r_kind_of(level) == T3R_WAVELET_CDF53) {
         forward_cdf53(row, x);
     } else if (level->width == 2) {
         t3r_row_db2_pair(row, row + 1, 1);

@@ -54,6 +54,12 @@ typedef struct t3r_level {
     const uint8_t *const *colour; /* the image whose luma fills the plane; NULL: it is filled */
 } t3r_level;
 
+/* The wavelet; the compiler knows it where there is one alone. */
+static inline t3r_wavelet t3r_kind_of(const t3r_level *level)
+{
+    return T3R_FEATURE_WAVELETS ? level->kind : T3R_WAVELET_DB2;
+}
+
 /* Length of one side after `levels` halvings that keep the odd sample. */
 static inline uint32_t t3r_halved(uint32_t side, uint32_t levels)
 {
@@ -80,7 +86,7 @@ static inline t3r_level t3r_level_of(int16_t *plane, uint32_t width, uint32_t he
  * was and high n where b[n + 1] was; an even height's last row is its last high. */
 static inline uint32_t t3r_low_at(const t3r_level *level, uint32_t n)
 {
-    if (level->kind == T3R_WAVELET_DB2) {
+    if (t3r_kind_of(level) == T3R_WAVELET_DB2) {
         return n == 0 ? 0 : 2 * n - 1;
     }
     return 2 * n;
@@ -88,13 +94,13 @@ static inline uint32_t t3r_low_at(const t3r_level *level, uint32_t n)
 
 static inline uint32_t t3r_high_at(const t3r_level *level, uint32_t n)
 {
-    return level->kind == T3R_WAVELET_DB2 ? T3R_MIN(2 * n + 2, level->height - 1) : 2 * n + 1;
+    return t3r_kind_of(level) == T3R_WAVELET_DB2 ? T3R_MIN(2 * n + 2, level->height - 1) : 2 * n + 1;
 }
 
 /* Row n of the level: in the plane, t3r_low_at() once for each level in place. */
 static inline int16_t *t3r_level_row(const t3r_level *level, uint32_t n)
 {
-    if (level->kind == T3R_WAVELET_DB2 && n > 0) {
+    if (t3r_kind_of(level) == T3R_WAVELET_DB2 && n > 0) {
         return level->plane + (((n - 1) << level->in_place) + 1) * level->stride;
     }
     return level->plane + (n << level->in_place) * level->stride;

@@ -23,7 +23,7 @@ static uint16_t texture_of_one(int16_t coefficient, uint32_t gain)
 static void texture_row(const t3r_level *x, uint32_t index, uint32_t n, uint16_t *out)
 {
     uint32_t lows = (x->width + 1) / 2, highs = x->width / 2;
-    uint32_t gain = gain_q8[x->kind][index];
+    uint32_t gain = gain_q8[t3r_kind_of(x)][index];
     const int16_t *h = t3r_low_row(x, n) + lows;
 
     if (n == x->height / 2) {
@@ -38,9 +38,9 @@ static void texture_row(const t3r_level *x, uint32_t index, uint32_t n, uint16_t
     }
     const int16_t *v = t3r_high_row(x, n), *d = v + lows;
     if (index == 0) {
-        x->kernels->texture_finest(out, h, v, d, finest_d_gain_q16[x->kind], highs);
+        x->kernels->texture_finest(out, h, v, d, finest_d_gain_q16[t3r_kind_of(x)], highs);
     } else {
-        x->kernels->texture_coarse(out, h, v, d, gain, gain_q8[x->kind][index - 1], highs);
+        x->kernels->texture_coarse(out, h, v, d, gain, gain_q8[t3r_kind_of(x)][index - 1], highs);
     }
     if (lows > highs) {
         out[highs] = texture_of_one(v[highs], gain);

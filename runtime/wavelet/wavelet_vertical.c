@@ -111,9 +111,9 @@ void t3r_wavelet_level_forward(const t3r_level *x)
 {
     if (x->height < 2) {
         make_row(x, 0);
-    } else if (x->kind == T3R_WAVELET_HAAR) {
+    } else if (t3r_kind_of(x) == T3R_WAVELET_HAAR) {
         forward_haar(x);
-    } else if (x->kind == T3R_WAVELET_CDF53) {
+    } else if (t3r_kind_of(x) == T3R_WAVELET_CDF53) {
         forward_cdf53(x);
     } else if (x->height == 2) {
         make_row(x, 0);

@@ -2,6 +2,7 @@
  * without a feature prints "unsupported" there, and what any other prints in all the other lines. */
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "consumers/scene.h"
 #include "trim3r.h"
@@ -10,7 +11,7 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[4 << 20];
 
 static t3r_config plain_config(void)
 {
-    t3r_config config = t3r_default_config(SCENE_SIDE, SCENE_SIDE, SCENE_VIEWS, SCENE_BUDGET);
+    t3r_config config = t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, SCENE_BUDGET);
     config.refinements = 0;
     return config;
 }
@@ -32,9 +33,12 @@ static void print_scenes(void)
 {
     t3r_config config = plain_config();
     print_scene("plain", &config);
+    config.views = SCENE_VIEWS;
+    print_scene("comparison", &config);
     config.depth = T3R_DEPTH_STEREO;
     print_scene("stereo", &config);
     config = plain_config();
+    config.views = SCENE_VIEWS;
     config.stream = 1;
     print_scene("streams", &config);
     config = plain_config();
@@ -45,6 +49,18 @@ static void print_scenes(void)
     config = plain_config();
     config.refinements = 4;
     print_scene("refinement", &config);
+    config = plain_config();
+    config.allocation = T3R_ALLOCATE_UNIFORM;
+    print_scene("allocations", &config);
+    config = plain_config();
+    config.wavelet = T3R_WAVELET_HAAR;
+    print_scene("wavelets", &config);
+    config = plain_config();
+    config.workers = 2;
+    print_scene("workers", &config);
+    config.workers = 1;
+    config.warm = 1;
+    print_scene("warm", &config);
 }
 
 static void print_call(const char *name, t3r_status status)
@@ -52,11 +68,37 @@ static void print_call(const char *name, t3r_status status)
     printf("%s, a call: %s\n", name, status == T3R_ERR_UNSUPPORTED ? "unsupported" : t3r_error_text(status));
 }
 
+/* A black picture of a lens that distorts a little, with a depth everywhere. */
+static t3r_status add_wide_angle(t3r_runtime *rt)
+{
+    static uint8_t colour[SCENE_SIDE * SCENE_SIDE * 3], depth[SCENE_SIDE * SCENE_SIDE * 2];
+    const t3r_frame frame = {.format = T3R_PIXEL_RGB24,
+                             .width = SCENE_SIDE,
+                             .height = SCENE_SIDE,
+                             .planes = {colour},
+                             .stride_bytes = {SCENE_SIDE * 3},
+                             .depth = depth,
+                             .depth_width = SCENE_SIDE,
+                             .depth_height = SCENE_SIDE,
+                             .depth_stride_bytes = SCENE_SIDE * 2,
+                             .depth_unit_q40 = 1 << 30};
+    const t3r_camera camera = {.fx_q16 = SCENE_SIDE << 16,
+                               .fy_q16 = SCENE_SIDE << 16,
+                               .cx_q16 = SCENE_SIDE << 15,
+                               .cy_q16 = SCENE_SIDE << 15,
+                               .distortion = T3R_DISTORTION_RADTAN,
+                               .distortion_q24 = {1 << 18},
+                               .rotation_q30 = {1 << 30}};
+    memset(depth, 3, sizeof depth);
+    return t3r_add_view(rt, &frame, &camera);
+}
+
 /* Of a runtime that has no views. */
 static void print_calls(void)
 {
     const t3r_config config = plain_config();
     const t3r_request moment = {.head = T3R_HEAD_MOMENT}, bounded = {.max_loss_q8 = 256};
+    const t3r_request random = {.allocation = T3R_ALLOCATE_RANDOM};
     const t3r_frame frame = {0};
     const t3r_camera camera = {0};
     t3r_runtime *rt;
@@ -65,7 +107,9 @@ static void print_calls(void)
     print_call("streams", t3r_stream_keyframe(rt, &frame, &camera, NULL));
     print_call("learned", t3r_bind_head(rt, arena, 1));
     print_call("moment", t3r_reconstruct(rt, &moment, &scene));
-    print_call("refinement", t3r_reconstruct(rt, &bounded, &scene));
+    print_call("loss", t3r_reconstruct(rt, &bounded, &scene));
+    print_call("allocations", t3r_reconstruct(rt, &random, &scene));
+    print_call("lenses", add_wide_angle(rt));
 }
 
 int main(void)

@@ -13,7 +13,8 @@ sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "proofs")]
 CONSUMERS = HERE / "consumers"
 HEADS = ROOT / "quant" / "heads"
 HASH = (HERE / "golden_hash.txt").read_text().strip()
-FEATURES = ("stereo", "streams", "learned", "moment", "refinement")
+FEATURES = ("stereo", "streams", "learned", "moment", "refinement", "lenses", "comparison", "allocations", "wavelets",
+            "workers", "warm", "loss")
 WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 
 

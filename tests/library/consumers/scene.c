@@ -1,7 +1,5 @@
 #include "scene.h"
 
-#include <stdbool.h>
-
 #include "trim3r.h"
 #include "trim3r_heads.h"
 
@@ -34,7 +32,7 @@ static void draw_wall(int shift)
 }
 
 /* Context views, or keyframes of a stream. */
-static t3r_status add_views(t3r_runtime *rt, bool stream, t3r_camera *camera)
+static t3r_status add_views(t3r_runtime *rt, const t3r_config *config, t3r_camera *camera)
 {
     const t3r_frame frame = {.format = T3R_PIXEL_RGB24,
                              .width = SIDE,
@@ -47,9 +45,9 @@ static t3r_status add_views(t3r_runtime *rt, bool stream, t3r_camera *camera)
                              .depth_stride_bytes = SIDE * 2,
                              .depth_unit_q40 = 1099511628};
     t3r_status status = T3R_OK;
-    for (int v = 0; v < VIEWS && status == T3R_OK; v++) {
-        draw_wall(4 * v);
-        status = stream ? t3r_stream_keyframe(rt, &frame, camera, 0) : t3r_add_view(rt, &frame, camera);
+    for (uint32_t v = 0; v < config->views && status == T3R_OK; v++) {
+        draw_wall(4 * (int)v);
+        status = config->stream ? t3r_stream_keyframe(rt, &frame, camera, 0) : t3r_add_view(rt, &frame, camera);
         camera->position_q32[0] += INT64_C(1) << 29; /* 12.5 cm to the right */
     }
     return status;
@@ -78,7 +76,7 @@ t3r_status fold_scene(const t3r_config *config, uint32_t cpu, void *memory, size
         status = t3r_bind_head(rt, t3r_head_small, t3r_head_small_bytes);
     }
     if (status == T3R_OK) {
-        status = add_views(rt, config->stream != 0, &camera);
+        status = add_views(rt, config, &camera);
     }
     if (status == T3R_OK && !config->stream) {
         status = t3r_reconstruct(rt, 0, &scene);

@@ -1,7 +1,7 @@
 """Cortex-M boards in QEMU: instructions are counted one by one."""
 import pathlib
 
-from firmware import BAREMETAL, BOARDS, STAGES, build, row, run, said_by, words
+from firmware import BAREMETAL, BOARDS, STAGES, build, is_small, row, run, said_by, words
 
 COMPILER, EMULATOR = "arm-none-eabi-gcc", "qemu-system-arm"
 PLUGIN_SOURCE = pathlib.Path(__file__).resolve().parent / "instructions.c"
@@ -66,9 +66,13 @@ def measured_with(board, kernels, elf, line, options):
             "instructions": sum(instructions.values()), "instructions_of": instructions, "longest_stretch": longest}
 
 
-def measure(board, path, options):
+def firmware_of(board, options):
     link = ["-L", BAREMETAL / "cortex_m", "-T", BAREMETAL / "boards" / board / "board.ld",
             *([f"-Wl,--defsym=RAM_BYTES={options.ram}"] if options.ram else [])]
-    elf = build(board, ".elf", [COMPILER], link, options)
-    ways = [PLAIN, *([BOARDS[board]["kernels"]] if "kernels" in BOARDS[board] else [])]
+    return build(board, ".elf", [COMPILER], link, options)
+
+
+def measure(board, path, options):
+    elf = firmware_of(board, options)
+    ways = [PLAIN, *([BOARDS[board]["kernels"]] if "kernels" in BOARDS[board] and not is_small(options) else [])]
     return [measured_with(board, kernels, elf, words(path, options), options) for kernels in ways]

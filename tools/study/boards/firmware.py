@@ -1,17 +1,22 @@
 """What the ports of the firmware share: its sources, its build, and what it prints."""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 BAREMETAL = ROOT / "platform" / "baremetal"
+RUNTIME = ROOT / "runtime"
+FEATURES = tuple(name.lower() for name in re.findall(
+    r"#ifndef T3R_FEATURE_(\w+)", (RUNTIME / "include" / "trim3r_features.h").read_text()))
 BOARDS = {path.parent.name: json.loads(path.read_text()) for path in sorted(BAREMETAL.glob("boards/*/board.json"))}
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
 # What the firmware takes of the platform: the reader of recordings without a heap.
 READER = ("cdr", "fixed_camera", "fixed_double", "fixed_text", "frame_reader", "message_frame", "pixel_layout",
           "ros_messages", "ros_schemas", "text")
-INCLUDES = (ROOT / "runtime" / "include", ROOT / "runtime", ROOT / "platform", BAREMETAL, ROOT / "quant" / "heads")
+INCLUDES = (RUNTIME / "include", RUNTIME, ROOT / "platform", BAREMETAL, ROOT / "quant" / "heads")
+INCLUDE = tuple(word for folder in INCLUDES for word in ("-I", folder))
 FLAGS = ("-std=c11", "-ffunction-sections", "-fdata-sections", "-nostartfiles", "-Wall", "-Wextra", "-Werror",
          "-Wl,--gc-sections")
 SECONDS_MOST = 600
@@ -24,30 +29,65 @@ def run(*command, **more):
     return done.stdout
 
 
+def left_out(options):
+    return [feature for feature in FEATURES if feature not in options.features]
+
+
+def is_small(options):
+    """Whether the firmware is to be small: it lacks features, reads planes and no recording, and runs plain C."""
+    return bool(left_out(options))
+
+
+def sources_of(board, options):
+    rows = [line.split() for line in (RUNTIME / "features.txt").read_text().splitlines() if not line.startswith("#")]
+    absent = {path for feature, pattern in rows if feature in left_out(options)
+              for path in RUNTIME.glob(pattern) if not path.stem.endswith("_absent")}
+    runtime = sorted(path for path in RUNTIME.rglob("*.c") if path.parent.name != "x86" and path not in absent)
+    weights = [] if options.head == "analytic" else [ROOT / "quant" / "heads" / f"{options.head}.c"]
+    reader = () if is_small(options) else READER
+    other_frames = "frames_recording" if is_small(options) else "frames_planes"
+    port = [*sorted(BAREMETAL.glob("*.c")), *sorted((BAREMETAL / BOARDS[board]["port"]).glob("*.c"))]
+    return [*(path for path in port if path.stem != other_frames), *runtime, *weights,
+            *(ROOT / "platform" / f"{name}.c" for name in reader)]
+
+
+def choices_of(options):
+    """The compiler's words for features, weights and the firmware's kernels."""
+    head = [] if options.head == "analytic" else [f"-DHEAD=t3r_head_{options.head}",
+                                                  f"-DHEAD_BYTES=t3r_head_{options.head}_bytes"]
+    return [*head, *(f"-DT3R_FEATURE_{name.upper()}=0" for name in left_out(options)),
+            *(["-DPLAIN_C"] if is_small(options) else []), *(["-flto=auto"] if options.lto else [])]
+
+
 def build(board, suffix, compiler, link, options):
     """The board's firmware, by this compiler with these words for the linker."""
-    ram = f"-{options.ram}" if options.ram else ""
-    made = options.out / f"{board}-{options.head}{options.optimize}{ram}{suffix}"
-    port = BAREMETAL / BOARDS[board]["port"]
-    runtime = sorted(path for path in (ROOT / "runtime").rglob("*.c") if path.parent.name != "x86")
-    weights = [] if options.head == "analytic" else [ROOT / "quant" / "heads" / f"{options.head}.c"]
-    sources = [*sorted(BAREMETAL.glob("*.c")), *sorted(port.glob("*.c")), *runtime, *weights,
-               *(ROOT / "platform" / f"{name}.c" for name in READER)]
+    parts = [f"{board}-{options.head}{options.optimize}", *(["lto"] if options.lto else []),
+             *(f"no_{name}" for name in left_out(options)), *([str(options.ram)] if options.ram else [])]
+    made = options.out / f"{'-'.join(parts)}{suffix}"
+    sources = sources_of(board, options)
     given = [*sources, *(path for folder in INCLUDES for path in folder.rglob("*.h")), *BAREMETAL.rglob("*.ld"),
              *BAREMETAL.rglob("*.json")]
     if made.exists() and made.stat().st_mtime > max(path.stat().st_mtime for path in given):
         return made
-    head = [] if options.head == "analytic" else [f"-DHEAD=t3r_head_{options.head}",
-                                                  f"-DHEAD_BYTES=t3r_head_{options.head}_bytes"]
-    include = [word for folder in INCLUDES for word in ("-I", folder)]
-    run(*compiler, *FLAGS, options.optimize, *BOARDS[board]["flags"], *include, *head, *sources, *link, "-o", made)
+    run(*compiler, *FLAGS, options.optimize, *BOARDS[board]["flags"], *INCLUDE, *choices_of(options), *sources, *link,
+        "-o", made)
+    return made
+
+
+def planes(path, options):
+    """The recording's frames as a firmware reads them that has no reader of recordings."""
+    made = options.out / f"{path.stem}-{'x'.join(map(str, options.size))}.planes"
+    program = made.with_suffix(".program")
+    run("cc", "-std=c11", "-O1", *INCLUDE, pathlib.Path(__file__).with_name("planes.c"),
+        *(ROOT / "platform" / f"{name}.c" for name in READER), "-o", program)
+    run(program, *options.size, path, made)
     return made
 
 
 def words(path, options):
     """The firmware's command line, but for hashes and the view."""
     width, height = options.size
-    return [f"frames={path}", f"width={width}", f"height={height}", f"views={options.views}",
+    return [f"frames={planes(path, options) if is_small(options) else path}", f"width={width}", f"height={height}", f"views={options.views}",
             f"gaussians={options.gaussians}", f"clusters={options.clusters}", f"refinements={options.refine}",
             f"learned={int(options.head != 'analytic')}"]
 

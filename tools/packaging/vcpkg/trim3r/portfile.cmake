@@ -7,7 +7,14 @@ vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
     streams T3R_WITH_STREAMS
     learned T3R_WITH_LEARNED
     moment T3R_WITH_MOMENT
-    refinement T3R_WITH_REFINEMENT)
+    refinement T3R_WITH_REFINEMENT
+    lenses T3R_WITH_LENSES
+    comparison T3R_WITH_COMPARISON
+    allocations T3R_WITH_ALLOCATIONS
+    wavelets T3R_WITH_WAVELETS
+    workers T3R_WITH_WORKERS
+    warm T3R_WITH_WARM
+    loss T3R_WITH_LOSS)
 string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" "dynamic" WITH_SHARED)
 
 vcpkg_cmake_configure(

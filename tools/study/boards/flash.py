@@ -1,0 +1,45 @@
+"""What small firmwares take of a Cortex-M7's flash."""
+import argparse
+import concurrent.futures
+import os
+
+from cortex_m import firmware_of, flash_of, start
+from firmware import words
+
+BOARD = "mps2-an500"
+# What is in them, head, context views, features, and the most bytes of flash.
+FIRMWARES = (("one view, `analytic`", "analytic", 1, (), 48 << 10),
+             ("one view, `nano`, refinement", "nano", 1, ("learned", "refinement"), 80 << 10),
+             ("one view, `small`, refinement", "small", 1, ("learned", "refinement"), 110 << 10),
+             ("two views, `nano`, refinement", "nano", 2, ("learned", "refinement", "comparison"), None))
+SECTION = """
+## Flash
+
+What small firmwares take on a Cortex-M7, with `-Os` and `-flto`: code, constants, weights and the port. They read planes
+as a camera leaves them, and no recording, and they run plain C. Their runtime is built
+[without other features](../library.md#leave-out-what-you-do-not-use). Their hashes are those of a desktop, too.
+
+{table}
+"""
+
+
+def measure(path, options, host):
+    """A row for each; host(path, options) returns the hash of this machine, and those of its stages."""
+    def row(firmware):
+        name, head, views, features, limit = firmware
+        chosen = argparse.Namespace(**{**vars(options), "head": head, "views": views, "features": features, "lto": True,
+                                       "optimize": "-Os", "refine": 2 if "refinement" in features else 0})
+        elf = firmware_of(BOARD, chosen)
+        said = start(BOARD, elf, [*words(path, chosen), "hashes=1"])
+        return {"name": name, "features": features, "flash_bytes": flash_of(elf), "limit_bytes": limit,
+                "bits": "same" if said["hash final"] == host(path, chosen)[0] else "different"}
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(row, FIRMWARES))
+
+
+def lines(rows):
+    """Of the table, its head first."""
+    return [["firmware", "features", "flash, bytes", "at most"],
+            *([row["name"], ", ".join(row["features"]) or "none", f"{row['flash_bytes']:,}",
+               f"{row['limit_bytes']:,}" if row["limit_bytes"] else ""] for row in rows)]
