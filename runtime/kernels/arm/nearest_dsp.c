@@ -30,7 +30,7 @@ void t3r_nearest_begin_dsp(const t3r_centres *centres, uint32_t first, uint32_t 
         t3r_nearest_begin_c(centres, first, end, neighbours);
         return;
     }
-    packed_centre *packed = t3r_packed_at(neighbours);
+    packed_centre *packed = t3r_aligned_centres(neighbours);
     for (uint32_t k = first; k < end; k++) {
         packed[k].half_norm = centres->half_norm[k];
         for (uint32_t d = 0; d < PAIRS; d++) {
@@ -69,7 +69,7 @@ void t3r_nearest_dsp(const t3r_centres *centres, const t3r_neighbours *neighbour
         return;
     }
     for (uint32_t point = 0; point < points; point++) {
-        nearest[point] = (uint16_t)nearest_of(t3r_packed_at(neighbours), centres->count, feature_q11[point]);
+        nearest[point] = (uint16_t)nearest_of(t3r_aligned_centres(neighbours), centres->count, feature_q11[point]);
     }
 }
 

@@ -21,7 +21,7 @@ _Static_assert(T3R_CENTRE_GROUP % FOUR == 0 && T3R_MAX_CLUSTERS % FOUR == 0, "wh
 
 void t3r_nearest_begin_mve(const t3r_centres *centres, uint32_t first, uint32_t end, t3r_neighbours *neighbours)
 {
-    four_centres *packed = t3r_packed_at(neighbours);
+    four_centres *packed = t3r_aligned_centres(neighbours);
     for (uint32_t k = first; k < (end + FOUR - 1) / FOUR * FOUR; k++) {
         const bool is_centre = k < centres->count;
         packed[k / FOUR].half_norm[k % FOUR] = is_centre ? centres->half_norm[k] : INT32_MAX;
@@ -33,7 +33,7 @@ void t3r_nearest_begin_mve(const t3r_centres *centres, uint32_t first, uint32_t 
 
 static uint16_t nearest_of(const t3r_neighbours *packed, uint32_t count, const int16_t p[T3R_DIMENSIONS])
 {
-    const four_centres *c = t3r_packed_at(packed);
+    const four_centres *c = t3r_aligned_centres(packed);
     const int32_t p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3], p4 = p[4], p5 = p[5];
     uint32_t predicate, groups = (count + FOUR - 1) / FOUR;
     int32x4_t here = vreinterpretq_s32_u32(vidupq_n_u32(0, 1)), first = here, least = vdupq_n_s32(INT32_MAX);

@@ -7,7 +7,7 @@
 #define T3R_PACKED_ROOM (sizeof(t3r_neighbours) - 2)
 
 /* Aligned to 4 bytes. */
-static inline void *t3r_packed_at(const t3r_neighbours *neighbours)
+static inline void *t3r_aligned_centres(const t3r_neighbours *neighbours)
 {
     return (void *)(((uintptr_t)neighbours + 3) & ~(uintptr_t)3);
 }
