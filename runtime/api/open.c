@@ -27,10 +27,11 @@ static void bind_layout(t3r_runtime *rt, const t3r_layout *layout)
     rt->layout_hash = layout_hash(layout);
 }
 
-t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config)
+t3r_status t3r_init_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     *rt = NULL;
+    T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
     T3R_REFUSE_UNLESS(arena != NULL && config != NULL, T3R_ERR_ARGUMENT);
     const t3r_status status = t3r_config_check(config);
     if (status != T3R_OK) {
@@ -81,10 +82,11 @@ t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features)
     return T3R_OK;
 }
 
-t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
+t3r_status t3r_attach_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t arena_bytes)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     *rt = NULL;
+    T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
     T3R_REFUSE_UNLESS(arena != NULL, T3R_ERR_ARGUMENT);
     if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || arena_bytes < T3R_HEADER_BYTES) {
         return T3R_ERR_ARENA;

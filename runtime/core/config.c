@@ -2,10 +2,16 @@
 #include "config.h"
 
 #include "features.h"
+#include "memory.h"
 
-t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
+t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_bytes, uint32_t width, uint32_t height,
+                                 uint32_t views, uint32_t gaussians)
 {
-    return (t3r_config){
+    if (digest != t3r_header_interface()) {
+        memset(config, 0, config_bytes); /* the caller's, of whatever size */
+        return T3R_ERR_INTERFACE;
+    }
+    *(t3r_config *)config = (t3r_config){
         .width = width,
         .height = height,
         .views = views,
@@ -38,6 +44,7 @@ t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, u
         .workers = 1,
         .seed = 1,
     };
+    return T3R_OK;
 }
 
 /* X(text, value, low, high), a row a setting. `least` is the smaller side. */

@@ -6,14 +6,6 @@
 
 #include "trim3r.h"
 
-#define T3R_FEATURES_BUILT                                                                                             \
-    ((T3R_FEATURE_STEREO ? T3R_HAS_STEREO : 0u) | (T3R_FEATURE_STREAMS ? T3R_HAS_STREAMS : 0u) |                       \
-     (T3R_FEATURE_LEARNED ? T3R_HAS_LEARNED : 0u) | (T3R_FEATURE_MOMENT ? T3R_HAS_MOMENT : 0u) |                       \
-     (T3R_FEATURE_REFINEMENT ? T3R_HAS_REFINEMENT : 0u) | (T3R_FEATURE_LENSES ? T3R_HAS_LENSES : 0u) |                 \
-     (T3R_FEATURE_COMPARISON ? T3R_HAS_COMPARISON : 0u) | (T3R_FEATURE_ALLOCATIONS ? T3R_HAS_ALLOCATIONS : 0u) |       \
-     (T3R_FEATURE_WAVELETS ? T3R_HAS_WAVELETS : 0u) | (T3R_FEATURE_WORKERS ? T3R_HAS_WORKERS : 0u) |                   \
-     (T3R_FEATURE_WARM ? T3R_HAS_WARM : 0u) | (T3R_FEATURE_LOSS ? T3R_HAS_LOSS : 0u))
-
 /* Whether this library has all of these T3R_HAS_... */
 static inline bool t3r_has(uint32_t features)
 {

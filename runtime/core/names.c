@@ -123,6 +123,8 @@ const char *t3r_error_text(t3r_status status)
         return "no depth can be made of these views";
     case T3R_ERR_UNSUPPORTED:
         return "this library was built without what is asked for";
+    case T3R_ERR_INTERFACE:
+        return "the program was compiled with another trim3r.h, or other features, than the library";
     case T3R_ERR_WEIGHTS:
         return "the weights are damaged, of another version, or too large a head for this arena";
     }
@@ -132,6 +134,11 @@ const char *t3r_error_text(t3r_status status)
 const char *t3r_version(void)
 {
     return T3R_VERSION;
+}
+
+uint64_t t3r_interface(void)
+{
+    return t3r_header_interface();
 }
 
 uint32_t t3r_features(void)

@@ -38,6 +38,7 @@
 
 #include "trim3r_arena.h"
 #include "trim3r_features.h"
+#include "trim3r_interface.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -70,7 +71,9 @@ extern "C" {
 #define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
 #define T3R_MAX_WORKERS 16u
 
-typedef enum t3r_status {
+/* What enumerates has 32 bits, here and below: how wide an enum type is depends on the compiler and its options. */
+typedef int32_t t3r_status;
+enum {
     T3R_OK = 0,
     T3R_ERR_ARGUMENT = -1,  /* a null pointer or a number outside its documented range */
     T3R_ERR_CONFIG = -2,    /* a t3r_config field outside its documented range */
@@ -84,11 +87,14 @@ typedef enum t3r_status {
     T3R_ERR_FULL = -10,     /* no room for another Gaussian in the scene */
     T3R_ERR_WEIGHTS = -11,  /* weights that are foreign, damaged, of another epoch, or too large a head for the arena */
     T3R_ERR_STEREO = -12,   /* no depth can be made of the views: t3r_stereo_pair() has the reason */
-    T3R_ERR_UNSUPPORTED = -13 /* the library was built without what is asked for: t3r_features() */
-} t3r_status;
+    T3R_ERR_UNSUPPORTED = -13, /* the library was built without what is asked for: t3r_features() */
+    T3R_ERR_INTERFACE = -14    /* the program was compiled with another trim3r.h, other features or another layout of
+                                * structs than the library */
+};
 
 /* The stages in the order in which the data passes them. */
-typedef enum t3r_stage {
+typedef uint32_t t3r_stage;
+enum {
     T3R_STAGE_IMAGE = T3R_AT_IMAGE,
     T3R_STAGE_DEPTH = T3R_AT_DEPTH,
     T3R_STAGE_POINTMAP = T3R_AT_POINTMAP,
@@ -99,9 +105,10 @@ typedef enum t3r_stage {
     T3R_STAGE_REFINE = T3R_AT_REFINE,
     T3R_STAGE_RASTER = T3R_AT_RASTER,
     T3R_STAGE_COUNT = T3R_AT_COUNT
-} t3r_stage;
+};
 
-typedef enum t3r_pixel_format {
+typedef uint32_t t3r_pixel_format;
+enum {
     T3R_PIXEL_RGB24, /* 3 bytes a pixel: R G B */
     T3R_PIXEL_BGR24, /* 3 bytes a pixel: B G R */
     T3R_PIXEL_GREY,  /* 1 byte a pixel */
@@ -109,7 +116,7 @@ typedef enum t3r_pixel_format {
     T3R_PIXEL_UYVY,  /* 4:2:2, U Y0 V Y1; even width; BT.601 limited range */
     T3R_PIXEL_NV12,  /* 4:2:0, a Y plane and an interleaved UV plane; even width and height; BT.601 limited range */
     T3R_PIXEL_FORMAT_COUNT
-} t3r_pixel_format;
+};
 
 /* One captured instant. The memory stays the caller's and is read only during the call that takes the frame. */
 typedef struct t3r_frame {
@@ -132,12 +139,13 @@ typedef struct t3r_frame {
     uint64_t depth_unit_q40;
 } t3r_frame;
 
-typedef enum t3r_distortion {
+typedef uint32_t t3r_distortion;
+enum {
     T3R_DISTORTION_NONE,
     T3R_DISTORTION_RADTAN,  /* k1 k2 p1 p2 k3 (Brown-Conrady; OpenCV "plumb_bob") */
     T3R_DISTORTION_FISHEYE, /* k1 k2 k3 k4 (Kannala-Brandt; OpenCV "equidistant") */
     T3R_DISTORTION_COUNT
-} t3r_distortion;
+};
 
 /* A calibrated, posed pinhole camera, for the pixel grid of the frame or target it comes with. */
 typedef struct t3r_camera {
@@ -156,10 +164,12 @@ typedef struct t3r_camera {
     int32_t rotation_q30[4];
 } t3r_camera;
 
-typedef enum t3r_wavelet { T3R_WAVELET_DB2, T3R_WAVELET_HAAR, T3R_WAVELET_CDF53, T3R_WAVELET_COUNT } t3r_wavelet;
+typedef uint32_t t3r_wavelet;
+enum { T3R_WAVELET_DB2, T3R_WAVELET_HAAR, T3R_WAVELET_CDF53, T3R_WAVELET_COUNT };
 
 /* How the budget Z is spread over the valid points (runtime/SPEC.md, "Budget"). */
-typedef enum t3r_allocation {
+typedef uint32_t t3r_allocation;
+enum {
     T3R_ALLOCATE_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
     T3R_ALLOCATE_DENSITY,    /* over SuperClusters by |SC| x Texture(SC)^gamma, inside one by texture density */
     T3R_ALLOCATE_PAPER,      /* GaussianTrim3R eq. 2: lowest texture first, each keeps N % */
@@ -168,25 +178,28 @@ typedef enum t3r_allocation {
     T3R_ALLOCATE_RANDOM,     /* white noise of the seed */
     T3R_ALLOCATE_GIVEN,      /* by an importance of each pixel, which comes with the request */
     T3R_ALLOCATE_COUNT
-} t3r_allocation;
+};
 
-typedef enum t3r_head {
+typedef uint32_t t3r_head;
+enum {
     T3R_HEAD_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
     T3R_HEAD_ANALYTIC,   /* a disc on the surface, as wide as its retained neighbours are apart */
     T3R_HEAD_MOMENT,     /* moments of the pruned pixels that lie nearest in position and colour */
     T3R_HEAD_LEARNED,    /* a network sees image, mask and density: t3r_bind_head() */
     T3R_HEAD_COUNT
-} t3r_head;
+};
 
 /* Where depth comes from. */
-typedef enum t3r_depth {
+typedef uint32_t t3r_depth;
+enum {
     T3R_DEPTH_SENSOR, /* the frames' own */
     T3R_DEPTH_STEREO, /* the colours of two and more posed views; the frames' own depth is ignored */
     T3R_DEPTH_COUNT
-} t3r_depth;
+};
 
 /* Whether two views can be matched, and why not. */
-typedef enum t3r_pair {
+typedef uint32_t t3r_pair;
+enum {
     T3R_PAIR_OK,
     T3R_PAIR_NO_BASELINE, /* both cameras stand in one place and look the same way */
     T3R_PAIR_ROTATION,    /* both cameras stand in one place, but look different ways */
@@ -194,7 +207,7 @@ typedef enum t3r_pair {
     T3R_PAIR_PARALLAX,    /* what is visible in both pictures hardly moves between them */
     T3R_PAIR_SCALE,       /* the baseline in world units leaves no depth unit */
     T3R_PAIR_COUNT
-} t3r_pair;
+};
 
 /* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). They hold for the life of
  * the runtime: no later call changes them. The default is in [brackets]. */
@@ -438,7 +451,8 @@ typedef struct t3r_plan_info {
     X(RASTER_GAUSSIANS, "raster_gaussians", RASTER)
 
 #define T3R_WORK_NAME_(NAME, name, stage) T3R_WORK_##NAME,
-typedef enum t3r_work { T3R_WORKS(T3R_WORK_NAME_) T3R_WORK_COUNT } t3r_work;
+typedef uint32_t t3r_work;
+enum { T3R_WORKS(T3R_WORK_NAME_) T3R_WORK_COUNT };
 
 /* How much work a build from its views to its scene is, and one view drawn of it at the largest target. */
 typedef struct t3r_work_counts {
@@ -456,39 +470,6 @@ typedef struct t3r_prices {
 /* Operations: instructions of plain C on x86-64, as gcc 12 -O2 makes them. They are the same on every run, and no
  * machine's time. */
 extern const t3r_prices t3r_operations;
-
-typedef struct t3r_runtime t3r_runtime;
-
-/* Defaults for a working size, number of views and budget. Never fails. */
-t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians);
-
-/* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does.
- * T3R_ERR_UNSUPPORTED: it is in range, but this library was built without what it asks for. */
-t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan);
-
-/* The two sums of t3r_plan() alone: a firmware that sizes its arena when it runs links no names of buffers then. Errors
- * are those of t3r_plan(). */
-t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_bytes, size_t *bytes);
-
-/* The inverse: lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, and the
- * budget `gaussians` along with it. It never raises them: begin with the most that you could use, which is width x
- * height x views. Takes 24 plans. T3R_ERR_ARENA: not even one Gaussian fits. T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: as
- * t3r_plan(). After an error the configuration is as before. */
-t3r_status t3r_plan_within(size_t bytes, t3r_config *config);
-
-/* Counts the work of a build by this configuration in an arena of `bytes`, with a depth or a match for every pixel, and
- * of one view. weights: those of the head T3R_HEAD_LEARNED, as t3r_bind_head() takes them; else NULL and 0. Frames have
- * the working size. A stream has no count, and with `warm` it is that of a build that begins anew.
- *
- * T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: as t3r_plan(), or a stream. T3R_ERR_ARENA: t3r_init() refuses the arena.
- * T3R_ERR_WEIGHTS: the head is learned and these are no weights. */
-t3r_status t3r_count_work(const t3r_config *config, size_t bytes, const void *weights, size_t weight_bytes,
-                          t3r_work_counts *counts);
-
-/* What the work of a stage takes at these prices: whole nanoseconds, or operations. UINT64_MAX where it is more. */
-uint64_t t3r_price_of(const t3r_work_counts *counts, const t3r_prices *prices, t3r_stage stage);
-/* The same of a build: all stages but the raster, which is a view's. */
-uint64_t t3r_price_of_build(const t3r_work_counts *counts, const t3r_prices *prices);
 
 /* What a build may take, and what is given. */
 typedef struct t3r_limits {
@@ -524,6 +505,92 @@ typedef struct t3r_choice {
     uint32_t loss_q4;
 } t3r_choice;
 
+/* What a keyframe did to the map of a stream. */
+typedef struct t3r_stream_report {
+    /* The number of keyframes taken so far, this one too. */
+    uint32_t keyframes;
+    /* The number of Gaussians in the map, at most the configuration's. */
+    uint32_t gaussians;
+    /* The number of Gaussians that the keyframe added. */
+    uint32_t added;
+    /* The number of earlier Gaussians that the keyframe contradicts, or replaces because it sees them far finer. */
+    uint32_t removed;
+    /* The number of earlier Gaussians discarded for lack of room. */
+    uint32_t crowded;
+    /* The number of the keyframe's pixels with a depth, filled ones too. */
+    uint32_t points;
+    /* The number of these that the map showed already. */
+    uint32_t shown;
+} t3r_stream_report;
+
+typedef struct t3r_runtime t3r_runtime;
+
+/* A digest of this header's structs and features, as the program's compiler lays them out. t3r_interface() is the
+ * library's own.
+ *
+ * A program starts by one of the inline calls below. Each hands the program's digest to the call of its name with _as
+ * behind it. With another digest than the library's that one touches nothing and returns T3R_ERR_INTERFACE. A language
+ * that has no use of this header calls those, with what t3r_interface() returns. */
+static inline uint64_t t3r_header_interface(void)
+{
+    uint64_t digest = T3R_FEATURES_BUILT;
+    T3R_INTERFACE_TYPES_(T3R_DIGEST_TYPE_)
+    T3R_INTERFACE_FIELDS_(T3R_DIGEST_FIELD_)
+    return digest;
+}
+uint64_t t3r_interface(void);
+
+/* Defaults for a working size, number of views and budget. With another interface than the library's all fields are 0,
+ * which every other call refuses. */
+t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_bytes, uint32_t width, uint32_t height,
+                                 uint32_t views, uint32_t gaussians);
+static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
+{
+    t3r_config config;
+    (void)t3r_default_config_as(t3r_header_interface(), &config, sizeof config, width, height, views, gaussians);
+    return config;
+}
+
+/* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does.
+ * T3R_ERR_UNSUPPORTED: it is in range, but this library was built without what it asks for. T3R_ERR_INTERFACE. */
+t3r_status t3r_plan_as(uint64_t digest, const t3r_config *config, t3r_plan_info *plan);
+static inline t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
+{
+    return t3r_plan_as(t3r_header_interface(), config, plan);
+}
+
+/* The two sums of t3r_plan() alone: a firmware that sizes its arena when it runs links no names of buffers then. Errors
+ * are those of t3r_plan(). */
+t3r_status t3r_plan_bytes_as(uint64_t digest, const t3r_config *config, size_t *min_bytes, size_t *bytes);
+static inline t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_bytes, size_t *bytes)
+{
+    return t3r_plan_bytes_as(t3r_header_interface(), config, min_bytes, bytes);
+}
+
+/* The inverse: lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, and the
+ * budget `gaussians` along with it. It never raises them: begin with the most that you could use, which is width x
+ * height x views. Takes 24 plans. T3R_ERR_ARENA: not even one Gaussian fits. T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: as
+ * t3r_plan(). After an error the configuration is as before. */
+t3r_status t3r_plan_within_as(uint64_t digest, size_t bytes, t3r_config *config);
+static inline t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
+{
+    return t3r_plan_within_as(t3r_header_interface(), bytes, config);
+}
+
+/* Counts the work of a build by this configuration in an arena of `bytes`, with a depth or a match for every pixel, and
+ * of one view. weights: those of the head T3R_HEAD_LEARNED, as t3r_bind_head() takes them; else NULL and 0. Frames have
+ * the working size. A stream has no count, and with `warm` it is that of a build that begins anew.
+ *
+ * T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: as t3r_plan(), or a stream. T3R_ERR_ARENA: t3r_init() refuses the arena.
+ * T3R_ERR_WEIGHTS: the head is learned and these are no weights. */
+t3r_status t3r_count_work(const t3r_config *config, size_t bytes, const void *weights, size_t weight_bytes,
+                          t3r_work_counts *counts);
+
+/* What the work of a stage takes at these prices: whole nanoseconds, or operations. UINT64_MAX where it is more. */
+uint64_t t3r_price_of(const t3r_work_counts *counts, const t3r_prices *prices, t3r_stage stage);
+/* The same of a build: all stages but the raster, which is a view's. */
+uint64_t t3r_price_of_build(const t3r_work_counts *counts, const t3r_prices *prices);
+
 /* Adds the settings that fit the limits to a list, which begins with *count = 0 and has room for T3R_MAX_CHOICES more.
  * Those of the least expected loss come first, and of equal loss those of the lowest price. Settings that others in the
  * list match or beat in loss, bytes and price are left out or dropped. All but budget and passes is the
@@ -540,11 +607,19 @@ t3r_status t3r_plan_choices(const t3r_config *config, const void *weights, size_
 const char *t3r_config_error(const t3r_config *config);
 
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
-t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config);
+t3r_status t3r_init_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config);
+static inline t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_bytes, const t3r_config *config)
+{
+    return t3r_init_as(t3r_header_interface(), rt, arena, arena_bytes, config);
+}
 
 /* Binds an arena that was copied or restored from bytes, of the very same size. There are no hooks and no weights then,
  * and inner loops are plain C. T3R_ERR_EPOCH: it was made by another version, or is damaged. */
-t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes);
+t3r_status t3r_attach_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t arena_bytes);
+static inline t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
+{
+    return t3r_attach_as(t3r_header_interface(), rt, arena, arena_bytes);
+}
 
 /* Binds callbacks (NULL: none). */
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
@@ -631,24 +706,6 @@ t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *s
  * the pair with the best prospects was refused. *partner is `view` where there is none: by sensor, out of range, before
  * an analysis. */
 t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner);
-
-/* What a keyframe did to the map of a stream. */
-typedef struct t3r_stream_report {
-    /* The number of keyframes taken so far, this one too. */
-    uint32_t keyframes;
-    /* The number of Gaussians in the map, at most the configuration's. */
-    uint32_t gaussians;
-    /* The number of Gaussians that the keyframe added. */
-    uint32_t added;
-    /* The number of earlier Gaussians that the keyframe contradicts, or replaces because it sees them far finer. */
-    uint32_t removed;
-    /* The number of earlier Gaussians discarded for lack of room. */
-    uint32_t crowded;
-    /* The number of the keyframe's pixels with a depth, filled ones too. */
-    uint32_t points;
-    /* The number of these that the map showed already. */
-    uint32_t shown;
-} t3r_stream_report;
 
 /* Streams (t3r_config.stream): takes the next keyframe of a moving camera into the map, which is the scene in the
  * arena. The map holds at most the configuration's `gaussians` over any number of keyframes, and a call takes bounded

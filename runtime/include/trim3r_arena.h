@@ -231,9 +231,9 @@
     X(with, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                            \
     X(with, MAP_RECORDS, "map records", T3R_STREAMS_(shape) * T3R_GAUSSIANS_(shape) * T3R_MAP_RECORD_BYTES,            \
       T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
-    X(with, KEPT_TEXTURE, "kept textures", T3R_FOLLOWS_(shape) * T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE,              \
+    X(with, KEPT_TEXTURE, "kept textures", T3R_FOLLOWS_(shape) * T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE,             \
       T3R_AT_RASTER)                                                                                                   \
-    X(with, KEPT_CLUSTERS, "kept SuperClusters", T3R_FOLLOWS_(shape) * T3R_CLUSTERS_(shape) * T3R_CLUSTER_BYTES,        \
+    X(with, KEPT_CLUSTERS, "kept SuperClusters", T3R_FOLLOWS_(shape) * T3R_CLUSTERS_(shape) * T3R_CLUSTER_BYTES,       \
       T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
     X(with, COLOUR, "colour planes", T3R_ALL_PIXELS_(shape) * 3, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))        \
     X(with, DEPTH, "depth planes", T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))          \

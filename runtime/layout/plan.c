@@ -4,8 +4,9 @@
 #include "core/fixed.h"
 #include "state/state.h"
 
-t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_bytes, size_t *bytes)
+t3r_status t3r_plan_bytes_as(uint64_t digest, const t3r_config *config, size_t *min_bytes, size_t *bytes)
 {
+    T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
     T3R_REFUSE_UNLESS(config != NULL && min_bytes != NULL && bytes != NULL, T3R_ERR_ARGUMENT);
     const t3r_status status = t3r_config_check(config);
     if (status == T3R_OK) {
@@ -17,10 +18,11 @@ t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_bytes, size_t *b
     return status;
 }
 
-t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
+t3r_status t3r_plan_as(uint64_t digest, const t3r_config *config, t3r_plan_info *plan)
 {
+    T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
     T3R_REFUSE_UNLESS(plan != NULL, T3R_ERR_ARGUMENT);
-    const t3r_status status = t3r_plan_bytes(config, &plan->min_bytes, &plan->bytes);
+    const t3r_status status = t3r_plan_bytes_as(digest, config, &plan->min_bytes, &plan->bytes);
     if (status != T3R_OK) {
         return status;
     }
@@ -55,8 +57,9 @@ static bool fits(const t3r_config *config, size_t bytes)
     return t3r_config_check(config) == T3R_OK && t3r_lay_out(config, bytes, &layout) == T3R_OK;
 }
 
-t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
+t3r_status t3r_plan_within_as(uint64_t digest, size_t bytes, t3r_config *config)
 {
+    T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
     T3R_REFUSE_UNLESS(config != NULL, T3R_ERR_ARGUMENT);
     const t3r_config one = with_room_for(config, 1);
     if (config->max_gaussians > T3R_MAX_GAUSSIANS || config->gaussians == 0 ||

@@ -43,7 +43,7 @@ void *allocate(size_t bytes)
 
 void require_status(t3r_status status)
 {
-    REQUIRE((int)status <= T3R_OK && (int)status >= T3R_ERR_UNSUPPORTED);
+    REQUIRE((int)status <= T3R_OK && (int)status >= T3R_ERR_INTERFACE);
     REQUIRE(t3r_error_text(status)[0] != '\0');
 }
 

@@ -14,6 +14,7 @@ VERSION = "0.1.0"
 FILES = {
     "libtrim3r0.1": ["lib/libtrim3r.so.0.1", f"lib/libtrim3r.so.{VERSION}"],
     "libtrim3r-dev": ["include/trim3r.h", "include/trim3r_arena.h", "include/trim3r_features.h", "include/trim3r_heads.h",
+                      "include/trim3r_interface.h",
                       "lib/cmake/trim3r/trim3r-config-release.cmake", "lib/cmake/trim3r/trim3r-config-version.cmake",
                       "lib/cmake/trim3r/trim3r-config.cmake", "lib/libtrim3r.a", "lib/libtrim3r.so",
                       "lib/libtrim3r_heads.a", "lib/pkgconfig/trim3r-heads.pc", "lib/pkgconfig/trim3r.pc"],

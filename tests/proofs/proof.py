@@ -89,11 +89,11 @@ def public_headers():
 
 
 def public_functions():
-    """Names of the functions that trim3r.h declares."""
+    """Names of the functions that trim3r.h declares; those that are inline are the program's."""
     text = re.sub(r"/\*.*?\*/", "", (RUNTIME / "include" / "trim3r.h").read_text(), flags=re.S)
     text = re.sub(r"^\s*#.*$", "", text, flags=re.M)
     text = re.sub(r"\{[^{}]*\}", "", text)
-    return re.findall(r"^[A-Za-z_][\w *]*?\b(t3r_\w+)\(", text, flags=re.M)
+    return re.findall(r"^(?!static )[A-Za-z_][\w *]*?\b(t3r_\w+)\(", text, flags=re.M)
 
 
 @contextlib.contextmanager

@@ -10,6 +10,8 @@ from .errors import error_of
 ffi: Any = _ffi
 lib: Any = ffi.dlopen(str(pathlib.Path(__file__).with_name("libtrim3r_python.so")))
 ERROR_BYTES = 512
+INTERFACE: int = lib.t3r_interface() # the declarations are of the headers that the library was compiled with
+_STATUS_NAMES = {getattr(lib, name): name for name in dir(lib) if name.startswith("T3R_ERR_")}
 
 
 def text_of(pointer: Any) -> str:
@@ -20,8 +22,7 @@ def text_of(pointer: Any) -> str:
 def check(status: int, what: str = "") -> None:
     """Raises the error of a t3r_status that is not T3R_OK; `what` is put before the library's words."""
     if status != lib.T3R_OK:
-        name = ffi.string(ffi.cast("t3r_status", status))
-        raise error_of(name, (f"{what}: " if what else "") + text_of(lib.t3r_error_text(status)))
+        raise error_of(_STATUS_NAMES[status], (f"{what}: " if what else "") + text_of(lib.t3r_error_text(status)))
 
 
 def value_named(kind: str, name_of: Callable[[int], Any], count: int, name: str) -> int:

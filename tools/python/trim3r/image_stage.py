@@ -3,7 +3,7 @@ from typing import Any
 
 import numpy as np
 
-from ._native import address, check, ffi, lib
+from ._native import INTERFACE, address, check, ffi, lib
 from .camera import Camera
 from .errors import InputError
 from .frame import Frame
@@ -18,10 +18,12 @@ def arena_of(plan_bytes: int) -> "np.ndarray[Any, np.dtype[np.uint8]]":
 
 def default_config(width: int, height: int, views: int, gaussians: int) -> Any:
     """A t3r_config of defaults. Raises ValueError where a number does not fit its field."""
+    config = ffi.new("t3r_config *")
     try:
-        return ffi.new("t3r_config *", lib.t3r_default_config(width, height, views, gaussians))
+        check(lib.t3r_default_config_as(INTERFACE, config, ffi.sizeof("t3r_config"), width, height, views, gaussians))
     except OverflowError as error:
         raise ValueError(f"width, height, views or gaussians: {error}") from error
+    return config
 
 
 def camera_of(frame: Frame) -> Camera:
@@ -54,9 +56,9 @@ def develop(frame: Frame, width: int, height: int) -> Frame:
     """
     config = default_config(width, height, 1, 1)
     plan, runtime, undistorted = ffi.new("t3r_plan_info *"), ffi.new("t3r_runtime **"), ffi.new("t3r_camera *")
-    check(lib.t3r_plan(config, plan), f"a size of {width}x{height}")
+    check(lib.t3r_plan_as(INTERFACE, config, plan), f"a size of {width}x{height}")
     arena = arena_of(plan.min_bytes)
-    check(lib.t3r_init(runtime, address(arena, "void *"), arena.nbytes, config))
+    check(lib.t3r_init_as(INTERFACE, runtime, address(arena, "void *"), arena.nbytes, config))
     lib.t3r_set_cpu(runtime[0], lib.t3r_cpu_features())
     colour = np.empty((height, width, 3), dtype=np.uint8)
     depth = None if frame.depth is None else np.empty((height, width), dtype="<u2")

@@ -8,7 +8,7 @@ from typing import Any, Callable, Deque, Dict, Iterator, Optional, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._native import address, check, ffi, lib, text_of
+from ._native import INTERFACE, address, check, ffi, lib, text_of
 from .camera import Camera
 from .configuration import Settings, configuration
 from .errors import DepthError, InputError, StateError
@@ -77,12 +77,12 @@ class Reconstructor:
             "depth": depth, "workers": workers, "render_width": render_width, "render_height": render_height,
             "keep_analysis": 1, **settings})
         plan = ffi.new("t3r_plan_info *")
-        check(lib.t3r_plan(self._config, plan))
+        check(lib.t3r_plan_as(INTERFACE, self._config, plan))
         if arena_bytes is not None and arena_bytes < plan.min_bytes:
             raise InputError(f"an arena of {arena_bytes} bytes is too small: it takes {plan.min_bytes}", "T3R_ERR_ARENA")
         self._arena = arena_of(plan.bytes if arena_bytes is None else arena_bytes)
         runtime = ffi.new("t3r_runtime **")
-        check(lib.t3r_init(runtime, address(self._arena, "void *"), self._arena.nbytes, self._config))
+        check(lib.t3r_init_as(INTERFACE, runtime, address(self._arena, "void *"), self._arena.nbytes, self._config))
         lib.t3r_set_cpu(runtime[0], lib.t3r_cpu_features())
         if self._head.nbytes and views > 0:
             check(lib.t3r_bind_head(runtime[0], self._head.weights, self._head.nbytes), "head")

@@ -1,0 +1,152 @@
+/* What a program and the library must agree on: the structs of trim3r.h, field by field. Each side compiles a digest of
+ * it, and the calls by which a program starts compare the two. */
+#ifndef TRIM3R_INTERFACE_H
+#define TRIM3R_INTERFACE_H
+
+#ifdef __cplusplus
+#define T3R_FIELD_BYTES_(type, field) sizeof(type::field)
+#else
+#define T3R_FIELD_BYTES_(type, field) sizeof(((const type *)0)->field)
+#endif
+
+/* FNV-1a, a word instead of a byte at a time. */
+#define T3R_DIGEST_(word) digest = (digest ^ (word)) * 1099511628211u;
+#define T3R_DIGEST_TYPE_(type) T3R_DIGEST_(sizeof(type))
+#define T3R_DIGEST_FIELD_(type, field) T3R_DIGEST_(offsetof(type, field)) T3R_DIGEST_(T3R_FIELD_BYTES_(type, field))
+
+/* X(type), a row a struct. */
+#define T3R_INTERFACE_TYPES_(X)                                                                                        \
+    X(t3r_frame)                                                                                                       \
+    X(t3r_camera)                                                                                                      \
+    X(t3r_config)                                                                                                      \
+    X(t3r_request)                                                                                                     \
+    X(t3r_scene_frame)                                                                                                 \
+    X(t3r_gaussian)                                                                                                    \
+    X(t3r_scene)                                                                                                       \
+    X(t3r_target)                                                                                                      \
+    X(t3r_hooks)                                                                                                       \
+    X(t3r_plan_buffer)                                                                                                 \
+    X(t3r_plan_info)                                                                                                   \
+    X(t3r_work_counts)                                                                                                 \
+    X(t3r_prices)                                                                                                      \
+    X(t3r_limits)                                                                                                      \
+    X(t3r_choice)                                                                                                      \
+    X(t3r_stream_report)
+
+/* X(type, field), a row a field. */
+#define T3R_INTERFACE_FIELDS_(X)                                                                                       \
+    X(t3r_frame, format)                                                                                               \
+    X(t3r_frame, width)                                                                                                \
+    X(t3r_frame, height)                                                                                               \
+    X(t3r_frame, planes)                                                                                               \
+    X(t3r_frame, stride_bytes)                                                                                         \
+    X(t3r_frame, depth)                                                                                                \
+    X(t3r_frame, depth_width)                                                                                          \
+    X(t3r_frame, depth_height)                                                                                         \
+    X(t3r_frame, depth_stride_bytes)                                                                                   \
+    X(t3r_frame, depth_unit_q40)                                                                                       \
+    X(t3r_camera, fx_q16)                                                                                              \
+    X(t3r_camera, fy_q16)                                                                                              \
+    X(t3r_camera, cx_q16)                                                                                              \
+    X(t3r_camera, cy_q16)                                                                                              \
+    X(t3r_camera, distortion)                                                                                          \
+    X(t3r_camera, distortion_q24)                                                                                      \
+    X(t3r_camera, position_q32)                                                                                        \
+    X(t3r_camera, rotation_q30)                                                                                        \
+    X(t3r_config, width)                                                                                               \
+    X(t3r_config, height)                                                                                              \
+    X(t3r_config, views)                                                                                               \
+    X(t3r_config, max_gaussians)                                                                                       \
+    X(t3r_config, gaussians)                                                                                           \
+    X(t3r_config, render_width)                                                                                        \
+    X(t3r_config, render_height)                                                                                       \
+    X(t3r_config, wavelet)                                                                                             \
+    X(t3r_config, wavelet_levels)                                                                                      \
+    X(t3r_config, clusters)                                                                                            \
+    X(t3r_config, cluster_batches)                                                                                     \
+    X(t3r_config, colour_weight_q8)                                                                                    \
+    X(t3r_config, allocation)                                                                                          \
+    X(t3r_config, keep_percent)                                                                                        \
+    X(t3r_config, gamma_q8)                                                                                            \
+    X(t3r_config, head)                                                                                                \
+    X(t3r_config, head_column_bytes)                                                                                   \
+    X(t3r_config, refinements)                                                                                         \
+    X(t3r_config, depth)                                                                                               \
+    X(t3r_config, fill_radius)                                                                                         \
+    X(t3r_config, bridge_radius)                                                                                       \
+    X(t3r_config, flying)                                                                                              \
+    X(t3r_config, redundancy)                                                                                          \
+    X(t3r_config, exposure)                                                                                            \
+    X(t3r_config, keep_analysis)                                                                                       \
+    X(t3r_config, warm)                                                                                                \
+    X(t3r_config, stream)                                                                                              \
+    X(t3r_config, half_life)                                                                                           \
+    X(t3r_config, workers)                                                                                             \
+    X(t3r_config, tile_splats)                                                                                         \
+    X(t3r_config, seed)                                                                                                \
+    X(t3r_request, gaussians)                                                                                          \
+    X(t3r_request, max_loss_q8)                                                                                        \
+    X(t3r_request, allocation)                                                                                         \
+    X(t3r_request, head)                                                                                               \
+    X(t3r_request, importance)                                                                                         \
+    X(t3r_request, importance_stride_bytes)                                                                            \
+    X(t3r_scene_frame, origin_q32)                                                                                     \
+    X(t3r_scene_frame, exponent)                                                                                       \
+    X(t3r_gaussian, position_q20)                                                                                      \
+    X(t3r_gaussian, factor)                                                                                            \
+    X(t3r_gaussian, factor_exponent)                                                                                   \
+    X(t3r_gaussian, view)                                                                                              \
+    X(t3r_gaussian, colour_q7)                                                                                         \
+    X(t3r_gaussian, opacity_q15)                                                                                       \
+    X(t3r_gaussian, confidence)                                                                                        \
+    X(t3r_gaussian, reserved)                                                                                          \
+    X(t3r_scene, frame)                                                                                                \
+    X(t3r_scene, gaussians)                                                                                            \
+    X(t3r_scene, count)                                                                                                \
+    X(t3r_scene, valid_points)                                                                                         \
+    X(t3r_target, width)                                                                                               \
+    X(t3r_target, height)                                                                                              \
+    X(t3r_target, rgb)                                                                                                 \
+    X(t3r_target, rgb_stride_bytes)                                                                                    \
+    X(t3r_target, depth_q20)                                                                                           \
+    X(t3r_target, depth_stride_bytes)                                                                                  \
+    X(t3r_target, alpha_q15)                                                                                           \
+    X(t3r_target, alpha_stride_bytes)                                                                                  \
+    X(t3r_hooks, user)                                                                                                 \
+    X(t3r_hooks, progress)                                                                                             \
+    X(t3r_hooks, stage_hash)                                                                                           \
+    X(t3r_hooks, parallel_for)                                                                                         \
+    X(t3r_plan_buffer, name)                                                                                           \
+    X(t3r_plan_buffer, offset)                                                                                         \
+    X(t3r_plan_buffer, bytes)                                                                                          \
+    X(t3r_plan_buffer, first)                                                                                          \
+    X(t3r_plan_buffer, last)                                                                                           \
+    X(t3r_plan_info, min_bytes)                                                                                        \
+    X(t3r_plan_info, bytes)                                                                                            \
+    X(t3r_plan_info, most_blends)                                                                                      \
+    X(t3r_plan_info, buffer_count)                                                                                     \
+    X(t3r_plan_info, buffers)                                                                                          \
+    X(t3r_work_counts, units)                                                                                          \
+    X(t3r_prices, milli)                                                                                               \
+    X(t3r_limits, bytes)                                                                                               \
+    X(t3r_limits, most)                                                                                                \
+    X(t3r_limits, prices)                                                                                              \
+    X(t3r_limits, gaussians)                                                                                           \
+    X(t3r_limits, refinements)                                                                                         \
+    X(t3r_choice, gaussians)                                                                                           \
+    X(t3r_choice, refinements)                                                                                         \
+    X(t3r_choice, head)                                                                                                \
+    X(t3r_choice, weights)                                                                                             \
+    X(t3r_choice, min_bytes)                                                                                           \
+    X(t3r_choice, full_bytes)                                                                                          \
+    X(t3r_choice, price)                                                                                               \
+    X(t3r_choice, loss_q4)                                                                                             \
+    X(t3r_stream_report, keyframes)                                                                                    \
+    X(t3r_stream_report, gaussians)                                                                                    \
+    X(t3r_stream_report, added)                                                                                        \
+    X(t3r_stream_report, removed)                                                                                      \
+    X(t3r_stream_report, crowded)                                                                                      \
+    X(t3r_stream_report, points)                                                                                       \
+    X(t3r_stream_report, shown)
+
+#endif

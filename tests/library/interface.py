@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""interface.py LIBRARY: programs and the library agree on the structs of trim3r.h, or the program is told.
+
+The structs are the same with short enumerations and without, for gcc and clang. A program with short ones uses the
+library and gets its hash. A program compiled with another layout, or with other features, gets a status of its own from
+every call by which it may start, and nothing is written.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from library import CONSUMERS, HASH, HEADS, HERE, ROOT, WARNINGS, there, without
+
+from checks import check, done, run
+
+INCLUDE = ROOT / "runtime" / "include"
+MISMATCH = -14
+SHORT = ("-fshort-enums", "-fno-short-enums")
+COMPILERS = {"x86-64": (["gcc"], ["clang"]),
+             "Cortex-M55": (["arm-none-eabi-gcc", "-mcpu=cortex-m55", "-ffreestanding"],
+                            ["clang", "--target=arm-none-eabi", "-mcpu=cortex-m55", "-ffreestanding"])}
+# What another version of the header could have.
+PLANTED = {
+    "a field more": ("typedef struct t3r_config {", "typedef struct t3r_config {\n    uint32_t planted;"),
+    "a wider field": ("uint32_t render_width, render_height;", "uint64_t render_width, render_height;"),
+    "two fields in another order": ("    int8_t factor_exponent;\n", "    uint8_t planted;\n    int8_t factor_exponent;\n"),
+}
+ENUM = ("typedef uint32_t t3r_head;", "typedef enum t3r_planted { T3R_PLANTED } t3r_head;")
+
+
+def header(folder, change=None):
+    """A folder with the headers, one change made in trim3r.h."""
+    shutil.copytree(INCLUDE, folder)
+    if change:
+        text = (folder / "trim3r.h").read_text()
+        check(text.count(change[0]) == 1, f"trim3r.h has not one '{change[0]}'")
+        (folder / "trim3r.h").write_text(text.replace(*change))
+    return folder
+
+
+def layout(include, compiler, short, folder):
+    """The constants of interface_layout.c."""
+    made = folder / "layout.o"
+    run(*compiler, "-std=c11", "-w", short, "-I", include, "-c", HERE / "interface_layout.c", "-o", made)
+    run("objcopy", "-O", "binary", "--only-section=.rodata*", "-I", "elf32-little" if "arm" in " ".join(compiler) else
+        "elf64-x86-64", made, made.with_suffix(".bin"))
+    return made.with_suffix(".bin").read_bytes()
+
+
+def layouts(include, compilers, folder):
+    return {layout(include, compiler, short, folder) for compiler in compilers for short in SHORT}
+
+
+def fields_of(text):
+    """[type, field] of every struct that the header lays out, in its order."""
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
+    for name, body in re.findall(r"^typedef struct (\w+) \{$(.*?)^\} \1;$", text, flags=re.M | re.S):
+        for declaration in re.sub(r"\[\w*\]", "", body).split(";"):
+            called = re.search(r"\(\*(\w+)\)\(", declaration)
+            names = [called[1]] if called else re.findall(r"(\w+)\s*(?:,|$)", declaration.strip())
+            yield from ((name, field) for field in names)
+
+
+def check_rows():
+    """Each struct and each field has its row in trim3r_interface.h."""
+    fields = list(fields_of((INCLUDE / "trim3r.h").read_text()))
+    rows = (INCLUDE / "trim3r_interface.h").read_text()
+    check(len(fields) > 100, f"blind: {len(fields)} fields found")
+    check(re.findall(r"X\((t3r_\w+), (\w+)\)", rows) == fields,
+          f"trim3r_interface.h lacks rows, or has others: {set(re.findall(r'X.(t3r_.+), (.+?).[ )]', rows)) ^ set(fields)}")
+    check(re.findall(r"X\((t3r_\w+)\)", rows) == list(dict.fromkeys(name for name, _ in fields)), "rows of structs")
+
+
+def answers(include, library, folder, *words):
+    """What a program compiled with these headers is told, line by line."""
+    program = folder / "driver"
+    run("cc", "-std=c11", "-O1", *WARNINGS, *words, "-I", include, HERE / "interface_driver.c", library, "-o", program)
+    ended = subprocess.run([program], capture_output=True, text=True, check=False)
+    check(ended.returncode == 0, f"the program ends with {ended.returncode}: {ended.stdout}")
+    return dict(line.split(": ") for line in ended.stdout.splitlines())
+
+
+def check_mismatches(library, folder):
+    plain = answers(INCLUDE, library, folder)
+    agreed = {name: "0, nothing written" if name == "plan_within" else "0, written" for name in plain}
+    agreed["default_config"], agreed["attach"] = "defaults", plain["attach"]
+    check(plain == agreed and plain["attach"].startswith("0"), f"with the library's header: {plain}")
+    told = {name: "zeros" if name == "default_config" else f"{MISMATCH}, nothing written" for name in plain}
+    for number, (what, change) in enumerate(PLANTED.items()):
+        found = answers(header(folder / f"planted{number}", change), library, folder)
+        check(found == told, f"{what}: {found}")
+    found = answers(INCLUDE, library, folder, without("stereo"))
+    check(found == told, f"without stereo: {found}")
+
+
+def main():
+    library = pathlib.Path(sys.argv[1])
+    if not there("cc", "objcopy"):
+        sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="trim3r-interface-") as folder:
+        folder = pathlib.Path(folder)
+        check_rows()
+        enums = header(folder / "enums", ENUM)
+        for machine, compilers in COMPILERS.items():
+            compilers = [compiler for compiler in compilers if there(compiler[0])]
+            check(len(layouts(INCLUDE, compilers, folder)) <= 1, f"{machine}: structs depend on how enumerations are laid out")
+            check(not compilers or len(layouts(enums, compilers, folder)) == 2, f"{machine}: blind to an enumeration")
+        program = folder / "program"
+        run("cc", "-std=c11", SHORT[0], "-I", INCLUDE, "-I", HEADS, CONSUMERS / "main.c", CONSUMERS / "scene.c",
+            HEADS / "small.c", library, "-o", program)
+        said = run(program).stdout.split()
+        check(said[:2] == [HASH, HASH], f"with short enumerations: {said}, not {HASH}")
+        check_mismatches(library, folder)
+    done()
+
+
+if __name__ == "__main__":
+    main()
