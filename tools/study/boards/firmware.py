@@ -59,9 +59,11 @@ def choices_of(options):
             *(["-DPLAIN_C"] if is_small(options) else []), *(["-flto=auto"] if options.lto else [])]
 
 
-def build(board, suffix, compiler, link, options):
-    """The board's firmware, by this compiler with these words for the linker."""
+def build(board, suffix, compiler, link, options, compiled=lambda sources: sources):
+    """The board's firmware, by this compiler with these words for the linker; `compiled` may make objects of sources
+    by another."""
     parts = [f"{board}-{options.head}{options.optimize}", *(["lto"] if options.lto else []),
+             *(["clang"] if options.clang else []),
              *(f"no_{name}" for name in left_out(options)), *([str(options.ram)] if options.ram else [])]
     made = options.out / f"{'-'.join(parts)}{suffix}"
     sources = sources_of(board, options)
@@ -69,8 +71,8 @@ def build(board, suffix, compiler, link, options):
              *BAREMETAL.rglob("*.json")]
     if made.exists() and made.stat().st_mtime > max(path.stat().st_mtime for path in given):
         return made
-    run(*compiler, *FLAGS, options.optimize, *BOARDS[board]["flags"], *INCLUDE, *choices_of(options), *sources, *link,
-        "-o", made)
+    run(*compiler, *FLAGS, options.optimize, *BOARDS[board]["flags"], *INCLUDE, *choices_of(options),
+        *compiled(sources), *link, "-o", made)
     return made
 
 
