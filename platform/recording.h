@@ -95,7 +95,8 @@ typedef struct t3r_recording_cut {
 } t3r_recording_cut;
 t3r_recording_cut t3r_recording_cut_of(const t3r_recording *recording);
 /* Why frames are not to be had as they stand, of a bag that others made, or "": its images are files, its depth is that
- * of another camera, or its poses are transforms or those of another frame, unless t3r_recording_set_pose() gave some. */
+ * of another camera, or its poses are transforms or those of another frame, unless t3r_recording_set_pose() gave some.
+ */
 const char *t3r_recording_import_reason(const t3r_recording *recording);
 /* "" or a remark such as "cut off after 12 of its messages". */
 const char *t3r_recording_note(const t3r_recording *recording);

@@ -12,9 +12,8 @@ bool t3r_ros_is_named(t3r_ros_type type, t3r_text name)
         package++;
     }
     size_t rest = full.count - package - 4; /* behind "/msg" */
-    return t3r_text_same(name, full) ||
-           (name.count == package + rest && memcmp(name.chars, full.chars, package) == 0 &&
-            memcmp(name.chars + package, full.chars + package + 4, rest) == 0);
+    return t3r_text_same(name, full) || (name.count == package + rest && memcmp(name.chars, full.chars, package) == 0 &&
+                                         memcmp(name.chars + package, full.chars + package + 4, rest) == 0);
 }
 
 static const char *const bad_encapsulation = "the encapsulation is not plain CDR";

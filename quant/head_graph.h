@@ -1,5 +1,5 @@
-/* The layers of a head: which reads which, and how large they are (runtime/head/weights.h says what they mean). What the
- * float head, the quantized head and the weight file have in common. */
+/* The layers of a head: which reads which, and how large they are (runtime/head/weights.h says what they mean). What
+ * the float head, the quantized head and the weight file have in common. */
 #ifndef T3R_QUANT_HEAD_GRAPH_H
 #define T3R_QUANT_HEAD_GRAPH_H
 

@@ -1,5 +1,5 @@
-/* Weight files for tests: a head's graph as a list, its numbers at random but lively, written by runtime/head/weights.h's
- * text. */
+/* Weight files for tests: a head's graph as a list, its numbers at random but lively, written by
+ * runtime/head/weights.h's text. */
 #ifndef T3R_TESTS_WEIGHTS_MAKER_H
 #define T3R_TESTS_WEIGHTS_MAKER_H
 

@@ -131,8 +131,7 @@ static bool is_state(const t3r_runtime *rt)
     const size_t most_points = T3R_PIXELS_(rt->config.width, rt->config.height) * rt->config.views;
     return rt->views <= rt->config.views && rt->gaussians <= rt->config.max_gaussians &&
            rt->analysed <= (rt->views > 0) && rt->has_scene <= 1 && rt->valid_points <= most_points &&
-           t3r_is_scene_frame(&rt->frame) && t3r_is_build(&rt->config, &rt->build) &&
-           is_slot(rt) && is_reuse(rt);
+           t3r_is_scene_frame(&rt->frame) && t3r_is_build(&rt->config, &rt->build) && is_slot(rt) && is_reuse(rt);
 }
 
 bool t3r_is_restored(const t3r_runtime *rt)

@@ -34,8 +34,8 @@ typedef void t3r_luma_row_kernel(int16_t *restrict row, const uint8_t *restrict 
 
 /* db2 down the rows, 1: high -= sqrt(3) low, as 2 low - mulr(low, 2 - sqrt 3) */
 typedef void t3r_db2_predict_kernel(int16_t *restrict high, const int16_t *restrict low, size_t count);
-/* 2: low += mulr(high, sqrt 3 / 4) - mulr(next high, (2 - sqrt 3) / 4), and then 3: high += previous low, which is no row
- * of the others. The next high may be the high itself. */
+/* 2: low += mulr(high, sqrt 3 / 4) - mulr(next high, (2 - sqrt 3) / 4), and then 3: high += previous low, which is no
+ * row of the others. The next high may be the high itself. */
 typedef void t3r_db2_lift_kernel(int16_t *restrict low, int16_t *high, const int16_t *high_next,
                                  const int16_t *restrict low_previous, size_t count);
 /* db2 along a row, split_row and 1: low[i] = row[2 i], high[i] = row[2 i + 1] less sqrt(3) low[i] */

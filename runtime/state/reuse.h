@@ -22,7 +22,7 @@ void t3r_reuse_no_view(t3r_runtime *rt, uint32_t v);
 /* The next build begins anew. */
 void t3r_reuse_nothing(t3r_runtime *rt);
 
-/* The views in the arena were analysed: the next build may follow. Before anything works where the SuperClusters are. */
+/* The views in the arena were analysed, so the next build may follow. Before anything works where SuperClusters are. */
 void t3r_reuse_all(t3r_runtime *rt);
 
 /* The plane that keeps the texture of view v before it is blurred. */

@@ -55,7 +55,8 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
     SETTING("exposure", "on|off", exposure, SWITCH, 0, 1, NULL,                                                        \
             "bring the colours of all views to their mean exposure", false, "exposure")                                \
     SETTING("warm", "on|off", warm, SWITCH, 0, 1, NULL,                                                                \
-            "let a build take over what still holds from the one before: with --slide and --stream of replay", false, "warm")    \
+            "let a build take over what still holds from the one before: with --slide and --stream of replay", false,  \
+            "warm")                                                                                                    \
     SETTING("tile-splats", "N", tile_splats, NUMBER, 0, T3R_MAX_GAUSSIANS, NULL,                                       \
             "draw a tile of 16 x 16 pixels from its N nearest Gaussians alone; 0 = from all", false, "tile-splats")    \
     SETTING("seed", "N", seed, NUMBER, 0, UINT32_MAX, NULL, "seed of the K-means and of --allocate random", false,     \

@@ -15,8 +15,8 @@ typedef struct tile_lists {
     uint32_t widest;  /* tiles of the widest splat */
 } tile_lists;
 
-/* Of a view of width x height, of which a tile is drawn from its `tile_splats` nearest alone (0: from all); the camera's
- * distortion is ignored. All 0 where it cannot be drawn. False: out of memory. */
+/* Of a view of width x height, of which a tile is drawn from its `tile_splats` nearest alone (0: from all); the
+ * camera's distortion is ignored. All 0 where it cannot be drawn. False: out of memory. */
 bool tile_lists_of(const t3r_scene *scene, const t3r_camera *camera, uint32_t width, uint32_t height,
                    uint32_t tile_splats, tile_lists *lists);
 
