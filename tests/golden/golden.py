@@ -2,9 +2,10 @@
 """Same bits: every stage's hash, against the ones written down in this folder.
 
 golden.py host DRIVER             the driver as built here, in every way that must not matter (arena, tasks, moves)
-golden.py build [--both-ways] [--run EMULATOR] COMPILER FLAG...
+golden.py build [--both-ways] [--vectors] [--run EMULATOR] COMPILER FLAG...
                                   the driver built by another compiler, for another processor; run in the usual way,
-                                  with --both-ways in the one that differs most from it, too
+                                  with --both-ways in the one that differs most from it, too; with --vectors by the
+                                  loops of the processor's instruction sets in the place of plain C
 golden.py replay TRIM3R           the built-in recording, made and replayed by the program
 Exit 0: the same; 1: other bits, naming the first stage that differs; 77: skipped, a tool is absent.
 """
@@ -20,11 +21,12 @@ ROOT = HERE.parent.parent
 STAGES = HERE / "stages.txt"
 ROOM = HERE / "room.json"
 WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--moved"],
-        ["--tasks", "reverse", "--workers", "3"],
+        ["--tasks", "reverse", "--workers", "3"], ["--cpu-mask", "all"],
         ["--arena", "min", "--tasks", "reverse", "--workers", "8", "--moved"]]
 REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"],
                ["--cpu-mask", "sse4.1"], ["--cpu-mask", "avx2"]]
 DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", ROOT / "quant" / "heads" / "small.c",
+                  ROOT / "platform" / "cpu.c",
                   *sorted((ROOT / "tools" / "room").glob("*.c"))]
 DRIVER_INCLUDES = [ROOT / "runtime" / "include", ROOT / "runtime", ROOT / "platform", ROOT / "tools", ROOT / "tests",
                    ROOT / "quant" / "heads"]
@@ -73,6 +75,8 @@ def check_build(arguments):
     ways, emulator = WAYS[:1], []
     if arguments[0] == "--both-ways":
         ways, arguments = [WAYS[0], WAYS[-1]], arguments[1:]
+    if arguments[0] == "--vectors":
+        ways, arguments = [[*way, "--cpu-mask", "all"] for way in ways], arguments[1:]
     if arguments[0] == "--run":
         emulator, arguments = [arguments[1]], arguments[2:]
     for tool in (arguments[0], *emulator):

@@ -12,6 +12,7 @@
 
 #include "state/ablation.h"
 #include "core/hash.h"
+#include "cpu.h"
 #include "room/room.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
@@ -69,6 +70,7 @@ typedef struct variation {
     arena_size arena;
     bool reverse_tasks;
     uint32_t workers;
+    uint32_t cpu; /* T3R_CPU_...: the features whose loops are taken */
     bool moved;
 } variation;
 
@@ -271,6 +273,9 @@ static t3r_status begin_run(run *r, bool stream)
     r->here = 0;
     r->step = "init";
     status = t3r_init(&r->rt, arenas[0], r->arena_bytes, &config);
+    if (status == T3R_OK) {
+        status = t3r_set_cpu(r->rt, r->ways.cpu);
+    }
     return status == T3R_OK ? t3r_set_ablation(r->rt, &(t3r_ablation){.unadapted = c->unadapted}) : status;
 }
 
@@ -418,7 +423,9 @@ static int run_stream(variation ways)
 
 static int usage(void)
 {
-    fputs("golden_driver [--arena min|full|ten] [--tasks plain|reverse] [--workers N] [--moved]\n", stderr);
+    fputs("golden_driver [--arena min|full|ten] [--tasks plain|reverse] [--workers N] [--moved]\n"
+          "              [--cpu-mask MASK]\n",
+          stderr);
     return 2;
 }
 
@@ -443,6 +450,9 @@ int main(int argc, char **argv)
             i++;
         } else if (strcmp(argv[i], "--arena") == 0 && strcmp(value, "ten") == 0) {
             ways.arena = ARENA_TEN;
+            i++;
+        } else if (strcmp(argv[i], "--cpu-mask") == 0 && t3r_cpu_parse_mask(value, &ways.cpu)) {
+            ways.cpu &= t3r_cpu_features();
             i++;
         } else {
             return usage();

@@ -3,8 +3,13 @@
 #ifndef T3R_TESTS_KERNEL_CHECKS_H
 #define T3R_TESTS_KERNEL_CHECKS_H
 
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include "kernels/kernels.h"
-#include "unit/unit.h"
+#include "unit/noise.h"
 
 /* What is wrong, as text; NULL: nothing. */
 typedef const char *kernel_check(const t3r_kernels *kernels, uint64_t *seed);

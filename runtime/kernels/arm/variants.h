@@ -59,8 +59,28 @@
 #define T3R_DSP_VARIANTS_(X)
 #endif
 
+/* Every 64-bit Arm has these, but for builds for general registers alone. */
+#if defined(__aarch64__) && defined(__ARM_NEON) && !defined(__ARM_BIG_ENDIAN)
+#define T3R_NEON 1
+#if T3R_FEATURE_REFINEMENT
+#define T3R_NEON_REFINEMENT_VARIANTS_(X)                                                                               \
+    X(scatter, T3R_CPU_NEON, t3r_scatter_neon)                                                                         \
+    X(solve, T3R_CPU_NEON, t3r_solve_neon)
+#else
+#define T3R_NEON_REFINEMENT_VARIANTS_(X)
+#endif
+#define T3R_NEON_VARIANTS_(X)                                                                                          \
+    X(nearest_begin, T3R_CPU_NEON, t3r_nearest_begin_neon)                                                             \
+    X(nearest, T3R_CPU_NEON, t3r_nearest_neon)                                                                         \
+    X(project, T3R_CPU_NEON, t3r_project_neon)                                                                         \
+    X(place, T3R_CPU_NEON, t3r_place_neon)                                                                             \
+    T3R_NEON_REFINEMENT_VARIANTS_(X)
+#else
+#define T3R_NEON_VARIANTS_(X)
+#endif
+
 /* X(entry, features, function), as x86/variants.h has it. */
-#define T3R_ARM_VARIANTS(X) T3R_DSP_VARIANTS_(X) T3R_MVE_VARIANTS_(X)
+#define T3R_ARM_VARIANTS(X) T3R_DSP_VARIANTS_(X) T3R_MVE_VARIANTS_(X) T3R_NEON_VARIANTS_(X)
 
 #define T3R_DECLARE_(entry, features, function) __attribute__((visibility("hidden"))) t3r_##entry##_kernel function;
 T3R_ARM_VARIANTS(T3R_DECLARE_)

@@ -91,7 +91,7 @@ static inline T3R_LANES_TARGET void place_group(const fields *e, lanes dx, lanes
 {
     const wide hx = half_gradient(e->a_q30, dx, e->b_q30, dy), hy = half_gradient(e->b_q30, dx, e->c_q30, dy);
     /* rounded by 12 twice: floor(floor(h / 2^12 + 1/2) / 2^12 + 1/2) = floor(h / 2^24 + 2^-13 + 1/2) */
-    const wide half = all_wide(1 << 23), across = {dx, odd_of(dx)}, down = {dy, odd_of(dy)};
+    const wide half = all_wide(1 << 23), across = spread(dx), down = spread(dy);
     group[0] = low_of(right(sum(sum(along(hx, across), along(hy, down)), all_wide(1 << 24)), 25));
     group[1] = low_of(right(sum(hx, half), 24));
     group[2] = low_of(right(sum(hy, half), 24));

@@ -17,8 +17,7 @@ static inline T3R_LANES_TARGET lanes held(lanes x, lanes bound)
 static inline T3R_LANES_TARGET wide mixed_product(lanes a, lanes b)
 {
     const lanes beyond = both(a, OF_LANES(srai_epi32)(b, 31)); /* b read as signed lacks 2^32 there */
-    const wide high = {OF_LANES(slli_epi64)(beyond, 32), OF_LANES(slli_epi64)(odd_of(beyond), 32)};
-    return sum(product(a, b), high);
+    return sum(product(a, b), lifted(beyond));
 }
 
 /* x / 2^shift, round-half-up, of 64 bits, twice of which 32 bits hold; shift 1..33. */

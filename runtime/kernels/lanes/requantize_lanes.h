@@ -5,7 +5,7 @@
 #include "packed_scaling.h"
 
 /* SSE4.1 has no shifts of each lane by its own count: factors stand in the layer in their place. */
-enum { BY_FACTORS = LANES == 4 };
+enum { BY_FACTORS = T3R_LANES_BY_FACTORS };
 
 static inline T3R_LANES_TARGET lanes raised(lanes x, lanes left)
 {

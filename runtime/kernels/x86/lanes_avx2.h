@@ -9,6 +9,7 @@
 #define T3R_LANES_TARGET T3R_AVX2
 #define OF_LANES(instruction) _mm256_##instruction
 #define OF_ALL_BITS(instruction) _mm256_##instruction##_si256
+#define T3R_LANES_BY_FACTORS 0
 #define ALL_64 _mm256_set1_epi64x
 
 typedef __m256i lanes; /* of 32 bits */
@@ -16,7 +17,10 @@ typedef __m256i_u lanes_there;
 
 #include "kernels/lanes/operations.h"
 
+#include "kernels/lanes/even_odd.h"
 #include "kernels/lanes/masks.h"
+
+#include "kernels/lanes/alternating.h"
 #include "kernels/lanes/shifts.h"
 
 static inline T3R_AVX2 lanes alternating(lanes even, lanes odd)

@@ -9,12 +9,15 @@
 #define T3R_LANES_TARGET T3R_AVX512
 #define OF_LANES(instruction) _mm512_##instruction
 #define OF_ALL_BITS(instruction) _mm512_##instruction##_si512
+#define T3R_LANES_BY_FACTORS 0
 #define ALL_64 _mm512_set1_epi64
 
 typedef __m512i lanes; /* of 32 bits */
 typedef __m512i_u lanes_there;
 
 #include "kernels/lanes/operations.h"
+
+#include "kernels/lanes/even_odd.h"
 
 #include "kernels/lanes/shifts.h"
 

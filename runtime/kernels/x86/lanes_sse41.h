@@ -9,6 +9,7 @@
 #define T3R_LANES_TARGET T3R_SSE41
 #define OF_LANES(instruction) _mm_##instruction
 #define OF_ALL_BITS(instruction) _mm_##instruction##_si128
+#define T3R_LANES_BY_FACTORS 1
 #define ALL_64 _mm_set1_epi64x
 
 typedef __m128i lanes; /* of 32 bits */
@@ -16,7 +17,10 @@ typedef __m128i_u lanes_there;
 
 #include "kernels/lanes/operations.h"
 
+#include "kernels/lanes/even_odd.h"
 #include "kernels/lanes/masks.h"
+
+#include "kernels/lanes/alternating.h"
 
 static inline T3R_SSE41 lanes alternating(lanes even, lanes odd)
 {

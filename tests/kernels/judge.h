@@ -1,0 +1,35 @@
+/* Compares entries of a table of kernels by their checks, seed by seed. */
+#ifndef T3R_TESTS_KERNEL_JUDGE_H
+#define T3R_TESTS_KERNEL_JUDGE_H
+
+#include <stdbool.h>
+
+#include "checks.h"
+
+/* The seeds from `first` on. */
+typedef struct judged_seeds {
+    uint64_t first, rounds;
+} judged_seeds;
+
+/* What is wrong with the entry at a seed; NULL: nothing. */
+const char *judge_at(const t3r_kernels *kernels, const checked_entry *entry, uint64_t seed);
+
+/* The first that is wrong, and its seed; NULL: nothing in all rounds. */
+const char *judge(const t3r_kernels *kernels, const checked_entry *entry, judged_seeds seeds, uint64_t *seed);
+
+/* The same of each variant whose features the processor has, by just these features. Writes to stderr what is wrong;
+ * *tested: how many there were. */
+bool judge_variants(uint32_t processor, judged_seeds seeds, uint32_t *tested);
+
+/* Likewise one entry, under the name of what the table was chosen for. */
+bool judge_named(const t3r_kernels *kernels, const checked_entry *entry, judged_seeds seeds, const char *name);
+
+/* Entries that are wrong: each must be found. */
+typedef struct wrong_variant {
+    const char *entry;
+    t3r_kernels kernels;
+} wrong_variant;
+enum { WRONG_VARIANTS = 6 };
+void make_wrong_variants(wrong_variant variants[WRONG_VARIANTS]);
+
+#endif
