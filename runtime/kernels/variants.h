@@ -2,6 +2,8 @@
 #ifndef T3R_KERNEL_VARIANTS_H
 #define T3R_KERNEL_VARIANTS_H
 
+#include "core/fixed.h"
+
 #include "arm/variants.h"
 #include "wasm/variants.h"
 #include "x86/variants.h"
@@ -10,7 +12,8 @@
  * the processor has stays. */
 #define T3R_VARIANTS(X) T3R_X86_VARIANTS(X) T3R_ARM_VARIANTS(X) T3R_WASM_VARIANTS(X)
 
-#define T3R_STRIP_BYTES(cpu) T3R_X86_STRIP_BYTES(cpu)
+/* One architecture has bytes, the others have none of its kernels. */
+#define T3R_STRIP_BYTES(cpu) T3R_MIN(T3R_X86_STRIP_BYTES(cpu), T3R_ARM_STRIP_BYTES(cpu))
 
 /* How many there are: what serves variants alone can be left out of a build without any. */
 #define T3R_ONE_MORE_(entry, features, function) +1

@@ -6,7 +6,10 @@
 #include "variants.h"
 
 #define LANES 4
+#ifndef T3R_LANES_TARGET
 #define T3R_LANES_TARGET /* every processor of the architecture has NEON */
+#endif
+#define T3R_LANES_BY_FACTORS 0
 #define ALL_64(x) vreinterpretq_s32_s64(vdupq_n_s64(x))
 
 typedef quad lanes; /* of 32 bits */
@@ -91,7 +94,7 @@ T3R_LANES_INLINE void store_quad(void *to, quad x)
     *(quad_there *)to = x;
 }
 
-/* The first 64 bits; the others are 0. */
+/* The first 64 bits, or 32 of a store; the others are 0. */
 T3R_LANES_INLINE quad load_half_quad(const void *from)
 {
     return vreinterpretq_s32_u8(vcombine_u8(vld1_u8(from), vdup_n_u8(0)));
@@ -100,6 +103,12 @@ T3R_LANES_INLINE quad load_half_quad(const void *from)
 T3R_LANES_INLINE void store_half_quad(void *to, quad x)
 {
     vst1_u8(to, vget_low_u8(vreinterpretq_u8_s32(x)));
+}
+
+T3R_LANES_INLINE void store_quarter_quad(void *to, quad x)
+{
+    const int32_t first = neon_cvtsi128_si32(x);
+    __builtin_memcpy(to, &first, sizeof first);
 }
 
 /* The least of four numbers of 32 bits. */

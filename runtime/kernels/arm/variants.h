@@ -62,6 +62,18 @@
 /* Every 64-bit Arm has these, but for builds for general registers alone. */
 #if defined(__aarch64__) && defined(__ARM_NEON) && !defined(__ARM_BIG_ENDIAN)
 #define T3R_NEON 1
+/* A build for SVE without dot products has no assembler for both. */
+#if T3R_FEATURE_LEARNED && (defined(__ARM_FEATURE_DOTPROD) || !defined(__ARM_FEATURE_SVE))
+#define T3R_NEON_LEARNED 1
+#define T3R_CPU_ARM_DOTPROD_ (T3R_CPU_NEON | T3R_CPU_DOTPROD)
+#define T3R_NEON_LEARNED_VARIANTS_(X)                                                                                  \
+    X(pack_layer, T3R_CPU_ARM_DOTPROD_, t3r_pack_layer_dotprod)                                                        \
+    X(convolve_packed, T3R_CPU_ARM_DOTPROD_, t3r_convolve_packed_dotprod)
+/* Of an activation that convolve_packed of these features reads. */
+#define T3R_ARM_STRIP_BYTES(cpu) (((cpu)&T3R_CPU_ARM_DOTPROD_) == T3R_CPU_ARM_DOTPROD_ ? 1u : 2u)
+#else
+#define T3R_NEON_LEARNED_VARIANTS_(X)
+#endif
 #if T3R_FEATURE_REFINEMENT
 #define T3R_NEON_REFINEMENT_VARIANTS_(X)                                                                               \
     X(scatter, T3R_CPU_NEON, t3r_scatter_neon)                                                                         \
@@ -74,6 +86,7 @@
     X(nearest, T3R_CPU_NEON, t3r_nearest_neon)                                                                         \
     X(project, T3R_CPU_NEON, t3r_project_neon)                                                                         \
     X(place, T3R_CPU_NEON, t3r_place_neon)                                                                             \
+    T3R_NEON_LEARNED_VARIANTS_(X)                                                                                      \
     T3R_NEON_REFINEMENT_VARIANTS_(X)
 #else
 #define T3R_NEON_VARIANTS_(X)
@@ -81,6 +94,10 @@
 
 /* X(entry, features, function), as x86/variants.h has it. */
 #define T3R_ARM_VARIANTS(X) T3R_DSP_VARIANTS_(X) T3R_MVE_VARIANTS_(X) T3R_NEON_VARIANTS_(X)
+
+#ifndef T3R_ARM_STRIP_BYTES
+#define T3R_ARM_STRIP_BYTES(cpu) 2u
+#endif
 
 #define T3R_DECLARE_(entry, features, function) __attribute__((visibility("hidden"))) t3r_##entry##_kernel function;
 T3R_ARM_VARIANTS(T3R_DECLARE_)

@@ -1,5 +1,6 @@
-/* A packed layer, LANES outputs a vector: a pair of activations, in all lanes, times a pair of weights of each. Comes
- * behind a header of lanes, in a file that names the functions: PACK_LAYER and CONVOLVE_PACKED. */
+/* A packed layer, LANES outputs a vector: TAPS activations, in all lanes, times as many weights of each. Comes behind a
+ * header of lanes and one that multiplies, as pairs_of_taps.h does, in a file that names the functions: PACK_LAYER and
+ * CONVOLVE_PACKED. */
 #ifndef T3R_KERNELS_LANES_CONVOLVE_PACKED_LANES_H
 #define T3R_KERNELS_LANES_CONVOLVE_PACKED_LANES_H
 
@@ -7,8 +8,9 @@
 
 #define INLINE T3R_LANES_INLINE T3R_LANES_TARGET
 #define EACH(i, count) T3R_LANES_UNROLL for (uint32_t i = 0; i < (count); i++)
-#define TAPS 2u
+#ifndef MOST_SUMS
 #define MOST_SUMS 8u /* vectors */
+#endif
 
 T3R_LANES_TARGET void PACK_LAYER(const t3r_convolution *layer, uint32_t rows, void *packed)
 {
@@ -21,39 +23,30 @@ typedef struct place {
     uint32_t whole, first;
 } place;
 
-/* Not `lanes`: where sums change their type, gcc 12 copies them in every turn of a loop. */
-typedef int32_t ints __attribute__((vector_size(LANES * sizeof(int32_t))));
-
-/* Two activations in all lanes. */
-INLINE lanes two_at(const int16_t *x)
-{
-    return first_of(load_quarter_quad(x));
-}
-
-/* The sums of `vectors` vectors of outputs at `pixels` pixels. A sum of two products is at most 2^15. */
+/* The sums of `vectors` vectors of outputs at `pixels` pixels. */
 INLINE void add_up(ints sum[MOST_SUMS], const t3r_block *block, const size_t *offset, const place *at, uint32_t vectors,
                    uint32_t pixels)
 {
-    const uint32_t pairs = (block->run + T3R_PACKED_TAPS - 1) / T3R_PACKED_TAPS * T3R_PACKED_TAPS / TAPS;
+    const uint32_t groups = (block->run + T3R_PACKED_TAPS - 1) / T3R_PACKED_TAPS * T3R_PACKED_TAPS / TAPS;
     const uint8_t *w = at->weights + (size_t)at->first * TAPS;
     EACH(s, vectors * pixels)
     {
         sum[s] = (ints)t3r_packed_scaling_at(at->scaling, T3R_SCALING_BIAS, at->whole, at->first + s % vectors * LANES);
     }
     for (uint32_t row = 0; row < block->rows; row++) {
-        const int16_t *x = (const int16_t *)block->x + (size_t)row * block->pitch;
-        for (uint32_t pair = 0; pair < pairs; pair++, x += TAPS, w += (size_t)at->whole * TAPS) {
+        const activation *x = (const activation *)block->x + (size_t)row * block->pitch;
+        for (uint32_t group = 0; group < groups; group++, x += TAPS, w += (size_t)at->whole * TAPS) {
             lanes weights[MOST_SUMS];
             EACH(v, vectors)
             {
-                weights[v] = load_8(w + v * LANES * TAPS);
+                weights[v] = load_weights(w + v * LANES * TAPS);
             }
             EACH(p, pixels)
             {
-                const lanes two = two_at(x + offset[p]);
+                const lanes repeated_taps = taps_at(x + offset[p]);
                 EACH(v, vectors)
                 {
-                    sum[p * vectors + v] += (ints)OF_LANES(madd_epi16)(two, weights[v]);
+                    add_products(&sum[p * vectors + v], repeated_taps, weights[v]);
                 }
             }
         }

@@ -5,6 +5,8 @@
 
 #include "lanes_avx2.h"
 
+#include "kernels/lanes/pairs_of_taps.h"
+
 #define PACK_LAYER t3r_pack_layer_avx2
 #define CONVOLVE_PACKED t3r_convolve_packed_avx2
 #include "kernels/lanes/convolve_packed_lanes.h"

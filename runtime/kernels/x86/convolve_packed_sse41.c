@@ -5,6 +5,8 @@
 
 #include "lanes_sse41.h"
 
+#include "kernels/lanes/pairs_of_taps.h"
+
 #define PACK_LAYER t3r_pack_layer_sse41
 #define CONVOLVE_PACKED t3r_convolve_packed_sse41
 #include "kernels/lanes/convolve_packed_lanes.h"
