@@ -45,7 +45,6 @@ NEON(sub_epi64, vsubq_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64)
 NEON(add_epi16, vaddq_s16, S16, FROM_S16)
 NEON(sub_epi16, vsubq_s16, S16, FROM_S16)
 NEON(mullo_epi16, vmulq_s16, S16, FROM_S16)
-NEON(mulhrs_epi16, vqrdmulhq_s16, S16, FROM_S16) /* but for -2^15 x -2^15, which no kernel multiplies */
 NEON(unpacklo_epi16, vzip1q_s16, S16, FROM_S16)
 NEON(unpackhi_epi16, vzip2q_s16, S16, FROM_S16)
 NEON(unpacklo_epi32, vzip1q_s32, AS_IT_IS, AS_IT_IS)
@@ -54,6 +53,14 @@ NEON(unpacklo_epi64, vzip1q_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64)
 NEON(unpackhi_epi64, vzip2q_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64)
 NEON(shuffle_epi8, vqtbl1q_u8, vreinterpretq_u8_s32, vreinterpretq_s32_u8)
 #undef NEON
+
+/* -1 times -1 is -1, as modulo 2^16: the instruction holds it to the largest number. */
+T3R_LANES_INLINE quad neon_mulhrs_epi16(quad a, quad b)
+{
+    const int16x8_t least = vdupq_n_s16(INT16_MIN);
+    const uint16x8_t beyond = vandq_u16(vceqq_s16(S16(a), least), vceqq_s16(S16(b), least));
+    return FROM_S16(veorq_s16(vqrdmulhq_s16(S16(a), S16(b)), vreinterpretq_s16_u16(beyond)));
+}
 
 T3R_LANES_INLINE quad neon_loadu_si128(const quad_there *from)
 {
