@@ -46,7 +46,7 @@ t3r_status t3r_init_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t ar
     state->magic = T3R_MAGIC;
     state->bits_epoch = T3R_BITS_EPOCH;
     state->arena_bytes = arena_bytes;
-    state->config = *config;
+    state->config = t3r_settled(config);
     state->build = t3r_build_of(config);
     state->kernels = t3r_kernels_c;
     bind_layout(state, &layout);

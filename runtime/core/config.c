@@ -2,6 +2,7 @@
 #include "config.h"
 
 #include "features.h"
+#include "fixed.h"
 #include "memory.h"
 
 t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_bytes, uint32_t width, uint32_t height,
@@ -21,8 +22,8 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
         .render_height = height,
         .wavelet = T3R_WAVELET_DB2,
         .wavelet_levels = 2,
-        .clusters = T3R_DEFAULT_CLUSTERS,
-        .cluster_batches = 24,
+        .clusters = 0,
+        .cluster_batches = 0,
         .colour_weight_q8 = 256,
         .allocation = T3R_ALLOCATE_DENSITY,
         .keep_percent = 10,
@@ -47,6 +48,44 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
     return T3R_OK;
 }
 
+#define MANY_CLUSTERS 300u
+#define CLUSTERS_A_BATCH 8u
+#define MOST_BATCHES 24u
+
+uint32_t t3r_cluster_count(const t3r_config *c)
+{
+    const uint32_t points = c->width * c->height * c->views; /* at most 2^28 */
+    if (c->clusters != 0) {
+        return c->clusters;
+    }
+    if (c->stream) {
+        return 1;
+    }
+    switch (c->allocation) {
+    case T3R_ALLOCATE_DENSITY:
+        return T3R_CLUSTERS_OF_POINTS(points);
+    case T3R_ALLOCATE_PAPER:
+    case T3R_ALLOCATE_GIVEN:
+        return MANY_CLUSTERS;
+    default:
+        return 1;
+    }
+}
+
+uint32_t t3r_cluster_batch_count(const t3r_config *c)
+{
+    const uint32_t batches = t3r_cluster_count(c) / CLUSTERS_A_BATCH;
+    return c->cluster_batches != 0 ? c->cluster_batches : batches == 0 ? 1 : T3R_MIN(batches, MOST_BATCHES);
+}
+
+t3r_config t3r_settled(const t3r_config *config)
+{
+    t3r_config settled = *config;
+    settled.clusters = t3r_cluster_count(config);
+    settled.cluster_batches = t3r_cluster_batch_count(config);
+    return settled;
+}
+
 /* X(text, value, low, high), a row a setting. `least` is the smaller side. */
 #define RANGES(X)                                                                                                      \
     X("width must be 8..4096", c->width, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                   \
@@ -58,7 +97,7 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
     X("render_height must be 1..4096", c->render_height, 1, T3R_MAX_SIDE)                                              \
     X("wavelet is none of t3r_wavelet", (uint32_t)c->wavelet, 0, T3R_WAVELET_COUNT - 1)                                \
     X("wavelet_levels must be 1..5", c->wavelet_levels, 1, T3R_MAX_LEVELS)                                             \
-    X("clusters must be 1..512", c->clusters, 1, T3R_MAX_CLUSTERS)                                                     \
+    X("clusters must be 0..512", c->clusters, 0, T3R_MAX_CLUSTERS)                                                     \
     X("cluster_batches must be 0..1024", c->cluster_batches, 0, 1024)                                                  \
     X("colour_weight_q8 must be 0..1024", c->colour_weight_q8, 0, 1024)                                                \
     X("allocation is none of t3r_allocation", (uint32_t)c->allocation, T3R_ALLOCATE_CONFIGURED + 1,                    \
@@ -111,9 +150,9 @@ uint64_t t3r_most_arena_bytes(const t3r_config *c)
     const uint64_t pixels = (uint64_t)c->width * c->height, gaussians = c->max_gaussians, workers = c->workers;
     /* a worker's part of the wavelet's, the head's, K-means', the budget's and refinement's work */
     const uint64_t worker = pixels * 4 + (uint64_t)(c->width + 15) * (c->head_column_bytes + 32) +
-                            T3R_HEAD_KERNEL_BYTES + T3R_CLUSTER_SUMS_BYTES +
+                            T3R_HEAD_KERNEL_BYTES + T3R_CLUSTER_SUMS_BYTES(T3R_MAX_CLUSTERS) +
                             (T3R_MAX_CLUSTERS + 1) * T3R_GROUP_COUNT_BYTES + T3R_WANTED_BYTES + gaussians * 27 + 512;
-    const uint64_t fixed = T3R_HEADER_BYTES + T3R_CLUSTER_WORK_BYTES + 2 * (T3R_MAX_CLUSTERS + 1) * T3R_CLUSTER_BYTES +
+    const uint64_t fixed = T3R_HEADER_BYTES + T3R_CLUSTER_WORK_BYTES(T3R_MAX_CLUSTERS) + 2 * (T3R_MAX_CLUSTERS + 1) * T3R_CLUSTER_BYTES +
                            2 * T3R_SORT_BYTES + 3 * T3R_RATIO_BINS * 4 +
                            T3R_BUFFER_COUNT * T3R_ARENA_ALIGN * (uint64_t)4;
     uint64_t bytes = fixed + pixels * (c->views * (uint64_t)26 + 38) +

@@ -1,4 +1,4 @@
-/* Whether settings are in range. */
+/* Whether settings are in range, and those that are chosen. */
 #ifndef T3R_CONFIG_H
 #define T3R_CONFIG_H
 
@@ -8,6 +8,9 @@
 
 /* T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: t3r_config_error() has the reason. */
 t3r_status t3r_config_check(const t3r_config *config);
+
+/* The same configuration with the numbers of what it leaves to be chosen. */
+t3r_config t3r_settled(const t3r_config *config);
 
 /* The most splats that a tile is drawn from. */
 static inline uint32_t t3r_tile_splats_of(const t3r_config *config)

@@ -55,7 +55,7 @@ extern "C" {
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
-#define T3R_BITS_EPOCH 7
+#define T3R_BITS_EPOCH 8
 
 #define T3R_MAX_SIDE 4096u        /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */
@@ -229,10 +229,11 @@ typedef struct t3r_config {
     t3r_wavelet wavelet;
     /* The levels of the wavelet transform that texture is summed over, 1..T3R_MAX_LEVELS. [2] */
     uint32_t wavelet_levels;
-    /* The number of SuperClusters, K in GaussianTrim3R, 1..T3R_MAX_CLUSTERS. [T3R_DEFAULT_CLUSTERS] */
+    /* The number of SuperClusters, K in GaussianTrim3R, 0..T3R_MAX_CLUSTERS. 0 = t3r_cluster_count() chooses. With 1 no
+     * K-means run. [0] */
     uint32_t clusters;
-    /* The number of mini-batches of the K-means before every point is assigned, 0..1024; 0 = the seeds are the centres.
-     * [24] */
+    /* The number of mini-batches of the K-means before every point is assigned, 0..1024. 0 = t3r_cluster_batch_count()
+     * chooses. [0] */
     uint32_t cluster_batches;
     /* The weight of r, g, b against x, y, z in the metric of the K-means, 0..1024, in 1/256; 0 = position alone.
      * [256] */
@@ -550,6 +551,15 @@ static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uin
     (void)t3r_default_config_as(t3r_header_interface(), &config, sizeof config, width, height, views, gaussians);
     return config;
 }
+
+/* The SuperClusters that the configuration asks for. Where `clusters` is 0, its allocation chooses: 300 for
+ * T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views' pixels for
+ * T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters, and for streams. A request's own allocation
+ * finds what the configuration's chose. */
+uint32_t t3r_cluster_count(const t3r_config *config);
+
+/* The mini-batches of the K-means. Where `cluster_batches` is 0, one for 8 SuperClusters, 1..24. */
+uint32_t t3r_cluster_batch_count(const t3r_config *config);
 
 /* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does.
  * T3R_ERR_UNSUPPORTED: it is in range, but this library was built without what it asks for. T3R_ERR_INTERFACE. */

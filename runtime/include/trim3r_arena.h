@@ -25,7 +25,8 @@
 #define T3R_AT_COUNT 9
 
 /* Defaults of t3r_default_config() that an arena's bytes depend on. */
-#define T3R_DEFAULT_CLUSTERS 300
+/* t3r_config.clusters is chosen: one for 256 points of all views, at most 32. */
+#define T3R_CLUSTERS_OF_POINTS(points) ((points) < 512 ? 1 : (points) < 32 * 256 ? (points) / 256 : 32)
 #define T3R_DEFAULT_REFINEMENTS (T3R_FEATURE_REFINEMENT ? 4 : 0)
 
 #define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
@@ -38,10 +39,8 @@
 #define T3R_ORDER_BYTES 16           /* two keys and two indices a Gaussian: the radix sort's two sides */
 #define T3R_SORT_BYTES 4096          /* four histograms of 256 counts */
 #define T3R_CLUSTER_BYTES 56         /* centre and statistics of a SuperCluster */
-#define T3R_CLUSTER_WORK_BYTES 49216 /* the K-means' sample and sums, whatever the number of points */
 #define T3R_GROUP_COUNT_BYTES 64     /* what the budget counts of a SuperCluster */
 #define T3R_RATIO_BINS 512           /* of a histogram of exposure */
-#define T3R_CLUSTER_SUMS_BYTES 26624 /* sums of each worker but the first */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
  * heads nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
 #define T3R_HEAD_COLUMN_BYTES 704
@@ -52,6 +51,22 @@
 #define T3R_MAP_RECORD_BYTES 12   /* what a stream notes about a Gaussian of its map */
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8 /* undistortion grid, pixels */
+
+/* The K-means' work, whatever the number of points: centres in whole groups, and in the same bytes first the sample, 16
+ * points a centre, then of each centre twelve neighbours, sums and a weight. A single SuperCluster needs none. */
+#define T3R_CENTRE_ROOM_(clusters) (((size_t)(clusters) + 15) / 16 * 16)
+#define T3R_SAMPLE_ROOM_(clusters) ((clusters) < 160 ? (size_t)(clusters)*16 : (size_t)2560)
+#define T3R_CLUSTER_SUMS_(clusters) (T3R_UP_((size_t)(clusters)*48) + T3R_UP_((size_t)(clusters)*4))
+#define T3R_CLUSTER_SAMPLE_BYTES_(clusters)                                                                            \
+    (T3R_UP_(T3R_SAMPLE_ROOM_(clusters) * 12) + T3R_UP_(T3R_SAMPLE_ROOM_(clusters) * 4))
+#define T3R_CLUSTER_MEANS_BYTES_(clusters)                                                                             \
+    (T3R_UP_(T3R_CENTRE_ROOM_(clusters) * 24) + T3R_CLUSTER_SUMS_(clusters) + T3R_UP_((size_t)(clusters)*4))
+#define T3R_CLUSTER_WORK_BYTES(clusters)                                                                               \
+    ((clusters) > 1 ? T3R_UP_(T3R_CENTRE_ROOM_(clusters) * 12) + T3R_UP_(T3R_CENTRE_ROOM_(clusters) * 4) +             \
+                          T3R_MAX_(T3R_CLUSTER_SAMPLE_BYTES_(clusters), T3R_CLUSTER_MEANS_BYTES_(clusters))            \
+                    : (size_t)0)
+/* Sums of each worker but the first. */
+#define T3R_CLUSTER_SUMS_BYTES(clusters) ((clusters) > 1 ? T3R_CLUSTER_SUMS_(clusters) : (size_t)0)
 
 #define T3R_PIXELS_(width, height) ((size_t)(width) * (height))
 #define T3R_TILES_(width, height)                                                                                      \
@@ -255,11 +270,11 @@
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
     X(with, CLUSTERS, "SuperClusters", T3R_BUILDS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_CLUSTER_BYTES,            \
       T3R_AT_SUPERCLUSTERS, T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                    \
-    X(with, CLUSTER_WORK, "K-means work", T3R_BUILDS_(shape) * T3R_CLUSTER_WORK_BYTES, T3R_AT_SUPERCLUSTERS,           \
-      T3R_AT_SUPERCLUSTERS)                                                                                            \
+    X(with, CLUSTER_WORK, "K-means work", T3R_BUILDS_(shape) * T3R_CLUSTER_WORK_BYTES(T3R_CLUSTERS_(shape)),                \
+      T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)                                                                      \
     X(with, CLUSTER_SUMS, "workers' K-means sums",                                                                     \
-      T3R_BUILDS_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_CLUSTER_SUMS_BYTES, T3R_AT_SUPERCLUSTERS,                   \
-      T3R_AT_SUPERCLUSTERS)                                                                                            \
+      T3R_BUILDS_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_CLUSTER_SUMS_BYTES(T3R_CLUSTERS_(shape)),                   \
+      T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)                                                                      \
     X(with, MASK, "masks", (T3R_VIEW_PIXELS_(shape) + 31) / 32 * T3R_ANALYSED_(shape) * 4, T3R_AT_BUDGET,              \
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
     X(with, KEYS, "budget keys", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_BUDGET,                                       \
@@ -300,8 +315,10 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 /* Every argument is written out 2^depth times, so the tree is kept flat. */
 #define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
 #define T3R_MOST_OF_STAGES_(shape, more_refine, more_raster)                                                           \
-    T3R_MAX_(T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, shape), T3R_STAGE_BYTES_(T3R_AT_DEPTH, shape),                   \
-                       T3R_STAGE_BYTES_(T3R_AT_WAVELET, shape), T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, shape)),        \
+    T3R_MAX_(T3R_MAX_(T3R_STAGE_BYTES_(T3R_AT_POINTMAP, shape),                                                        \
+                      T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, shape), T3R_STAGE_BYTES_(T3R_AT_DEPTH, shape),          \
+                                T3R_STAGE_BYTES_(T3R_AT_WAVELET, shape),                                               \
+                                T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, shape))),                                       \
              T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, shape), T3R_STAGE_BYTES_(T3R_AT_HEAD, shape),                   \
                        T3R_STAGE_BYTES_(T3R_AT_REFINE, shape) + (more_refine),                                         \
                        T3R_STAGE_BYTES_(T3R_AT_RASTER, shape) + (more_raster)))
@@ -312,8 +329,9 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 
 /* The default configuration: targets of the working size, the analysis not kept, one worker. */
 #define T3R_DEFAULT_SHAPE_(width, height, views, gaussians, keep, stereo, warm)                                        \
-    T3R_SHAPE_(width, height, views, gaussians, T3R_DEFAULT_CLUSTERS, width, height, T3R_HEAD_COLUMN_BYTES, keep,      \
-               T3R_DEFAULT_REFINEMENTS, stereo, 1, warm)
+    T3R_SHAPE_(width, height, views, gaussians,                                                                          \
+               (keep) == T3R_KEEP_MAP ? 1 : T3R_CLUSTERS_OF_POINTS(T3R_PIXELS_(width, height) * (views)), width,       \
+               height, T3R_HEAD_COLUMN_BYTES, keep, T3R_DEFAULT_REFINEMENTS, stereo, 1, warm)
 
 /* The arena of the default configuration: the least bytes that work, and those with which a view takes one pass (views
  * of wide splats may take more). */

@@ -22,7 +22,7 @@ static int64_t square_between(const t3r_centres *centres, uint32_t a, uint32_t b
     return sum;
 }
 
-void t3r_nearest_begin_c(const t3r_centres *centres, uint32_t first, uint32_t end, t3r_neighbours *neighbours)
+void t3r_nearest_begin_c(const t3r_centres *centres, uint32_t first, uint32_t end, const t3r_neighbours *neighbours)
 {
     for (uint32_t k = first; k < end; k++) {
         int64_t square[T3R_NEIGHBOURS];
@@ -51,7 +51,7 @@ void t3r_nearest_begin_c(const t3r_centres *centres, uint32_t first, uint32_t en
 static uint16_t nearest_of_all(const t3r_centres *centres, const int16_t *p)
 {
     int32_t score[T3R_MAX_CLUSTERS];
-    const int16_t(*c)[T3R_MAX_CLUSTERS] = centres->feature_q11;
+    int16_t *const *c = centres->feature_q11;
     const int16_t p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3], p4 = p[4], p5 = p[5];
     for (uint32_t k = 0; k < centres->count; k++) {
         score[k] = centres->half_norm[k] -

@@ -12,16 +12,17 @@
 #define T3R_NEIGHBOURS 12u
 
 /* Centres by dimension, with half_norm = floor(|c|^2 / 2). A point's nearest centre is the one with the least score
- * half_norm - p c, the lowest index among equals. */
+ * half_norm - p c, the lowest index among equals. At most T3R_MAX_CLUSTERS. */
 typedef struct t3r_centres {
-    int16_t feature_q11[T3R_DIMENSIONS][T3R_MAX_CLUSTERS];
-    int32_t half_norm[T3R_MAX_CLUSTERS];
+    int16_t *feature_q11[T3R_DIMENSIONS];
+    int32_t *half_norm;
     uint32_t count;
 } t3r_centres;
 
-/* Of each centre the nearest others, nearest first. */
+/* Of each centre the nearest others, nearest first. There is room for whole groups of T3R_CENTRE_GROUP centres, aligned
+ * to 4 bytes. */
 typedef struct t3r_neighbours {
-    uint16_t index[T3R_MAX_CLUSTERS][T3R_NEIGHBOURS];
+    uint16_t (*index)[T3R_NEIGHBOURS];
 } t3r_neighbours;
 
 /* What `nearest` of the same table asks for before it is first called with these centres: the part of the centres
@@ -30,7 +31,7 @@ typedef struct t3r_neighbours {
  * at all centres needs none and may leave it as it is. */
 #define T3R_CENTRE_GROUP 16u
 typedef void t3r_nearest_begin_kernel(const t3r_centres *centres, uint32_t first, uint32_t end,
-                                      t3r_neighbours *neighbours);
+                                      const t3r_neighbours *neighbours);
 
 /* Index of the nearest centre of each of `points` points, which lie one behind the other, aligned to 2 bytes. `guess`,
  * below the number of centres, is where to start; it changes no result. In plain C a point is first compared with the

@@ -12,7 +12,7 @@ static inline int32_t quarter_square(int16_t p, int16_t c)
 /* The distance of point i with this centre more. */
 static inline int32_t distance_with(const t3r_sample *sample, uint32_t i, const int16_t c[T3R_DIMENSIONS])
 {
-    const int16_t(*p)[T3R_CLUSTER_SAMPLE] = sample->feature_q11;
+    int16_t *const *p = sample->feature_q11;
     const int32_t distance = quarter_square(p[0][i], c[0]) + quarter_square(p[1][i], c[1]) +
                              quarter_square(p[2][i], c[2]) + quarter_square(p[3][i], c[3]) +
                              quarter_square(p[4][i], c[4]) + quarter_square(p[5][i], c[5]);
@@ -28,7 +28,7 @@ uint64_t t3r_sample_potential_c(const t3r_sample *sample, uint32_t count, const 
     return sum;
 }
 
-uint64_t t3r_sample_approach_c(t3r_sample *sample, uint32_t first, uint32_t end,
+uint64_t t3r_sample_approach_c(const t3r_sample *sample, uint32_t first, uint32_t end,
                                const int16_t centre_q11[T3R_DIMENSIONS])
 {
     uint64_t sum = 0;

@@ -13,8 +13,6 @@
 _Static_assert(sizeof(t3r_gaussian) == T3R_GAUSSIAN_BYTES, "trim3r_arena.h knows the Gaussian's size");
 _Static_assert(sizeof(t3r_splat) == T3R_SPLAT_BYTES, "trim3r_arena.h knows the splat's size");
 _Static_assert(sizeof(t3r_cluster) == T3R_CLUSTER_BYTES, "trim3r_arena.h knows the SuperCluster's size");
-_Static_assert(sizeof(t3r_cluster_work) <= T3R_CLUSTER_WORK_BYTES, "trim3r_arena.h knows the K-means' work");
-_Static_assert(sizeof(t3r_cluster_sums) == T3R_CLUSTER_SUMS_BYTES, "trim3r_arena.h knows the K-means' sums");
 _Static_assert(sizeof(t3r_group_count) == T3R_GROUP_COUNT_BYTES, "trim3r_arena.h knows the budget's counts");
 _Static_assert(sizeof(t3r_refine_sums) == T3R_REFINE_SUMS_BYTES, "trim3r_arena.h knows refinement's sums");
 _Static_assert(sizeof(t3r_wanted) == T3R_WANTED_BYTES, "trim3r_arena.h knows the compared tile's size");
@@ -39,7 +37,7 @@ typedef struct buffer_table {
 
 /* Of a configuration `c`. What is left out no configuration asks for, and the compiler knows. */
 #define SHAPE                                                                                                          \
-    T3R_SHAPE_(c->width, c->height, c->views, c->max_gaussians, c->clusters, c->render_width, c->render_height,        \
+    T3R_SHAPE_(c->width, c->height, c->views, c->max_gaussians, t3r_cluster_count(c), c->render_width, c->render_height,        \
                c->head_column_bytes, T3R_FEATURE_STREAMS && c->stream != 0 ? T3R_KEEP_MAP : c->keep_analysis,          \
                T3R_FEATURE_REFINEMENT ? c->refinements : 0, T3R_FEATURE_STEREO && c->depth == T3R_DEPTH_STEREO,        \
                T3R_FEATURE_WORKERS ? c->workers : 1, T3R_FEATURE_WARM && c->warm)

@@ -16,20 +16,32 @@ const t3r_prices t3r_operations = {{T3R_WORKS(OPERATIONS_OF)}};
  * KEEPS_ALL 2^10. */
 typedef struct sizes {
     uint64_t pixels, views, points; /* of a view; of the build */
-    uint64_t gaussians, clusters, batched;
+    uint64_t gaussians, clusters, batches, sampled, batched;
 } sizes;
 
 static sizes sizes_of(const t3r_config *c)
 {
     const uint64_t pixels = (uint64_t)c->width * c->height, points = pixels * c->views;
+    const uint32_t clusters = t3r_cluster_count(c), batches = t3r_cluster_batch_count(c);
     return (sizes){
         .pixels = pixels,
         .views = c->views,
         .points = points,
         .gaussians = T3R_MIN(c->gaussians, points),
-        .clusters = c->clusters,
-        .batched = c->cluster_batches * T3R_MIN(points, T3R_CLUSTER_BATCH),
+        .clusters = clusters,
+        .batches = batches,
+        .sampled = T3R_MIN(points, t3r_cluster_sample(clusters)),
+        .batched = batches * T3R_MIN(points, t3r_cluster_batch(clusters)),
     };
+}
+
+static void count_clustering(const sizes *s, uint64_t *units)
+{
+    units[T3R_WORK_SEEDING] = s->sampled * s->clusters;
+    units[T3R_WORK_BATCHES] = s->batched;
+    units[T3R_WORK_LABELS] = s->points;
+    units[T3R_WORK_CENTRES] = (s->batched + s->points) * s->clusters;
+    units[T3R_WORK_NEIGHBOURS] = (s->batches + 1) * s->clusters * s->clusters;
 }
 
 static void count_analysis(const t3r_config *c, const sizes *s, uint64_t *units)
@@ -44,11 +56,9 @@ static void count_analysis(const t3r_config *c, const sizes *s, uint64_t *units)
     units[T3R_WORK_POINTMAP] = s->points;
     units[T3R_WORK_COMPARISON] = 2 * pairs * s->pixels;
     units[T3R_WORK_WAVELET] = s->points;
-    units[T3R_WORK_SEEDING] = T3R_MIN(s->points, T3R_CLUSTER_SAMPLE) * s->clusters;
-    units[T3R_WORK_BATCHES] = s->batched;
-    units[T3R_WORK_LABELS] = s->points;
-    units[T3R_WORK_CENTRES] = (s->batched + s->points) * s->clusters;
-    units[T3R_WORK_NEIGHBOURS] = (c->cluster_batches + 1) * s->clusters * s->clusters;
+    if (s->clusters > 1) {
+        count_clustering(s, units);
+    }
     units[T3R_WORK_BUDGET] = s->points;
 }
 

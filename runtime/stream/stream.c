@@ -24,6 +24,7 @@
 #include "stage_hash.h"
 #include "state/state.h"
 #include "stream_map.h"
+#include "superclusters/one_cluster.h"
 
 #define REBASE_Q20 (1 << 29) /* so far from the origin it follows: 512 scene units */
 
@@ -221,21 +222,6 @@ static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot,
 
 /* --- what is new -------------------------------------------------------------------------------------------------- */
 
-/* All points are one group: their keys are to mean the same in every keyframe. */
-static uint32_t label_points(const t3r_runtime *rt, const t3r_view *view)
-{
-    size_t pixels = (size_t)view->width * view->height;
-    t3r_cluster *all = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
-    uint32_t points = 0;
-    for (size_t i = 0; i < pixels; i++) {
-        bool valid = t3r_has_depth(view->validity[i]);
-        view->label[i] = valid ? 0 : T3R_NO_LABEL;
-        points += valid;
-    }
-    *all = (t3r_cluster){.points = points};
-    return points;
-}
-
 static t3r_budget_settings keyframe_settings(const t3r_runtime *rt)
 {
     const t3r_config *config = &rt->config;
@@ -259,7 +245,8 @@ static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t sl
     }
     t3r_view_texture(rt, view);
     t3r_hash_wavelet(rt, views, slot, slot + 1);
-    report->points = label_points(rt, view);
+    /* one: keys are to mean the same in every keyframe */
+    report->points = t3r_one_cluster(view, 1, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
     t3r_blur_texture(&rt->kernels, view, 1, &work.workers);
 
     t3r_budget_settings settings = keyframe_settings(rt);

@@ -2,6 +2,7 @@
 
 #include "core/fixed.h"
 #include "core/memory.h"
+#include "one_cluster.h"
 #include "pointmap/reproject.h"
 #include "state/state.h"
 #include "superclusters.h"
@@ -65,6 +66,10 @@ static bool step_clusters(void *context, uint32_t done, uint32_t total)
 
 t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
 {
+    if (rt->config.clusters == 1) {
+        (void)t3r_one_cluster(views, rt->views, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
+        return t3r_progress(rt, T3R_STAGE_SUPERCLUSTERS, 0, 1) ? T3R_OK : T3R_ERR_CANCELLED;
+    }
     pixel_points points = {
         .views = views,
         .kernels = &rt->kernels,

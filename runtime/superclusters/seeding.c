@@ -7,10 +7,10 @@
 #define PARTS (T3R_CLUSTER_SAMPLE / PART)
 #define CENTRES_A_STEP 8u /* about 7 million instructions of plain C, with the whole sample */
 
-/* Valid points spread evenly over the source, at most T3R_CLUSTER_SAMPLE; returns how many. */
-static uint32_t draw_sample(const t3r_point_source *source, t3r_sample *sample)
+/* Valid points spread evenly over the source, at most `most`; returns how many. */
+static uint32_t draw_sample(const t3r_point_source *source, uint32_t most, const t3r_sample *sample)
 {
-    uint32_t strata = T3R_MIN(source->points, T3R_CLUSTER_SAMPLE), count = 0;
+    uint32_t strata = T3R_MIN(source->points, most), count = 0;
     for (uint32_t s = 0; s < strata; s++) {
         uint32_t first = (uint32_t)((uint64_t)s * source->points / strata);
         uint32_t end = (uint32_t)((uint64_t)(s + 1) * source->points / strata);
@@ -42,7 +42,7 @@ static void sample_point(const t3r_sample *sample, uint32_t index, int16_t c[T3R
 /* One worker alone: what a centre takes is less than it costs to hand its parts to others. */
 typedef struct seeding {
     const t3r_kernels *kernels;
-    t3r_sample *sample;
+    const t3r_sample *sample;
     uint32_t count, parts;     /* of the sample */
     uint64_t potential[PARTS]; /* sums of a part's distances */
 } seeding;
@@ -112,9 +112,11 @@ static bool add_staying(seeding *s, uint32_t count, const bool *stays, const t3r
 }
 
 bool t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, const bool *stays,
-                      t3r_cluster *clusters, t3r_sample *sample, const t3r_cluster_host *host, uint32_t total)
+                      t3r_cluster *clusters, const t3r_sample *sample, const t3r_cluster_host *host, uint32_t total)
 {
-    seeding s = {.kernels = settings->kernels, .sample = sample, .count = draw_sample(source, sample)};
+    seeding s = {.kernels = settings->kernels,
+                 .sample = sample,
+                 .count = draw_sample(source, t3r_cluster_sample(settings->clusters), sample)};
     if (s.count == 0) {
         return true;
     }

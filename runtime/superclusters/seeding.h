@@ -9,6 +9,6 @@
  * are drawn far from them (NULL: none stays). Without a valid point all are left as they are. The host's step, 0 of
  * `total`, is called between centres. False: it wants no more. */
 bool t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, const bool *stays,
-                      t3r_cluster *clusters, t3r_sample *sample, const t3r_cluster_host *host, uint32_t total);
+                      t3r_cluster *clusters, const t3r_sample *sample, const t3r_cluster_host *host, uint32_t total);
 
 #endif

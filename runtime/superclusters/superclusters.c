@@ -1,5 +1,6 @@
 #include "superclusters.h"
 
+#include "core/cut.h"
 #include "core/fixed.h"
 #include "core/memory.h"
 #include "seeding.h"
@@ -27,36 +28,73 @@ static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint
 
 /* --- means ------------------------------------------------------------------------------------------------------ */
 
+/* Sums over the points of each SuperCluster. */
+typedef struct cluster_sums {
+    int64_t (*sum)[T3R_DIMENSIONS];
+    uint32_t *points;
+} cluster_sums;
+
 /* A run over points that workers share: each adds to sums of its own, and these are added up in the end. */
 typedef struct means_job {
     const t3r_kernels *kernels;
     const t3r_point_source *source;
     const t3r_cluster_host *host;
-    t3r_cluster_work *work;
     uint32_t count; /* of the centres */
+    t3r_centres centres;
+    t3r_sample sample; /* while centres are placed, in the memory of all that follows */
+    t3r_neighbours neighbours;
+    cluster_sums sums[T3R_MAX_WORKERS]; /* of worker 0 in the end of all */
+    uint32_t *weight;                   /* points behind a centre so far, held at a bound */
     uint32_t first; /* block of the task of index 0 */
     uint32_t batch; /* of run_batch() */
     uint16_t *labels;
     uint32_t points; /* of the run */
 } means_job;
 
-static t3r_cluster_sums *sums_of(const means_job *job, uint32_t worker)
+static cluster_sums cut_sums(t3r_cut *cut, uint32_t clusters)
 {
-    return worker == 0 ? &job->work->u.means.sums : &job->host->sums[worker - 1];
+    cluster_sums sums = {t3r_take(cut, clusters * sizeof *sums.sum), NULL};
+    sums.points = t3r_take(cut, clusters * sizeof *sums.points);
+    return sums;
+}
+
+/* What the job works in, of the bytes that trim3r_arena.h plans. */
+static void cut_work(means_job *job, void *work)
+{
+    const uint32_t room = (uint32_t)T3R_CENTRE_ROOM_(job->count), points = t3r_cluster_sample(job->count);
+    t3r_cut cut = t3r_cut_of(work, T3R_CLUSTER_WORK_BYTES(job->count));
+    int16_t *centres = t3r_take(&cut, room * T3R_DIMENSIONS * sizeof *centres);
+    job->centres.half_norm = t3r_take(&cut, room * sizeof *job->centres.half_norm);
+    t3r_cut sample = cut;
+    int16_t *sampled = t3r_take(&sample, points * T3R_DIMENSIONS * sizeof *sampled);
+    job->sample.distance_q20 = t3r_take(&sample, points * sizeof *job->sample.distance_q20);
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        job->centres.feature_q11[d] = centres + d * room;
+        job->sample.feature_q11[d] = sampled + d * points;
+    }
+    job->neighbours.index = t3r_take(&cut, room * sizeof *job->neighbours.index);
+    job->sums[0] = cut_sums(&cut, job->count);
+    job->weight = t3r_take(&cut, job->count * sizeof *job->weight);
+    const uint32_t others = job->host->workers.count - 1;
+    cut = t3r_cut_of(job->host->sums, others * T3R_CLUSTER_SUMS_BYTES(job->count));
+    for (uint32_t w = 1; w <= others; w++) {
+        job->sums[w] = cut_sums(&cut, job->count);
+    }
 }
 
 static void clear_sums(const means_job *job)
 {
     for (uint32_t w = 0; w < job->host->workers.count; w++) {
-        memset(sums_of(job, w), 0, sizeof(t3r_cluster_sums));
+        memset(job->sums[w].sum, 0, job->count * sizeof *job->sums[w].sum);
+        memset(job->sums[w].points, 0, job->count * sizeof *job->sums[w].points);
     }
 }
 
 static void join_sums(const means_job *job)
 {
-    t3r_cluster_sums *to = sums_of(job, 0);
+    const cluster_sums *to = &job->sums[0];
     for (uint32_t w = 1; w < job->host->workers.count; w++) {
-        const t3r_cluster_sums *from = sums_of(job, w);
+        const cluster_sums *from = &job->sums[w];
         for (uint32_t k = 0; k < job->count; k++) {
             to->points[k] += from->points[k];
             for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
@@ -66,7 +104,7 @@ static void join_sums(const means_job *job)
     }
 }
 
-static void add_point(t3r_cluster_sums *sums, uint16_t label, const int16_t feature[T3R_DIMENSIONS])
+static void add_point(const cluster_sums *sums, uint16_t label, const int16_t feature[T3R_DIMENSIONS])
 {
     sums->points[label]++;
     for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
@@ -78,10 +116,10 @@ static void add_point(t3r_cluster_sums *sums, uint16_t label, const int16_t feat
 static void label_block(const means_job *job, uint32_t worker, uint32_t valid, const int16_t feature[][T3R_DIMENSIONS],
                         uint16_t *guess, uint16_t *label)
 {
-    job->kernels->nearest(&job->work->centres, &job->work->u.means.neighbours, valid, feature, *guess, label);
+    job->kernels->nearest(&job->centres, &job->neighbours, valid, feature, *guess, label);
     for (uint32_t i = 0; i < valid; i++) {
         *guess = label[i];
-        add_point(sums_of(job, worker), label[i], feature[i]);
+        add_point(&job->sums[worker], label[i], feature[i]);
     }
 }
 
@@ -130,13 +168,13 @@ static void begin_groups(void *context, uint32_t begin, uint32_t end, uint32_t w
 {
     (void)worker;
     const means_job *job = context;
-    job->kernels->nearest_begin(&job->work->centres, begin * T3R_CENTRE_GROUP,
-                                T3R_MIN(end * T3R_CENTRE_GROUP, job->count), &job->work->u.means.neighbours);
+    job->kernels->nearest_begin(&job->centres, begin * T3R_CENTRE_GROUP, T3R_MIN(end * T3R_CENTRE_GROUP, job->count),
+                                &job->neighbours);
 }
 
 static void begin_means(means_job *job, const t3r_cluster *clusters)
 {
-    load_centres(&job->work->centres, clusters, job->count);
+    load_centres(&job->centres, clusters, job->count);
     t3r_run_rows(&job->host->workers, (job->count + T3R_CENTRE_GROUP - 1) / T3R_CENTRE_GROUP, begin_groups, job);
     clear_sums(job);
 }
@@ -145,17 +183,17 @@ static void begin_means(means_job *job, const t3r_cluster *clusters)
 static void run_batch(means_job *job, uint32_t batch, t3r_cluster *clusters)
 {
     job->batch = batch;
-    job->points = T3R_MIN(job->source->points, T3R_CLUSTER_BATCH);
+    job->points = T3R_MIN(job->source->points, t3r_cluster_batch(job->count));
     begin_means(job, clusters);
     t3r_run_tasks(&job->host->workers, tasks_of(job->points), batch_task, job);
     join_sums(job);
-    const t3r_cluster_sums *sums = sums_of(job, 0);
+    const cluster_sums *sums = &job->sums[0];
     for (uint32_t k = 0; k < job->count; k++) {
         uint32_t points = sums->points[k];
         if (points == 0) {
             continue;
         }
-        uint32_t *weight = &job->work->u.means.weight[k];
+        uint32_t *weight = &job->weight[k];
         int64_t before = *weight, after = before + points;
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
             int64_t sum = clusters[k].centre_q19[d] * before + (sums->sum[k][d] * (1 << T3R_CENTRE_FRACTION));
@@ -202,7 +240,7 @@ static uint32_t assign(means_job *job, t3r_cluster *clusters, uint32_t done, uin
         t3r_run_tasks(&job->host->workers, T3R_MIN(tasks - job->first, chunk), assign_task, job);
     }
     join_sums(job);
-    const t3r_cluster_sums *sums = sums_of(job, 0);
+    const cluster_sums *sums = &job->sums[0];
     uint32_t all_valid = 0;
     for (uint32_t k = 0; k < job->count; k++) {
         uint32_t points = sums->points[k];
@@ -215,10 +253,10 @@ static uint32_t assign(means_job *job, t3r_cluster *clusters, uint32_t done, uin
     return all_valid;
 }
 
-static void set_weights(t3r_cluster_work *work, uint32_t points)
+static void set_weights(const means_job *job, uint32_t points)
 {
-    for (uint32_t k = 0; k < T3R_MAX_CLUSTERS; k++) {
-        work->u.means.weight[k] = points;
+    for (uint32_t k = 0; k < job->count; k++) {
+        job->weight[k] = points;
     }
 }
 
@@ -227,10 +265,10 @@ static bool place_centres(const means_job *job, const t3r_cluster_settings *sett
                           uint32_t total)
 {
     memset(clusters, 0, settings->clusters * sizeof *clusters);
-    if (!t3r_seed_centres(job->source, settings, NULL, clusters, &job->work->u.sample, job->host, total)) {
+    if (!t3r_seed_centres(job->source, settings, NULL, clusters, &job->sample, job->host, total)) {
         return false;
     }
-    set_weights(job->work, 0);
+    set_weights(job, 0);
     return true;
 }
 
@@ -240,26 +278,26 @@ static bool follow_centres(means_job *job, const t3r_cluster_settings *settings,
 {
     bool stays[T3R_MAX_CLUSTERS];
     bool all = true;
-    set_weights(job->work, FOLLOW_WEIGHT);
+    set_weights(job, FOLLOW_WEIGHT);
     run_batch(job, 0, clusters);
     for (uint32_t k = 0; k < settings->clusters; k++) {
-        stays[k] = FOLLOW_SHARE * settings->clusters * sums_of(job, 0)->points[k] >= job->points;
+        stays[k] = FOLLOW_SHARE * settings->clusters * job->sums[0].points[k] >= job->points;
         all = all && stays[k];
     }
     if (all) {
         return true;
     }
-    if (!t3r_seed_centres(job->source, settings, stays, clusters, &job->work->u.sample, job->host, total)) {
+    if (!t3r_seed_centres(job->source, settings, stays, clusters, &job->sample, job->host, total)) {
         return false;
     }
     for (uint32_t k = 0; k < settings->clusters; k++) {
-        job->work->u.means.weight[k] = stays[k] ? FOLLOW_WEIGHT : 0;
+        job->weight[k] = stays[k] ? FOLLOW_WEIGHT : 0;
     }
     return true;
 }
 
 uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
-                           uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_host *host)
+                           uint16_t *labels, void *work, const t3r_cluster_host *host)
 {
     const uint32_t batches =
         settings->follows ? (settings->batches + FOLLOW_PART - 1) / FOLLOW_PART : settings->batches;
@@ -267,9 +305,9 @@ uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_set
     means_job job = {.kernels = settings->kernels,
                      .source = source,
                      .host = host,
-                     .work = work,
                      .count = settings->clusters,
                      .labels = labels};
+    cut_work(&job, work);
     if (!settings->follows && !place_centres(&job, settings, clusters, total)) {
         return T3R_CLUSTERS_CANCELLED;
     }

@@ -1,5 +1,5 @@
 /* SuperClusters: K-means on x, y, z, r, g, b (GaussianTrim3R 3.1.1, eq. 1) by bounded mini-batches and one
- * assignment pass. The working memory does not depend on the number of points (SPEC.md, "SuperClusters"). */
+ * assignment pass. The working memory follows K, not the number of points (SPEC.md, "SuperClusters"). */
 #ifndef T3R_SUPERCLUSTERS_H
 #define T3R_SUPERCLUSTERS_H
 
@@ -7,13 +7,31 @@
 #include <stdint.h>
 
 #include "kernels/kernels.h"
+#include "core/fixed.h"
 #include "core/workers.h"
 #include "trim3r.h"
 #include "state/views.h"
 
-#define T3R_CLUSTER_BATCH 4096u /* points of a mini-batch */
+#define T3R_CLUSTER_BATCH 4096u /* most points of a mini-batch */
+#define T3R_CLUSTER_POINTS 16u  /* points that the sample and a mini-batch have for each SuperCluster */
 #define T3R_CLUSTER_TRIALS 4u   /* draws for a new centre, of which the best is taken */
 #define T3R_CENTRE_FRACTION 8   /* a centre has so many bits more than a feature, so that small steps are not lost */
+
+_Static_assert(T3R_SAMPLE_ROOM_(1) == T3R_CLUSTER_POINTS && T3R_SAMPLE_ROOM_(T3R_MAX_CLUSTERS) == T3R_CLUSTER_SAMPLE &&
+                   T3R_CENTRE_ROOM_(1) == T3R_CENTRE_GROUP && T3R_NEIGHBOURS == 12,
+               "trim3r_arena.h knows the K-means' work");
+
+/* The most points of the seeding's sample. */
+static inline uint32_t t3r_cluster_sample(uint32_t clusters)
+{
+    return (uint32_t)T3R_SAMPLE_ROOM_(clusters);
+}
+
+/* The most points of a mini-batch. */
+static inline uint32_t t3r_cluster_batch(uint32_t clusters)
+{
+    return T3R_MIN(clusters * T3R_CLUSTER_POINTS, T3R_CLUSTER_BATCH);
+}
 
 /* Where points come from. features() takes up to T3R_POINTS indices below `points` and writes, one behind the other,
  * the six features of those that are valid, Q11 within +-T3R_FEATURE_MOST, and which of the indices they are; it
@@ -41,25 +59,6 @@ typedef struct t3r_cluster {
     int32_t density_q10; /* log2 of the share of points retained, for a texture power of 1 */
 } t3r_cluster;
 
-/* Sums over the points of each SuperCluster. */
-typedef struct t3r_cluster_sums {
-    int64_t sum[T3R_MAX_CLUSTERS][T3R_DIMENSIONS];
-    uint32_t points[T3R_MAX_CLUSTERS];
-} t3r_cluster_sums;
-
-/* The K-means' working memory: the seeding's sample and the sums share their bytes. */
-typedef struct t3r_cluster_work {
-    t3r_centres centres;
-    union {
-        t3r_sample sample;
-        struct {
-            t3r_neighbours neighbours;
-            t3r_cluster_sums sums;             /* of worker 0, in the end of all */
-            uint32_t weight[T3R_MAX_CLUSTERS]; /* points behind a centre so far, held at a bound */
-        } means;
-    } u;
-} t3r_cluster_work;
-
 typedef struct t3r_cluster_settings {
     const t3r_kernels *kernels;
     uint32_t clusters, batches, seed;
@@ -70,7 +69,7 @@ typedef struct t3r_cluster_settings {
  * assignment pass, and a few first centres. */
 typedef struct t3r_cluster_host {
     t3r_workers workers;
-    t3r_cluster_sums *sums; /* one each of workers 1 and up; NULL with one worker */
+    void *sums; /* T3R_CLUSTER_SUMS_BYTES(K) for each of workers 1 and up, aligned to T3R_ARENA_ALIGN; NULL with one */
     void *context;
     bool (*step)(void *context, uint32_t done, uint32_t total); /* false = stop; NULL: never stops */
 } t3r_cluster_host;
@@ -80,10 +79,10 @@ static inline bool t3r_cluster_step(const t3r_cluster_host *host, uint32_t done,
     return host->step == NULL || host->step(host->context, done, total);
 }
 
-/* Clusters the source's points: clusters[0..K-1] and a label a point. Returns the number of valid points, or
- * T3R_CLUSTERS_CANCELLED. */
+/* Clusters the source's points: clusters[0..K-1] and a label a point. `work` is T3R_CLUSTER_WORK_BYTES(K), aligned to
+ * T3R_ARENA_ALIGN; K is at least 2. Returns the number of valid points, or T3R_CLUSTERS_CANCELLED. */
 #define T3R_CLUSTERS_CANCELLED UINT32_MAX
 uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
-                           uint16_t *labels, t3r_cluster_work *work, const t3r_cluster_host *host);
+                           uint16_t *labels, void *work, const t3r_cluster_host *host);
 
 #endif

@@ -31,7 +31,7 @@ def nearest(depth):
 
 with tempfile.TemporaryDirectory() as folder:
     _, depths = room(f"{folder}/room.mcap", SIDE, FRAMES)
-    for program, gaussians in ((EXAMPLE, 4096), (SMALL, 1024)):
+    for program, gaussians in ((EXAMPLE, 4096), (SMALL, 2048)):
         lines = run(program, f"replay:{folder}/room.mcap").stdout.splitlines()
         told = [LINE.fullmatch(line) for line in lines]
         check(all(told) and [int(line[1]) for line in told] == [1, 3, 5], lines)

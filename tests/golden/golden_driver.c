@@ -27,7 +27,7 @@ typedef struct configuration {
     t3r_pixel_format format;
     t3r_distortion distortion;
     t3r_wavelet wavelet;
-    uint32_t levels, clusters;
+    uint32_t levels, clusters; /* 0 = as many as the points ask for */
     t3r_allocation allocation;
     t3r_head head;
     uint32_t gaussians;
@@ -38,7 +38,7 @@ typedef struct configuration {
 } configuration;
 
 static const configuration configurations[] = {
-    {"default", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
+    {"default", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_DENSITY,
      T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR, false},
     {"small", 128, 96, 61, 45, T3R_PIXEL_GREY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 3, 17, T3R_ALLOCATE_DENSITY,
      T3R_HEAD_MOMENT, 700, true, 0, T3R_DEPTH_SENSOR, false},
@@ -46,9 +46,9 @@ static const configuration configurations[] = {
      T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR, false},
     {"cdf53_pixel", 128, 96, 64, 48, T3R_PIXEL_NV12, T3R_DISTORTION_RADTAN, T3R_WAVELET_CDF53, 4, 300,
      T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0, T3R_DEPTH_SENSOR, false},
-    {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_UNIFORM,
+    {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_UNIFORM,
      T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR, false},
-    {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_RANDOM,
+    {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_RANDOM,
      T3R_HEAD_ANALYTIC, 600, false, 0, T3R_DEPTH_SENSOR, true},
     {"everything", 96, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
      T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR, false},
@@ -60,7 +60,7 @@ static const configuration configurations[] = {
      T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR, false},
     {"given", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_GIVEN,
      T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false},
-    {"stereo", 128, 96, 96, 83, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
+    {"stereo", 128, 96, 96, 83, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_DENSITY,
      T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO, false},
 };
 

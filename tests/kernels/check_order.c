@@ -6,35 +6,44 @@ enum { POINTS = 70, KEYS = 600 };
 
 /* The points first..end - 1 of a sample, and what a centre more makes of them. The others are anything. */
 typedef struct sample_case {
-    t3r_sample *sample;
-    uint32_t first, end;
+    t3r_sample sample;
+    uint32_t first, end, room;
     int16_t *centre;
     int32_t want[T3R_CLUSTER_SAMPLE]; /* the distances then */
     uint64_t sum;
 } sample_case;
 
+static void *anything(uint32_t count, size_t bytes)
+{
+    return memset(guarded_take(count * bytes, bytes), 0x7f, count * bytes);
+}
+
 static void make_sample(sample_case *c, uint64_t *seed, bool from_the_first)
 {
-    c->sample = guarded_take(sizeof *c->sample, 4);
-    c->centre = guarded_take(T3R_DIMENSIONS * sizeof *c->centre, 2);
-    memset(c->sample, 0x7f, sizeof *c->sample);
     const uint32_t count = any_length(seed, T3R_CLUSTER_SAMPLE);
     c->first = from_the_first ? 0 : (uint32_t)any_value(seed, 0, T3R_CLUSTER_SAMPLE - count);
     c->end = c->first + count;
+    const uint32_t room = (uint32_t)any_value(seed, c->end, T3R_CLUSTER_SAMPLE);
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        c->sample.feature_q11[d] = anything(room, sizeof(int16_t));
+    }
+    c->sample.distance_q20 = anything(room, sizeof(int32_t));
+    c->room = room;
+    c->centre = guarded_take(T3R_DIMENSIONS * sizeof *c->centre, 2);
     for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
         c->centre[d] = (int16_t)any_value(seed, -T3R_FEATURE_MOST, T3R_FEATURE_MOST);
     }
-    memcpy(c->want, c->sample->distance_q20, sizeof c->want);
+    memcpy(c->want, c->sample.distance_q20, room * sizeof *c->want);
     c->sum = 0;
     for (uint32_t i = c->first; i < c->end; i++) {
         int64_t distance = 0;
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
             const int64_t p = any_value(seed, -T3R_FEATURE_MOST, T3R_FEATURE_MOST);
-            c->sample->feature_q11[d][i] = (int16_t)p;
+            c->sample.feature_q11[d][i] = (int16_t)p;
             distance += (p - c->centre[d]) * (p - c->centre[d]) / 4;
         }
         const int64_t before = any_value(seed, 0, INT32_MAX);
-        c->sample->distance_q20[i] = (int32_t)before;
+        c->sample.distance_q20[i] = (int32_t)before;
         c->want[i] = (int32_t)(distance < before ? distance : before);
         c->sum += (uint64_t)c->want[i];
     }
@@ -44,38 +53,40 @@ const char *check_sample_potential(const t3r_kernels *kernels, uint64_t *seed)
 {
     static sample_case c;
     make_sample(&c, seed, true);
-    return kernels->sample_potential(c.sample, c.end, c.centre) == c.sum ? NULL : "the sum differs";
+    return kernels->sample_potential(&c.sample, c.end, c.centre) == c.sum ? NULL : "the sum differs";
 }
 
 const char *check_sample_approach(const t3r_kernels *kernels, uint64_t *seed)
 {
     static sample_case c;
     make_sample(&c, seed, false);
-    if (kernels->sample_approach(c.sample, c.first, c.end, c.centre) != c.sum) {
+    if (kernels->sample_approach(&c.sample, c.first, c.end, c.centre) != c.sum) {
         return "the sum differs";
     }
-    return SAME(c.sample->distance_q20, c.want, T3R_CLUSTER_SAMPLE) ? NULL : "a distance differs";
+    return SAME(c.sample.distance_q20, c.want, c.room) ? NULL : "a distance differs";
 }
 
 const char *check_nearest(const t3r_kernels *kernels, uint64_t *seed)
 {
-    t3r_centres *centres = guarded_take(sizeof *centres, 4);
-    t3r_neighbours *neighbours = guarded_take(sizeof *neighbours, 2);
     const uint32_t count = (uint32_t)unit_between(seed, 1, unit_random(seed) % 4 ? 40 : T3R_MAX_CLUSTERS);
+    const uint32_t room = (count + T3R_CENTRE_GROUP - 1) / T3R_CENTRE_GROUP * T3R_CENTRE_GROUP;
+    t3r_centres centres = {.half_norm = anything(count, sizeof(int32_t)), .count = count};
+    for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
+        centres.feature_q11[d] = anything(count, sizeof(int16_t));
+    }
+    const t3r_neighbours neighbours = {guarded_take(room * sizeof *neighbours.index, 4)};
     const uint32_t points = (uint32_t)unit_between(seed, 0, POINTS);
     const int64_t most = unit_random(seed) % 3 == 0 ? 2 : T3R_FEATURE_MOST; /* near together: many are equally far */
     int16_t(*feature)[T3R_DIMENSIONS] = guarded_take(points * sizeof *feature, 2);
     uint16_t *nearest = guarded_take(points * sizeof *nearest, 2);
-    memset(centres, 0x7f, sizeof *centres); /* beyond the last centre stands anything */
-    centres->count = count;
     for (uint32_t k = 0; k < count; k++) {
         int64_t norm = 0;
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
             int64_t c = any_value(seed, -most, most);
-            centres->feature_q11[d][k] = (int16_t)c;
+            centres.feature_q11[d][k] = (int16_t)c;
             norm += c * c;
         }
-        centres->half_norm[k] = (int32_t)(norm / 2);
+        centres.half_norm[k] = (int32_t)(norm / 2);
     }
     for (uint32_t i = 0; i < points; i++) {
         for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
@@ -83,17 +94,17 @@ const char *check_nearest(const t3r_kernels *kernels, uint64_t *seed)
         }
     }
     const uint32_t half = count / 2 / T3R_CENTRE_GROUP * T3R_CENTRE_GROUP; /* as two workers share it */
-    kernels->nearest_begin(centres, half, count, neighbours);
-    kernels->nearest_begin(centres, 0, half, neighbours);
-    kernels->nearest(centres, neighbours, points, (const int16_t(*)[T3R_DIMENSIONS])feature,
+    kernels->nearest_begin(&centres, half, count, &neighbours);
+    kernels->nearest_begin(&centres, 0, half, &neighbours);
+    kernels->nearest(&centres, &neighbours, points, (const int16_t(*)[T3R_DIMENSIONS])feature,
                      (uint16_t)unit_between(seed, 0, count - 1), nearest);
     for (uint32_t i = 0; i < points; i++) {
         int64_t least = INT64_MAX;
         uint32_t first = 0;
         for (uint32_t k = 0; k < count; k++) {
-            int64_t score = centres->half_norm[k];
+            int64_t score = centres.half_norm[k];
             for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {
-                score -= (int64_t)feature[i][d] * centres->feature_q11[d][k];
+                score -= (int64_t)feature[i][d] * centres.feature_q11[d][k];
             }
             if (score < least) {
                 least = score;

@@ -167,7 +167,7 @@ static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
     const t3r_cluster_settings settings = {&t3r_kernels_c, k, 24, 1, false};
     t3r_cluster *clusters = calloc(k, sizeof *clusters);
     uint16_t *labels = calloc(c->count, sizeof *labels);
-    t3r_cluster_work *work = calloc(1, sizeof *work);
+    void *work = aligned_alloc(T3R_ARENA_ALIGN, T3R_CLUSTER_WORK_BYTES(k));
     assert_true(clusters != NULL && labels != NULL && work != NULL);
     const t3r_cluster_host alone = {.workers = {NULL, 1}};
     uint32_t valid = t3r_superclusters(&source, &settings, clusters, labels, work, &alone);
@@ -216,7 +216,7 @@ static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
 static void kmeans(void **state)
 {
     (void)state;
-    assert_true(sizeof(t3r_cluster_work) < 65536);
+    assert_true(T3R_CLUSTER_WORK_BYTES(T3R_MAX_CLUSTERS) < 65536 && T3R_CLUSTER_WORK_BYTES(32) < 9216);
     cloud c = cloud_of(20000, 40, 0.9, 0.02, 1);
     kmeans_case("well apart", &c, 40, 3); /* a missed blob of 40 costs more than its share */
     c = cloud_of(10000, 0, 1, 0, 2);
@@ -229,7 +229,7 @@ static void kmeans(void **state)
     c = cloud_of(10, 0, 1, 0, 5);
     kmeans_case("fewer points than clusters", &c, 64, 1);
     c = cloud_of(1, 0, 1, 0, 6);
-    kmeans_case("one point", &c, 1, 1);
+    kmeans_case("one point", &c, 2, 1);
     c = cloud_of(4000, 0, 3.9, 0, 7);
     kmeans_case("to the ends of the range", &c, 512, 1.15);
 }
@@ -242,7 +242,7 @@ static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *c
     const t3r_cluster_settings settings = {&t3r_kernels_c, k, 24, 1, follows};
     const t3r_cluster_host alone = {.workers = {NULL, 1}};
     uint16_t *labels = calloc(c->count, sizeof *labels);
-    t3r_cluster_work *work = calloc(1, sizeof *work);
+    void *work = aligned_alloc(T3R_ARENA_ALIGN, T3R_CLUSTER_WORK_BYTES(k));
     double *centres = calloc(k, ORACLE_DIMENSIONS * sizeof *centres);
     uint32_t *wide = calloc(c->count, sizeof *wide);
     assert_true(labels != NULL && work != NULL && centres != NULL && wide != NULL);

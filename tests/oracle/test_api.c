@@ -172,7 +172,7 @@ static void config_ranges(void **state)
         RANGE(render_height, 1, T3R_MAX_SIDE),
         RANGE(wavelet, 0, T3R_WAVELET_COUNT - 1),
         RANGE(wavelet_levels, 1, T3R_MAX_LEVELS),
-        RANGE(clusters, 1, T3R_MAX_CLUSTERS),
+        RANGE(clusters, 0, T3R_MAX_CLUSTERS),
         RANGE(cluster_batches, 0, 1024),
         RANGE(colour_weight_q8, 0, 1024),
         RANGE(allocation, 1, T3R_ALLOCATE_COUNT - 1),

@@ -177,7 +177,7 @@ static void plan_within_is_the_inverse(void **state)
     const t3r_config good = c;
     const struct {
         uint32_t max_gaussians, gaussians, clusters;
-    } bad[] = {{0, 0, 1}, {T3R_MAX_GAUSSIANS + 1, 1, 1}, {UINT32_MAX, 1, 1}, {5, 6, 1}, {5, 0, 1}, {5, 5, 0}};
+    } bad[] = {{0, 0, 1}, {T3R_MAX_GAUSSIANS + 1, 1, 1}, {UINT32_MAX, 1, 1}, {5, 6, 1}, {5, 0, 1}, {5, 5, T3R_MAX_CLUSTERS + 1}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         t3r_config wrong = good;
         wrong.max_gaussians = bad[i].max_gaussians;
@@ -193,6 +193,7 @@ static void plan_depends_on_sizes_alone(void **state)
 {
     (void)state;
     t3r_config c = t3r_default_config(64, 48, 2, 500);
+    c.clusters = 24;
     t3r_plan_info plan, other;
     assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
     c.gaussians = 7;

@@ -41,6 +41,7 @@ static t3r_config learned_config(uint32_t gaussians)
 {
     t3r_config c = t3r_default_config(W, H, 2, gaussians);
     c.clusters = 9;
+    c.cluster_batches = 24;
     c.head = T3R_HEAD_LEARNED;
     c.refinements = 0;
     c.keep_analysis = 1;
@@ -364,6 +365,7 @@ static const t3r_gaussian *constant_head(const int16_t outputs[T3R_HEAD_OUTPUTS]
     seal_weights(weights, bytes);
     t3r_config config = learned_config(POINTS);
     config.views = 1;
+    config.gamma_q8 = 0; /* all as dense */
     config.head = head;
     arena memory = arena_of(&config, ARENA_AT_MINIMUM);
     t3r_runtime *rt = with_views(&memory, &config, 0);

@@ -52,11 +52,11 @@ typedef struct splat_maker {
 static t3r_gaussian *reconstruct(uint32_t refinements, const splat_maker *maker, t3r_scene *scene)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
+    config.clusters = 16;
     config.refinements = refinements;
     config.head = maker->head;
     config.fill_radius = config.bridge_radius = 0;
     config.flying = config.redundancy = config.exposure = 0; /* nothing but refinement */
-    config.clusters = 20;
     arena a = arena_of(&config, ARENA_AT_FULL);
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, a.bytes, a.count, &config), T3R_OK);

@@ -68,6 +68,7 @@ static site site_of(uint32_t most, uint32_t views)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, most);
     config.clusters = 20;
+    config.cluster_batches = 24;
     config.keep_analysis = 1;
     config.exposure = 0;
     site s = {.memory = arena_of(&config, ARENA_AT_FULL), .calls_left = -1};

@@ -98,7 +98,7 @@ static void refuses_what_has_no_count(void **state)
     c.stream = 1;
     assert_int_equal(t3r_count_work(&c, SIZE_MAX / 2, NULL, 0, &work), T3R_ERR_CONFIG);
     c.stream = 0;
-    c.clusters = 0;
+    c.clusters = T3R_MAX_CLUSTERS + 1;
     assert_int_equal(t3r_count_work(&c, SIZE_MAX / 2, NULL, 0, &work), T3R_ERR_CONFIG);
 }
 

@@ -33,6 +33,7 @@ static t3r_config good_config(void)
     t3r_config config = t3r_default_config(SIDE, SIDE, 1, MOST);
     config.gaussians = BUDGET;
     config.clusters = 12;
+    config.cluster_batches = 24;
     config.refinements = 1;
     config.keep_analysis = 1;
     return config;

@@ -7,7 +7,7 @@
 #include <arm_acle.h>
 #include <stdbool.h>
 
-#include "packed_at.h"
+#include "kernels/nearest.h"
 
 enum { FEW = 96, PAIRS = T3R_DIMENSIONS / 2 };
 
@@ -17,20 +17,20 @@ typedef struct packed_centre {
     int16x2_t less_pair[PAIRS]; /* of features, negative */
 } packed_centre;
 
-_Static_assert(sizeof(packed_centre) * FEW <= T3R_PACKED_ROOM, "they lie in their place");
+_Static_assert(sizeof(packed_centre) <= sizeof(uint16_t[T3R_NEIGHBOURS]), "they lie in their place");
 
 static inline int16x2_t pair_of(int32_t low, int32_t high)
 {
     return (int16x2_t)((uint32_t)low & 0xffff) | (int16x2_t)((uint32_t)high << 16);
 }
 
-void t3r_nearest_begin_dsp(const t3r_centres *centres, uint32_t first, uint32_t end, t3r_neighbours *neighbours)
+void t3r_nearest_begin_dsp(const t3r_centres *centres, uint32_t first, uint32_t end, const t3r_neighbours *neighbours)
 {
     if (centres->count > FEW) {
         t3r_nearest_begin_c(centres, first, end, neighbours);
         return;
     }
-    packed_centre *packed = t3r_aligned_centres(neighbours);
+    packed_centre *packed = (packed_centre *)(void *)neighbours->index;
     for (uint32_t k = first; k < end; k++) {
         packed[k].half_norm = centres->half_norm[k];
         for (uint32_t d = 0; d < PAIRS; d++) {
@@ -69,7 +69,8 @@ void t3r_nearest_dsp(const t3r_centres *centres, const t3r_neighbours *neighbour
         return;
     }
     for (uint32_t point = 0; point < points; point++) {
-        nearest[point] = (uint16_t)nearest_of(t3r_aligned_centres(neighbours), centres->count, feature_q11[point]);
+        nearest[point] = (uint16_t)nearest_of((const packed_centre *)(const void *)neighbours->index, centres->count,
+                                              feature_q11[point]);
     }
 }
 

@@ -6,7 +6,7 @@
 #include <arm_mve.h>
 #include <stdbool.h>
 
-#include "packed_at.h"
+#include "kernels/nearest.h"
 
 enum { FOUR = 4 };
 
@@ -16,12 +16,12 @@ typedef struct four_centres {
     int16_t less_feature_q11[T3R_DIMENSIONS][FOUR]; /* negative */
 } four_centres;
 
-_Static_assert(sizeof(four_centres) * (T3R_MAX_CLUSTERS / FOUR) <= T3R_PACKED_ROOM, "they lie in their place");
-_Static_assert(T3R_CENTRE_GROUP % FOUR == 0 && T3R_MAX_CLUSTERS % FOUR == 0, "whole vectors");
+_Static_assert(sizeof(four_centres) <= sizeof(uint16_t[FOUR][T3R_NEIGHBOURS]), "they lie in their place");
+_Static_assert(T3R_CENTRE_GROUP % FOUR == 0, "whole vectors");
 
-void t3r_nearest_begin_mve(const t3r_centres *centres, uint32_t first, uint32_t end, t3r_neighbours *neighbours)
+void t3r_nearest_begin_mve(const t3r_centres *centres, uint32_t first, uint32_t end, const t3r_neighbours *neighbours)
 {
-    four_centres *packed = t3r_aligned_centres(neighbours);
+    four_centres *packed = (four_centres *)(void *)neighbours->index;
     for (uint32_t k = first; k < (end + FOUR - 1) / FOUR * FOUR; k++) {
         const bool is_centre = k < centres->count;
         packed[k / FOUR].half_norm[k % FOUR] = is_centre ? centres->half_norm[k] : INT32_MAX;
@@ -33,7 +33,7 @@ void t3r_nearest_begin_mve(const t3r_centres *centres, uint32_t first, uint32_t 
 
 static uint16_t nearest_of(const t3r_neighbours *packed, uint32_t count, const int16_t p[T3R_DIMENSIONS])
 {
-    const four_centres *c = t3r_aligned_centres(packed);
+    const four_centres *c = (const four_centres *)(const void *)packed->index;
     const int32_t p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3], p4 = p[4], p5 = p[5];
     uint32_t predicate, groups = (count + FOUR - 1) / FOUR;
     int32x4_t here = vreinterpretq_s32_u32(vidupq_n_u32(0, 1)), first = here, least = vdupq_n_s32(INT32_MAX);

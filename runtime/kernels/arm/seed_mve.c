@@ -29,7 +29,7 @@ uint64_t t3r_sample_potential_mve(const t3r_sample *sample, uint32_t count, cons
     return sum;
 }
 
-uint64_t t3r_sample_approach_mve(t3r_sample *sample, uint32_t first, uint32_t end,
+uint64_t t3r_sample_approach_mve(const t3r_sample *sample, uint32_t first, uint32_t end,
                                  const int16_t centre_q11[T3R_DIMENSIONS])
 {
     uint64_t sum = 0;

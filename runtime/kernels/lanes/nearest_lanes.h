@@ -5,37 +5,21 @@
 
 #include "packed_centres.h"
 
-static inline T3R_LANES_TARGET lanes centres_at(const t3r_neighbours *packed, size_t offset, uint32_t k)
-{
-    return load(t3r_packed_at(packed, offset, k));
-}
-
-static inline T3R_LANES_TARGET void put_centres(t3r_neighbours *packed, size_t offset, uint32_t k,
-                                                const int32_t from[LANES])
-{
-    store((uint8_t *)packed + offset + (size_t)k * sizeof(int32_t), load(from));
-}
-
 T3R_LANES_TARGET void NEAREST_BEGIN(const t3r_centres *centres, uint32_t first, uint32_t end,
-                                    t3r_neighbours *neighbours)
+                                    const t3r_neighbours *neighbours)
 {
-    const uint32_t whole = (end + T3R_CENTRE_GROUP - 1) / T3R_CENTRE_GROUP * T3R_CENTRE_GROUP;
-    for (uint32_t at = first; at < whole; at += LANES) {
-        int32_t pair[T3R_PAIRS][LANES], half_norm[LANES];
-        for (uint32_t i = 0; i < LANES; i++) {
-            const uint32_t k = at + i;
+    for (uint32_t group = first; group < end; group += T3R_CENTRE_GROUP) {
+        t3r_packed_group *packed = t3r_packed_group_of(neighbours, group);
+        for (uint32_t i = 0; i < T3R_CENTRE_GROUP; i++) {
+            const uint32_t k = group + i;
             const bool is_centre = k < centres->count;
             for (uint32_t d = 0; d < T3R_PAIRS; d++) {
                 const int16_t two[2] = {is_centre ? centres->feature_q11[2 * d][k] : 0,
                                         is_centre ? centres->feature_q11[2 * d + 1][k] : 0};
-                pair[d][i] = t3r_pair_of(two, 0);
+                packed->pair[d][i] = t3r_pair_of(two, 0);
             }
-            half_norm[i] = is_centre ? centres->half_norm[k] : INT32_MAX; /* no centre's score is so large */
+            packed->half_norm[i] = is_centre ? centres->half_norm[k] : INT32_MAX; /* no centre's score is so large */
         }
-        for (uint32_t d = 0; d < T3R_PAIRS; d++) {
-            put_centres(neighbours, T3R_PACKED_PAIR(d), at, pair[d]);
-        }
-        put_centres(neighbours, T3R_PACKED_HALF_NORM, at, half_norm);
     }
 }
 
@@ -95,15 +79,18 @@ T3R_LANES_TARGET void NEAREST(const t3r_centres *centres, const t3r_neighbours *
     for (uint32_t point = 0; point < points; point += 2) { /* two share the loads; behind the last, the last again */
         const uint32_t other = point + 1 < points ? point + 1 : point;
         search a = search_of(feature_q11[point]), b = search_of(feature_q11[other]);
-        for (uint32_t k = 0; k < centres->count; k += LANES) {
-            lanes pair[T3R_PAIRS];
-            for (uint32_t d = 0; d < T3R_PAIRS; d++) {
-                pair[d] = centres_at(neighbours, T3R_PACKED_PAIR(d), k);
+        for (uint32_t group = 0; group < centres->count; group += T3R_CENTRE_GROUP) {
+            const t3r_packed_group *packed = t3r_packed_group_of(neighbours, group);
+            for (uint32_t i = 0; i < T3R_CENTRE_GROUP; i += LANES) {
+                lanes pair[T3R_PAIRS];
+                for (uint32_t d = 0; d < T3R_PAIRS; d++) {
+                    pair[d] = load(&packed->pair[d][i]);
+                }
+                const lanes half_norm = load(&packed->half_norm[i]);
+                const lanes here = all((int32_t)(group + i));
+                look(&a, pair, half_norm, here);
+                look(&b, pair, half_norm, here);
             }
-            const lanes half_norm = centres_at(neighbours, T3R_PACKED_HALF_NORM, k);
-            const lanes here = all((int32_t)k);
-            look(&a, pair, half_norm, here);
-            look(&b, pair, half_norm, here);
         }
         nearest[point] = nearest_of(&a);
         nearest[other] = nearest_of(&b);

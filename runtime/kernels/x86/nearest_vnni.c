@@ -20,9 +20,9 @@ typedef struct search {
     sixteen most, first;
 } search;
 
-static inline T3R_VNNI __m512i load(const t3r_neighbours *packed, size_t offset, uint32_t k)
+static inline T3R_VNNI __m512i load(const int32_t x[LANES])
 {
-    return _mm512_loadu_si512((const void *)t3r_packed_at(packed, offset, k));
+    return _mm512_loadu_si512((const void *)x);
 }
 
 static inline T3R_VNNI search search_of(const int16_t p[T3R_DIMENSIONS])
@@ -95,11 +95,9 @@ T3R_VNNI void t3r_nearest_vnni(const t3r_centres *centres, const t3r_neighbours 
         }
         sixteen here = (sixteen)_mm512_setzero_si512();
         for (uint32_t k = 0; k < centres->count; k += LANES, here += (int32_t)LANES) {
-            const __m512i pair[T3R_PAIRS] = {load(neighbours, T3R_PACKED_PAIR(0), k),
-                                             load(neighbours, T3R_PACKED_PAIR(1), k),
-                                             load(neighbours, T3R_PACKED_PAIR(2), k)};
-            const __m512i less_half_norm =
-                _mm512_sub_epi32(_mm512_setzero_si512(), load(neighbours, T3R_PACKED_HALF_NORM, k));
+            const t3r_packed_group *packed = t3r_packed_group_of(neighbours, k);
+            const __m512i pair[T3R_PAIRS] = {load(packed->pair[0]), load(packed->pair[1]), load(packed->pair[2])};
+            const __m512i less_half_norm = _mm512_sub_epi32(_mm512_setzero_si512(), load(packed->half_norm));
             look(&s[0], pair, less_half_norm, here);
             look(&s[1], pair, less_half_norm, here);
             look(&s[2], pair, less_half_norm, here);

@@ -10,6 +10,9 @@
 #include "file_bytes.h"
 #include "reason.h"
 
+/* as in GaussianTrim3R */
+enum { CLUSTERS = 300, BATCHES = 24 };
+
 void bench_points_free(bench_points *points)
 {
     free(points->value);
@@ -25,7 +28,7 @@ static int allocate(bench_points *p, uint32_t count, char *error, size_t error_b
     p->value = calloc(count, sizeof *p->value);
     p->feature_q11 = calloc(count, sizeof *p->feature_q11);
     p->labels = calloc(count, sizeof *p->labels);
-    p->work = calloc(1, sizeof *p->work);
+    p->work = aligned_alloc(T3R_ARENA_ALIGN, T3R_CLUSTER_WORK_BYTES(CLUSTERS));
     if (p->value == NULL || p->feature_q11 == NULL || p->labels == NULL || p->work == NULL) {
         return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " points", count);
     }
@@ -152,7 +155,7 @@ bool bench_points_cluster(bench_points *points, uint32_t cpu)
     t3r_kernels_choose(&kernels, cpu);
     t3r_config defaults = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
     t3r_point_source source = {points, points->count, features_of};
-    t3r_cluster_settings settings = {&kernels, defaults.clusters, defaults.cluster_batches, defaults.seed, false};
+    t3r_cluster_settings settings = {&kernels, CLUSTERS, BATCHES, defaults.seed, false};
     const t3r_cluster_host alone = {.workers = {NULL, 1}};
     return t3r_superclusters(&source, &settings, points->clusters, points->labels, points->work, &alone) ==
            points->count;

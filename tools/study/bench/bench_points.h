@@ -16,7 +16,7 @@ typedef struct bench_points {
     double middle[T3R_DIMENSIONS], scale;
     uint16_t *labels;
     t3r_cluster clusters[T3R_MAX_CLUSTERS];
-    t3r_cluster_work *work;
+    void *work;
 } bench_points;
 
 /* Raw float32, little-endian, N x 6. 0, or -1 with "what, where" in error[]; bench_points_free() in either case. */

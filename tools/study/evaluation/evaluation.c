@@ -256,6 +256,16 @@ void evaluation_name_case(evaluation_row *row, const evaluation_case *what)
     }
 }
 
+/* Of a number that the library chooses, the working size is known only when a scene is made. */
+static void name_clusters(evaluation_row *row, uint32_t clusters)
+{
+    if (clusters == 0) {
+        snprintf(row->clusters, sizeof row->clusters, "auto");
+    } else {
+        snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, clusters);
+    }
+}
+
 int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method_id m, evaluation_budget budget,
                         const reconstruction_options *settings)
 {
@@ -283,7 +293,7 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, method
     }
     if (ours) {
         row->allocate = t3r_allocation_name(settings->config.allocation);
-        snprintf(row->clusters, sizeof row->clusters, "%" PRIu32, settings->config.clusters);
+        name_clusters(row, settings->config.clusters);
     }
     if (budget.gaussians > 0) {
         row->value[EVALUATION_REQUESTED] = budget.gaussians;

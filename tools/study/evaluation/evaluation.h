@@ -76,7 +76,7 @@ typedef enum evaluation_value {
 
 typedef struct evaluation_row {
     char scene[EVALUATION_NAME_BYTES], context[192], target[16], head[16], bits[8], refine[16];
-    char levels[8], clusters[8]; /* "" = does not apply, as below */
+    char levels[8], clusters[16]; /* "" = does not apply, as below */
     const char *method, *allocate, *depth, *wavelet;
     const char *ablation; /* ablation_name() of what was taken away; "" where nothing is told of it */
     char settings[EVALUATION_SETTINGS_BYTES]; /* all others: evaluation_settings_rest() */

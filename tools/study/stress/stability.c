@@ -180,7 +180,7 @@ void stress_judge_still(stress_row *row, uint32_t clusters, double noise)
 {
     double gaussians = row->value[STRESS_GAUSSIANS];
     double changed = stress_mask_changed_most(gaussians, clusters), motion = stress_motion_most(noise);
-    if (gaussians >= clusters && row->method == METHOD_TRIM3R &&
+    if (gaussians >= fmax(clusters, STRESS_JUDGED_LEAST) && row->method == METHOD_TRIM3R &&
         !(row->value[STRESS_MASK_CHANGED] <= changed && row->value[STRESS_MOTION] <= motion)) {
         row->status = STRESS_BROKEN;
         snprintf(row->reason, sizeof row->reason,
@@ -215,6 +215,15 @@ static int add_capture(stress_row *rows, snapshot *last, const stress_case *c, c
     return code;
 }
 
+static uint32_t clusters_of(const stress_case *c, const stress_contest *contest)
+{
+    t3r_config config = contest->settings.config;
+    config.width = c->base.width;
+    config.height = c->base.height;
+    config.views = c->base.views;
+    return t3r_cluster_count(&config);
+}
+
 int stress_stability(stress_row *rows, const stress_case *c, const stress_contest *contest)
 {
     uint32_t count = stress_row_count(contest);
@@ -231,7 +240,7 @@ int stress_stability(stress_row *rows, const stress_case *c, const stress_contes
         rows[i].value[STRESS_MASK_CHANGED] /= contest->captures - 1;
         rows[i].value[STRESS_MOTION] /= contest->captures - 1;
         if (code == CLI_OK && rows[i].status == STRESS_MEASURED) {
-            stress_judge_still(&rows[i], contest->settings.config.clusters,
+            stress_judge_still(&rows[i], clusters_of(c, contest),
                                stress_still_motion(&c->base, rows[i].value[STRESS_GAUSSIANS]));
         }
     }

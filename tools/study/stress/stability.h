@@ -6,7 +6,7 @@
 #include "study/stress/run.h"
 
 /* What is guaranteed of the method trim3r under the noise of a still scene (perturbation.h), where there are as many
- * Gaussians as SuperClusters: with fewer, chance says which of them get one.
+ * Gaussians as SuperClusters and at least STRESS_JUDGED_LEAST: with fewer, chance says what gets one.
  *
  * The share of the retained pixels that change is at most STRESS_MASK_CHANGED_MOST, and with n Gaussians a SuperCluster
  * at most STRESS_MASK_CHANGED_ONE / sqrt(n): those change that stand at the edge of a quota, and the more a quota holds
@@ -17,6 +17,7 @@
  * depth's own noise moves them: refinement follows colours, where there are none, or where views contradict each other,
  * it follows their noise. Measured likewise: 0.52 on a blank wall at a grazing angle, 0.38 elsewhere. The median, for a
  * mean would tell of the few that leap from one surface to another, where depth has holes. */
+#define STRESS_JUDGED_LEAST 64
 #define STRESS_MASK_CHANGED_MOST 0.5 /* share of the retained pixels */
 #define STRESS_MASK_CHANGED_ONE 0.6  /* likewise */
 #define STRESS_MOTION_MOST 0.75      /* of the spacing of retained pixels */

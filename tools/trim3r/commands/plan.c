@@ -196,7 +196,7 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan, cons
     json_add_integer(root, "height", config->height);
     json_add_integer(root, "views", config->views);
     json_add_integer(root, "gaussians", config->gaussians);
-    json_add_integer(root, "clusters", config->clusters);
+    json_add_integer(root, "clusters", t3r_cluster_count(config));
     json_add_integer(root, "threads", config->workers);
     cJSON_AddStringToObject(root, "depth", t3r_depth_name(config->depth));
     json_add_integer(root, "head_column_bytes", config->head_column_bytes);
