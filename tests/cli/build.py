@@ -23,7 +23,7 @@ def refused():
         "--head": ["big", "", "learned", ".t3w", "small.c"],
         "--wavelet": ["db9"],
         "--levels": ["0", "6"],
-        "--clusters": ["0", "513"],
+        "--clusters": ["513"],
         "--gamma": ["-1", "2.1", "x", "nan"],
         "--keep-percent": ["101"],
         "--fill-radius": ["9"],
