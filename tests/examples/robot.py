@@ -55,5 +55,5 @@ with tempfile.TemporaryDirectory() as folder:
     check(ended.returncode == 0, f"without registers for floats: {ended.stderr}")
     called = set(re.findall(r" U (\w+)", run("nm", f"{folder}/robot.o").stdout))
     foreign = {name for name in called if not name.startswith("t3r_")} - OUTPUT
-    check("t3r_init" in called and foreign == set(), f"the robot calls {foreign}")
+    check("t3r_init_as" in called and foreign == set(), f"the robot calls {foreign}")
 done()

@@ -136,7 +136,7 @@ static void the_cap_holds(void **state)
     enum { STRIDE = T3R_SANITIZED ? 5 : 1, KEYFRAMES = 10000 / STRIDE };
     t3r_config config = stream_config();
     config.refinements = 1;
-    site s = site_of(config, ARENA_AT_MINIMUM);
+    site s = site_of(config, ARENA_AT_FULL); /* every view takes one pass */
     t3r_hooks hooks = {.user = &s, .progress = progress};
     assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
     uint32_t before = 0, most_calls = 0, origins = 0;
