@@ -152,9 +152,9 @@ uint64_t t3r_most_arena_bytes(const t3r_config *c)
     const uint64_t worker = pixels * 4 + (uint64_t)(c->width + 15) * (c->head_column_bytes + 32) +
                             T3R_HEAD_KERNEL_BYTES + T3R_CLUSTER_SUMS_BYTES(T3R_MAX_CLUSTERS) +
                             (T3R_MAX_CLUSTERS + 1) * T3R_GROUP_COUNT_BYTES + T3R_WANTED_BYTES + gaussians * 27 + 512;
-    const uint64_t fixed = T3R_HEADER_BYTES + T3R_CLUSTER_WORK_BYTES(T3R_MAX_CLUSTERS) + 2 * (T3R_MAX_CLUSTERS + 1) * T3R_CLUSTER_BYTES +
-                           2 * T3R_SORT_BYTES + 3 * T3R_RATIO_BINS * 4 +
-                           T3R_BUFFER_COUNT * T3R_ARENA_ALIGN * (uint64_t)4;
+    const uint64_t fixed = T3R_HEADER_BYTES + T3R_CLUSTER_WORK_BYTES(T3R_MAX_CLUSTERS) +
+                           2 * (T3R_MAX_CLUSTERS + 1) * T3R_CLUSTER_BYTES + 2 * T3R_SORT_BYTES +
+                           3 * T3R_RATIO_BINS * 4 + T3R_BUFFER_COUNT * T3R_ARENA_ALIGN * (uint64_t)4;
     uint64_t bytes = fixed + pixels * (c->views * (uint64_t)26 + 38) +
                      (uint64_t)c->render_width * c->render_height * 8 + gaussians * 332 + workers * worker;
     /* planes of a quarter more on a side, the right one wider; 64 rows of sums and costs, and as many path states */

@@ -553,9 +553,9 @@ static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uin
 }
 
 /* The SuperClusters that the configuration asks for. Where `clusters` is 0, its allocation chooses: 300 for
- * T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views' pixels for
- * T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters, and for streams. A request's own allocation
- * finds what the configuration's chose. */
+ * T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views' pixels
+ * for T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters, and for streams. A request's own
+ * allocation finds what the configuration's chose. */
 uint32_t t3r_cluster_count(const t3r_config *config);
 
 /* The mini-batches of the K-means. Where `cluster_batches` is 0, one for 8 SuperClusters, 1..24. */

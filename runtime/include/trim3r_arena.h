@@ -36,11 +36,11 @@
 #define T3R_HEADER_BYTES 4096
 #define T3R_GAUSSIAN_BYTES 44
 #define T3R_SPLAT_BYTES 40
-#define T3R_ORDER_BYTES 16           /* two keys and two indices a Gaussian: the radix sort's two sides */
-#define T3R_SORT_BYTES 4096          /* four histograms of 256 counts */
-#define T3R_CLUSTER_BYTES 56         /* centre and statistics of a SuperCluster */
-#define T3R_GROUP_COUNT_BYTES 64     /* what the budget counts of a SuperCluster */
-#define T3R_RATIO_BINS 512           /* of a histogram of exposure */
+#define T3R_ORDER_BYTES 16       /* two keys and two indices a Gaussian: the radix sort's two sides */
+#define T3R_SORT_BYTES 4096      /* four histograms of 256 counts */
+#define T3R_CLUSTER_BYTES 56     /* centre and statistics of a SuperCluster */
+#define T3R_GROUP_COUNT_BYTES 64 /* what the budget counts of a SuperCluster */
+#define T3R_RATIO_BINS 512       /* of a histogram of exposure */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
  * heads nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
 #define T3R_HEAD_COLUMN_BYTES 704
@@ -270,7 +270,7 @@
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
     X(with, CLUSTERS, "SuperClusters", T3R_BUILDS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_CLUSTER_BYTES,            \
       T3R_AT_SUPERCLUSTERS, T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                    \
-    X(with, CLUSTER_WORK, "K-means work", T3R_BUILDS_(shape) * T3R_CLUSTER_WORK_BYTES(T3R_CLUSTERS_(shape)),                \
+    X(with, CLUSTER_WORK, "K-means work", T3R_BUILDS_(shape) * T3R_CLUSTER_WORK_BYTES(T3R_CLUSTERS_(shape)),           \
       T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)                                                                      \
     X(with, CLUSTER_SUMS, "workers' K-means sums",                                                                     \
       T3R_BUILDS_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_CLUSTER_SUMS_BYTES(T3R_CLUSTERS_(shape)),                   \
@@ -315,13 +315,13 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 /* Every argument is written out 2^depth times, so the tree is kept flat. */
 #define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
 #define T3R_MOST_OF_STAGES_(shape, more_refine, more_raster)                                                           \
-    T3R_MAX_(T3R_MAX_(T3R_STAGE_BYTES_(T3R_AT_POINTMAP, shape),                                                        \
-                      T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, shape), T3R_STAGE_BYTES_(T3R_AT_DEPTH, shape),          \
-                                T3R_STAGE_BYTES_(T3R_AT_WAVELET, shape),                                               \
-                                T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, shape))),                                       \
-             T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, shape), T3R_STAGE_BYTES_(T3R_AT_HEAD, shape),                   \
-                       T3R_STAGE_BYTES_(T3R_AT_REFINE, shape) + (more_refine),                                         \
-                       T3R_STAGE_BYTES_(T3R_AT_RASTER, shape) + (more_raster)))
+    T3R_MAX_(                                                                                                          \
+        T3R_MAX_(T3R_STAGE_BYTES_(T3R_AT_POINTMAP, shape),                                                             \
+                 T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, shape), T3R_STAGE_BYTES_(T3R_AT_DEPTH, shape),               \
+                           T3R_STAGE_BYTES_(T3R_AT_WAVELET, shape), T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, shape))),   \
+        T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, shape), T3R_STAGE_BYTES_(T3R_AT_HEAD, shape),                        \
+                  T3R_STAGE_BYTES_(T3R_AT_REFINE, shape) + (more_refine),                                              \
+                  T3R_STAGE_BYTES_(T3R_AT_RASTER, shape) + (more_raster)))
 #define T3R_MIN_BYTES_(shape) T3R_MOST_OF_STAGES_(shape, 0, 0)
 #define T3R_FULL_BYTES_(shape)                                                                                         \
     T3R_MOST_OF_STAGES_(shape, T3R_UP_(T3R_REFINE_FULL_BYTES_(shape)) - T3R_UP_(T3R_REFINE_BYTES_(shape)),             \
@@ -329,7 +329,7 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 
 /* The default configuration: targets of the working size, the analysis not kept, one worker. */
 #define T3R_DEFAULT_SHAPE_(width, height, views, gaussians, keep, stereo, warm)                                        \
-    T3R_SHAPE_(width, height, views, gaussians,                                                                          \
+    T3R_SHAPE_(width, height, views, gaussians,                                                                        \
                (keep) == T3R_KEEP_MAP ? 1 : T3R_CLUSTERS_OF_POINTS(T3R_PIXELS_(width, height) * (views)), width,       \
                height, T3R_HEAD_COLUMN_BYTES, keep, T3R_DEFAULT_REFINEMENTS, stereo, 1, warm)
 

@@ -45,8 +45,8 @@ typedef struct means_job {
     t3r_neighbours neighbours;
     cluster_sums sums[T3R_MAX_WORKERS]; /* of worker 0 in the end of all */
     uint32_t *weight;                   /* points behind a centre so far, held at a bound */
-    uint32_t first; /* block of the task of index 0 */
-    uint32_t batch; /* of run_batch() */
+    uint32_t first;                     /* block of the task of index 0 */
+    uint32_t batch;                     /* of run_batch() */
     uint16_t *labels;
     uint32_t points; /* of the run */
 } means_job;
@@ -302,11 +302,8 @@ uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_set
     const uint32_t batches =
         settings->follows ? (settings->batches + FOLLOW_PART - 1) / FOLLOW_PART : settings->batches;
     const uint32_t total = batches + source->points / T3R_CLUSTER_BATCH;
-    means_job job = {.kernels = settings->kernels,
-                     .source = source,
-                     .host = host,
-                     .count = settings->clusters,
-                     .labels = labels};
+    means_job job = {
+        .kernels = settings->kernels, .source = source, .host = host, .count = settings->clusters, .labels = labels};
     cut_work(&job, work);
     if (!settings->follows && !place_centres(&job, settings, clusters, total)) {
         return T3R_CLUSTERS_CANCELLED;

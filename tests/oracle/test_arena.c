@@ -177,7 +177,8 @@ static void plan_within_is_the_inverse(void **state)
     const t3r_config good = c;
     const struct {
         uint32_t max_gaussians, gaussians, clusters;
-    } bad[] = {{0, 0, 1}, {T3R_MAX_GAUSSIANS + 1, 1, 1}, {UINT32_MAX, 1, 1}, {5, 6, 1}, {5, 0, 1}, {5, 5, T3R_MAX_CLUSTERS + 1}};
+    } bad[] = {{0, 0, 1}, {T3R_MAX_GAUSSIANS + 1, 1, 1}, {UINT32_MAX, 1, 1}, {5, 6, 1},
+               {5, 0, 1}, {5, 5, T3R_MAX_CLUSTERS + 1}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         t3r_config wrong = good;
         wrong.max_gaussians = bad[i].max_gaussians;

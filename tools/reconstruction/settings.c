@@ -37,7 +37,7 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
     SETTING("wavelet", "NAME", wavelet, NAME, 0, UINT32_MAX, wavelet_name, "wavelet that measures texture", true,      \
             NULL)                                                                                                      \
     SETTING("levels", "N", wavelet_levels, NUMBER, 1, T3R_MAX_LEVELS, NULL, "wavelet levels", true, "levels")          \
-    SETTING("clusters", "K", clusters, NUMBER, 0, T3R_MAX_CLUSTERS, NULL,                                                 \
+    SETTING("clusters", "K", clusters, NUMBER, 0, T3R_MAX_CLUSTERS, NULL,                                              \
             "number of SuperClusters; 0 = as many as the allocation and the points ask for", true, "k")                \
     SETTING("gamma", "G", gamma_q8, Q8, 0, 2, NULL, "exponent of texture in the density", false, "gamma")              \
     SETTING("keep-percent", "N", keep_percent, NUMBER, 0, 100, NULL,                                                   \
