@@ -25,33 +25,34 @@ typedef int32_t quad_there __attribute__((vector_size(16), aligned(1), may_alias
     T3R_LANES_INLINE quad neon_##name(quad a, quad b)                                                                  \
     {                                                                                                                  \
         return from(operation(to(a), to(b)));                                                                          \
-    }
+    }                                                                                                                  \
+    _Static_assert(sizeof(quad) == 16, "whole vectors") /* takes the semicolon */
 #define AS_IT_IS(x) (x)
 
-NEON(and_si128, vandq_s32, AS_IT_IS, AS_IT_IS)
-NEON(or_si128, vorrq_s32, AS_IT_IS, AS_IT_IS)
-NEON(xor_si128, veorq_s32, AS_IT_IS, AS_IT_IS)
-NEON(add_epi32, vaddq_s32, AS_IT_IS, AS_IT_IS)
-NEON(sub_epi32, vsubq_s32, AS_IT_IS, AS_IT_IS)
-NEON(mullo_epi32, vmulq_s32, AS_IT_IS, AS_IT_IS)
-NEON(min_epi32, vminq_s32, AS_IT_IS, AS_IT_IS)
-NEON(max_epi32, vmaxq_s32, AS_IT_IS, AS_IT_IS)
-NEON(min_epu32, vminq_u32, U32, FROM_U32)
-NEON(max_epu32, vmaxq_u32, U32, FROM_U32)
-NEON(cmpgt_epi32, vcgtq_s32, AS_IT_IS, FROM_U32)
-NEON(cmpeq_epi32, vceqq_s32, AS_IT_IS, FROM_U32)
-NEON(add_epi64, vaddq_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64)
-NEON(sub_epi64, vsubq_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64)
-NEON(add_epi16, vaddq_s16, S16, FROM_S16)
-NEON(sub_epi16, vsubq_s16, S16, FROM_S16)
-NEON(mullo_epi16, vmulq_s16, S16, FROM_S16)
-NEON(unpacklo_epi16, vzip1q_s16, S16, FROM_S16)
-NEON(unpackhi_epi16, vzip2q_s16, S16, FROM_S16)
-NEON(unpacklo_epi32, vzip1q_s32, AS_IT_IS, AS_IT_IS)
-NEON(unpackhi_epi32, vzip2q_s32, AS_IT_IS, AS_IT_IS)
-NEON(unpacklo_epi64, vzip1q_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64)
-NEON(unpackhi_epi64, vzip2q_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64)
-NEON(shuffle_epi8, vqtbl1q_u8, vreinterpretq_u8_s32, vreinterpretq_s32_u8)
+NEON(and_si128, vandq_s32, AS_IT_IS, AS_IT_IS);
+NEON(or_si128, vorrq_s32, AS_IT_IS, AS_IT_IS);
+NEON(xor_si128, veorq_s32, AS_IT_IS, AS_IT_IS);
+NEON(add_epi32, vaddq_s32, AS_IT_IS, AS_IT_IS);
+NEON(sub_epi32, vsubq_s32, AS_IT_IS, AS_IT_IS);
+NEON(mullo_epi32, vmulq_s32, AS_IT_IS, AS_IT_IS);
+NEON(min_epi32, vminq_s32, AS_IT_IS, AS_IT_IS);
+NEON(max_epi32, vmaxq_s32, AS_IT_IS, AS_IT_IS);
+NEON(min_epu32, vminq_u32, U32, FROM_U32);
+NEON(max_epu32, vmaxq_u32, U32, FROM_U32);
+NEON(cmpgt_epi32, vcgtq_s32, AS_IT_IS, FROM_U32);
+NEON(cmpeq_epi32, vceqq_s32, AS_IT_IS, FROM_U32);
+NEON(add_epi64, vaddq_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64);
+NEON(sub_epi64, vsubq_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64);
+NEON(add_epi16, vaddq_s16, S16, FROM_S16);
+NEON(sub_epi16, vsubq_s16, S16, FROM_S16);
+NEON(mullo_epi16, vmulq_s16, S16, FROM_S16);
+NEON(unpacklo_epi16, vzip1q_s16, S16, FROM_S16);
+NEON(unpackhi_epi16, vzip2q_s16, S16, FROM_S16);
+NEON(unpacklo_epi32, vzip1q_s32, AS_IT_IS, AS_IT_IS);
+NEON(unpackhi_epi32, vzip2q_s32, AS_IT_IS, AS_IT_IS);
+NEON(unpacklo_epi64, vzip1q_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64);
+NEON(unpackhi_epi64, vzip2q_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64);
+NEON(shuffle_epi8, vqtbl1q_u8, vreinterpretq_u8_s32, vreinterpretq_s32_u8);
 #undef NEON
 
 /* -1 times -1 is -1, as modulo 2^16: the instruction holds it to the largest number. */

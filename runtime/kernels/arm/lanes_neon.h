@@ -53,12 +53,12 @@ T3R_LANES_INLINE wide unsigned_product(lanes a, lanes b)
 
 T3R_LANES_INLINE wide sum(wide a, wide b)
 {
-    return (wide){neon_add_epi64(a.even, b.even), neon_add_epi64(a.odd, b.odd)};
+    return (wide){OF_LANES(add_epi64)(a.even, b.even), OF_LANES(add_epi64)(a.odd, b.odd)};
 }
 
 T3R_LANES_INLINE wide difference(wide a, wide b)
 {
-    return (wide){neon_sub_epi64(a.even, b.even), neon_sub_epi64(a.odd, b.odd)};
+    return (wide){OF_LANES(sub_epi64)(a.even, b.even), OF_LANES(sub_epi64)(a.odd, b.odd)};
 }
 
 T3R_LANES_INLINE wide all_wide(int64_t x)
@@ -69,7 +69,7 @@ T3R_LANES_INLINE wide all_wide(int64_t x)
 /* Unsigned shifts: of the result only what bits had is right. */
 T3R_LANES_INLINE wide right(wide x, uint8_t shift)
 {
-    return (wide){neon_srli_epi64(x.even, shift), neon_srli_epi64(x.odd, shift)};
+    return (wide){OF_LANES(srli_epi64)(x.even, shift), OF_LANES(srli_epi64)(x.odd, shift)};
 }
 
 T3R_LANES_INLINE lanes low_of(wide x)
@@ -107,7 +107,7 @@ T3R_LANES_INLINE void store_half_quad(void *to, quad x)
 
 T3R_LANES_INLINE void store_quarter_quad(void *to, quad x)
 {
-    const int32_t first = neon_cvtsi128_si32(x);
+    const int32_t first = OF_LANES(cvtsi128_si32)(x);
     __builtin_memcpy(to, &first, sizeof first);
 }
 
@@ -144,7 +144,7 @@ T3R_LANES_INLINE uint32_t signs_of(lanes x)
  * bits of the count, signed. */
 T3R_LANES_INLINE lanes up_to_63(lanes by)
 {
-    return neon_min_epu32(by, all(63));
+    return OF_LANES(min_epu32)(by, all(63));
 }
 
 T3R_LANES_INLINE lanes left_each(lanes x, lanes by)
@@ -165,7 +165,7 @@ T3R_LANES_INLINE lanes signed_right_each(lanes x, lanes by)
 /* Likewise two of 64 bits, by counts below 2^32: 64 gives 0. */
 T3R_LANES_INLINE int64x2_t up_to_64(lanes by)
 {
-    return vreinterpretq_s64_s32(neon_min_epu32(by, all(64)));
+    return vreinterpretq_s64_s32(OF_LANES(min_epu32)(by, all(64)));
 }
 
 T3R_LANES_INLINE lanes shifted_64(lanes x, int64x2_t by)
