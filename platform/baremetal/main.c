@@ -1,8 +1,8 @@
 /* The firmware of every board: a recording in; Gaussians, a view and every stage's hash out. Words on the command line,
  * each KEY=NUMBER, say what is built; the defaults are those of t3r_default_config().
  *
- *     frames=IN.mcap view=OUT.ppm scene=OUT.t3g width=64 height=64 views=2 gaussians=819 clusters=32 batches=4
- *     refinements=2 learned=1 hashes=1 plain=0 arena=BYTES
+ *     frames=IN.mcap view=OUT.ppm scene=OUT.t3g width=64 height=64 views=2 gaussians=819 clusters=32
+ *     refinements=2 learned=1 hashes=1 plain=0 cpu=T3R_CPU_... arena=BYTES
  *
  * The first `views` frames are the context; the next one's camera is drawn. */
 #include <stdbool.h>
@@ -88,10 +88,11 @@ static t3r_config configure(const options *o)
     return config;
 }
 
-/* The kernels for this core, as far as the compiler knows it. PLAIN_C links none, for firmwares that must be small. */
-static t3r_status choose_kernels(t3r_runtime *rt)
+/* The kernels that the command line names, or those for this core, as far as the compiler knows it. PLAIN_C links none,
+ * for firmwares that must be small. */
+static t3r_status choose_kernels(t3r_runtime *rt, uint32_t cpu)
 {
-    (void)rt;
+    (void)rt, (void)cpu;
 #if defined(PLAIN_C)
     return T3R_OK;
 #elif defined(__ARM_FEATURE_MVE)
@@ -101,7 +102,7 @@ static t3r_status choose_kernels(t3r_runtime *rt)
 #elif defined(__wasm_simd128__)
     return t3r_set_cpu(rt, T3R_CPU_SIMD128);
 #else
-    return T3R_OK;
+    return t3r_set_cpu(rt, cpu);
 #endif
 }
 
@@ -138,7 +139,7 @@ int main(void)
     t3r_runtime *rt;
     check(t3r_init(&rt, deal(&left, bytes), bytes, &config), "t3r_init() returned minus");
     if (o.plain == 0) {
-        check(choose_kernels(rt), "t3r_set_cpu() returned minus");
+        check(choose_kernels(rt, o.cpu), "t3r_set_cpu() returned minus");
     }
     static hashes heard;
     const t3r_hooks hooks = {.user = &heard, .progress = on_progress, .stage_hash = o.hashes != 0 ? on_hash : NULL};

@@ -23,6 +23,7 @@ static const number_option numbers[] = {
     {"learned", offsetof(options, learned)},
     {"hashes", offsetof(options, hashes)},
     {"plain", offsetof(options, plain)},
+    {"cpu", offsetof(options, cpu)},
     {"arena", offsetof(options, arena)},
 };
 

@@ -4,7 +4,19 @@
 
 #include <stdint.h>
 
-/* `block` holds the operation's words of 32 bits; what it returns is the operation's, too. */
+/* The operations that the firmware asks for. */
+enum {
+    SYS_OPEN = 0x01,
+    SYS_CLOSE = 0x02,
+    SYS_WRITE = 0x05,
+    SYS_READ = 0x06,
+    SYS_SEEK = 0x0a,
+    SYS_FLEN = 0x0c,
+    SYS_GET_CMDLINE = 0x15,
+    SYS_EXIT_EXTENDED = 0x20
+};
+
+/* `block` holds the operation's words, each as large as an address; what it returns is the operation's, too. */
 int32_t semihost_call(uint32_t operation, const void *block);
 
 #endif

@@ -14,7 +14,8 @@ WORDS = re.compile(r"\b(float|double|malloc|calloc|realloc|alloca|free|\w*printf
 REAL_LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*|\.\d+|\d+[eE][+-]?\d+)[fFlL]?(?![\w.])")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+[>"])', re.M)
 SYSTEM_HEADERS = {"<stddef.h>", "<stdint.h>", "<stdbool.h>"}
-VECTOR_HEADERS = {"<immintrin.h>", "<emmintrin.h>", "<tmmintrin.h>", "<arm_neon.h>", "<arm_mve.h>", "<arm_acle.h>"}
+VECTOR_HEADERS = {"<immintrin.h>", "<emmintrin.h>", "<tmmintrin.h>", "<arm_neon.h>", "<arm_mve.h>", "<arm_acle.h>",
+                  "<wasm_simd128.h>"}
 
 
 def without_comments_and_strings(text):

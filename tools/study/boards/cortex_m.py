@@ -86,7 +86,7 @@ def by_clang(board, sources, options):
 
 
 def firmware_of(board, options):
-    link = ["-L", BAREMETAL / "cortex_m", "-T", BAREMETAL / "boards" / board / "board.ld",
+    link = ["-nostartfiles", "-L", BAREMETAL / "cortex_m", "-T", BAREMETAL / "boards" / board / "board.ld",
             *([f"-Wl,--defsym=RAM_BYTES={options.ram}"] if options.ram else [])]
     compiled = [lambda sources: by_clang(board, sources, options)] if options.clang else []
     return build(board, ".elf", [COMPILER], link, options, *compiled)

@@ -17,7 +17,7 @@ READER = ("cdr", "fixed_camera", "fixed_double", "fixed_text", "frame_reader", "
           "ros_messages", "ros_schemas", "text")
 INCLUDES = (RUNTIME / "include", RUNTIME, ROOT / "platform", BAREMETAL, ROOT / "quant" / "heads")
 INCLUDE = tuple(word for folder in INCLUDES for word in ("-I", folder))
-FLAGS = ("-std=c11", "-ffunction-sections", "-fdata-sections", "-nostartfiles", "-Wall", "-Wextra", "-Werror",
+FLAGS = ("-std=c11", "-ffunction-sections", "-fdata-sections", "-Wall", "-Wextra", "-Werror",
          "-Wl,--gc-sections")
 SECONDS_MOST = 600
 

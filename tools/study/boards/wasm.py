@@ -26,7 +26,7 @@ def prepare(options):
 
 def module(board, options):
     ram = (options.ram or RAM_BYTES) // PAGE_BYTES * PAGE_BYTES
-    link = ["-Wl,--no-entry,--strip-all", f"-Wl,-z,stack-size={STACK_BYTES}", f"-Wl,--initial-memory={ram}",
+    link = ["-nostartfiles", "-Wl,--no-entry,--strip-all", f"-Wl,-z,stack-size={STACK_BYTES}", f"-Wl,--initial-memory={ram}",
             f"-Wl,--max-memory={ram}"]
     return build(board, ".wasm", COMPILER, link, options)
 

@@ -1,0 +1,21 @@
+"""What every board is given, and what this machine makes of it."""
+import json
+
+from firmware import run
+
+
+def recording(options):
+    if options.recording is not None:
+        return options.recording.resolve()
+    path = options.out / f"room-{options.size[0]}x{options.size[1]}.mcap"
+    run(options.program, "room", "--size", f"{options.size[0]}x{options.size[1]}", "--frames", options.views + 1, "-o", path)
+    return path
+
+
+def host(path, options):
+    """The hash of this machine and {stage: hash}."""
+    context = ",".join(map(str, range(options.views)))
+    said = json.loads(run(options.program, "replay", path, "--context", context, "--head",
+                          options.head, "--gaussians", options.gaussians, "--clusters", options.clusters, "--refine",
+                          options.refine, "--json"))
+    return said["hash"], said["stages"]
