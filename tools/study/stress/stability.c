@@ -215,13 +215,10 @@ static int add_capture(stress_row *rows, snapshot *last, const stress_case *c, c
     return code;
 }
 
-static uint32_t clusters_of(const stress_case *c, const stress_contest *contest)
+static uint32_t clusters_judged(const stress_contest *contest)
 {
-    t3r_config config = contest->settings.config;
-    config.width = c->base.width;
-    config.height = c->base.height;
-    config.views = c->base.views;
-    return t3r_cluster_count(&config);
+    uint32_t asked = contest->settings.config.clusters;
+    return asked > 0 ? asked : STRESS_JUDGED_CLUSTERS;
 }
 
 int stress_stability(stress_row *rows, const stress_case *c, const stress_contest *contest)
@@ -240,7 +237,7 @@ int stress_stability(stress_row *rows, const stress_case *c, const stress_contes
         rows[i].value[STRESS_MASK_CHANGED] /= contest->captures - 1;
         rows[i].value[STRESS_MOTION] /= contest->captures - 1;
         if (code == CLI_OK && rows[i].status == STRESS_MEASURED) {
-            stress_judge_still(&rows[i], clusters_of(c, contest),
+            stress_judge_still(&rows[i], clusters_judged(contest),
                                stress_still_motion(&c->base, rows[i].value[STRESS_GAUSSIANS]));
         }
     }
