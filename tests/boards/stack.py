@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""stack.py: what docs/study/boards.md has of the stack, which an emulator painted, against the bound from the call graph. The
+painted stack is within the bound and what the firmware's own functions take; and the bound is not far above it."""
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+
+from checks import check, done, skip  # noqa: E402
+
+PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
+TARGETS = {"Cortex-M3": "cortex-m3", "Cortex-M7": "cortex-m7", "Cortex-M55": "cortex-m55"}
+OF_FIRMWARE = 1024 # main(), the reader of the recording and what the compiler's library keeps
+LEAST = 0.7        # of the bound: stereo, which the firmware doesn't run, makes it
+
+
+def bound(target):
+    """Bytes below and with t3r_reconstruct()."""
+    ended = subprocess.run([sys.executable, "-B", "stack_depth.py", target, "--markdown"], cwd=ROOT / "tests" / "proofs",
+                           capture_output=True, text=True)
+    if ended.returncode == 77:
+        skip(ended.stderr.strip() or ended.stdout.strip())
+    check(ended.returncode == 0, f"stack_depth.py {target}: {ended.stdout[-500:]}{ended.stderr[-500:]}")
+    return int(re.search(r"^\| `t3r_reconstruct` \| (\d+) \|$", ended.stdout, re.M)[1])
+
+
+painted = {core: [] for core in TARGETS}
+for heads, figures in re.findall(r"^\|  \| (Cortex.*) \|$(?s:.*?)^\| stack, bytes \|(.*)\|$", PAGE, re.M):
+    for head, figure in zip(heads.split(" | "), figures.split("|")):
+        painted[head.split(" ")[0]].append(int(figure.strip().replace(",", "")))
+for core, target in TARGETS.items():
+    most, paintings = bound(target), painted[core]
+    print(f"{core}: a bound of {most} bytes, painted {paintings}")
+    check(len(paintings) >= 2, f"{core}: the page has its stack")
+    check(max(paintings) <= most + OF_FIRMWARE, f"{core}: {max(paintings)} bytes painted, a bound of {most}")
+    check(max(paintings) >= LEAST * most, f"{core}: the bound of {most} bytes is far above {max(paintings)}")
+done()
