@@ -29,26 +29,46 @@ static uint32_t cost_of(const t3r_view *view, uint32_t x, uint32_t y, int32_t dx
     return (uint32_t)(dx * dx + dy * dy) + (colour >> COLOUR_WEIGHT_SHIFT) + edge;
 }
 
+/* The retained pixel that one has joined, and what that costs. */
+typedef struct choice {
+    int32_t dx, dy;
+    uint32_t cost;
+} choice;
+
 /* Offers pixel (x, y) what its neighbour (x + sx, y + sy) joined. */
-static void propagate(const assignment *j, uint32_t x, uint32_t y, int32_t sx, int32_t sy)
+static void propagate(const assignment *j, choice *to, uint32_t x, uint32_t y, int32_t sx, int32_t sy)
 {
     int64_t nx = (int64_t)x + sx, ny = (int64_t)y + sy;
     if (nx < 0 || ny < 0 || nx >= j->view->width || ny >= j->view->height) {
         return;
     }
     const int8_t *from = j->offset + 2 * ((size_t)ny * j->view->width + (size_t)nx);
-    int8_t *to = j->offset + 2 * ((size_t)y * j->view->width + x);
     if (from[0] == NONE) {
         return;
     }
-    int32_t dx = from[0] + sx, dy = from[1] + sy;
+    const int32_t dx = from[0] + sx, dy = from[1] + sy;
     if (t3r_abs32(dx) > REACH || t3r_abs32(dy) > REACH) {
         return;
     }
-    if (to[0] == NONE || cost_of(j->view, x, y, dx, dy) < cost_of(j->view, x, y, to[0], to[1])) {
-        to[0] = (int8_t)dx;
-        to[1] = (int8_t)dy;
+    if ((dx == to->dx && dy == to->dy) || (uint32_t)(dx * dx + dy * dy) >= to->cost) {
+        return; /* as most do: what the pixel has, or one too far away whatever its colour */
     }
+    const uint32_t cost = cost_of(j->view, x, y, dx, dy);
+    if (cost < to->cost) {
+        *to = (choice){dx, dy, cost};
+    }
+}
+
+static void choose(const assignment *j, uint32_t x, uint32_t y, int32_t side)
+{
+    int8_t *own = j->offset + 2 * ((size_t)y * j->view->width + x);
+    choice to = {own[0], own[1], own[0] == NONE ? UINT32_MAX : cost_of(j->view, x, y, own[0], own[1])};
+    propagate(j, &to, x, y, side, 0);
+    propagate(j, &to, x, y, 0, side);
+    propagate(j, &to, x, y, side, side);
+    propagate(j, &to, x, y, -side, side);
+    own[0] = (int8_t)to.dx;
+    own[1] = (int8_t)to.dy;
 }
 
 /* Four raster sweeps, two each way. */
@@ -71,11 +91,7 @@ static void assign_pixels(const t3r_head_input *input)
                 t3r_is_deferred(view, i, input->settings)) {
                 continue;
             }
-            int32_t s = down ? -1 : 1;
-            propagate(&j, x, y, s, 0);
-            propagate(&j, x, y, 0, s);
-            propagate(&j, x, y, s, s);
-            propagate(&j, x, y, -s, s);
+            choose(&j, x, y, down ? -1 : 1);
         }
     }
 }
@@ -89,14 +105,13 @@ static moments gather(const t3r_head_input *input, uint32_t u, uint32_t v, int32
 {
     const t3r_view *view = input->map.view;
     const int8_t *joined = input->work;
+    const int32_t left = T3R_MIN(reach, (int32_t)u), right = T3R_MIN(reach, (int32_t)(view->width - 1 - u));
+    const int32_t above = T3R_MIN(reach, (int32_t)v), below = T3R_MIN(reach, (int32_t)(view->height - 1 - v));
     moments m = {0};
-    for (int32_t dy = -reach; dy <= reach; dy++) {
-        for (int32_t dx = -reach; dx <= reach; dx++) {
-            int64_t x = (int64_t)u + dx, y = (int64_t)v + dy;
-            if (x < 0 || y < 0 || x >= view->width || y >= view->height) {
-                continue;
-            }
-            size_t i = (size_t)y * view->width + (size_t)x;
+    for (int32_t dy = -above; dy <= below; dy++) {
+        const size_t middle = (size_t)((int64_t)v + dy) * view->width + u;
+        for (int32_t dx = -left; dx <= right; dx++) {
+            const size_t i = (size_t)((int64_t)middle + dx);
             if (joined[2 * i] != -dx || joined[2 * i + 1] != -dy) {
                 continue;
             }
