@@ -105,12 +105,12 @@ static void ask_for_sums(const t3r_refine_slice *slice, uint32_t index)
     }
 }
 
-/* The kept splats from the last to the first: each accumulates, and is taken off the tile. */
-static void take_off(const t3r_refine_view *job, const uint32_t *list, const kept_splats *kept, uint32_t left,
-                     uint32_t top)
+/* The kept splats from the last to number `first` of the list: each accumulates, and is taken off the tile. */
+static void take_off(const t3r_refine_view *job, const uint32_t *list, const kept_splats *kept, uint32_t first,
+                     uint32_t left, uint32_t top)
 {
     uint32_t rows = kept->rows;
-    for (uint32_t i = kept->count; i-- > 0;) {
+    for (uint32_t i = kept->count; i-- > 0 && job->kept[i] >> SCALE_BITS >= first;) {
         const uint32_t index = list[job->kept[i] >> SCALE_BITS];
         const t3r_splat *s = &job->splats[index];
         if (i >= SUMS_AHEAD) {
@@ -139,17 +139,31 @@ static __attribute__((noinline)) kept_splats draw_again(const t3r_refine_view *j
     return draw(job, list, end, left, top, &again);
 }
 
+/* The place in the list of the first splat of the slice, `count` when there is none. Nothing before it accumulates. */
+static uint32_t first_in(const t3r_refine_slice *slice, const uint32_t *list, uint32_t count)
+{
+    uint32_t first = 0;
+    while (first < count && !is_in(slice, list[first])) {
+        first++;
+    }
+    return first;
+}
+
 void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y)
 {
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
     t3r_wanted *want = job->wanted;
+    const uint32_t first = first_in(&job->slice, list, count);
+    if (first == count) {
+        return; /* a slice is of neighbours: most tiles are drawn for few slices */
+    }
     kept_splats kept = draw(job, list, count, left, top, &want->pixels);
     compare(job, left, top, want);
     memset(want->pixels.colour_q7, 0, sizeof want->pixels.colour_q7); /* behind the last splat it is black */
-    take_off(job, list, &kept, left, top);
-    while (kept.begin > 0) {
+    take_off(job, list, &kept, first, left, top);
+    while (kept.begin > first) {
         kept = draw_again(job, list, kept.begin, left, top);
-        take_off(job, list, &kept, left, top);
+        take_off(job, list, &kept, first, left, top);
     }
 }
 

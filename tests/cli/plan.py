@@ -24,7 +24,8 @@ def lists():
     losses = [row["expected_loss_db"] for row in listed]
     check(losses == sorted(losses) and len(losses) > 1, f"losses: {losses}")
     check(all(row["min_bytes"] <= 2 << 20 for row in listed) and "build_ms" not in listed[0], f"choices: {listed}")
-    check(len({row["head"] for row in listed}) > 1, "one head alone")
+    several = expect_json("plan", "--arena", "1M", "--size", "128x128")["choices"]
+    check(len({row["head"] for row in several}) > 1, "one head alone")
     small = expect_json("plan", "--arena", "2M", "--head", "small", "--refine", 2, "--size", "128x128")["choices"]
     check({(row["head"], row["refine"]) for row in small} == {("small", 2)}, f"head small, two passes: {small}")
     fixed = expect_json("plan", "--arena", "2M", "--gaussians", 777)["choices"]
@@ -96,6 +97,7 @@ def plan():
     small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
     check(small["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
     check(analytic["head_column_bytes"] == 0 and small["head_column_bytes"] > 0, "a closed form plans a network")
+    check(expect_json(*base, "--head", "nano")["head_column_bytes"] < small["head_column_bytes"], "nano plans for small")
     tall = ["plan", "--size", "64x512", "--keep", 1, "--refine", 0, "--head"]
     check(expect_json(*tall, "analytic")["min_bytes"] <= expect_json(*tall, "small")["min_bytes"], "a closed form needs more")
     shares_and_operations(base, found)

@@ -162,6 +162,19 @@ static void neither_room_nor_slices_show(void **state)
     }
 }
 
+/* No tile is drawn for Gaussians that do not reach into it. */
+static void tiles_without_the_slice_are_left_alone(void **state)
+{
+    (void)state;
+    static t3r_refine_sums none[SPLATS];
+    make_scene(1);
+    measure(0, 0, 0, SPLATS, sizeof kept / sizeof kept[0], none);
+    memset(&wanted, 0x55, sizeof wanted);
+    const t3r_wanted before = wanted;
+    measure(0, 0, SPLATS, 0, sizeof kept / sizeof kept[0], none);
+    assert_memory_equal(&wanted, &before, sizeof wanted);
+}
+
 /* What a splat blends in a tile, by its own integers; 0 beyond its rows. */
 typedef struct layer {
     double weight[SIDE_OF_TILE][SIDE_OF_TILE], alpha[SIDE_OF_TILE][SIDE_OF_TILE];
@@ -335,6 +348,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(neither_room_nor_slices_show),
+        cmocka_unit_test(tiles_without_the_slice_are_left_alone),
         cmocka_unit_test(follows_double),
     };
     return cmocka_run_group_tests_name("refine_tile", tests, NULL, NULL);

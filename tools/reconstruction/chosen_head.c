@@ -158,12 +158,8 @@ void chosen_head_close(chosen_head *chosen)
 void chosen_head_configure(const chosen_head *chosen, t3r_config *config)
 {
     config->head = chosen->head;
-    if (chosen->weights == NULL) {
-        config->head_column_bytes = 0;
-    } else {
-        uint32_t needed = t3r_head_column_bytes(chosen->weights, chosen->bytes, config->width);
-        config->head_column_bytes = needed > config->head_column_bytes ? needed : config->head_column_bytes;
-    }
+    config->head_column_bytes =
+        chosen->weights == NULL ? 0 : t3r_head_column_bytes(chosen->weights, chosen->bytes, config->width);
 }
 
 t3r_status chosen_head_bind(const chosen_head *chosen, t3r_runtime *runtime, t3r_ablation ablation)

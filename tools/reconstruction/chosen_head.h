@@ -38,7 +38,7 @@ void chosen_head_close(chosen_head *chosen);
  * status after a message; chosen_head_close() is due still. */
 int chosen_head_hide_mask(chosen_head *chosen);
 
-/* Sets the configuration's head, and its head_column_bytes: none for a closed form, more where a network needs more. */
+/* Sets the configuration's head, and its head_column_bytes: none for a closed form, what a network needs. */
 void chosen_head_configure(const chosen_head *chosen, t3r_config *config);
 
 /* After t3r_init(): binds a network's weights; takes away what `ablation` does, and of `none` the adapting. */
