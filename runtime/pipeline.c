@@ -265,6 +265,7 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
 
 t3r_status t3r_analyse(t3r_runtime *rt)
 {
+    rt->strips = (t3r_strips){0}; /* stages work where its sums are */
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
     if (rt->config.depth == T3R_DEPTH_STEREO) {

@@ -1,4 +1,5 @@
 /* Context views: frames to planes, and what stereo found of them. */
+#include "adding.h"
 #include "core/features.h"
 #include "core/memory.h"
 #include "layout/arena.h"
@@ -18,13 +19,12 @@ static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
     return false;
 }
 
-/* The slot of the next view: where there is no room for another, that of the oldest. */
-static uint32_t slot_of_next(const t3r_runtime *rt)
+uint32_t t3r_slot_of_next(const t3r_runtime *rt)
 {
     return rt->views < rt->config.views ? rt->views : rt->next_slot;
 }
 
-static bool takes_view(const t3r_runtime *rt)
+bool t3r_takes_view(const t3r_runtime *rt)
 {
     return !rt->config.stream &&
            (t3r_is_warm(&rt->config) ? rt->config.views > 0 : rt->views < rt->config.views && !rt->has_scene);
@@ -47,29 +47,16 @@ static bool is_blind(const t3r_frame *frame)
     return true;
 }
 
-t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
+void t3r_begin_view(t3r_runtime *rt)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(takes_view(rt), T3R_ERR_STATE);
-    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO;
-    const uint32_t slot = slot_of_next(rt);
-    t3r_frame shown = *frame;
-    if (stereo) {
-        shown.depth = NULL;
-    } else if (frame->depth == NULL) {
-        return T3R_ERR_NO_DEPTH;
-    }
-    const bool replaces = slot < rt->views;
-    if (replaces && !stereo && is_blind(frame)) {
-        return T3R_ERR_NO_DEPTH; /* before the oldest view is overwritten */
-    }
     rt->analysed = 0; /* the image stage works where later planes and the scene are */
     rt->has_scene = 0;
-    t3r_camera undistorted;
-    t3r_status status = t3r_develop_view(rt, slot, &shown, camera, &undistorted);
-    if (status != T3R_OK) {
-        return status;
-    }
+    rt->strips = (t3r_strips){0};
+}
+
+t3r_status t3r_end_view(t3r_runtime *rt, uint32_t slot, const t3r_camera *undistorted, uint64_t depth_unit_q40)
+{
+    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO, replaces = slot < rt->views;
     t3r_reuse_no_view(rt, slot);
     if (!stereo && !has_measured_depth(rt, slot)) {
         if (replaces) {
@@ -77,8 +64,8 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
         }
         return T3R_ERR_NO_DEPTH;
     }
-    rt->camera[slot] = undistorted;
-    rt->depth_unit_q40[slot] = stereo ? 1 : frame->depth_unit_q40; /* stereo chooses its own */
+    rt->camera[slot] = *undistorted;
+    rt->depth_unit_q40[slot] = stereo ? 1 : depth_unit_q40; /* stereo chooses its own */
     rt->stereo_pair[slot] = T3R_PAIR_OK;
     rt->stereo_partner[slot] = (uint8_t)slot;
     if (replaces) {
@@ -89,12 +76,38 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
     return T3R_OK;
 }
 
+t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(t3r_takes_view(rt), T3R_ERR_STATE);
+    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO;
+    const uint32_t slot = t3r_slot_of_next(rt);
+    t3r_frame shown = *frame;
+    if (stereo) {
+        shown.depth = NULL;
+    } else if (frame->depth == NULL) {
+        return T3R_ERR_NO_DEPTH;
+    }
+    const bool replaces = slot < rt->views;
+    if (replaces && !stereo && is_blind(frame)) {
+        return T3R_ERR_NO_DEPTH; /* before the oldest view is overwritten */
+    }
+    t3r_begin_view(rt);
+    t3r_camera undistorted;
+    t3r_status status = t3r_develop_view(rt, slot, &shown, camera, &undistorted);
+    if (status != T3R_OK) {
+        return status;
+    }
+    return t3r_end_view(rt, slot, &undistorted, frame->depth_unit_q40);
+}
+
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted)
 {
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL && rgb_out != NULL && undistorted != NULL,
                       T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(rt->config.views > 0 && rt->views == 0 && !rt->has_scene, T3R_ERR_STATE);
+    rt->strips = (t3r_strips){0};
     t3r_status status = t3r_develop_view(rt, 0, frame, camera, undistorted);
     if (status != T3R_OK) {
         return status;

@@ -64,6 +64,7 @@ t3r_status t3r_reset(t3r_runtime *rt)
     rt->valid_points = 0;
     rt->keyframes = 0;
     rt->next_slot = 0;
+    rt->strips = (t3r_strips){0};
     t3r_reuse_nothing(rt);
     return T3R_OK;
 }
@@ -104,6 +105,7 @@ t3r_status t3r_attach_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t 
     }
     memset(&state->hooks, 0, sizeof state->hooks);
     state->weights = NULL;
+    state->strips = (t3r_strips){0}; /* nothing says that its sums are sound */
     state->kernels = t3r_kernels_c;
     *rt = state;
     return T3R_OK;

@@ -11,9 +11,9 @@
 typedef struct develop_job {
     const t3r_runtime *rt;
     const t3r_frame *frame;
-    const t3r_view *view;
-    const int32_t *grid; /* NULL: nothing to undistort */
-    uint8_t *colour[3];  /* resized: the view's own planes, or those that are undistorted into them */
+    t3r_view *view;
+    int32_t *grid;      /* NULL: nothing to undistort */
+    uint8_t *colour[3]; /* resized: the view's own planes, or those that are undistorted into them */
     uint16_t *depth;
     uint8_t *work; /* T3R_IMAGE_ROW_BYTES_ a worker */
 } develop_job;
@@ -36,8 +36,9 @@ static void undistort_rows(void *context, uint32_t begin, uint32_t end, uint32_t
     t3r_undistort_depth(job->grid, width, height, begin, end, job->depth, job->view->depth);
 }
 
-t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
-                            t3r_camera *undistorted)
+/* Checks frame and camera and cuts the work. *resized gets the camera of the working size, its lens too. */
+static t3r_status prepare(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_view *view,
+                          develop_job *job, t3r_camera *resized)
 {
     t3r_status status = t3r_image_check(frame);
     if (status == T3R_OK) {
@@ -46,44 +47,91 @@ t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *fr
     if (status != T3R_OK) {
         return status;
     }
-    uint32_t width = rt->config.width, height = rt->config.height;
-    t3r_camera resized = t3r_camera_resized(camera, frame->width, frame->height, width, height);
-    status = t3r_camera_check(&resized);
+    const uint32_t width = rt->config.width, height = rt->config.height;
+    *resized = t3r_camera_resized(camera, frame->width, frame->height, width, height);
+    status = t3r_camera_check(resized);
     if (status != T3R_OK) {
         return status;
     }
-    t3r_view planes = t3r_view_of(rt, index), *view = &planes;
-
     t3r_cut cut =
         t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_IMAGE_WORK), T3R_IMAGE_WORK_BYTES_(width, height, rt->config.workers));
     const size_t pixels = T3R_PIXELS_(width, height);
-    develop_job job = {
+    *job = (develop_job){
         .rt = rt, .frame = frame, .view = view, .colour = {view->colour[0], view->colour[1], view->colour[2]}};
     int32_t *grid = t3r_take(&cut, T3R_GRID_NODES_(width, height) * 8);
-    job.work = t3r_take(&cut, rt->config.workers * T3R_IMAGE_ROW_BYTES_(width));
-    job.depth = view->depth;
-    const t3r_workers workers = t3r_workers_of(rt);
-    if (resized.distortion != T3R_DISTORTION_NONE) {
-        status = t3r_undistort_grid(&resized, width, height, grid);
-        if (status != T3R_OK) {
-            return status;
-        }
-        job.grid = grid;
-        job.depth = t3r_take(&cut, pixels * sizeof *job.depth);
+    job->work = t3r_take(&cut, rt->config.workers * T3R_IMAGE_ROW_BYTES_(width));
+    job->depth = view->depth;
+    if (resized->distortion != T3R_DISTORTION_NONE) {
+        job->grid = grid;
+        job->depth = t3r_take(&cut, pixels * sizeof *job->depth);
         uint8_t *colour = t3r_take(&cut, 3 * pixels);
         for (int c = 0; c < 3; c++) {
-            job.colour[c] = colour + (size_t)c * pixels;
+            job->colour[c] = colour + (size_t)c * pixels;
         }
     }
-    t3r_run_rows(&workers, height, resize_rows, &job);
-    if (job.grid != NULL) {
-        t3r_run_rows(&workers, height, undistort_rows, &job);
+    return T3R_OK;
+}
+
+static t3r_status make_grid(const develop_job *job, const t3r_camera *resized)
+{
+    return job->grid == NULL ? T3R_OK : t3r_undistort_grid(resized, job->view->width, job->view->height, job->grid);
+}
+
+/* What follows when all rows are resized. */
+static t3r_camera finish(const t3r_runtime *rt, develop_job *job, const t3r_camera *resized)
+{
+    const t3r_workers workers = t3r_workers_of(rt);
+    if (job->grid != NULL) {
+        t3r_run_rows(&workers, job->view->height, undistort_rows, job);
     }
-    t3r_depth_validity(view);
-    resized.distortion = T3R_DISTORTION_NONE;
+    t3r_depth_validity(job->view);
+    t3r_camera undistorted = *resized;
+    undistorted.distortion = T3R_DISTORTION_NONE;
     for (int i = 0; i < 5; i++) {
-        resized.distortion_q24[i] = 0;
+        undistorted.distortion_q24[i] = 0;
     }
-    *undistorted = resized;
+    return undistorted;
+}
+
+t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
+                            t3r_camera *undistorted)
+{
+    t3r_view view = t3r_view_of(rt, index);
+    develop_job job;
+    t3r_camera resized;
+    t3r_status status = prepare(rt, frame, camera, &view, &job, &resized);
+    if (status == T3R_OK) {
+        status = make_grid(&job, &resized);
+    }
+    if (status == T3R_OK) {
+        const t3r_workers workers = t3r_workers_of(rt);
+        t3r_run_rows(&workers, view.height, resize_rows, &job);
+        *undistorted = finish(rt, &job, &resized);
+    }
+    return status;
+}
+
+t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
+                             const t3r_strip *strip, t3r_camera *undistorted)
+{
+    t3r_view view = t3r_view_of(rt, index);
+    develop_job job;
+    t3r_camera resized;
+    t3r_status status = prepare(rt, frame, camera, &view, &job, &resized);
+    if (status == T3R_OK && strip->begins) {
+        status = make_grid(&job, &resized); /* it is kept for the last strip */
+    }
+    if (status != T3R_OK) {
+        return status;
+    }
+    t3r_image_colour_strip(&rt->kernels, frame, view.width, view.height, strip->row, strip->rows, job.colour, job.work);
+    if (frame->depth != NULL) {
+        t3r_image_depth_strip(frame, view.width, view.height, strip->depth_row, strip->depth_rows, job.depth);
+    } else if (strip->ends) {
+        t3r_image_depth(frame, view.width, view.height, 0, view.height, job.depth);
+    }
+    if (strip->ends) {
+        *undistorted = finish(rt, &job, &resized);
+    }
     return T3R_OK;
 }

@@ -2,11 +2,24 @@
 #ifndef T3R_DEVELOP_H
 #define T3R_DEVELOP_H
 
+#include <stdbool.h>
+
 #include "trim3r.h"
 
 /* Checks frame and camera, then fills colour, depth and validity of view `index`: resized to the working size and
  * undistorted. *undistorted gets the camera of the planes. On an error the planes may be part written. */
 t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
                             t3r_camera *undistorted);
+
+/* A run of rows of a frame, which its planes begin with. */
+typedef struct t3r_strip {
+    uint32_t row, rows;             /* of the colour image */
+    uint32_t depth_row, depth_rows; /* of the depth image */
+    bool begins, ends;              /* the first strip of a view, and the last */
+} t3r_strip;
+
+/* The same strip by strip; *undistorted is filled by the last. In between, the work of the image stage must stay. */
+t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
+                             const t3r_strip *strip, t3r_camera *undistorted);
 
 #endif

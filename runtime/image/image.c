@@ -118,41 +118,87 @@ static void sum_row(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
     }
 }
 
-/* Totals are at most 255 W H, with W H at most 2^24. In units of which a source row is h high and a destination row H,
- * destination row r begins at r H: at most 2^24. */
+/* Rows of the source on their way into rows of the destination. Totals are at most 255 W H, with W H at most 2^24. In
+ * units of which a source row is h high and a destination row H, destination row r begins at r H: at most 2^24. */
+typedef struct averaging {
+    const t3r_kernels *kernels;
+    uint32_t width, height, area;
+    uint32_t *sums[3], *totals[3];
+    uint32_t row, left; /* the destination row that is summed, and the units that it lacks */
+} averaging;
+
+static averaging averaging_of(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
+                              void *work)
+{
+    averaging a = {
+        .kernels = kernels, .width = width, .height = height, .area = frame->width * frame->height, .row = 0};
+    for (uint32_t c = 0; c < 3; c++) {
+        a.sums[c] = (uint32_t *)work + (size_t)c * width;
+        a.totals[c] = (uint32_t *)work + (size_t)(3 + c) * width;
+    }
+    return a;
+}
+
+static void forget_totals(const averaging *a)
+{
+    for (uint32_t c = 0; c < 3; c++) {
+        memset(a->totals[c], 0, a->width * sizeof(uint32_t));
+    }
+}
+
+/* Row y of the frame's memory, of which so many units count. Over the whole image at most H + h turns. */
+static void take_row(averaging *a, const t3r_frame *frame, uint32_t y, uint32_t units, uint32_t end,
+                     uint8_t *const planes[3])
+{
+    sum_row(a->kernels, frame, y, a->width, a->sums);
+    while (units > 0 && a->row < end) {
+        const uint32_t part = T3R_MIN(units, a->left);
+        for (uint32_t c = 0; c < 3; c++) {
+            a->kernels->weigh_row(a->totals[c], a->sums[c], part, a->width);
+        }
+        units -= part;
+        a->left -= part;
+        if (a->left == 0) {
+            for (uint32_t c = 0; c < 3; c++) {
+                a->kernels->divide_row(a->totals[c], a->area, a->width, planes[c] + (size_t)a->row * a->width);
+            }
+            a->row++;
+            a->left = frame->height;
+        }
+    }
+}
+
 static void average(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t begin,
                     uint32_t end, uint8_t *const planes[3], void *work)
 {
-    uint32_t *memory = work;
-    uint32_t *sums[3], *totals[3];
-    uint32_t area = frame->width * frame->height;
-    uint32_t row = begin;
-    uint32_t left = frame->height;
-
-    for (uint32_t c = 0; c < 3; c++) {
-        sums[c] = memory + (size_t)c * width;
-        totals[c] = memory + (size_t)(3 + c) * width;
-        memset(totals[c], 0, width * sizeof(uint32_t));
-    }
+    averaging a = averaging_of(kernels, frame, width, height, work);
+    forget_totals(&a);
+    a.row = begin;
+    a.left = frame->height;
     uint32_t units = height - begin * frame->height % height; /* of the first source row, what lies in the first row */
-    for (uint32_t y = begin * frame->height / height; row < end; y++, units = height) {
-        sum_row(kernels, frame, y, width, sums);
-        /* over the whole image at most H + h turns */
-        while (units > 0 && row < end) {
-            uint32_t part = T3R_MIN(units, left);
-            for (uint32_t c = 0; c < 3; c++) {
-                kernels->weigh_row(totals[c], sums[c], part, width);
-            }
-            units -= part;
-            left -= part;
-            if (left == 0) {
-                for (uint32_t c = 0; c < 3; c++) {
-                    kernels->divide_row(totals[c], area, width, planes[c] + (size_t)row * width);
-                }
-                row++;
-                left = frame->height;
-            }
+    for (uint32_t y = begin * frame->height / height; a.row < end; y++, units = height) {
+        take_row(&a, frame, y, units, end, planes);
+    }
+}
+
+void t3r_image_colour_strip(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
+                            uint32_t first, uint32_t count, uint8_t *const planes[3], void *work)
+{
+    if (frame->width == width && frame->height == height) {
+        for (uint32_t i = 0; i < count; i++) {
+            const size_t at = (size_t)(first + i) * width;
+            convert(kernels, frame, i, 0, width, planes[0] + at, planes[1] + at, planes[2] + at);
         }
+        return;
+    }
+    averaging a = averaging_of(kernels, frame, width, height, work);
+    if (first == 0) {
+        forget_totals(&a);
+    }
+    a.row = first * height / frame->height;
+    a.left = frame->height - first * height % frame->height;
+    for (uint32_t i = 0; i < count; i++) {
+        take_row(&a, frame, i, height, height, planes);
     }
 }
 
@@ -169,6 +215,28 @@ void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32
     }
 }
 
+/* A row of the destination from one of the depth image. (2 j + 1) W <= 2^13 x 2^12: no overflow; the quotient is at
+ * most W - 1 */
+static void pick_row(const t3r_frame *frame, const uint8_t *row, uint32_t width, uint16_t *out)
+{
+    for (uint32_t x = 0; x < width; x++) {
+        const uint8_t *z = row + (size_t)2 * ((2 * x + 1) * frame->depth_width / (2 * width));
+        out[x] = (uint16_t)(z[0] | z[1] << 8);
+    }
+}
+
+void t3r_image_depth_strip(const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t first, uint32_t count,
+                           uint16_t *depth)
+{
+    for (uint32_t y = 0; y < height; y++) {
+        const uint32_t from_y = (2 * y + 1) * frame->depth_height / (2 * height);
+        if (from_y - first < count) { /* unsigned: a row before the strip wraps and fails */
+            pick_row(frame, frame->depth + (size_t)(from_y - first) * frame->depth_stride_bytes, width,
+                     depth + (size_t)y * width);
+        }
+    }
+}
+
 void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
                      uint16_t *depth)
 {
@@ -176,14 +244,8 @@ void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, ui
         memset(depth + (size_t)begin * width, 0, (size_t)width * (end - begin) * sizeof(uint16_t));
         return;
     }
-    /* (2 j + 1) W <= 2^13 x 2^12: no overflow; the quotient is at most W - 1 */
     for (uint32_t y = begin; y < end; y++) {
-        uint32_t from_y = (2 * y + 1) * frame->depth_height / (2 * height);
-        const uint8_t *row = frame->depth + (size_t)from_y * frame->depth_stride_bytes;
-        uint16_t *out = depth + (size_t)y * width;
-        for (uint32_t x = 0; x < width; x++) {
-            const uint8_t *z = row + (size_t)2 * ((2 * x + 1) * frame->depth_width / (2 * width));
-            out[x] = (uint16_t)(z[0] | z[1] << 8);
-        }
+        const uint32_t from_y = (2 * y + 1) * frame->depth_height / (2 * height);
+        pick_row(frame, frame->depth + (size_t)from_y * frame->depth_stride_bytes, width, depth + (size_t)y * width);
     }
 }

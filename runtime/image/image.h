@@ -33,4 +33,11 @@ void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32
 void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
                      uint16_t *depth);
 
+/* The same by strips, from the first row on and in order: rows first..first + count - 1 of a checked frame, the first
+ * of which its planes begin with. With NV12 both numbers are even. `work` is kept from strip to strip. */
+void t3r_image_colour_strip(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
+                            uint32_t first, uint32_t count, uint8_t *const planes[3], void *work);
+void t3r_image_depth_strip(const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t first, uint32_t count,
+                           uint16_t *depth);
+
 #endif

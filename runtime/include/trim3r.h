@@ -683,6 +683,20 @@ uint32_t t3r_head_crc(const t3r_runtime *rt);
  * the new one takes its number. T3R_ERR_NO_DEPTH of a frame whose measurements are lost in resizing discards all. */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
+/* The same by strips of rows, as a camera delivers them, so that no frame need be whole in memory: rows row..row + rows
+ * - 1 of the colour image, which frame->planes begin with, and depth_row..depth_row + depth_rows - 1 of the depth
+ * image, which frame->depth begins with. Sizes and all else of the frame and the camera are those of the whole frame,
+ * and the same in every strip. Strips come in order, colour and depth each from row 0 on, and need not keep step; a
+ * number of 0 rows is none. The strip that completes both adds the view, with the bits of t3r_add_view().
+ *
+ * A strip from row 0 of both begins a view, and discards one that came in part; so do t3r_add_view(), t3r_develop(),
+ * t3r_reconstruct(), t3r_reset() and t3r_attach(). T3R_ERR_FRAME: also rows beyond the image, and with T3R_PIXEL_NV12
+ * an odd number. T3R_ERR_STATE: also a strip out of order, another frame or camera than before, and with `warm` no room
+ * without replacing a view. After these two what came stays. T3R_ERR_CAMERA and T3R_ERR_NO_DEPTH, as above, discard
+ * it; with T3R_DEPTH_STEREO the rows of depth are ignored. */
+t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t row, uint32_t rows,
+                        uint32_t depth_row, uint32_t depth_rows);
+
 /* Discards views, analysis and scene; the configuration stays. Needed before t3r_add_view() once there is a scene. */
 t3r_status t3r_reset(t3r_runtime *rt);
 

@@ -40,6 +40,12 @@ static inline t3r_build t3r_build_of(const t3r_config *config)
     return (t3r_build){config->gaussians, config->allocation, config->head, config->refinements};
 }
 
+/* A context view that came in part: the rows that are there, and what they are of. */
+typedef struct t3r_strips {
+    uint64_t digest;
+    uint32_t rows, depth_rows;
+} t3r_strips;
+
 struct t3r_runtime {
     uint32_t magic;
     uint32_t bits_epoch;
@@ -69,6 +75,7 @@ struct t3r_runtime {
     uint32_t next_slot; /* the view that the next one takes: of a stream, and with `warm` where all are there */
     t3r_reuse reuse;    /* nothing without `warm` */
     uint32_t follows;   /* 1 = the last analysis took something over */
+    t3r_strips strips;  /* 0 unless a view comes in strips */
     const void *weights;
     t3r_hooks hooks;
     t3r_kernels kernels; /* chosen by t3r_set_cpu(); plain C until then */

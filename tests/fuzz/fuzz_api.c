@@ -147,6 +147,38 @@ static void call_add_view(session *s, input *in)
     free_frame(&held);
 }
 
+/* A frame in strips, some out of order; planes begin where the strip does. */
+static void call_add_rows(session *s, input *in)
+{
+    t3r_camera camera = take_camera(in);
+    held_frame held = take_frame(in);
+    const uint32_t step = 1 + below(in, 16);
+    uint32_t row = 0;
+    for (t3r_status status = T3R_OK; status == T3R_OK && row <= T3R_MAX_SIDE; row += step) {
+        const uint32_t wrong = take8(in) == 7 ? below(in, 4) : 0;
+        t3r_frame part = held.frame;
+        const uint32_t depth_row = row < part.depth_height ? row : part.depth_height;
+        const uint32_t rows = row + step < part.height ? step : row < part.height ? part.height - row : 0;
+        const uint32_t depth_rows = depth_row + step < part.depth_height ? step : part.depth_height - depth_row;
+        if (rows == 0 && depth_rows == 0) {
+            break;
+        }
+        for (int plane = 0; plane < 2; plane++) {
+            if (part.planes[plane] != NULL && row < part.height) {
+                part.planes[plane] += (size_t)(row >> plane) * part.stride_bytes[plane];
+            }
+        }
+        if (part.depth != NULL) {
+            part.depth += (size_t)(depth_rows == 0 ? 0 : depth_row) * part.depth_stride_bytes;
+        }
+        status = t3r_add_rows(s->rt, &part, &camera, row < part.height ? row : part.height, rows, depth_row + wrong,
+                              depth_rows);
+        require_status(status);
+        REQUIRE(wrong == 0 || status != T3R_OK || s->config.depth == T3R_DEPTH_STEREO);
+    }
+    free_frame(&held);
+}
+
 /* A keyframe or a few, in an arena for streams or in one that refuses them. */
 static void call_stream(session *s, input *in)
 {
@@ -261,7 +293,10 @@ static void call_bind(session *s, input *in)
 static void call(session *s, input *in)
 {
     t3r_scene scene;
-    switch (s->config.stream && (take8(in) & 3) != 0 ? 18 : take8(in) % 19) {
+    switch (s->config.stream && (take8(in) & 3) != 0 ? 18 : take8(in) % 20) {
+    case 19:
+        call_add_rows(s, in);
+        break;
     case 18:
         call_stream(s, in);
         break;

@@ -1,0 +1,82 @@
+/* A context view that comes in strips of rows. */
+#include "adding.h"
+#include "core/hash.h"
+#include "image/develop.h"
+#include "image/image.h"
+#include "state/state.h"
+
+/* All that must not change from strip to strip: the frame but its planes, and the camera. */
+static uint64_t digest_of(const t3r_frame *frame, const t3r_camera *camera)
+{
+    const uint32_t numbers[] = {frame->format,
+                                frame->width,
+                                frame->height,
+                                frame->depth != NULL,
+                                frame->depth_width,
+                                frame->depth_height,
+                                (uint32_t)camera->fx_q16,
+                                (uint32_t)camera->fy_q16,
+                                (uint32_t)camera->cx_q16,
+                                (uint32_t)camera->cy_q16,
+                                camera->distortion};
+    uint64_t hash = t3r_hash_u64(T3R_HASH_START, frame->depth_unit_q40);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        hash = t3r_hash_u32(hash, numbers[i]);
+    }
+    for (int i = 0; i < 5; i++) {
+        hash = t3r_hash_u32(hash, (uint32_t)camera->distortion_q24[i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        hash = t3r_hash_u64(hash, (uint64_t)camera->position_q32[i]);
+    }
+    for (int i = 0; i < 4; i++) {
+        hash = t3r_hash_u32(hash, (uint32_t)camera->rotation_q30[i]);
+    }
+    return hash;
+}
+
+/* Whether the rows lie within `height`, and with NV12, whose chroma has a row for two, are pairs. */
+static bool are_rows(uint32_t row, uint32_t rows, uint32_t height, uint32_t step)
+{
+    return row <= height && rows <= height - row && row % step == 0 && rows % step == 0;
+}
+
+t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t row, uint32_t rows,
+                        uint32_t depth_row, uint32_t depth_rows)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
+    const uint32_t slot = t3r_slot_of_next(rt);
+    T3R_REFUSE_UNLESS(t3r_takes_view(rt) && slot == rt->views, T3R_ERR_STATE);
+    t3r_frame shown = *frame;
+    if (rt->config.depth == T3R_DEPTH_STEREO) {
+        shown.depth = NULL;
+        depth_row = depth_rows = 0;
+    } else if (frame->depth == NULL) {
+        return T3R_ERR_NO_DEPTH;
+    }
+    const uint32_t depth_height = shown.depth == NULL ? 0 : shown.depth_height;
+    const uint64_t digest = digest_of(&shown, camera);
+    if (t3r_image_check(&shown) != T3R_OK ||
+        !are_rows(row, rows, shown.height, shown.format == T3R_PIXEL_NV12 ? 2 : 1) ||
+        !are_rows(depth_row, depth_rows, depth_height, 1)) {
+        return T3R_ERR_FRAME;
+    }
+    const bool begins = row == 0 && depth_row == 0 && (rows > 0 || rt->strips.rows == 0);
+    const t3r_strips before = begins ? (t3r_strips){.digest = digest} : rt->strips;
+    T3R_REFUSE_UNLESS(row == before.rows && depth_row == before.depth_rows && digest == before.digest, T3R_ERR_STATE);
+
+    const t3r_strips after = {digest, row + rows, depth_row + depth_rows};
+    const t3r_strip strip = {.row = row,
+                             .rows = rows,
+                             .depth_row = depth_row,
+                             .depth_rows = depth_rows,
+                             .begins = begins,
+                             .ends = after.rows == shown.height && after.depth_rows == depth_height};
+    t3r_begin_view(rt);
+    t3r_camera undistorted;
+    const t3r_status status = t3r_develop_strip(rt, slot, &shown, camera, &strip, &undistorted);
+    if (status == T3R_OK && !strip.ends) {
+        rt->strips = after;
+    }
+    return status != T3R_OK || !strip.ends ? status : t3r_end_view(rt, slot, &undistorted, frame->depth_unit_q40);
+}
