@@ -18,6 +18,7 @@
 #include "core/memory.h"
 #include "pointmap/flying_pixels.h"
 #include "head/head_views.h"
+#include "refine/fitted_passes.h"
 #include "superclusters/pixel_clusters.h"
 #include "pointmap/pointmap.h"
 #include "pointmap/redundancy.h"
@@ -357,11 +358,13 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
 
 static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
 {
+    rt->passes = 0;
     if (rt->build.refinements == 0) {
         return T3R_OK;
     }
     rt->analysed &= rt->config.keep_analysis; /* else refinement works where labels and clusters are */
-    t3r_status status = t3r_refine(rt, views, rt->build.refinements);
+    rt->passes = rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refinements) : rt->build.refinements;
+    t3r_status status = t3r_refine(rt, views, rt->passes);
     if (status == T3R_OK) {
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
     }

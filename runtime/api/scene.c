@@ -48,3 +48,8 @@ uint32_t t3r_render_passes(const t3r_runtime *rt)
 {
     return rt == NULL ? 0 : rt->render_passes;
 }
+
+uint32_t t3r_refinement_passes(const t3r_runtime *rt)
+{
+    return rt == NULL ? 0 : rt->passes;
+}

@@ -107,6 +107,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("head is none of t3r_head", (uint32_t)c->head, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT - 1)                      \
     X("head_column_bytes must be 0..65536", c->head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES)                        \
     X("refinements must be 0..16", c->refinements, 0, T3R_MAX_REFINEMENTS)                                             \
+    X("fit_passes must be 0 or 1", c->fit_passes, 0, 1)                                                                \
     X("depth is none of t3r_depth", (uint32_t)c->depth, 0, T3R_DEPTH_COUNT - 1)                                        \
     X("width and height must be 32 and more with depth by stereo", least, stereo ? T3R_STEREO_LEAST_SIDE : 0,          \
       T3R_MAX_SIDE)                                                                                                    \
@@ -128,6 +129,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("this library was built without streams", c->stream ? T3R_HAS_STREAMS : 0u)                                      \
     X("this library was built without this head", t3r_feature_of_head(c->head))                                        \
     X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)                       \
+    X("this library was built without fitted passes", c->fit_passes ? T3R_HAS_LOSS : 0u)                               \
     X("this library was built without comparison of views", c->views > 1 || c->stream ? T3R_HAS_COMPARISON : 0u)       \
     X("this library was built without this allocation", t3r_feature_of_allocation(c->allocation))                      \
     X("this library was built without this wavelet", t3r_feature_of_wavelet(c->wavelet))                               \
@@ -143,7 +145,7 @@ t3r_config t3r_settled(const t3r_config *config)
 static const char *const texts[] = {
     "no configuration", RANGES(TEXT) "the arena would be larger than this machine can address", NEEDS(NEED_TEXT)};
 
-enum { NEEDS_COUNT = 9, FAULTS = sizeof texts / sizeof texts[0], FIRST_NEED = FAULTS - NEEDS_COUNT };
+enum { NEEDS_COUNT = 10, FAULTS = sizeof texts / sizeof texts[0], FIRST_NEED = FAULTS - NEEDS_COUNT };
 
 uint64_t t3r_most_arena_bytes(const t3r_config *c)
 {

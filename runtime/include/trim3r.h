@@ -253,6 +253,9 @@ typedef struct t3r_config {
     /* The number of refinement passes on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS]
      */
     uint32_t refinements;
+    /* 1 = `refinements` are the most, and a build takes as many as its budget and the agreement of its views pay for:
+     * t3r_refinement_passes() returns them. 0 = every build takes all of them, as a stream does in any case. [0] */
+    uint32_t fit_passes;
     /* The source of depth. [T3R_DEPTH_SENSOR] */
     t3r_depth depth;
     /* The reach of hole filling in pixels, 0..8: holes of a depth sensor are filled where measurements bracket them
@@ -785,6 +788,10 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
 
 /* The number of passes over the scene that the last t3r_render() took: 1 when the arena had room for all splats. */
 uint32_t t3r_render_passes(const t3r_runtime *rt);
+
+/* The number of refinement passes that the last build took, 0..`refinements`. 0 without a runtime, before a build, and
+ * of a stream. */
+uint32_t t3r_refinement_passes(const t3r_runtime *rt);
 
 /* The image stage alone, as t3r_add_view() applies it: turns any frame into 8-bit RGB and 16-bit depth of the working
  * size, undistorted, in the caller's memory. depth_out may be NULL, and so may the frame's depth. *undistorted gets the

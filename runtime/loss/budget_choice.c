@@ -1,6 +1,6 @@
 #include "budget_choice.h"
 
-#include "disagreement.h"
+#include "pointmap/disagreement.h"
 #include "core/fixed.h"
 #include "pipeline.h"
 #include "refine/refine.h"
@@ -59,7 +59,7 @@ t3r_status t3r_choose_budget(t3r_runtime *rt, const t3r_view *views, uint32_t ma
         return T3R_OK;
     }
     uint32_t pairs;
-    evidence.disagreement_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, &pairs);
+    evidence.disagreement_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, 1, &pairs);
     evidence.disagreement_q8 = pairs < PAIRS_LEAST ? 0 : evidence.disagreement_q8;
     for (uint32_t i = 0; i < 2; i++) {
         t3r_build trial = *build;

@@ -69,6 +69,7 @@ struct t3r_runtime {
     uint8_t stereo_partner[T3R_MAX_VIEWS]; /* and with which view */
     uint16_t gain_q14[T3R_MAX_VIEWS][3];   /* brings r, g, b of a view to the mean exposure */
     uint32_t gaussians;                    /* in the scene */
+    uint32_t passes;                       /* of refinement, in the last build */
     uint32_t render_passes;
     uint32_t head_crc;  /* of the weights bound last */
     uint32_t keyframes; /* taken by a stream; `views` of them are at hand */

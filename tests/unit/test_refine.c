@@ -442,6 +442,42 @@ static void rebudget_refines(void **state)
     assert_true(hash[0] == hash[1]);
 }
 
+/* As many passes as pay: fewer for all points than for a tenth, the same scene as by that very number, and never more
+ * than are allowed. */
+static void fits_its_passes(void **state)
+{
+    (void)state;
+    uint32_t passes[2];
+    for (uint32_t all = 0; all < 2; all++) {
+        uint64_t hash[2];
+        for (uint32_t given = 0; given < 2; given++) {
+            t3r_config config = settings(given ? passes[all] : T3R_MAX_REFINEMENTS);
+            config.gaussians = config.max_gaussians = all ? POINTS : BUDGET / 2;
+            config.fit_passes = !given;
+            t3r_runtime *rt = open_arena(&config, 16);
+            assert_int_equal(t3r_refinement_passes(rt), 0);
+            t3r_scene scene;
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+            passes[all] = given ? passes[all] : t3r_refinement_passes(rt);
+            assert_int_equal(t3r_refinement_passes(rt), passes[all]);
+            hash[given] = hash_of(&scene);
+            free(memory);
+        }
+        assert_true(hash[0] == hash[1]);
+    }
+    print_message("%u passes for a twentieth, %u for all\n", passes[0], passes[1]);
+    assert_true(passes[0] > passes[1] && passes[1] >= 1 && passes[0] <= T3R_MAX_REFINEMENTS);
+
+    t3r_config config = settings(2);
+    config.gaussians = config.max_gaussians = BUDGET / 20;
+    config.fit_passes = 1;
+    t3r_runtime *rt = open_arena(&config, 16);
+    t3r_scene scene;
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    assert_int_equal(t3r_refinement_passes(rt), 2);
+    free(memory);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -458,6 +494,7 @@ int main(void)
         cmocka_unit_test(cancelled_anywhere_it_can_be_done_again),
         cmocka_unit_test(moves_after_it),
         cmocka_unit_test(rebudget_refines),
+        cmocka_unit_test(fits_its_passes),
     };
     return cmocka_run_group_tests_name("refine", tests, draw_room, NULL);
 }

@@ -2,7 +2,7 @@
 #include "rig.h"
 #include "rgbd_frame.h"
 
-#include "loss/disagreement.h"
+#include "pointmap/disagreement.h"
 #include "pointmap/exposure.h"
 #include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
@@ -521,20 +521,22 @@ static void colours_that_differ(void **state)
     uint32_t pairs;
     paint_sure(s, 0, 0, same);
     paint_sure(s, 1, 8, same);
-    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs), 0);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs), 0);
     assert_int_equal(pairs, 2 * (W - 8) * H);
-    assert_int_equal(t3r_disagreement_q8(s->view, 1, 0, gain_q14, &pairs), 0);
+    assert_int_equal(t3r_disagreement_q8(s->view, 1, 0, gain_q14, 1, &pairs), 0);
     assert_int_equal(pairs, 0);
     for (int i = 0; i < PIXELS; i++) {
         s->colour[1][0][i] = (uint8_t)(s->colour[1][0][i] + 9);
     }
-    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs), 27 * 256);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs), 27 * 256);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 2, &pairs), 27 * 256);
+    assert_int_equal(pairs, 2 * ((W - 8) / 2) * (H / 2));
 
     block(s, 1, 0, 0, W, H / 2, 1.9);
     memset(s->validity[1] + PIXELS / 2, T3R_MEASURED | T3R_MARK_DOUBTFUL, 4 * W);
     memset(s->validity[1] + PIXELS / 2 + 4 * W, T3R_FILLED, 3 * W);
     memset(s->validity[1] + PIXELS / 2 + 7 * W, T3R_MEASURED | T3R_MARK_COVERED, 3 * W); /* measured all the same */
-    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs), 27 * 256);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs), 27 * 256);
     assert_int_equal(pairs, 2 * (W - 8) * (H / 2 - 7));
     free(s);
 }
@@ -549,11 +551,11 @@ static void levelled_before_they_are_compared(void **state)
     uint16_t gain_q14[VIEWS][3];
     t3r_exposure_gains(s->view, 2, 0, gain_q14, &alone);
     uint32_t pairs;
-    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs) < 2 * 256);
+    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs) < 2 * 256);
     for (int c = 0; c < 3; c++) {
         gain_q14[0][c] = gain_q14[1][c] = T3R_GAIN_ONE_Q14;
     }
-    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, &pairs) > 50 * 256);
+    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs) > 50 * 256);
     free(s);
 }
 
@@ -572,7 +574,7 @@ static void around_the_ring(void **state)
         }
     }
     uint32_t pairs;
-    assert_int_equal(t3r_disagreement_q8(s->view, 3, 0, gain_q14, &pairs), 0);
+    assert_int_equal(t3r_disagreement_q8(s->view, 3, 0, gain_q14, 1, &pairs), 0);
     assert_int_equal(pairs, 2 * H * ((W - 8) + (W - 8) + (W - 16)));
     free(s);
 }

@@ -53,6 +53,9 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
             "flying")                                                                                                  \
     SETTING("redundancy", "on|off", redundancy, SWITCH, 0, 1, NULL,                                                    \
             "let small budgets pass over points whose surface another view shows as finely", false, "redundancy")      \
+    SETTING("fit-passes", "on|off", fit_passes, SWITCH, 0, 1, NULL,                                                    \
+            "take at most --refine passes: as many as the budget and the agreement of the views pay for", false,       \
+            "fit-passes")                                                                                              \
     SETTING("exposure", "on|off", exposure, SWITCH, 0, 1, NULL,                                                        \
             "bring the colours of all views to their mean exposure", false, "exposure")                                \
     SETTING("warm", "on|off", warm, SWITCH, 0, 1, NULL,                                                                \

@@ -185,6 +185,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
         cJSON_AddNumberToObject(root, "max_loss", o->settings.max_loss);
     }
     json_add_integer(root, "valid_points", told->valid_points);
+    json_add_integer(root, "passes", t3r_refinement_passes(r->runtime));
     json_add_integers(root, "context", told->context, told->context_count);
     if (o->settings.points_of == NULL) {
         cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.config.depth));
@@ -337,6 +338,10 @@ static void print_text(const build_options *o, const reconstruction_account *tol
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes; %s\n",
            o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
            work_times_text(times, text));
+    if (o->settings.config.fit_passes) {
+        printf("refined in %" PRIu32 " of at most %" PRIu32 " passes\n", t3r_refinement_passes(r->runtime),
+               o->settings.config.refinements);
+    }
     for (uint32_t v = 0; v < told->context_count; v++) {
         uint32_t partner;
         t3r_pair pair = t3r_stereo_pair(r->runtime, v, &partner);

@@ -272,6 +272,7 @@ static void print_json(const replay_options *o, const reconstruction *r, const r
     json_add_integer(root, "height", view->height);
     json_add_integer(root, "gaussians", r->scene.count);
     json_add_integer(root, "valid_points", r->valid_points);
+    json_add_integer(root, "passes", t3r_refinement_passes(r->runtime));
     cJSON_AddStringToObject(root, "head", r->head.name);
     if (r->head.weights != NULL) {
         cJSON_AddStringToObject(root, "head_crc", r->head.crc);

@@ -8,8 +8,9 @@
 
 /* The mean squared difference of levelled colours a channel, levels^2 Q8, at most 2^24; 0 without pairs. A pair is two
  * pixels, both measured and not doubtful: the one falls on the other in the next or the previous view, at a depth at
- * most 1/32 off. The last view and the first are next to each other. *pairs: how many there are, below 2^29. */
+ * most 1/32 off. The last view and the first are next to each other. Every step-th pixel of every step-th row is looked
+ * at; step >= 1. *pairs: how many there are, below 2^29. */
 uint32_t t3r_disagreement_q8(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
-                             uint32_t *pairs);
+                             uint32_t step, uint32_t *pairs);
 
 #endif

@@ -2,9 +2,9 @@
 
 #include <stdbool.h>
 
-#include "pointmap/exposure.h"
+#include "exposure.h"
 #include "core/fixed.h"
-#include "pointmap/reproject.h"
+#include "reproject.h"
 
 /* Squares of at most 3 channels x 2^24 pixels x 16 views x 2 neighbours: below 2^24 x 2^31. */
 typedef struct difference {
@@ -31,12 +31,12 @@ static uint32_t squares_q8(const t3r_view *from, size_t pixel, const uint16_t fr
 }
 
 static void compare(const t3r_view *views, uint32_t v, uint32_t w, int32_t exponent, uint16_t gain_q14[][3],
-                    difference *d)
+                    uint32_t step, difference *d)
 {
     const t3r_view *view = &views[v], *other = &views[w];
     const t3r_pointmap from = t3r_pointmap_of(view, exponent), to = t3r_pointmap_of(other, exponent);
-    for (uint32_t y = 0; y < view->height; y++) {
-        for (uint32_t x = 0; x < view->width; x++) {
+    for (uint32_t y = 0; y < view->height; y += step) {
+        for (uint32_t x = 0; x < view->width; x += step) {
             size_t pixel = (size_t)y * view->width + x;
             t3r_projected_pixel projected;
             if (!is_sure(view->validity[pixel]) || !t3r_reproject(&from, x, y, &to, &projected) ||
@@ -53,14 +53,14 @@ static void compare(const t3r_view *views, uint32_t v, uint32_t w, int32_t expon
 }
 
 uint32_t t3r_disagreement_q8(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
-                             uint32_t *pairs)
+                             uint32_t step, uint32_t *pairs)
 {
     difference d = {0};
     for (uint32_t v = 0; v < count && count > 1; v++) {
         uint32_t next = (v + 1) % count;
-        compare(views, v, next, exponent, gain_q14, &d);
+        compare(views, v, next, exponent, gain_q14, step, &d);
         if (count > 2) { /* of two each is the other's next */
-            compare(views, next, v, exponent, gain_q14, &d);
+            compare(views, next, v, exponent, gain_q14, step, &d);
         }
     }
     *pairs = d.pairs;

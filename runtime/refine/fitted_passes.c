@@ -1,0 +1,26 @@
+#include "fitted_passes.h"
+
+#include "core/fixed.h"
+#include "pointmap/disagreement.h"
+
+/* passes^2 x share x disagreement in levels^2. On the training scenes 400 to 800 are within 0.01 dB. */
+#define PAY 512u
+#define STEP 2u                /* pixels from one that is compared to the next */
+#define PAIRS_LEAST 64u        /* below which the views say nothing of each other */
+#define UNKNOWN_Q8 (150u << 8) /* levels^2, as sensors have that are not bad */
+
+uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8, uint32_t most)
+{
+    /* four times the square, which its root halves and rounds: below 2^11 x 2^8 x 2^32 */
+    const uint64_t square = (uint64_t)4 * PAY * 256u * points / ((uint64_t)gaussians * T3R_MAX(disagreement_q8, 1u));
+    return (uint32_t)t3r_clamp64(((int64_t)t3r_isqrt64(square) + 1) / 2, 1, most);
+}
+
+uint32_t t3r_fitted_passes(t3r_runtime *rt, const t3r_view *views, uint32_t most)
+{
+    uint32_t pairs;
+    const uint32_t disagreement_q8 =
+        t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, STEP, &pairs);
+    return t3r_predict_passes(rt->valid_points, rt->gaussians, pairs < PAIRS_LEAST ? UNKNOWN_Q8 : disagreement_q8,
+                              most);
+}
