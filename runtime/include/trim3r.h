@@ -509,6 +509,27 @@ typedef struct t3r_choice {
     uint32_t loss_q4;
 } t3r_choice;
 
+/* The RAM of a device, shared out: t3r_preset(). The parts of a build and of a view add up to at most the bytes asked
+ * for. */
+typedef struct t3r_preset_info {
+    /* The RAM that the settings were chosen for, at most the bytes asked for. */
+    uint64_t ram_bytes;
+    /* The arena: what is left for it, at most the bytes for full speed; a multiple of T3R_ARENA_ALIGN. */
+    size_t arena_bytes;
+    /* The rows of a frame that lie in memory at once, for t3r_add_rows(). */
+    uint32_t strip_rows;
+    /* The bytes of their colour and depth, 5 a pixel of the working size. */
+    size_t strip_bytes;
+    /* The picture that is drawn: R G B of the working size. */
+    size_t target_bytes;
+    /* The bound of the library's stack (docs/firmware.md). */
+    size_t stack_bytes;
+    /* What is left for the program's own variables. */
+    size_t program_bytes;
+    /* The weights in quant/heads for t3r_bind_head(): "nano", "small" or "base". NULL = the head is a closed form. */
+    const char *weights;
+} t3r_preset_info;
+
 /* What a keyframe did to the map of a stream. */
 typedef struct t3r_stream_report {
     /* The number of keyframes taken so far, this one too. */
@@ -588,6 +609,18 @@ t3r_status t3r_plan_within_as(uint64_t digest, size_t bytes, t3r_config *config)
 static inline t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
 {
     return t3r_plan_within_as(t3r_header_interface(), bytes, config);
+}
+
+/* The settings that serve so many bytes of RAM best: the row for the largest size that is not above them, of 128, 192,
+ * 256 and 512 KiB, 1 and 4 MiB. They were chosen by the quality of new views on training scenes (docs/presets.md). All
+ * of RAM counts: arena, camera rows, picture and stack. `info` may be NULL.
+ *
+ * T3R_ERR_ARENA: fewer bytes than the smallest row takes. T3R_ERR_UNSUPPORTED: this library was built without what the
+ * row asks for. T3R_ERR_INTERFACE. After an error both are as before. */
+t3r_status t3r_preset_as(uint64_t digest, uint64_t bytes, t3r_config *config, t3r_preset_info *info);
+static inline t3r_status t3r_preset(uint64_t bytes, t3r_config *config, t3r_preset_info *info)
+{
+    return t3r_preset_as(t3r_header_interface(), bytes, config, info);
 }
 
 /* Counts the work of a build by this configuration in an arena of `bytes`, with a depth or a match for every pixel, and

@@ -1,5 +1,6 @@
 /* trim3r plan: what an arena holds and how much work a build is, before anything runs; or which settings fit. */
 #include "trim3r/commands/commands.h"
+#include "trim3r/commands/plan_preset.h"
 
 #include <argp.h>
 #include <inttypes.h>
@@ -24,6 +25,7 @@
 typedef struct plan_options {
     t3r_config config; /* but for the head; a render_width of 0 is the working size */
     uint64_t within;   /* bytes of the arena; 0 = as many as it takes */
+    uint64_t preset;   /* bytes of RAM; 0 = the settings are given */
     double keep;       /* the budget as percent of the points; 0 = as a count */
     fitting_options fitting;
     bool json, markdown;
@@ -37,6 +39,7 @@ enum {
     KEY_VIEWS,
     KEY_GAUSSIANS,
     KEY_WITHIN,
+    KEY_PRESET,
     KEY_RENDER,
     KEY_KEEP,
     KEY_KEEP_ANALYSIS,
@@ -62,6 +65,8 @@ static const struct argp_option options[] = {
      0},
     {"within", KEY_WITHIN, "BYTES[K|M|G]", 0,
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
+    {"preset", KEY_PRESET, "BYTES[K|M|G]", 0,
+     "bytes of a device's RAM: print the settings that serve it best, and what takes it", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
      0},
@@ -78,9 +83,24 @@ static bool lists(const plan_options *o)
     return o->fitting.bytes != 0 || o->fitting.nanoseconds != 0;
 }
 
+static t3r_config unset(void)
+{
+    t3r_config config = t3r_default_config(0, 0, 2, 0);
+    config.refinements = T3R_ANY_REFINEMENTS;
+    return config;
+}
+
 static void check_options(struct argp_state *state, plan_options *o)
 {
     t3r_config *c = &o->config;
+    if (o->preset != 0) {
+        const t3r_config as_before = unset();
+        if (memcmp(c, &as_before, sizeof *c) != 0 || o->within != 0 || o->keep > 0 || lists(o) || o->svg != NULL ||
+            o->markdown || o->head != NULL || o->fitting.machine != NULL) {
+            argp_error(state, "--preset chooses the settings: --json alone goes with it");
+        }
+        return;
+    }
     if (lists(o) && c->width == 0) {
         c->width = c->height = LISTED_SIDE;
     }
@@ -137,6 +157,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_WITHIN:
         o->within = option_bytes(state, "within", arg);
         return 0;
+    case KEY_PRESET:
+        o->preset = option_bytes(state, "preset", arg);
+        return 0;
     case KEY_RENDER:
         option_size(state, "render", arg, 1, &c->render_width, &c->render_height);
         return 0;
@@ -177,6 +200,7 @@ static const struct argp argp = {
         "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
         "  trim3r plan --size 256x256 --keep 10% --head analytic\n"
         "  trim3r plan --size 96x96 --within 512K\n"
+        "  trim3r plan --preset 256K\n"
         "  trim3r plan --arena 2M --time 100ms\n"
         "  trim3r plan --arena 2M --time 0.5s --head small --machine board.json\n"
         "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
@@ -184,7 +208,10 @@ static const struct argp argp = {
         "A list has one row for each choice of head, budget and passes that no other beats in loss, bytes and time. "
         "--head, --gaussians, --keep and --refine fix theirs. The expected loss is against the best settings "
         "measured, on training scenes at 256x256: it orders settings and predicts no scene. Operations are "
-        "instructions of plain C.",
+        "instructions of plain C.\n\n"
+        "A preset is for 128K, 192K, 256K, 512K, 1M or 4M of RAM, or the next smaller of these: arena, rows of a "
+        "frame, "
+        "picture, stack and the program's own variables together.",
     .children = children,
 };
 
@@ -309,9 +336,11 @@ static int print_plan(const plan_options *o, const t3r_config *config, const cho
 
 int command_plan(int argc, char **argv)
 {
-    plan_options o = {.config = t3r_default_config(0, 0, 2, 0)};
-    o.config.refinements = T3R_ANY_REFINEMENTS;
+    plan_options o = {.config = unset()};
     file_options_parse(&argp, argc, argv, &o);
+    if (o.preset != 0) {
+        return plan_preset(o.preset, o.json);
+    }
 
     t3r_config config = o.config;
     if (config.render_width == 0) {
