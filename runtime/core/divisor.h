@@ -13,6 +13,7 @@ typedef struct t3r_divisor {
 /* d: 1 up to 2^30 */
 static inline t3r_divisor t3r_divisor_of(uint32_t d)
 {
+    T3R_BOUND(d > 0 && d <= 1u << 30);
     const uint32_t bits = t3r_msb32(d) + 1;
     const uint64_t reciprocal = (UINT64_C(1) << (31 + bits)) / d;
     return (t3r_divisor){d, (uint32_t)T3R_MIN(reciprocal, (uint64_t)UINT32_MAX), 7 + bits};
@@ -21,6 +22,7 @@ static inline t3r_divisor t3r_divisor_of(uint32_t d)
 /* x / d in Q24, round-half-up, held to +-limit; |x| below 2^32, limit at most 16 */
 static inline int32_t t3r_divide_q24(const t3r_divisor *by, int64_t x, uint32_t limit)
 {
+    T3R_BOUND(x > -(INT64_C(1) << 32) && x < INT64_C(1) << 32 && limit <= 16);
     const uint64_t size = (uint64_t)t3r_abs64(x);
     if (size >= (uint64_t)limit * by->d) {
         return (x < 0 ? -1 : 1) * (int32_t)(limit << 24);

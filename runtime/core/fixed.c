@@ -38,11 +38,12 @@ int32_t t3r_log2_q16(uint32_t x)
 
 uint32_t t3r_exp2_q16(int32_t x_q16)
 {
+    T3R_BOUND(x_q16 >= -(16 << 16) && x_q16 <= 15 << 16);
     uint32_t fraction = (uint32_t)x_q16 & 0xffff;
     uint32_t mantissa_q20 = t3r_interpolate(t3r_exp2_table_q20, fraction >> 9, (fraction & 511) << 7);
     int32_t exponent = x_q16 >> 16;
 
-    /* Q20 to Q16 and times 2^exponent; below 2^21 x 2^10 */
+    /* Q20 to Q16 and times 2^exponent; at most 2^31 */
     return (uint32_t)t3r_scale64(mantissa_q20, exponent - 4);
 }
 
@@ -57,7 +58,7 @@ uint32_t t3r_isqrt64(uint64_t x)
     /* x = top 4^half: sqrt x = sqrt(top) 2^half with top in [2^30, 2^32) */
     int32_t half = (int32_t)t3r_msb64(x) / 2 - 15;
     uint32_t top = (uint32_t)(half >= 0 ? x >> (2 * half) : x << (-2 * half));
-    uint64_t root_q15 = t3r_exp2_q16(t3r_log2_q16(top) / 2 - (1 << 16)); /* sqrt(top) < 2^16, Q15 */
+    uint64_t root_q15 = t3r_exp2_q16(t3r_log2_q16(top) / 2 - (1 << 16)); /* sqrt(top), Q15: at most 2^16 */
     root_q15 += root_q15 >> 12;
     uint64_t root = (half >= 15 ? root_q15 << (half - 15) : root_q15 >> (15 - half)) + 1;
     for (int step = half > 5 ? 2 : 1; step > 0; step--) { /* a root below 2^(half + 16) */

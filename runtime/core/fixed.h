@@ -7,44 +7,50 @@
 
 #include <stdint.h>
 
+#include "assertion.h"
+
 _Static_assert((-3 >> 1) == -2, "right shift of negative numbers must be arithmetic");
 
 #define T3R_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define T3R_MAX(a, b) ((a) > (b) ? (a) : (b))
 
-/* x / 2^shift, round-half-up; shift 0..62, |x| + 2^(shift - 1) < 2^63 */
+/* x / 2^shift, round-half-up; shift 0..62, x + 2^(shift - 1) < 2^63 */
 static inline int64_t t3r_round_shift64(int64_t x, uint32_t shift)
 {
+    T3R_BOUND(shift <= 62 && (shift == 0 || x <= INT64_MAX - ((int64_t)1 << (shift - 1))));
     return shift == 0 ? x : (x + ((int64_t)1 << (shift - 1))) >> shift;
 }
 
-/* x / 2^shift, round-half-up; shift 0..30, |x| < 2^30 */
+/* x / 2^shift, round-half-up; shift 0..30, x + 2^(shift - 1) < 2^31 */
 static inline int32_t t3r_round_shift32(int32_t x, uint32_t shift)
 {
+    T3R_BOUND(shift <= 30 && (shift == 0 || x <= INT32_MAX - ((int32_t)1 << (shift - 1))));
     return shift == 0 ? x : (x + ((int32_t)1 << (shift - 1))) >> shift;
 }
 
-/* x * 2^shift for a shift of either sign; a right shift of 63 and more gives 0 */
+/* x * 2^shift for a shift of either sign, below 2^63; a right shift of 63 and more gives 0 */
 static inline int64_t t3r_scale64(int64_t x, int32_t shift)
 {
     if (shift >= 0) {
+        T3R_BOUND(shift <= 62 && (int64_t)((uint64_t)x << shift) >> shift == x);
         return (int64_t)((uint64_t)x << shift);
     }
     return shift <= -63 ? 0 : t3r_round_shift64(x, (uint32_t)-shift);
 }
 
-/* The same in 32 bits, modulo 2^32: the half is added behind the shift, so that it cannot overflow. */
+/* The same in 32 bits, modulo 2^32: the last bit shifted out is added behind the shift, so that nothing overflows. */
 static inline int32_t t3r_scale32(int32_t x, int32_t shift)
 {
     if (shift >= 0) {
         return shift >= 32 ? 0 : (int32_t)((uint32_t)x << shift);
     }
-    return ((x >> T3R_MIN(-shift - 1, 31)) + 1) >> 1;
+    const int32_t twice = x >> T3R_MIN(-shift - 1, 31);
+    return (twice >> 1) + (twice & 1);
 }
 
 /* (a b) / 2^15, round-half-up: (a b + 2^14) >> 15, in 16-bit steps that a compiler turns into 16-bit lanes (SSSE3
  * pmulhrsw and NEON/MVE sqrdmulh are the same). With a b = 65536 high + low that is 2 high plus the rounded low / 2^15,
- * (low / 2^14 + 1) / 2 rounded down. -32768 x -32768 wraps to -32768; nothing in the runtime multiplies these. */
+ * (low / 2^14 + 1) / 2 rounded down. -32768 x -32768 wraps to -32768, which sqrdmulh alone does not. */
 static inline int16_t t3r_mulr_q15(int16_t a, int16_t b)
 {
     int16_t high = (int16_t)(((int32_t)a * b) >> 16);
@@ -56,6 +62,7 @@ static inline int16_t t3r_mulr_q15(int16_t a, int16_t b)
 /* n / d, round-half-up: floor(n / d + 1/2); d > 0 and below 2^62, 2 |n| + d below 2^63 */
 static inline int64_t t3r_round_div64(int64_t n, int64_t d)
 {
+    T3R_BOUND(d > 0 && d < INT64_C(1) << 62 && n >= -(INT64_MAX - d) / 2 && n <= (INT64_MAX - d) / 2);
     int64_t doubled = 2 * n + d;
     int64_t quotient = doubled / (2 * d);
     return quotient - (doubled % (2 * d) < 0);
@@ -64,6 +71,7 @@ static inline int64_t t3r_round_div64(int64_t n, int64_t d)
 /* The same in 32 bits; d > 0, |n| and d below 2^29 */
 static inline int32_t t3r_round_div32(int32_t n, int32_t d)
 {
+    T3R_BOUND(d > 0 && d < 1 << 29 && n > -(1 << 29) && n < 1 << 29);
     int32_t doubled = 2 * n + d;
     int32_t quotient = doubled / (2 * d);
     return quotient - (doubled % (2 * d) < 0);
@@ -87,27 +95,32 @@ static inline uint16_t t3r_mul_q16(uint16_t a, uint16_t b)
 
 static inline int32_t t3r_clamp32(int32_t x, int32_t low, int32_t high)
 {
+    T3R_BOUND(low <= high);
     return x < low ? low : x > high ? high : x;
 }
 
 static inline int64_t t3r_clamp64(int64_t x, int64_t low, int64_t high)
 {
+    T3R_BOUND(low <= high);
     return x < low ? low : x > high ? high : x;
 }
 
 static inline int32_t t3r_abs32(int32_t x)
 {
+    T3R_BOUND(x != INT32_MIN);
     return x < 0 ? -x : x;
 }
 
 static inline int64_t t3r_abs64(int64_t x)
 {
+    T3R_BOUND(x != INT64_MIN);
     return x < 0 ? -x : x;
 }
 
 /* Position of the highest set bit, floor(log2 x); x > 0 */
 static inline uint32_t t3r_msb32(uint32_t x)
 {
+    T3R_BOUND(x > 0);
     return 31u - (uint32_t)__builtin_clz(x);
 }
 
@@ -127,7 +140,7 @@ static inline int32_t t3r_log2_wide_q16(uint64_t x)
     uint32_t msb = t3r_msb64(x), excess = msb > 31 ? msb - 31 : 0;
     return t3r_log2_q16((uint32_t)(x >> excess)) + (int32_t)(excess << 16);
 }
-/* 2^(x / 65536) in Q16, relative error below 2^-14 and half a step; x in [-16 x 65536, 15 x 65536) */
+/* 2^(x / 65536) in Q16, relative error below 2^-14 and half a step; x in -16 x 65536..15 x 65536 */
 uint32_t t3r_exp2_q16(int32_t x_q16);
 
 /* A small deterministic mixing of 32 bits (Wellons' "lowbias32" constants): white noise per index. */

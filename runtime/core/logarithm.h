@@ -25,6 +25,7 @@ static inline int32_t t3r_log2_inline_q16(uint32_t x)
 /* 2^(x / 1024) in Q16, x in -16 x 1024..0 */
 static inline uint32_t t3r_exp2_of_q10(int32_t x_q10)
 {
+    T3R_BOUND(x_q10 >= -16 * 1024 && x_q10 <= 0);
     const uint32_t part = (uint32_t)x_q10 & 1023;
     const uint32_t mantissa_q20 = t3r_interpolate(t3r_exp2_table_q20, part >> 3, (part & 7) << 13);
     const uint32_t shift = (uint32_t)(4 - (x_q10 >> 10));

@@ -68,7 +68,9 @@ static void division(void **state)
     (void)state;
     for (int64_t d = 1; d < 40; d++) {
         for (int64_t n = -300; n <= 300; n++) {
-            assert_int_equal(t3r_round_div64(n, d), (int64_t)floor((2.0 * (double)n + (double)d) / (2.0 * (double)d)));
+            const int64_t exact = (int64_t)floor((2.0 * (double)n + (double)d) / (2.0 * (double)d));
+            assert_int_equal(t3r_round_div64(n, d), exact);
+            assert_int_equal(t3r_round_div32((int32_t)n, (int32_t)d), exact);
         }
     }
     const int64_t most = (INT64_C(1) << 61) - 1;
@@ -76,6 +78,13 @@ static void division(void **state)
     assert_int_equal(t3r_round_div64(-most, 1), -most);
     assert_int_equal(t3r_round_div64(most, most), 1);
     assert_int_equal(t3r_round_div64(-most, most), -1);
+    const int32_t most_32 = (1 << 29) - 1;
+    for (int32_t d = 1; d <= 2; d++) {
+        assert_int_equal(t3r_round_div32(most_32, d), d == 1 ? most_32 : 1 << 28);
+        assert_int_equal(t3r_round_div32(-most_32, d), d == 1 ? -most_32 : 1 - (1 << 28));
+    }
+    assert_int_equal(t3r_round_div32(most_32, most_32), 1);
+    assert_int_equal(t3r_round_div32(-most_32, most_32), -1);
 }
 
 static void shifts(void **state)
@@ -87,6 +96,7 @@ static void shifts(void **state)
             assert_int_equal(t3r_round_shift64(x, shift), exact);
             assert_int_equal(t3r_round_shift32(x, shift), exact);
             assert_int_equal(t3r_scale64(x, -(int32_t)shift), exact);
+            assert_int_equal(t3r_scale32(x, -(int32_t)shift), exact);
         }
     }
     assert_int_equal(t3r_scale64(-5, 3), -40);
@@ -94,6 +104,22 @@ static void shifts(void **state)
     for (uint32_t i = 0; i < 64; i++) {
         assert_int_equal(t3r_msb64(UINT64_C(1) << i), i);
         assert_int_equal(t3r_msb64(UINT64_MAX >> (63 - i)), i);
+    }
+}
+
+/* In 32 bits, at the edges of the numbers and of the shifts. */
+static void shifts_of_extremes(void **state)
+{
+    (void)state;
+    const int32_t edges[] = {INT32_MIN, INT32_MIN + 1, -1, 0, 1, INT32_MAX - 1, INT32_MAX};
+    for (size_t i = 0; i < sizeof edges / sizeof edges[0]; i++) {
+        for (int32_t shift = 1; shift <= 62; shift++) {
+            assert_int_equal(t3r_scale32(edges[i], -shift), t3r_round_shift64(edges[i], (uint32_t)shift));
+        }
+        for (int32_t shift = 0; shift <= 62; shift++) {
+            const uint64_t exact = (uint64_t)(int64_t)edges[i] << shift;
+            assert_int_equal(t3r_scale32(edges[i], shift), (int32_t)(uint32_t)exact);
+        }
     }
 }
 
@@ -133,9 +159,9 @@ static void divisor(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(square_root), cmocka_unit_test(logarithm),
-                                       cmocka_unit_test(power),       cmocka_unit_test(division),
-                                       cmocka_unit_test(shifts),      cmocka_unit_test(small_product),
-                                       cmocka_unit_test(divisor)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(square_root),   cmocka_unit_test(logarithm),
+                                       cmocka_unit_test(power),         cmocka_unit_test(division),
+                                       cmocka_unit_test(shifts),        cmocka_unit_test(shifts_of_extremes),
+                                       cmocka_unit_test(small_product), cmocka_unit_test(divisor)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
