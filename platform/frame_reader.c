@@ -430,7 +430,7 @@ int t3r_frame_reader_next(t3r_frame_reader *reader, t3r_capture_frame *frame)
     instant now = {0};
     int status = 0;
     record r;
-    while (status == 0 && reader->error == NULL && (status = read_record(reader, &r)) == 1) {
+    while (status == 0 && reader->error == NULL && read_record(reader, &r) == 1) {
         if (r.opcode == T3R_MCAP_DATA_END) {
             break; /* what follows is an index */
         }

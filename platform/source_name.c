@@ -12,7 +12,7 @@ void t3r_source_name(const char *source, char *name, size_t bytes)
     size_t adapter = strspn(source, LOWER DIGITS);
     adapter = adapter > 0 && source[adapter] == ':' && strncmp(source + adapter, "://", 3) != 0 ? adapter + 1 : 0;
     const char *what = source + adapter, *shown = what;
-    size_t scheme = strspn(what, LETTERS DIGITS "+-."), length = strlen(what);
+    size_t scheme = strspn(what, LETTERS DIGITS "+-."), length;
     if (scheme > 0 && strncmp(what + scheme, "://", 3) == 0) {
         const char *host = what + scheme + 3, *behind = host + strcspn(host, "/?#");
         const char *at = strrchr(host, '@');

@@ -26,7 +26,8 @@ static void local_mean(const t3r_view *view, uint32_t u, uint32_t v, uint32_t ha
         }
     }
     for (int c = 0; c < 3; c++) {
-        colour_q7[c] = (uint16_t)(((sum[c] << 7) + count / 2) / count); /* the pixel itself counts: count >= 1 */
+        /* The pixel itself counts: count >= 1. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
+        colour_q7[c] = (uint16_t)(((sum[c] << 7) + count / 2) / count);
     }
 }
 

@@ -139,6 +139,7 @@ static t3r_footprint footprint_of(const moments *m)
 {
     t3r_footprint f = {.opacity_q15 = T3R_HEAD_OPACITY_Q15};
     int64_t n = m->count;
+    /* The pixel joined itself: count >= 1. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
     f.offset_q12[0] = m->x * 4096 / m->count;
     f.offset_q12[1] = m->y * 4096 / m->count;
     /* Second central moments, plus a pixel's own 1/8, Q12 */
@@ -172,7 +173,7 @@ uint32_t t3r_head_moment(const t3r_head_input *input, uint32_t begin, uint32_t e
             }
             uint32_t reach = T3R_MIN((t3r_spacing_q12(input, pixel) * 2 >> 12) + 2, (uint32_t)REACH);
             moments m = input->unadapted ? alone(view, pixel) : gather(input, u, v, (int32_t)reach);
-            t3r_footprint footprint = footprint_of(&m); /* the pixel joined itself: count >= 1 */
+            t3r_footprint footprint = footprint_of(&m);
             t3r_lift(&input->map, input->view_index, u, v, &footprint, &out[count++]);
         }
     }

@@ -62,8 +62,9 @@ static uint16_t nearest_of_all(const t3r_centres *centres, const int16_t *p)
         least = score[k] < least ? score[k] : least;
     }
     uint32_t first = 0;
+    /* Ends before count: the least is one of them. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
     while (score[first] != least) {
-        first++; /* ends before count: the least is one of them */
+        first++;
     }
     return (uint16_t)first;
 }

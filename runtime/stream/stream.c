@@ -152,6 +152,7 @@ static t3r_status compare_keyframes(t3r_runtime *rt, const t3r_view *views, uint
     if (rt->config.bridge_radius > 0) {
         t3r_bridge_lend(views, rt->views, slot, rt->frame.exponent, &work);
         t3r_bridge_view(&views[slot], rt->config.bridge_radius);
+        /* slot < T3R_MAX_VIEWS = 16. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
         (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent, ~(1u << slot), &work);
     }
     if (rt->config.flying) {

@@ -50,6 +50,7 @@ typedef struct bench {
     uint64_t hash;
     int cancel; /* the call of the progress hook in stage depth that cancels, from 1; 0 = none */
     int calls;
+    uint32_t told; /* bit n: stage depth told that n parts are done */
 } bench;
 
 static void on_hash(void *user, t3r_stage stage, uint64_t hash)
@@ -62,6 +63,7 @@ static int on_progress(void *user, t3r_stage stage, uint32_t done, uint32_t tota
 {
     bench *b = user;
     assert_true(done < total);
+    b->told |= stage == T3R_STAGE_DEPTH ? 1u << done : 0;
     return stage == T3R_STAGE_DEPTH && ++b->calls == b->cancel;
 }
 
@@ -100,6 +102,7 @@ static t3r_status reconstruct(bench *b, t3r_scene *scene)
     assert_int_equal(t3r_set_hooks(b->rt, &hooks), T3R_OK);
     b->hash = T3R_HASH_START;
     b->calls = 0;
+    b->told = 0;
     return t3r_reconstruct(b->rt, NULL, scene);
 }
 
@@ -325,6 +328,9 @@ static void more_views(void **state)
     t3r_scene scene;
     add_all(&b, &s);
     assert_int_equal(reconstruct(&b, &scene), T3R_OK);
+    /* Ten pairs are compared, then matched: from part 10 on those that suit best, from 15 on others. */
+    const uint32_t expected = 0x3ff | 3u << 10 | 1u << 15;
+    assert_int_equal(b.told & expected, expected);
     for (uint32_t v = 0; v < 5; v++) {
         const verdict found = judge(&b, &s, v);
         uint32_t partner;
