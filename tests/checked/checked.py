@@ -68,8 +68,11 @@ with tempfile.TemporaryDirectory() as name:
     for scene in scenes:
         if (DATA / scene / "transforms.json").exists() and (DATA / scene / "depth").exists():
             recording = folder / f"{scene}.mcap"
-            run(program, "import", DATA / scene, "--size", SIZE, "-o", recording)
-            works(program, recording, folder)
+            made = run(program, "import", DATA / scene, "--size", SIZE, "-o", recording)
+            if "have no depth" in made.stdout + made.stderr:
+                run(program, "eval", recording, "--depth", "stereo", "--keep", "20")
+            else:
+                works(program, recording, folder)
             recording.unlink()
             print(f"{scene}: within its bounds")
     print(f"{len(scenes)} recorded scenes at hand")
