@@ -48,6 +48,7 @@ def works(program, recording, folder):
     run(program, "build", recording, "--refine", "16", "--fit-passes", "on", "--keep", "2", "-o", out)
     run(program, "build", recording, "--allocate", "paper", "--keep", "40", "--arena", "min", "-o", out)
     run(program, "build", recording, "--auto", "-o", out)
+    run(program, "build", recording, "--cpu-mask", "none", "--refine", "8", "--keep", "30", "-o", out)
     run(program, "eval", recording, "--keep", "100,5")
     run(program, "replay", recording, "--stream", "--every", "1", "--gaussians", "3000")
     run(program, "replay", recording, "--slide", "--warm", "on", "--threads", "2")
@@ -62,7 +63,7 @@ with tempfile.TemporaryDirectory() as name:
     works(program, room, folder)
     run(program, "build", room, "--depth", "stereo", "--keep", "20", "-o", folder / "out.ply")
     run(program, "build", room, "--cpu-mask", "none", "--depth", "stereo", "--keep", "20", "-o", folder / "out.ply")
-    run(program, "stress", room, "--strengths", "1", "--keep", "10")
+    run(program, "stress", room, "--keep", "10")
     splits = DATA / "splits.json"
     scenes = [scene for part in json.loads(splits.read_text()).values() for scene in part] if splits.exists() else []
     for scene in scenes:
