@@ -63,7 +63,7 @@ with tempfile.TemporaryDirectory() as name:
     works(program, room, folder)
     run(program, "build", room, "--depth", "stereo", "--keep", "20", "-o", folder / "out.ply")
     run(program, "build", room, "--cpu-mask", "none", "--depth", "stereo", "--keep", "20", "-o", folder / "out.ply")
-    run(program, "stress", room, "--keep", "10")
+    run(program, "stress", room, "--strengths", "1", "--keep", "10")
     splits = DATA / "splits.json"
     scenes = [scene for part in json.loads(splits.read_text()).values() for scene in part] if splits.exists() else []
     for scene in scenes:
