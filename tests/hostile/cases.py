@@ -214,6 +214,9 @@ given("scene", "circle.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "children":
 given("scene", "700000-nodes-deep.glb",
       lambda: f.glb(json.dumps(f.gaussians(1)).encode()[:-1] + b', "nodes": [' +
                     b",".join(b'{"children": [%d]}' % (i + 1) for i in range(700000)) + b', {"mesh": 0}]}', bytes(64)), None)
+for member in ("nodes", "meshes", "extensionsRequired"):
+    given("scene", f"object-of-{member}.glb", f.glb(f.gaussians(1, **{member: {"a": {}, "b": {}}}), bytes(64)), f"{member}: not an array")
+given("scene", "object-of-children.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "children": {"a": 1}}]), bytes(64)), "children: not an array")
 given("scene", "packed-otherwise.glb", f.glb(f.gaussians(1, extensionsRequired=[f.ESCAPE]), bytes(64)), "needs the extension")
 given("scene", "no-members.sog", lambda: f.sog({}), "")
 given("scene", "meta-of-64-mb.sog", lambda: f.sog({"meta.json": b" " * (64 * MIB)}), "")

@@ -10,4 +10,8 @@
  * N: what" in error[]; cJSON_Delete() the rest. What stands behind the value is not looked at. */
 cJSON *json_parse(const char *text, size_t bytes, char *error, size_t error_bytes);
 
+/* The array of that name in an object, NULL where there is nothing of that name: 0, or -1 with a reason in error[].
+ * An object in its place is refused, as cJSON walks its members like an array's. */
+int json_array(const cJSON *object, const char *name, const cJSON **array, char *error, size_t error_bytes);
+
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/json_input.h"
 #include "posing/quaternion.h"
 #include "reason.h"
 
@@ -39,8 +40,11 @@ static const cJSON *get(const cJSON *object, const char *name)
 /* Notes for each child of a node which node is above it. */
 static int list_children(node_list *l, uint32_t index)
 {
-    const cJSON *child;
-    cJSON_ArrayForEach(child, get(l->nodes[index].json, "children"))
+    const cJSON *child, *children;
+    if (json_array(l->nodes[index].json, "children", &children, l->error, l->error_bytes) != 0) {
+        return -1;
+    }
+    cJSON_ArrayForEach(child, children)
     {
         const double to = cJSON_IsNumber(child) ? child->valuedouble : -1;
         if (!(to >= 0 && to < l->count) || to != floor(to)) {
@@ -57,8 +61,11 @@ static int list_children(node_list *l, uint32_t index)
 
 static int list_nodes(node_list *l, const cJSON *root)
 {
-    const cJSON *nodes = get(root, "nodes"), *each;
-    l->count = cJSON_IsArray(nodes) ? (uint32_t)cJSON_GetArraySize(nodes) : 0;
+    const cJSON *nodes, *each;
+    if (json_array(root, "nodes", &nodes, l->error, l->error_bytes) != 0) {
+        return -1;
+    }
+    l->count = (uint32_t)cJSON_GetArraySize(nodes);
     l->nodes = malloc(((size_t)l->count + 1) * sizeof *l->nodes);
     if (l->nodes == NULL) {
         return FAIL(l, "out of memory for %" PRIu32 " nodes", l->count);

@@ -60,20 +60,32 @@ static int get_whole(const reader *r, const cJSON *object, const char *name, dou
 }
 
 /* Item `index` of an array of the file; NULL: there is none. */
-static const cJSON *item_of(const cJSON *root, const char *array, uint32_t index)
+static const cJSON *item_of(const cJSON *root, const char *name, uint32_t index)
 {
-    return index > INT32_MAX ? NULL : cJSON_GetArrayItem(get(root, array), (int)index);
+    const cJSON *array = get(root, name);
+    return index > INT32_MAX || !cJSON_IsArray(array) ? NULL : cJSON_GetArrayItem(array, (int)index);
+}
+
+static int get_array(const reader *r, const cJSON *object, const char *name, const cJSON **array)
+{
+    return json_array(object, name, array, r->error, r->error_bytes);
 }
 
 /* The one primitive of Gaussians in the file's meshes, and the mesh. */
 static int find_primitive(const reader *r, const cJSON *root, const cJSON **primitive, uint32_t *mesh_index)
 {
-    const cJSON *mesh, *each;
+    const cJSON *meshes, *mesh, *primitives, *each;
     uint32_t index = 0;
     *primitive = NULL;
-    cJSON_ArrayForEach(mesh, get(root, "meshes"))
+    if (get_array(r, root, "meshes", &meshes) != 0) {
+        return -1;
+    }
+    cJSON_ArrayForEach(mesh, meshes)
     {
-        cJSON_ArrayForEach(each, get(mesh, "primitives"))
+        if (get_array(r, mesh, "primitives", &primitives) != 0) {
+            return -1;
+        }
+        cJSON_ArrayForEach(each, primitives)
         {
             if (get(get(each, "extensions"), GLB_EXTENSION) == NULL) {
                 continue;
@@ -91,8 +103,11 @@ static int find_primitive(const reader *r, const cJSON *root, const cJSON **prim
 
 static int check_extensions(const reader *r, const cJSON *root, const cJSON *primitive)
 {
-    const cJSON *each, *gaussians = get(get(primitive, "extensions"), GLB_EXTENSION);
-    cJSON_ArrayForEach(each, get(root, "extensionsRequired"))
+    const cJSON *required, *each, *gaussians = get(get(primitive, "extensions"), GLB_EXTENSION);
+    if (get_array(r, root, "extensionsRequired", &required) != 0) {
+        return -1;
+    }
+    cJSON_ArrayForEach(each, required)
     {
         if (!cJSON_IsString(each) || strcmp(each->valuestring, GLB_EXTENSION) != 0) {
             return FAIL(r, "it needs the extension '%s'", cJSON_IsString(each) ? each->valuestring : "?");
