@@ -168,8 +168,8 @@ def refuses(folder):
             file.write(text)
         refuse(INPUT, words, bad, *out)
     with open(bad, "wb") as file:
-        file.write(os.urandom(5000))
-    refuse(INPUT, "bad.csv:1", bad, *out)
+        file.write(bytes(range(128, 256)) * 40)
+    refuse(INPUT, "bad.csv:1: a byte that is not UTF-8", bad, *out)
     os.mkdir(f"{folder}/wrong")
     with open(f"{folder}/wrong/x.png", "wb") as file:
         file.write(b"no picture")
