@@ -144,9 +144,9 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     if (status != T3R_OK) {
         return status;
     }
-    if (!rt->config.keep_analysis && !rt->config.stream && !t3r_is_warm(&rt->config)) {
-        rt->views = 0; /* the raster's buffers lie where the planes were */
-        rt->analysed = 0;
+    if (!rt->config.keep_analysis && !rt->config.stream) {
+        rt->analysed = 0; /* the raster's buffers lie where labels and clusters were */
+        rt->views = t3r_is_warm(&rt->config) ? rt->views : 0; /* and, but with `warm`, the planes */
     }
 
     if (!t3r_progress(rt, T3R_STAGE_RASTER, 0, (uint32_t)T3R_TILES_(target->width, target->height))) {

@@ -230,6 +230,23 @@ static void same_bits(void **state)
     free(expected);
 }
 
+/* Drawing ends the analysis where none is kept, and leaves the views: without refinement, which ends it before, too. */
+static void a_drawn_arena_moves(void **state)
+{
+    (void)state;
+    t3r_config config = config_of(1);
+    config.refinements = 0;
+    site *s = site_of(config, ARENA_AT_MINIMUM);
+    t3r_gaussian *expected = slide(s, false);
+    site_free(s);
+    s = site_of(config, ARENA_AT_MINIMUM);
+    t3r_gaussian *scenes = slide(s, true);
+    assert_memory_equal(scenes, expected, STEPS * BUDGET * sizeof *scenes);
+    site_free(s);
+    free(scenes);
+    free(expected);
+}
+
 /* Textures are of each view alone: those that were kept, and the new view's, are what they would be anew. */
 static void a_view_that_changed_is_not_taken_for_the_old(void **state)
 {
@@ -403,6 +420,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_build_begins_anew),
         cmocka_unit_test(same_bits),
+        cmocka_unit_test(a_drawn_arena_moves),
         cmocka_unit_test(a_view_that_changed_is_not_taken_for_the_old),
         cmocka_unit_test(errors_in_between),
         cmocka_unit_test(cancelled_builds_leave_nothing),
