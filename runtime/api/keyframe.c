@@ -8,6 +8,9 @@
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report)
 {
+    if (report != NULL) {
+        *report = (t3r_stream_report){0};
+    }
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(rt->config.stream && t3r_has_head(rt, rt->config.head) &&
                           rt->config.allocation != T3R_ALLOCATE_GIVEN,

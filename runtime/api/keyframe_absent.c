@@ -6,10 +6,10 @@
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
     if (report != NULL) {
         *report = (t3r_stream_report){0};
     }
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
     return T3R_ERR_UNSUPPORTED;
 }
 
