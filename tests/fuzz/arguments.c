@@ -82,8 +82,7 @@ t3r_camera take_camera(input *in)
     return c;
 }
 
-/* Bytes that a plane of the format has at least, rows of `stride`. */
-static uint64_t plane_bytes(const t3r_frame *f, int plane, uint32_t *row)
+uint64_t plane_bytes(const t3r_frame *f, int plane, uint32_t *row)
 {
     uint64_t rows = plane == 0 ? f->height : f->height / 2;
     *row = f->width;

@@ -47,6 +47,8 @@ typedef struct held_frame {
 } held_frame;
 
 held_frame take_frame(input *in);
+/* The least bytes of a colour plane, whose rows are as far apart as the frame says, and of one of its rows. */
+uint64_t plane_bytes(const t3r_frame *frame, int plane, uint32_t *row);
 void free_frame(held_frame *held);
 
 t3r_gaussian take_gaussian(input *in);
