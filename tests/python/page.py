@@ -25,7 +25,7 @@ def said(source, names):
 
 def main():
     blocks = [block.body for block in blocks_of((ROOT / "docs" / "python.md").read_text()) if block.language == "python"]
-    check(len(blocks) == 3, f"{len(blocks)} blocks of Python")
+    check(len(blocks) == 4, f"{len(blocks)} blocks of Python")
     names, before = {}, os.getcwd()
     with tempfile.TemporaryDirectory(prefix="trim3r-python-") as folder:
         os.chdir(folder)
@@ -33,7 +33,8 @@ def main():
         check(first[0] == "13107" and 25 < float(first[1]) < 35, f"the first scene: {first}")
         depth, alpha = map(float, said(blocks[1], names).split())
         check(1.9 < depth < 2.1 and alpha > 0.9, f"a wall two metres away: {depth}, {alpha}")
-        rows = said(blocks[2], names).splitlines()
+        check(said(blocks[2], names).split() == ["1000"], "a view by strips of rows")
+        rows = said(blocks[3], names).splitlines()
         check([row.split()[1] for row in rows] == ["13107", "2621"], f"rows: {rows}")
         shown = re.search(r"::\n\n(.*?)\n\n[A-Z]", trim3r.__doc__, re.S)[1]
         check(25 < float(said(textwrap.dedent(shown), {})) < 35, "the docstring's")

@@ -56,19 +56,32 @@ class Frame:
 
         Raises ValueError where an array has another type, shape or layout than it must have.
         """
-        frame = ffi.new("t3r_frame *")
-        frame.format = value_named("format", lib.t3r_pixel_format_name, lib.T3R_PIXEL_FORMAT_COUNT, self.format)
-        kept = [self._put_colour(frame)]
-        if self.depth is not None:
-            kept.append(self._put_depth(frame, self.depth))
+        return self._native(1)
+
+    def native_strip(self, height: int, depth_height: int) -> Tuple[Any, Any]:
+        """The same of a frame with so many rows of colour and of depth, of which the arrays hold some, or none."""
+        frame, kept = self._native(0)
+        try:
+            frame.height, frame.depth_height = height, depth_height
+        except OverflowError as error:
+            raise ValueError(f"height or depth_height: {error}") from error
         return frame, kept
 
-    def _put_colour(self, frame: Any) -> Any:
+    def _native(self, least_rows: int) -> Tuple[Any, Any]:
+        frame = ffi.new("t3r_frame *")
+        frame.format = value_named("format", lib.t3r_pixel_format_name, lib.T3R_PIXEL_FORMAT_COUNT, self.format)
+        kept = [self._put_colour(frame, least_rows)]
+        if self.depth is not None:
+            kept.append(self._put_depth(frame, self.depth, least_rows))
+        return frame, kept
+
+    def _put_colour(self, frame: Any, least_rows: int) -> Any:
         planes = self.colour if isinstance(self.colour, tuple) else (self.colour,)
         if len(planes) != (2 if self.format == "nv12" else 1):
             raise ValueError("colour is a pair of arrays with the format nv12, and one array with any other")
         for i, plane in enumerate(planes):
-            check_plane(f"colour of {self.format}", plane, np.dtype(np.uint8), 2 if i == 1 else _CHANNELS[self.format])
+            channels = 2 if i == 1 else _CHANNELS[self.format]
+            check_plane(f"colour of {self.format}", plane, np.dtype(np.uint8), channels, least_rows)
             frame.planes[i] = address(plane, "const uint8_t *")
             frame.stride_bytes[i] = plane.strides[0]
         frame.height, frame.width = planes[0].shape[:2]
@@ -76,9 +89,9 @@ class Frame:
             raise ValueError(f"the second plane of nv12 has half the sides of the first, not {planes[1].shape}")
         return planes
 
-    def _put_depth(self, frame: Any, depth: "NDArray[Any]") -> Any:
+    def _put_depth(self, frame: Any, depth: "NDArray[Any]", least_rows: int) -> Any:
         steps = _steps(depth, self.depth_unit) if _is_float(depth) else depth
-        check_plane("depth", steps, np.dtype("<u2"), 1)
+        check_plane("depth", steps, np.dtype("<u2"), 1, least_rows)
         frame.depth = address(steps, "const uint8_t *")
         frame.depth_height, frame.depth_width = steps.shape
         frame.depth_stride_bytes = steps.strides[0]
@@ -105,7 +118,7 @@ def _steps(depth: "NDArray[Any]", unit: float) -> "NDArray[np.uint16]":
         return np.where((steps >= 1) & (steps <= _STEPS_MOST), steps, 0).astype("<u2")
 
 
-def check_plane(what: str, array: Any, dtype: "np.dtype[Any]", channels: int) -> None:
+def check_plane(what: str, array: Any, dtype: "np.dtype[Any]", channels: int, least_rows: int = 1) -> None:
     """Raises ValueError unless the array is a picture of that type whose rows have no gaps inside."""
     if not isinstance(array, np.ndarray):
         raise ValueError(f"{what} is a {type(array).__name__}, not an array")
@@ -115,7 +128,7 @@ def check_plane(what: str, array: Any, dtype: "np.dtype[Any]", channels: int) ->
     if array.ndim != (2 if channels == 1 else 3) or (channels > 1 and array.shape[2] != channels):
         raise ValueError(f"{what} has the shape {array.shape}, not {wanted}")
     sides = array.shape[:2]
-    if not all(1 <= side <= lib.T3R_MAX_SIDE for side in sides):
+    if not all(least <= side <= lib.T3R_MAX_SIDE for least, side in zip((least_rows, 1), sides)):
         raise ValueError(f"{what} has the shape {array.shape}: its sides are not 1..{lib.T3R_MAX_SIDE}")
     pixel = channels * dtype.itemsize
     inside = (pixel,) if channels == 1 else (pixel, dtype.itemsize)

@@ -120,6 +120,61 @@ class Reconstructor:
             del kept
             self._points.append(_measured(frame, self._config))
 
+    def add_rows(self, strip: Frame, row: int, height: int, *, depth_row: Optional[int] = None,
+                 depth_height: Optional[int] = None) -> bool:
+        """Takes rows of a context view, as a camera delivers them, so that no frame need be whole in memory.
+
+        Strips come in order, those of colour and those of depth each from row 0 on. They need not keep step: an array
+        without rows, as colour[:0], is none of them. The strip that completes both adds the view, with the bits of
+        add_view(). Pixels are read during this call, where they lie.
+
+        Parameters
+        ----------
+        strip : Frame
+            Its arrays hold the rows from `row` and `depth_row` on; of "nv12" an even number. All else is that of the
+            whole frame, and the same in every strip.
+        row, height : int
+            The first row of colour, and the rows of the whole picture, 2..4096.
+        depth_row, depth_height : int, optional
+            The same of depth. Without them row and height.
+
+        Returns
+        -------
+        bool
+            Whether the view is whole, and was added.
+
+        Raises
+        ------
+        ValueError
+            The arrays or the camera cannot be used, or rows lie beyond the picture. DepthError: there is not one
+            measurement.
+        StateError
+            The strip is out of order, or of another frame than the one before it; what came stays. There is no room for
+            another view, or there is a scene already.
+
+        Notes
+        -----
+        A strip from row 0 of both begins a view. It discards one that came in part, as add_view(), build() and reset()
+        do. `valid_points` is not known until a build.
+        """
+        depth_row = row if depth_row is None else depth_row
+        depth_height = height if depth_height is None else depth_height
+        with self._at_work() as runtime:
+            native, kept = strip.native_strip(height, depth_height)
+            camera = camera_of(strip).native()
+            rows, depth_rows = strip.size[1], 0 if strip.depth is None else strip.depth.shape[0]
+            if not all(0 <= first <= lib.T3R_MAX_SIDE for first in (row, depth_row)):
+                raise ValueError(f"rows are 0..{lib.T3R_MAX_SIDE}, not {row} and {depth_row}")
+            if self._config.warm: # which discards the scene
+                self._go_on()
+            self._check(lib.t3r_add_rows, runtime, native, camera, row, rows, depth_row, depth_rows)
+            del kept
+            stereo = self._config.depth == lib.T3R_DEPTH_STEREO
+            whole = row + rows == height and (stereo or depth_row + depth_rows == depth_height)
+            if whole:
+                self._points.append(None)
+            return whole
+
     def reset(self) -> None:
         """Discards views and scene; the settings stay."""
         with self._at_work() as runtime:
@@ -248,7 +303,8 @@ class Reconstructor:
 
     @property
     def valid_points(self) -> Optional[int]:
-        """Pixels of the views so far with a depth, at the working size. None by stereo: a build finds them."""
+        """Pixels of the views so far with a depth, at the working size. None by stereo and by add_rows(): a build finds
+        them."""
         known = [points for points in self._points if points is not None]
         return sum(known) if len(known) == len(self._points) else None
 
