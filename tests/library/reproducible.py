@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""reproducible.py: two builds of copies of the tree, in folders whose paths differ in length, give the same bytes: the
-static library, the shared one and the heads."""
+"""reproducible.py: two builds of copies of the tree, in folders whose paths differ in length, give the same bytes, debug
+information included: the libraries, the heads, the program, its modules for cameras and the Python package."""
 import os
 import pathlib
 import shutil
@@ -12,15 +12,23 @@ from library import ROOT, ended, there
 from checks import check, done
 
 COPIED = ("CMakeLists.txt", "libraries.cmake", "LICENSE", "runtime", "quant", "platform", "tools", "docs")
-LIBRARIES = ("libtrim3r.a", "libtrim3r.so", "libtrim3r_heads.a")
-# A file that knows where it lies.
-PLANTED = "\nconst char t3r_planted[] = __FILE__;\n"
+MADE = ("libtrim3r*.a", "libtrim3r*.so", "trim3r", "tools/packaging/man1/*", "python/trim3r/*")
+LIBRARIES = {"libtrim3r.a", "libtrim3r.so", "libtrim3r_heads.a"}
+# The compiler's own word for where a file lies, which is told from the tree's top.
+WHERE = "\nconst char t3r_where[] = __FILE__;\n"
+# A program that looks for libraries where it was built.
+RUN_PATH = "\nset_property(TARGET trim3r APPEND PROPERTY INSTALL_RPATH ${CMAKE_BINARY_DIR})\n"
+
+
+def append(path, text):
+    path.write_text(path.read_text() + text)
 
 
 def copy_of(folder):
     for name in COPIED:
         source = ROOT / name
         (shutil.copytree if source.is_dir() else shutil.copyfile)(source, folder / name)
+    append(folder / "runtime" / "core" / "names.c", WHERE)
 
 
 def command(*words):
@@ -32,16 +40,18 @@ def command(*words):
 
 def built(folder):
     """{name: bytes} of what the copy in this folder makes."""
-    command("cmake", "-S", folder, "-B", folder / "build", "-DT3R_TOOLS=OFF", "-DT3R_TESTS=OFF", "-DT3R_SHARED=ON",
-            "-DCMAKE_BUILD_TYPE=Release")
-    command("cmake", "--build", folder / "build", "-j", str(os.cpu_count()), "--target", "trim3r_runtime",
-            "trim3r_shared", "trim3r_heads")
-    return {name: (folder / "build" / name).resolve().read_bytes() for name in LIBRARIES}
+    build = folder / "build"
+    command("cmake", "-S", folder, "-B", build, "-DT3R_TESTS=OFF", "-DT3R_SHARED=ON", "-DCMAKE_BUILD_TYPE=Release",
+            "-DCMAKE_C_FLAGS=-g", "-DCMAKE_CXX_FLAGS=-g")
+    command("cmake", "--build", build, "-j", str(os.cpu_count()))
+    paths = [path for pattern in MADE for path in sorted(build.glob(pattern)) if path.is_file()]
+    return {path.name: path.read_bytes() for path in paths}
 
 
 def differing(folders):
     first, second = (built(folder) for folder in folders)
-    return [name for name in first if first[name] != second[name]]
+    check(LIBRARIES | {"trim3r", "trim3r.1"} <= set(first) == set(second), f"built {sorted(first)} and {sorted(second)}")
+    return {name for name in first if first[name] != second[name]}
 
 
 def main():
@@ -53,11 +63,13 @@ def main():
             place.mkdir(parents=True)
             copy_of(place)
         found = differing(folders)
-        check(found == [], f"{', '.join(found)}: other bytes in another folder")
+        check(found == set(), f"{', '.join(sorted(found))}: other bytes in another folder")
         for place in folders:
-            source = place / "runtime" / "core" / "names.c"
-            source.write_text(source.read_text() + PLANTED)
-        check(differing(folders)[:1] == ["libtrim3r.a"], "blind: a path in the library is not noticed")
+            append(place / "CMakeLists.txt", RUN_PATH)
+        check(differing(folders) == {"trim3r"}, "blind: a run path into the build folder is not noticed")
+        for place in folders:
+            append(place / "runtime" / "core" / "names.c", f'\nconst char t3r_planted[] = "{place}";\n')
+        check({"libtrim3r.a", "libtrim3r.so"} <= differing(folders), "blind: a path in the library is not noticed")
     done()
 
 
