@@ -12,20 +12,23 @@ from checks import check, done, run
 
 VERSION = "0.1.0"
 FILES = {
-    "libtrim3r0.1": ["lib/libtrim3r.so.0.1", f"lib/libtrim3r.so.{VERSION}"],
+    "libtrim3r0.1": ["lib/libtrim3r.so.0.1", f"lib/libtrim3r.so.{VERSION}", "share/sbom/libtrim3r0.1.spdx.json"],
     "libtrim3r-dev": ["include/trim3r.h", "include/trim3r_arena.h", "include/trim3r_features.h", "include/trim3r_heads.h",
                       "include/trim3r_interface.h",
                       "lib/cmake/trim3r/trim3r-config-release.cmake", "lib/cmake/trim3r/trim3r-config-version.cmake",
                       "lib/cmake/trim3r/trim3r-config.cmake", "lib/libtrim3r.a", "lib/libtrim3r.so",
-                      "lib/libtrim3r_heads.a", "lib/pkgconfig/trim3r-heads.pc", "lib/pkgconfig/trim3r.pc"],
+                      "lib/libtrim3r_heads.a", "lib/pkgconfig/trim3r-heads.pc", "lib/pkgconfig/trim3r.pc",
+                      "share/sbom/libtrim3r-dev.spdx.json"],
     "trim3r": ["bin/trim3r", "share/bash-completion/completions/trim3r", "share/fish/vendor_completions.d/trim3r.fish",
-               "share/man/man1/trim3r.1", "share/zsh/site-functions/_trim3r", "share/zsh/vendor-completions/_trim3r"],
+               "share/man/man1/trim3r.1", "share/sbom/trim3r.spdx.json", "share/zsh/site-functions/_trim3r",
+               "share/zsh/vendor-completions/_trim3r"],
 }
 NEEDS = {"libtrim3r0.1": ["libc6"], "libtrim3r-dev": [f"libtrim3r0.1 (= {VERSION})"],
          "trim3r": ["libc6", "libcjson1", "libjpeg", "liblapacke", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
 if any(pathlib.Path(sys.argv[1]).glob("python/trim3r/*.so")): # where the Python package was built
     FILES["python3-trim3r"] = sorted(f"lib/python3/dist-packages/trim3r/{path.name}"
                                      for path in pathlib.Path(sys.argv[1]).glob("python/trim3r/*") if path.is_file())
+    FILES["python3-trim3r"].append("share/sbom/python3-trim3r.spdx.json")
     NEEDS["python3-trim3r"] = ["libc6", "python3-cffi-backend", "python3-numpy", "libzstd1"]
 CAMERAS = "trim3r-cameras" # only where the libraries for them are
 
