@@ -148,6 +148,22 @@ void t3r_hash_wavelet(const t3r_runtime *rt, const t3r_view *views, uint32_t fir
     report(rt, T3R_STAGE_WAVELET, &w);
 }
 
+#define NO_LABEL UINT16_MAX /* of a pixel without depth */
+
+static void write_labels(const t3r_runtime *rt, const t3r_view *view, t3r_hash_writer *w)
+{
+    for (size_t i = 0; i < pixels_of(rt); i += PIXELS) {
+        const uint32_t run = run_at(i, pixels_of(rt));
+        const uint8_t *low = view->label + i, *validity = view->validity + i;
+        uint16_t label[PIXELS];
+        for (uint32_t j = 0; j < run; j++) {
+            const uint16_t there = (uint16_t)t3r_label(low[j], validity[j]);
+            label[j] = t3r_has_depth(validity[j]) ? there : NO_LABEL;
+        }
+        t3r_write_u16s(w, label, run);
+    }
+}
+
 void t3r_hash_superclusters(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
 {
     if (no_hook(rt)) {
@@ -163,7 +179,7 @@ void t3r_hash_superclusters(const t3r_runtime *rt, const t3r_view *views, uint32
         t3r_write_u32(&w, clusters[k].points);
     }
     for (uint32_t v = first; v < end; v++) {
-        t3r_write_u16s(&w, views[v].label, pixels_of(rt));
+        write_labels(rt, &views[v], &w);
     }
     report(rt, T3R_STAGE_SUPERCLUSTERS, &w);
 }

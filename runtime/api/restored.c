@@ -22,18 +22,19 @@ static bool is_depth(const t3r_runtime *rt, const t3r_view *view)
     return true;
 }
 
-/* Whether every point has a SuperCluster's label and no other pixel has; adds up what each label counts. */
+/* Whether every point has a SuperCluster's label; adds up what each label counts. */
 static bool count_labels(const t3r_runtime *rt, const t3r_view *view, uint32_t points[T3R_MAX_CLUSTERS])
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
     for (size_t i = 0; i < pixels; i++) {
-        const uint16_t label = view->label[i];
-        if (t3r_has_depth(view->validity[i]) ? label >= rt->config.clusters : label != T3R_NO_LABEL) {
+        if (!t3r_has_depth(view->validity[i])) {
+            continue;
+        }
+        const uint32_t label = t3r_label_of(view, i);
+        if (label >= rt->config.clusters) {
             return false;
         }
-        if (label != T3R_NO_LABEL) {
-            points[label]++;
-        }
+        points[label]++;
     }
     return true;
 }

@@ -67,8 +67,8 @@ void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clu
     for (uint32_t v = 0; v < count; v++) {
         size_t pixels = (size_t)views[v].width * views[v].height;
         for (size_t i = 0; i < pixels; i++) {
-            if (views[v].label[i] != T3R_NO_LABEL) {
-                sums[views[v].label[i]] += views[v].texture[i];
+            if (t3r_has_depth(views[v].validity[i])) {
+                sums[t3r_label_of(&views[v], i)] += views[v].texture[i];
             }
         }
     }
@@ -335,11 +335,11 @@ static inline grouping grouping_of(const t3r_budget_settings *settings)
 
 static inline uint32_t group_of(const t3r_view *view, size_t pixel, const grouping *groups)
 {
-    const uint32_t label = view->label[pixel];
-    if (label == T3R_NO_LABEL) {
+    const uint8_t validity = view->validity[pixel];
+    if (!t3r_has_depth(validity)) {
         return NO_GROUP;
     }
-    return (view->validity[pixel] & groups->deferring) != 0 ? groups->deferred : label & groups->labels;
+    return (validity & groups->deferring) != 0 ? groups->deferred : t3r_label_of(view, pixel) & groups->labels;
 }
 
 /* Runs a step that counts by group over all views, from 0. */
@@ -515,9 +515,8 @@ static void count_deferred(const t3r_view *views, uint32_t count, const t3r_budg
     for (uint32_t v = 0; v < count; v++) {
         size_t pixels = (size_t)views[v].width * views[v].height;
         for (size_t i = 0; i < pixels; i++) {
-            uint32_t label = views[v].label[i];
-            if (label != T3R_NO_LABEL && t3r_is_deferred(&views[v], i, settings)) {
-                clusters[label].deferred++;
+            if (t3r_has_depth(views[v].validity[i]) && t3r_is_deferred(&views[v], i, settings)) {
+                clusters[t3r_label_of(&views[v], i)].deferred++;
                 all->points++;
             }
         }

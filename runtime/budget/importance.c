@@ -58,7 +58,7 @@ void t3r_count_shares(const t3r_view *views, uint32_t count, t3r_cluster *cluste
         size_t pixels = (size_t)views[v].width * views[v].height;
         for (size_t i = 0; i < pixels; i++) {
             if (t3r_retained(&views[v], i)) { /* only points are, and these have labels */
-                retained[views[v].label[i]]++;
+                retained[t3r_label_of(&views[v], i)]++;
             }
         }
     }
@@ -67,7 +67,7 @@ void t3r_count_shares(const t3r_view *views, uint32_t count, t3r_cluster *cluste
     }
 }
 
-/* The share in the window about a pixel, as far as it lies in the picture: at most 9 rows of 9 labels and two words. */
+/* The share in the window about a pixel, as far as it lies in the picture: at most 9 rows of 9 bytes and two words. */
 static int32_t window_share_q10(const t3r_view *view, uint32_t x, uint32_t y)
 {
     uint32_t x0 = x > HALF ? x - HALF : 0, x1 = T3R_MIN(x + HALF, view->width - 1);
@@ -77,7 +77,7 @@ static int32_t window_share_q10(const t3r_view *view, uint32_t x, uint32_t y)
         size_t first = (size_t)row * view->width + x0;
         retained += count_bits(mask_bits(view->mask, first, x1 - x0 + 1));
         for (uint32_t i = 0; i <= x1 - x0; i++) {
-            valid += view->label[first + i] != T3R_NO_LABEL;
+            valid += t3r_has_depth(view->validity[first + i]);
         }
     }
     return log_share_q10(retained, valid);
@@ -86,6 +86,6 @@ static int32_t window_share_q10(const t3r_view *view, uint32_t x, uint32_t y)
 int32_t t3r_log_share_q10(const t3r_view *view, size_t pixel, const t3r_cluster *clusters)
 {
     int32_t here = window_share_q10(view, (uint32_t)(pixel % view->width), (uint32_t)(pixel / view->width));
-    int32_t more = here - clusters[view->label[pixel]].density_q10; /* than in its SuperCluster */
+    int32_t more = here - clusters[t3r_label_of(view, pixel)].density_q10; /* than in its SuperCluster */
     return here - t3r_clamp32(2 * more - TRUSTED_Q10, 0, T3R_MAX(more, 0));
 }

@@ -32,12 +32,13 @@ void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, i
     for (int c = 0; c < 3; c++) {
         features[c] = (int8_t)(view->colour[c][i] - 128);
     }
-    bool retained = input->unadapted ? view->label[i] != T3R_NO_LABEL : t3r_retained(view, i);
+    const bool has_depth = t3r_has_depth(view->validity[i]);
+    bool retained = input->unadapted ? has_depth : t3r_retained(view, i);
     features[3] = retained ? 127 : 0;
     features[4] = 0;
     features[5] = LOG_DENSITY_NONE;
     features[6] = features[7] = features[8] = 0;
-    if (view->label[i] == T3R_NO_LABEL || (!retained && t3r_is_deferred(view, i, input->settings))) {
+    if (!has_depth || (!retained && t3r_is_deferred(view, i, input->settings))) {
         return; /* a deferred point is not to be covered */
     }
     features[4] = t3r_is_measured(view->validity[i]) ? MEASURED : FILLED;

@@ -266,7 +266,7 @@
     X(with, WAVELET_WORK, "wavelet work",                                                                              \
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_WAVELET_WORK_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape)),       \
       T3R_AT_WAVELET, T3R_AT_WAVELET)                                                                                  \
-    X(with, LABELS, "SuperCluster labels", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_SUPERCLUSTERS,                      \
+    X(with, LABELS, "SuperCluster labels", T3R_ANALYSED_PIXELS_(shape), T3R_AT_SUPERCLUSTERS,                          \
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
     X(with, CLUSTERS, "SuperClusters", T3R_BUILDS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_CLUSTER_BYTES,            \
       T3R_AT_SUPERCLUSTERS, T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                    \

@@ -17,7 +17,7 @@ t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index)
         .validity = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY) + pixels * index,
         .texture = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_TEXTURE) + pixels * plane,
         .key = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_KEYS) + pixels * plane,
-        .label = (uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * plane,
+        .label = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) + pixels * plane,
         .mask = (uint32_t *)t3r_buffer_at(rt, T3R_BUFFER_MASK) + words * plane,
         .fx_q16 = camera->fx_q16,
         .fy_q16 = camera->fy_q16,

@@ -23,8 +23,13 @@ enum t3r_mark {
     T3R_MARK_COVERED = 4,  /* another view has the surface about as finely */
     T3R_MARK_DOUBTFUL = 8, /* contradicted: a flying pixel */
     T3R_MARK_WITNESS = 16, /* covers another view's pixel; only within stage pointmap */
-    T3R_MARK_LENT = 32     /* a bridged pixel whose depth another view measured; only within stage pointmap */
+    T3R_MARK_LENT = 32,    /* a bridged pixel whose depth another view measured; only within stage pointmap */
+    T3R_MARKS = 60         /* all of them */
 };
+
+/* Above the marks: the label is 256 more than its plane says. From stage superclusters on. */
+#define T3R_LABEL_HIGH 64u
+_Static_assert(T3R_MAX_CLUSTERS <= 512, "labels have nine bits");
 
 static inline t3r_depth_source t3r_depth_source_of(uint8_t validity)
 {
@@ -69,7 +74,7 @@ static inline bool t3r_is_lent(uint8_t validity)
 
 static inline bool t3r_is_marked(uint8_t validity)
 {
-    return (validity & ~T3R_DEPTH_SOURCE_BITS) != 0;
+    return (validity & T3R_MARKS) != 0;
 }
 
 /* Measured, and nothing speaks against it. */
@@ -89,6 +94,7 @@ static inline uint8_t t3r_marked(uint8_t validity, enum t3r_mark mark)
     return (uint8_t)(validity | mark);
 }
 
+/* Without marks, and without the label's bit. */
 static inline uint8_t t3r_unmarked(uint8_t validity)
 {
     return validity & T3R_DEPTH_SOURCE_BITS;
@@ -104,19 +110,36 @@ typedef struct t3r_view {
     uint8_t *colour[3]; /* r, g, b */
     uint16_t *depth;    /* steps of depth_unit; 0 = none */
     union {
-        uint8_t *validity;         /* a t3r_depth_source and marks */
+        uint8_t *validity;         /* a t3r_depth_source, marks, and a bit of the label */
         uint8_t *match_confidence; /* the same bytes within stage stereo, until t3r_stereo_marks(): T3R_STEREO_... */
     };
     uint16_t *texture; /* energy_q4; blurred from budget on */
     uint16_t *key;     /* budget only: the smaller, the earlier retained */
-    uint16_t *label;   /* SuperCluster, or T3R_NO_LABEL where there is no depth */
+    uint8_t *label;    /* the lower eight bits of t3r_label_of(); anything where there is no depth */
     uint32_t *mask;    /* bit i of word i / 32: the pixel is retained */
     int32_t fx_q16, fy_q16, cx_q16, cy_q16;
     uint64_t depth_unit_q40;
     t3r_pose pose;
 } t3r_view;
 
-#define T3R_NO_LABEL UINT16_MAX
+/* A sum is an instruction less than bits put together. */
+static inline uint32_t t3r_label(uint8_t low, uint8_t validity)
+{
+    return low + (validity & T3R_LABEL_HIGH) * (256 / T3R_LABEL_HIGH);
+}
+
+/* The SuperCluster of a pixel with depth: a byte, and a bit beside the marks where there are more than 256. */
+static inline uint32_t t3r_label_of(const t3r_view *view, size_t pixel)
+{
+    return t3r_label(view->label[pixel], view->validity[pixel]);
+}
+
+/* Once in an analysis, which takes back what the one before set. */
+static inline void t3r_set_label(const t3r_view *view, size_t pixel, uint32_t label)
+{
+    view->label[pixel] = (uint8_t)label;
+    view->validity[pixel] |= label >= 256 ? T3R_LABEL_HIGH : 0;
+}
 
 static inline bool t3r_retained(const t3r_view *view, size_t pixel)
 {

@@ -83,7 +83,7 @@ static uint32_t key_of(const t3r_map_record *record)
 
 static bool competes(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
-    return view->label[pixel] != T3R_NO_LABEL && !t3r_is_deferred(view, pixel, settings);
+    return t3r_has_depth(view->validity[pixel]) && !t3r_is_deferred(view, pixel, settings);
 }
 
 static uint32_t point_key(const t3r_view *view, size_t pixel)

@@ -7,8 +7,7 @@
 #include "state/views.h"
 #include "superclusters.h"
 
-/* Every pixel with depth becomes its point, 0; others get T3R_NO_LABEL. Nobody asks for its centre, which is 0. Returns
- * how many points it has. */
+/* Every pixel with depth becomes its point. Nobody asks for its centre, which is 0. Returns how many points it has. */
 uint32_t t3r_one_cluster(const t3r_view *views, uint32_t count, t3r_cluster *all);
 
 #endif

@@ -59,6 +59,16 @@ static uint32_t pixel_features(const void *context, const uint32_t *index, uint3
     return valid;
 }
 
+/* Planes of all views lie one behind the other. */
+static void label_pixels(const void *context, uint32_t first, const uint8_t *which, uint32_t count,
+                         const uint16_t *label)
+{
+    const t3r_view first_view = ((const pixel_points *)context)->views[0];
+    for (uint32_t i = 0; i < count; i++) {
+        t3r_set_label(&first_view, first + which[i], label[i]);
+    }
+}
+
 static bool step_clusters(void *context, uint32_t done, uint32_t total)
 {
     return t3r_progress(context, T3R_STAGE_SUPERCLUSTERS, done, total);
@@ -78,7 +88,7 @@ t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
         .colour_scale_q16 = (int32_t)((rt->config.colour_weight_q8 << 19) / 255),
     };
     t3r_pointmaps_of(views, rt->views, rt->frame.exponent, points.maps);
-    t3r_point_source source = {&points, points.pixels * rt->views, pixel_features};
+    t3r_point_source source = {&points, points.pixels * rt->views, pixel_features, label_pixels};
     t3r_cluster_settings settings = {&rt->kernels, rt->config.clusters, rt->config.cluster_batches, rt->config.seed,
                                      rt->reuse.centres != 0};
     const t3r_cluster_host host = {
@@ -91,8 +101,7 @@ t3r_status t3r_cluster_pixels(t3r_runtime *rt, const t3r_view *views)
         memcpy(t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS), t3r_buffer_at(rt, T3R_BUFFER_KEPT_CLUSTERS),
                rt->config.clusters * sizeof(t3r_cluster));
     }
-    uint32_t valid =
-        t3r_superclusters(&source, &settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
-                          t3r_buffer_at(rt, T3R_BUFFER_LABELS), t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_WORK), &host);
+    const uint32_t valid = t3r_superclusters(&source, &settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS),
+                                             t3r_buffer_at(rt, T3R_BUFFER_CLUSTER_WORK), &host);
     return valid == T3R_CLUSTERS_CANCELLED ? T3R_ERR_CANCELLED : T3R_OK;
 }

@@ -47,8 +47,7 @@ typedef struct means_job {
     uint32_t *weight;                   /* points behind a centre so far, held at a bound */
     uint32_t first;                     /* block of the task of index 0 */
     uint32_t batch;                     /* of run_batch() */
-    uint16_t *labels;
-    uint32_t points; /* of the run */
+    uint32_t points;                    /* of the run */
 } means_job;
 
 static cluster_sums cut_sums(t3r_cut *cut, uint32_t clusters)
@@ -216,14 +215,11 @@ static void assign_task(void *context, uint32_t index, uint32_t worker)
         uint8_t which[BLOCK];
         const uint32_t end = T3R_MIN(first + BLOCK, points.end);
         for (uint32_t i = first; i < end; i++) {
-            job->labels[i] = T3R_NO_LABEL;
             place[i - first] = i;
         }
         const uint32_t valid = source->features(source->context, place, end - first, feature, which);
         label_block(job, worker, valid, (const int16_t(*)[T3R_DIMENSIONS])feature, &guess, label);
-        for (uint32_t i = 0; i < valid; i++) {
-            job->labels[first + which[i]] = label[i];
-        }
+        source->label(source->context, first, which, valid, label);
     }
 }
 
@@ -297,13 +293,12 @@ static bool follow_centres(means_job *job, const t3r_cluster_settings *settings,
 }
 
 uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
-                           uint16_t *labels, void *work, const t3r_cluster_host *host)
+                           void *work, const t3r_cluster_host *host)
 {
     const uint32_t batches =
         settings->follows ? (settings->batches + FOLLOW_PART - 1) / FOLLOW_PART : settings->batches;
     const uint32_t total = batches + source->points / T3R_CLUSTER_BATCH;
-    means_job job = {
-        .kernels = settings->kernels, .source = source, .host = host, .count = settings->clusters, .labels = labels};
+    means_job job = {.kernels = settings->kernels, .source = source, .host = host, .count = settings->clusters};
     cut_work(&job, work);
     if (!settings->follows && !place_centres(&job, settings, clusters, total)) {
         return T3R_CLUSTERS_CANCELLED;

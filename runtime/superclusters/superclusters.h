@@ -33,14 +33,16 @@ static inline uint32_t t3r_cluster_batch(uint32_t clusters)
     return T3R_MIN(clusters * T3R_CLUSTER_POINTS, T3R_CLUSTER_BATCH);
 }
 
-/* Where points come from. features() takes up to T3R_POINTS indices below `points` and writes, one behind the other,
- * the six features of those that are valid, Q11 within +-T3R_FEATURE_MOST, and which of the indices they are; it
- * returns how many. A point that is not valid gets T3R_NO_LABEL. */
+/* Where points come from, and where their labels go. features() takes up to T3R_POINTS indices below `points` and
+ * writes, one behind the other, the six features of those that are valid, Q11 within +-T3R_FEATURE_MOST, and which of
+ * the indices they are; it returns how many. label() takes the label of each such point, once; workers call it at the
+ * same time, each with points of its own. */
 typedef struct t3r_point_source {
     const void *context;
     uint32_t points;
     uint32_t (*features)(const void *context, const uint32_t *index, uint32_t count,
                          int16_t feature_q11[][T3R_DIMENSIONS], uint8_t *which);
+    void (*label)(const void *context, uint32_t first, const uint8_t *which, uint32_t count, const uint16_t *label);
 } t3r_point_source;
 
 /* The least density that is noted, 0.003: log2(197 / 65536). */
@@ -79,10 +81,10 @@ static inline bool t3r_cluster_step(const t3r_cluster_host *host, uint32_t done,
     return host->step == NULL || host->step(host->context, done, total);
 }
 
-/* Clusters the source's points: clusters[0..K-1] and a label a point. `work` is T3R_CLUSTER_WORK_BYTES(K), aligned to
- * T3R_ARENA_ALIGN; K is at least 2. Returns the number of valid points, or T3R_CLUSTERS_CANCELLED. */
+/* Clusters the source's points: clusters[0..K-1] and a label a valid point. `work` is T3R_CLUSTER_WORK_BYTES(K),
+ * aligned to T3R_ARENA_ALIGN; K is at least 2. Returns the number of valid points, or T3R_CLUSTERS_CANCELLED. */
 #define T3R_CLUSTERS_CANCELLED UINT32_MAX
 uint32_t t3r_superclusters(const t3r_point_source *source, const t3r_cluster_settings *settings, t3r_cluster *clusters,
-                           uint16_t *labels, void *work, const t3r_cluster_host *host);
+                           void *work, const t3r_cluster_host *host);
 
 #endif

@@ -24,11 +24,12 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
-enum { WIDTH = 40, HEIGHT = 32, BUDGET = 100, CLUSTERS = 5, MOST_DAMAGES = 12, MOST_CALLS = 4, FAR_MM = 1500 };
+enum { WIDTH = 40, HEIGHT = 32, BUDGET = 100, FEW = 5, MANY = 300, MOST_DAMAGES = 12, MOST_CALLS = 4, FAR_MM = 1500 };
 
 /* ---- sound arenas -------------------------------------------------------------------------------- */
 
-typedef enum base { ANALYSED, BY_STEREO, STREAM, SCENE_ONLY, VIEWS_ONLY, BUILT, BASES } base;
+/* ANALYSED_MANY has labels of nine bits. */
+typedef enum base { ANALYSED, BY_STEREO, STREAM, SCENE_ONLY, VIEWS_ONLY, BUILT, ANALYSED_MANY, BASES } base;
 
 typedef struct stored {
     uint8_t *arena;
@@ -39,11 +40,11 @@ static t3r_config config_of(base which)
 {
     t3r_config c = t3r_default_config(WIDTH, HEIGHT, which == SCENE_ONLY ? 0 : 3, 2 * BUDGET);
     c.gaussians = BUDGET;
-    c.clusters = CLUSTERS;
+    c.clusters = which == ANALYSED_MANY ? MANY : FEW;
     c.cluster_batches = 2;
     c.refinements = 1;
     c.workers = 3;
-    c.keep_analysis = which == ANALYSED || which == BY_STEREO;
+    c.keep_analysis = which == ANALYSED || which == BY_STEREO || which == ANALYSED_MANY;
     c.depth = which == BY_STEREO ? T3R_DEPTH_STEREO : T3R_DEPTH_SENSOR;
     c.stream = which == STREAM;
     return c;
@@ -95,7 +96,7 @@ static stored make(base which)
         REQUIRE(show(rt, place) == T3R_OK);
     }
     t3r_scene scene;
-    if (which == ANALYSED || which == BY_STEREO || which == BUILT) {
+    if (which == ANALYSED || which == BY_STEREO || which == BUILT || which == ANALYSED_MANY) {
         REQUIRE(t3r_reconstruct(rt, NULL, &scene) == T3R_OK);
     }
     if (which == SCENE_ONLY) {
@@ -262,16 +263,32 @@ static void damage_depth(t3r_runtime *rt, input *in)
     }
 }
 
+/* Planes lie one behind the other: those of all views as those of one. */
+static t3r_view all_views(const t3r_runtime *rt)
+{
+    return (t3r_view){.validity = t3r_buffer_at(rt, T3R_BUFFER_VALIDITY),
+                      .label = t3r_buffer_at(rt, T3R_BUFFER_LABELS)};
+}
+
+static void change_label(const t3r_view *all, size_t pixel, uint32_t label)
+{
+    all->validity[pixel] &= (uint8_t)~T3R_LABEL_HIGH;
+    t3r_set_label(all, pixel, label);
+}
+
 static void damage_labels(t3r_runtime *rt, input *in)
 {
-    uint16_t *label = t3r_buffer_at(rt, T3R_BUFFER_LABELS), *texture = t3r_buffer_at(rt, T3R_BUFFER_TEXTURE);
+    const t3r_view all = all_views(rt);
+    uint16_t *texture = t3r_buffer_at(rt, T3R_BUFFER_TEXTURE);
+    const uint32_t clusters = rt->config.clusters;
     const uint32_t kind = take8(in), seed = take32(in), every = 1 + take8(in) % 4;
     for (size_t i = 0; has_labels(rt) && i < points_of(rt); i += every) {
         const uint32_t noise = t3r_mix32(seed + (uint32_t)i);
-        label[i] = (uint16_t)(kind & 1   ? noise % CLUSTERS
-                              : kind & 2 ? seed % (CLUSTERS + 1)
-                              : kind & 4 ? T3R_NO_LABEL
-                                         : label[i]);
+        change_label(&all, i,
+                     kind & 1   ? noise % clusters
+                     : kind & 2 ? seed % (clusters + 1)
+                     : kind & 4 ? T3R_MAX_CLUSTERS - 1
+                                : t3r_label_of(&all, i));
         texture[i] = (uint16_t)(kind & 8 ? noise >> 16 : texture[i]);
     }
 }
@@ -279,8 +296,8 @@ static void damage_labels(t3r_runtime *rt, input *in)
 static void damage_clusters(t3r_runtime *rt, input *in)
 {
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
-    const uint32_t kind = below(in, 6), value = take32(in);
-    for (uint32_t k = 0; has_labels(rt) && k < CLUSTERS; k++) {
+    const uint32_t kind = below(in, 6), value = take32(in), count = rt->config.clusters;
+    for (uint32_t k = 0; has_labels(rt) && k < count; k++) {
         switch (kind) {
         case 0:
             clusters[k].points = WIDTH * HEIGHT * 2;
@@ -292,13 +309,13 @@ static void damage_clusters(t3r_runtime *rt, input *in)
             clusters[k].texture_q4 = t3r_mix32(value + k) >> (value & 31);
             break;
         case 3:
-            clusters[k].order = (value & 1 ? CLUSTERS - 1 - k : value) % (CLUSTERS + 1);
+            clusters[k].order = (value & 1 ? count - 1 - k : value) % (count + 1);
             break;
         case 4:
             clusters[k].texture_q4 = value & 0xffff;
             break;
         default:
-            clusters[k].order = clusters[t3r_mix32(value + k) % CLUSTERS].order;
+            clusters[k].order = clusters[t3r_mix32(value + k) % count].order;
             break;
         }
     }
@@ -329,7 +346,7 @@ static void damage_records(t3r_runtime *rt, input *in)
 static void mend(t3r_runtime *rt, uint32_t what)
 {
     uint8_t *validity = t3r_buffer_at(rt, T3R_BUFFER_VALIDITY);
-    uint16_t *depth = t3r_buffer_at(rt, T3R_BUFFER_DEPTH), *label = t3r_buffer_at(rt, T3R_BUFFER_LABELS);
+    uint16_t *depth = t3r_buffer_at(rt, T3R_BUFFER_DEPTH);
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     const size_t points = points_of(rt), viewed = (size_t)WIDTH * HEIGHT * T3R_MIN(rt->views, 3u);
     for (size_t i = 0; what & 1 && i < points; i++) {
@@ -338,20 +355,22 @@ static void mend(t3r_runtime *rt, uint32_t what)
     if (!has_labels(rt)) {
         return;
     }
+    const t3r_view all = all_views(rt);
+    const uint32_t count = rt->config.clusters;
     for (size_t i = 0; what & 2 && i < points; i++) {
-        label[i] = !t3r_has_depth(validity[i]) ? T3R_NO_LABEL : (uint16_t)(label[i] % CLUSTERS);
+        change_label(&all, i, t3r_label_of(&all, i) % count);
     }
-    for (uint32_t k = 0; what & 4 && k < CLUSTERS; k++) {
+    for (uint32_t k = 0; what & 4 && k < count; k++) {
         clusters[k].points = 0;
         clusters[k].texture_q4 &= 0xffff;
     }
     for (size_t i = 0; what & 4 && i < viewed; i++) {
-        if (label[i] < CLUSTERS) {
-            clusters[label[i]].points++;
+        if (t3r_has_depth(validity[i]) && t3r_label_of(&all, i) < count) {
+            clusters[t3r_label_of(&all, i)].points++;
         }
     }
     if (what & 8) {
-        t3r_rank_clusters(clusters, CLUSTERS);
+        t3r_rank_clusters(clusters, count);
     }
 }
 

@@ -117,7 +117,10 @@ typedef struct cloud {
     int16_t (*feature_q11)[ORACLE_DIMENSIONS];
     double *points;      /* the same, what the oracle sees */
     uint32_t hole_every; /* every so many points one is invalid; 0 = none */
+    uint32_t *labels;    /* NO_LABEL until they come */
 } cloud;
+
+#define NO_LABEL UINT32_MAX
 
 static uint32_t cloud_features(const void *context, const uint32_t *index, uint32_t count,
                                int16_t feature_q11[][T3R_DIMENSIONS], uint8_t *which)
@@ -133,12 +136,37 @@ static uint32_t cloud_features(const void *context, const uint32_t *index, uint3
     return valid;
 }
 
+static void cloud_label(const void *context, uint32_t first, const uint8_t *which, uint32_t count,
+                        const uint16_t *label)
+{
+    const cloud *c = context;
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(c->labels[first + which[i]], NO_LABEL);
+        c->labels[first + which[i]] = label[i];
+    }
+}
+
+static t3r_point_source source_of(const cloud *c)
+{
+    memset(c->labels, 0xff, c->count * sizeof *c->labels);
+    return (t3r_point_source){c, c->count, cloud_features, cloud_label};
+}
+
+static void free_cloud(cloud *c)
+{
+    free(c->feature_q11);
+    free(c->points);
+    free(c->labels);
+}
+
 /* `blobs` normal clusters of the given spread, over the cube of +-reach; 0 blobs = uniform */
 static cloud cloud_of(uint32_t count, uint32_t blobs, double reach, double spread, uint64_t seed)
 {
-    cloud c = {count, calloc(count, sizeof *c.feature_q11), calloc(count, ORACLE_DIMENSIONS * sizeof(double)), 0};
+    cloud c = {count, calloc(count, sizeof *c.feature_q11), calloc(count, ORACLE_DIMENSIONS * sizeof(double)), 0,
+               calloc(count, sizeof *c.labels)};
     assert_non_null(c.feature_q11);
     assert_non_null(c.points);
+    assert_non_null(c.labels);
     dice d = {seed};
     double centre[64][ORACLE_DIMENSIONS];
     for (uint32_t b = 0; b < blobs; b++) {
@@ -163,21 +191,21 @@ static cloud cloud_of(uint32_t count, uint32_t blobs, double reach, double sprea
 
 static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
 {
-    const t3r_point_source source = {c, c->count, cloud_features};
+    const t3r_point_source source = source_of(c);
     const t3r_cluster_settings settings = {&t3r_kernels_c, k, 24, 1, false};
     t3r_cluster *clusters = calloc(k, sizeof *clusters);
-    uint16_t *labels = calloc(c->count, sizeof *labels);
     void *work = aligned_alloc(T3R_ARENA_ALIGN, T3R_CLUSTER_WORK_BYTES(k));
-    assert_true(clusters != NULL && labels != NULL && work != NULL);
+    assert_true(clusters != NULL && work != NULL);
     const t3r_cluster_host alone = {.workers = {NULL, 1}};
-    uint32_t valid = t3r_superclusters(&source, &settings, clusters, labels, work, &alone);
+    uint32_t valid = t3r_superclusters(&source, &settings, clusters, work, &alone);
+    const uint32_t *labels = c->labels;
     double *centres = calloc(k, ORACLE_DIMENSIONS * sizeof *centres);
     uint32_t *sizes = calloc(k, sizeof *sizes), *kept_labels = calloc(c->count, sizeof *kept_labels), kept = 0;
     double *kept_points = calloc(c->count, ORACLE_DIMENSIONS * sizeof *kept_points);
     assert_true(centres != NULL && sizes != NULL && kept_labels != NULL && kept_points != NULL);
     for (uint32_t i = 0; i < c->count; i++) {
         if (c->hole_every != 0 && i % c->hole_every == 0) {
-            assert_int_equal(labels[i], T3R_NO_LABEL);
+            assert_int_equal(labels[i], NO_LABEL);
             continue;
         }
         assert_true(labels[i] < k);
@@ -203,14 +231,12 @@ static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
     assert_true(ours <= nearest * 1.01 + ORACLE_DIMENSIONS * ldexp(1, -22));
     assert_true(ours <= converged * allowed + ORACLE_DIMENSIONS * ldexp(1, -22));
     free(clusters);
-    free(labels);
     free(work);
     free(centres);
     free(sizes);
     free(kept_labels);
     free(kept_points);
-    free(c->feature_q11);
-    free(c->points);
+    free_cloud(c);
 }
 
 static void kmeans(void **state)
@@ -238,26 +264,19 @@ static void kmeans(void **state)
  */
 static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *clusters)
 {
-    const t3r_point_source source = {c, c->count, cloud_features};
+    const t3r_point_source source = source_of(c);
     const t3r_cluster_settings settings = {&t3r_kernels_c, k, 24, 1, follows};
     const t3r_cluster_host alone = {.workers = {NULL, 1}};
-    uint16_t *labels = calloc(c->count, sizeof *labels);
     void *work = aligned_alloc(T3R_ARENA_ALIGN, T3R_CLUSTER_WORK_BYTES(k));
     double *centres = calloc(k, ORACLE_DIMENSIONS * sizeof *centres);
-    uint32_t *wide = calloc(c->count, sizeof *wide);
-    assert_true(labels != NULL && work != NULL && centres != NULL && wide != NULL);
-    assert_int_equal(t3r_superclusters(&source, &settings, clusters, labels, work, &alone), c->count);
+    assert_true(work != NULL && centres != NULL);
+    assert_int_equal(t3r_superclusters(&source, &settings, clusters, work, &alone), c->count);
     for (uint32_t i = 0; i < k * ORACLE_DIMENSIONS; i++) {
         centres[i] = ldexp(clusters[i / ORACLE_DIMENSIONS].centre_q19[i % ORACLE_DIMENSIONS], -19);
     }
-    for (uint32_t i = 0; i < c->count; i++) {
-        wide[i] = labels[i];
-    }
-    const double msd = oracle_kmeans_msd(c->points, c->count, centres, wide);
-    free(labels);
+    const double msd = oracle_kmeans_msd(c->points, c->count, centres, c->labels);
     free(work);
     free(centres);
-    free(wide);
     return msd;
 }
 

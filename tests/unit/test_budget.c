@@ -16,8 +16,8 @@ enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 3
 static t3r_group_count counts[T3R_MAX_CLUSTERS + 1];
 static const t3r_budget_work alone = {{NULL, 1}, counts, &t3r_kernels_c};
 
-static uint16_t texture[PIXELS], key[PIXELS], label[PIXELS];
-static uint8_t validity[PIXELS];
+static uint16_t texture[PIXELS], key[PIXELS];
+static uint8_t label[PIXELS], validity[PIXELS];
 static uint32_t mask[WORDS];
 
 static t3r_view made_up_view(t3r_cluster *clusters)
@@ -26,11 +26,9 @@ static t3r_view made_up_view(t3r_cluster *clusters)
     for (uint32_t i = 0; i < PIXELS; i++) {
         uint32_t noise = t3r_mix32(i);
         texture[i] = (uint16_t)(noise % 7 == 0 ? noise >> 18 : (i % SIDE) * 8);
-        label[i] = i % 11 == 0 ? T3R_NO_LABEL : (uint16_t)((i / 64) % (CLUSTERS - 3)); /* three stay empty */
-        validity[i] = label[i] == T3R_NO_LABEL ? T3R_NO_DEPTH : T3R_MEASURED;
-        if (label[i] != T3R_NO_LABEL) {
-            clusters[label[i]].points++;
-        }
+        label[i] = (uint8_t)((i / 64) % (CLUSTERS - 3)); /* three stay empty */
+        validity[i] = i % 11 == 0 ? T3R_NO_DEPTH : T3R_MEASURED;
+        clusters[label[i]].points += validity[i] == T3R_MEASURED;
     }
     return (t3r_view){.width = SIDE,
                       .height = SIDE,
@@ -46,7 +44,7 @@ static uint32_t retained_of(const t3r_view *view)
     uint32_t count = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         if (t3r_retained(view, i)) {
-            assert_int_not_equal(label[i], T3R_NO_LABEL);
+            assert_true(t3r_has_depth(validity[i]));
             count++;
         }
     }
@@ -167,7 +165,7 @@ static void deferred_comes_last(void **state)
     t3r_rank_clusters(clusters, CLUSTERS);
     uint32_t plain = 0, covered = 0, doubtful = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
-        if (label[i] != T3R_NO_LABEL) {
+        if (t3r_has_depth(validity[i])) {
             uint32_t kind = label[i] == 3 ? 1 : t3r_mix32(i + 99) % 8; /* all of one cluster is covered */
             validity[i] = kind == 0  ? T3R_MEASURED | T3R_MARK_DOUBTFUL
                           : kind < 4 ? T3R_MEASURED | T3R_MARK_COVERED

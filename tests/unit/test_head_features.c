@@ -5,8 +5,8 @@
 
 enum { W = 23, H = 17, PIXELS = W * H, CLUSTERS = 3 };
 
-static uint8_t colour[3][PIXELS], validity[PIXELS];
-static uint16_t depth[PIXELS], texture[PIXELS], label[PIXELS];
+static uint8_t colour[3][PIXELS], validity[PIXELS], label[PIXELS];
+static uint16_t depth[PIXELS], texture[PIXELS];
 static uint32_t mask[(PIXELS + 31) / 32];
 static t3r_view view = {.width = W,
                         .height = H,
@@ -40,7 +40,7 @@ static void fill_view(uint64_t seed)
                                                                     : unit_between(&seed, 1, 65535))
                          : 0;
         texture[i] = (uint16_t)(unit_random(&seed) >> unit_between(&seed, 48, 63));
-        label[i] = valid ? (uint16_t)unit_between(&seed, 0, CLUSTERS - 1) : T3R_NO_LABEL;
+        label[i] = valid ? (uint8_t)unit_between(&seed, 0, CLUSTERS - 1) : 255;
         if (valid && unit_between(&seed, 0, 3) == 0) {
             mask[i / 32] |= 1u << i % 32;
         }
@@ -66,11 +66,12 @@ static void check_pixel(const t3r_head_input *input, uint32_t x, uint32_t y, con
     for (int c = 0; c < 3; c++) {
         assert_int_equal(f[c], colour[c][i] - 128);
     }
-    bool retained = input->unadapted ? label[i] != T3R_NO_LABEL : (mask[i / 32] >> i % 32 & 1) != 0;
+    const bool valid = t3r_has_depth(validity[i]);
+    bool retained = input->unadapted ? valid : (mask[i / 32] >> i % 32 & 1) != 0;
     assert_int_equal(f[3], retained ? 127 : 0);
     bool doubtful = (validity[i] & T3R_MARK_DOUBTFUL) != 0, covered = (validity[i] & T3R_MARK_COVERED) != 0;
     bool deferred = doubtful || (covered && settings.pass_over_covered);
-    if (label[i] == T3R_NO_LABEL || (deferred && f[3] == 0)) {
+    if (!valid || (deferred && f[3] == 0)) {
         assert_int_equal(f[5], -70);
         assert_true(f[4] == 0 && f[6] == 0 && f[7] == 0 && f[8] == 0);
         return;

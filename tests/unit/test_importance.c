@@ -31,8 +31,8 @@ enum {
 static t3r_group_count counts[T3R_MAX_CLUSTERS + 1];
 static const t3r_budget_work alone = {{NULL, 1}, counts, &t3r_kernels_c};
 
-static uint16_t texture[VIEWS][PIXELS], key[VIEWS][PIXELS], label[VIEWS][PIXELS];
-static uint8_t validity[VIEWS][PIXELS];
+static uint16_t texture[VIEWS][PIXELS], key[VIEWS][PIXELS];
+static uint8_t label[VIEWS][PIXELS], validity[VIEWS][PIXELS];
 static uint32_t mask[VIEWS][WORDS];
 static uint16_t plane[VIEWS][(W + GAP) * H];
 
@@ -52,7 +52,7 @@ static void make_up(t3r_view views[VIEWS], t3r_cluster clusters[CLUSTERS + 1], u
         for (uint32_t i = 0; i < PIXELS; i++) {
             uint32_t noise = t3r_mix32(i * 2 + v), x = i % W, y = i / W;
             bool hole = noise % 13 == 0 || (x > 40 && y > 30) || (x < 20 && y == 9);
-            label[v][i] = hole ? T3R_NO_LABEL : (uint16_t)(x / 8);
+            label[v][i] = hole ? 255 : (uint8_t)(x / 8);
             validity[v][i] = hole ? T3R_NO_DEPTH : known[noise % 6];
             texture[v][i] = (uint16_t)noise;
             key[v][i] = (uint16_t)(noise >> 16);
@@ -106,7 +106,7 @@ static uint32_t sorted_points(point points[POINTS])
 {
     uint32_t valid = 0;
     for (uint32_t n = 0; n < POINTS; n++) {
-        if (label[n / PIXELS][n % PIXELS] != T3R_NO_LABEL) {
+        if (t3r_has_depth(validity[n / PIXELS][n % PIXELS])) {
             points[valid++] = (point){importance_at(n / PIXELS, n % PIXELS), n};
         }
     }
@@ -158,7 +158,7 @@ static double window_share(const t3r_view *view, int x, int y)
     uint32_t retained = 0, valid = 0;
     for (int j = y - 4; j <= y + 4; j++) {
         for (int i = x - 4; i <= x + 4; i++) {
-            if (i >= 0 && j >= 0 && i < W && j < H && view->label[j * W + i] != T3R_NO_LABEL) {
+            if (i >= 0 && j >= 0 && i < W && j < H && t3r_has_depth(view->validity[j * W + i])) {
                 valid++;
                 retained += view->mask[(j * W + i) / 32] >> ((j * W + i) % 32) & 1;
             }
@@ -182,8 +182,8 @@ static void density_is_counted(void **state)
         t3r_allocate(views, VIEWS, &settings, clusters, &alone);
         uint32_t retained[CLUSTERS] = {0}, points[CLUSTERS] = {0};
         for (uint32_t n = 0; n < POINTS; n++) {
-            uint16_t k = label[n / PIXELS][n % PIXELS];
-            if (k != T3R_NO_LABEL) {
+            if (t3r_has_depth(validity[n / PIXELS][n % PIXELS])) {
+                const uint32_t k = label[n / PIXELS][n % PIXELS];
                 points[k]++;
                 retained[k] += t3r_retained(&views[n / PIXELS], n % PIXELS);
             }
@@ -192,7 +192,7 @@ static void density_is_counted(void **state)
             const t3r_view *view = &views[n / PIXELS];
             const uint32_t i = n % PIXELS, k = view->label[i];
             const int32_t told = t3r_log_density_q10(view, i, &settings, clusters);
-            if (k == T3R_NO_LABEL) {
+            if (!t3r_has_depth(view->validity[i])) {
                 assert_int_equal(told, 0);
                 continue;
             }
@@ -273,14 +273,14 @@ static uint64_t hash_of(const t3r_scene *scene)
     return t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)scene->gaussians, scene->count * sizeof *scene->gaussians);
 }
 
-/* The runtime's own planes and labels: the same reference as above. */
+/* The runtime's own planes: the same reference as above. */
 static void expect_highest(const t3r_runtime *rt, const t3r_scene *scene, uint32_t budget)
 {
     static point points[POINTS];
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
     for (uint32_t v = 0; v < VIEWS; v++) {
-        memcpy(label[v], views[v].label, sizeof label[v]);
+        memcpy(validity[v], views[v].validity, sizeof validity[v]);
     }
     const uint32_t valid = sorted_points(points);
     assert_true(scene->valid_points < valid); /* some were filled: they compete, but add no budget */

@@ -50,11 +50,11 @@ static t3r_camera made_up_camera(void)
                         .rotation_q30 = {1 << 30}};
 }
 
-static t3r_runtime *analysed(t3r_scene *scene)
+static t3r_runtime *analysed_by(uint32_t clusters, t3r_scene *scene)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.keep_analysis = 1;
-    config.clusters = 12;
+    config.clusters = clusters;
     t3r_plan_info plan;
     assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
     assert_true(plan.bytes <= sizeof arena);
@@ -69,6 +69,13 @@ static t3r_runtime *analysed(t3r_scene *scene)
     t3r_hooks hooks = {.progress = cancel};
     assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
     return rt;
+}
+
+enum { FEW = 12, MANY = 300 }; /* labels of eight bits, and of nine */
+
+static t3r_runtime *analysed(t3r_scene *scene)
+{
+    return analysed_by(FEW, scene);
 }
 
 static uint64_t hash_of(const t3r_scene *scene)
@@ -147,7 +154,12 @@ static void wild_median(t3r_runtime *rt)
 }
 static void wild_label(t3r_runtime *rt)
 {
-    *(uint16_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) = 12;
+    *(uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) = FEW;
+}
+/* The ninth bit of one: 256 more than there are, or a count that disagrees. */
+static void other_half(t3r_runtime *rt)
+{
+    *(uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY) ^= T3R_LABEL_HIGH;
 }
 static void wild_cluster(t3r_runtime *rt)
 {
@@ -217,7 +229,7 @@ static void damaged_copies_are_refused(void **state)
     const damage damages[] = {
         no_focal_length, no_depth_unit,        wild_exponent,  wild_median,         wild_label,       wild_cluster,
         greedy_clusters, order_without_an_end, wild_gaussian,  label_without_depth, depth_of_nothing, wild_valid_points,
-        wild_partner,    analysis_of_nothing,  too_many_views, no_budget,           wild_head};
+        wild_partner,    analysis_of_nothing,  too_many_views, no_budget,           wild_head,        other_half};
     t3r_scene scene;
     (void)analysed(&scene);
     uint64_t before = hash_of(&scene);
@@ -234,6 +246,43 @@ static void damaged_copies_are_refused(void **state)
     }
 }
 
+static uint32_t far_labels(const t3r_runtime *rt)
+{
+    const t3r_view view = t3r_view_of(rt, 0);
+    uint32_t count = 0;
+    for (size_t i = 0; i < SIDE * SIDE; i++) {
+        count += t3r_has_depth(view.validity[i]) && t3r_label_of(&view, i) >= 256;
+    }
+    return count;
+}
+
+/* With labels of nine bits a copy goes on as well, a damaged one is refused, and an analysis of the same planes, which
+ * hold the labels of the one before, finds the same. */
+static void many_clusters_are_checked(void **state)
+{
+    (void)state;
+    t3r_scene scene;
+    t3r_runtime *rt = analysed_by(MANY, &scene);
+    const uint64_t before = hash_of(&scene);
+    const uint32_t far = far_labels(rt);
+    assert_true(far > 100);
+    memcpy(copy, arena, arena_bytes);
+    assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_OK);
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
+    assert_true(hash_of(&scene) == before);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    assert_true(hash_of(&scene) == before && far_labels(rt) == far);
+    memcpy(copy, arena, arena_bytes);
+    other_half((t3r_runtime *)(void *)copy);
+    assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_ERR_EPOCH);
+    memcpy(copy, arena, arena_bytes);
+    rt = (t3r_runtime *)(void *)copy;
+    const t3r_view view = t3r_view_of(rt, 0);
+    view.label[0] = MANY - 256; /* 300 */
+    view.validity[0] |= T3R_LABEL_HIGH;
+    assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_ERR_EPOCH);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -241,6 +290,7 @@ int main(void)
         cmocka_unit_test(refused_view_gives_no_stale_scene),
         cmocka_unit_test(empty_depth_is_refused_at_the_door),
         cmocka_unit_test(damaged_copies_are_refused),
+        cmocka_unit_test(many_clusters_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,8 @@ typedef struct site {
     t3r_gaussian gaussians[MOST];
     t3r_map_record records[MOST];
     t3r_map map;
-    uint8_t validity[PIXELS];
-    uint16_t texture[PIXELS], key[PIXELS], label[PIXELS];
+    uint8_t validity[PIXELS], label[PIXELS];
+    uint16_t texture[PIXELS], key[PIXELS];
     t3r_view view;
     t3r_budget_settings settings;
 } site;
@@ -33,7 +33,6 @@ static void fill(site *s, uint64_t *seed, uint32_t key_range)
                                          T3R_MEASURED | T3R_MARK_DOUBTFUL, T3R_NO_DEPTH};
     for (int i = 0; i < PIXELS; i++) {
         s->validity[i] = validities[unit_between(seed, 0, 4)];
-        s->label[i] = s->validity[i] == T3R_NO_DEPTH ? T3R_NO_LABEL : 0;
         s->key[i] =
             (uint16_t)(unit_between(seed, 0, 9) == 0 ? 3 : T3R_MAP_KEY_LEAST + unit_between(seed, 0, key_range));
     }

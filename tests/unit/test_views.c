@@ -35,9 +35,10 @@ static void sources(void **state)
         assert_int_equal(of, t3r_has_depth(validity));
         assert_int_equal(t3r_confidence_of(validity) != 0, t3r_has_depth(validity));
         assert_int_equal(t3r_unmarked(validity), t3r_depth_source_of(validity));
-        assert_int_equal(t3r_is_marked(validity), t3r_unmarked(validity) != validity);
-        assert_int_equal(t3r_is_reliable(validity), validity == T3R_MEASURED);
-        assert_int_equal(t3r_is_known(validity), validity == T3R_MEASURED || validity == T3R_FILLED);
+        const uint8_t found = validity & (T3R_DEPTH_SOURCE_BITS | T3R_MARKS); /* whatever lies above */
+        assert_int_equal(t3r_is_marked(validity), t3r_unmarked(validity) != found);
+        assert_int_equal(t3r_is_reliable(validity), found == T3R_MEASURED);
+        assert_int_equal(t3r_is_known(validity), found == T3R_MEASURED || found == T3R_FILLED);
     }
 }
 
@@ -52,6 +53,30 @@ static void marks(void **state)
             assert_int_equal(t3r_is_doubtful(validity), mark == T3R_MARK_DOUBTFUL);
             assert_int_equal(t3r_is_lent(validity), mark == T3R_MARK_LENT);
             assert_int_equal(t3r_unmarked(validity), source);
+        }
+    }
+}
+
+/* Each label comes back, beside all marks, and leaves them and the neighbours as they were; none is left once marks are
+ * taken back, of whichever kind. */
+static void labels(void **state)
+{
+    (void)state;
+    enum { PIXELS = 3 };
+    for (uint32_t found = T3R_FILLED; found < T3R_LABEL_HIGH; found++) {
+        for (uint32_t label = 0; label < T3R_MAX_CLUSTERS; label++) {
+            uint16_t depth[PIXELS] = {1, 1, 1};
+            uint8_t low[PIXELS] = {0}, validity[PIXELS] = {(uint8_t)found, (uint8_t)found, (uint8_t)found};
+            const t3r_view view = {.width = PIXELS, .height = 1, .depth = depth, .validity = validity, .label = low};
+            t3r_set_label(&view, 1, label);
+            assert_int_equal(t3r_label_of(&view, 1), label);
+            assert_true(t3r_label_of(&view, 0) == 0 && t3r_label_of(&view, 2) == 0);
+            assert_int_equal(validity[1] % T3R_LABEL_HIGH, found);
+            t3r_reset_covered(&view);
+            assert_int_equal(t3r_label_of(&view, 1), label % 256);
+            t3r_set_label(&view, 1, label);
+            t3r_reset_comparison(&view, 1);
+            assert_int_equal(t3r_label_of(&view, 1), label % 256);
         }
     }
 }
@@ -75,6 +100,6 @@ static void reset(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(confidences), cmocka_unit_test(sources),
-                                       cmocka_unit_test(marks), cmocka_unit_test(reset)};
+                                       cmocka_unit_test(marks), cmocka_unit_test(labels), cmocka_unit_test(reset)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

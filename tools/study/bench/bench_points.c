@@ -149,16 +149,24 @@ static uint32_t features_of(const void *context, const uint32_t *index, uint32_t
     return count;
 }
 
+static void note_labels(const void *context, uint32_t first, const uint8_t *which, uint32_t count,
+                        const uint16_t *label)
+{
+    const bench_points *points = context;
+    for (uint32_t i = 0; i < count; i++) {
+        points->labels[first + which[i]] = label[i];
+    }
+}
+
 bool bench_points_cluster(bench_points *points, uint32_t cpu)
 {
     t3r_kernels kernels;
     t3r_kernels_choose(&kernels, cpu);
     t3r_config defaults = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
-    t3r_point_source source = {points, points->count, features_of};
+    t3r_point_source source = {points, points->count, features_of, note_labels};
     t3r_cluster_settings settings = {&kernels, CLUSTERS, BATCHES, defaults.seed, false};
     const t3r_cluster_host alone = {.workers = {NULL, 1}};
-    return t3r_superclusters(&source, &settings, points->clusters, points->labels, points->work, &alone) ==
-           points->count;
+    return t3r_superclusters(&source, &settings, points->clusters, points->work, &alone) == points->count;
 }
 
 double bench_points_mean_squared_distance(const bench_points *points)

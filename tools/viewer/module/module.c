@@ -319,15 +319,28 @@ EXPORT(frame_rgb) const uint8_t *module_frame_rgb(uint32_t frame)
     return frame < module.frames ? module.frame[frame].rgb : NULL;
 }
 
-enum { PLANE_MASK, PLANE_LABEL, PLANE_TEXTURE };
+enum { PLANE_MASK, PLANE_TEXTURE };
 
-/* A plane of an analysed context view: the mask of retained pixels (a bit each, in words), the SuperClusters' labels or
- * the texture (16 bits each). NULL = there is none. */
+/* A plane of an analysed context view: the mask of retained pixels (a bit each, in words) or the texture (16 bits
+ * each). NULL = there is none. */
 EXPORT(plane) const void *module_plane(uint32_t view, uint32_t plane)
 {
     if (!module.runtime->analysed || view >= module.config.views) {
         return NULL;
     }
     const t3r_view planes = t3r_view_of(module.runtime, view);
-    return plane == PLANE_MASK ? (const void *)planes.mask : plane == PLANE_LABEL ? planes.label : planes.texture;
+    return plane == PLANE_MASK ? (const void *)planes.mask : planes.texture;
+}
+
+#define NO_LABEL UINT16_MAX
+
+/* The SuperCluster of each pixel of an analysed context view, NO_LABEL where there is no depth or no analysis. */
+EXPORT(labels) void module_labels(uint32_t view, uint16_t *label)
+{
+    const bool is_analysed = module.runtime->analysed && view < module.config.views;
+    const t3r_view planes = t3r_view_of(module.runtime, is_analysed ? view : 0);
+    for (size_t i = 0; i < (size_t)planes.width * planes.height; i++) {
+        const bool has_label = is_analysed && t3r_has_depth(planes.validity[i]);
+        label[i] = has_label ? (uint16_t)t3r_label_of(&planes, i) : NO_LABEL;
+    }
 }

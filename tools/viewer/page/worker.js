@@ -164,7 +164,8 @@ const painters = {
     };
   },
   clusters(count, frame) {
-    const rgb = recorded(frame), label = shortsAt(runtime.plane(frame, 1), count);
+    const rgb = recorded(frame), label = shortsAt(opened.alpha, count); // no picture is drawn with them
+    runtime.labels(frame, opened.alpha);
     return (out, i, at) => {
       if (label[i] === 65535) return;
       const light = .35 + .65 * (rgb[3 * i] + 2 * rgb[3 * i + 1] + rgb[3 * i + 2]) / 1020;
@@ -173,7 +174,7 @@ const painters = {
     };
   },
   texture(count, frame) {
-    const texture = shortsAt(runtime.plane(frame, 2), count);
+    const texture = shortsAt(runtime.plane(frame, 1), count);
     let least = 65535, most = 0;
     for (const energy of texture) {
       least = Math.min(least, energy);
