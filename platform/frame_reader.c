@@ -8,6 +8,7 @@
 #include "mcap.h"
 #include "mcap_fields.h"
 #include "message_frame.h"
+#include "pixel_layout.h"
 #include "reader_limits.h"
 
 #define MESSAGE_HEAD_BYTES 22u      /* channel, sequence, log time, publish time */
@@ -26,6 +27,7 @@ typedef struct instant {
     bool begun, has_colour, has_pose;
     t3r_frame frame;
     t3r_camera pose;
+    t3r_frame_reader_image colour, depth;
 } instant;
 
 static int fail(t3r_frame_reader *reader, const char *error)
@@ -211,50 +213,47 @@ static int is_depth_image(t3r_frame_reader *reader, const record *data, bool *de
     return in.failed ? fail(reader, "an image message is cut short") : 0;
 }
 
-/* Reads the message whole. */
-static int read_image(t3r_frame_reader *reader, const record *data, uint8_t *room, size_t room_bytes,
-                      t3r_ros_image *image)
+/* Reads the message but its rows. */
+static int read_image(t3r_frame_reader *reader, const record *data, t3r_frame_reader_image *image)
 {
-    if (data->bytes > room_bytes) {
-        return fail(reader, "an image is larger than its buffer");
-    }
-    if (read_at(reader, data->at, room, (size_t)data->bytes) != 0) {
+    const size_t count = data->bytes < sizeof reader->small ? (size_t)data->bytes : sizeof reader->small;
+    if (read_at(reader, data->at, reader->small, count) != 0) {
         return -1;
     }
-    const char *wrong = t3r_ros_read_image(room, (size_t)data->bytes, image);
-    return wrong == NULL ? 0 : fail(reader, wrong);
+    size_t head_bytes;
+    const char *wrong = t3r_ros_read_image_head(reader->small, count, &image->message, &head_bytes);
+    if (wrong != NULL) {
+        return fail(reader, wrong);
+    }
+    image->at = data->at + head_bytes;
+    return image->message.data_bytes <= data->bytes - head_bytes ? 0 : fail(reader, "data is cut short");
 }
 
 static int read_colour(t3r_frame_reader *reader, const record *data, instant *now)
 {
-    t3r_ros_image image;
-    if (read_image(reader, data, reader->colour, reader->colour_room, &image) != 0) {
+    if (read_image(reader, data, &now->colour) != 0) {
         return -1;
     }
-    const char *wrong = t3r_message_colour(&image, &now->frame);
+    const char *wrong = t3r_message_colour_shape(&now->colour.message, &now->frame);
     now->has_colour = wrong == NULL;
     return wrong == NULL ? 0 : fail(reader, wrong);
 }
 
 static int read_depth(t3r_frame_reader *reader, const record *data, instant *now)
 {
-    t3r_ros_image image;
     if (reader->depth == NULL) {
         return 0;
     }
-    if (read_image(reader, data, reader->depth, reader->depth_room, &image) != 0) {
+    t3r_ros_image *message = &now->depth.message;
+    if (read_image(reader, data, &now->depth) != 0) {
         return -1;
     }
-    const char *wrong = t3r_message_depth(&image, &now->frame);
+    const char *wrong = t3r_message_depth(message, &now->frame);
     if (wrong != NULL) {
         return fail(reader, wrong);
     }
+    message->encoding = t3r_text_of(t3r_message_is_metres(message) ? "32FC1" : "16UC1"); /* its own is written over */
     now->frame.depth_unit_q40 = reader->depth_unit_q40;
-    if (now->frame.depth == NULL) { /* its samples become steps where they stand */
-        uint8_t *z16 = reader->depth + (image.data - reader->depth);
-        t3r_message_to_z16(&image, reader->depth_unit_q40, z16);
-        now->frame.depth = z16;
-    }
     return 0;
 }
 
@@ -401,6 +400,9 @@ static int finish(t3r_frame_reader *reader, const instant *now, t3r_capture_fram
     memcpy(frame->camera.position_q32, now->pose.position_q32, sizeof frame->camera.position_q32);
     memcpy(frame->camera.rotation_q30, now->pose.rotation_q30, sizeof frame->camera.rotation_q30);
     reader->frames++;
+    reader->colour_image = now->colour;
+    reader->depth_image = now->depth;
+    reader->format = now->frame.format;
     return 0;
 }
 
@@ -425,7 +427,7 @@ int t3r_frame_reader_open(t3r_frame_reader *reader, const t3r_byte_source *sourc
     return memcmp(magic, T3R_MCAP_MAGIC, sizeof magic) == 0 ? 0 : fail(reader, "this is no MCAP file");
 }
 
-int t3r_frame_reader_next(t3r_frame_reader *reader, t3r_capture_frame *frame)
+int t3r_frame_reader_find(t3r_frame_reader *reader, t3r_capture_frame *frame)
 {
     instant now = {0};
     int status = 0;
@@ -447,4 +449,84 @@ int t3r_frame_reader_next(t3r_frame_reader *reader, t3r_capture_frame *frame)
         return T3R_CAPTURE_FAILED;
     }
     return now.has_colour ? T3R_CAPTURE_FRAME : T3R_CAPTURE_END;
+}
+
+/* ---- rows ---- */
+
+static int check_rows(t3r_frame_reader *reader, const t3r_frame_reader_image *from, uint32_t row, uint32_t rows)
+{
+    const uint32_t height = from->message.height;
+    return row <= height && rows <= height - row ? 0 : fail(reader, "these rows are not in the image");
+}
+
+/* Rows of the source, from one on; NV12 has those of its chroma behind the others. */
+static int read_rows(t3r_frame_reader *reader, const t3r_frame_reader_image *from, uint32_t row, uint32_t rows,
+                     uint8_t *out)
+{
+    const uint64_t step = from->message.step;
+    return rows == 0 ? 0 : read_at(reader, from->at + row * step, out, (size_t)(rows * step));
+}
+
+static int read_colour_rows(t3r_frame_reader *reader, t3r_frame *frame, uint32_t row, uint32_t rows)
+{
+    const t3r_frame_reader_image *from = &reader->colour_image;
+    const uint32_t height = from->message.height;
+    const uint32_t chroma_row = t3r_pixel_rows(reader->format, 1, row),
+                   chroma = t3r_pixel_rows(reader->format, 1, rows);
+    const uint64_t step = from->message.step, chroma_at = rows * step;
+    if (check_rows(reader, from, row, rows) != 0) {
+        return -1;
+    }
+    if ((rows + chroma) * step > reader->colour_room) {
+        return fail(reader, "an image is larger than its buffer");
+    }
+    frame->planes[0] = reader->colour;
+    frame->planes[1] = chroma > 0 ? reader->colour + chroma_at : NULL;
+    return read_rows(reader, from, row, rows, reader->colour) == 0
+               ? read_rows(reader, from, height + chroma_row, chroma, reader->colour + chroma_at)
+               : -1;
+}
+
+/* Samples become steps where they stand. */
+static int read_depth_rows(t3r_frame_reader *reader, t3r_frame *frame, uint32_t row, uint32_t rows)
+{
+    const t3r_frame_reader_image *from = &reader->depth_image;
+    t3r_ros_image part = from->message;
+    if (check_rows(reader, from, row, rows) != 0) {
+        return -1;
+    }
+    if ((uint64_t)rows * part.step > reader->depth_room) {
+        return fail(reader, "an image is larger than its buffer");
+    }
+    if (read_rows(reader, from, row, rows, reader->depth) != 0) {
+        return -1;
+    }
+    if (!t3r_message_is_z16(&part)) {
+        part.height = rows;
+        part.data = reader->depth;
+        t3r_message_to_z16(&part, reader->depth_unit_q40, reader->depth);
+    }
+    frame->depth = reader->depth;
+    return 0;
+}
+
+int t3r_frame_reader_rows(t3r_frame_reader *reader, t3r_frame *frame, uint32_t row, uint32_t rows, uint32_t depth_row,
+                          uint32_t depth_rows)
+{
+    if (reader->error != NULL || read_colour_rows(reader, frame, row, rows) != 0) {
+        return -1;
+    }
+    return reader->depth_image.at == 0 ? 0 : read_depth_rows(reader, frame, depth_row, depth_rows);
+}
+
+int t3r_frame_reader_next(t3r_frame_reader *reader, t3r_capture_frame *frame)
+{
+    const int status = t3r_frame_reader_find(reader, frame);
+    if (status != T3R_CAPTURE_FRAME) {
+        return status;
+    }
+    const t3r_frame *found = &frame->frame;
+    return t3r_frame_reader_rows(reader, &frame->frame, 0, found->height, 0, found->depth_height) == 0
+               ? T3R_CAPTURE_FRAME
+               : T3R_CAPTURE_FAILED;
 }

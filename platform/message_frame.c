@@ -16,17 +16,23 @@ static const char *rows_error(const t3r_ros_image *image, uint32_t row_bytes, ui
     return (uint64_t)image->step * rows > image->data_bytes ? "data hold fewer than step x rows bytes" : NULL;
 }
 
-static bool is_metres(const t3r_ros_image *image)
+bool t3r_message_is_metres(const t3r_ros_image *image)
 {
     return t3r_text_is(image->encoding, "32FC1");
 }
 
-bool t3r_message_is_depth(const t3r_ros_image *image)
+bool t3r_message_is_z16(const t3r_ros_image *image)
 {
-    return is_metres(image) || t3r_text_is(image->encoding, "16UC1") || t3r_text_is(image->encoding, "mono16");
+    return !t3r_message_is_metres(image) && !image->is_bigendian;
 }
 
-const char *t3r_message_colour(const t3r_ros_image *image, t3r_frame *frame)
+bool t3r_message_is_depth(const t3r_ros_image *image)
+{
+    return t3r_message_is_metres(image) || t3r_text_is(image->encoding, "16UC1") ||
+           t3r_text_is(image->encoding, "mono16");
+}
+
+const char *t3r_message_colour_shape(const t3r_ros_image *image, t3r_frame *frame)
 {
     t3r_pixel_format format;
     if (!t3r_pixel_format_of(image->encoding, &format)) {
@@ -43,13 +49,19 @@ const char *t3r_message_colour(const t3r_ros_image *image, t3r_frame *frame)
     frame->format = format;
     frame->width = image->width;
     frame->height = image->height;
-    frame->planes[0] = image->data;
     frame->stride_bytes[0] = image->step;
-    if (format == T3R_PIXEL_NV12) {
-        frame->planes[1] = image->data + (size_t)image->step * image->height;
-        frame->stride_bytes[1] = image->step;
-    }
+    frame->stride_bytes[1] = format == T3R_PIXEL_NV12 ? image->step : 0;
     return NULL;
+}
+
+const char *t3r_message_colour(const t3r_ros_image *image, t3r_frame *frame)
+{
+    const char *wrong = t3r_message_colour_shape(image, frame);
+    if (wrong == NULL) {
+        frame->planes[0] = image->data;
+        frame->planes[1] = frame->stride_bytes[1] != 0 ? image->data + (size_t)image->step * image->height : NULL;
+    }
+    return wrong;
 }
 
 const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame)
@@ -60,11 +72,11 @@ const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame)
     if (image->width < 2 || image->height < 2 || image->width > T3R_MAX_SIDE || image->height > T3R_MAX_SIDE) {
         return "width or height is outside 2..4096";
     }
-    const char *wrong = rows_error(image, image->width * (is_metres(image) ? 4 : 2), image->height);
+    const char *wrong = rows_error(image, image->width * (t3r_message_is_metres(image) ? 4 : 2), image->height);
     if (wrong != NULL) {
         return wrong;
     }
-    const bool steps = !is_metres(image) && !image->is_bigendian;
+    const bool steps = t3r_message_is_z16(image);
     frame->depth_width = image->width;
     frame->depth_height = image->height;
     frame->depth = steps ? image->data : NULL;
@@ -87,7 +99,7 @@ static uint16_t steps_of_metres(uint32_t bits, uint64_t unit_q40)
 
 void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *out)
 {
-    const bool metres = is_metres(image);
+    const bool metres = t3r_message_is_metres(image);
     for (uint32_t y = 0; y < image->height; y++) {
         const uint8_t *row = image->data + (size_t)y * image->step;
         for (uint32_t x = 0; x < image->width; x++, out += 2) { /* what is written was read before */

@@ -9,8 +9,13 @@
 /* Whether the image has an encoding of depth: 16UC1, mono16, 32FC1. */
 bool t3r_message_is_depth(const t3r_ros_image *image);
 
-/* The colour planes of a frame. */
+/* Format, size and strides of the colour planes of a frame; the image needs no data. */
+const char *t3r_message_colour_shape(const t3r_ros_image *image, t3r_frame *frame);
+/* The planes, too. */
 const char *t3r_message_colour(const t3r_ros_image *image, t3r_frame *frame);
+/* Of an image of depth: whether its samples are metres, and whether they are little-endian steps as they stand. */
+bool t3r_message_is_metres(const t3r_ros_image *image);
+bool t3r_message_is_z16(const t3r_ros_image *image);
 /* The depth plane, but for its unit. frame->depth is NULL where the samples are no little-endian steps: of
  * t3r_message_to_z16(), then, with rows of depth_stride_bytes. */
 const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame);

@@ -17,6 +17,7 @@ bool t3r_ros_is_named(t3r_ros_type type, t3r_text name)
 }
 
 static const char *const bad_encapsulation = "the encapsulation is not plain CDR";
+static const char *const data_cut_short = "data is cut short";
 
 static const char *get_header(t3r_cdr_reader *in, t3r_ros_header *header)
 {
@@ -44,7 +45,7 @@ static void get_f64s(t3r_cdr_reader *in, uint64_t *values, uint32_t count)
     }
 }
 
-const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image)
+const char *t3r_ros_read_image_head(const uint8_t *bytes, size_t count, t3r_ros_image *image, size_t *data_at)
 {
     t3r_cdr_reader in;
     const char *wrong = open_message(&in, bytes, count, &image->header);
@@ -59,8 +60,24 @@ const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image
     }
     image->is_bigendian = t3r_cdr_get_u8(&in) != 0;
     image->step = t3r_cdr_get_u32(&in);
-    image->data = t3r_cdr_get_bytes(&in, &image->data_bytes);
-    return in.failed ? "data is cut short" : NULL;
+    image->data = NULL;
+    image->data_bytes = t3r_cdr_get_u32(&in);
+    *data_at = in.at;
+    return in.failed ? data_cut_short : NULL;
+}
+
+const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image)
+{
+    size_t data_at;
+    const char *wrong = t3r_ros_read_image_head(bytes, count, image, &data_at);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    if (image->data_bytes > count - data_at) {
+        return data_cut_short;
+    }
+    image->data = bytes + data_at;
+    return NULL;
 }
 
 const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros_camera_info *info)

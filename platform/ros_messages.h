@@ -81,6 +81,8 @@ typedef struct t3r_ros_pose {
 
 /* NULL, or which field is malformed or cut short. Texts and data point into the message. */
 const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image);
+/* The same of the message's first bytes: all but its data, which is NULL and begins at *data_at. */
+const char *t3r_ros_read_image_head(const uint8_t *bytes, size_t count, t3r_ros_image *image, size_t *data_at);
 const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros_camera_info *info);
 const char *t3r_ros_read_compressed(const uint8_t *bytes, size_t count, t3r_ros_compressed *image);
 /* Of PoseStamped, TransformStamped, Odometry and PoseWithCovarianceStamped, for which t3r_ros_is_pose() holds. */

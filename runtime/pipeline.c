@@ -82,7 +82,7 @@ static void fill_view(void *context, uint32_t index, uint32_t worker)
 
 static t3r_status depth(t3r_runtime *rt, t3r_view *views)
 {
-    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO; /* it fills its own holes */
+    const bool stereo = t3r_is_by_stereo(&rt->config); /* it fills its own holes */
     t3r_status status =
         stereo ? t3r_stereo_views(rt, views) : each_view(rt, views, fill_view, T3R_STAGE_DEPTH, 0, rt->views);
     if (status != T3R_OK) {
@@ -132,7 +132,7 @@ static void bridge_view(void *context, uint32_t index, uint32_t worker)
 static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
 {
     const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
-    const uint32_t radius = rt->config.depth == T3R_DEPTH_STEREO ? 0 : rt->config.bridge_radius;
+    const uint32_t radius = t3r_is_by_stereo(&rt->config) ? 0 : rt->config.bridge_radius;
     for (uint32_t v = 0; v < rt->views && radius > 0; v++) {
         if (!pointmap_step(rt, v)) {
             return T3R_ERR_CANCELLED;
@@ -166,7 +166,7 @@ static t3r_status flying_pixels(t3r_runtime *rt, t3r_view *views)
             return T3R_ERR_CANCELLED;
         }
         if (!t3r_is_reused(rt, v)) {
-            (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, rt->config.depth == T3R_DEPTH_STEREO, &work);
+            (void)t3r_mark_flying(views, rt->views, v, rt->frame.exponent, t3r_is_by_stereo(&rt->config), &work);
         }
     }
     return T3R_OK;
@@ -269,7 +269,7 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     rt->strips = (t3r_strips){0}; /* stages work where its sums are */
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
-    if (rt->config.depth == T3R_DEPTH_STEREO) {
+    if (t3r_is_by_stereo(&rt->config)) {
         t3r_stereo_clear(views, rt->views);
     }
     if (!t3r_is_warm(&rt->config) || !rt->reuse.centres || !t3r_is_in_frame(rt, views)) {

@@ -5,19 +5,20 @@
 
 #include "trim3r.h"
 
-/* The memory of a frame: its pixels, and frames_head_bytes each. */
-typedef struct frames_room {
+/* The memory of a strip: rows of R G B, and as many of depth. */
+typedef struct frames_strip {
     uint8_t *colour, *depth;
-    size_t colour_bytes, depth_bytes;
-} frames_room;
+    uint32_t rows;
+} frames_strip;
 
-/* What a plane takes besides its pixels, in bytes. */
-extern const size_t frames_head_bytes;
+/* Opens a file of frames, colour and depth of each of which are `width` x `height`. */
+void frames_open(const char *path, uint32_t width, uint32_t height, const frames_strip *strip);
 
-/* Opens a file of frames, each of which is `width` x `height`. */
-void frames_open(const char *path, uint32_t width, uint32_t height, const frames_room *room);
-
-/* The next frame with its camera. Its planes lie in the room until the next call. */
+/* The next frame with its camera, but for its planes. */
 void frames_next(t3r_frame *frame, t3r_camera *camera);
+
+/* Rows of it from `row` on, at most those of a strip, which its planes then begin with; they lie there until the next
+ * call. */
+void frames_rows(t3r_frame *frame, uint32_t row, uint32_t rows);
 
 #endif

@@ -1,5 +1,5 @@
-/* The firmware of every board: a recording in; Gaussians, a view and every stage's hash out. Words on the command line,
- * each KEY=NUMBER, say what is built; the defaults are those of t3r_default_config().
+/* The firmware of every board: a recording in, by strips of rows; Gaussians, a view and every stage's hash out. Words
+ * on the command line, each KEY=NUMBER, say what is built; the defaults are those of t3r_default_config().
  *
  *     frames=IN.mcap view=OUT.ppm scene=OUT.t3g width=64 height=64 views=2 gaussians=819 clusters=32
  *     refinements=2 learned=1 hashes=1 plain=0 cpu=T3R_CPU_... arena=BYTES
@@ -9,6 +9,7 @@
 
 #include "core/hash.h"
 #include "frames.h"
+#include "layout/presets.h"
 #include "marks.h"
 #include "options.h"
 #include "ram.h"
@@ -33,16 +34,16 @@ static uint8_t *deal(ram_part *left, size_t bytes)
     uint8_t *dealt = left->begin;
     bytes = (bytes + T3R_ARENA_ALIGN - 1) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
     if ((size_t)(left->end - left->begin) < bytes) {
-        report_failure("the memory lacks this many bytes:", (uint32_t)(bytes - (size_t)(left->end - left->begin)));
+        report_failure("memory lacks this many bytes:", (uint32_t)(bytes - (size_t)(left->end - left->begin)));
     }
     left->begin += bytes;
     return dealt;
 }
 
-static void check(t3r_status status, const char *what)
+static void check(t3r_status status, const char *function)
 {
     if (status != T3R_OK) {
-        report_failure(what, (uint32_t) - (int32_t)status); /* t3r_error_text() would take more than a kilobyte */
+        report_refusal(function, (uint32_t) - (int32_t)status); /* t3r_error_text() would take more than a kilobyte */
     }
 }
 
@@ -116,58 +117,69 @@ static void write_file(const char *path, const char *head, const void *bytes, si
     semihost_close(file);
 }
 
+/* As a camera delivers it: no more than a strip is in memory. */
+static void add_view(t3r_runtime *rt, uint32_t height)
+{
+    t3r_frame frame;
+    t3r_camera camera;
+    frames_next(&frame, &camera);
+    for (uint32_t row = 0; row < height; row += T3R_PRESET_STRIP_ROWS) {
+        const uint32_t rows = height - row < T3R_PRESET_STRIP_ROWS ? height - row : T3R_PRESET_STRIP_ROWS;
+        mark_other();
+        frames_rows(&frame, row, rows);
+        mark_stage(T3R_STAGE_IMAGE);
+        check(t3r_add_rows(rt, &frame, &camera, row, rows, row, rows), "t3r_add_rows");
+    }
+}
+
 int main(void)
 {
     static options o;
     ram_part left = ram_free();
     options_read(&o);
     const size_t pixels = (size_t)o.width * o.height;
-    frames_room room_of_frame = {.colour_bytes = pixels * 3 + frames_head_bytes,
-                                 .depth_bytes = pixels * 2 + frames_head_bytes};
-    room_of_frame.colour = deal(&left, room_of_frame.colour_bytes);
-    room_of_frame.depth = deal(&left, room_of_frame.depth_bytes);
-    frames_open(o.frames, o.width, o.height, &room_of_frame);
+    uint8_t *picture = deal(&left, pixels * 3);
+    const size_t strip_pixels = (size_t)T3R_PRESET_STRIP_ROWS * o.width;
+    uint8_t *strip_room = deal(&left, strip_pixels * 5);
+    const frames_strip strip = {strip_room, strip_room + strip_pixels * 3, T3R_PRESET_STRIP_ROWS};
+    frames_open(o.frames, o.width, o.height, &strip);
 
     const t3r_config config = configure(&o);
     size_t least = 0, most = 0;
-    check(t3r_plan_bytes(&config, &least, &most), "t3r_plan_bytes() returned minus");
+    check(t3r_plan_bytes(&config, &least, &most), "t3r_plan_bytes");
     const size_t room = (size_t)(left.end - left.begin) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
     const size_t bytes = o.arena != 0 ? o.arena : most < room ? most : room;
     if (bytes < least) {
-        report_failure("the arena lacks this many bytes:", (uint32_t)(least - bytes));
+        report_failure("arena lacks this many bytes:", (uint32_t)(least - bytes));
     }
     t3r_runtime *rt;
-    check(t3r_init(&rt, deal(&left, bytes), bytes, &config), "t3r_init() returned minus");
+    check(t3r_init(&rt, deal(&left, bytes), bytes, &config), "t3r_init");
     if (o.plain == 0) {
-        check(choose_kernels(rt, o.cpu), "t3r_set_cpu() returned minus");
+        check(choose_kernels(rt, o.cpu), "t3r_set_cpu");
     }
     static hashes heard;
     const t3r_hooks hooks = {.user = &heard, .progress = on_progress, .stage_hash = o.hashes != 0 ? on_hash : NULL};
-    check(t3r_set_hooks(rt, &hooks), "t3r_set_hooks() returned minus");
+    check(t3r_set_hooks(rt, &hooks), "t3r_set_hooks");
 #ifdef HEAD
     if (o.learned != 0) {
-        check(t3r_bind_head(rt, HEAD, HEAD_BYTES), "t3r_bind_head() returned minus");
+        check(t3r_bind_head(rt, HEAD, HEAD_BYTES), "t3r_bind_head");
     }
 #endif
 
-    t3r_frame frame;
-    t3r_camera camera;
     for (uint32_t view = 0; view < o.views; view++) {
-        mark_other();
-        frames_next(&frame, &camera);
-        mark_stage(T3R_STAGE_IMAGE);
-        check(t3r_add_view(rt, &frame, &camera), "t3r_add_view() returned minus");
+        add_view(rt, o.height);
     }
     t3r_scene scene;
-    check(t3r_reconstruct(rt, NULL, &scene), "t3r_reconstruct() returned minus");
+    check(t3r_reconstruct(rt, NULL, &scene), "t3r_reconstruct");
     mark_other();
     if (o.scene[0] != '\0') {
         write_file(o.scene, "", scene.gaussians, scene.count * sizeof *scene.gaussians);
     }
+    t3r_frame frame;
+    t3r_camera camera;
     frames_next(&frame, &camera);
-    uint8_t *picture = room_of_frame.colour;
     const t3r_target target = {.width = o.width, .height = o.height, .rgb = picture, .rgb_stride_bytes = o.width * 3};
-    check(t3r_render(rt, &camera, &target), "t3r_render() returned minus");
+    check(t3r_render(rt, &camera, &target), "t3r_render");
     mark_other();
     if (o.view[0] != '\0') {
         write_file(o.view, report_ppm_head(o.width, o.height), picture, pixels * 3);

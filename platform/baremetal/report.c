@@ -61,6 +61,13 @@ _Noreturn void report_failure(const char *what, uint32_t value)
     semihost_exit(1);
 }
 
+_Noreturn void report_refusal(const char *function, uint32_t value)
+{
+    char text[NUMBER_BYTES];
+    report_text("error: ", function, "() returned minus ", decimal(value, text));
+    semihost_exit(1);
+}
+
 const char *report_ppm_head(uint32_t width, uint32_t height)
 {
     static char head[LINE_BYTES];

@@ -12,6 +12,8 @@ void report_number(const char *name, uint32_t value);
 void report_hash(const char *name, uint64_t hash);
 /* "error: what 123", and the end of the program. */
 _Noreturn void report_failure(const char *what, uint32_t value);
+/* "error: function() returned minus 123", likewise. */
+_Noreturn void report_refusal(const char *function, uint32_t value);
 /* The head of a PPM of this size: "P6 64 64 255" and a line's end. Valid until the next call. */
 const char *report_ppm_head(uint32_t width, uint32_t height);
 

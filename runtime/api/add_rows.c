@@ -1,44 +1,35 @@
 /* A context view that comes in strips of rows. */
 #include "adding.h"
+#include "core/features.h"
 #include "core/hash.h"
 #include "image/develop.h"
 #include "image/image.h"
 #include "state/state.h"
 
 /* All that must not change from strip to strip: the frame but its planes, and the camera. */
+typedef struct shown_frame {
+    t3r_camera camera;
+    uint64_t depth_unit_q40;
+    uint32_t format, width, height, depth_width, depth_height;
+    uint32_t zero; /* where there would be padding */
+} shown_frame;
+
+_Static_assert(sizeof(t3r_camera) == 14 * sizeof(int32_t) + 3 * sizeof(int64_t) &&
+                   sizeof(shown_frame) == sizeof(t3r_camera) + 4 * sizeof(uint64_t),
+               "no padding, whose bytes may be any");
+
+/* It never leaves the runtime, so that bytes are hashed as they lie. */
 static uint64_t digest_of(const t3r_frame *frame, const t3r_camera *camera)
 {
-    const uint32_t numbers[] = {frame->format,
-                                frame->width,
-                                frame->height,
-                                frame->depth != NULL,
-                                frame->depth_width,
-                                frame->depth_height,
-                                (uint32_t)camera->fx_q16,
-                                (uint32_t)camera->fy_q16,
-                                (uint32_t)camera->cx_q16,
-                                (uint32_t)camera->cy_q16,
-                                camera->distortion};
-    uint64_t hash = t3r_hash_u64(T3R_HASH_START, frame->depth_unit_q40);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        hash = t3r_hash_u32(hash, numbers[i]);
-    }
-    for (int i = 0; i < 5; i++) {
-        hash = t3r_hash_u32(hash, (uint32_t)camera->distortion_q24[i]);
-    }
-    for (int i = 0; i < 3; i++) {
-        hash = t3r_hash_u64(hash, (uint64_t)camera->position_q32[i]);
-    }
-    for (int i = 0; i < 4; i++) {
-        hash = t3r_hash_u32(hash, (uint32_t)camera->rotation_q30[i]);
-    }
-    return hash;
+    const shown_frame shown = {*camera,       frame->depth_unit_q40, frame->format,       frame->width,
+                               frame->height, frame->depth_width,    frame->depth_height, 0};
+    return t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)&shown, sizeof shown);
 }
 
 /* Whether the rows lie within `height`, and with NV12, whose chroma has a row for two, are pairs. */
 static bool are_rows(uint32_t row, uint32_t rows, uint32_t height, uint32_t step)
 {
-    return row <= height && rows <= height - row && row % step == 0 && rows % step == 0;
+    return row <= height && rows <= height - row && (row | rows) % step == 0; /* a step is 1 or 2 */
 }
 
 t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t row, uint32_t rows,
@@ -48,7 +39,7 @@ t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
     const uint32_t slot = t3r_slot_of_next(rt);
     T3R_REFUSE_UNLESS(t3r_takes_view(rt) && slot == rt->views, T3R_ERR_STATE);
     t3r_frame shown = *frame;
-    if (rt->config.depth == T3R_DEPTH_STEREO) {
+    if (t3r_is_by_stereo(&rt->config)) {
         shown.depth = NULL;
         depth_row = depth_rows = 0;
     } else if (frame->depth == NULL) {

@@ -56,7 +56,7 @@ void t3r_begin_view(t3r_runtime *rt)
 
 t3r_status t3r_end_view(t3r_runtime *rt, uint32_t slot, const t3r_camera *undistorted, uint64_t depth_unit_q40)
 {
-    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO, replaces = slot < rt->views;
+    const bool stereo = t3r_is_by_stereo(&rt->config), replaces = slot < rt->views;
     t3r_reuse_no_view(rt, slot);
     if (!stereo && !has_measured_depth(rt, slot)) {
         if (replaces) {
@@ -80,7 +80,7 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
 {
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(t3r_takes_view(rt), T3R_ERR_STATE);
-    const bool stereo = rt->config.depth == T3R_DEPTH_STEREO;
+    const bool stereo = t3r_is_by_stereo(&rt->config);
     const uint32_t slot = t3r_slot_of_next(rt);
     t3r_frame shown = *frame;
     if (stereo) {
@@ -127,7 +127,7 @@ t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera
 
 t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner)
 {
-    const bool known = rt != NULL && rt->config.depth == T3R_DEPTH_STEREO && view < rt->views;
+    const bool known = rt != NULL && t3r_is_by_stereo(&rt->config) && view < rt->views;
     if (partner != NULL) {
         *partner = known ? rt->stereo_partner[view] : view;
     }

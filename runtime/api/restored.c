@@ -3,6 +3,7 @@
 #include "api/checks.h"
 #include "budget/budget.h"
 #include "core/camera.h"
+#include "core/features.h"
 #include "core/scene_frame.h"
 #include "image/image.h"
 #include "superclusters/superclusters.h"
@@ -10,7 +11,7 @@
 /* Whether what counts as a depth is one: stages divide by it. Stereo makes its planes anew in every analysis. */
 static bool is_depth(const t3r_runtime *rt, const t3r_view *view)
 {
-    if (rt->config.depth == T3R_DEPTH_STEREO && !rt->analysed) {
+    if (t3r_is_by_stereo(&rt->config) && !rt->analysed) {
         return true;
     }
     const size_t pixels = T3R_PIXELS_(view->width, view->height);

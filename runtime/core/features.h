@@ -24,6 +24,12 @@ static inline bool t3r_is_warm(const t3r_config *config)
     return T3R_FEATURE_WARM && config->warm != 0;
 }
 
+/* Whether depth is made of the colours; the compiler knows that it is not where stereo is left out. */
+static inline bool t3r_is_by_stereo(const t3r_config *config)
+{
+    return T3R_FEATURE_STEREO && config->depth == T3R_DEPTH_STEREO;
+}
+
 /* What an allocation needs. */
 static inline uint32_t t3r_feature_of_allocation(t3r_allocation allocation)
 {

@@ -2,6 +2,7 @@
 
 #include "core/camera.h"
 #include "core/cut.h"
+#include "core/features.h"
 #include "depth/depth.h"
 #include "image.h"
 #include "state/state.h"
@@ -125,7 +126,7 @@ t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *f
         return status;
     }
     t3r_image_colour_strip(&rt->kernels, frame, view.width, view.height, strip->row, strip->rows, job.colour, job.work);
-    if (frame->depth != NULL) {
+    if (!t3r_is_by_stereo(&rt->config)) {
         t3r_image_depth_strip(frame, view.width, view.height, strip->depth_row, strip->depth_rows, job.depth);
     } else if (strip->ends) {
         t3r_image_depth(frame, view.width, view.height, 0, view.height, job.depth);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""preset.py TRIM3R FOLDER: the settings for 128 KiB of RAM run on a Cortex-M3 whose RAM has exactly so many bytes, with data,
-frames, picture, arena and stack in it, and make the bits of this machine."""
+"""preset.py TRIM3R FOLDER: the settings for 128 KiB of RAM run on a Cortex-M3 whose RAM has exactly so many bytes, with data, a
+strip of a frame, picture, arena and stack in it, and make the bits of this machine. A watchdog is fed in time."""
 import json
 import pathlib
 import re
@@ -19,6 +19,7 @@ from reference import host, recording  # noqa: E402
 
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
 BOARD, PRESET, RAM = "mps2-an385", "128K", 128 << 10
+STRETCH_MOST = 20_000_000
 
 if any(shutil.which(tool) is None for tool in cortex_m.TOOLS):
     skip("no cross compiler or emulator here")
@@ -44,4 +45,8 @@ check(shown is not None, "docs/study/boards.md shows the preset")
 used = sum(int(said[f"{part}_bytes"]) for part in ("data", "memory", "stack"))
 near(used, float(shown[1].replace(",", "")), 0.02 * RAM, "RAM as on the page")
 check(int(said["arena_bytes"]) >= int(said["arena_min_bytes"]), "the arena is no smaller than the least")
+dealt = sum(preset[f"{part}_bytes"] for part in ("strip", "target")) + int(said["arena_bytes"])
+check(int(said["memory_bytes"]) <= dealt + 3 * 64, f"of a frame no more than a strip is in memory: {said}")
+_, longest = cortex_m.count(BOARD, elf, words(path, options), options)
+check(longest <= STRETCH_MOST, f"a watchdog is fed every {STRETCH_MOST:,} instructions: {longest:,}")
 done()

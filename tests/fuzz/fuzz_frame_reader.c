@@ -1,4 +1,4 @@
-/* libFuzzer: recordings from memory by the reader for firmware, every byte of a frame read. */
+/* libFuzzer: recordings from memory by the reader for firmware, every byte of a frame read, by strips of rows. */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { ROOM = 4096 };
+enum { ROOM = 4096, STRIP_ROWS = 8 };
 
 /* Written, so that the reads are not optimised away. */
 extern volatile uint32_t fuzz_frame_reader_sum;
@@ -39,6 +39,29 @@ static void touch(const uint8_t *rows, uint32_t stride, uint32_t row_bytes, uint
     }
 }
 
+static uint32_t rows_from(uint32_t row, uint32_t height)
+{
+    return row >= height ? 0 : height - row < STRIP_ROWS ? height - row : STRIP_ROWS;
+}
+
+static void touch_frame(t3r_frame_reader *reader, t3r_frame *f)
+{
+    for (uint32_t row = 0; row < f->height || row < f->depth_height; row += STRIP_ROWS) {
+        const uint32_t rows = rows_from(row, f->height), depth_rows = rows_from(row, f->depth_height);
+        const uint32_t first = rows > 0 ? row : f->height, depth_first = depth_rows > 0 ? row : f->depth_height;
+        if (t3r_frame_reader_rows(reader, f, first, rows, depth_first, depth_rows) != 0) {
+            return;
+        }
+        for (uint32_t p = 0; p < 2; p++) {
+            touch(f->planes[p], f->stride_bytes[p], t3r_pixel_row_bytes(f->format, f->width),
+                  t3r_pixel_rows(f->format, p, rows));
+        }
+        if (f->depth != NULL) {
+            touch(f->depth, f->depth_stride_bytes, f->depth_width * 2, depth_rows);
+        }
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     /* On the heap, so that the sanitizer sees what lies beyond. */
@@ -48,15 +71,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const t3r_byte_source source = {read_bytes, &from, size};
     t3r_capture_frame frame;
     if (colour != NULL && depth != NULL && t3r_frame_reader_open(&reader, &source, colour, ROOM, depth, ROOM) == 0) {
-        while (t3r_frame_reader_next(&reader, &frame) == T3R_CAPTURE_FRAME) {
-            const t3r_frame *f = &frame.frame;
-            for (uint32_t p = 0; p < 2; p++) {
-                touch(f->planes[p], f->stride_bytes[p], t3r_pixel_row_bytes(f->format, f->width),
-                      t3r_pixel_rows(f->format, p, f->height));
-            }
-            if (f->depth != NULL) {
-                touch(f->depth, f->depth_stride_bytes, f->depth_width * 2, f->depth_height);
-            }
+        while (t3r_frame_reader_find(&reader, &frame) == T3R_CAPTURE_FRAME) {
+            touch_frame(&reader, &frame.frame);
         }
     }
     free(colour);

@@ -40,8 +40,7 @@ int main(int argc, char **argv)
     }
     const uint32_t width = (uint32_t)strtoul(argv[1], NULL, 10), height = (uint32_t)strtoul(argv[2], NULL, 10);
     const size_t pixels = (size_t)width * height;
-    const size_t colour_room = pixels * 3 + T3R_FRAME_READER_HEAD_BYTES;
-    const size_t depth_room = pixels * 2 + T3R_FRAME_READER_HEAD_BYTES;
+    const size_t colour_room = pixels * 3, depth_room = pixels * 2;
     FILE *in = fopen(argv[3], "rb"), *out = fopen(argv[4], "wb");
     uint8_t *colour = malloc(colour_room), *depth = malloc(depth_room);
     if (in == NULL || out == NULL || colour == NULL || depth == NULL || fseek(in, 0, SEEK_END) != 0) {
