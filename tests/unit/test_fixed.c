@@ -107,6 +107,30 @@ static void shifts(void **state)
     }
 }
 
+/* In 64 bits: halves, and their neighbours, up to the largest that a shift allows. */
+static void wide_shifts(void **state)
+{
+    (void)state;
+    for (uint32_t shift = 1; shift <= 62; shift++) {
+        const int64_t half = INT64_C(1) << (shift - 1), most = (INT64_MAX - half) >> shift;
+        for (int64_t whole = most; whole >= -most; whole = whole > 0 ? whole / 3 - 1 : whole * 3 - 1) {
+            const int64_t x = whole * 2 * half;
+            assert_int_equal(t3r_round_shift64(x, shift), whole);
+            assert_int_equal(t3r_round_shift64(x + half - 1, shift), whole);
+            assert_int_equal(t3r_round_shift64(x - half, shift), whole);
+            assert_int_equal(t3r_round_shift64(x - half - 1, shift), whole - 1);
+            assert_int_equal(t3r_scale64(x - half - 1, -(int32_t)shift), whole - 1);
+            assert_int_equal(t3r_scale64(whole, (int32_t)shift), x);
+        }
+    }
+    assert_int_equal(t3r_scale64(7, 0), 7);
+    for (int32_t shift = 63; shift <= 66; shift++) {
+        assert_int_equal(t3r_scale64(INT64_C(1) << 62, -shift), 0);
+        assert_int_equal(t3r_scale64(INT64_MIN, -shift), 0);
+    }
+    assert_int_equal(t3r_scale64(INT64_C(1) << 61, -62), 1);
+}
+
 /* In 32 bits, at the edges of the numbers and of the shifts. */
 static void shifts_of_extremes(void **state)
 {
@@ -120,6 +144,43 @@ static void shifts_of_extremes(void **state)
             const uint64_t exact = (uint64_t)(int64_t)edges[i] << shift;
             assert_int_equal(t3r_scale32(edges[i], shift), (int32_t)(uint32_t)exact);
         }
+    }
+}
+
+static void sizes_and_clamps(void **state)
+{
+    (void)state;
+    for (int32_t x = -20; x <= 20; x++) {
+        assert_int_equal(t3r_abs32(x), abs(x));
+        assert_int_equal(t3r_abs64(x), abs(x));
+        for (int32_t low = -3; low <= 3; low++) {
+            for (int32_t high = low; high <= 3; high++) {
+                const int32_t held = T3R_MAX(low, T3R_MIN(x, high));
+                assert_int_equal(t3r_clamp32(x, low, high), held);
+                assert_int_equal(t3r_clamp64(x, low, high), held);
+            }
+        }
+    }
+    assert_int_equal(t3r_abs32(-INT32_MAX), INT32_MAX);
+    assert_int_equal(t3r_abs64(-INT64_MAX), INT64_MAX);
+    assert_int_equal(t3r_clamp64(INT64_MIN, INT32_MIN, INT32_MAX), INT32_MIN);
+    assert_int_equal(t3r_clamp64(INT64_MAX, INT32_MIN, INT32_MAX), INT32_MAX);
+}
+
+/* By another implementation of the mixing. */
+static void mixing(void **state)
+{
+    (void)state;
+    static const uint32_t mixed[][2] = {{0, 0},
+                                        {1, 0x688990c0},
+                                        {2, 0xd1132181},
+                                        {3, 0x53f1e9dd},
+                                        {1u << 16, 0xdcafae10},
+                                        {1u << 31, 0xcc4b4124},
+                                        {UINT32_MAX, 0x6768824a},
+                                        {0x12345678, 0xf5e71c96}};
+    for (size_t i = 0; i < sizeof mixed / sizeof *mixed; i++) {
+        assert_int_equal(t3r_mix32(mixed[i][0]), mixed[i][1]);
     }
 }
 
@@ -145,6 +206,7 @@ static void divisor(void **state)
         const uint32_t d = turn % 4 == 0 ? most : (uint32_t)unit_between(&seed, 1, most);
         const uint32_t limit = turn % 2 == 0 ? 4 : 16;
         const t3r_divisor by = t3r_divisor_of(d);
+        assert_true(by.reciprocal >> 31 == 1); /* as accurate as it can be */
         const int64_t largest = T3R_MIN((int64_t)limit * d + 2, UINT32_MAX);
         const int64_t k = unit_between(&seed, 0, (int64_t)limit << 25); /* half steps */
         const int64_t x = turn % 3 == 0 ? unit_between(&seed, -largest, largest)
@@ -159,9 +221,10 @@ static void divisor(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(square_root),   cmocka_unit_test(logarithm),
-                                       cmocka_unit_test(power),         cmocka_unit_test(division),
-                                       cmocka_unit_test(shifts),        cmocka_unit_test(shifts_of_extremes),
-                                       cmocka_unit_test(small_product), cmocka_unit_test(divisor)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(square_root),        cmocka_unit_test(logarithm),        cmocka_unit_test(power),
+        cmocka_unit_test(division),           cmocka_unit_test(shifts),           cmocka_unit_test(wide_shifts),
+        cmocka_unit_test(shifts_of_extremes), cmocka_unit_test(sizes_and_clamps), cmocka_unit_test(mixing),
+        cmocka_unit_test(small_product),      cmocka_unit_test(divisor)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
