@@ -2,9 +2,11 @@
 """check_pages.py TRIM3R: what the pages say in words.
 
 Every command stands in a shell block that runs, or that says why it does not. Options, names of the interface and links
-exist. A sentence has at most 35 words, the README at most 200 lines. Copied figures are those of their source.
+exist. A sentence has at most 35 words, the README at most 200 lines. Copied figures are those of their source, and the bits
+epoch is that of trim3r.h.
 """
 import pathlib
+import re
 import sys
 
 from figures import figures
@@ -47,7 +49,14 @@ def check(page, text, program):
 
 def check_words(page, text):
     name = page.relative_to(ROOT)
-    return [*links(page, text), *sentences(name, text), *markers(name, text)]
+    return [*links(page, text), *sentences(name, text), *markers(name, text), *epochs(name, text)]
+
+
+def epochs(name, text):
+    now = re.search(r"#define T3R_BITS_EPOCH (\d+)", (ROOT / "runtime" / "include" / "trim3r.h").read_text())[1]
+    for said in re.findall(r"`T3R_BITS_EPOCH`, now (\d+)", text):
+        if said != now:
+            yield f"{name}: T3R_BITS_EPOCH is {now}, not {said}"
 
 
 OFFENCES = {
@@ -63,6 +72,7 @@ OFFENCES = {
     " ".join(["word"] * 36) + ".": "36 words",
     "a\n+ b": "like a list",
     "a\n2) b": "like a list",
+    "The epoch (`T3R_BITS_EPOCH`, now 1).": "T3R_BITS_EPOCH is",
 }
 SOURCE = "| a | 27.88 / 0.831 / 0.1 | 27.73 / 0.830 / 0.2 | 27.68 / 0.834 / 0.3 |\n"
 ROWS = {  # how many findings
