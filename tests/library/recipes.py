@@ -138,7 +138,7 @@ def port_findings(port, folder):
 
 # --- Yocto -----------------------------------------------------------------------------------------------------------
 
-LINE = re.compile(r'(?:#.*|inherit [a-z ]+|([A-Z_]+(?:\[\w+\])?) (?:=|\?=|\?\?=) "([^"]*)")?')
+LINE = re.compile(r'(?:#.*|inherit [a-z ]+|([A-Z_]+(?:\[\w+\]|:\$\{PN\})?) (?:=|\?=|\?\?=|\+=) "([^"]*)")?')
 
 
 def yocto_findings(text):
@@ -158,6 +158,7 @@ def yocto_findings(text):
         ("a feature without its switch", not all(
             values.get(f"PACKAGECONFIG[{name}]") == f"-DT3R_WITH_{name.upper()}=ON,-DT3R_WITH_{name.upper()}=OFF"
             for name in FEATURES)),
+        ("the bills of materials go into no package", values.get("FILES:${PN}") != "${datadir}/sbom"),
         ("no summary", not values.get("SUMMARY"))) if bad]
 
 
@@ -173,6 +174,7 @@ def main():
     check(conan_findings(conan.replace("def build(self):", "def build(self)")), "blind: Conan's recipe does not parse")
     check(manifest_findings(manifest.replace('"supports"', '"support"', 1)), "blind: vcpkg's manifest with a wrong key")
     check(yocto_findings(yocto.replace("md5=", "md5=0")), "blind: another licence")
+    check(yocto_findings(yocto.replace("/sbom", "/some")), "blind: bills in no package")
     check(yocto_findings(yocto + "oops\n"), "blind: a line that is none")
     findings = [*conan_findings(conan), *manifest_findings(manifest), *yocto_findings(yocto)]
     with tempfile.TemporaryDirectory(prefix="trim3r-recipes-") as folder:

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """reproducible.py: two builds of copies of the tree, in folders whose paths differ in length, give the same bytes, debug
-information included: the libraries, the heads, the program, its modules for cameras and the Python package."""
+information included: the libraries, the heads, the program, its modules for cameras, the Python package, man pages and
+bills of materials."""
 import os
 import pathlib
 import shutil
@@ -12,7 +13,8 @@ from library import ROOT, ended, there
 from checks import check, done
 
 COPIED = ("CMakeLists.txt", "libraries.cmake", "LICENSE", "runtime", "quant", "platform", "tools", "docs")
-MADE = ("libtrim3r*.a", "libtrim3r*.so", "trim3r", "tools/packaging/man1/*", "python/trim3r/*")
+MADE = ("libtrim3r*.a", "libtrim3r*.so", "trim3r", "tools/packaging/man1/*", "tools/packaging/*.spdx.json",
+        "python/trim3r/*")
 LIBRARIES = {"libtrim3r.a", "libtrim3r.so", "libtrim3r_heads.a"}
 # The compiler's own word for where a file lies, which is told from the tree's top.
 WHERE = "\nconst char t3r_where[] = __FILE__;\n"
