@@ -179,7 +179,7 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
             rt->gain_q14[v][c] = T3R_GAIN_ONE_Q14;
         }
     }
-    if (rt->config.exposure) {
+    if (rt->config.exposure != 0) {
         if (!pointmap_step(rt, 4 * rt->views)) {
             return T3R_ERR_CANCELLED;
         }
@@ -255,7 +255,7 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
     t3r_hash_superclusters(rt, views, 0, rt->views);
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     t3r_cluster_texture(views, rt->views, clusters, rt->config.clusters);
-    if (rt->ablation.shuffle) {
+    if (rt->ablation.shuffle != 0) {
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);

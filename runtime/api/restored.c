@@ -106,7 +106,7 @@ static bool is_reuse(const t3r_runtime *rt)
 /* Whether views take slots as adding them one after the other does. */
 static bool is_slot(const t3r_runtime *rt)
 {
-    if (rt->config.stream) {
+    if (rt->config.stream != 0) {
         return is_stream(rt);
     }
     return rt->next_slot == 0 || (rt->config.warm && rt->views == rt->config.views && rt->next_slot < rt->views);

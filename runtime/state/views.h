@@ -11,10 +11,10 @@
 
 /* Where a pixel's depth comes from: the two low bits of the validity plane. */
 typedef enum t3r_depth_source {
-    T3R_NO_DEPTH, /* all bits are 0 */
-    T3R_FILLED,   /* a small hole's, from the measured pixels around it (depth.h, stereo_fill.h) */
-    T3R_BRIDGED,  /* a wide hole's (bridge.h): made anew by every analysis */
-    T3R_MEASURED, /* the sensor's, or matched by stereo */
+    T3R_NO_DEPTH,     /* all bits are 0 */
+    T3R_FILLED,       /* a small hole's, from the measured pixels around it (depth.h, stereo_fill.h) */
+    T3R_BRIDGED,      /* a wide hole's (bridge.h): made anew by every analysis */
+    T3R_MEASURED = 3, /* the sensor's, or matched by stereo */
     T3R_DEPTH_SOURCE_BITS = 3
 } t3r_depth_source;
 

@@ -155,7 +155,7 @@ static t3r_status compare_keyframes(t3r_runtime *rt, const t3r_view *views, uint
         /* slot < T3R_MAX_VIEWS = 16. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
         (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent, ~(1u << slot), &work);
     }
-    if (rt->config.flying) {
+    if (rt->config.flying != 0) {
         (void)t3r_mark_flying(views, rt->views, slot, rt->frame.exponent, false, &work);
     }
     if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 1, 2)) {
