@@ -150,7 +150,7 @@ int main(void)
     const size_t room = (size_t)(left.end - left.begin) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN;
     const size_t bytes = o.arena != 0 ? o.arena : most < room ? most : room;
     if (bytes < least) {
-        report_failure("arena lacks this many bytes:", (uint32_t)(least - bytes));
+        report_failure("memory lacks this many bytes:", (uint32_t)(least - bytes));
     }
     t3r_runtime *rt;
     check(t3r_init(&rt, deal(&left, bytes), bytes, &config), "t3r_init");

@@ -97,6 +97,6 @@ void options_read(options *o)
         word = next;
     }
     if (o->frames[0] == '\0' || o->width == 0 || o->height == 0 || o->views == 0 || o->gaussians == 0) {
-        refuse("command line", "frames=, width=, height=, views=, gaussians= are needed");
+        refuse("command line", "frames=, width=, height=, views= and gaussians= are needed");
     }
 }

@@ -26,7 +26,7 @@ uint32_t t3r_slot_of_next(const t3r_runtime *rt)
 
 bool t3r_takes_view(const t3r_runtime *rt)
 {
-    return !rt->config.stream &&
+    return !t3r_is_stream(&rt->config) &&
            (t3r_is_warm(&rt->config) ? rt->config.views > 0 : rt->views < rt->config.views && !rt->has_scene);
 }
 

@@ -81,7 +81,7 @@ static bool can_be_built(const t3r_runtime *rt, const build_order *order)
 
 static bool has_views(const t3r_runtime *rt)
 {
-    return !rt->config.stream && rt->views >= (t3r_is_by_stereo(&rt->config) ? 2u : 1u);
+    return !t3r_is_stream(&rt->config) && rt->views >= (t3r_is_by_stereo(&rt->config) ? 2u : 1u);
 }
 
 static t3r_status build(t3r_runtime *rt, build_order *order, t3r_scene *scene)

@@ -86,7 +86,7 @@ static bool is_stream(const t3r_runtime *rt)
 static bool is_reuse(const t3r_runtime *rt)
 {
     const t3r_reuse *reuse = &rt->reuse;
-    if (!rt->config.warm || rt->config.stream || !reuse->centres) {
+    if (!rt->config.warm || t3r_is_stream(&rt->config) || !reuse->centres) {
         return reuse->views == 0 && reuse->centres == 0;
     }
     if (reuse->views >> rt->views != 0) {
@@ -106,7 +106,7 @@ static bool is_reuse(const t3r_runtime *rt)
 /* Whether views take slots as adding them one after the other does. */
 static bool is_slot(const t3r_runtime *rt)
 {
-    if (rt->config.stream != 0) {
+    if (t3r_is_stream(&rt->config)) {
         return is_stream(rt);
     }
     return rt->next_slot == 0 || (rt->config.warm && rt->views == rt->config.views && rt->next_slot < rt->views);

@@ -1,5 +1,6 @@
 /* The scene in the arena: read, or written by whoever has one from a file. A render is checked in raster/raster.c. */
 #include "api/checks.h"
+#include "core/features.h"
 #include "layout/arena.h"
 #include "state/state.h"
 
@@ -22,7 +23,7 @@ t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame)
     if (!t3r_is_scene_frame(frame)) {
         return T3R_ERR_ARGUMENT;
     }
-    T3R_REFUSE_UNLESS(!rt->config.stream, T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(!t3r_is_stream(&rt->config), T3R_ERR_STATE);
     (void)t3r_reset(rt);
     rt->frame = *frame;
     rt->has_scene = 1;
@@ -35,7 +36,7 @@ t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian)
     if (!t3r_is_gaussian(gaussian)) {
         return T3R_ERR_ARGUMENT;
     }
-    T3R_REFUSE_UNLESS(rt->has_scene && !rt->config.stream, T3R_ERR_STATE);
+    T3R_REFUSE_UNLESS(rt->has_scene && !t3r_is_stream(&rt->config), T3R_ERR_STATE);
     if (rt->gaussians >= rt->config.max_gaussians) {
         return T3R_ERR_FULL;
     }

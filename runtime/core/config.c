@@ -58,7 +58,7 @@ uint32_t t3r_cluster_count(const t3r_config *c)
     if (c->clusters != 0) {
         return c->clusters;
     }
-    if (c->stream != 0) {
+    if (t3r_is_stream(c)) {
         return 1;
     }
     switch (c->allocation) {

@@ -30,6 +30,12 @@ static inline bool t3r_is_by_stereo(const t3r_config *config)
     return T3R_FEATURE_STEREO && config->depth == T3R_DEPTH_STEREO;
 }
 
+/* Whether a map follows a camera, likewise. */
+static inline bool t3r_is_stream(const t3r_config *config)
+{
+    return T3R_FEATURE_STREAMS && config->stream != 0;
+}
+
 /* What an allocation needs. */
 static inline uint32_t t3r_feature_of_allocation(t3r_allocation allocation)
 {

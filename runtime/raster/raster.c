@@ -144,7 +144,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     if (status != T3R_OK) {
         return status;
     }
-    if (!rt->config.keep_analysis && !rt->config.stream) {
+    if (!rt->config.keep_analysis && !t3r_is_stream(&rt->config)) {
         rt->analysed = 0; /* the raster's buffers lie where labels and clusters were */
         rt->views = t3r_is_warm(&rt->config) ? rt->views : 0; /* and, but with `warm`, the planes */
     }

@@ -57,10 +57,13 @@ static void set_axes(const t3r_projection *projection, const t3r_gaussian *g, co
 
 /* One view on its way: what all its bands share. */
 typedef struct view_job {
+    const t3r_runtime *rt;
     const t3r_refine_layout *work;
     const t3r_refine_view *view;
     const t3r_binning *bin;
     uint32_t done, total; /* for the progress hook */
+    uint32_t again;       /* splats drawn again since it was asked */
+    bool stopped;         /* it wanted no more */
     uint32_t begin, end;  /* tiles of the pass: the first one's list starts at 0 */
     uint32_t next;        /* tile that is not in a chunk yet */
     uint32_t count;       /* bands of this chunk */
@@ -68,7 +71,8 @@ typedef struct view_job {
 } view_job;
 
 /* Tiles between two looks at the progress hook, and splats in their lists. One worker looks more often: a pair of a
- * tile and a splat takes some 30,000 instructions of plain C, and to hand out bands costs it nothing. */
+ * tile and a splat takes some 30,000 instructions of plain C, and to hand out bands costs it nothing. Where little is
+ * kept of a tile's splats, it looks within a tile, too. */
 #define TILES_A_CHUNK 256u
 #define SPLATS_A_CHUNK 65536u
 #define SPLATS_ALONE 256u
@@ -85,18 +89,34 @@ static uint32_t list_begin(const view_job *job, uint32_t tile)
     return tile == job->begin ? 0 : job->bin->table[tile - 1];
 }
 
+/* Whether the hook wants more. */
+static bool ask(view_job *job)
+{
+    job->again = 0;
+    job->stopped = job->stopped || !t3r_progress(job->rt, T3R_STAGE_REFINE, job->done, job->total);
+    return !job->stopped;
+}
+
+static bool draws_again(void *context, uint32_t splats)
+{
+    view_job *job = context;
+    const t3r_workers workers = t3r_workers_of(job->rt);
+    if (t3r_is_parallel(&workers)) {
+        return true; /* hooks are called by one alone */
+    }
+    job->again += splats;
+    return job->again <= SPLATS_ALONE || ask(job);
+}
+
 /* Cuts the next tiles into bands, and fills their lists first where they are in no pass yet. No bands: all tiles are
  * done. False: the progress hook wants no more. */
-static bool next_chunk(const t3r_runtime *rt, view_job *job)
+static bool next_chunk(view_job *job)
 {
-    const t3r_workers workers = t3r_workers_of(rt);
+    const t3r_workers workers = t3r_workers_of(job->rt);
     const t3r_binning *bin = job->bin;
     job->count = 0;
-    if (job->next == bin->tiles) {
-        return true;
-    }
-    if (!t3r_progress(rt, T3R_STAGE_REFINE, job->done, job->total)) {
-        return false;
+    if (job->next == bin->tiles || !ask(job)) {
+        return !job->stopped;
     }
     if (job->next == job->end) {
         job->begin = job->end;
@@ -115,10 +135,12 @@ static bool next_chunk(const t3r_runtime *rt, view_job *job)
 static void accumulate_band(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker; /* a band has room of its own, and there are no more bands than workers */
-    const view_job *job = context;
+    view_job *job = context;
     const t3r_binning *bin = job->bin;
     const t3r_refine_band *band = &job->bands[index];
     t3r_refine_view view = *job->view;
+    view.goes_on = draws_again;
+    view.context = job;
     view.bands = job->bands;
     view.band = index;
     view.wanted = wanted_of(job->work, index);
@@ -161,9 +183,9 @@ static bool add_error_of(const t3r_runtime *rt, const t3r_refine_layout *w, cons
         .kept_words = w->kept_words,
         .gain_q14 = rt->gain_q14[v],
     };
-    error_job to = {.job = {.work = w, .view = &view, .bin = &bin, .done = v, .total = rt->views}};
-    bool goes_on = next_chunk(rt, &to.job);
-    for (; goes_on && to.job.count > 0; goes_on = next_chunk(rt, &to.job)) {
+    error_job to = {.job = {.rt = rt, .work = w, .view = &view, .bin = &bin, .done = v, .total = rt->views}};
+    bool goes_on = next_chunk(&to.job);
+    for (; goes_on && to.job.count > 0; goes_on = next_chunk(&to.job)) {
         t3r_run_tasks(&workers, to.job.count, measure_band, &to);
         for (uint32_t b = 0; b < to.job.count; b++) {
             *error += to.error[b];
@@ -246,9 +268,9 @@ static bool accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *
         .kept_words = w->kept_words,
         .gain_q14 = rt->gain_q14[v],
     };
-    view_job job = {.work = w, .view = &view, .bin = &bin, .done = done, .total = total};
-    bool goes_on = next_chunk(rt, &job);
-    for (; goes_on && job.count > 0; goes_on = next_chunk(rt, &job)) {
+    view_job job = {.rt = rt, .work = w, .view = &view, .bin = &bin, .done = done, .total = total};
+    bool goes_on = next_chunk(&job);
+    for (; goes_on && job.count > 0; goes_on = next_chunk(&job)) {
         t3r_run_tasks(&workers, job.count, accumulate_band, &job);
         t3r_refine_join(job.bands, job.count, &w->borders, &view.slice);
     }

@@ -161,7 +161,7 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
     compare(job, left, top, want);
     memset(want->pixels.colour_q7, 0, sizeof want->pixels.colour_q7); /* behind the last splat it is black */
     take_off(job, list, &kept, first, left, top);
-    while (kept.begin > first) {
+    while (kept.begin > first && job->goes_on(job->context, kept.begin)) {
         kept = draw_again(job, list, kept.begin, left, top);
         take_off(job, list, &kept, first, left, top);
     }

@@ -2,6 +2,7 @@
 #ifndef T3R_REFINE_TILE_H
 #define T3R_REFINE_TILE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "kernels/kernels.h"
@@ -23,6 +24,9 @@ typedef struct t3r_refine_view {
                            more; the more there is, the less often a full tile is drawn again */
     uint32_t kept_words;
     const uint16_t *gain_q14; /* of the view's three channels: what it shows is levelled first */
+    /* Asked before so many splats of a tile are drawn again; false ends the tile. */
+    bool (*goes_on)(void *context, uint32_t splats);
+    void *context;
 } t3r_refine_view;
 
 /* A splat's place in the list and its rows. */

@@ -1,12 +1,13 @@
 #include "views.h"
 
+#include "core/features.h"
 #include "core/scene_frame.h"
 #include "state.h"
 
 t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index)
 {
     const size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height), words = (pixels + 31) / 32;
-    const uint32_t plane = rt->config.stream ? 0 : index; /* a stream analyses one keyframe at a time */
+    const uint32_t plane = t3r_is_stream(&rt->config) ? 0 : index; /* a stream analyses one keyframe at a time */
     uint8_t *colour = (uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_COLOUR) + 3 * pixels * index;
     const t3r_camera *camera = &rt->camera[index];
     t3r_view view = {

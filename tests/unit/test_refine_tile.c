@@ -123,6 +123,15 @@ static void clear_sums(t3r_refine_sums *sums, uint32_t first, uint32_t count)
 static const t3r_refine_band all_tiles = {0};
 static t3r_wanted wanted;
 
+/* Splats that are drawn again: at most so many in one go. */
+static uint32_t again_most;
+
+static bool draws_again(void *context, uint32_t count)
+{
+    again_most = count > again_most ? count : again_most;
+    return context == NULL;
+}
+
 static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint32_t kept_words, t3r_refine_sums *sums)
 {
     uint32_t list[SPLATS], listed = list_tile(x, y, list);
@@ -135,7 +144,8 @@ static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint
                            .wanted = &wanted,
                            .kept = kept,
                            .kept_words = kept_words,
-                           .gain_q14 = gain_q14};
+                           .gain_q14 = gain_q14,
+                           .goes_on = draws_again};
     t3r_refine_tile(&job, list, listed, x, y);
 }
 

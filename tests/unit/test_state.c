@@ -19,13 +19,14 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[1 << 20], copy[1 << 20];
 static uint8_t colour[SIDE * SIDE * 3], depth[SIDE * SIDE * 2];
 static size_t arena_bytes;
 static int cancel_at = -1;
+static uint32_t calls_left = UINT32_MAX; /* of refinement, before it is cancelled */
 
 static int cancel(void *user, t3r_stage stage, uint32_t done, uint32_t total)
 {
     (void)user;
     (void)done;
     (void)total;
-    return (int)stage == cancel_at;
+    return (int)stage == cancel_at || (stage == T3R_STAGE_REFINE && calls_left-- == 0);
 }
 
 static t3r_frame made_up_frame(void)
@@ -100,6 +101,29 @@ static void cancelled_rebuild_keeps_the_analysis(void **state)
     cancel_at = -1;
     assert_int_equal(t3r_rebuild(rt, NULL, &again), T3R_OK);
     assert_true(hash_of(&again) == before);
+}
+
+/* In an arena that keeps little of a tile's splats, refinement asks more often than once for each tile and view. */
+static void every_call_of_refinement_may_cancel(void **state)
+{
+    (void)state;
+    enum { TILES = (SIDE / T3R_TILE_SIDE) * (SIDE / T3R_TILE_SIDE), MANY_CALLS = 10000 };
+    t3r_scene scene;
+    t3r_runtime *rt = analysed(&scene);
+    const uint64_t before = hash_of(&scene);
+    calls_left = MANY_CALLS;
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
+    const uint32_t calls = MANY_CALLS - calls_left;
+    assert_true(calls > T3R_DEFAULT_REFINEMENTS * (TILES + 1));
+    for (uint32_t call = 0; call < calls; call += 1 + call / 8) {
+        calls_left = call;
+        assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_CANCELLED);
+        assert_int_equal(calls_left, UINT32_MAX); /* and nothing was asked after that */
+        assert_int_equal(t3r_get_scene(rt, &scene), T3R_ERR_STATE);
+    }
+    calls_left = UINT32_MAX;
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
+    assert_true(hash_of(&scene) == before);
 }
 
 static void refused_view_gives_no_stale_scene(void **state)
@@ -286,11 +310,9 @@ static void many_clusters_are_checked(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cancelled_rebuild_keeps_the_analysis),
-        cmocka_unit_test(refused_view_gives_no_stale_scene),
-        cmocka_unit_test(empty_depth_is_refused_at_the_door),
-        cmocka_unit_test(damaged_copies_are_refused),
-        cmocka_unit_test(many_clusters_are_checked),
+        cmocka_unit_test(cancelled_rebuild_keeps_the_analysis), cmocka_unit_test(every_call_of_refinement_may_cancel),
+        cmocka_unit_test(refused_view_gives_no_stale_scene),    cmocka_unit_test(empty_depth_is_refused_at_the_door),
+        cmocka_unit_test(damaged_copies_are_refused),           cmocka_unit_test(many_clusters_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
