@@ -43,9 +43,55 @@ static void ranges(void **state)
     GIVES(T3R_ERR_CAMERA, memset(camera.rotation_q30, 0x80, sizeof camera.rotation_q30));
     GIVES(T3R_ERR_CAMERA, camera.rotation_q30[1] = INT32_MIN);
     GIVES(T3R_ERR_CAMERA, camera.rotation_q30[1] = camera.rotation_q30[2] = camera.rotation_q30[3] = 1 << 30);
+    GIVES(T3R_ERR_CAMERA, camera.rotation_q30[0] = 3 << 29; camera.rotation_q30[3] = 1 << 10);
     GIVES(T3R_OK, camera.distortion_q24[2] = INT32_MAX);
     GIVES(T3R_ERR_CAMERA, camera.distortion = T3R_DISTORTION_RADTAN; camera.distortion_q24[3] = INT32_MIN);
 #undef GIVES
+}
+
+static void both_sides(const t3r_camera *within, const t3r_camera *beyond)
+{
+    assert_int_equal(t3r_camera_check(within), T3R_OK);
+    assert_int_equal(t3r_camera_check(beyond), T3R_ERR_CAMERA);
+}
+
+static void bounds(void **state)
+{
+    (void)state;
+    const int32_t pixels = 16384 << 16, component = 3 << 29;
+    for (int sign = -1; sign <= 1; sign += 2) {
+#define BOUND(field, last, first)                                                                                      \
+    do {                                                                                                               \
+        t3r_camera within = plain_camera(), beyond = plain_camera();                                                   \
+        within.distortion = beyond.distortion = T3R_DISTORTION_RADTAN;                                                 \
+        within.field = (last);                                                                                         \
+        beyond.field = (first);                                                                                        \
+        both_sides(&within, &beyond);                                                                                  \
+    } while (0)
+        BOUND(fx_q16, sign < 0 ? 8 << 16 : pixels - 1, sign < 0 ? (8 << 16) - 1 : pixels);
+        BOUND(fy_q16, sign < 0 ? 8 << 16 : pixels - 1, sign < 0 ? (8 << 16) - 1 : pixels);
+        BOUND(cx_q16, sign * (pixels - 1), sign * pixels);
+        BOUND(cy_q16, sign * (pixels - 1), sign * pixels);
+        for (int i = 0; i < 3; i++) {
+            BOUND(position_q32[i], sign * (T3R_MAX_POSITION_Q32 - 1), sign * T3R_MAX_POSITION_Q32);
+        }
+        for (int i = 2; i < 4; i++) {
+            BOUND(distortion_q24[i], sign * (T3R_MAX_TANGENTIAL_Q24 - 1), sign * T3R_MAX_TANGENTIAL_Q24);
+        }
+#undef BOUND
+        t3r_camera camera = plain_camera();
+        camera.distortion = T3R_DISTORTION_RADTAN;
+        camera.distortion_q24[0] = camera.distortion_q24[1] = camera.distortion_q24[4] = sign * INT32_MAX;
+        assert_int_equal(t3r_camera_check(&camera), T3R_OK);
+        for (int i = 0; i < 4; i++) {
+            t3r_camera within = plain_camera(), beyond = plain_camera();
+            memset(within.rotation_q30, 0, sizeof within.rotation_q30);
+            memset(beyond.rotation_q30, 0, sizeof beyond.rotation_q30);
+            within.rotation_q30[i] = sign * component;
+            beyond.rotation_q30[i] = sign * (component + 1);
+            both_sides(&within, &beyond);
+        }
+    }
 }
 
 static void rotation(void **state)
@@ -115,6 +161,7 @@ static void resized(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ranges), cmocka_unit_test(rotation), cmocka_unit_test(resized)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(ranges), cmocka_unit_test(bounds), cmocka_unit_test(rotation),
+                                       cmocka_unit_test(resized)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,6 +42,7 @@ static void logarithm(void **state)
     for (uint32_t x = 1; x < UINT32_C(1) << 16; x++) {
         const int32_t got = t3r_log2_q16(x);
         worst = fmax(worst, fabs(got - log2(x) * 65536));
+        assert_int_equal(t3r_log2_wide_q16(x), got);
         for (uint32_t shift = 32; shift + 16 < 64; shift++) {
             assert_int_equal(t3r_log2_wide_q16((uint64_t)x << shift), got + ((int32_t)shift << 16));
         }
