@@ -122,7 +122,9 @@ class Bench:
         parts = [self.place(source, core) if sanitized or changed.endswith(".h") or source == f"core/{changed}"
                  else self.objects[suite, source] for source in SUITES[suite]]
         extra, limit_s = (SANITIZED, 10 * self.limit_s[suite]) if sanitized else ([], self.limit_s[suite])
-        if subprocess.run([*self.words(core), *extra, *parts, "-o", program, *LINK], capture_output=True).returncode != 0:
+        ended = subprocess.run([*self.words(core), *extra, *parts, "-o", program, *LINK], capture_output=True, text=True)
+        if ended.returncode != 0:
+            check(not sanitized, f"what compiles does so with sanitizers\n{ended.stderr}")
             return None
         return subprocess.run(stopped_after(limit_s, program), capture_output=True).returncode != 0
 

@@ -59,7 +59,6 @@ static void bounds(void **state)
 {
     (void)state;
     const int32_t pixels = 16384 << 16, component = 3 << 29;
-    for (int sign = -1; sign <= 1; sign += 2) {
 #define BOUND(field, last, first)                                                                                      \
     do {                                                                                                               \
         t3r_camera within = plain_camera(), beyond = plain_camera();                                                   \
@@ -68,30 +67,37 @@ static void bounds(void **state)
         beyond.field = (first);                                                                                        \
         both_sides(&within, &beyond);                                                                                  \
     } while (0)
-        BOUND(fx_q16, sign < 0 ? 8 << 16 : pixels - 1, sign < 0 ? (8 << 16) - 1 : pixels);
-        BOUND(fy_q16, sign < 0 ? 8 << 16 : pixels - 1, sign < 0 ? (8 << 16) - 1 : pixels);
-        BOUND(cx_q16, sign * (pixels - 1), sign * pixels);
-        BOUND(cy_q16, sign * (pixels - 1), sign * pixels);
-        for (int i = 0; i < 3; i++) {
-            BOUND(position_q32[i], sign * (T3R_MAX_POSITION_Q32 - 1), sign * T3R_MAX_POSITION_Q32);
-        }
-        for (int i = 2; i < 4; i++) {
-            BOUND(distortion_q24[i], sign * (T3R_MAX_TANGENTIAL_Q24 - 1), sign * T3R_MAX_TANGENTIAL_Q24);
-        }
-#undef BOUND
-        t3r_camera camera = plain_camera();
-        camera.distortion = T3R_DISTORTION_RADTAN;
-        camera.distortion_q24[0] = camera.distortion_q24[1] = camera.distortion_q24[4] = sign * INT32_MAX;
-        assert_int_equal(t3r_camera_check(&camera), T3R_OK);
-        for (int i = 0; i < 4; i++) {
-            t3r_camera within = plain_camera(), beyond = plain_camera();
-            memset(within.rotation_q30, 0, sizeof within.rotation_q30);
-            memset(beyond.rotation_q30, 0, sizeof beyond.rotation_q30);
-            within.rotation_q30[i] = sign * component;
-            beyond.rotation_q30[i] = sign * (component + 1);
-            both_sides(&within, &beyond);
-        }
+#define BOTH_BOUNDS(field, last)                                                                                       \
+    do {                                                                                                               \
+        BOUND(field, last, (last) + 1);                                                                                \
+        BOUND(field, -(last), -(last)-1);                                                                              \
+    } while (0)
+    BOUND(fx_q16, 8 << 16, (8 << 16) - 1);
+    BOUND(fy_q16, 8 << 16, (8 << 16) - 1);
+    BOUND(fx_q16, pixels - 1, pixels);
+    BOUND(fy_q16, pixels - 1, pixels);
+    BOTH_BOUNDS(cx_q16, pixels - 1);
+    BOTH_BOUNDS(cy_q16, pixels - 1);
+    for (int i = 0; i < 3; i++) {
+        BOTH_BOUNDS(position_q32[i], T3R_MAX_POSITION_Q32 - 1);
     }
+    for (int i = 2; i < 4; i++) {
+        BOTH_BOUNDS(distortion_q24[i], T3R_MAX_TANGENTIAL_Q24 - 1);
+    }
+#undef BOTH_BOUNDS
+#undef BOUND
+    for (int i = 0; i < 8; i++) { /* one component alone, of either sign */
+        t3r_camera within = plain_camera(), beyond = plain_camera();
+        within.rotation_q30[0] = beyond.rotation_q30[0] = 0;
+        within.rotation_q30[i / 2] = i % 2 == 0 ? component : -component;
+        beyond.rotation_q30[i / 2] = i % 2 == 0 ? component + 1 : -component - 1;
+        both_sides(&within, &beyond);
+    }
+    t3r_camera camera = plain_camera();
+    camera.distortion = T3R_DISTORTION_RADTAN;
+    camera.distortion_q24[0] = INT32_MIN;
+    camera.distortion_q24[1] = camera.distortion_q24[4] = INT32_MAX;
+    assert_int_equal(t3r_camera_check(&camera), T3R_OK);
 }
 
 static void rotation(void **state)
