@@ -67,8 +67,8 @@ CAUGHT, SURVIVED, BROKEN = "caught", "survived", "did not compile"
 
 TEXT = """# Mutants of the fixed-point core
 
-Made by `tests/mutants/mutants.py --write`. A mutant is a source of the core with one small mistake: `+` for `-`, `<` for
-`<=`, a constant one more or one less, a cast, a rounding half, a negation or a statement that is missing.
+Made by `tests/mutants/mutants.py --write`. A mutant is a source of the core with one small mistake. It has `+` for `-`, `<`
+for `<=`, or a constant one more or one less; or it lacks a cast, a rounding half, a negation or a statement.
 [mutate.py](../../tests/mutants/mutate.py) makes them of tokens, and of every sixteenth number of a table. The unit
 tests of that file run on each, as they are and then with sanitizers. A mutant is caught when one fails, crashes or does
 not end.
@@ -80,7 +80,7 @@ not end.
 The share is caught of those that compile and are not equivalent. Equivalent mutants differ from the source for no value
 that the function allows, so no test can tell them apart. [equivalent.txt](../../tests/mutants/equivalent.txt) has each
 with the reason. A test runs a sample by day and all at night. It fails when one survives without a reason, when a listed
-one is caught or exists no longer, and when the share falls below {least:.0%}.
+one is caught or exists no longer, and when the share falls below {least} %.
 """
 
 
@@ -251,7 +251,7 @@ def main():
     check(not faults, "\n".join(faults))
     check(len(chosen) < len(every) or share_of(whole) >= SHARE_LEAST, f"{share_of(whole):.1%} are caught")
     if options.write:
-        PAGE.write_text(TEXT.format(rows=rows, least=SHARE_LEAST))
+        PAGE.write_text(TEXT.format(rows=rows, least=round(100 * SHARE_LEAST)))
     elif options.all:
         check(rows in PAGE.read_text(), f"docs/study/mutants.md has other counts: {HERE / 'mutants.py'} --write")
     done()
