@@ -1,4 +1,4 @@
-/* Whether sanitizers watch: what only repeats may then repeat less. */
+/* Whether sanitizers watch, or branches are counted: what only repeats may then repeat less. */
 #ifndef TRIM3R_TESTS_SANITIZED_H
 #define TRIM3R_TESTS_SANITIZED_H
 
@@ -6,7 +6,8 @@
 #define __has_feature(x) 0 /* clang's */
 #endif
 
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__ || __has_feature(address_sanitizer)
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__ || __has_feature(address_sanitizer) ||                 \
+    defined T3R_COVERAGE
 #define T3R_SANITIZED 1
 #else
 #define T3R_SANITIZED 0

@@ -1,0 +1,61 @@
+"""Branches of the runtime: which there are and which were taken, by gcov of all objects in a build folder."""
+import collections
+import concurrent.futures
+import json
+import os
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+RUNTIME = ROOT / "runtime"
+VECTORS = ("x86", "arm", "wasm", "lanes")
+
+INLINED = "inlined" # gcov has no name for a function that the compiler must inline
+
+# Where branches are: two lines of a function that read the same are one place.
+Place = collections.namedtuple("Place", "file function text")
+
+
+def gcov(objects):
+    """What gcov knows of these objects: a dictionary each."""
+    said = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", *map(str, objects)],
+                          capture_output=True, text=True, check=True)
+    return [json.loads(line) for line in said.stdout.splitlines() if line]
+
+
+def counted(folder, root=RUNTIME):
+    """{(file, function, line): how often each branch there was taken}, added up over all objects of the folder."""
+    objects = [path for path in sorted(folder.rglob("*.gcda")) if path.parent.name not in VECTORS]
+    groups = [objects[at:at + 8] for at in range(0, len(objects), 8)]
+    taken = {}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for source in (source for found in pool.map(gcov, groups) for known in found for source in known["files"]):
+            path = pathlib.Path(os.path.normpath(pathlib.Path(source["file"])))
+            if not path.is_relative_to(root):
+                continue
+            for line in source["lines"]:
+                ways = [branch["count"] for branch in line["branches"]]
+                if ways:
+                    key = (str(path.relative_to(root)), line.get("function_name", INLINED), line["line_number"])
+                    before = taken.setdefault(key, [0] * len(ways))
+                    if len(before) != len(ways):
+                        raise ValueError(f"{key}: {len(before)} branches in one object, {len(ways)} in another")
+                    taken[key] = [a + b for a, b in zip(before, ways)]
+    return taken
+
+
+def uncovered(taken, root=RUNTIME):
+    """{place: how many of its branches nothing took}"""
+    lines, found = {}, collections.Counter()
+    for (file, function, line), ways in taken.items():
+        missing = sum(count == 0 for count in ways)
+        if missing:
+            if file not in lines:
+                lines[file] = (root / file).read_text().splitlines()
+            found[Place(file, function, lines[file][line - 1].strip())] += missing
+    return found
+
+
+def version():
+    said = subprocess.run(["gcov", "--version"], capture_output=True, text=True, check=True).stdout
+    return said.splitlines()[0].split()[-1]

@@ -1,0 +1,13 @@
+/* One way out of a condition is never taken, and a condition never asked: what the counting must find. */
+static int half(int number)
+{
+    if (number < 0) {
+        return number < -100 ? -2 : -1;
+    }
+    return 1;
+}
+
+int main(void)
+{
+    return half(7) - 1;
+}

@@ -1,0 +1,72 @@
+"""What is run to see which branches of the runtime are taken: programs of tests, and the program trim3r."""
+import itertools
+import os
+import pathlib
+import subprocess
+import sys
+
+import branches
+
+AREAS = ("unit", "oracle", "workers", "kernels", "formats")
+NOT_RUN = "data" # tests that need recorded scenes
+GOLDEN_WAYS = ([], ["--arena", "min", "--tasks", "reverse", "--workers", "3"], ["--moved"], ["--cpu-mask", "all"])
+
+HEADS = ("none", "analytic", "moment", "nano", "small")
+ALLOCATIONS = ("density", "paper", "pixel", "uniform", "random")
+WAVELETS = ("db2", "haar", "cdf53")
+
+
+def quiet(*command, cwd=None):
+    ended = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False)
+    if ended.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: status {ended.returncode}\n{ended.stdout[-4000:]}{ended.stderr[-4000:]}")
+    return ended.stdout
+
+
+def build(folder):
+    jobs = str(os.cpu_count())
+    quiet("cmake", "-G", "Unix Makefiles", "-S", branches.ROOT, "-B", folder, "-DT3R_TESTS=ON", "-DT3R_SHARED=OFF", "-DT3R_PYTHON_PACKAGE=OFF",
+          "-DT3R_LIBCAMERA=OFF", "-DT3R_OPENCV=OFF", "-DT3R_COVERAGE=ON", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_C_FLAGS=-O1", "-Wno-dev")
+    for area in AREAS:
+        quiet("make", "-C", folder / "tests" / area, "-j", jobs)
+    quiet("cmake", "--build", folder, "--parallel", jobs, "--target", "golden_driver", "trim3r")
+
+
+def forget(folder):
+    """What earlier runs took."""
+    for path in folder.rglob("*.gcda"):
+        path.unlink()
+
+
+def run_tests(folder):
+    for area in AREAS:
+        quiet("ctest", "--test-dir", folder / "tests" / area, "--label-regex", "^program$", "--label-exclude", f"^{NOT_RUN}$",
+              "--no-tests=error", "--parallel", str(os.cpu_count()), "--timeout", "1200", "--output-on-failure")
+    for way in GOLDEN_WAYS:
+        quiet(folder / "golden_driver", *way)
+
+
+def run_program(program, scratch):
+    """Scenes of the built-in room in every setting that leads through other code."""
+    def trim3r(*words):
+        quiet(program, *words, cwd=scratch)
+
+    trim3r("room", "--size", "48x40", "-o", "room.mcap")
+    trim3r("room", "--size", "64x64", "--frames", 10, "-o", "walk.mcap")
+    base = ("build", "room.mcap", "--force", "-o", "scene.ply")
+    for head, allocation in itertools.product(HEADS, ALLOCATIONS):
+        trim3r(*base, "--keep", "10%", "--head", head, "--allocate", allocation, "--cpu-mask", "none")
+    for wavelet, levels in itertools.product(WAVELETS, (1, 2, 5)):
+        trim3r(*base, "--keep", "20%", "--head", "analytic", "--wavelet", wavelet, "--levels", levels)
+    for words in (("--keep", "100%", "--context", "0,1,2,3", "--threads", 3),
+                  ("--keep", "1%", "--arena", "min", "--context", "5"),
+                  ("--auto", "--max-loss", 0.5),
+                  ("--keep", "5%", "--fit-passes", "on", "--refine", 16),
+                  ("--keep", "10%", "--exposure", "off", "--flying", "off", "--redundancy", "off"),
+                  ("--keep", "10%", "--working", "64x64", "--depth", "stereo", "--context", "0,1,2")):
+        trim3r(*base, *words)
+    trim3r("render", "scene.ply", "room.mcap", "--view", 1, "-o", "view.png")
+    trim3r("replay", "walk.mcap", "--stream", "--gaussians", 500, "--every", 2, "--half-life", 2, "--overlap", "70%")
+    for warm in ("off", "on"):
+        trim3r("replay", "walk.mcap", "--slide", "--keep", "10%", "--warm", warm)
+    trim3r("stress", "--working", "48x48", "--strengths", 3, "--captures", 0)
