@@ -167,8 +167,9 @@ static int refined(int k, int before, int least, int after)
 static void blocks(void **state)
 {
     (void)state;
-    static const uint32_t shapes[][3] = {{16, 8, 16},  {17, 9, 16},  {20, 33, 32},
-                                         {9, 131, 16}, {33, 16, 48}, {8, 8, 64}};
+    /* the tall ones have blocks of 16, 32 and 64 rows */
+    static const uint32_t shapes[][3] = {{16, 8, 16},  {17, 9, 16}, {20, 33, 32}, {9, 131, 16},
+                                         {33, 16, 48}, {8, 8, 64},  {9, 515, 16}, {8, 2050, 16}};
     uint64_t seed = 5;
     for (size_t shape = 0; shape < sizeof shapes / sizeof *shapes; shape++) {
         for (uint32_t paths = 4; paths <= 8; paths += 4) {

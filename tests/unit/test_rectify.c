@@ -309,10 +309,30 @@ static void anything(void **state)
     assert_true(matched > 200);
 }
 
+/* Planes around the direction of motion are tall: as tall as the work memory allows, in pictures of every size. */
+static void tall(void **state)
+{
+    (void)state;
+    static const uint32_t sides[] = {90, 100, 300, 408, 412, 1200, 1630, 1645, 2400, 4096};
+    for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
+        const int32_t side = (int32_t)sides[i];
+        for (int wide = 1; wide <= 2; wide++) {
+            t3r_rectification rect;
+            t3r_camera here = camera_at(0, 0, 0, straight, side / (double)wide + 8);
+            here.cx_q16 = here.cy_q16 = (side - 1) << 15;
+            t3r_camera ahead = here;
+            ahead.position_q32[2] = INT64_C(1) << 30;
+            assert_int_equal(t3r_rectify(&here, &ahead, sides[i], sides[i], D, &rect), T3R_PAIR_OK);
+            assert_true(rect.polar && rect.height > rect.width);
+            check_size(&rect, sides[i], sides[i], D);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(geometry), cmocka_unit_test(identity),
-                                       cmocka_unit_test(sampled), cmocka_unit_test(refused),
-                                       cmocka_unit_test(anything)};
+                                       cmocka_unit_test(sampled),  cmocka_unit_test(refused),
+                                       cmocka_unit_test(tall),     cmocka_unit_test(anything)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

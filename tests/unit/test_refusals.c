@@ -90,6 +90,12 @@ static void missing_pointers(void **state)
     (void)state;
     t3r_config config = some_config();
     size_t bytes;
+    static const int16_t coefficients[3];
+    static const int32_t ahead[3] = {0, 0, 1};
+    uint16_t colour[3];
+    assert_int_equal(t3r_harmonics_colour(NULL, 0, ahead, colour), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_harmonics_colour(coefficients, 0, NULL, colour), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_harmonics_colour(coefficients, 0, ahead, NULL), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_plan_bytes(NULL, &bytes, &bytes), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_plan_bytes(&config, NULL, &bytes), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_plan_bytes(&config, &bytes, NULL), T3R_ERR_ARGUMENT);
@@ -220,7 +226,7 @@ static void streams_that_cannot_be(void **state)
 {
     (void)state;
     t3r_config config = some_config();
-    config.stream = 1;
+    config.stream = config.warm = 1;
     config.max_gaussians = 2 * BUDGET;
     t3r_runtime *rt = opened(&config), *found;
     t3r_runtime *const damaged = (t3r_runtime *)(void *)copy;
@@ -318,6 +324,17 @@ static void strips(void **state)
         assert_int_equal(t3r_add_rows(rt, &colour, &camera, y, 8, SIDE, 0), T3R_OK);
     }
     assert_int_equal(rt->views, 1);
+    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 0), T3R_OK);
+    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 0, 0, 8),
+                     T3R_ERR_STATE); /* begins nothing, goes on nowhere */
+    t3r_frame lower = frame;         /* as wide as the plane, and resized all the same */
+    lower.height = SIDE / 2;
+    assert_int_equal(t3r_add_view(rt, &lower, &camera), T3R_OK);
+    config.warm = 1;
+    rt = opened(&config);
+    add(rt);
+    add(rt);
+    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 8), T3R_ERR_STATE); /* none is replaced by strips */
     config = some_config();
     config.depth = T3R_DEPTH_STEREO;
     rt = opened(&config);

@@ -42,6 +42,29 @@ static void sound_ones_pass(void **state)
     }
 }
 
+/* Up to 15 letters, digits and underlines. */
+static void names(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name; /* 16 characters have no end */
+        t3r_status status;
+    } cases[] = {{"a", T3R_OK},
+                 {"z_9", T3R_OK},
+                 {"_abcdefghijklm0", T3R_OK},
+                 {"abcdefghijklmnop", T3R_ERR_WEIGHTS},
+                 {"", T3R_ERR_WEIGHTS}};
+    size_t bytes;
+    uint8_t *file = make_weights(shape, LAYERS, 8, 8, 3, &bytes);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        memset(file + 32, 0, 16);
+        memcpy(file + 32, cases[i].name, strlen(cases[i].name));
+        seal_weights(file, bytes);
+        assert_int_equal(t3r_weights_check(file, bytes), cases[i].status);
+    }
+    free(file);
+}
+
 typedef struct damage {
     size_t at;
     uint32_t value, bytes;
@@ -78,6 +101,9 @@ static void every_field_is_checked(void **state)
         {32, 0, 1, "name"},
         {32, 'A', 1, "name"},
         {33, 0, 1, "name"},
+        {33, 'z' + 1, 1, "name"},
+        {33, '9' + 1, 1, "name"},
+        {33, '0' - 1, 1, "name"},
         {47, 'x', 1, "name"},
         {48, 1, 1, "reserved"},
         {63, 1, 1, "reserved"},
@@ -292,9 +318,10 @@ static void graphs_are_checked(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sound_ones_pass),        cmocka_unit_test(every_field_is_checked),
-        cmocka_unit_test(blocks_lie_in_the_file), cmocka_unit_test(numbers_are_bounded),
-        cmocka_unit_test(damage_is_noticed),      cmocka_unit_test(graphs_are_checked),
+        cmocka_unit_test(sound_ones_pass),        cmocka_unit_test(names),
+        cmocka_unit_test(every_field_is_checked), cmocka_unit_test(blocks_lie_in_the_file),
+        cmocka_unit_test(numbers_are_bounded),    cmocka_unit_test(damage_is_noticed),
+        cmocka_unit_test(graphs_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
