@@ -18,10 +18,10 @@ import sys
 import tempfile
 
 import branches
+import planted
 import reasons
 import runs
 
-HERE = pathlib.Path(__file__).resolve().parent
 LEAST_PERCENT = 95
 PAGE = branches.ROOT / "docs" / "study" / "coverage.md"
 TEXT = """# Branches that the tests take
@@ -30,9 +30,10 @@ Made by `tests/coverage/coverage.py --write` with gcov {version}. A branch is on
 without optimization: `if (a && b)` has four. At night a test counts anew: at least {least} % must be taken, and
 [uncovered.txt](../../tests/coverage/uncovered.txt) must explain each of the others.
 
-What runs are the programs in C of `tests/unit`, `tests/oracle`, `tests/workers` and `tests/kernels`, the driver of the golden
-hashes, and `trim3r` on the built-in room. Fuzzers and tests on recorded scenes do not count. Kernels for vector instructions
-are left out: they are inlined by force, and `tests/kernels` compares each with plain C.
+What runs are the programs in C of `tests/unit`, `tests/oracle`, `tests/workers`, `tests/kernels` and `tests/formats`, the
+driver of the golden hashes, and `trim3r` on the built-in room. Fuzzers and tests on recorded scenes do not count. Kernels for
+vector instructions are left out: gcov counts functions that must be inlined once for each caller, and `tests/kernels`
+compares each kernel with plain C.
 
 Of {all} branches {taken} are taken, {share:.2f} %.
 
@@ -91,6 +92,7 @@ def main():
         if shutil.which(tool) is None:
             print(f"SKIPPED: no {tool} here (tools/setup --tests)")
             sys.exit(77)
+    planted.find()
     if not options.again:
         measure(options.folder)
     counted = branches.counted(options.folder)
