@@ -6,7 +6,7 @@
 #include "rgbd_frame.h"
 #include "weights_maker.h"
 
-enum { LEAST_SIDE = 16, FREQUENT_SIDES = 13, MOST_CHANNELS_DRAWN = 5, MOST_BRIDGE = 64, MOST_GAUSSIANS = 120u };
+enum { LEAST_SIDE = 16, FREQUENT_SIDES = 13, MOST_CHANNELS_DRAWN = 5, MOST_BRIDGE = 64, MOST_GAUSSIANS = 400u };
 
 /* ---- settings ------------------------------------------------------------------------------------ */
 

@@ -311,7 +311,12 @@ static void move(run *r)
     memcpy(moved, r->arena, r->bytes);
     free(r->arena);
     r->arena = moved;
-    REQUIRE(t3r_attach(&r->rt, r->arena, r->bytes) == T3R_OK);
+    const t3r_status status = t3r_attach(&r->rt, r->arena, r->bytes);
+    if (status != T3R_OK) {
+        fprintf(stderr, "settings: call %u, %s: the arena is refused in its new place: %s\n", r->call, r->name,
+                t3r_error_text(status));
+        abort();
+    }
 }
 
 typedef t3r_status action(run *r);
