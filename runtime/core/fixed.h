@@ -32,7 +32,7 @@ static inline int32_t t3r_round_shift32(int32_t x, uint32_t shift)
 static inline int64_t t3r_scale64(int64_t x, int32_t shift)
 {
     if (shift >= 0) {
-        T3R_BOUND(shift <= 62 && (int64_t)((uint64_t)x << shift) >> shift == x);
+        T3R_BOUND(shift <= 62 && x >= INT64_MIN >> shift && x <= INT64_MAX >> shift);
         return (int64_t)((uint64_t)x << shift);
     }
     return shift <= -63 ? 0 : t3r_round_shift64(x, (uint32_t)-shift);

@@ -1,0 +1,37 @@
+/* What the drivers of Eva share. It stands before every source, by -include. */
+#ifndef T3R_FRAMA_H
+#define T3R_FRAMA_H
+
+#include <stdint.h>
+
+#define _Alignas(bytes) /* Frama-C has none; no subject counts on an alignment */
+
+/* Any number of the range: Frama-C's own, whose contracts Eva knows. */
+extern int Frama_C_entropy_source;
+/*@ assigns \result \from low, high, Frama_C_entropy_source;
+    assigns Frama_C_entropy_source \from Frama_C_entropy_source;
+    ensures low <= \result <= high; */
+long long t3r_any(long long low, long long high);
+/*@ assigns \result \from low, high, Frama_C_entropy_source;
+    assigns Frama_C_entropy_source \from Frama_C_entropy_source;
+    ensures low <= \result <= high; */
+unsigned long long t3r_any_unsigned(unsigned long long low, unsigned long long high);
+
+/* A bound of T3R_BOUND is proven wherever it stands: Eva has to show that this is never called. */
+/*@ requires bound: \false;
+    assigns \nothing; */
+void t3r_bound_broken(void);
+#define T3R_BOUND(condition) ((condition) ? (void)0 : t3r_bound_broken())
+
+/* The builtin, which Eva knows by its result's range alone. */
+static inline int t3r_leading_zeros(unsigned x)
+{
+    int zeros = 0;
+    while (zeros < 31 && x < 1u << (31 - zeros)) {
+        zeros++;
+    }
+    return zeros;
+}
+#define __builtin_clz(x) t3r_leading_zeros(x)
+
+#endif

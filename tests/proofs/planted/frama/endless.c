@@ -1,0 +1,7 @@
+/* Planted: no alarm, but what follows is never reached, and so not looked at. */
+int main(void)
+{
+    while (1) {
+    }
+    return 0;
+}
