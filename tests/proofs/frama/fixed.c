@@ -1,6 +1,6 @@
-/* runtime/core/fixed.h and fixed.c, each function over its domain, a power of two after another where a shift follows from
- * the size of a number. Where a bound joins two arguments, the boxes below lie within it; docs/study/proofs.md says
- * what they leave out. */
+/* runtime/core/fixed.h and fixed.c, each function over its domain, a power of two after another where a shift follows
+ * from the size of a number. Where a bound joins two arguments, the boxes below lie within it; docs/study/proofs.md
+ * says what they leave out. */
 #include "core/fixed.h"
 
 static void round_shifts(void)
@@ -22,7 +22,7 @@ static void scales(void)
     }
     t3r_scale64(t3r_any(INT64_MIN, INT64_MAX), (int32_t)t3r_any(INT32_MIN, -63));
     for (int32_t shift = 0; shift <= 62; shift++) {
-        t3r_scale64(t3r_any(0, INT64_MAX >> shift), shift);
+        t3r_scale64(t3r_any(INT64_MIN >> shift, INT64_MAX >> shift), shift);
     }
     for (int32_t shift = -70; shift <= 70; shift++) {
         t3r_scale32((int32_t)t3r_any(INT32_MIN, INT32_MAX), shift);

@@ -1,5 +1,5 @@
-/* runtime/layout/arena.c with every configuration that t3r_config_check() lets through: each field that a size depends on
- * is any number of its range in runtime/core/config.c. Overflow of unsigned numbers is an alarm here, too. */
+/* runtime/layout/arena.c with every configuration that t3r_config_check() lets through: each field that a size depends
+ * on is any number of its range in runtime/core/config.c. Overflow of unsigned numbers is an alarm here, too. */
 #include "core/config.h"
 #include "layout/arena.h"
 
