@@ -61,7 +61,7 @@ purpose. Each subject has a driver in [tests/proofs/frama](../../tests/proofs/fr
 compilers are not in it.
 
 `T3R_BOUND` is proven wherever it stands: an argument that it forbids is an alarm. The drivers call functions with
-arguments that meet it, so for them it is a precondition.
+arguments that meet it, so for them it is a precondition. A loop stands for `__builtin_clz()`.
 
 | subject | functions | ranges | seconds | alarms | what is left out |
 |---|---|---|---:|---:|---|

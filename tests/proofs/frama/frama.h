@@ -6,7 +6,7 @@
 
 #define _Alignas(bytes) /* Frama-C has none; no subject counts on an alignment */
 
-/* Any number of the range: Frama-C's own, whose contracts Eva knows. */
+/* Any number of the range: no code stands behind them, and Eva takes the contract instead. */
 extern int Frama_C_entropy_source;
 /*@ assigns \result \from low, high, Frama_C_entropy_source;
     assigns Frama_C_entropy_source \from Frama_C_entropy_source;
