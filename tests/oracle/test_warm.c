@@ -418,14 +418,10 @@ static void damaged_arenas(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_build_begins_anew),
-        cmocka_unit_test(same_bits),
-        cmocka_unit_test(a_drawn_arena_moves),
-        cmocka_unit_test(a_view_that_changed_is_not_taken_for_the_old),
-        cmocka_unit_test(errors_in_between),
-        cmocka_unit_test(cancelled_builds_leave_nothing),
-        cmocka_unit_test(another_frame_begins_anew),
-        cmocka_unit_test(damaged_arenas),
+        cmocka_unit_test(the_first_build_begins_anew), cmocka_unit_test(same_bits),
+        cmocka_unit_test(a_drawn_arena_moves),         cmocka_unit_test(a_view_that_changed_is_not_taken_for_the_old),
+        cmocka_unit_test(errors_in_between),           cmocka_unit_test(cancelled_builds_leave_nothing),
+        cmocka_unit_test(another_frame_begins_anew),   cmocka_unit_test(damaged_arenas),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
