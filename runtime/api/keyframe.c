@@ -5,11 +5,13 @@
 #include "stream/stream.h"
 #include "stream/stream_overlap.h"
 
+static const t3r_stream_report nothing; /* a literal would lie on the stack, the deepest there is */
+
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report)
 {
     if (report != NULL) {
-        *report = (t3r_stream_report){0};
+        *report = nothing;
     }
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(rt->config.stream && t3r_has_head(rt, rt->config.head) &&
