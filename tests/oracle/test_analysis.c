@@ -285,8 +285,7 @@ static void kmeans_that_follows(void **state)
 {
     (void)state;
     enum { K = 200, COUNT = 24000 };
-    const cloud before = cloud_of(COUNT, 60, 0.9, 0.15, 3);
-    cloud after = cloud_of(COUNT, 60, 0.9, 0.15, 3);
+    cloud before = cloud_of(COUNT, 60, 0.9, 0.15, 3), after = cloud_of(COUNT, 60, 0.9, 0.15, 3);
     for (uint32_t i = 0; i < COUNT; i++) { /* what leaves at one end comes in at the other, from there on */
         after.feature_q11[i][0] = (int16_t)(after.feature_q11[i][0] + 2048);
         after.points[i * ORACLE_DIMENSIONS] += 1;
@@ -304,10 +303,8 @@ static void kmeans_that_follows(void **state)
     assert_true(far_off <= 1.1 * best && settled <= 1.02 * best);
     free(anew);
     free(following);
-    free(before.feature_q11);
-    free(before.points);
-    free(after.feature_q11);
-    free(after.points);
+    free_cloud(&before);
+    free_cloud(&after);
 }
 
 /* ---- wavelet ------------------------------------------------------------------------------------- */
