@@ -146,7 +146,9 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     }
     if (!rt->config.keep_analysis && !t3r_is_stream(&rt->config)) {
         rt->analysed = 0; /* the raster's buffers lie where labels and clusters were */
-        rt->views = t3r_is_warm(&rt->config) ? rt->views : 0; /* and, but with `warm`, the planes */
+        if (!t3r_is_warm(&rt->config)) {
+            rt->views = 0; /* and the planes, which `warm` keeps apart */
+        }
     }
 
     if (!t3r_progress(rt, T3R_STAGE_RASTER, 0, (uint32_t)T3R_TILES_(target->width, target->height))) {
