@@ -9,10 +9,12 @@ from common import check, done, need_opencv, run
 
 tools, docs = sys.argv[1:3]
 scripts = os.path.join(tools, "study", "scripts")
-SCRIPTS = ("auto", "formats", "growth", "live", "paper", "peers", "poses", "results", "speed", "stability", "stereo_results", "stream")
+SCRIPTS = ("auto", "formats", "growth", "live", "pages", "paper", "peers", "poses", "results", "speed", "stability", "stereo_results",
+           "stream")
 WRONG = {  # beside an unknown option
     "growth": [["colour"], ["size", "--write"], ["--quick", "--write"]],
     "live": [["--runs", "few"]],
+    "pages": [["nothing"], ["auto", "--all"]],
     "paper": [["nothing"], ["--write", "--quick"], ["views", "--write"], ["--tuned-pruned", "101"], ["--head-of", "x"]],
     "peers": [["--rounds", "few"], ["--rounds", "0"], ["--write", "--only", "kmeans"], ["--only", "sorting"]],
     "poses": [["--jobs", "some"], ["nothing"]],
