@@ -86,13 +86,14 @@ t3r_config t3r_settled(const t3r_config *config)
     return settled;
 }
 
-/* X(text, value, low, high), a row a setting. `least` is the smaller side. */
+/* X(text, value, low, high), a row a setting; bounds are constants, and a value beyond those that depend on other
+ * settings is taken for one out of range. `least` is the smaller side. */
 #define RANGES(X)                                                                                                      \
     X("width must be 8..4096", c->width, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                   \
     X("height must be 8..4096", c->height, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                 \
     X("views must be 0..16", c->views, 0, T3R_MAX_VIEWS)                                                               \
     X("max_gaussians must be 1..2^24", c->max_gaussians, 1, T3R_MAX_GAUSSIANS)                                         \
-    X("gaussians must be 1..max_gaussians", c->gaussians, 1, c->max_gaussians)                                         \
+    X("gaussians must be 1..max_gaussians", c->gaussians > c->max_gaussians ? 0 : c->gaussians, 1, T3R_MAX_GAUSSIANS)  \
     X("render_width must be 1..4096", c->render_width, 1, T3R_MAX_SIDE)                                                \
     X("render_height must be 1..4096", c->render_height, 1, T3R_MAX_SIDE)                                              \
     X("wavelet is none of t3r_wavelet", (uint32_t)c->wavelet, 0, T3R_WAVELET_COUNT - 1)                                \
@@ -108,17 +109,19 @@ t3r_config t3r_settled(const t3r_config *config)
     X("head_column_bytes must be 0..65536", c->head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES)                        \
     X("refinements must be 0..16", c->refinements, 0, T3R_MAX_REFINEMENTS)                                             \
     X("fit_passes must be 0 or 1", c->fit_passes, 0, 1)                                                                \
+    X("fit_widths must be 0 or 1", c->fit_widths, 0, 1)                                                                \
     X("depth is none of t3r_depth", (uint32_t)c->depth, 0, T3R_DEPTH_COUNT - 1)                                        \
-    X("width and height must be 32 and more with depth by stereo", least, stereo ? T3R_STEREO_LEAST_SIDE : 0,          \
-      T3R_MAX_SIDE)                                                                                                    \
+    X("width and height must be 32 and more with depth by stereo", stereo ? least : T3R_MAX_SIDE,                      \
+      T3R_STEREO_LEAST_SIDE, T3R_MAX_SIDE)                                                                             \
     X("fill_radius must be 0..8", c->fill_radius, 0, 8)                                                                \
     X("bridge_radius must be 0..255", c->bridge_radius, 0, 255)                                                        \
     X("flying must be 0 or 1", c->flying, 0, 1)                                                                        \
     X("redundancy must be 0 or 1", c->redundancy, 0, 1)                                                                \
     X("exposure must be 0 or 1", c->exposure, 0, 1)                                                                    \
     X("keep_analysis must be 0 or 1", c->keep_analysis, 0, 1)                                                          \
-    X("warm must be 0 or 1, and 0 with depth by stereo", c->warm, 0, !stereo)                                          \
-    X("stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo)     \
+    X("warm must be 0 or 1, and 0 with depth by stereo", stereo && c->warm != 0 ? 2 : c->warm, 0, 1)                   \
+    X("stream must be 0 or 1, and 0 without views or with depth by stereo",                                            \
+      (c->views == 0 || stereo) && c->stream != 0 ? 2 : c->stream, 0, 1)                                               \
     X("half_life must be 0..1024", c->half_life, 0, 1024)                                                              \
     X("tile_splats must be 0..2^24", c->tile_splats, 0, T3R_MAX_GAUSSIANS)                                             \
     X("workers must be 1..16", c->workers, 1, T3R_MAX_WORKERS)
@@ -130,13 +133,15 @@ t3r_config t3r_settled(const t3r_config *config)
     X("this library was built without this head", t3r_feature_of_head(c->head))                                        \
     X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)                       \
     X("this library was built without fitted passes", c->fit_passes ? T3R_HAS_LOSS : 0u)                               \
-    X("this library was built without comparison of views", c->views > 1 || c->stream ? T3R_HAS_COMPARISON : 0u)       \
+    X("this library was built without comparison of views",                                                            \
+      c->views > 1 || c->stream || c->fit_widths ? T3R_HAS_COMPARISON : 0u)                                            \
     X("this library was built without this allocation", t3r_feature_of_allocation(c->allocation))                      \
     X("this library was built without this wavelet", t3r_feature_of_wavelet(c->wavelet))                               \
     X("this library was built without several workers", c->workers > 1 ? T3R_HAS_WORKERS : 0u)                         \
     X("this library was built without builds that follow one another", c->warm ? T3R_HAS_WARM : 0u)
 
-#define BOUNDS(text, value, low, high) {(uint32_t)(value), (low), (high)},
+#define VALUE(text, value, low, high) (uint32_t)(value),
+#define BOUNDS(text, value, low, high) {(low), (high)},
 #define TEXT(text, value, low, high) text,
 #define NEED(text, features) (features),
 #define NEED_TEXT(text, features) text,
@@ -187,11 +192,12 @@ static size_t first_fault(const t3r_config *c)
     }
     const bool stereo = c->depth == T3R_DEPTH_STEREO && c->views > 0;
     const uint32_t least = c->width < c->height ? c->width : c->height;
-    const struct {
-        uint32_t value, low, high;
+    static const struct {
+        uint32_t low : 6, high : 26;
     } range[] = {RANGES(BOUNDS)};
+    const uint32_t value[] = {RANGES(VALUE)};
     for (size_t i = 0; i < sizeof range / sizeof range[0]; i++) {
-        if (range[i].value < range[i].low || range[i].value > range[i].high) {
+        if (value[i] < range[i].low || value[i] > range[i].high) {
             return i + 1;
         }
     }

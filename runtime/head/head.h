@@ -13,6 +13,13 @@
 
 #define T3R_HEAD_OPACITY_Q15 31457 /* 0.96, of heads that do not predict one */
 
+/* The views that may cover a surface together. */
+typedef struct t3r_covering_views {
+    const t3r_view *views;
+    uint32_t count;
+    int32_t exponent; /* of the scene's frame */
+} t3r_covering_views;
+
 /* What a head sees of one view. */
 typedef struct t3r_head_input {
     const t3r_kernels *kernels;
@@ -23,9 +30,10 @@ typedef struct t3r_head_input {
     const void *weights; /* of `learned`, checked; NULL for the others */
     void *work;          /* two bytes a pixel; `learned`: at least t3r_head_learned_work_bytes() */
     size_t work_bytes;
-    bool unadapted;                 /* the head takes every point for retained, spacing 1 */
-    bool (*goes_on)(void *context); /* asked before each row; NULL: the head is not to be stopped */
-    void *context;                  /* of goes_on */
+    const t3r_covering_views *covering; /* what widths are fitted to; NULL: the own view alone */
+    bool unadapted;                     /* the head takes every point for retained, spacing 1 */
+    bool (*goes_on)(void *context);     /* asked before each row; NULL: the head is not to be stopped */
+    void *context;                      /* of goes_on */
 } t3r_head_input;
 
 /* A total footprint in the image plane: mean and covariance in pixels, as the source view shall show it. */

@@ -2,6 +2,7 @@
  * of the pixels it stands for. */
 #include "depth/depth.h"
 #include "core/fixed.h"
+#include "fitted_widths.h"
 #include "head.h"
 
 #define SIGMA_SQUARE_Q12 1475 /* 0.6^2, tuned on the training scenes */
@@ -50,6 +51,7 @@ uint32_t t3r_head_analytic(const t3r_head_input *input, uint32_t begin, uint32_t
             footprint.xx_q12 = footprint.yy_q12 = (int32_t)(((uint64_t)square * SIGMA_SQUARE_Q12 + 2048) >> 12);
             uint32_t half = T3R_MIN(spacing >> 13, (uint32_t)WINDOW_MOST);
             local_mean(view, u, v, half, footprint.colour_q7);
+            t3r_fit_widths_if_asked(input, u, v, &footprint);
             t3r_lift(&input->map, input->view_index, u, v, &footprint, &out[count++]);
         }
     }

@@ -3,6 +3,7 @@
 #include "depth/depth.h"
 #include "core/fixed.h"
 #include "core/memory.h"
+#include "fitted_widths.h"
 #include "head.h"
 
 #define REACH 15 /* pixels join within +-15 */
@@ -174,6 +175,7 @@ uint32_t t3r_head_moment(const t3r_head_input *input, uint32_t begin, uint32_t e
             uint32_t reach = T3R_MIN((t3r_spacing_q12(input, pixel) * 2 >> 12) + 2, (uint32_t)REACH);
             moments m = input->unadapted ? alone(view, pixel) : gather(input, u, v, (int32_t)reach);
             t3r_footprint footprint = footprint_of(&m);
+            t3r_fit_widths_if_asked(input, u, v, &footprint);
             t3r_lift(&input->map, input->view_index, u, v, &footprint, &out[count++]);
         }
     }

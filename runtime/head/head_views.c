@@ -1,5 +1,6 @@
 #include "head_views.h"
 
+#include "core/features.h"
 #include "core/fixed.h"
 #include "pointmap/exposure.h"
 
@@ -20,9 +21,10 @@ typedef struct band_job {
     const t3r_budget_settings *settings;
     t3r_gaussian *out;
     uint32_t first, end; /* views of the call, for the progress hook */
-    bool asks;           /* this thread may ask the hook from within a band: there is no other */
-    bool stopped;        /* the hook wants no more */
-    uint32_t count;      /* of the bands of one round: at most as many views as workers, cut between workers */
+    t3r_covering_views covering;
+    bool asks;      /* this thread may ask the hook from within a band: there is no other */
+    bool stopped;   /* the hook wants no more */
+    uint32_t count; /* of the bands of one round: at most as many views as workers, cut between workers */
     band bands[2 * T3R_MAX_WORKERS];
 } band_job;
 
@@ -70,6 +72,13 @@ static bool goes_on(void *context)
     return t3r_progress(job->rt, T3R_STAGE_HEAD, job->first, job->end);
 }
 
+/* A stream's keyframes see what is not in the map any more, and a head that nothing adapts takes no spacing. */
+static bool fits_widths(const t3r_runtime *rt)
+{
+    return T3R_FEATURE_COMPARISON && rt->config.fit_widths != 0 && !t3r_is_stream(&rt->config) &&
+           rt->ablation.unadapted == 0;
+}
+
 static void make_band(void *context, uint32_t index, uint32_t worker)
 {
     band_job *job = context;
@@ -77,6 +86,9 @@ static void make_band(void *context, uint32_t index, uint32_t worker)
     const band *b = &job->bands[index];
     t3r_head_input input = t3r_head_input_of(rt, job->views, b->view, job->settings);
     input.work = work_of(rt, worker);
+    if (fits_widths(rt)) {
+        input.covering = &job->covering;
+    }
     if (job->asks) {
         input.goes_on = goes_on;
         input.context = job;
@@ -159,6 +171,9 @@ static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool a
     const t3r_runtime *rt = job->rt;
     const t3r_workers workers = t3r_workers_of(rt);
     const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1; /* views between two reports */
+    if (fits_widths(rt)) {
+        job->covering = (t3r_covering_views){job->views, rt->views, rt->frame.exponent};
+    }
     job->asks = asks && !t3r_is_parallel(&workers);
     job->end = end;
     *made = 0;

@@ -256,6 +256,11 @@ typedef struct t3r_config {
     /* 1 = `refinements` are the most, and a build takes as many as its budget and the agreement of its views pay for:
      * t3r_refinement_passes() returns them. 0 = every build takes all of them, as a stream does in any case. [0] */
     uint32_t fit_passes;
+    /* 1 = splats of T3R_HEAD_ANALYTIC and T3R_HEAD_MOMENT are as wide as the retained points of all views together ask
+     * for: narrower where several views cover a surface, and a little wider where one does. 0 = as wide as those of
+     * their own view ask for, as splats of T3R_HEAD_LEARNED, of a stream and of a head that nothing adapts are in any
+     * case. [0] */
+    uint32_t fit_widths;
     /* The source of depth. [T3R_DEPTH_SENSOR] */
     t3r_depth depth;
     /* The reach of hole filling in pixels, 0..8: holes of a depth sensor are filled where measurements bracket them

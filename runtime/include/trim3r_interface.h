@@ -73,6 +73,7 @@
     X(t3r_config, head_column_bytes)                                                                                   \
     X(t3r_config, refinements)                                                                                         \
     X(t3r_config, fit_passes)                                                                                          \
+    X(t3r_config, fit_widths)                                                                                          \
     X(t3r_config, depth)                                                                                               \
     X(t3r_config, fill_radius)                                                                                         \
     X(t3r_config, bridge_radius)                                                                                       \

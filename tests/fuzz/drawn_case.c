@@ -69,6 +69,7 @@ static t3r_config take_settings(input *in, const drawn_case *c, bool stereo)
     k.head_column_bytes = take_head_column_bytes(in, c, width, height);
     k.refinements = below(in, 3);
     k.fit_passes = below(in, 2);
+    k.fit_widths = below(in, 2);
     k.depth = stereo ? T3R_DEPTH_STEREO : T3R_DEPTH_SENSOR;
     k.fill_radius = below(in, 9);
     k.bridge_radius = below(in, MOST_BRIDGE);

@@ -56,6 +56,9 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
     SETTING("fit-passes", "on|off", fit_passes, SWITCH, 0, 1, NULL,                                                    \
             "take at most --refine passes: as many as the budget and the agreement of the views pay for", false,       \
             "fit-passes")                                                                                              \
+    SETTING("fit-widths", "on|off", fit_widths, SWITCH, 0, 1, NULL,                                                    \
+            "fit the widths of splats of analytic and moment to the retained points of all views, not of one", false,  \
+            "fit-widths")                                                                                              \
     SETTING("exposure", "on|off", exposure, SWITCH, 0, 1, NULL,                                                        \
             "bring the colours of all views to their mean exposure", false, "exposure")                                \
     SETTING("warm", "on|off", warm, SWITCH, 0, 1, NULL,                                                                \

@@ -1,0 +1,11 @@
+/* Fitted widths where views are not compared: no configuration is allowed to ask for them (core/config.c). */
+#include "fitted_widths.h"
+
+#if !T3R_FEATURE_COMPARISON
+
+void t3r_fit_widths(const t3r_head_input *input, uint32_t u, uint32_t v, t3r_footprint *footprint)
+{
+    (void)input, (void)u, (void)v, (void)footprint;
+}
+
+#endif
