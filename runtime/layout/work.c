@@ -84,6 +84,12 @@ static void count_network(const void *weights, const t3r_config *c, const sizes 
     }
 }
 
+/* Gaussians of a closed form: fitting a width to one other view is 1/share of what one of them takes. */
+static uint64_t closed_forms(const t3r_config *c, const sizes *s, uint32_t share)
+{
+    return s->gaussians + (c->fit_widths != 0 ? s->gaussians * (s->views - 1) / share : 0);
+}
+
 static void count_head(const t3r_config *c, const t3r_layout *layout, const void *weights, const sizes *s,
                        uint64_t *units)
 {
@@ -93,10 +99,10 @@ static void count_head(const t3r_config *c, const t3r_layout *layout, const void
         units[T3R_WORK_LIFTS] = s->gaussians;
     } else if (c->head == T3R_HEAD_MOMENT) {
         units[T3R_WORK_MOMENT_PIXELS] = s->points;
-        units[T3R_WORK_MOMENT_GAUSSIANS] = s->gaussians;
+        units[T3R_WORK_MOMENT_GAUSSIANS] = closed_forms(c, s, 12);
     } else {
         units[T3R_WORK_DISC_PIXELS] = s->points;
-        units[T3R_WORK_DISC_GAUSSIANS] = s->gaussians;
+        units[T3R_WORK_DISC_GAUSSIANS] = closed_forms(c, s, 5);
     }
 }
 
