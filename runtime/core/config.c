@@ -41,6 +41,7 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
         .warm = 0,
         .stream = 0,
         .half_life = 32,
+        .remember = 0,
         .tile_splats = 0,
         .workers = 1,
         .seed = 1,
@@ -123,6 +124,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("stream must be 0 or 1, and 0 without views or with depth by stereo",                                            \
       (c->views == 0 || stereo) && c->stream != 0 ? 2 : c->stream, 0, 1)                                               \
     X("half_life must be 0..1024", c->half_life, 0, 1024)                                                              \
+    X("remember must be 0..16", c->remember, 0, T3R_MAX_REMEMBERED)                                                    \
     X("tile_splats must be 0..2^24", c->tile_splats, 0, T3R_MAX_GAUSSIANS)                                             \
     X("workers must be 1..16", c->workers, 1, T3R_MAX_WORKERS)
 
@@ -168,7 +170,7 @@ uint64_t t3r_most_arena_bytes(const t3r_config *c)
     const uint64_t wide = (uint64_t)T3R_MAX_(c->width, c->height) * 5 / 4 + 8 + T3R_STEREO_DISPARITIES;
     bytes +=
         c->depth == T3R_DEPTH_STEREO && c->views > 0 ? wide * wide * 16 + wide * (T3R_STEREO_DISPARITIES + 2) * 300 : 0;
-    return bytes;
+    return t3r_is_stream(c) ? bytes + c->remember * (pixels * 2 + T3R_REMEMBERED_HEAD_BYTES + T3R_ARENA_ALIGN) : bytes;
 }
 
 /* The need's text's place, FAULTS when the library has all that the settings ask for. */

@@ -61,6 +61,7 @@ extern "C" {
 #define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */
 #define T3R_STEREO_LEAST_SIDE 32u /* smallest working width or height with depth by stereo, in pixels */
 #define T3R_MAX_VIEWS 16u         /* most context views */
+#define T3R_MAX_REMEMBERED 16u    /* most keyframes that a stream remembers without planes */
 #define T3R_MAX_CLUSTERS 512u     /* most SuperClusters */
 #define T3R_MAX_GAUSSIANS (1u << 24)
 #define T3R_HARMONICS_DEGREE_MOST 3u
@@ -295,6 +296,11 @@ typedef struct t3r_config {
     /* The number of keyframes after which what a stream no longer sees counts half as dense, 0..1024; 0 = nothing
      * fades. [32] */
     uint32_t half_life;
+    /* The number of keyframes that a stream remembers when newer ones have taken their planes, 0..T3R_MAX_REMEMBERED:
+     * their colours in two bytes a pixel. Each pass of refinement draws two of them in turn, and what many keyframes
+     * saw changes by smaller steps. So the map keeps showing what the camera left. Where there is no room, the one
+     * that the map needs least is forgotten. 0 = none; not read without `stream`. [0] */
+    uint32_t remember;
     /* The number of tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS. Each has a part of the arena
      * for itself. The number never changes a bit. [1] */
     uint32_t workers;

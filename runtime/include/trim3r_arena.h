@@ -45,10 +45,11 @@
  * heads nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
 #define T3R_HEAD_COLUMN_BYTES 704
 #define T3R_HEAD_KERNEL_BYTES 4096
-#define T3R_CORRECTION_BYTES 20   /* what refinement will change in a Gaussian */
-#define T3R_REFINE_SUMS_BYTES 112 /* what refinement sums over a Gaussian's pixels */
-#define T3R_WANTED_BYTES 4096     /* a tile that refinement compares with its view */
-#define T3R_MAP_RECORD_BYTES 12   /* what a stream notes about a Gaussian of its map */
+#define T3R_CORRECTION_BYTES 20       /* what refinement will change in a Gaussian */
+#define T3R_REFINE_SUMS_BYTES 112     /* what refinement sums over a Gaussian's pixels */
+#define T3R_WANTED_BYTES 4096         /* a tile that refinement compares with its view */
+#define T3R_REMEMBERED_HEAD_BYTES 128 /* before the pixels of a remembered keyframe: its camera and gains */
+#define T3R_MAP_RECORD_BYTES 12       /* what a stream notes about a Gaussian of its map */
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8 /* undistortion grid, pixels */
 
@@ -72,6 +73,8 @@
 #define T3R_TILES_(width, height)                                                                                      \
     ((((size_t)(width) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE) * (((size_t)(height) + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE))
 #define T3R_GRID_NODES_(width, height) (((size_t)(width) / T3R_GRID_STEP + 2) * ((size_t)(height) / T3R_GRID_STEP + 2))
+/* A keyframe that a stream remembers: two bytes a pixel. */
+#define T3R_REMEMBERED_BYTES(width, height) (T3R_REMEMBERED_HEAD_BYTES + T3R_UP_(T3R_PIXELS_(width, height) * 2))
 /* Resizing accumulates rows, one set for each worker; undistortion reads planes by a grid. */
 #define T3R_IMAGE_ROW_BYTES_(width) T3R_UP_((size_t)(width)*24)
 #define T3R_IMAGE_WORK_BYTES_(width, height, workers)                                                                  \
@@ -153,16 +156,16 @@
 
 /* --- the shape of an arena: what its bytes depend on ---------------------------------------------------------------
  *
- * Thirteen numbers in parentheses, handed on as one argument and read by name, as T3R_VIEWS_(shape): a constant
+ * Fourteen numbers in parentheses, handed on as one argument and read by name, as T3R_VIEWS_(shape): a constant
  * expression cannot read a struct. `gaussians` is max_gaussians of t3r_config, and `stereo` is 1 where depth is made by
  * stereo, 0 where it comes from a sensor. `keep` is 0 where the analysis ends with the build, 1 where it outlives it,
  * and T3R_KEEP_MAP for a stream: its map and keyframes outlive everything, and one keyframe is analysed at a time. The
  * others are the fields of t3r_config with their names. */
 #define T3R_KEEP_MAP 2
 #define T3R_SHAPE_(width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep,    \
-                   refinements, stereo, workers, warm)                                                                 \
+                   refinements, stereo, workers, warm, remember)                                                       \
     (width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep, refinements,     \
-     stereo, workers, warm)
+     stereo, workers, warm, remember)
 #define T3R_WIDTH_(shape) T3R_SHAPE_WIDTH_ shape
 #define T3R_HEIGHT_(shape) T3R_SHAPE_HEIGHT_ shape
 #define T3R_VIEWS_(shape) T3R_SHAPE_VIEWS_ shape
@@ -176,6 +179,7 @@
 #define T3R_STEREO_(shape) T3R_SHAPE_STEREO_ shape
 #define T3R_WORKERS_(shape) T3R_SHAPE_WORKERS_ shape
 #define T3R_WARM_(shape) T3R_SHAPE_WARM_ shape
+#define T3R_REMEMBER_(shape) T3R_SHAPE_REMEMBER_ shape
 #define T3R_SHAPE_WIDTH_(width, ...) ((size_t)(width))
 #define T3R_SHAPE_HEIGHT_(a, height, ...) ((size_t)(height))
 #define T3R_SHAPE_VIEWS_(a, b, views, ...) ((size_t)(views))
@@ -188,7 +192,8 @@
 #define T3R_SHAPE_REFINEMENTS_(a, b, c, d, e, f, g, h, i, refinements, ...) ((size_t)(refinements))
 #define T3R_SHAPE_STEREO_(a, b, c, d, e, f, g, h, i, j, stereo, ...) ((size_t)(stereo))
 #define T3R_SHAPE_WORKERS_(a, b, c, d, e, f, g, h, i, j, k, workers, ...) ((size_t)(workers))
-#define T3R_SHAPE_WARM_(a, b, c, d, e, f, g, h, i, j, k, l, warm) ((size_t)(warm))
+#define T3R_SHAPE_WARM_(a, b, c, d, e, f, g, h, i, j, k, l, warm, ...) ((size_t)(warm))
+#define T3R_SHAPE_REMEMBER_(a, b, c, d, e, f, g, h, i, j, k, l, m, remember) ((size_t)(remember))
 
 /* 1 or 0 */
 #define T3R_BUILDS_(shape) (T3R_VIEWS_(shape) > 0 ? (size_t)1 : (size_t)0)
@@ -245,6 +250,9 @@
 #define T3R_BUFFERS(X, with, shape)                                                                                    \
     X(with, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                            \
     X(with, MAP_RECORDS, "map records", T3R_STREAMS_(shape) * T3R_GAUSSIANS_(shape) * T3R_MAP_RECORD_BYTES,            \
+      T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
+    X(with, REMEMBERED, "remembered keyframes",                                                                        \
+      T3R_STREAMS_(shape) * T3R_REMEMBER_(shape) * T3R_REMEMBERED_BYTES(T3R_WIDTH_(shape), T3R_HEIGHT_(shape)),        \
       T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
     X(with, KEPT_TEXTURE, "kept textures", T3R_FOLLOWS_(shape) * T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE,             \
       T3R_AT_RASTER)                                                                                                   \
@@ -331,7 +339,7 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 #define T3R_DEFAULT_SHAPE_(width, height, views, gaussians, keep, stereo, warm)                                        \
     T3R_SHAPE_(width, height, views, gaussians,                                                                        \
                (keep) == T3R_KEEP_MAP ? 1 : T3R_CLUSTERS_OF_POINTS(T3R_PIXELS_(width, height) * (views)), width,       \
-               height, T3R_HEAD_COLUMN_BYTES, keep, T3R_DEFAULT_REFINEMENTS, stereo, 1, warm)
+               height, T3R_HEAD_COLUMN_BYTES, keep, T3R_DEFAULT_REFINEMENTS, stereo, 1, warm, 0)
 
 /* The arena of the default configuration: the least bytes that work, and those with which a view takes one pass (views
  * of wide splats may take more). */
@@ -349,7 +357,8 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
     T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 1))
 #define T3R_WARM_ARENA_BYTES(width, height, views, gaussians)                                                          \
     T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 1))
-/* The same of a stream (t3r_config.stream) with `views` keyframes at hand. */
+/* The same of a stream (t3r_config.stream) with `views` keyframes at hand; each that it remembers (t3r_config.remember)
+ * takes T3R_REMEMBERED_BYTES(width, height) more. */
 #define T3R_STREAM_MIN_BYTES(width, height, views, gaussians)                                                          \
     T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, T3R_KEEP_MAP, 0, 0))
 #define T3R_STREAM_BYTES(width, height, views, gaussians)                                                              \

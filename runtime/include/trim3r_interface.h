@@ -84,6 +84,7 @@
     X(t3r_config, warm)                                                                                                \
     X(t3r_config, stream)                                                                                              \
     X(t3r_config, half_life)                                                                                           \
+    X(t3r_config, remember)                                                                                            \
     X(t3r_config, workers)                                                                                             \
     X(t3r_config, tile_splats)                                                                                         \
     X(t3r_config, seed)                                                                                                \

@@ -2,12 +2,14 @@
 
 #include <stdbool.h>
 
+#include "core/camera.h"
 #include "core/cut.h"
 #include "core/fixed.h"
 #include "core/memory.h"
 #include "refine_bands.h"
 #include "refine_layout.h"
 #include "refine_tile.h"
+#include "state/remembered.h"
 #include "state/state.h"
 
 /* Where a band's tile is compared with the view: while the first one is drawn, nothing is sorted. */
@@ -211,6 +213,7 @@ typedef struct slice_job {
     t3r_gaussian *scene;
     const t3r_map_record *records; /* NULL: all Gaussians change */
     uint32_t idle_most;
+    bool settles; /* by smaller steps where more keyframes saw the Gaussian */
 } slice_job;
 
 static void begin_chunk(void *context, uint32_t index, uint32_t worker)
@@ -236,6 +239,22 @@ static void solve_chunk(void *context, uint32_t index, uint32_t worker)
     job->kernels->solve(job->slice.sums + begin, count, corrections + begin);
 }
 
+/* Q15: 1 / (1 + n) of the step behind n keyframes that saw it: what they agreed on is not given up for the next one. */
+static const uint16_t settled_q15[T3R_FITTED_MOST + 1] = {32768, 16384, 10923, 8192, 6554};
+
+static t3r_correction settled(const t3r_correction *whole, uint32_t fitted)
+{
+    const int32_t share_q15 = settled_q15[T3R_MIN(fitted, (uint32_t)T3R_FITTED_MOST)];
+    t3r_correction c = *whole;
+    for (int i = 0; i < 3; i++) {
+        c.colour_q7[i] = (int16_t)t3r_round_shift32(c.colour_q7[i] * share_q15, 15);
+    }
+    for (int i = 0; i < 6; i++) {
+        c.step_q16[i] = (int16_t)t3r_round_shift32(c.step_q16[i] * share_q15, 15);
+    }
+    return c;
+}
+
 /* Here the slice is the whole scene. */
 static void apply_chunk(void *context, uint32_t index, uint32_t worker)
 {
@@ -243,30 +262,49 @@ static void apply_chunk(void *context, uint32_t index, uint32_t worker)
     const slice_job *job = context;
     const uint32_t end = T3R_MIN((index + 1) * CHUNK, job->slice.count);
     for (uint32_t i = index * CHUNK; i < end; i++) {
-        if (job->records == NULL || job->records[i].idle < job->idle_most) {
-            t3r_refine_apply(&job->work->corrections[i], &job->scene[i]);
+        const t3r_correction *correction = &job->work->corrections[i];
+        if (!T3R_FEATURE_STREAMS || job->records == NULL) {
+            t3r_refine_apply(correction, &job->scene[i]);
+        } else if (job->records[i].idle < job->idle_most) {
+            const t3r_correction part = settled(correction, job->settles ? job->records[i].fitted : 0);
+            t3r_refine_apply(&part, &job->scene[i]);
         }
     }
 }
 
-/* What one view adds to the sums of the slice. False: cancelled. */
-static bool accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t v,
-                       const t3r_projection *projection, uint32_t done, uint32_t total)
+/* What a pass draws: a view at hand, or a remembered keyframe. */
+typedef struct shown_view {
+    const t3r_view *view; /* of a remembered keyframe its size alone is read */
+    const t3r_camera *camera;
+    const uint16_t *gain_q14;
+    const uint16_t *remembered; /* pixels; NULL: the view has planes */
+} shown_view;
+
+/* What it adds to the sums of the slice. */
+static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const shown_view *shown, uint32_t done,
+                             uint32_t total)
 {
+    t3r_projection projection;
+    t3r_status status =
+        t3r_projection_make(shown->camera, &rt->frame, rt->config.width, rt->config.height, &projection);
+    if (status != T3R_OK) {
+        return status;
+    }
     const t3r_workers workers = t3r_workers_of(rt);
     const t3r_refine_layout *w = slice->work;
-    const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
-    slice->projection = projection;
+    const t3r_binning bin = t3r_raster_list(rt, &projection, &w->room);
+    slice->projection = &projection;
     t3r_run_tasks(&workers, chunks_of(slice->slice.count), begin_chunk, slice);
     const t3r_refine_view view = {
         .kernels = &rt->kernels,
-        .view = &views[v],
+        .view = shown->view,
         .splats = w->room.splats,
         .slice = slice->slice,
         .borders = &w->borders,
         .across = bin.across,
         .kept_words = w->kept_words,
-        .gain_q14 = rt->gain_q14[v],
+        .gain_q14 = shown->gain_q14,
+        .remembered = shown->remembered,
     };
     view_job job = {.rt = rt, .work = w, .view = &view, .bin = &bin, .done = done, .total = total};
     bool goes_on = next_chunk(&job);
@@ -274,29 +312,48 @@ static bool accumulate(const t3r_runtime *rt, slice_job *slice, const t3r_view *
         t3r_run_tasks(&workers, job.count, accumulate_band, &job);
         t3r_refine_join(job.bands, job.count, &w->borders, &view.slice);
     }
-    return goes_on;
+    return goes_on ? T3R_OK : T3R_ERR_CANCELLED;
+}
+
+/* What the remembered keyframes whose turn it is add. Those out of the map's range add nothing. */
+static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice, const t3r_view *size, uint32_t turn,
+                                        uint32_t *done, uint32_t total)
+{
+    const uint32_t most = t3r_remembered_a_pass(rt);
+    for (uint32_t i = 0; i < most; i++, ++*done) {
+        t3r_remembered *keyframe = t3r_remembered_at(rt, (turn * T3R_REMEMBERED_A_PASS + i) % rt->remembered);
+        const shown_view shown = {size, &keyframe->camera, keyframe->gain_q14, t3r_remembered_pixels(keyframe)};
+        t3r_pose pose;
+        if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
+            return T3R_ERR_CANCELLED;
+        }
+        if (t3r_camera_check(shown.camera) != T3R_OK || t3r_pose_in_scene(shown.camera, &rt->frame, &pose) != T3R_OK) {
+            continue;
+        }
+        t3r_status status = accumulate(rt, slice, &shown, *done, total);
+        if (status != T3R_OK) {
+            return status;
+        }
+    }
+    return T3R_OK;
 }
 
 /* The sums of a slice over all views. */
-static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t *done,
-                                   uint32_t total)
+static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t turn,
+                                   uint32_t *done, uint32_t total)
 {
     memset(slice->slice.sums, 0, (size_t)slice->slice.count * sizeof *slice->slice.sums);
     for (uint32_t v = 0; v < rt->views; v++, ++*done) {
         if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
         }
-        t3r_projection projection;
-        t3r_status status =
-            t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width, rt->config.height, &projection);
+        const shown_view shown = {&views[v], &rt->camera[v], rt->gain_q14[v], NULL};
+        t3r_status status = accumulate(rt, slice, &shown, *done, total);
         if (status != T3R_OK) {
             return status;
         }
-        if (!accumulate(rt, slice, views, v, &projection, *done, total)) {
-            return T3R_ERR_CANCELLED;
-        }
     }
-    return T3R_OK;
+    return t3r_is_stream(&rt->config) ? accumulate_remembered(rt, slice, views, turn, done, total) : T3R_OK;
 }
 
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records)
@@ -308,15 +365,16 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
                      .slice = {w.sums, 0, 0},
                      .scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE),
                      .records = records,
-                     .idle_most = rt->config.views};
+                     .idle_most = rt->config.views,
+                     .settles = rt->config.remember > 0};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
-    uint32_t total = passes * slices * rt->views, done = 0;
+    uint32_t total = passes * slices * (rt->views + t3r_remembered_a_pass(rt)), done = 0;
     memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);
     for (uint32_t pass = 0; pass < passes; pass++) {
         for (uint32_t first = 0; first < rt->gaussians; first += w.slice) {
             job.slice.first = first;
             job.slice.count = T3R_MIN(w.slice, rt->gaussians - first);
-            t3r_status status = accumulate_views(rt, &job, views, &done, total);
+            t3r_status status = accumulate_views(rt, &job, views, rt->keyframes * passes + pass, &done, total);
             if (status != T3R_OK) {
                 return status;
             }

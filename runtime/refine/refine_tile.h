@@ -23,7 +23,8 @@ typedef struct t3r_refine_view {
     uint32_t *kept;     /* room for what is kept of the splats of a tile while it is drawn: T3R_KEPT_LEAST words or
                            more; the more there is, the less often a full tile is drawn again */
     uint32_t kept_words;
-    const uint16_t *gain_q14; /* of the view's three channels: what it shows is levelled first */
+    const uint16_t *gain_q14;   /* of the view's three channels: what it shows is levelled first */
+    const uint16_t *remembered; /* the pixels of a remembered keyframe, which has no planes; NULL: it is a view's */
     /* Asked before so many splats of a tile are drawn again; false ends the tile. */
     bool (*goes_on)(void *context, uint32_t splats);
     void *context;

@@ -71,12 +71,13 @@ struct t3r_runtime {
     uint32_t gaussians;                    /* in the scene */
     uint32_t passes;                       /* of refinement, in the last build */
     uint32_t render_passes;
-    uint32_t head_crc;  /* of the weights bound last */
-    uint32_t keyframes; /* taken by a stream; `views` of them are at hand */
-    uint32_t next_slot; /* the view that the next one takes: of a stream, and with `warm` where all are there */
-    t3r_reuse reuse;    /* nothing without `warm` */
-    uint32_t follows;   /* 1 = the last analysis took something over */
-    t3r_strips strips;  /* 0 unless a view comes in strips */
+    uint32_t head_crc;   /* of the weights bound last */
+    uint32_t keyframes;  /* taken by a stream; `views` of them are at hand */
+    uint32_t next_slot;  /* the view that the next one takes: of a stream, and with `warm` where all are there */
+    uint32_t remembered; /* keyframes that a stream holds without planes, at most config.remember */
+    t3r_reuse reuse;     /* nothing without `warm` */
+    uint32_t follows;    /* 1 = the last analysis took something over */
+    t3r_strips strips;   /* 0 unless a view comes in strips */
     const void *weights;
     t3r_hooks hooks;
     t3r_kernels kernels; /* chosen by t3r_set_cpu(); plain C until then */

@@ -23,6 +23,7 @@
 #include "pointmap/scene_scale.h"
 #include "stage_hash.h"
 #include "state/state.h"
+#include "remember.h"
 #include "stream_map.h"
 #include "superclusters/one_cluster.h"
 
@@ -196,6 +197,7 @@ static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot,
     }
     t3r_map map = t3r_map_of(rt);
     report->removed = t3r_map_see(&map, &keyframe, rt->keyframes, rt->config.half_life);
+    t3r_remembered_hold(rt, &map);
     rt->gaussians = map.count;
 
     t3r_projection projection;
@@ -312,6 +314,7 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     const t3r_camera replaced = rt->camera[slot];
     const uint64_t replaced_unit_q40 = rt->depth_unit_q40[slot];
     *report = (t3r_stream_report){0};
+    t3r_remember(rt, slot);
     t3r_status status = develop(rt, slot, frame, camera);
     if (status == T3R_OK) {
         rt->views = T3R_MAX(views, slot + 1);

@@ -7,7 +7,6 @@
 #include "state/state.h"
 
 #define FINER_Q8 256        /* log2: pixels on the surface so much narrower replace the Gaussian */
-#define AFAR_Q8 128         /* log2: pixels on the surface so much wider than its own do not update it */
 #define WIDEN_STEP_Q10 64   /* log2 of density: smaller changes wait until they add up */
 #define WIDEN_MOST_Q10 8192 /* of one step */
 
@@ -16,8 +15,7 @@ t3r_map t3r_map_of(const t3r_runtime *rt)
     return (t3r_map){t3r_buffer_at(rt, T3R_BUFFER_SCENE), t3r_buffer_at(rt, T3R_BUFFER_MAP_RECORDS), rt->gaussians};
 }
 
-/* log2 of z / (fx + fy), Q8 */
-static int32_t grain_of(const t3r_view *view, int32_t z_q20)
+int32_t t3r_grain_q8(const t3r_view *view, int32_t z_q20)
 {
     int32_t log_z = t3r_log2_q16((uint32_t)T3R_MAX(z_q20, 1));
     int32_t log_f = t3r_log2_q16((uint32_t)view->fx_q16 + (uint32_t)view->fy_q16);
@@ -35,8 +33,8 @@ static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t
     }
     int32_t there = t3r_depth_q20(keyframe->scale, view->depth[projected.pixel]);
     if (16 * t3r_abs64((int64_t)there - projected.z_q20) <= T3R_MIN(there, projected.z_q20)) {
-        int32_t wider_q8 = grain_of(view, projected.z_q20) - record->grain_q8;
-        return wider_q8 < -FINER_Q8 ? COARSE : wider_q8 <= AFAR_Q8 ? SEEN : SEEN_AFAR;
+        int32_t wider_q8 = t3r_grain_q8(view, projected.z_q20) - record->grain_q8;
+        return wider_q8 < -FINER_Q8 ? COARSE : wider_q8 <= T3R_AFAR_Q8 ? SEEN : SEEN_AFAR;
     }
     return t3r_seen_through(keyframe, &projected, false) ? CONTRADICTED : UNSEEN;
 }
@@ -67,7 +65,8 @@ uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyfra
         if (seen == CONTRADICTED || seen == COARSE) {
             continue;
         }
-        record->idle = seen == SEEN ? 0 : (uint16_t)T3R_MIN(record->idle + 1, (int32_t)UINT16_MAX);
+        record->idle = seen == SEEN ? 0 : (uint8_t)T3R_MIN(record->idle + 1, UINT8_MAX);
+        record->fitted = (uint8_t)T3R_MIN(record->fitted + (seen == SEEN), T3R_FITTED_MOST);
         record->faded_q10 = seen != UNSEEN ? 0 : (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
         move_to(map, i, kept++);
     }
@@ -216,7 +215,7 @@ uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyfra
             .key = (uint16_t)point_key(view, pixel),
             .wanted_q10 = (int16_t)T3R_MIN(t3r_log_wanted_q10(view->texture[pixel], settings), INT16_MAX),
             .density_q10 = (int16_t)t3r_log_density_q10(view, pixel, settings, clusters),
-            .grain_q8 = (int16_t)grain_of(view, t3r_depth_q20(keyframe->scale, view->depth[pixel])),
+            .grain_q8 = (int16_t)t3r_grain_q8(view, t3r_depth_q20(keyframe->scale, view->depth[pixel])),
         };
     }
     return map->count - before;

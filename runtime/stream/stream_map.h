@@ -10,6 +10,9 @@
 #include "core/map_record.h"
 #include "state/views.h"
 
+/* log2: pixels on the surface so much wider than its own do not update a Gaussian. */
+#define T3R_AFAR_Q8 128
+
 /* Keys below are held for so much, 20 octaves: sure points of a keyframe outlast others by a bounded time only. */
 #define T3R_MAP_KEY_LEAST (T3R_KEY_ZERO - (20 << 10))
 
@@ -20,6 +23,9 @@ typedef struct t3r_map {
 } t3r_map;
 
 t3r_map t3r_map_of(const t3r_runtime *rt);
+
+/* log2 of a pixel's width z / (fx + fy) on a surface at z, Q8. */
+int32_t t3r_grain_q8(const t3r_view *view, int32_t z_q20);
 
 /* Looks at every Gaussian from a keyframe: those that it sees through and those of a surface that it sees far finer
  * leave, those that it does not see fade to half the density in `half_life` keyframes (0: never, else up to 1,024).

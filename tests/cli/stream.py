@@ -42,6 +42,15 @@ def stream():
         expect(0, *base, "--expect", found["hash"], *more, out="as expected")
     expect(1, *base, "--expect", "stream.json", "--wavelet", "haar", err="keyframe 0")
     expect(1, *base, "--expect", "stream.json", "--half-life", 1, err="keyframe 2")
+    remembered = expect_json(*base[:-4], "--at-hand", 1, "--remember", 2, "--gaussians", 500)
+    forgotten = expect_json(*base[:-4], "--at-hand", 1, "--gaussians", 500)
+    check(remembered["keyframes"][1]["hash"] != forgotten["keyframes"][1]["hash"], "what is remembered changes nothing")
+    check(remembered["arena_bytes"] == forgotten["arena_bytes"] + 2 * (64 * 64 * 2 + 128), "two bytes a pixel are remembered")
+    write("remembered.json", json.dumps(remembered))
+    for more in (["--threads", 2], ["--arena", "min"], ["--cpu-mask", 0]):
+        expect(0, *base[:-4], "--at-hand", 1, "--remember", 2, "--gaussians", 500, "--expect", "remembered.json", *more, out="as expected")
+    expect(2, *base, "--remember", 17, err="--remember")
+    expect(2, "replay", recording, "--remember", 2, err="belong to --stream")
     expect(1, *base, "--expect", "0" * 16, err=found["hash"])
     expect(0, "replay", recording, "--stream", "--keep", 2, "--working", "32x32", "--refine", 0, out="2 keyframes, one in 3")
     turned = expect_json("replay", recording, "--working", "64x64", "--stream", "--every", 100, "--overlap", "90%",

@@ -80,6 +80,7 @@ static t3r_config take_settings(input *in, const drawn_case *c, bool stereo)
     k.warm = (below(in, 2) && streams) || c->tells == SLIDE;
     k.stream = streams;
     k.half_life = below(in, 4);
+    k.remember = below(in, 4);
     const uint32_t tile_splats = below(in, 160);
     k.tile_splats = tile_splats < 40 ? tile_splats : 0;
     k.seed = take8(in);

@@ -47,6 +47,7 @@ static t3r_config take_config(input *in)
     c.fit_widths = c.seed >> 3 & 1;
     c.depth = c.seed & 32 && c.width >= T3R_STEREO_LEAST_SIDE && c.height >= T3R_STEREO_LEAST_SIDE ? T3R_DEPTH_STEREO
                                                                                                    : T3R_DEPTH_SENSOR;
+    c.remember = c.seed >> 3 & 3;
     c.stream = c.seed >> 6 == 3 && c.views > 0 && c.depth == T3R_DEPTH_SENSOR;
     c.head_column_bytes = c.seed & 4 ? below(in, 2048) : c.head_column_bytes;
     return c;

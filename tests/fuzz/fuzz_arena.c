@@ -238,6 +238,7 @@ static void damage_config(t3r_runtime *rt, input *in)
         break;
     case 11:
         c->half_life = take_number(in, 1024);
+        c->remember = take_number(in, T3R_MAX_REMEMBERED);
         break;
     case 14:
         c->tile_splats = take_number(in, BUDGET);

@@ -77,7 +77,7 @@ typedef struct variation {
 /* Ten times what the largest configuration asks for; two, so that one can move to the other. */
 enum {
     ARENA_ROOM =
-        10 * T3R_FULL_BYTES_(T3R_SHAPE_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, T3R_HEAD_COLUMN_BYTES, 1, 4, 1, 1, 0))
+        10 * T3R_FULL_BYTES_(T3R_SHAPE_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, T3R_HEAD_COLUMN_BYTES, 1, 4, 1, 1, 0, 0))
 };
 static _Alignas(T3R_ARENA_ALIGN) uint8_t arenas[2][ARENA_ROOM];
 

@@ -95,6 +95,7 @@ static void plan_equals_macros(void **state)
         c.stream = c.views > 0 && c.depth == T3R_DEPTH_SENSOR && dice_below(&d, 4) == 0;
         c.workers = 1 + dice_below(&d, T3R_MAX_WORKERS);
         c.warm = c.depth == T3R_DEPTH_SENSOR && dice_below(&d, 2) == 0;
+        c.remember = dice_below(&d, T3R_MAX_REMEMBERED + 1);
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
@@ -102,7 +103,7 @@ static void plan_equals_macros(void **state)
         const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.clusters, c.render_width, c.render_height,               \
-               c.head_column_bytes, keep, c.refinements, c.depth == T3R_DEPTH_STEREO, c.workers, c.warm)
+               c.head_column_bytes, keep, c.refinements, c.depth == T3R_DEPTH_STEREO, c.workers, c.warm, c.remember)
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(SHAPE));
         assert_true(plan.bytes == T3R_FULL_BYTES_(SHAPE));
 #undef SHAPE
@@ -116,6 +117,13 @@ static void plan_equals_macros(void **state)
         assert_true(c.views == 0 ||
                     (plan.min_bytes == T3R_STREAM_MIN_BYTES(c.width, c.height, c.views, c.max_gaussians) &&
                      plan.bytes == T3R_STREAM_BYTES(c.width, c.height, c.views, c.max_gaussians)));
+        if (c.stream) {
+            const size_t more = 3 * T3R_REMEMBERED_BYTES(c.width, c.height);
+            c.remember = 3;
+            assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
+            assert_true(plan.min_bytes == T3R_STREAM_MIN_BYTES(c.width, c.height, c.views, c.max_gaussians) + more);
+            assert_true(plan.bytes == T3R_STREAM_BYTES(c.width, c.height, c.views, c.max_gaussians) + more);
+        }
         c.stream = 0;
         c.depth = T3R_DEPTH_STEREO;
         if (t3r_config_error(&c) == NULL) {

@@ -66,7 +66,7 @@ static void each_setting(void **state)
     base.stream = 1;
     base.refinements = 1;
     const uint32_t usually = run(&base, usual);
-    t3r_config other[10];
+    t3r_config other[11];
     size_t n = 0;
 #define OTHER(field, value) (other[n] = base, other[n].field = (value), n++)
     OTHER(bridge_radius, 0);
@@ -75,6 +75,7 @@ static void each_setting(void **state)
     OTHER(refinements, 0);
     OTHER(views, 1);
     OTHER(warm, 1);
+    OTHER(remember, 1);
     OTHER(allocation, T3R_ALLOCATE_PAPER);
     OTHER(allocation, T3R_ALLOCATE_PIXEL);
     OTHER(allocation, T3R_ALLOCATE_UNIFORM);

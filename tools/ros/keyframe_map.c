@@ -24,6 +24,7 @@ keyframe_map_settings keyframe_map_defaults(void)
         .at_hand = 4,
         .every = 3,
         .half_life = config.half_life,
+        .remember = config.remember,
         .refinements = config.refinements,
         .threads = 1,
         .head = CHOSEN_HEAD_DEFAULT,
@@ -49,6 +50,7 @@ static int open_stream(keyframe_map *map, const keyframe_map_settings *settings)
     options.head = settings->head;
     options.processor.threads = settings->threads;
     options.config.half_life = settings->half_life;
+    options.config.remember = settings->remember;
     options.config.refinements = settings->refinements;
     options.config.warm = settings->warm;
     int code = reconstruction_live_stream(&map->r, settings->width, settings->height, &options, settings->at_hand);

@@ -19,6 +19,7 @@ typedef struct keyframe_map_settings {
     uint32_t every;           /* the n-th frame after a keyframe is the next one, at least 1 [3] */
     uint32_t overlap_percent; /* less in common with the last keyframe makes a frame one, 0..100; 0 = not asked [0] */
     uint32_t half_life;       /* as t3r_config has it [32] */
+    uint32_t remember;        /* likewise [0] */
     uint32_t refinements;     /* likewise [T3R_DEFAULT_REFINEMENTS] */
     uint32_t warm;            /* likewise [0] */
     uint32_t threads;         /* 1..T3R_MAX_WORKERS [1] */

@@ -44,6 +44,7 @@ keyframe_map_settings map_settings(const parameters &p)
     s.every = count_from(p.every, "every");
     s.overlap_percent = count_from(p.overlap, "overlap");
     s.half_life = count_from(p.half_life, "half_life");
+    s.remember = count_from(p.remember, "remember");
     s.refinements = count_from(p.refine, "refine");
     s.threads = count_from(p.threads, "threads");
     s.warm = p.warm ? 1 : 0;

@@ -29,7 +29,7 @@ typedef struct replay_options {
     const char *expect;
     bool json;
     replay_stream_options stream;
-    bool streams, has_half_life, slides;
+    bool streams, has_half_life, has_remember, slides;
     reconstruction_options settings;
 } replay_options;
 
@@ -50,6 +50,7 @@ enum {
     KEY_EVERY,
     KEY_AT_HAND,
     KEY_HALF_LIFE,
+    KEY_REMEMBER,
     KEY_OVERLAP,
     KEY_IMAGES,
     KEY_SLIDE
@@ -73,6 +74,9 @@ static const struct argp_option options[] = {
     {"at-hand", KEY_AT_HAND, "K", 0, "number of keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
     {"half-life", KEY_HALF_LIFE, "K", 0,
      "number of keyframes that halve the density of what they do not see, 0..1024; 0 = nothing fades (32)", 0},
+    {"remember", KEY_REMEMBER, "K", 0,
+     "number of keyframes whose colours are remembered when their planes are gone, for refinement in turn, 0..16 (0)",
+     0},
     {"images", KEY_IMAGES, "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
@@ -84,8 +88,8 @@ static const struct argp_option options[] = {
 static void check_stream(struct argp_state *state, const replay_options *o)
 {
     if (!o->streams && (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || o->has_half_life ||
-                        o->stream.images != NULL || o->stream.output != NULL)) {
-        argp_error(state, "--every, --overlap, --at-hand, --half-life, --images and -o belong to --stream");
+                        o->has_remember || o->stream.images != NULL || o->stream.output != NULL)) {
+        argp_error(state, "--every, --overlap, --at-hand, --half-life, --remember, --images and -o belong to --stream");
     }
     scene_output_option(state, "-o", o->stream.output);
     if (o->streams &&
@@ -130,6 +134,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_HALF_LIFE:
         o->settings.config.half_life = option_number(state, "half-life", arg, 0, 1024);
         o->has_half_life = true;
+        return 0;
+    case KEY_REMEMBER:
+        o->settings.config.remember = option_number(state, "remember", arg, 0, T3R_MAX_REMEMBERED);
+        o->has_remember = true;
         return 0;
     case KEY_IMAGES:
         o->stream.images = arg;
@@ -177,7 +185,8 @@ static const struct argp argp = {
         "  trim3r replay room.mcap --json > golden.json\n"
         "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n"
         "  trim3r replay walk.mcap --slide --warm on\n"
-        "  trim3r replay walk.mcap --stream --every 3 --gaussians 10000 -o map.ply\n\n"
+        "  trim3r replay walk.mcap --stream --every 3 --gaussians 10000 -o map.ply\n"
+        "  trim3r replay walk.mcap --stream --at-hand 2 --remember 6\n\n"
         "With a file to compare with, the first stage that differs is named, and for the raster the first 16x16 tile.",
     .children = children,
 };
