@@ -114,6 +114,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("depth is none of t3r_depth", (uint32_t)c->depth, 0, T3R_DEPTH_COUNT - 1)                                        \
     X("width and height must be 32 and more with depth by stereo", stereo ? least : T3R_MAX_SIDE,                      \
       T3R_STEREO_LEAST_SIDE, T3R_MAX_SIDE)                                                                             \
+    X("planes must be 0 or 1", c->planes, 0, 1)                                                                        \
     X("fill_radius must be 0..8", c->fill_radius, 0, 8)                                                                \
     X("bridge_radius must be 0..255", c->bridge_radius, 0, 255)                                                        \
     X("flying must be 0 or 1", c->flying, 0, 1)                                                                        \
@@ -131,6 +132,7 @@ t3r_config t3r_settled(const t3r_config *config)
 /* X(text, features), what a setting needs of the library. */
 #define NEEDS(X)                                                                                                       \
     X("this library was built without stereo", c->depth == T3R_DEPTH_STEREO ? T3R_HAS_STEREO : 0u)                     \
+    X("this library was built without planes", c->planes ? T3R_HAS_PLANES : 0u)                                        \
     X("this library was built without streams", c->stream ? T3R_HAS_STREAMS : 0u)                                      \
     X("this library was built without this head", t3r_feature_of_head(c->head))                                        \
     X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)                       \
@@ -152,7 +154,7 @@ t3r_config t3r_settled(const t3r_config *config)
 static const char *const texts[] = {
     "no configuration", RANGES(TEXT) "the arena would be larger than this machine can address", NEEDS(NEED_TEXT)};
 
-enum { NEEDS_COUNT = 10, FAULTS = sizeof texts / sizeof texts[0], FIRST_NEED = FAULTS - NEEDS_COUNT };
+enum { NEEDS_COUNT = 11, FAULTS = sizeof texts / sizeof texts[0], FIRST_NEED = FAULTS - NEEDS_COUNT };
 
 uint64_t t3r_most_arena_bytes(const t3r_config *c)
 {

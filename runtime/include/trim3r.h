@@ -264,6 +264,9 @@ typedef struct t3r_config {
     uint32_t fit_widths;
     /* The source of depth. [T3R_DEPTH_SENSOR] */
     t3r_depth depth;
+    /* 1 = what stereo cannot match continues the planes that the matched pixels of its view lie on; 0 = the surface next
+     * to it in the picture. Without effect unless depth is by stereo and fill_radius above 0. [0] */
+    uint32_t planes;
     /* The reach of hole filling in pixels, 0..8: holes of a depth sensor are filled where measurements bracket them
      * within it. 0 = no hole is filled. [4] */
     uint32_t fill_radius;

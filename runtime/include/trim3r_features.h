@@ -9,6 +9,13 @@
 #define T3R_FEATURE_STEREO 1
 #endif
 
+/* Planes where stereo matches nothing: t3r_config.planes. */
+#ifndef T3R_FEATURE_PLANES
+#define T3R_FEATURE_PLANES T3R_FEATURE_STEREO
+#elif T3R_FEATURE_PLANES && !T3R_FEATURE_STEREO
+#error "T3R_FEATURE_PLANES needs T3R_FEATURE_STEREO"
+#endif
+
 /* Maps that follow a camera: t3r_config.stream. */
 #ifndef T3R_FEATURE_STREAMS
 #define T3R_FEATURE_STREAMS 1
@@ -79,6 +86,7 @@
 #define T3R_HAS_WORKERS (1u << 9)
 #define T3R_HAS_WARM (1u << 10)
 #define T3R_HAS_LOSS (1u << 11)
+#define T3R_HAS_PLANES (1u << 12)
 
 /* Those that are left in. */
 #define T3R_FEATURES_BUILT                                                                                             \
@@ -87,6 +95,7 @@
      (T3R_FEATURE_REFINEMENT ? T3R_HAS_REFINEMENT : 0u) | (T3R_FEATURE_LENSES ? T3R_HAS_LENSES : 0u) |                 \
      (T3R_FEATURE_COMPARISON ? T3R_HAS_COMPARISON : 0u) | (T3R_FEATURE_ALLOCATIONS ? T3R_HAS_ALLOCATIONS : 0u) |       \
      (T3R_FEATURE_WAVELETS ? T3R_HAS_WAVELETS : 0u) | (T3R_FEATURE_WORKERS ? T3R_HAS_WORKERS : 0u) |                   \
-     (T3R_FEATURE_WARM ? T3R_HAS_WARM : 0u) | (T3R_FEATURE_LOSS ? T3R_HAS_LOSS : 0u))
+     (T3R_FEATURE_WARM ? T3R_HAS_WARM : 0u) | (T3R_FEATURE_LOSS ? T3R_HAS_LOSS : 0u) |                       \
+     (T3R_FEATURE_PLANES ? T3R_HAS_PLANES : 0u))
 
 #endif

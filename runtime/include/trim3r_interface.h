@@ -75,6 +75,7 @@
     X(t3r_config, fit_passes)                                                                                          \
     X(t3r_config, fit_widths)                                                                                          \
     X(t3r_config, depth)                                                                                               \
+    X(t3r_config, planes)                                                                                              \
     X(t3r_config, fill_radius)                                                                                         \
     X(t3r_config, bridge_radius)                                                                                       \
     X(t3r_config, flying)                                                                                              \

@@ -5,6 +5,7 @@
 #include "match_clean.h"
 #include "match_layout.h"
 #include "match_winner.h"
+#include "plane_outline.h"
 
 static void census(const t3r_kernels *kernels, const uint8_t *luma, uint32_t width, uint32_t height, uint32_t y,
                    uint8_t *bits)
@@ -115,6 +116,9 @@ void t3r_match_all(const t3r_match *match, bool fill)
 {
     t3r_match_pair(match);
     t3r_match_agree(match);
+    if (!match->outlines) {
+        t3r_plane_outline(match);
+    }
     for (uint32_t side = 0; side < 2; side++) {
         (void)t3r_match_speckles(match, side);
         t3r_match_smooth(match, side);

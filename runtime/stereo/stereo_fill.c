@@ -4,6 +4,7 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 #include "stereo.h"
+#include "surface.h"
 
 /* Sweeps over the picture: down, up, down, up. Ways with more bends than that are found as longer ones. */
 #define SWEEPS 4
@@ -12,29 +13,14 @@
 #define DIAGONAL 7
 #define LEVEL 5
 #define CELLS T3R_STEREO_FILL_CELLS
-/* One over a depth in steps, Q30: at most 2^24, that of 64 steps */
-#define INVERSE_MOST (1 << 24)
-/* Square pixels added to the spread of places: a slope takes more than one row or column. */
-#define SPREAD 2
-#define SLOPE_MOST_Q8 INT32_MAX
 
-/* Sums over the pixels of a cell that have depth; x and y count from its middle, i is one over depth. */
-typedef struct sums {
-    int64_t n, x, y, i, xx, xy, yy, xi, yi;
-} sums;
-
-_Static_assert(sizeof(sums) == T3R_STEREO_FILL_SUMS_BYTES, "stereo_fill.h knows the sums' size");
-
-/* How one over depth grows a pixel to the right and down, Q30 + 8 */
-typedef struct slope {
-    int32_t x_q8, y_q8;
-} slope;
+_Static_assert(sizeof(t3r_surface_sums) == T3R_STEREO_FILL_SUMS_BYTES, "stereo_fill.h knows the sums' size");
 
 /* A view being filled. */
 typedef struct filling {
     const t3r_view *view;
     uint32_t cell, columns, rows; /* side of a cell; their numbers, at most CELLS */
-    sums *sums;
+    t3r_surface_sums *sums;
     uint32_t *source; /* the pixel whose depth is taken */
     uint16_t *cost;   /* the length of the way there; UINT16_MAX = none yet, or longer */
     uint8_t *luma;
@@ -47,7 +33,7 @@ static bool shows(const t3r_view *view, size_t i)
 
 /* ---- the nearest pixel with depth -------------------------------------------------------------------------------- */
 
-static void take_luma(const t3r_view *view, uint8_t *restrict luma)
+void t3r_stereo_luma(const t3r_view *view, uint8_t *restrict luma)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
     const uint8_t *r = view->colour[0], *g = view->colour[1], *b = view->colour[2];
@@ -66,7 +52,7 @@ static void begin(const filling *f)
         source[i] = (uint32_t)i;
         cost[i] = depth[i] != 0 ? 0 : UINT16_MAX;
     }
-    take_luma(f->view, f->luma);
+    t3r_stereo_luma(f->view, f->luma);
 }
 
 /* Pixel `to` takes what pixel `from` has, if the way by it is shorter. */
@@ -132,20 +118,13 @@ static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
 
 /* ---- slopes ------------------------------------------------------------------------------------------------------ */
 
-/* 2^30 / depth, round-half-up, of a depth that is not 0 */
-static int64_t inverse_q30(uint16_t depth)
-{
-    const uint32_t twice = 2 * (uint32_t)depth;
-    return T3R_MIN(((UINT32_C(1) << 31) + depth) / twice, (uint32_t)INVERSE_MOST);
-}
-
 static size_t cell_of(const filling *f, uint32_t x, uint32_t y)
 {
     return (size_t)(y / f->cell) * f->columns + x / f->cell;
 }
 
 /* Adds `count` pixels of a row of a cell, the first of them x0 right of its middle, all y below it. */
-static void sum_row(sums *s, const uint16_t *depth, uint32_t count, int32_t x0, int64_t y)
+static void sum_row(t3r_surface_sums *s, const uint16_t *depth, uint32_t count, int32_t x0, int64_t y)
 {
     /* at most 2^9 pixels, |x| at most 2^8, i at most 2^24 */
     int32_t n = 0, x = 0, xx = 0;
@@ -153,7 +132,7 @@ static void sum_row(sums *s, const uint16_t *depth, uint32_t count, int32_t x0, 
     for (uint32_t u = 0; u < count; u++) {
         if (depth[u] != 0) {
             const int32_t at = x0 + (int32_t)u;
-            const int64_t inverse = inverse_q30(depth[u]);
+            const int64_t inverse = t3r_inverse_depth_q30(depth[u]);
             n++;
             x += at;
             xx += at * at;
@@ -188,7 +167,7 @@ static void sum_cells(const filling *f)
 }
 
 /* Those of another cell, counted from a place dx, dy away from its middle. */
-static void add_moved(sums *to, const sums *s, int64_t dx, int64_t dy)
+static void add_moved(t3r_surface_sums *to, const t3r_surface_sums *s, int64_t dx, int64_t dy)
 {
     to->n += s->n;
     to->x += s->x + s->n * dx;
@@ -201,49 +180,30 @@ static void add_moved(sums *to, const sums *s, int64_t dx, int64_t dy)
     to->yi += s->yi + dy * s->i;
 }
 
-/* n / d in Q8 of `bits` more bits in n than in d, |n| < 2^62 */
-static int32_t quotient_q8(int64_t n, int64_t d, int32_t bits)
-{
-    const int32_t shift = T3R_MIN(12, 60 - (int32_t)t3r_msb64((uint64_t)t3r_abs64(n) | 1));
-    const int64_t q = t3r_scale64(t3r_round_div64(n * (INT64_C(1) << shift), d), 8 - shift - bits);
-    return (int32_t)t3r_clamp64(q, -SLOPE_MOST_Q8, SLOPE_MOST_Q8);
-}
-
 /* The plane through one over depth in a cell and the eight about it, by least squares. */
-static slope fit(const filling *f, uint32_t column, uint32_t row)
+static t3r_surface_slope fit(const filling *f, uint32_t column, uint32_t row)
 {
-    sums s = {0};
+    t3r_surface_sums s = {0};
     for (uint32_t r = row > 0 ? row - 1 : 0; r <= row + 1 && r < f->rows; r++) {
         for (uint32_t c = column > 0 ? column - 1 : 0; c <= column + 1 && c < f->columns; c++) {
             add_moved(&s, &f->sums[(size_t)r * f->columns + c], ((int64_t)c - column) * f->cell,
                       ((int64_t)r - row) * f->cell);
         }
     }
-    if (s.n == 0) {
-        return (slope){0, 0};
-    }
-    /* n below 2^21.2, |x| below 2^9.6, i at most 2^24: sums of x squared below 2^62, x i below 2^55 */
-    const int64_t mean = t3r_round_div64(s.i, s.n);
-    const int64_t xx = t3r_round_div64(16 * (s.xx - t3r_round_div64(s.x * s.x, s.n)), s.n) + 16 * SPREAD;
-    const int64_t yy = t3r_round_div64(16 * (s.yy - t3r_round_div64(s.y * s.y, s.n)), s.n) + 16 * SPREAD;
-    const int64_t xy = t3r_round_div64(16 * (s.xy - t3r_round_div64(s.x * s.y, s.n)), s.n);
-    const int64_t xi = t3r_round_div64(s.xi - s.x * mean, s.n), yi = t3r_round_div64(s.yi - s.y * mean, s.n);
-    /* Q4, below 2^23.3; xi below 2^33.7: products below 2^58. Covariances of real pixels but for rounding, and the
-     * spread added: the determinant is positive. */
-    const int64_t determinant = T3R_MAX(xx * yy - xy * xy, 1);
-    return (slope){quotient_q8(xi * yy - yi * xy, determinant, -4), quotient_q8(yi * xx - xi * xy, determinant, -4)};
+    /* n below 2^21.2, |x| below 2^9.6 */
+    return s.n == 0 ? (t3r_surface_slope){0, 0} : t3r_surface_slope_of(&s);
 }
 
 /* ---- depth ------------------------------------------------------------------------------------------------------- */
 
 /* The depth at (u, v) of the plane through a pixel's, its distance between half and twice as far. */
-static uint16_t extend(const filling *f, const slope *slopes, uint32_t u, uint32_t v)
+static uint16_t extend(const filling *f, const t3r_surface_slope *slopes, uint32_t u, uint32_t v)
 {
     const t3r_view *view = f->view;
     const uint32_t source = f->source[(size_t)v * view->width + u];
     const uint32_t x = source % view->width, y = source / view->width;
-    const slope s = slopes[cell_of(f, x, y)];
-    const int64_t own = inverse_q30(view->depth[source]);
+    const t3r_surface_slope s = slopes[cell_of(f, x, y)];
+    const int64_t own = t3r_inverse_depth_q30(view->depth[source]);
     /* Each cell has its slope. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
     const int64_t grown = ((int64_t)u - x) * s.x_q8 + ((int64_t)v - y) * s.y_q8; /* below 2^44 */
     const int64_t there = t3r_clamp64(own + t3r_round_shift64(grown, 8), (own + 1) / 2, 2 * own);
@@ -253,7 +213,7 @@ static uint16_t extend(const filling *f, const slope *slopes, uint32_t u, uint32
 static void finish(const filling *f)
 {
     const t3r_view *view = f->view;
-    slope slopes[CELLS * CELLS];
+    t3r_surface_slope slopes[CELLS * CELLS];
     for (uint32_t row = 0; row < f->rows; row++) {
         for (uint32_t column = 0; column < f->columns; column++) {
             slopes[(size_t)row * f->columns + column] = fit(f, column, row);

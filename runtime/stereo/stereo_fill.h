@@ -21,4 +21,7 @@
  * length of the path there. In a view without any depth nothing is filled. */
 void t3r_stereo_fill(const t3r_view *view, void *work);
 
+/* The luma of a view's pixels (SPEC.md, "Wavelet"). */
+void t3r_stereo_luma(const t3r_view *view, uint8_t *luma);
+
 #endif

@@ -3,6 +3,7 @@
 #include "core/cut.h"
 #include "core/fixed.h"
 #include "core/memory.h"
+#include "plane_fill.h"
 #include "state/state.h"
 #include "stereo.h"
 #include "stereo_fill.h"
@@ -34,6 +35,7 @@ static t3r_stereo_settings stereo_settings(const t3r_runtime *rt)
         .disparities = T3R_STEREO_DISPARITIES,
         .paths = T3R_STEREO_PATHS,
         .fill = 0,
+        .planes = rt->config.planes,
         .workers = t3r_workers_of(rt),
     };
 }
@@ -182,8 +184,11 @@ static void finish_view(void *context, uint32_t index, uint32_t worker)
     const fill_job *job = context;
     const t3r_view *view = &job->views[job->first + index];
     if (job->rt->config.fill_radius > 0) {
-        uint8_t *work = t3r_buffer_at(job->rt, T3R_BUFFER_STEREO_WORK);
-        t3r_stereo_fill(view, work + index * job->bytes);
+        uint8_t *work = (uint8_t *)t3r_buffer_at(job->rt, T3R_BUFFER_STEREO_WORK) + index * job->bytes;
+        if (job->rt->config.planes) {
+            t3r_plane_fill(view, work);
+        }
+        t3r_stereo_fill(view, work);
     }
     t3r_stereo_marks(view, T3R_STEREO_SURE);
 }
@@ -193,7 +198,8 @@ static void finish_views(const t3r_runtime *rt, const t3r_view *views)
 {
     const uint32_t width = rt->config.width, height = rt->config.height;
     const t3r_workers workers = t3r_workers_of(rt);
-    fill_job job = {.rt = rt, .views = views, .bytes = T3R_STEREO_FILL_BYTES(width, height)};
+    const size_t fill = T3R_STEREO_FILL_BYTES(width, height), planes = T3R_PLANE_FILL_BYTES(width, height);
+    fill_job job = {.rt = rt, .views = views, .bytes = rt->config.planes ? T3R_MAX(fill, planes) : fill};
     const size_t room = T3R_STEREO_WORK_BYTES(width, height, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS) / job.bytes;
     const uint32_t round = t3r_is_parallel(&workers) ? (uint32_t)T3R_MIN(room, rt->views) : 1;
     for (job.first = 0; job.first < rt->views; job.first += round) {
