@@ -131,8 +131,8 @@ t3r_config t3r_settled(const t3r_config *config)
 
 /* X(text, features), what a setting needs of the library. */
 #define NEEDS(X)                                                                                                       \
-    X("this library was built without stereo", c->depth == T3R_DEPTH_STEREO ? T3R_HAS_STEREO : 0u)                     \
     X("this library was built without planes", c->planes ? T3R_HAS_PLANES : 0u)                                        \
+    X("this library was built without stereo", c->depth == T3R_DEPTH_STEREO ? T3R_HAS_STEREO : 0u)                     \
     X("this library was built without streams", c->stream ? T3R_HAS_STREAMS : 0u)                                      \
     X("this library was built without this head", t3r_feature_of_head(c->head))                                        \
     X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)                       \

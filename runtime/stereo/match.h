@@ -26,7 +26,7 @@ typedef struct t3r_match {
     uint32_t disparities;    /* 16..T3R_PATH_MOST, a multiple of 16 */
     uint32_t paths;          /* 4 or 8 */
     uint32_t p1, p2, p2_min; /* penalties: P1; P2 where luma does not change, and its least */
-    bool outlines;           /* a picture's outline may match another's; else plane_outline.h */
+    bool distrust_outlines;  /* those that match each other (plane_outline.h) */
     const uint8_t *luma[2];  /* left, right: 1..255, 0 = no luma */
     uint16_t *disparity[2];  /* k in Q7, or T3R_NO_DISPARITY; of the left plane's width, of the right one's */
     uint8_t *confidence[2];  /* how much better the chosen disparity is than any other: 1..255, 0 = not to be trusted */

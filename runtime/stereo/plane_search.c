@@ -10,8 +10,12 @@
 #define LEAST_SHARE 100
 /* What lies on a plane is within five times the mean deviation of the median cell from its own plane. */
 #define DEVIATIONS 6
+/* But at least within a 128th of the mean: steps of depth are coarse near by. */
+#define LEAST_WITHIN 128
 /* Least squares over what lies on a plane, so many times: the first sums are those of a few cells. */
 #define FITS 3
+/* What is added to the spread of places is one in so many of a cell's square pixels. */
+#define SPREAD 128
 /* Samples that a fit takes */
 #define LEAST_SAMPLES 8
 
@@ -19,6 +23,7 @@ typedef struct search {
     const t3r_view *view;
     int32_t middle_x, middle_y;
     uint32_t cell, columns, rows; /* side of a cell; their numbers */
+    int32_t spread_q4;
     uint32_t samples, hypotheses;
     t3r_surface_sums *sums;
     t3r_plane_hypothesis *hypothesis;
@@ -60,9 +65,9 @@ static void merge(t3r_surface_sums *to, const t3r_surface_sums *s)
 }
 
 /* The plane through the sums' mean with their slopes; n > 0. */
-static t3r_plane plane_through(const t3r_surface_sums *s)
+static t3r_plane plane_through(const t3r_surface_sums *s, int32_t spread_q4)
 {
-    const t3r_surface_slope slope = t3r_surface_slope_of(s);
+    const t3r_surface_slope slope = t3r_surface_slope_of(s, spread_q4);
     const int64_t mean_q8 = t3r_round_div64(s->i * 256, s->n);
     /* slopes below 2^31, sums of places below 2^31 */
     const int64_t back_q8 = t3r_round_div64(s->x * slope.x_q8, s->n) + t3r_round_div64(s->y * slope.y_q8, s->n);
@@ -143,7 +148,7 @@ static int64_t suppose(search *s, uint32_t *deviations)
                 if (LEAST_FILLED * sums.n < (int64_t)(side * side) * s->cell * s->cell) {
                     continue;
                 }
-                const t3r_plane plane = plane_through(&sums);
+                const t3r_plane plane = plane_through(&sums, s->spread_q4);
                 s->hypothesis[s->hypotheses++] = (t3r_plane_hypothesis){plane, 0};
                 if (side == 1) {
                     insert(deviations, cells++, deviation_q8(s, column, row, &plane));
@@ -152,6 +157,17 @@ static int64_t suppose(search *s, uint32_t *deviations)
         }
     }
     return cells > 0 ? deviations[cells / 2] : 0;
+}
+
+/* How far what lies on a plane may be from it, Q30 + 8. */
+static int64_t width_of(const search *s, int64_t deviation)
+{
+    int64_t n = 0, sum = 0;
+    for (uint32_t k = 0; k < s->columns * s->rows; k++) {
+        n += s->sums[k].n;
+        sum += s->sums[k].i;
+    }
+    return T3R_MAX(DEVIATIONS * deviation, n > 0 ? t3r_round_div64(sum, n) * 256 / LEAST_WITHIN : 0);
 }
 
 /* Counts samples on a hypothesis. */
@@ -184,7 +200,7 @@ static t3r_plane refined(const search *s, t3r_plane plane, int64_t within_q8)
                 add(&sums, at->x, at->y, at->inverse);
             }
         }
-        plane = sums.n < LEAST_SAMPLES ? plane : plane_through(&sums);
+        plane = sums.n < LEAST_SAMPLES ? plane : plane_through(&sums, 1);
     }
     return plane;
 }
@@ -211,6 +227,7 @@ void t3r_search_planes(const t3r_view *view, void *work, t3r_planes *found)
     t3r_cut cut = t3r_cut_of(work, T3R_PLANE_SEARCH_BYTES);
     search s = {.view = view, .middle_x = (int32_t)view->width / 2, .middle_y = (int32_t)view->height / 2};
     s.cell = (T3R_MAX(view->width, view->height) + T3R_PLANE_CELLS - 1) / T3R_PLANE_CELLS;
+    s.spread_q4 = (int32_t)T3R_MAX(16 * s.cell * s.cell / SPREAD, 1);
     s.columns = (view->width + s.cell - 1) / s.cell;
     s.rows = (view->height + s.cell - 1) / s.cell;
     s.sums = t3r_take(&cut, cells * sizeof *s.sums);
@@ -220,7 +237,7 @@ void t3r_search_planes(const t3r_view *view, void *work, t3r_planes *found)
     sum_cells(&s);
     take_samples(&s);
     found->count = 0;
-    found->within_q8 = DEVIATIONS * suppose(&s, deviations);
+    found->within_q8 = width_of(&s, suppose(&s, deviations));
     for (uint32_t h = 0; h < s.hypotheses; h++) {
         s.hypothesis[h].samples = count_on(&s, &s.hypothesis[h].plane, found->within_q8);
     }
@@ -229,7 +246,10 @@ void t3r_search_planes(const t3r_view *view, void *work, t3r_planes *found)
         if (LEAST_SHARE * best->samples < s.samples) {
             break;
         }
-        const t3r_plane plane = refined(&s, best->plane, found->within_q8);
+        t3r_plane plane = refined(&s, best->plane, found->within_q8);
+        if (count_on(&s, &plane, found->within_q8) < best->samples) {
+            plane = best->plane;
+        }
         take_away(&s, &plane, found->within_q8);
         found->plane[found->count++] = plane;
     }

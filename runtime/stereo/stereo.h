@@ -26,8 +26,8 @@ typedef struct t3r_stereo_settings {
     uint32_t disparities; /* most that are compared: 16..T3R_PATH_MOST, a multiple of 16 */
     uint32_t paths;       /* 4 or 8 */
     uint32_t fill;        /* 1 = holes get their surroundings' depth, T3R_STEREO_FILLED */
-    uint32_t planes;      /* 1 = outlines that matched outlines are not trusted (plane_outline.h) */
     t3r_workers workers;  /* which share rows; all 0: one after the other */
+    uint32_t planes;      /* 1 = outlines that matched outlines are not trusted (plane_outline.h) */
 } t3r_stereo_settings;
 
 /* Depth and match confidence of two views of one size from their colours and checked, undistorted cameras. Both get

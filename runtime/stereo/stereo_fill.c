@@ -13,6 +13,8 @@
 #define DIAGONAL 7
 #define LEVEL 5
 #define CELLS T3R_STEREO_FILL_CELLS
+/* Two square pixels: a slope takes more than one row or column. */
+#define SPREAD_Q4 32
 
 _Static_assert(sizeof(t3r_surface_sums) == T3R_STEREO_FILL_SUMS_BYTES, "stereo_fill.h knows the sums' size");
 
@@ -191,7 +193,7 @@ static t3r_surface_slope fit(const filling *f, uint32_t column, uint32_t row)
         }
     }
     /* n below 2^21.2, |x| below 2^9.6 */
-    return s.n == 0 ? (t3r_surface_slope){0, 0} : t3r_surface_slope_of(&s);
+    return s.n == 0 ? (t3r_surface_slope){0, 0} : t3r_surface_slope_of(&s, SPREAD_Q4);
 }
 
 /* ---- depth ------------------------------------------------------------------------------------------------------- */

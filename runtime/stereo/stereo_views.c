@@ -35,8 +35,8 @@ static t3r_stereo_settings stereo_settings(const t3r_runtime *rt)
         .disparities = T3R_STEREO_DISPARITIES,
         .paths = T3R_STEREO_PATHS,
         .fill = 0,
-        .planes = rt->config.planes,
         .workers = t3r_workers_of(rt),
+        .planes = rt->config.planes,
     };
 }
 

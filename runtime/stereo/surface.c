@@ -2,8 +2,6 @@
 
 #include "core/fixed.h"
 
-/* Square pixels added to the spread of places: a slope takes more than one row or column. */
-#define SPREAD 2
 #define SLOPE_MOST_Q8 INT32_MAX
 
 int64_t t3r_inverse_depth_q30(uint16_t depth)
@@ -20,12 +18,12 @@ static int32_t quotient_q8(int64_t n, int64_t d, int32_t bits)
     return (int32_t)t3r_clamp64(q, -SLOPE_MOST_Q8, SLOPE_MOST_Q8);
 }
 
-t3r_surface_slope t3r_surface_slope_of(const t3r_surface_sums *s)
+t3r_surface_slope t3r_surface_slope_of(const t3r_surface_sums *s, int32_t spread_q4)
 {
     /* i at most 2^24: sums of x squared below 2^62, of x i below 2^55 */
     const int64_t mean = t3r_round_div64(s->i, s->n);
-    const int64_t xx = t3r_round_div64(16 * (s->xx - t3r_round_div64(s->x * s->x, s->n)), s->n) + 16 * SPREAD;
-    const int64_t yy = t3r_round_div64(16 * (s->yy - t3r_round_div64(s->y * s->y, s->n)), s->n) + 16 * SPREAD;
+    const int64_t xx = t3r_round_div64(16 * (s->xx - t3r_round_div64(s->x * s->x, s->n)), s->n) + spread_q4;
+    const int64_t yy = t3r_round_div64(16 * (s->yy - t3r_round_div64(s->y * s->y, s->n)), s->n) + spread_q4;
     const int64_t xy = t3r_round_div64(16 * (s->xy - t3r_round_div64(s->x * s->y, s->n)), s->n);
     const int64_t xi = t3r_round_div64(s->xi - s->x * mean, s->n), yi = t3r_round_div64(s->yi - s->y * mean, s->n);
     /* Q4; xi at most sqrt(xx) 2^24. Covariances of real pixels but for rounding, and the spread added: the determinant

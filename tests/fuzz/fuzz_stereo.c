@@ -7,6 +7,7 @@
 
 #include "arguments.h"
 #include "core/camera.h"
+#include "stereo/plane_fill.h"
 #include "stereo/stereo.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
@@ -63,7 +64,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     }
     const uint32_t width = 8 + h.width % 48u, height = 8 + h.height % 48u;
     const t3r_stereo_settings settings = {
-        &t3r_kernels_c, 16 * (1 + h.disparities % 16u), h.paths % 2 == 0 ? 4 : 8, h.paths >> 1 & 1, {NULL, 1}};
+        &t3r_kernels_c, 16 * (1 + h.disparities % 16u), h.paths % 2 == 0 ? 4 : 8, h.paths >> 1 & 1, {NULL, 1}, h.paths >> 2 & 1};
     const size_t pixels = (size_t)width * height;
     const size_t bytes_of_work = T3R_STEREO_WORK_BYTES(width, height, settings.disparities, settings.paths);
     void *work = aligned_alloc(64, bytes_of_work);
@@ -105,6 +106,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         REQUIRE(other_unit == unit);
         REQUIRE(memcmp(again[i].depth, views[i].depth, pixels * 2) == 0);
         REQUIRE(memcmp(again[i].match_confidence, views[i].match_confidence, pixels) == 0);
+    }
+    for (size_t i = 0; i < 2 && pair == T3R_PAIR_OK && width >= T3R_STEREO_LEAST_SIDE; i++) {
+        if (height >= T3R_STEREO_LEAST_SIDE && settings.planes) {
+            t3r_plane_fill(&views[i], work);
+        }
     }
     free(other_depth);
     free(other_confidence);

@@ -41,9 +41,9 @@ def of_cmake(folder):
 
 
 # What a feature needs: it goes with that.
-NEEDS = {"loss": "refinement"}
+NEEDS = {"loss": "refinement", "planes": "stereo"}
 # What no configuration may ask for where views are not compared.
-OF_VIEWS = ("stereo", "streams")
+OF_VIEWS = ("stereo", "streams", "planes")
 TEXTS = {"learned": "this head", "moment": "this head", "comparison": "comparison of views",
          "allocations": "this allocation", "wavelets": "this wavelet", "workers": "several workers",
          "warm": "builds that follow one another"}

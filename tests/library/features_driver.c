@@ -37,6 +37,8 @@ static void print_scenes(void)
     print_scene("comparison", &config);
     config.depth = T3R_DEPTH_STEREO;
     print_scene("stereo", &config);
+    config.planes = 1;
+    print_scene("planes", &config);
     config = plain_config();
     config.views = SCENE_VIEWS;
     config.stream = 1;

@@ -181,6 +181,7 @@ static void config_ranges(void **state)
         RANGE(head, 1, T3R_HEAD_COUNT - 1),
         RANGE(head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES),
         RANGE(refinements, 0, 16),
+        RANGE(planes, 0, 1),
         RANGE(fill_radius, 0, 8),
         RANGE(bridge_radius, 0, 255),
         RANGE(keep_analysis, 0, 1),

@@ -5,7 +5,7 @@
 #include "stereo/stereo.h"
 
 enum { W = 120, H = 96, PIXELS = W * H };
-static const t3r_stereo_settings settings = {&t3r_kernels_c, 64, 4, 1, {NULL, 1}};
+static const t3r_stereo_settings settings = {&t3r_kernels_c, 64, 4, 1, {NULL, 1}, 0};
 static const double straight[4] = {1, 0, 0, 0};
 
 typedef struct shot {
@@ -136,7 +136,7 @@ static void pairs(void **state)
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         for (uint32_t paths = 4; paths <= 8; paths += 4) {
-            const t3r_stereo_settings how = {&t3r_kernels_c, 64, paths, 1, {NULL, 1}};
+            const t3r_stereo_settings how = {&t3r_kernels_c, 64, paths, 1, {NULL, 1}, 0};
             shot *a = shoot(0, 0, 0, straight, 1, 1, 7);
             shot *b = shoot(all[i].at[0], all[i].at[1], all[i].at[2], all[i].q, all[i].gain, 1, 7);
             uint64_t unit = 0;
@@ -183,7 +183,7 @@ static void refused(void **state)
 
     shot *b = shoot(0.25, 0, 0, straight, 1, 1, 7), *other = shoot(0.25, 0, 0, straight, 1, 1, 5000);
     /* Another place: pixels that match by chance are the fewer, the more they had to choose from. */
-    const t3r_stereo_settings many = {&t3r_kernels_c, 128, 4, 1, {NULL, 1}};
+    const t3r_stereo_settings many = {&t3r_kernels_c, 128, 4, 1, {NULL, 1}, 0};
     assert_int_equal(match(&many, a, other, 0, &unit), T3R_PAIR_OVERLAP);
     shot_free(other);
 
@@ -231,7 +231,7 @@ static void anything(void **state)
     shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.25, 0, 0, straight, 1, 1, 7);
     for (int turn = 0; turn < 60; turn++) {
         const t3r_stereo_settings how = {
-            &t3r_kernels_c, (uint32_t)unit_between(&seed, 1, 8) * 16, turn % 2 == 0 ? 4 : 8, turn % 5 != 0, {NULL, 1}};
+            &t3r_kernels_c, (uint32_t)unit_between(&seed, 1, 8) * 16, turn % 2 == 0 ? 4 : 8, turn % 5 != 0, {NULL, 1}, turn % 7 == 0};
         for (int i = 0; i < 3; i++) {
             b->camera.position_q32[i] = unit_between(&seed, -(INT64_C(3) << 30), INT64_C(3) << 30);
             b->camera.rotation_q30[1 + i] = (int32_t)unit_between(&seed, -(1 << 27), 1 << 27);
@@ -257,7 +257,7 @@ static void unfilled(void **state)
     uint64_t unit[2];
     shot *a[2], *b[2];
     for (uint32_t fill = 0; fill < 2; fill++) {
-        const t3r_stereo_settings how = {&t3r_kernels_c, 64, 4, fill, {NULL, 1}};
+        const t3r_stereo_settings how = {&t3r_kernels_c, 64, 4, fill, {NULL, 1}, 0};
         a[fill] = shoot(0, 0, 0, straight, 1, 1, 7);
         b[fill] = shoot(0.25, 0.1, 0, straight, 1, 1, 7);
         assert_int_equal(match(&how, a[fill], b[fill], 0, &unit[fill]), T3R_PAIR_OK);

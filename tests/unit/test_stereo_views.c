@@ -200,6 +200,77 @@ static void unfilled(void **state)
     shots_free(&s);
 }
 
+/* A wall that turns away, with texture at its left and right only. */
+static shots wall_shots(void)
+{
+    shots s = {.count = 2};
+    for (uint32_t view = 0; view < 2; view++) {
+        s.rgb[view] = unit_array(PIXELS, 3);
+        s.depth[view] = unit_array(PIXELS, 2);
+        s.camera[view] = (t3r_camera){.fx_q16 = 100 << 16,
+                                      .fy_q16 = 100 << 16,
+                                      .cx_q16 = W << 15,
+                                      .cy_q16 = H << 15,
+                                      .rotation_q30 = {1 << 30},
+                                      .position_q32 = {view * (INT64_C(1) << 31)}}; /* half a unit apart */
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            const double across = (i % W - W / 2.0) / 100, down = (i / W - H / 2.0) / 100, from = view * 0.5;
+            const double z = (3 + 0.6 * from) / (1 - 0.6 * across), x = from + across * z, y = down * z;
+            const uint32_t patch = (uint32_t)floor(12 * x + 500) * 1000 + (uint32_t)floor(12 * y + 500);
+            uint64_t seed = patch;
+            (void)unit_random(&seed);
+            const uint8_t grey = fabs(x - 0.2) < 0.8 ? 180 : (uint8_t)(20 + unit_random(&seed) % 200);
+            memset(s.rgb[view] + 3 * (size_t)i, grey, 3);
+            s.depth[view][i] = (uint16_t)lround(1000 * z);
+        }
+    }
+    return s;
+}
+
+/* Share of the pixels of a view whose depth, whatever it comes from, is off by more. */
+static double off_by(const bench *b, const shots *s, uint32_t v, double part)
+{
+    t3r_view views[T3R_MAX_VIEWS];
+    uint32_t off = 0;
+    t3r_views_of(b->rt, views);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        const double depth = views[v].depth[i] * ldexp((double)views[v].depth_unit_q40, -40);
+        off += fabs(depth / (s->depth[v][i] * ldexp((double)ROOM_DEPTH_UNIT_Q40, -40)) - 1) > part;
+    }
+    return (double)off / PIXELS;
+}
+
+/* With planes a bare wall is where it is, and a room of texture no worse. */
+static void planes(void **state)
+{
+    (void)state;
+    for (int room = 0; room < 2; room++) {
+        shots s = room ? room_shots((const uint32_t[]){0, 2}, 2) : wall_shots();
+        bench b = open_bench(2);
+        t3r_scene scene;
+        double off[2][2];
+        uint64_t hash[2];
+        add_all(&b, &s);
+        for (uint32_t on = 0; on < 2; on++) {
+            b.rt->config.planes = on;
+            assert_int_equal(reconstruct(&b, &scene), T3R_OK);
+            hash[on] = b.hash;
+            for (uint32_t v = 0; v < 2; v++) {
+                off[on][v] = off_by(&b, &s, v, room ? 0.1 : 0.05);
+                print_message("%s, view %u, planes %u: %.1f %% off\n", room ? "room" : "wall", v, on,
+                              100 * off[on][v]);
+                assert_true(on == 0 || off[1][v] <= (room ? off[0][v] : fmin(0.05, off[0][v] / 4)));
+            }
+        }
+        assert_int_not_equal(hash[0], hash[1]);
+        b.rt->config.fill_radius = 0; /* planes only fill */
+        assert_int_equal(reconstruct(&b, &scene), T3R_OK);
+        assert_true(judge(&b, &s, 0).none > 0);
+        free(b.arena);
+        shots_free(&s);
+    }
+}
+
 /* Where a picture is black nothing is shown: neither matched nor filled. */
 static void nothing_shown(void **state)
 {
@@ -511,7 +582,8 @@ static void filling_fits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_alone), cmocka_unit_test(unfilled),     cmocka_unit_test(nothing_shown),
+        cmocka_unit_test(colours_alone), cmocka_unit_test(unfilled),
+        cmocka_unit_test(planes),     cmocka_unit_test(nothing_shown),
         cmocka_unit_test(cancelled),     cmocka_unit_test(refused),      cmocka_unit_test(more_views),
         cmocka_unit_test(a_stranger),    cmocka_unit_test(fused),        cmocka_unit_test(filled),
         cmocka_unit_test(extended),      cmocka_unit_test(filling_fits),

@@ -1,6 +1,7 @@
 #include "study/bench/bench_stereo.h"
 
 #include "state/state.h"
+#include "stereo/plane_fill.h"
 #include "stereo/stereo.h"
 #include "stereo/stereo_fill.h"
 #include "stereo/stereo_views.h"
@@ -27,6 +28,7 @@ bool bench_stereo_paths_run(t3r_runtime *runtime, uint32_t paths, void *work)
         .paths = paths,
         .fill = 0,
         .workers = t3r_workers_of(runtime),
+        .planes = runtime->config.planes,
     };
     t3r_view views[T3R_MAX_VIEWS];
     uint64_t unit_q40;
@@ -36,6 +38,9 @@ bool bench_stereo_paths_run(t3r_runtime *runtime, uint32_t paths, void *work)
     }
     for (int v = 0; v < 2; v++) {
         if (runtime->config.fill_radius > 0) {
+            if (runtime->config.planes) {
+                t3r_plane_fill(&views[v], work);
+            }
             t3r_stereo_fill(&views[v], work);
         }
         t3r_stereo_marks(&views[v], T3R_STEREO_SURE);

@@ -14,7 +14,8 @@ vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
     wavelets T3R_WITH_WAVELETS
     workers T3R_WITH_WORKERS
     warm T3R_WITH_WARM
-    loss T3R_WITH_LOSS)
+    loss T3R_WITH_LOSS
+    planes T3R_WITH_PLANES)
 string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" "dynamic" WITH_SHARED)
 
 vcpkg_cmake_configure(
