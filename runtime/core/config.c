@@ -111,6 +111,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("refinements must be 0..16", c->refinements, 0, T3R_MAX_REFINEMENTS)                                             \
     X("fit_passes must be 0 or 1", c->fit_passes, 0, 1)                                                                \
     X("fit_widths must be 0 or 1", c->fit_widths, 0, 1)                                                                \
+    X("structural must be 0 or 1", c->structural, 0, 1)                                                                \
     X("depth is none of t3r_depth", (uint32_t)c->depth, 0, T3R_DEPTH_COUNT - 1)                                        \
     X("width and height must be 32 and more with depth by stereo", stereo ? least : T3R_MAX_SIDE,                      \
       T3R_STEREO_LEAST_SIDE, T3R_MAX_SIDE)                                                                             \
@@ -137,6 +138,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("this library was built without this head", t3r_feature_of_head(c->head))                                        \
     X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)                       \
     X("this library was built without fitted passes", c->fit_passes ? T3R_HAS_LOSS : 0u)                               \
+    X("this library was built without the structural loss", c->structural ? T3R_HAS_LOSS : 0u)                         \
     X("this library was built without comparison of views",                                                            \
       c->views > 1 || c->stream || c->fit_widths ? T3R_HAS_COMPARISON : 0u)                                            \
     X("this library was built without this allocation", t3r_feature_of_allocation(c->allocation))                      \

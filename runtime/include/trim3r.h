@@ -262,10 +262,14 @@ typedef struct t3r_config {
      * their own view ask for, as splats of T3R_HEAD_LEARNED, of a stream and of a head that nothing adapts are in any
      * case. [0] */
     uint32_t fit_widths;
+    /* 1 = refinement takes the structure of what is missing for more than its level: from its second pass on local
+     * contrast counts as structural similarity has it, and what a whole view shows brighter or with more contrast than
+     * the others counts for nothing. 0 = every missing level counts the same, as in a stream in any case. [0] */
+    uint32_t structural;
     /* The source of depth. [T3R_DEPTH_SENSOR] */
     t3r_depth depth;
-    /* 1 = what stereo cannot match continues the planes that the matched pixels of its view lie on; 0 = the surface next
-     * to it in the picture. Without effect unless depth is by stereo and fill_radius above 0. [0] */
+    /* 1 = what stereo cannot match continues the planes that the matched pixels of its view lie on; 0 = the surface
+     * next to it in the picture. Without effect unless depth is by stereo and fill_radius above 0. [0] */
     uint32_t planes;
     /* The reach of hole filling in pixels, 0..8: holes of a depth sensor are filled where measurements bracket them
      * within it. 0 = no hole is filled. [4] */

@@ -74,6 +74,7 @@
     X(t3r_config, refinements)                                                                                         \
     X(t3r_config, fit_passes)                                                                                          \
     X(t3r_config, fit_widths)                                                                                          \
+    X(t3r_config, structural)                                                                                          \
     X(t3r_config, depth)                                                                                               \
     X(t3r_config, planes)                                                                                              \
     X(t3r_config, fill_radius)                                                                                         \

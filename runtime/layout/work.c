@@ -5,6 +5,7 @@
 #include "head/head.h"
 #include "head/weights.h"
 #include "operations.h"
+#include "refine/view_levels.h"
 #include "state/state.h"
 #include "stereo/stereo_views.h"
 #include "superclusters/superclusters.h"
@@ -112,8 +113,10 @@ static void count_head(const t3r_config *c, const t3r_layout *layout, const void
 static void count_drawing(const t3r_config *c, const sizes *s, uint32_t slices, uint64_t *units)
 {
     /* each slice lists the views, and draws the tiles that its Gaussians reach into: measured, a third of them */
-    const uint64_t listed = c->refinements * s->views * slices;
-    const uint64_t drawn = c->refinements * s->views * s->pixels * (slices + 2) / 3;
+    const uint64_t again = c->structural && s->views > 1 ? T3R_MIN(c->refinements, T3R_LEVELLED_PASSES) : 0;
+    const uint64_t listed = (c->refinements * slices + again) * s->views;
+    const uint64_t compared = c->refinements * s->views * s->pixels * (slices + 2) / 3;
+    const uint64_t drawn = compared + (c->structural ? compared / 16 : 0); /* measured */
     units[T3R_WORK_REFINE_PIXELS] = drawn;
     units[T3R_WORK_REFINE_GAUSSIANS] = listed * s->gaussians;
     units[T3R_WORK_CORRECTIONS] = c->refinements * s->gaussians;

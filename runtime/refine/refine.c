@@ -79,12 +79,13 @@ typedef struct view_job {
 #define SPLATS_A_CHUNK 65536u
 #define SPLATS_ALONE 256u
 
-/* A view whose error is measured: of each band. */
-typedef struct error_job {
+/* A view that is drawn and compared while no Gaussian's sums change: what each band finds. */
+typedef struct measure_job {
     view_job job;
     uint64_t error[T3R_MAX_WORKERS];
     uint32_t pixels[T3R_MAX_WORKERS];
-} error_job;
+    t3r_level_sums levels[T3R_MAX_WORKERS]; /* instead, where the view's levels are wanted */
+} measure_job;
 
 static uint32_t list_begin(const view_job *job, uint32_t tile)
 {
@@ -154,47 +155,59 @@ static void accumulate_band(void *context, uint32_t index, uint32_t worker)
     }
 }
 
+/* A view's levels are those of every so manyth tile, row by row two further: spread evenly, and pixels enough. */
+#define LEVELLED_TILES 4u
+
 static void measure_band(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
-    error_job *to = context;
+    measure_job *to = context;
     const view_job *job = &to->job;
     const t3r_binning *bin = job->bin;
     t3r_refine_view view = *job->view;
     view.wanted = wanted_of(job->work, index);
     view.kept = job->work->kept + (size_t)index * job->work->kept_words;
-    to->error[index] = 0;
-    to->pixels[index] = 0;
     for (uint32_t tile = job->bands[index].begin; tile < job->bands[index].end; tile++) {
-        const uint32_t from = list_begin(job, tile);
-        to->error[index] += t3r_refine_tile_error(&view, bin->lists + from, t3r_list_length(bin, from, tile),
-                                                  tile % bin->across, tile / bin->across, &to->pixels[index]);
+        const uint32_t from = list_begin(job, tile), count = t3r_list_length(bin, from, tile);
+        const uint32_t x = tile % bin->across, y = tile / bin->across;
+        if (T3R_FEATURE_LOSS && view.levels != NULL) {
+            if ((x + 2 * y) % LEVELLED_TILES != 0) {
+                continue;
+            }
+            t3r_refine_tile_levels(&view, bin->lists + from, count, x, y, &to->levels[index]);
+        } else {
+            to->error[index] += t3r_refine_tile_error(&view, bin->lists + from, count, x, y, &to->pixels[index]);
+        }
     }
 }
 
-/* One view drawn from the scene; no Gaussian's sums change. False: cancelled. */
-static bool add_error_of(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views, uint32_t v,
-                         const t3r_projection *projection, uint64_t *error, uint32_t *pixels)
+/* Draws view `v` of the scene and compares it; levels: those that it has so far, or NULL. */
+static t3r_status measure_view(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views, uint32_t v,
+                               const t3r_view_levels *levels, uint32_t done, uint32_t total, measure_job *to)
 {
     const t3r_workers workers = t3r_workers_of(rt);
-    const t3r_binning bin = t3r_raster_list(rt, projection, &w->room);
+    t3r_projection projection;
+    t3r_status status =
+        t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width, rt->config.height, &projection);
+    if (status != T3R_OK) {
+        return status;
+    }
+    const t3r_binning bin = t3r_raster_list(rt, &projection, &w->room);
     const t3r_refine_view view = {
         .kernels = &rt->kernels,
         .view = &views[v],
         .splats = w->room.splats,
         .kept_words = w->kept_words,
         .gain_q14 = rt->gain_q14[v],
+        .levels = levels,
     };
-    error_job to = {.job = {.rt = rt, .work = w, .view = &view, .bin = &bin, .done = v, .total = rt->views}};
-    bool goes_on = next_chunk(&to.job);
-    for (; goes_on && to.job.count > 0; goes_on = next_chunk(&to.job)) {
-        t3r_run_tasks(&workers, to.job.count, measure_band, &to);
-        for (uint32_t b = 0; b < to.job.count; b++) {
-            *error += to.error[b];
-            *pixels += to.pixels[b];
-        }
+    memset(to, 0, sizeof *to);
+    to->job = (view_job){.rt = rt, .work = w, .view = &view, .bin = &bin, .done = done, .total = total};
+    bool goes_on = next_chunk(&to->job);
+    for (; goes_on && to->job.count > 0; goes_on = next_chunk(&to->job)) {
+        t3r_run_tasks(&workers, to->job.count, measure_band, to);
     }
-    return goes_on;
+    return goes_on ? T3R_OK : T3R_ERR_CANCELLED;
 }
 
 /* Gaussians a task begins, solves or applies. */
@@ -213,7 +226,9 @@ typedef struct slice_job {
     t3r_gaussian *scene;
     const t3r_map_record *records; /* NULL: all Gaussians change */
     uint32_t idle_most;
-    bool settles; /* by smaller steps where more keyframes saw the Gaussian */
+    bool settles;                  /* by smaller steps where more keyframes saw the Gaussian */
+    const t3r_view_levels *levels; /* of every view, or NULL */
+    bool structural;
 } slice_job;
 
 static void begin_chunk(void *context, uint32_t index, uint32_t worker)
@@ -278,6 +293,7 @@ typedef struct shown_view {
     const t3r_camera *camera;
     const uint16_t *gain_q14;
     const uint16_t *remembered; /* pixels; NULL: the view has planes */
+    const t3r_view_levels *levels;
 } shown_view;
 
 /* What it adds to the sums of the slice. */
@@ -305,6 +321,8 @@ static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const show
         .kept_words = w->kept_words,
         .gain_q14 = shown->gain_q14,
         .remembered = shown->remembered,
+        .levels = shown->levels,
+        .structural = slice->structural,
     };
     view_job job = {.rt = rt, .work = w, .view = &view, .bin = &bin, .done = done, .total = total};
     bool goes_on = next_chunk(&job);
@@ -322,7 +340,7 @@ static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice,
     const uint32_t most = t3r_remembered_a_pass(rt);
     for (uint32_t i = 0; i < most; i++, ++*done) {
         t3r_remembered *keyframe = t3r_remembered_at(rt, (turn * T3R_REMEMBERED_A_PASS + i) % rt->remembered);
-        const shown_view shown = {size, &keyframe->camera, keyframe->gain_q14, t3r_remembered_pixels(keyframe)};
+        const shown_view shown = {size, &keyframe->camera, keyframe->gain_q14, t3r_remembered_pixels(keyframe), NULL};
         t3r_pose pose;
         if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
@@ -347,13 +365,33 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
         if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
         }
-        const shown_view shown = {&views[v], &rt->camera[v], rt->gain_q14[v], NULL};
+        const shown_view shown = {&views[v], &rt->camera[v], rt->gain_q14[v], NULL,
+                                  slice->levels == NULL ? NULL : &slice->levels[v]};
         t3r_status status = accumulate(rt, slice, &shown, *done, total);
         if (status != T3R_OK) {
             return status;
         }
     }
     return t3r_is_stream(&rt->config) ? accumulate_remembered(rt, slice, views, turn, done, total) : T3R_OK;
+}
+
+static t3r_status measure_levels(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views,
+                                 uint32_t done, uint32_t total, t3r_view_levels levels[T3R_MAX_VIEWS])
+{
+    t3r_view_levels lines[T3R_MAX_VIEWS];
+    for (uint32_t v = 0; v < rt->views; v++) {
+        measure_job found;
+        t3r_status status = measure_view(rt, w, views, v, &levels[v], done, total, &found);
+        if (status != T3R_OK) {
+            return status;
+        }
+        for (uint32_t band = 1; band < T3R_MAX_WORKERS; band++) {
+            t3r_join_levels(&found.levels[0], &found.levels[band]);
+        }
+        lines[v] = t3r_fit_levels(&found.levels[0]);
+    }
+    t3r_move_levels(lines, rt->views, levels);
+    return T3R_OK;
 }
 
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records)
@@ -369,8 +407,18 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
                      .settles = rt->config.remember > 0};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
     uint32_t total = passes * slices * (rt->views + t3r_remembered_a_pass(rt)), done = 0;
+    t3r_view_levels levels[T3R_MAX_VIEWS] = {0};
+    const bool structural = T3R_FEATURE_LOSS && rt->config.structural && records == NULL;
     memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);
     for (uint32_t pass = 0; pass < passes; pass++) {
+        if (structural && rt->views > 1 && pass < T3R_LEVELLED_PASSES) {
+            t3r_status status = measure_levels(rt, &w, views, done, total, levels);
+            if (status != T3R_OK) {
+                return status;
+            }
+            job.levels = levels;
+        }
+        job.structural = structural && pass > 0;
         for (uint32_t first = 0; first < rt->gaussians; first += w.slice) {
             job.slice.first = first;
             job.slice.count = T3R_MIN(w.slice, rt->gaussians - first);
@@ -401,14 +449,14 @@ t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *er
         if (!t3r_progress(rt, T3R_STAGE_REFINE, v, rt->views)) {
             return T3R_ERR_CANCELLED;
         }
-        t3r_projection projection;
-        t3r_status status =
-            t3r_projection_make(&rt->camera[v], &rt->frame, rt->config.width, rt->config.height, &projection);
+        measure_job found;
+        t3r_status status = measure_view(rt, &w, views, v, NULL, v, rt->views, &found);
         if (status != T3R_OK) {
             return status;
         }
-        if (!add_error_of(rt, &w, views, v, &projection, &error, &pixels)) {
-            return T3R_ERR_CANCELLED;
+        for (uint32_t band = 0; band < T3R_MAX_WORKERS; band++) {
+            error += found.error[band];
+            pixels += found.pixels[band];
         }
     }
     *error_q8 = pixels == 0 ? 0 : (uint32_t)t3r_round_div64((int64_t)error, 3 * (int64_t)pixels);

@@ -70,6 +70,7 @@ static t3r_config take_settings(input *in, const drawn_case *c, bool stereo)
     k.refinements = below(in, 3);
     k.fit_passes = below(in, 2);
     k.fit_widths = below(in, 2);
+    k.structural = below(in, 2);
     k.depth = stereo ? T3R_DEPTH_STEREO : T3R_DEPTH_SENSOR;
     k.planes = below(in, 2);
     k.fill_radius = below(in, 9);

@@ -348,13 +348,13 @@ static void scale_follows_area(void **state)
     }
 }
 
-static void arena_and_order_do_not_show(void **state)
+static void arena_and_order_show(uint32_t structural)
 {
-    (void)state;
     uint64_t first = 0;
     for (uint32_t share = 0; share <= 20; share += 4) {
         for (int order = 0; order < 2; order++) {
             t3r_config config = settings(2);
+            config.structural = structural;
             t3r_runtime *rt = open_arena(&config, share);
             t3r_hooks hooks = {.parallel_for = order ? reversed : NULL};
             assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
@@ -368,12 +368,20 @@ static void arena_and_order_do_not_show(void **state)
     }
 }
 
+static void arena_and_order_do_not_show(void **state)
+{
+    (void)state;
+    arena_and_order_show(0);
+    arena_and_order_show(1);
+}
+
 static void cancelled_anywhere_it_can_be_done_again(void **state)
 {
     (void)state;
     for (int keep = 0; keep < 2; keep++) {
         t3r_config config = settings(2);
         config.keep_analysis = (uint32_t)keep;
+        config.structural = (uint32_t)keep;
         t3r_runtime *rt = open_arena(&config, 16);
         counter c = {0};
         t3r_hooks hooks = {.user = &c, .progress = count_refine};
@@ -478,6 +486,55 @@ static void fits_its_passes(void **state)
     free(memory);
 }
 
+static uint64_t hash_with(uint32_t passes, uint32_t structural)
+{
+    t3r_config config = settings(passes);
+    config.structural = structural;
+    t3r_runtime *rt = open_arena(&config, 16);
+    t3r_scene scene;
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    uint64_t hash = hash_of(&scene);
+    free(memory);
+    return hash;
+}
+
+/* A view with a curve of its own, which no gain levels: the scene keeps to the middle of both, and each view, less its
+ * own level, is met as well as if both were alike. */
+static void structure_passes_over_levels(void **state)
+{
+    (void)state;
+    assert_true(hash_with(0, 1) == hash_with(0, 0));
+    assert_true(hash_with(4, 1) != hash_with(4, 0));
+    static uint8_t as_it_is[2][SIDE * SIDE * 3];
+    memcpy(as_it_is, rgb, sizeof as_it_is);
+    double db[2][2];
+    for (uint32_t structural = 0; structural < 2; structural++) {
+        for (int curved = 0; curved < 2; curved++) {
+            for (uint32_t i = 0; i < sizeof rgb[0]; i++) {
+                rgb[0][i] = (uint8_t)(curved ? 36 + as_it_is[0][i] * 6 / 8 : 24 + as_it_is[0][i] * 6 / 8);
+                rgb[1][i] = (uint8_t)(curved ? 12 + as_it_is[1][i] * 6 / 8 : 24 + as_it_is[1][i] * 6 / 8);
+            }
+            t3r_config config = settings(4);
+            config.structural = structural;
+            config.exposure = 0;
+            t3r_runtime *rt = open_arena(&config, 16);
+            t3r_scene scene;
+            assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+            for (uint32_t i = 0; i < sizeof rgb[0]; i++) { /* what it should have met */
+                rgb[0][i] = (uint8_t)(24 + as_it_is[0][i] * 6 / 8);
+                rgb[1][i] = (uint8_t)(24 + as_it_is[1][i] * 6 / 8);
+            }
+            db[structural][curved] = context_psnr(rt);
+            free(memory);
+        }
+    }
+    memcpy(rgb, as_it_is, sizeof rgb);
+    print_message("views alike %.2f, one brighter %.2f dB; structural %.2f, %.2f\n", db[0][0], db[0][1], db[1][0],
+                  db[1][1]);
+    assert_true(db[1][0] > db[0][0] - 0.5);
+    assert_true(db[1][1] > db[0][1] + 0.5);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -495,6 +552,7 @@ int main(void)
         cmocka_unit_test(moves_after_it),
         cmocka_unit_test(rebudget_refines),
         cmocka_unit_test(fits_its_passes),
+        cmocka_unit_test_teardown(structure_passes_over_levels, draw_room),
     };
     return cmocka_run_group_tests_name("refine", tests, draw_room, NULL);
 }

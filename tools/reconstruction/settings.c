@@ -62,6 +62,9 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
     SETTING("fit-widths", "on|off", fit_widths, SWITCH, 0, 1, NULL,                                                    \
             "fit the widths of splats of analytic and moment to the retained points of all views, not of one", false,  \
             "fit-widths")                                                                                              \
+    SETTING("structural", "on|off", structural, SWITCH, 0, 1, NULL,                                                    \
+            "refine structure more than level: local contrast, and not what a whole view shows brighter", false,       \
+            "structural")                                                                                              \
     SETTING("exposure", "on|off", exposure, SWITCH, 0, 1, NULL,                                                        \
             "bring the colours of all views to their mean exposure", false, "exposure")                                \
     SETTING("warm", "on|off", warm, SWITCH, 0, 1, NULL,                                                                \
