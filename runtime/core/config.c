@@ -118,8 +118,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("planes must be 0 or 1", c->planes, 0, 1)                                                                        \
     X("fill_radius must be 0..8", c->fill_radius, 0, 8)                                                                \
     X("bridge_radius must be 0..255", c->bridge_radius, 0, 255)                                                        \
-    X("flying must be 0 or 1", c->flying, 0, 1)                                                                        \
-    X("redundancy must be 0 or 1", c->redundancy, 0, 1)                                                                \
+    X("flying and redundancy must be 0 or 1", c->flying | c->redundancy, 0, 1)                                         \
     X("exposure must be 0 or 1", c->exposure, 0, 1)                                                                    \
     X("keep_analysis must be 0 or 1", c->keep_analysis, 0, 1)                                                          \
     X("warm must be 0 or 1, and 0 with depth by stereo", stereo && c->warm != 0 ? 2 : c->warm, 0, 1)                   \

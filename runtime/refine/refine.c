@@ -170,7 +170,7 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
     for (uint32_t tile = job->bands[index].begin; tile < job->bands[index].end; tile++) {
         const uint32_t from = list_begin(job, tile), count = t3r_list_length(bin, from, tile);
         const uint32_t x = tile % bin->across, y = tile / bin->across;
-        if (T3R_FEATURE_LOSS && view.levels != NULL) {
+        if (T3R_FEATURE_LOSS && view.structure != NULL) {
             if ((x + 2 * y) % LEVELLED_TILES != 0) {
                 continue;
             }
@@ -181,9 +181,9 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-/* Draws view `v` of the scene and compares it; levels: those that it has so far, or NULL. */
+/* Draws view `v` of the scene and compares it; structure: NULL, or with the levels so far where they are measured. */
 static t3r_status measure_view(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views, uint32_t v,
-                               const t3r_view_levels *levels, uint32_t done, uint32_t total, measure_job *to)
+                               const t3r_structure *structure, uint32_t done, uint32_t total, measure_job *to)
 {
     const t3r_workers workers = t3r_workers_of(rt);
     t3r_projection projection;
@@ -199,7 +199,7 @@ static t3r_status measure_view(const t3r_runtime *rt, const t3r_refine_layout *w
         .splats = w->room.splats,
         .kept_words = w->kept_words,
         .gain_q14 = rt->gain_q14[v],
-        .levels = levels,
+        .structure = structure,
     };
     memset(to, 0, sizeof *to);
     to->job = (view_job){.rt = rt, .work = w, .view = &view, .bin = &bin, .done = done, .total = total};
@@ -226,9 +226,8 @@ typedef struct slice_job {
     t3r_gaussian *scene;
     const t3r_map_record *records; /* NULL: all Gaussians change */
     uint32_t idle_most;
-    bool settles;                  /* by smaller steps where more keyframes saw the Gaussian */
-    const t3r_view_levels *levels; /* of every view, or NULL */
-    bool structural;
+    bool settles;                   /* by smaller steps where more keyframes saw the Gaussian */
+    const t3r_structure *structure; /* of every view, or NULL */
 } slice_job;
 
 static void begin_chunk(void *context, uint32_t index, uint32_t worker)
@@ -292,8 +291,8 @@ typedef struct shown_view {
     const t3r_view *view; /* of a remembered keyframe its size alone is read */
     const t3r_camera *camera;
     const uint16_t *gain_q14;
-    const uint16_t *remembered; /* pixels; NULL: the view has planes */
-    const t3r_view_levels *levels;
+    const uint16_t *remembered;     /* pixels; NULL: the view has planes */
+    const t3r_structure *structure; /* NULL: what it lacks counts as it is */
 } shown_view;
 
 /* What it adds to the sums of the slice. */
@@ -321,8 +320,7 @@ static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const show
         .kept_words = w->kept_words,
         .gain_q14 = shown->gain_q14,
         .remembered = shown->remembered,
-        .levels = shown->levels,
-        .structural = slice->structural,
+        .structure = shown->structure,
     };
     view_job job = {.rt = rt, .work = w, .view = &view, .bin = &bin, .done = done, .total = total};
     bool goes_on = next_chunk(&job);
@@ -366,7 +364,7 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
             return T3R_ERR_CANCELLED;
         }
         const shown_view shown = {&views[v], &rt->camera[v], rt->gain_q14[v], NULL,
-                                  slice->levels == NULL ? NULL : &slice->levels[v]};
+                                  T3R_FEATURE_LOSS && slice->structure != NULL ? &slice->structure[v] : NULL};
         t3r_status status = accumulate(rt, slice, &shown, *done, total);
         if (status != T3R_OK) {
             return status;
@@ -375,13 +373,14 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
     return t3r_is_stream(&rt->config) ? accumulate_remembered(rt, slice, views, turn, done, total) : T3R_OK;
 }
 
+/* The levels of all views are measured on the scene as it is. */
 static t3r_status measure_levels(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views,
-                                 uint32_t done, uint32_t total, t3r_view_levels levels[T3R_MAX_VIEWS])
+                                 uint32_t done, uint32_t total, t3r_structure structure[T3R_MAX_VIEWS])
 {
     t3r_view_levels lines[T3R_MAX_VIEWS];
     for (uint32_t v = 0; v < rt->views; v++) {
         measure_job found;
-        t3r_status status = measure_view(rt, w, views, v, &levels[v], done, total, &found);
+        t3r_status status = measure_view(rt, w, views, v, &structure[v], done, total, &found);
         if (status != T3R_OK) {
             return status;
         }
@@ -390,8 +389,21 @@ static t3r_status measure_levels(const t3r_runtime *rt, const t3r_refine_layout 
         }
         lines[v] = t3r_fit_levels(&found.levels[0]);
     }
-    t3r_move_levels(lines, rt->views, levels);
+    t3r_center_levels(lines, rt->views);
+    for (uint32_t v = 0; v < rt->views; v++) {
+        t3r_move_levels(&structure[v].levels, &lines[v]);
+    }
     return T3R_OK;
+}
+
+/* What counts in this pass: colours come first, so that the first one takes every level as it is. */
+static t3r_status find_structure(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views,
+                                 uint32_t pass, uint32_t done, uint32_t total, t3r_structure structure[T3R_MAX_VIEWS])
+{
+    for (uint32_t v = 0; v < rt->views; v++) {
+        structure[v].contrast = pass > 0;
+    }
+    return rt->views > 1 && pass < T3R_LEVELLED_PASSES ? measure_levels(rt, w, views, done, total, structure) : T3R_OK;
 }
 
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records)
@@ -407,18 +419,16 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
                      .settles = rt->config.remember > 0};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
     uint32_t total = passes * slices * (rt->views + t3r_remembered_a_pass(rt)), done = 0;
-    t3r_view_levels levels[T3R_MAX_VIEWS] = {0};
-    const bool structural = T3R_FEATURE_LOSS && rt->config.structural && records == NULL;
+    t3r_structure structure[T3R_MAX_VIEWS] = {0};
+    job.structure = T3R_FEATURE_LOSS && rt->config.structural && records == NULL ? structure : NULL;
     memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);
     for (uint32_t pass = 0; pass < passes; pass++) {
-        if (structural && rt->views > 1 && pass < T3R_LEVELLED_PASSES) {
-            t3r_status status = measure_levels(rt, &w, views, done, total, levels);
+        if (T3R_FEATURE_LOSS && job.structure != NULL) {
+            t3r_status status = find_structure(rt, &w, views, pass, done, total, structure);
             if (status != T3R_OK) {
                 return status;
             }
-            job.levels = levels;
         }
-        job.structural = structural && pass > 0;
         for (uint32_t first = 0; first < rt->gaussians; first += w.slice) {
             job.slice.first = first;
             job.slice.count = T3R_MIN(w.slice, rt->gaussians - first);

@@ -6,7 +6,6 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 #include "state/remembered.h"
-#include "structural.h"
 
 /* Whether the pixel counts, and what it shows. */
 static bool sample(const t3r_refine_view *job, size_t at, uint32_t shown_q7[3])
@@ -178,11 +177,8 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
     }
     kept_splats kept = draw(job, list, count, left, top, &want->pixels);
     compare(job, left, top, want);
-    if (T3R_FEATURE_LOSS && job->levels != NULL) {
-        t3r_level_residuals(want, job->levels);
-    }
-    if (T3R_FEATURE_LOSS && job->structural) {
-        t3r_structural_residuals(want);
+    if (T3R_FEATURE_LOSS && job->structure != NULL) {
+        t3r_structural_loss(want, job->structure);
     }
     memset(want->pixels.colour_q7, 0, sizeof want->pixels.colour_q7); /* behind the last splat it is black */
     take_off(job, list, &kept, first, left, top);
@@ -217,5 +213,5 @@ void t3r_refine_tile_levels(const t3r_refine_view *job, const uint32_t *list, ui
     uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
     (void)draw(job, list, count, left, top, &job->wanted->pixels);
     compare(job, left, top, job->wanted);
-    t3r_add_levels(job->wanted, job->levels, sums);
+    t3r_add_levels(job->wanted, &job->structure->levels, sums);
 }

@@ -8,7 +8,7 @@
 #include "kernels/kernels.h"
 #include "raster/raster_tile.h"
 #include "refine_bands.h"
-#include "view_levels.h"
+#include "structural.h"
 
 /* A view to measure, and the slice of the scene whose sums there is room for. */
 typedef struct t3r_refine_view {
@@ -24,10 +24,9 @@ typedef struct t3r_refine_view {
     uint32_t *kept;     /* room for what is kept of the splats of a tile while it is drawn: T3R_KEPT_LEAST words or
                            more; the more there is, the less often a full tile is drawn again */
     uint32_t kept_words;
-    const uint16_t *gain_q14;      /* of the view's three channels: what it shows is levelled first */
-    const uint16_t *remembered;    /* the pixels of a remembered keyframe, which has no planes; NULL: it is a view's */
-    const t3r_view_levels *levels; /* of the view, or NULL: what it lacks is less them */
-    bool structural;               /* what it lacks counts as structure, too */
+    const uint16_t *gain_q14;       /* of the view's three channels: what it shows is levelled first */
+    const uint16_t *remembered;     /* the pixels of a remembered keyframe, which has no planes; NULL: it is a view's */
+    const t3r_structure *structure; /* of the view, or NULL: what it lacks counts as it is */
     /* Asked before so many splats of a tile are drawn again; false ends the tile. */
     bool (*goes_on)(void *context, uint32_t splats);
     void *context;
@@ -47,7 +46,7 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
 uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                                uint32_t tile_y, uint32_t *pixels);
 
-/* The same, and adds what the tile tells of the view's levels, over job->levels as they are. */
+/* The same, and adds what the tile tells of the view's levels, over those of job->structure as they are. */
 void t3r_refine_tile_levels(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                             uint32_t tile_y, t3r_level_sums *sums);
 

@@ -115,3 +115,11 @@ void t3r_structural_residuals(t3r_wanted *tile)
         }
     }
 }
+
+void t3r_structural_loss(t3r_wanted *tile, const t3r_structure *structure)
+{
+    t3r_level_residuals(tile, &structure->levels);
+    if (structure->contrast) {
+        t3r_structural_residuals(tile);
+    }
+}

@@ -71,22 +71,30 @@ t3r_view_levels t3r_fit_levels(const t3r_level_sums *sums)
     return line;
 }
 
-void t3r_move_levels(const t3r_view_levels *lines, uint32_t count, t3r_view_levels *levels)
+void t3r_center_levels(t3r_view_levels *lines, uint32_t count)
 {
     for (int c = 0; c < 3; c++) {
-        int32_t offsets = 0, slopes = 0;
+        int32_t offset = 0, slope = 0;
         for (uint32_t v = 0; v < count; v++) {
-            offsets += lines[v].offset_q8[c];
-            slopes += lines[v].slope_q14[c];
+            offset += lines[v].offset_q8[c];
+            slope += lines[v].slope_q14[c];
         }
-        offsets = t3r_round_div32(offsets, (int32_t)count);
-        slopes = t3r_round_div32(slopes, (int32_t)count);
+        offset = t3r_round_div32(offset, (int32_t)count);
+        slope = t3r_round_div32(slope, (int32_t)count);
         for (uint32_t v = 0; v < count; v++) {
-            const int32_t offset = levels[v].offset_q8[c] + lines[v].offset_q8[c] - offsets;
-            const int32_t slope = levels[v].slope_q14[c] + lines[v].slope_q14[c] - slopes;
-            levels[v].offset_q8[c] = (int16_t)t3r_clamp32(offset, -OFFSET_MOST_Q8, OFFSET_MOST_Q8);
-            levels[v].slope_q14[c] = (int16_t)t3r_clamp32(slope, -SLOPE_MOST_Q14, SLOPE_MOST_Q14);
+            lines[v].offset_q8[c] = (int16_t)(lines[v].offset_q8[c] - offset); /* at most twice the most */
+            lines[v].slope_q14[c] = (int16_t)(lines[v].slope_q14[c] - slope);
         }
+    }
+}
+
+void t3r_move_levels(t3r_view_levels *levels, const t3r_view_levels *line)
+{
+    for (int c = 0; c < 3; c++) {
+        const int32_t offset = levels->offset_q8[c] + line->offset_q8[c],
+                      slope = levels->slope_q14[c] + line->slope_q14[c];
+        levels->offset_q8[c] = (int16_t)t3r_clamp32(offset, -OFFSET_MOST_Q8, OFFSET_MOST_Q8);
+        levels->slope_q14[c] = (int16_t)t3r_clamp32(slope, -SLOPE_MOST_Q14, SLOPE_MOST_Q14);
     }
 }
 

@@ -31,8 +31,11 @@ void t3r_join_levels(t3r_level_sums *sums, const t3r_level_sums *others);
 /* One view's sums become a line through what is missing, by least squares. */
 t3r_view_levels t3r_fit_levels(const t3r_level_sums *sums);
 
-/* Each view's levels move by its line, less the mean of all lines: that one is the scene's to correct. count >= 1. */
-void t3r_move_levels(const t3r_view_levels *lines, uint32_t count, t3r_view_levels *levels);
+/* All lines less the mean of all: that one is the scene's to correct. count >= 1. */
+void t3r_center_levels(t3r_view_levels *lines, uint32_t count);
+
+/* Levels move by a line. */
+void t3r_move_levels(t3r_view_levels *levels, const t3r_view_levels *line);
 
 /* What the tile lacks, less the view's own levels. */
 void t3r_level_residuals(t3r_wanted *tile, const t3r_view_levels *levels);

@@ -49,7 +49,9 @@ static void found_as_they_were_made(void **state)
             const t3r_level_sums sums = sums_of(5 + (uint64_t)v, made[v][0], made[v][1], &levels[v]);
             lines[v] = t3r_fit_levels(&sums);
         }
-        t3r_move_levels(lines, 2, levels);
+        t3r_center_levels(lines, 2);
+        t3r_move_levels(&levels[0], &lines[0]);
+        t3r_move_levels(&levels[1], &lines[1]);
         for (int c = 0; c < 3; c++) {
             /* against the mean of both, and the target for the drawn level: 0.08 / (1 + 0.02) */
             assert_in_range(levels[0].offset_q8[c] + 10000, 10000 + 7.6 * 256, 10000 + 8.6 * 256);
@@ -106,12 +108,13 @@ static void extremes(void **state)
             t3r_join_levels(&sums, &more);
         }
         line = t3r_fit_levels(&sums);
-        t3r_view_levels levels[2] = {{{8192, -8192, 8192}, {4096, -4096, -4096}}, {{0}, {0}}};
-        t3r_move_levels((t3r_view_levels[]){line, none}, 2, levels);
+        t3r_view_levels levels = {{8192, -8192, 8192}, {4096, -4096, -4096}}, lines[2] = {line, none};
+        t3r_center_levels(lines, 2);
+        t3r_move_levels(&levels, &lines[pattern & 1]);
         for (int c = 0; c < 3; c++) {
-            assert_true(abs(levels[0].offset_q8[c]) <= 8192 && abs(levels[0].slope_q14[c]) <= 4096);
+            assert_true(abs(levels.offset_q8[c]) <= 8192 && abs(levels.slope_q14[c]) <= 4096);
         }
-        t3r_level_residuals(&tile, &levels[0]);
+        t3r_level_residuals(&tile, &levels);
         for (int i = 0; i < 3 * SIDE * SIDE; i++) {
             assert_true(abs(tile.residual_q4[i % 3][i / 3 / SIDE][i / 3 % SIDE]) <= 4080);
         }
