@@ -65,6 +65,7 @@ def run_program(program, scratch):
                   ("--auto", "--max-loss", 0.5),
                   ("--keep", "5%", "--fit-passes", "on", "--refine", 16),
                   ("--keep", "20%", "--fit-widths", "on", "--head", "analytic"),
+                  ("--keep", "5%", "--structural", "on", "--context", "0,2"),
                   ("--keep", "10%", "--exposure", "off", "--flying", "off", "--redundancy", "off"),
                   ("--keep", "10%", "--working", "64x64", "--depth", "stereo", "--context", "0,1,2")):
         trim3r(*base, *words)
