@@ -258,7 +258,7 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
     }
     for (uint32_t k = 0; k < count; k++) {
         int32_t below = t3r_log_wanted_q10((uint16_t)clusters[k].texture_q4, settings) - most;
-        factor_q10[k] = below <= -(10 << 10) ? 1 : T3R_MAX(t3r_exp2_q16(below * 64) >> 6, 1u);
+        factor_q10[k] = below <= -(10 << 10) ? 1 : t3r_exp2_q16(below * 64) >> 6; /* at least 1 there, too */
         weight[k] = (uint64_t)open_points(&clusters[k]) * factor_q10[k];
     }
     for (uint32_t round = 0; round < count; round++) {

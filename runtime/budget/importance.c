@@ -21,14 +21,14 @@ void t3r_importance_keys(const t3r_view *views, uint32_t count, const t3r_import
     }
 }
 
-/* Bits first..first + count - 1 of the mask, at most 32: they lie in one word or two. */
+/* Bits first..first + count - 1 of the mask, fewer than 32: they lie in one word or two. */
 static uint32_t mask_bits(const uint32_t *mask, size_t first, uint32_t count)
 {
     uint32_t shift = (uint32_t)(first % 32), bits = mask[first / 32] >> shift;
     if (shift + count > 32) {
-        bits |= mask[first / 32 + 1] << (32 - shift); /* shift > 0, as count <= 32 */
+        bits |= mask[first / 32 + 1] << (32 - shift); /* shift > 0, as count < 32 */
     }
-    return count == 32 ? bits : bits & ((1u << count) - 1);
+    return bits & ((1u << count) - 1);
 }
 
 static uint32_t count_bits(uint32_t bits)

@@ -17,17 +17,14 @@ static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
     return q + ((h * t_q8) >> 7) + ((a * t_q8 * t_q8) >> 16);
 }
 
-/* Whether a large splat's quadratic falls below LEVEL_MOST anywhere on eight columns of a tile (pixel centres). It is
- * convex, so unless the centre lies inside, its least value is on an edge. Within its box a splat is at most
+/* Whether the quadratic of a splat whose centre lies elsewhere falls below LEVEL_MOST anywhere on eight columns of a
+ * tile (pixel centres). It is convex, so its least value there is on an edge. Within its box a splat is at most
  * 2^14.6 px away: half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
 static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
 {
     const int64_t width = T3R_LANES - 1, height = T3R_TILE_SIDE - 1;
     int64_t left = ((int64_t)x << 12) - s->x_q12, top = ((int64_t)y << 12) - s->y_q12;
     int64_t right = left + (width << 12), bottom = top + (height << 12);
-    if (left <= 0 && right >= 0 && top <= 0 && bottom >= 0) {
-        return true;
-    }
     int64_t a = s->a_q30 >> 12, c = s->c_q30 >> 12;
     int64_t least = INT64_MAX;
     for (int corner = 0; corner < 2; corner++) { /* top left, then bottom right */

@@ -35,11 +35,11 @@ static uint32_t loss_of(uint32_t row, uint32_t passes, uint32_t gaussians, uint6
     return t3r_quality_loss_q4[row][p][s];
 }
 
-/* Rounded half up, at least 1. */
+/* Rounded half up, at least 1; below 2^29. */
 static uint32_t share_of(uint64_t points, uint32_t percent)
 {
     const uint64_t share = (points * percent + 50) / 100;
-    return (uint32_t)T3R_MIN(T3R_MAX(share, 1), T3R_MAX_GAUSSIANS);
+    return (uint32_t)T3R_MAX(share, 1);
 }
 
 typedef struct search {
@@ -57,7 +57,7 @@ static bool try_one(const search *s, t3r_choice *choice)
     const t3r_config *c = &s->config;
     t3r_layout layout;
     if (t3r_config_check(c) != T3R_OK) {
-        return false;
+        return false; /* a share of very many points is more than T3R_MAX_GAUSSIANS */
     }
     (void)t3r_lay_out(c, 0, &layout); /* for the two sums */
     *choice = (t3r_choice){
@@ -78,12 +78,10 @@ static bool try_one(const search *s, t3r_choice *choice)
     return s->limits->most == 0 || choice->price <= s->limits->most;
 }
 
-/* Whether b is as good in every respect and better in one, or the same and comes first. */
-static bool is_beaten(const t3r_choice *a, const t3r_choice *b, bool b_first)
+/* Whether a is as good as b in every respect. */
+static bool is_as_good(const t3r_choice *a, const t3r_choice *b)
 {
-    const bool as_good = b->loss_q4 <= a->loss_q4 && b->full_bytes <= a->full_bytes && b->price <= a->price;
-    const bool better = b->loss_q4 < a->loss_q4 || b->full_bytes < a->full_bytes || b->price < a->price;
-    return as_good && (better || b_first);
+    return a->loss_q4 <= b->loss_q4 && a->full_bytes <= b->full_bytes && a->price <= b->price;
 }
 
 static bool precedes(const t3r_choice *a, const t3r_choice *b)
@@ -91,15 +89,15 @@ static bool precedes(const t3r_choice *a, const t3r_choice *b)
     return a->loss_q4 != b->loss_q4 ? a->loss_q4 < b->loss_q4 : a->price < b->price;
 }
 
-/* Adds it, unless it is beaten, without those that it beats. */
+/* Adds it, unless one that is there is as good, without those that it is as good as. */
 static uint32_t add(t3r_choice *choices, uint32_t count, const t3r_choice *found)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (is_beaten(found, &choices[i], true)) {
-            return count; /* then nothing that stands before it was beaten */
+        if (is_as_good(&choices[i], found)) {
+            return count; /* then `found` is as good as none that stands before it */
         }
-        if (!is_beaten(&choices[i], found, false)) {
+        if (!is_as_good(found, &choices[i])) {
             choices[kept++] = choices[i];
         }
     }

@@ -147,9 +147,10 @@ uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t expon
     for (uint32_t v = 0; v < count; v++) {
         for (int c = 0; c < 3; c++) {
             int32_t mean_q8 = (int32_t)t3r_round_div64(sum_q8[c], links);
-            int32_t over = linked[v] ? level_q8[v][c] - mean_q8 : 0; /* at most 2 octaves either way */
-            int32_t gain = t3r_round_shift32((int32_t)t3r_exp2_q16(-over * 256), 2);
-            gain_q14[v][c] = (uint16_t)T3R_MIN(gain, (int32_t)UINT16_MAX);
+            /* Levels are within an octave of the first view's, and a view's own is in the mean of at most 16: less than
+             * 2 octaves less a 16th either way, gains below 2^15.9. */
+            int32_t over = linked[v] ? level_q8[v][c] - mean_q8 : 0;
+            gain_q14[v][c] = (uint16_t)t3r_round_shift32((int32_t)t3r_exp2_q16(-over * 256), 2);
         }
     }
     return (uint32_t)links;

@@ -84,16 +84,13 @@ static void complete_axes(int32_t rotation[2][9], int64_t axes[3][3])
     }
     across(ahead, axes[0], z);
     if (unit_q30(z, axes[2]) < ONE_Q30 / 16) {
-        /* Looking along the baseline any direction will do: the picture's own right, or down. */
-        for (int column = 0; column < 2; column++) {
-            for (int i = 0; i < 3; i++) {
-                ahead[i] = rotation[0][3 * i + column];
-            }
-            across(ahead, axes[0], z);
-            if (unit_q30(z, axes[2]) > ONE_Q30) {
-                break; /* of two directions at right angles one is more than 45 degrees from the baseline */
-            }
+        /* Looking along the baseline any direction will do: the picture's own right. It is at least 40 degrees from
+         * the baseline, as the cameras are less than 90 degrees apart. */
+        for (int i = 0; i < 3; i++) {
+            ahead[i] = rotation[0][3 * i];
         }
+        across(ahead, axes[0], z);
+        (void)unit_q30(z, axes[2]);
     }
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -219,10 +216,7 @@ static extent measure(const t3r_rectification *rect, uint32_t view)
         int64_t ray[3], at[2] = {0, 0}, unused;
         border(rect->view_width, rect->view_height, step, &u, &v);
         ray_of(&rect->view[view], u, v, ray);
-        if (!project(rect->polar, ray, at, &unused)) {
-            if (!rect->polar) {
-                continue;
-            }
+        if (!project(rect->polar, ray, at, &unused)) { /* polar: what fits a plane has all its places there */
             at[0] = ray[0] < 0 ? -POLAR_MOST_Q24 : POLAR_MOST_Q24;
         }
         for (int i = 0; i < 2; i++) {
@@ -328,9 +322,9 @@ static t3r_pair frame_plane(t3r_rectification *rect, uint32_t disparities)
         rect->first_q16[i] = (int32_t)t3r_round_shift64(from[i] * rect->scale_q16[i], 24);
     }
     int64_t least = ((from[0] - second.most[0]) * rect->scale_q16[0]) >> 40;
-    int64_t most = ((to[0] - second.least[0]) * rect->scale_q16[0]) >> 40;
+    int64_t most = ((to[0] - second.least[0]) * rect->scale_q16[0]) >> 40; /* not below 0: they overlap */
     rect->least_disparity = (int32_t)T3R_MAX(least, 0);
-    rect->most_disparity = (int32_t)T3R_MAX(most, 0) + 1;
+    rect->most_disparity = (int32_t)most + 1;
     return T3R_PAIR_OK;
 }
 

@@ -162,12 +162,12 @@ typedef struct look {
  */
 static uint32_t match_score_of(const uint32_t *histogram, uint32_t count, int32_t base)
 {
-    uint64_t sum = 0;
+    uint32_t sum = 0; /* below 2^20 x 2^8 */
     for (uint32_t k = 0; k < count; k++) {
         const uint32_t d = (uint32_t)T3R_MAX(base + (int32_t)(QUARTER * k), 0);
-        sum += (uint64_t)histogram[k] * (256 * d / (d + HALF_KNOWN));
+        sum += histogram[k] * (256 * d / (d + HALF_KNOWN));
     }
-    return (uint32_t)T3R_MIN(sum, (uint64_t)UINT32_MAX);
+    return sum;
 }
 
 /* The left plane's luma in full, which is the same whatever disparities are found, and at a quarter of the size.

@@ -51,12 +51,11 @@ t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *came
         for (uint32_t x = 0; x < newest->width; x += STEP) {
             int32_t point[3];
             t3r_projected_pixel projected;
-            size_t pixel = (size_t)y * newest->width + x;
-            if (!t3r_has_depth(newest->validity[pixel]) || !t3r_point(&map, x, y, point)) {
+            if (!t3r_point(&map, x, y, point)) {
                 continue;
             }
             points++;
-            own_cells |= cell_of(newest, pixel);
+            own_cells |= cell_of(newest, (size_t)y * newest->width + x);
             if (t3r_project_to_pixel(&there, point, &projected)) {
                 shown++;
                 cells |= cell_of(&there, projected.pixel);

@@ -307,6 +307,52 @@ static void kmeans_that_follows(void **state)
     free_cloud(&after);
 }
 
+typedef struct stepper {
+    uint32_t calls, stop_at; /* 0: never */
+} stepper;
+
+static bool take_step(void *context, uint32_t done, uint32_t total)
+{
+    stepper *s = context;
+    assert_true(done <= total);
+    return ++s->calls != s->stop_at;
+}
+
+/* Centres all of which still have their points stay; wherever the step stops it, it stops. */
+static void kmeans_that_stays(void **state)
+{
+    (void)state;
+    enum { K = 8, COUNT = 6000, BATCHES = 24 };
+    static const int32_t away = 3 << 19;
+    cloud c = cloud_of(COUNT, K, 0.9, 0.02, 1);
+    t3r_cluster anew[K], following[K];
+    (void)kmeans_of(&c, K, false, anew);
+    memcpy(following, anew, sizeof anew);
+    const double before = kmeans_of(&c, K, true, following);
+    for (uint32_t k = 0; k < K; k++) { /* each near where it was */
+        assert_true(anew[k].points < COUNT / (4 * K) ||
+                    abs((int)following[k].points - (int)anew[k].points) < COUNT / K);
+    }
+    assert_true(before < 0.1);
+    void *work = aligned_alloc(T3R_ARENA_ALIGN, T3R_CLUSTER_WORK_BYTES(K));
+    assert_non_null(work);
+    const t3r_cluster_settings settings = {&t3r_kernels_c, K, BATCHES, 1, true};
+    uint32_t all = 0;
+    for (uint32_t stop_at = 0; stop_at <= all; stop_at++) {
+        stepper s = {.stop_at = stop_at};
+        const t3r_cluster_host host = {.workers = {NULL, 1}, .context = &s, .step = take_step};
+        const t3r_point_source source = source_of(&c);
+        memcpy(following, anew, sizeof anew);
+        following[1].centre_q19[0] = following[2].centre_q19[0] = away; /* two are placed anew */
+        const uint32_t valid = t3r_superclusters(&source, &settings, following, work, &host);
+        assert_int_equal(valid, stop_at == 0 ? COUNT : T3R_CLUSTERS_CANCELLED);
+        all = stop_at == 0 ? s.calls : all;
+    }
+    assert_true(all > BATCHES / 6);
+    free(work);
+    free_cloud(&c);
+}
+
 /* ---- wavelet ------------------------------------------------------------------------------------- */
 
 typedef enum texture_kind { NOISE, OCTAVES, RAMP, EDGES, FLAT, TEXTURE_KINDS } texture_kind;
@@ -431,8 +477,8 @@ static void wavelet_oracle(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pointmap),       cmocka_unit_test(kmeans),         cmocka_unit_test(kmeans_that_follows),
-        cmocka_unit_test(wavelet_oracle), cmocka_unit_test(wavelet_energy),
+        cmocka_unit_test(pointmap),          cmocka_unit_test(kmeans),         cmocka_unit_test(kmeans_that_follows),
+        cmocka_unit_test(kmeans_that_stays), cmocka_unit_test(wavelet_oracle), cmocka_unit_test(wavelet_energy),
     };
     return cmocka_run_group_tests_name("analysis", tests, NULL, NULL);
 }

@@ -164,6 +164,27 @@ static void bands_give_the_whole_view(void **state)
     arena_free(&memory);
 }
 
+/* A network whose work fits where kernels have theirs still asks for a byte a column: 0 is no learned head. */
+static void least_room_for_a_head(void **state)
+{
+    (void)state;
+    static const made_layer least[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
+    size_t bytes;
+    uint8_t *weights = make_weights(least, 1, 8, 8, 3, &bytes);
+    assert_true(t3r_head_learned_work_bytes(weights, W) <= T3R_HEAD_KERNEL_BYTES);
+    t3r_config config = learned_config(100);
+    config.head_column_bytes = t3r_head_column_bytes(weights, bytes, W);
+    assert_int_equal(config.head_column_bytes, 1);
+    arena memory = arena_of(&config, ARENA_AT_MINIMUM);
+    t3r_runtime *rt = with_views(&memory, &config, 0);
+    t3r_scene scene;
+    assert_int_equal(t3r_bind_head(rt, weights, bytes), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    assert_int_equal(scene.count, 100);
+    arena_free(&memory);
+    free(weights);
+}
+
 /* head_column_bytes: what t3r_head_column_bytes() tells is enough and not one too many, whatever the width. */
 static void room_for_the_head(void **state)
 {
@@ -535,11 +556,11 @@ static void scaled_by_the_spacing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bits_everywhere),      cmocka_unit_test(binding),
-        cmocka_unit_test(colour_and_opacity),        cmocka_unit_test(footprints),
-        cmocka_unit_test(scaled_by_the_spacing),     cmocka_unit_test(room_for_the_head),
-        cmocka_unit_test(unadapted_is_pruned),       cmocka_unit_test(hash_names_the_weights),
-        cmocka_unit_test(bands_give_the_whole_view),
+        cmocka_unit_test(same_bits_everywhere),   cmocka_unit_test(binding),
+        cmocka_unit_test(colour_and_opacity),     cmocka_unit_test(footprints),
+        cmocka_unit_test(scaled_by_the_spacing),  cmocka_unit_test(least_room_for_a_head),
+        cmocka_unit_test(room_for_the_head),      cmocka_unit_test(unadapted_is_pruned),
+        cmocka_unit_test(hash_names_the_weights), cmocka_unit_test(bands_give_the_whole_view),
     };
     return cmocka_run_group_tests_name("learned", tests, NULL, NULL);
 }

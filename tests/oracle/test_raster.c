@@ -13,6 +13,7 @@
 
 #include "drawing.h"
 #include "oracle_raster.h"
+#include "raster/raster_splat.h"
 
 #define LEAST_DB 50.0
 /* Alpha: Q15 against double. Depth: where transmittance passes 1/2 within the margin, the neighbours in the order are
@@ -344,6 +345,24 @@ static void far_off_axis(void **state)
     }
 }
 
+/* The Jacobian is held at 1.3 half fields of view, and where nothing is drawn any more, 16 to the side of 1 ahead. */
+static void fields_of_view(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t width, height;
+        double x, y;
+    } cases[] = {{80, 40, 6.5, 3.25}, {400, 80, 16, 6.5}, {80, 4096, 6.5, 16}, {4096, 4096, 16, 16}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const t3r_camera camera = plain_camera(8, cases[i].width, cases[i].height);
+        t3r_projection projection;
+        assert_int_equal(t3r_projection_make(&camera, &plain_frame, cases[i].width, cases[i].height, &projection),
+                         T3R_OK);
+        assert_true(fabs(projection.limit_x_q24 / 16777216.0 - cases[i].x) < 1e-6);
+        assert_true(fabs(projection.limit_y_q24 / 16777216.0 - cases[i].y) < 1e-6);
+    }
+}
+
 static void at_the_border(void **state)
 {
     (void)state;
@@ -570,14 +589,57 @@ static void outputs_apart(void **state)
     free(gaussians);
 }
 
+static void note_hash(void *user, t3r_stage stage, uint64_t hash)
+{
+    assert_int_equal(stage, T3R_STAGE_RASTER);
+    *(uint64_t *)user = hash;
+}
+
+/* The stage's hash is of the planes that were asked for, whatever stands between their rows. */
+static void planes_are_hashed(void **state)
+{
+    (void)state;
+    enum { W = 21, H = 17 };
+    static const recipe r = {"hashed", 200, W, H, 20, 0.5, 4, 1.1, 0.01, 0.1, 5, 0.1, 1};
+    t3r_gaussian *gaussians = cook(&r, 60);
+    t3r_camera camera = plain_camera(r.focal, W, H);
+    t3r_config config = render_config(r.count, W, H);
+    arena a = arena_of(&config, ARENA_AT_MINIMUM);
+    t3r_runtime *rt = NULL;
+    uint64_t hash = 0, seen[3];
+    const t3r_hooks hooks = {.user = &hash, .stage_hash = note_hash};
+    assert_int_equal(t3r_init(&rt, a.bytes, a.count, &config), T3R_OK);
+    assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
+    load_scene(rt, &plain_frame, gaussians, r.count);
+    static uint8_t rgb[H][W * 3 + 4];
+    static uint32_t depth[H][W + 4];
+    static uint16_t alpha[H][W + 4];
+    for (uint32_t pad = 0; pad <= 4; pad += 4) {
+        const t3r_target targets[3] = {
+            {.width = W, .height = H, .rgb = rgb[0], .rgb_stride_bytes = W * 3 + pad},
+            {.width = W, .height = H, .depth_q20 = depth[0], .depth_stride_bytes = (W + pad) * 4},
+            {.width = W, .height = H, .alpha_q15 = alpha[0], .alpha_stride_bytes = (W + pad) * 2},
+        };
+        for (int plane = 0; plane < 3; plane++) {
+            assert_int_equal(t3r_render(rt, &camera, &targets[plane]), T3R_OK);
+            assert_true(pad == 0 || hash == seen[plane]);
+            seen[plane] = hash;
+        }
+        assert_true(seen[0] != seen[1] && seen[1] != seen[2] && seen[0] != seen[2]);
+    }
+    arena_free(&a);
+    free(gaussians);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_form),   cmocka_unit_test(nothing_to_see),         cmocka_unit_test(random_scenes),
-        cmocka_unit_test(moved_cameras), cmocka_unit_test(degenerate_covariances), cmocka_unit_test(huge_splats),
-        cmocka_unit_test(absurd_splats), cmocka_unit_test(single_splats),          cmocka_unit_test(near_plane),
-        cmocka_unit_test(far_off_axis),  cmocka_unit_test(at_the_border),          cmocka_unit_test(saturation),
-        cmocka_unit_test(arena_sizes),   cmocka_unit_test(copied_arena),           cmocka_unit_test(outputs_apart),
+        cmocka_unit_test(planes_are_hashed),      cmocka_unit_test(fields_of_view), cmocka_unit_test(closed_form),
+        cmocka_unit_test(nothing_to_see),         cmocka_unit_test(random_scenes),  cmocka_unit_test(moved_cameras),
+        cmocka_unit_test(degenerate_covariances), cmocka_unit_test(huge_splats),    cmocka_unit_test(absurd_splats),
+        cmocka_unit_test(single_splats),          cmocka_unit_test(near_plane),     cmocka_unit_test(far_off_axis),
+        cmocka_unit_test(at_the_border),          cmocka_unit_test(saturation),     cmocka_unit_test(arena_sizes),
+        cmocka_unit_test(copied_arena),           cmocka_unit_test(outputs_apart),
     };
     return cmocka_run_group_tests_name("raster", tests, NULL, NULL);
 }

@@ -171,6 +171,29 @@ static void a_long_list_can_be_stopped(void **state)
     free(gaussians);
 }
 
+/* Behind what is opaque nothing of the list is drawn, and nobody is asked. */
+static void a_long_list_ends_where_nothing_shows(void **state)
+{
+    (void)state;
+    t3r_gaussian *gaussians = haze(LONG);
+    for (uint32_t i = 0; i < LONG; i++) {
+        gaussians[i].opacity_q15 = i < 100 ? 32767 : gaussians[i].opacity_q15;
+    }
+    const t3r_camera camera = plain_camera(16, 16, 16);
+    uint8_t rgb[16 * 16 * 3] = {0}, nearest[sizeof rgb] = {0};
+    const t3r_target target = {.width = 16, .height = 16, .rgb = rgb, .rgb_stride_bytes = 16 * 3};
+    bench b = bench_of(gaussians, LONG, 16, 0);
+    watch w = {0};
+    const t3r_hooks hooks = {.user = &w, .progress = look};
+    assert_int_equal(t3r_set_hooks(b.rt, &hooks), T3R_OK);
+    assert_int_equal(t3r_render(b.rt, &camera, &target), T3R_OK);
+    assert_int_equal(w.looks, 2); /* before all, before the tile */
+    draw_at_once(gaussians, 100, &camera, nearest);
+    assert_memory_equal(rgb, nearest, sizeof rgb);
+    arena_free(&b.memory);
+    free(gaussians);
+}
+
 /* Between two looks at most 65,536 splats are blended, or a tile. */
 static void many_lists_are_looked_after(void **state)
 {
@@ -192,9 +215,8 @@ static void many_lists_are_looked_after(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_plan_bounds_what_is_blended),
-        cmocka_unit_test(the_nearest_are_drawn),
-        cmocka_unit_test(a_long_list_can_be_stopped),
+        cmocka_unit_test(the_plan_bounds_what_is_blended), cmocka_unit_test(the_nearest_are_drawn),
+        cmocka_unit_test(a_long_list_can_be_stopped),      cmocka_unit_test(a_long_list_ends_where_nothing_shows),
         cmocka_unit_test(many_lists_are_looked_after),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

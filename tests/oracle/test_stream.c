@@ -399,6 +399,56 @@ static void overlap_tells_of_motion(void **state)
     arena_free(&s.memory);
 }
 
+/* Where none of the pixels that are asked has depth, nothing is known to be in common. */
+static void nothing_overlaps_with_nothing(void **state)
+{
+    (void)state;
+    t3r_config config = stream_config();
+    config.fill_radius = config.bridge_radius = 0;
+    site s = site_of(config, ARENA_AT_FULL);
+    pose p = {5, 0, 0, false};
+    t3r_frame frame;
+    t3r_camera camera;
+    look_from(&p, &frame, &camera);
+    for (int i = 0; i < PIXELS; i++) {
+        if (i % W % 2 == 0) {
+            depth[2 * i] = depth[2 * i + 1] = 0;
+        }
+    }
+    assert_int_equal(t3r_stream_keyframe(s.rt, &frame, &camera, NULL), T3R_OK);
+    assert_int_equal(overlap_at(&s, p), 0);
+    arena_free(&s.memory);
+}
+
+/* A camera that jumps from one end of the range to the other takes the origin along, beyond which the keyframe it left
+ * behind is no longer of use: the scene is that of a stream that begins there. */
+static void jumps_leave_keyframes_behind(void **state)
+{
+    (void)state;
+    site s = site_of(stream_config(), ARENA_AT_FULL), fresh = site_of(stream_config(), ARENA_AT_FULL);
+    const pose way[] = {{0, 0, 0, true}, {-800, 0, 0, true}, {1800, 0, 0, true}}; /* 2 m a scene unit */
+    t3r_stream_report r;
+    for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
+        assert_int_equal(take(&s, &way[i], &r), T3R_OK);
+    }
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(s.rt, views);
+    for (int i = 0; i < PIXELS; i++) {
+        assert_int_equal(views[1].validity[i], T3R_NO_DEPTH);
+    }
+    assert_int_equal(take(&fresh, &way[2], NULL), T3R_OK);
+    const t3r_scene scene = scene_of(&s), expected = scene_of(&fresh);
+    uint32_t there = 0;
+    for (uint32_t i = 0; i < scene.count; i++) {
+        const double x = ldexp((double)scene.frame.origin_q32[0], -32) +
+                         ldexp(scene.gaussians[i].position_q20[0], scene.frame.exponent - 20);
+        there += fabs(x - 1800) < 10;
+    }
+    assert_true(there > expected.count / 3);
+    arena_free(&s.memory);
+    arena_free(&fresh.memory);
+}
+
 /* And reports nothing, whatever the report held before. */
 static void assert_refused(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_status status)
 {
@@ -444,6 +494,8 @@ static void refused(void **state)
     far.position_q32[0] = (int64_t)5000 << 32;
     assert_refused(s.rt, &frame, &far, T3R_ERR_CAMERA);
     assert_int_equal(t3r_stream_overlap(s.rt, &far, W, H, &overlap_q8), T3R_ERR_CAMERA);
+    /* of pictures so large it would have less than 8 pixels of focal length at the working size */
+    assert_int_equal(t3r_stream_overlap(s.rt, &camera, T3R_MAX_SIDE, T3R_MAX_SIDE, &overlap_q8), T3R_ERR_CAMERA);
     t3r_frame bad = frame;
     bad.stride_bytes[0] = 1;
     assert_refused(s.rt, &bad, &camera, T3R_ERR_FRAME);
@@ -485,6 +537,8 @@ int main(void)
         cmocka_unit_test(cancelled_anywhere),
         cmocka_unit_test(wild_records),
         cmocka_unit_test(overlap_tells_of_motion),
+        cmocka_unit_test(nothing_overlaps_with_nothing),
+        cmocka_unit_test(jumps_leave_keyframes_behind),
         cmocka_unit_test(refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -371,11 +371,14 @@ static void another_frame_begins_anew(void **state)
     add(s, step_at(0));
     add(s, step_at(1));
     (void)build(s);
-    const viewpoint far = {3000, 60}, farther = {3000.2, 60};
-    add(s, far);
-    add(s, farther);
-    t3r_scene scene = build(s);
-    assert_anew(&scene, far, farther);
+    for (int turn = 0; turn < 3; turn++) { /* 2 m a scene unit: the first two are in range of the frame before */
+        const double x = turn == 0 ? 1500 : turn == 1 ? -300 : 3000;
+        const viewpoint far = {x, 60}, farther = {x + 0.2, 60};
+        add(s, far);
+        add(s, farther);
+        const t3r_scene scene = build(s);
+        assert_anew(&scene, far, farther);
+    }
     for (int i = 0; i < 2; i++) { /* the same wall in steps eight times as long */
         t3r_camera camera;
         const viewpoint at = step_at(i);
@@ -385,6 +388,19 @@ static void another_frame_begins_anew(void **state)
     }
     (void)build(s);
     assert_int_equal(s->refining, PASSES * 2);
+    site_free(s);
+}
+
+static void without_views_none_is_taken(void **state)
+{
+    (void)state;
+    t3r_config config = config_of(1);
+    config.views = 0;
+    site *s = site_of(config, ARENA_AT_MINIMUM);
+    const viewpoint at = step_at(0);
+    t3r_camera camera;
+    const t3r_frame frame = look_from(&at, &camera);
+    assert_int_equal(t3r_add_view(s->rt, &frame, &camera), T3R_ERR_STATE);
     site_free(s);
 }
 
@@ -418,10 +434,15 @@ static void damaged_arenas(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_build_begins_anew), cmocka_unit_test(same_bits),
-        cmocka_unit_test(a_drawn_arena_moves),         cmocka_unit_test(a_view_that_changed_is_not_taken_for_the_old),
-        cmocka_unit_test(errors_in_between),           cmocka_unit_test(cancelled_builds_leave_nothing),
-        cmocka_unit_test(another_frame_begins_anew),   cmocka_unit_test(damaged_arenas),
+        cmocka_unit_test(the_first_build_begins_anew),
+        cmocka_unit_test(same_bits),
+        cmocka_unit_test(a_drawn_arena_moves),
+        cmocka_unit_test(a_view_that_changed_is_not_taken_for_the_old),
+        cmocka_unit_test(errors_in_between),
+        cmocka_unit_test(cancelled_builds_leave_nothing),
+        cmocka_unit_test(another_frame_begins_anew),
+        cmocka_unit_test(without_views_none_is_taken),
+        cmocka_unit_test(damaged_arenas),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

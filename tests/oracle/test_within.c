@@ -169,6 +169,25 @@ static void by_an_importance(void **state)
     arena_free(&s.memory);
 }
 
+/* Of fewer than a hundred points the first trial is one. */
+static void few_points(void **state)
+{
+    (void)state;
+    make_views(90);
+    for (uint32_t v = 0; v < VIEWS; v++) {
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            if (i % 200 != 33) {
+                depth[v][2 * i] = depth[v][2 * i + 1] = 0;
+            }
+        }
+    }
+    site s = site_of(VIEWS * PIXELS, VIEWS);
+    const t3r_scene scene = within(&s, HALF_DB);
+    assert_in_range(scene.valid_points, 1, 99);
+    assert_in_range(scene.count, 1, scene.valid_points);
+    arena_free(&s.memory);
+}
+
 static void a_blank_wall_needs_next_to_nothing(void **state)
 {
     (void)state;
@@ -267,6 +286,7 @@ int main(void)
         cmocka_unit_test(the_scene_of_that_budget),
         cmocka_unit_test(never_more_than_the_most),
         cmocka_unit_test(by_an_importance),
+        cmocka_unit_test(few_points),
         cmocka_unit_test(a_blank_wall_needs_next_to_nothing),
         cmocka_unit_test(the_error_is_that_of_the_picture),
         cmocka_unit_test(cancelled_anywhere),

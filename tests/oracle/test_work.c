@@ -48,6 +48,9 @@ static void counts_follow_the_configuration(void **state)
     c.refinements *= 2;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_REFINE_GAUSSIANS],
                      2 * before.units[T3R_WORK_REFINE_GAUSSIANS]);
+    c.clusters = 1; /* one takes no search */
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_LABELS], 0);
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_BUDGET], points);
     c.views = 0;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_LABELS], 0);
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_RASTER_PIXELS], 96 * 64);
@@ -87,6 +90,34 @@ static void networks_count_by_their_layers(void **state)
     free(weights);
 }
 
+/* What cannot be packed, for its numbers or its layers, counts as what is slower. */
+static void some_networks_cannot_be_packed(void **state)
+{
+    (void)state;
+    static const made_layer deep[] = {
+        {T3R_LAYER_CONV, 1, {0, T3R_SOURCE_NONE}, 4, 2, 1, 8},
+        {T3R_LAYER_DEPTHWISE, 1, {1, T3R_SOURCE_NONE}, 3, 1, 1, 8},
+        {T3R_LAYER_POINT, 0, {2, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS},
+    };
+    static const struct {
+        const made_layer *layers;
+        uint32_t weight_bits, activation_bits, packed;
+    } cases[] = {{small_shape, 8, 8, 1}, {small_shape, 16, 8, 0}, {small_shape, 8, 16, 0}, {deep, 8, 8, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        size_t bytes;
+        const uint32_t layers = cases[i].layers == deep ? 3 : small_layers;
+        uint8_t *weights =
+            make_weights(cases[i].layers, layers, cases[i].weight_bits, cases[i].activation_bits, 1, &bytes);
+        t3r_config c = config_of(1000);
+        c.head = T3R_HEAD_LEARNED;
+        c.head_column_bytes = T3R_MAX_HEAD_COLUMN_BYTES; /* room for either */
+        const t3r_work_counts work = counted(&c, weights, bytes);
+        assert_int_equal(work.units[T3R_WORK_MACS] > 0, cases[i].packed);
+        assert_int_equal(work.units[T3R_WORK_UNPACKED_MACS] > 0, !cases[i].packed);
+        free(weights);
+    }
+}
+
 static void refuses_what_has_no_count(void **state)
 {
     (void)state;
@@ -121,6 +152,12 @@ static void prices_add_up_and_end_at_the_most(void **state)
     prices.milli[T3R_WORK_IMAGE] = UINT32_MAX;
     assert_true(t3r_price_of(&work, &prices, T3R_STAGE_IMAGE) == UINT64_MAX);
     assert_true(t3r_price_of_build(&work, &prices) == UINT64_MAX);
+    /* a product that does not fit, and a thousandth of it that does: off by less than a price */
+    work.units[T3R_WORK_IMAGE] = UINT64_MAX;
+    work.units[T3R_WORK_BUDGET] = 0;
+    prices.milli[T3R_WORK_IMAGE] = 999;
+    const uint64_t exact = UINT64_MAX / 1000 * 999 + UINT64_MAX % 1000 * 999 / 1000;
+    assert_in_range(exact - t3r_price_of(&work, &prices, T3R_STAGE_IMAGE), 0, 998);
 }
 
 /* ---- lists ------------------------------------------------------------------------------------------------------- */
@@ -178,6 +215,26 @@ static void lists_what_fits_best_first(void **state)
     assert_int_equal(some[0].price, 0);
 }
 
+/* Shares of the least scene are a Gaussian at least; of the largest those are left out that no runtime takes. */
+static void shares_of_extreme_sizes(void **state)
+{
+    (void)state;
+    t3r_choice list[T3R_MAX_CHOICES];
+    const t3r_limits limits = {.prices = &t3r_operations, .refinements = 1};
+    t3r_config c = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
+    uint32_t count = listed(&c, &limits, list), least = UINT32_MAX, most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        least = list[i].gaussians < least ? list[i].gaussians : least;
+    }
+    assert_int_equal(least, 1);
+    c = t3r_default_config(T3R_MAX_SIDE, T3R_MAX_SIDE, T3R_MAX_VIEWS, 1);
+    count = listed(&c, &limits, list);
+    for (uint32_t i = 0; i < count; i++) {
+        most = list[i].gaussians > most ? list[i].gaussians : most;
+    }
+    assert_in_range(most, T3R_MAX_GAUSSIANS / 2, T3R_MAX_GAUSSIANS);
+}
+
 static void heads_are_compared(void **state)
 {
     (void)state;
@@ -216,6 +273,9 @@ static void refuses_limits_out_of_range(void **state)
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_WEIGHTS);
     c.wavelet_levels = 0;
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_CONFIG);
+    c = config_of(1);
+    c.stream = 1; /* keyframes come as they come */
+    assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_CONFIG);
     assert_int_equal(count, 0);
 }
 
@@ -225,9 +285,11 @@ int main(void)
         cmocka_unit_test(counts_follow_the_configuration),
         cmocka_unit_test(small_arenas_draw_more_often),
         cmocka_unit_test(networks_count_by_their_layers),
+        cmocka_unit_test(some_networks_cannot_be_packed),
         cmocka_unit_test(refuses_what_has_no_count),
         cmocka_unit_test(prices_add_up_and_end_at_the_most),
         cmocka_unit_test(lists_what_fits_best_first),
+        cmocka_unit_test(shares_of_extreme_sizes),
         cmocka_unit_test(heads_are_compared),
         cmocka_unit_test(refuses_limits_out_of_range),
     };

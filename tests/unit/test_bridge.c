@@ -242,6 +242,25 @@ static void nearest_lent(void **state)
     free(s);
 }
 
+/* Nothing is lent that is farther than the view's own steps reach. */
+static void out_of_steps_is_not_lent(void **state)
+{
+    (void)state;
+    rig *s = unit_array(1, sizeof *s);
+    place_view_in_steps(s, 0, 0, 0, 2, UNIT_Q40 >> 5); /* 65,535 steps are 2 - 1/32768 */
+    place_view(s, 1, 0.25, 0, 2);
+    for (int i = 0; i < PIXELS; i++) {
+        forget(s, 0, i);
+    }
+    t3r_bridge_lend(s->view, PAIR, 0, 0, &alone);
+    assert_int_equal(of_kind(s, 0, T3R_NO_DEPTH), PIXELS);
+    s->depth[1][20 * W + 24] = 3 * UNIT / 2; /* by 10.7 pixels to the right */
+    t3r_bridge_lend(s->view, PAIR, 0, 0, &alone);
+    assert_int_equal(of_kind(s, 0, T3R_BRIDGED | T3R_MARK_LENT), 1);
+    assert_int_equal(s->depth[0][20 * W + 35], 3 * UNIT / 2 * 32);
+    free(s);
+}
+
 /* A surface that neither view measured is bridged in the first and covered in the second. */
 static void bridged_once(void **state)
 {
@@ -398,10 +417,19 @@ static void budgets_hold(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(planes_go_on),  cmocka_unit_test(as_defined),         cmocka_unit_test(edges),
-        cmocka_unit_test(borders_stay),  cmocka_unit_test(nothing_is_trusted), cmocka_unit_test(lent),
-        cmocka_unit_test(nearest_lent),  cmocka_unit_test(bridged_once),       cmocka_unit_test(seen_through),
-        cmocka_unit_test(settled_cover), cmocka_unit_test(forgotten),          cmocka_unit_test(budgets_hold),
+        cmocka_unit_test(planes_go_on),
+        cmocka_unit_test(as_defined),
+        cmocka_unit_test(edges),
+        cmocka_unit_test(borders_stay),
+        cmocka_unit_test(nothing_is_trusted),
+        cmocka_unit_test(lent),
+        cmocka_unit_test(nearest_lent),
+        cmocka_unit_test(out_of_steps_is_not_lent),
+        cmocka_unit_test(bridged_once),
+        cmocka_unit_test(seen_through),
+        cmocka_unit_test(settled_cover),
+        cmocka_unit_test(forgotten),
+        cmocka_unit_test(budgets_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

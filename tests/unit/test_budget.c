@@ -213,6 +213,25 @@ static void deferred_comes_last(void **state)
     assert_false(t3r_is_sparse(&view, 1, 2 * plain / 3 + 1));
 }
 
+/* Beside the busiest a flat SuperCluster counts a thousandth and no less, however steep the power. */
+static void flat_ones_get_a_thousandth(void **state)
+{
+    (void)state;
+    t3r_cluster clusters[CLUSTERS + 1];
+    t3r_view view = made_up_view(clusters);
+    for (uint32_t k = 0; k < CLUSTERS; k++) {
+        clusters[k].points = k < 2 ? 100000 : 0;
+    }
+    t3r_budget_settings settings = settings_of(T3R_ALLOCATE_DENSITY, 2050);
+    for (settings.gamma_q8 = 256; settings.gamma_q8 <= 512; settings.gamma_q8 += 128) {
+        clusters[0].texture_q4 = 0;
+        clusters[1].texture_q4 = UINT16_MAX;
+        t3r_allocate(&view, 1, &settings, clusters, &alone);
+        assert_int_equal(clusters[0].quota, 2);
+        assert_int_equal(clusters[1].quota, 2048);
+    }
+}
+
 static int by_texture(const void *a, const void *b)
 {
     uint32_t x = ((const t3r_cluster *)a)->texture_q4, y = ((const t3r_cluster *)b)->texture_q4;
@@ -315,6 +334,7 @@ int main(void)
         cmocka_unit_test(paper_takes_the_lowest_textures_first),
         cmocka_unit_test(largest_counts_do_not_overflow),
         cmocka_unit_test(deferred_comes_last),
+        cmocka_unit_test(flat_ones_get_a_thousandth),
         cmocka_unit_test(textures_are_shuffled),
         cmocka_unit_test(wild_counts_stay_within_the_budget),
         cmocka_unit_test(an_order_is_of_all_clusters),

@@ -252,6 +252,84 @@ static void refused(void **state)
     assert_string_equal(t3r_pair_text(T3R_PAIR_COUNT), "unknown");
 }
 
+/* Rays that go nowhere: far to a plane's side, along the baseline, or steeper than is looked at. */
+static void nowhere(void **state)
+{
+    (void)state;
+    t3r_rectification rect;
+    int32_t place[2], across;
+    const t3r_camera first = camera_at(0, 0, 0, straight, 450), beside = camera_at(0.3, 0, 0, straight, 450);
+    assert_int_equal(t3r_rectify(&first, &beside, W, H, D, &rect), T3R_PAIR_OK);
+    assert_false(rect.polar);
+    const int32_t middle[2] = {(W - 1) << 15, (H - 1) << 15};
+    assert_true(t3r_rectified_place(&rect, 0, middle[0], middle[1], place, &across));
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const int32_t near = sign * (450 * 39 / 10) * 65536, far = sign * (450 * 41 / 10) * 65536; /* 4 is the most */
+        assert_true(t3r_rectified_place(&rect, 0, middle[0] + near, middle[1], place, &across));
+        assert_false(t3r_rectified_place(&rect, 0, middle[0] + far, middle[1], place, &across));
+        assert_true(t3r_rectified_place(&rect, 0, middle[0], middle[1] + near, place, &across));
+        assert_false(t3r_rectified_place(&rect, 0, middle[0], middle[1] + far, place, &across));
+    }
+    const t3r_camera here = camera_at(0, 0, 0, straight, 90), ahead = camera_at(0, 0, 1, straight, 90);
+    assert_int_equal(t3r_rectify(&here, &ahead, W, H, D, &rect), T3R_PAIR_OK);
+    assert_true(rect.polar);
+    assert_false(t3r_rectified_place(&rect, 0, middle[0], middle[1], place, &across)); /* the epipole itself */
+    assert_true(t3r_rectified_place(&rect, 0, middle[0] + (10 << 16), middle[1], place, &across));
+
+    t3r_view_columns columns;
+    rect.view[0].fx_q16 = 8 << 16;
+    for (int32_t centre = -500; centre <= 500; centre += 1000) { /* rays up to 16 to the side of 1 ahead */
+        rect.view[0].cx_q16 = centre << 16;
+        t3r_view_columns_of(&rect, 0, 40, 3, &columns);
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(columns.x_q24[i], (centre < 0 ? 16 : -16) * (1 << 24));
+        }
+        assert_int_equal(columns.x_q24[3], 0);
+    }
+}
+
+/* A camera whose picture lies far below its axis, and leans the other way: rays of more than 4, in a plane all the
+ * same.
+ */
+static void steep_in_a_plane(void **state)
+{
+    (void)state;
+    enum { WIDE = 400, TALL = 520, FOCAL = 580 };
+    for (int sign = -1; sign <= 1; sign += 2) {
+        double one[4], other[4];
+        t3r_rectification rect;
+        turned(35 * sign, 1, 0, 0, one);
+        turned(-35 * sign, 1, 0, 0, other);
+        t3r_camera first = camera_at(0, 0, 0, one, FOCAL), second = camera_at(0.3, 0, 0, other, FOCAL);
+        first.cx_q16 = second.cx_q16 = (WIDE - 1) << 15;
+        second.cy_q16 = (TALL - 1) << 15;
+        first.cy_q16 = second.cy_q16 - sign * (FOCAL * 9 / 2) * 65536;
+        assert_int_equal(t3r_rectify(&first, &second, WIDE, TALL, D, &rect), T3R_PAIR_OK);
+        assert_false(rect.polar);
+        uint32_t steep = 0;
+        for (uint32_t v = 0; v < TALL; v++) {
+            t3r_ray_places places;
+            t3r_view_columns columns;
+            t3r_view_columns_of(&rect, 0, 8, 60, &columns);
+            t3r_rectified_places(&t3r_kernels_c, &rect, 0, &columns, v, &places);
+            for (int i = 0; i < 60; i++) {
+                int32_t place[2] = {0, 0}, across = 0;
+                assert_true(t3r_rectified_place(&rect, 0, (8 + i) << 16, (int32_t)v << 16, place, &across));
+                assert_int_equal(places.x_q16[i], place[0]);
+                assert_int_equal(places.y_q16[i], place[1]);
+                assert_int_equal(places.z_q24[i], across);
+            }
+            steep += abs(((int32_t)v << 16) - first.cy_q16) > 4 * FOCAL * 65536;
+        }
+        assert_in_range(steep, TALL / 2, TALL);
+        /* 86 degrees off its axis: on the one side in the plane, on the other behind it */
+        int32_t place[2], across;
+        const int32_t aside = sign * 15 * FOCAL * 65536;
+        assert_true(t3r_rectified_place(&rect, 0, 40 << 16, first.cy_q16 + aside, place, &across));
+        assert_false(t3r_rectified_place(&rect, 0, 40 << 16, first.cy_q16 - aside, place, &across));
+    }
+}
+
 /* Any camera that passes its check: an answer, sizes within their bounds, rows that can be drawn. */
 static void anything(void **state)
 {
@@ -331,8 +409,9 @@ static void tall(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(geometry), cmocka_unit_test(identity),
-                                       cmocka_unit_test(sampled),  cmocka_unit_test(refused),
-                                       cmocka_unit_test(tall),     cmocka_unit_test(anything)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(geometry),         cmocka_unit_test(identity), cmocka_unit_test(sampled),
+        cmocka_unit_test(refused),          cmocka_unit_test(tall),     cmocka_unit_test(nowhere),
+        cmocka_unit_test(steep_in_a_plane), cmocka_unit_test(anything)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

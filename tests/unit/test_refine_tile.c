@@ -354,12 +354,26 @@ static void follows_double(void **state)
     assert_true(accumulated > 5000);
 }
 
+/* What is not before the camera has no footprint there. */
+static void unseen_have_no_footprint(void **state)
+{
+    (void)state;
+    t3r_gaussian g = scene[0];
+    int32_t a[3], b[3];
+    assert_true(t3r_footprint_rows(&projection, &g, a, b));
+    for (int i = 0; i < 3; i++) {
+        g.position_q20[i] = 2 * projection.centre_q20[i] - g.position_q20[i];
+    }
+    assert_false(t3r_footprint_rows(&projection, &g, a, b));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(neither_room_nor_slices_show),
         cmocka_unit_test(tiles_without_the_slice_are_left_alone),
         cmocka_unit_test(follows_double),
+        cmocka_unit_test(unseen_have_no_footprint),
     };
     return cmocka_run_group_tests_name("refine_tile", tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 
 #include "core/camera.h"
 #include "stereo/stereo.h"
+#include "stereo/stereo_depth.h"
 
 enum { W = 120, H = 96, PIXELS = W * H };
 static const t3r_stereo_settings settings = {&t3r_kernels_c, 64, 4, 1, {NULL, 1}, 0};
@@ -280,6 +281,138 @@ static void unfilled(void **state)
     }
 }
 
+/* A channel that is all but dark still shows something. */
+static void dark_is_not_nothing(void **state)
+{
+    (void)state;
+    uint64_t unit[2];
+    shot *a[2], *b[2];
+    for (int turn = 0; turn < 2; turn++) {
+        a[turn] = shoot(0, 0, 0, straight, 1, 1, 7);
+        b[turn] = shoot(0.25, 0, 0, straight, 1, 1, 7);
+        for (int c = 0; c < 3; c++) { /* luma 0.1 or 1: the least there is */
+            memset(a[turn]->view.colour[c], turn == 0 ? c == 2 : 1, 40 * W);
+            memset(b[turn]->view.colour[c], turn == 0 ? c == 2 : 1, 40 * W);
+        }
+        assert_int_equal(match(&settings, a[turn], b[turn], 0, &unit[turn]), T3R_PAIR_OK);
+    }
+    assert_int_equal(unit[0], unit[1]);
+    assert_memory_equal(a[0]->view.depth, a[1]->view.depth, PIXELS * 2);
+    assert_memory_equal(b[0]->view.depth, b[1]->view.depth, PIXELS * 2);
+    for (int turn = 0; turn < 2; turn++) {
+        shot_free(a[turn]);
+        shot_free(b[turn]);
+    }
+}
+
+static void by_worker_15(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                         void *context)
+{
+    (void)user;
+    while (count > 0) {
+        task(context, --count, 15);
+    }
+}
+
+/* So small a picture has no room for sixteen workers' rows of the first look. */
+static void small_pictures_have_few_workers(void **state)
+{
+    (void)state;
+    enum { SIDE = 56, MOST = 16 };
+    shot *s[2] = {shoot(0, 0, 0, straight, 1, 1, 7), shoot(0.06, 0, 0, straight, 1, 1, 7)};
+    uint8_t colour[2][3][SIDE * SIDE];
+    t3r_camera cameras[2];
+    t3r_view views[2];
+    for (int v = 0; v < 2; v++) {
+        cameras[v] = s[v]->camera;
+        cameras[v].cx_q16 = cameras[v].cy_q16 = (SIDE - 1) << 15;
+        views[v] = (t3r_view){.width = SIDE, .height = SIDE};
+        for (int c = 0; c < 3; c++) {
+            for (int i = 0; i < SIDE * SIDE; i++) {
+                colour[v][c][i] = s[v]->view.colour[c][(i / SIDE + 20) * W + i % SIDE + 32];
+            }
+            views[v].colour[c] = colour[v][c];
+        }
+    }
+    const size_t bytes = T3R_STEREO_WORK_BYTES(SIDE, SIDE, MOST, 4);
+    void *work = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    const t3r_hooks hooks = {.parallel_for = by_worker_15};
+    const t3r_stereo_settings one = {&t3r_kernels_c, MOST, 4, 1, {NULL, 1}},
+                              many = {&t3r_kernels_c, MOST, 4, 1, {&hooks, 16}};
+    uint32_t score, shared;
+    assert_non_null(work);
+    memset(work, 0, bytes);
+    const t3r_pair pair = t3r_stereo_match_score(&one, cameras, views, work, &score);
+    memset(work, 0xa5, bytes);
+    assert_int_equal(t3r_stereo_match_score(&many, cameras, views, work, &shared), pair);
+    assert_true(score > 0 && score == shared);
+    /* refused before anything is looked at */
+    cameras[1] = cameras[0];
+    assert_int_equal(t3r_stereo_match_score(&one, cameras, views, work, &score), T3R_PAIR_NO_BASELINE);
+    assert_int_equal(score, 0);
+    free(work);
+    shot_free(s[0]);
+    shot_free(s[1]);
+}
+
+/* Planes of two disparities, from each half of either view: the depth unit of a pair so far apart. */
+static t3r_pair unit_of(t3r_rectification *rect, const t3r_view views[2], double near, double far, uint64_t *unit_q40,
+                        uint32_t *steps)
+{
+    const size_t pixels = (size_t)rect->width * rect->height;
+    uint16_t *disparity = unit_array(pixels, 2);
+    uint8_t *confidence = unit_array(pixels, 1);
+    for (size_t i = 0; i < pixels; i++) {
+        const bool left = i % rect->width < rect->width * 5 / 9;
+        disparity[i] = (uint16_t)lround((left ? near : far) * (1 << T3R_DISPARITY_BITS));
+        confidence[i] = T3R_STEREO_SURE;
+    }
+    t3r_stereo_planes planes = {.rect = rect,
+                                .disparities = 256,
+                                .begin_q16 = {rect->first_q16[0], rect->first_q16[0]},
+                                .columns = {rect->width, rect->width},
+                                .disparity = {disparity, disparity},
+                                .confidence = {confidence, confidence}};
+    const t3r_pair pair = t3r_stereo_unit(&t3r_kernels_c, &planes, views, unit_q40);
+    *steps = planes.steps;
+    free(disparity);
+    free(confidence);
+    return pair;
+}
+
+/* 60,000 steps reach the farthest, but not beyond 64 times the median; a step is a whole number of 2^-40 world units,
+ * below 2^47. */
+static void units(void **state)
+{
+    (void)state;
+    shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.25, 0, 0, straight, 1, 1, 7);
+    const t3r_view views[2] = {a->view, b->view};
+    t3r_rectification rect;
+    uint64_t unit;
+    uint32_t steps;
+    assert_int_equal(t3r_rectify(&a->camera, &b->camera, W, H, 64, &rect), T3R_PAIR_OK);
+    for (int far = 1; far <= 100; far *= 10) { /* a disparity of 100 is 1.1 baselines away */
+        assert_int_equal(unit_of(&rect, views, 100, 100.0 / far, &unit, &steps), T3R_PAIR_OK);
+        const double reach = 60000.0 / steps / (1.1 * T3R_MIN(far, 64));
+        assert_true(reach > 0.99 && reach < 1.1);
+    }
+    assert_int_equal(unit_of(&rect, views, 100, 50, &unit, &steps), T3R_PAIR_OK);
+    const int32_t exponent = rect.baseline_exponent;
+    const double exact = (double)rect.baseline_q31 * (1 << 24) / steps;
+    int fitting = 0;
+    for (rect.baseline_exponent = -80; rect.baseline_exponent < 120; rect.baseline_exponent++) {
+        const double wanted = floor(ldexp(exact, rect.baseline_exponent - 47) + 0.5);
+        const bool fits = wanted >= 1 && wanted < ldexp(1, 47);
+        assert_int_equal(unit_of(&rect, views, 100, 50, &unit, &steps), fits ? T3R_PAIR_OK : T3R_PAIR_SCALE);
+        assert_true(!fits || fabs((double)unit / wanted - 1) < 1e-6 || fabs((double)unit - wanted) <= 1);
+        fitting += fits;
+    }
+    assert_in_range(fitting, 46, 48);
+    rect.baseline_exponent = exponent;
+    shot_free(a);
+    shot_free(b);
+}
+
 static void marks(void **state)
 {
     (void)state;
@@ -295,8 +428,15 @@ static void marks(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs),    cmocka_unit_test(scales),   cmocka_unit_test(refused), cmocka_unit_test(repeated),
-        cmocka_unit_test(anything), cmocka_unit_test(unfilled), cmocka_unit_test(marks)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs),
+                                       cmocka_unit_test(scales),
+                                       cmocka_unit_test(refused),
+                                       cmocka_unit_test(repeated),
+                                       cmocka_unit_test(anything),
+                                       cmocka_unit_test(unfilled),
+                                       cmocka_unit_test(dark_is_not_nothing),
+                                       cmocka_unit_test(small_pictures_have_few_workers),
+                                       cmocka_unit_test(units),
+                                       cmocka_unit_test(marks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

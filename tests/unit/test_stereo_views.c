@@ -257,8 +257,7 @@ static void planes(void **state)
             hash[on] = b.hash;
             for (uint32_t v = 0; v < 2; v++) {
                 off[on][v] = off_by(&b, &s, v, room ? 0.1 : 0.05);
-                print_message("%s, view %u, planes %u: %.1f %% off\n", room ? "room" : "wall", v, on,
-                              100 * off[on][v]);
+                print_message("%s, view %u, planes %u: %.1f %% off\n", room ? "room" : "wall", v, on, 100 * off[on][v]);
                 assert_true(on == 0 || off[1][v] <= (room ? off[0][v] : fmin(0.05, off[0][v] / 4)));
             }
         }
@@ -486,6 +485,37 @@ static void fused(void **state)
     }
 }
 
+/* Units as large as they can be, and as far apart. */
+static void brought_together_at_any_scale(void **state)
+{
+    (void)state;
+    static const struct {
+        uint64_t unit, new_unit;
+        uint16_t depth;
+        uint8_t confidence;
+    } cases[] = {
+        {UINT64_C(1) << 46, UINT64_C(1) << 46, 3000, 80},       /* the same step */
+        {UINT64_C(1) << 45, (UINT64_C(1) << 46) - 4, 6000, 80}, /* twice as long */
+        {UINT64_C(1) << 30, 1, 1000, 60},                       /* nearer than a step: left out */
+        {1, UINT64_C(1) << 46, 1000, 60},                       /* farther than all steps */
+        {UINT64_C(1) << 46, 1, 1000, 60},                       /* */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        uint16_t depth = i == 0 ? 3000 : i == 1 ? 6000 : 1000, new_depth = 3000;
+        uint8_t confidence = 60, new_confidence = 20;
+        const t3r_view view = {
+            .width = 1, .height = 1, .depth = &depth, .match_confidence = &confidence, .depth_unit_q40 = cases[i].unit};
+        const t3r_view found = {.width = 1,
+                                .height = 1,
+                                .depth = &new_depth,
+                                .match_confidence = &new_confidence,
+                                .depth_unit_q40 = cases[i].new_unit};
+        t3r_stereo_fuse(&view, &found);
+        assert_int_equal(depth, cases[i].depth);
+        assert_int_equal(confidence, cases[i].confidence);
+    }
+}
+
 /* A picture with a step of luma in the middle, a pixel with depth on either side: each side takes its own, though the
  * other's may be nearer. */
 static void filled(void **state)
@@ -519,6 +549,37 @@ static void filled(void **state)
         assert_int_equal(depth[i], i == 3 ? 0 : i % WIDTH < WIDTH / 2 ? 100 : 900);
         assert_int_equal(confidence[i], i == 3 ? T3R_STEREO_NONE : before[i] != 0 ? before[i] : T3R_STEREO_FILLED);
     }
+    free(work);
+}
+
+/* In large pictures sums over a slope as steep as there is have more bits than a quotient has room for. */
+static void extended_in_large_pictures(void **state)
+{
+    (void)state;
+    enum { WIDTH = 4096, HEIGHT = 480 };
+    const size_t count = (size_t)WIDTH * HEIGHT;
+    uint8_t *colour = unit_array(count, 1), *confidence = unit_array(count, 1);
+    uint16_t *depth = unit_array(count, 2);
+    void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 8 + 1, 8);
+    const t3r_view view = {.width = WIDTH,
+                           .height = HEIGHT,
+                           .colour = {colour, colour, colour},
+                           .depth = depth,
+                           .match_confidence = confidence};
+    memset(colour, 128, count);
+    for (size_t i = 0; i < count; i++) {
+        const bool known = i % WIDTH % 64 < 40;
+        depth[i] = (uint16_t)(known ? lround(64 * 480 / (479.5 - 0.9 * (double)(i / WIDTH))) : 0);
+        confidence[i] = known ? 90 : T3R_STEREO_NONE;
+    }
+    t3r_stereo_fill(&view, work);
+    for (size_t i = 0; i < count; i++) {
+        const double truth = 64 * 480 / (479.5 - 0.9 * (double)(i / WIDTH));
+        assert_true(fabs(depth[i] / truth - 1) < 0.03);
+    }
+    free(colour);
+    free(confidence);
+    free(depth);
     free(work);
 }
 
@@ -582,11 +643,20 @@ static void filling_fits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_alone), cmocka_unit_test(unfilled),
-        cmocka_unit_test(planes),     cmocka_unit_test(nothing_shown),
-        cmocka_unit_test(cancelled),     cmocka_unit_test(refused),      cmocka_unit_test(more_views),
-        cmocka_unit_test(a_stranger),    cmocka_unit_test(fused),        cmocka_unit_test(filled),
-        cmocka_unit_test(extended),      cmocka_unit_test(filling_fits),
+        cmocka_unit_test(colours_alone),
+        cmocka_unit_test(unfilled),
+        cmocka_unit_test(planes),
+        cmocka_unit_test(nothing_shown),
+        cmocka_unit_test(cancelled),
+        cmocka_unit_test(refused),
+        cmocka_unit_test(more_views),
+        cmocka_unit_test(a_stranger),
+        cmocka_unit_test(fused),
+        cmocka_unit_test(filled),
+        cmocka_unit_test(extended),
+        cmocka_unit_test(extended_in_large_pictures),
+        cmocka_unit_test(brought_together_at_any_scale),
+        cmocka_unit_test(filling_fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

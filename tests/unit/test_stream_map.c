@@ -160,6 +160,65 @@ static void fades_by_half_life(void **state)
     }
 }
 
+/* However long nobody sees a Gaussian, its counts stay at their most. */
+static void counts_are_held(void **state)
+{
+    (void)state;
+    static site s;
+    uint64_t seed = 13;
+    fill(&s, &seed, 100);
+    memset(s.validity, T3R_NO_DEPTH, sizeof s.validity);
+    s.map.count = 1;
+    s.records[0].idle = s.records[0].faded_q10 = UINT16_MAX - 1;
+    s.view.fx_q16 = s.view.fy_q16 = 30 << 16;
+    s.view.depth_unit_q40 = UINT64_C(1) << 30;
+    const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
+    for (int n = 0; n < 3; n++) {
+        assert_int_equal(t3r_map_see(&s.map, &keyframe, 0, 1), 0);
+        assert_int_equal(s.records[0].idle, UINT16_MAX);
+        assert_int_equal(s.records[0].faded_q10, UINT16_MAX);
+    }
+}
+
+/* What a head put at the end of the range or beyond is not taken over; what is, keeps its own pixel's record. */
+static void what_is_out_of_range_is_left_out(void **state)
+{
+    (void)state;
+    static site s;
+    uint64_t seed = 17;
+    fill(&s, &seed, 100);
+    uint32_t mask[(PIXELS + 31) / 32] = {0};
+    uint16_t depth[PIXELS];
+    t3r_cluster cluster = {.points = PIXELS};
+    enum { MADE = 7 };
+    for (int i = 0; i < PIXELS; i++) {
+        depth[i] = 1500;
+        s.validity[i] = T3R_MEASURED;
+    }
+    for (uint32_t i = 0; i < MADE; i++) {
+        mask[0] |= 1u << (4 * i);
+        s.key[4 * i] = (uint16_t)(40000 + i);
+    }
+    s.view.mask = mask;
+    s.view.depth = depth;
+    s.view.fx_q16 = s.view.fy_q16 = 30 << 16;
+    s.view.depth_unit_q40 = UINT64_C(1) << 30;
+    s.settings.gamma_q8 = 512;
+    s.texture[24] = UINT16_MAX;
+    s.map.count = 2;
+    memset(s.gaussians, 0, sizeof s.gaussians);
+    for (uint32_t i = 0; i < MADE; i++) { /* the first six beyond either end of an axis */
+        const int32_t most = T3R_POSITION_MOST_Q20;
+        s.gaussians[2 + i].position_q20[i % 3] = i == 6 ? most - 1 : i < 3 ? -most : most;
+    }
+    const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
+    assert_int_equal(t3r_map_append(&s.map, MADE, &keyframe, &s.settings, &cluster), 1);
+    assert_int_equal(s.map.count, 3);
+    assert_int_equal(s.gaussians[2].position_q20[0], T3R_POSITION_MOST_Q20 - 1);
+    assert_int_equal(s.records[2].key, 40006);
+    assert_int_equal(s.records[2].wanted_q10, INT16_MAX); /* 2 log2 of 65,543 is a little above */
+}
+
 static void moves_are_exact(void **state)
 {
     (void)state;
@@ -180,11 +239,20 @@ static void moves_are_exact(void **state)
     t3r_map_move(&s.map, (int64_t[3]){0, 0, (int64_t)500 << 20});
     assert_int_equal(s.gaussians[0].position_q20[2], 1000 << 20);
     assert_int_equal(s.gaussians[1].position_q20[2], 7);
+    /* out of range along one axis or several: gone all the same */
+    s.gaussians[0].position_q20[1] = -(1000 << 20);
+    t3r_map_move(&s.map, (int64_t[3]){(int64_t)100 << 20, -((int64_t)100 << 20), 0});
+    assert_int_equal(s.map.count, 1);
+    assert_int_equal(s.gaussians[0].position_q20[2], 7);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(compete_as_sorted), cmocka_unit_test(widens_by_density),
-                                       cmocka_unit_test(fades_by_half_life), cmocka_unit_test(moves_are_exact)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(compete_as_sorted),
+                                       cmocka_unit_test(widens_by_density),
+                                       cmocka_unit_test(fades_by_half_life),
+                                       cmocka_unit_test(counts_are_held),
+                                       cmocka_unit_test(what_is_out_of_range_is_left_out),
+                                       cmocka_unit_test(moves_are_exact)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

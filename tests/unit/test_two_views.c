@@ -8,6 +8,7 @@
 #include "pointmap/flying_pixels.h"
 #include "pointmap/redundancy.h"
 #include "pointmap/reproject.h"
+#include "pointmap/scene_scale.h"
 
 static uint32_t mark_covered(const rig *s, uint32_t views)
 {
@@ -283,6 +284,32 @@ static void no_surface_is_lost(void **state)
     assert_true(all > 1000);
 }
 
+/* --- scale -------------------------------------------------------------------------------------------------------- */
+
+/* The median depth is brought to 1..2 scene units as far as exponents go, and what is beyond is held there. */
+static void scale_of_depths(void **state)
+{
+    (void)state;
+    static const struct {
+        int unit, exponent; /* log2 of the depth step, Q40 */
+        double median;
+    } cases[] = {{30, 1, 1}, {34, 5, 1}, {53, 24, 1}, {54, 24, 2}, {59, 24, 2}, {7, -22, 1}, {2, -24, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        rig *s = unit_array(1, sizeof *s);
+        int32_t exponent, again, median_q20;
+        place_view_in_steps(s, 0, 0, 0, ldexp(2048, cases[i].unit - 40), UINT64_C(1) << cases[i].unit);
+        assert_int_equal(t3r_scene_scale_choose(s->view, 1, &alone, &exponent, &median_q20), T3R_OK);
+        assert_int_equal(exponent, cases[i].exponent);
+        assert_true(fabs(median_q20 / 1048576.0 - cases[i].median) < 0.002);
+        assert_int_equal(t3r_scene_exponent(s->view, 1, &alone, &again), T3R_OK);
+        assert_int_equal(exponent, again);
+        memset(s->validity[0], T3R_NO_DEPTH, PIXELS);
+        assert_int_equal(t3r_scene_scale_choose(s->view, 1, &alone, &exponent, &median_q20), T3R_ERR_NO_DEPTH);
+        assert_int_equal(t3r_scene_exponent(s->view, 1, &alone, &again), T3R_ERR_NO_DEPTH);
+        free(s);
+    }
+}
+
 /* --- exposure ----------------------------------------------------------------------------------------------------- */
 
 /* A texture on the plane, seen by view v through a gain a channel; every fifth pixel shows something else. */
@@ -320,6 +347,27 @@ static void gain_recovered(void **state)
             double ratio = gain_of(gain_q14[0], c) / gain_of(gain_q14[1], c);
             assert_true(fabs(ratio / other[turn][c] - 1) < 0.01);
             assert_true(fabs(gain_of(gain_q14[0], c) * gain_of(gain_q14[1], c) - 1) < 0.005);
+        }
+        free(s);
+    }
+}
+
+/* More than an octave brighter or darker counts as an octave. */
+static void gains_are_held(void **state)
+{
+    (void)state;
+    for (int turn = 0; turn < 2; turn++) {
+        rig *s = pair_new();
+        for (int v = 0; v < 2; v++) {
+            for (int c = 0; c < 3; c++) {
+                memset(s->colour[v][c], v == turn ? 20 : 220, PIXELS);
+            }
+        }
+        uint16_t gain_q14[2][3];
+        assert_int_equal(t3r_exposure_gains(s->view, 2, 0, gain_q14, &alone), 2);
+        for (int c = 0; c < 3; c++) {
+            const double ratio = gain_of(gain_q14[turn], c) / gain_of(gain_q14[1 - turn], c);
+            assert_true(fabs(log2(ratio) - 1) < 2.0 / 256);
         }
         free(s);
     }
@@ -592,6 +640,8 @@ int main(void)
         cmocka_unit_test(a_little_nearer_is_as_good),
         cmocka_unit_test(other_surfaces_stay),
         cmocka_unit_test(no_surface_is_lost),
+        cmocka_unit_test(scale_of_depths),
+        cmocka_unit_test(gains_are_held),
         cmocka_unit_test(gain_recovered),
         cmocka_unit_test(unlinked_views_stay),
         cmocka_unit_test(levelled_colours),

@@ -284,6 +284,11 @@ static void graphs_are_checked(void **state)
         {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 3, 1, 1, 4},
         {T3R_LAYER_POINT, 0, {2, T3R_SOURCE_NONE}, 1, 1, 1, 9},
     };
+    const made_layer reading_points[] = {
+        {T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 4},
+        {T3R_LAYER_CONV, 0, {1, T3R_SOURCE_NONE}, 3, 1, 1, 4},
+        {T3R_LAYER_POINT, 0, {2, T3R_SOURCE_NONE}, 1, 1, 1, 9},
+    };
     const made_layer skipping[] = {
         {T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 4},
         {T3R_LAYER_POINT, 0, {1, T3R_SOURCE_NONE}, 1, 1, 1, 4},
@@ -299,11 +304,8 @@ static void graphs_are_checked(void **state)
         const made_layer *layers;
         uint32_t count;
         const char *reason;
-    } graphs[] = {{unread, 2, "read by none"},
-                  {behind, 3, "behind"},
-                  {skipping, 3, "source"},
-                  {plane_last, 1, "last layer"},
-                  {heavy, 3, "multiply-accumulates"}};
+    } graphs[] = {{unread, 2, "read by none"}, {behind, 3, "behind"},         {reading_points, 3, "source"},
+                  {skipping, 3, "source"},     {plane_last, 1, "last layer"}, {heavy, 3, "multiply-accumulates"}};
     for (size_t i = 0; i < sizeof graphs / sizeof *graphs; i++) {
         size_t bytes;
         uint8_t *file = make_weights(graphs[i].layers, graphs[i].count, 8, 8, i, &bytes);
@@ -315,13 +317,30 @@ static void graphs_are_checked(void **state)
     }
 }
 
+/* However sound the rest, a file is not longer than it may be. */
+static void length_is_bounded(void **state)
+{
+    (void)state;
+    size_t bytes;
+    uint8_t *file = make_weights(shape, LAYERS, 8, 8, 9, &bytes);
+    uint8_t *long_file = aligned_alloc(16, T3R_MAX_WEIGHTS_BYTES + 16);
+    memcpy(long_file, file, bytes);
+    memset(long_file + bytes, 0, T3R_MAX_WEIGHTS_BYTES + 16 - bytes);
+    seal_weights(long_file, T3R_MAX_WEIGHTS_BYTES);
+    assert_null(t3r_weights_error(long_file, T3R_MAX_WEIGHTS_BYTES));
+    seal_weights(long_file, T3R_MAX_WEIGHTS_BYTES + 1);
+    assert_non_null(strstr(t3r_weights_error(long_file, T3R_MAX_WEIGHTS_BYTES + 1), "16 MiB"));
+    free(long_file);
+    free(file);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sound_ones_pass),        cmocka_unit_test(names),
         cmocka_unit_test(every_field_is_checked), cmocka_unit_test(blocks_lie_in_the_file),
         cmocka_unit_test(numbers_are_bounded),    cmocka_unit_test(damage_is_noticed),
-        cmocka_unit_test(graphs_are_checked),
+        cmocka_unit_test(graphs_are_checked),     cmocka_unit_test(length_is_bounded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
