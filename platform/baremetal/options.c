@@ -81,10 +81,11 @@ void options_read(options *o)
 {
     static char line[LINE_BYTES];
     *o = (options){.frames = "", .view = "", .scene = ""};
-    if (semihost_command_line(line, sizeof line) != 0) {
+    char *word = semihost_command_line(line, sizeof line);
+    if (word == NULL) {
         refuse("command line", "too long");
     }
-    for (char *word = line; *word != '\0';) {
+    while (*word != '\0') {
         char *end = word;
         while (*end != ' ' && *end != '\0') {
             end++;

@@ -47,19 +47,17 @@ void semihost_print(const char *text)
     }
 }
 
-int semihost_command_line(char *text, size_t room)
+char *semihost_command_line(char *text, size_t room)
 {
     uintptr_t block[2] = {(uintptr_t)text, room};
     if (semihost_call(SYS_GET_CMDLINE, block) != 0) {
-        return -1;
+        return NULL;
     }
-    const char *behind = text; /* the program's name */
+    char *behind = text; /* the program's name */
     while (*behind != ' ' && *behind != '\0') {
         behind++;
     }
-    behind += *behind == ' ';
-    memmove(text, behind, text_length(behind) + 1);
-    return 0;
+    return *behind == ' ' ? behind + 1 : behind;
 }
 
 _Noreturn void semihost_exit(int status)

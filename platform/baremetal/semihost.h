@@ -20,8 +20,8 @@ int32_t semihost_length(int32_t handle);
 
 /* Text on the host's standard output. */
 void semihost_print(const char *text);
-/* The words that the program was started with, behind its own name: 0, or -1 where there is too little room. */
-int semihost_command_line(char *text, size_t room);
+/* The words that the program was started with, behind its own name, in `text`; NULL where there is too little room. */
+char *semihost_command_line(char *text, size_t room);
 /* Ends the program with this status. */
 _Noreturn void semihost_exit(int status);
 

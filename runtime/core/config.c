@@ -87,47 +87,48 @@ t3r_config t3r_settled(const t3r_config *config)
     return settled;
 }
 
-/* X(text, value, low, high), a row a setting; bounds are constants, and a value beyond those that depend on other
- * settings is taken for one out of range. `least` is the smaller side. */
+/* X(text, field, low, high), a row a setting. */
 #define RANGES(X)                                                                                                      \
-    X("width must be 8..4096", c->width, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                   \
-    X("height must be 8..4096", c->height, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                 \
-    X("views must be 0..16", c->views, 0, T3R_MAX_VIEWS)                                                               \
-    X("max_gaussians must be 1..2^24", c->max_gaussians, 1, T3R_MAX_GAUSSIANS)                                         \
-    X("gaussians must be 1..max_gaussians", c->gaussians > c->max_gaussians ? 0 : c->gaussians, 1, T3R_MAX_GAUSSIANS)  \
-    X("render_width must be 1..4096", c->render_width, 1, T3R_MAX_SIDE)                                                \
-    X("render_height must be 1..4096", c->render_height, 1, T3R_MAX_SIDE)                                              \
-    X("wavelet is none of t3r_wavelet", (uint32_t)c->wavelet, 0, T3R_WAVELET_COUNT - 1)                                \
-    X("wavelet_levels must be 1..5", c->wavelet_levels, 1, T3R_MAX_LEVELS)                                             \
-    X("clusters must be 0..512", c->clusters, 0, T3R_MAX_CLUSTERS)                                                     \
-    X("cluster_batches must be 0..1024", c->cluster_batches, 0, 1024)                                                  \
-    X("colour_weight_q8 must be 0..1024", c->colour_weight_q8, 0, 1024)                                                \
-    X("allocation is none of t3r_allocation", (uint32_t)c->allocation, T3R_ALLOCATE_CONFIGURED + 1,                    \
-      T3R_ALLOCATE_COUNT - 1)                                                                                          \
-    X("keep_percent must be 0..100", c->keep_percent, 0, 100)                                                          \
-    X("gamma_q8 must be 0..512", c->gamma_q8, 0, 512)                                                                  \
-    X("head is none of t3r_head", (uint32_t)c->head, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT - 1)                      \
-    X("head_column_bytes must be 0..65536", c->head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES)                        \
-    X("refinements must be 0..16", c->refinements, 0, T3R_MAX_REFINEMENTS)                                             \
-    X("fit_passes must be 0 or 1", c->fit_passes, 0, 1)                                                                \
-    X("fit_widths must be 0 or 1", c->fit_widths, 0, 1)                                                                \
-    X("structural must be 0 or 1", c->structural, 0, 1)                                                                \
-    X("depth is none of t3r_depth", (uint32_t)c->depth, 0, T3R_DEPTH_COUNT - 1)                                        \
-    X("width and height must be 32 and more with depth by stereo", stereo ? least : T3R_MAX_SIDE,                      \
-      T3R_STEREO_LEAST_SIDE, T3R_MAX_SIDE)                                                                             \
-    X("planes must be 0 or 1", c->planes, 0, 1)                                                                        \
-    X("fill_radius must be 0..8", c->fill_radius, 0, 8)                                                                \
-    X("bridge_radius must be 0..255", c->bridge_radius, 0, 255)                                                        \
-    X("flying and redundancy must be 0 or 1", c->flying | c->redundancy, 0, 1)                                         \
-    X("exposure must be 0 or 1", c->exposure, 0, 1)                                                                    \
-    X("keep_analysis must be 0 or 1", c->keep_analysis, 0, 1)                                                          \
-    X("warm must be 0 or 1, and 0 with depth by stereo", stereo && c->warm != 0 ? 2 : c->warm, 0, 1)                   \
-    X("stream must be 0 or 1, and 0 without views or with depth by stereo",                                            \
-      (c->views == 0 || stereo) && c->stream != 0 ? 2 : c->stream, 0, 1)                                               \
-    X("half_life must be 0..1024", c->half_life, 0, 1024)                                                              \
-    X("remember must be 0..16", c->remember, 0, T3R_MAX_REMEMBERED)                                                    \
-    X("tile_splats must be 0..2^24", c->tile_splats, 0, T3R_MAX_GAUSSIANS)                                             \
-    X("workers must be 1..16", c->workers, 1, T3R_MAX_WORKERS)
+    X("width must be 8..4096", width, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                      \
+    X("height must be 8..4096", height, T3R_MIN_SIDE, T3R_MAX_SIDE)                                                    \
+    X("views must be 0..16", views, 0, T3R_MAX_VIEWS)                                                                  \
+    X("max_gaussians must be 1..2^24", max_gaussians, 1, T3R_MAX_GAUSSIANS)                                            \
+    X("render_width must be 1..4096", render_width, 1, T3R_MAX_SIDE)                                                   \
+    X("render_height must be 1..4096", render_height, 1, T3R_MAX_SIDE)                                                 \
+    X("wavelet is none of t3r_wavelet", wavelet, 0, T3R_WAVELET_COUNT - 1)                                             \
+    X("wavelet_levels must be 1..5", wavelet_levels, 1, T3R_MAX_LEVELS)                                                \
+    X("clusters must be 0..512", clusters, 0, T3R_MAX_CLUSTERS)                                                        \
+    X("cluster_batches must be 0..1024", cluster_batches, 0, 1024)                                                     \
+    X("colour_weight_q8 must be 0..1024", colour_weight_q8, 0, 1024)                                                   \
+    X("allocation is none of t3r_allocation", allocation, T3R_ALLOCATE_CONFIGURED + 1, T3R_ALLOCATE_COUNT - 1)         \
+    X("keep_percent must be 0..100", keep_percent, 0, 100)                                                             \
+    X("gamma_q8 must be 0..512", gamma_q8, 0, 512)                                                                     \
+    X("head is none of t3r_head", head, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT - 1)                                   \
+    X("head_column_bytes must be 0..65536", head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES)                           \
+    X("refinements must be 0..16", refinements, 0, T3R_MAX_REFINEMENTS)                                                \
+    X("fit_passes must be 0 or 1", fit_passes, 0, 1)                                                                   \
+    X("fit_widths must be 0 or 1", fit_widths, 0, 1)                                                                   \
+    X("structural must be 0 or 1", structural, 0, 1)                                                                   \
+    X("depth is none of t3r_depth", depth, 0, T3R_DEPTH_COUNT - 1)                                                     \
+    X("planes must be 0 or 1", planes, 0, 1)                                                                           \
+    X("fill_radius must be 0..8", fill_radius, 0, 8)                                                                   \
+    X("bridge_radius must be 0..255", bridge_radius, 0, 255)                                                           \
+    X("flying must be 0 or 1", flying, 0, 1)                                                                           \
+    X("redundancy must be 0 or 1", redundancy, 0, 1)                                                                   \
+    X("exposure must be 0 or 1", exposure, 0, 1)                                                                       \
+    X("keep_analysis must be 0 or 1", keep_analysis, 0, 1)                                                             \
+    X("half_life must be 0..1024", half_life, 0, 1024)                                                                 \
+    X("remember must be 0..16", remember, 0, T3R_MAX_REMEMBERED)                                                       \
+    X("tile_splats must be 0..2^24", tile_splats, 0, T3R_MAX_GAUSSIANS)                                                \
+    X("workers must be 1..16", workers, 1, T3R_MAX_WORKERS)
+
+/* X(text, value, low, high), a row a range that depends on other settings, all of which are in theirs. */
+#define RELATIONS(X)                                                                                                   \
+    X("gaussians must be 1..max_gaussians", c->gaussians, 1, c->max_gaussians)                                         \
+    X("width and height must be 32 and more with depth by stereo", T3R_MIN(c->width, c->height),                       \
+      stereo ? T3R_STEREO_LEAST_SIDE : 0, T3R_MAX_SIDE)                                                                \
+    X("warm must be 0 or 1, and 0 with depth by stereo", c->warm, 0, !stereo)                                          \
+    X("stream must be 0 or 1, and 0 without views or with depth by stereo", c->stream, 0, c->views > 0 && !stereo)
 
 /* X(text, features), what a setting needs of the library. */
 #define NEEDS(X)                                                                                                       \
@@ -145,8 +146,17 @@ t3r_config t3r_settled(const t3r_config *config)
     X("this library was built without several workers", c->workers > 1 ? T3R_HAS_WORKERS : 0u)                         \
     X("this library was built without builds that follow one another", c->warm ? T3R_HAS_WARM : 0u)
 
-#define VALUE(text, value, low, high) (uint32_t)(value),
-#define BOUNDS(text, value, low, high) {(low), (high)},
+/* A field of t3r_config, all of which have 32 bits, and its range. */
+typedef struct range {
+    uint16_t field;
+    uint8_t low;
+    uint32_t high;
+} range;
+
+#define FIELD_RANGE(text, field, low, high) {offsetof(t3r_config, field), (low), (high)},
+static const range ranges[] = {RANGES(FIELD_RANGE)};
+
+#define BOUNDS(text, value, low, high) {(value), (low), (high)},
 #define TEXT(text, value, low, high) text,
 #define NEED(text, features) (features),
 #define NEED_TEXT(text, features) text,
@@ -154,9 +164,15 @@ t3r_config t3r_settled(const t3r_config *config)
 
 /* The texts lie apart, so that a firmware links them only when it asks for them. */
 static const char *const texts[] = {
-    "no configuration", RANGES(TEXT) "the arena would be larger than this machine can address", NEEDS(NEED_TEXT)};
+    "no configuration", RANGES(TEXT) RELATIONS(TEXT) "the arena would be larger than this machine can address",
+    NEEDS(NEED_TEXT)};
 
-enum { NEEDS_COUNT = 0 NEEDS(ONE_MORE), FAULTS = sizeof texts / sizeof texts[0], FIRST_NEED = FAULTS - NEEDS_COUNT };
+enum {
+    RANGES_COUNT = sizeof ranges / sizeof ranges[0],
+    NEEDS_COUNT = 0 NEEDS(ONE_MORE),
+    FAULTS = sizeof texts / sizeof texts[0],
+    FIRST_NEED = FAULTS - NEEDS_COUNT
+};
 
 uint64_t t3r_most_arena_bytes(const t3r_config *c)
 {
@@ -196,15 +212,20 @@ static size_t first_fault(const t3r_config *c)
     if (c == NULL) {
         return 0;
     }
+    for (size_t i = 0; i < RANGES_COUNT; i++) {
+        uint32_t value;
+        memcpy(&value, (const uint8_t *)c + ranges[i].field, sizeof value);
+        if (value < ranges[i].low || value > ranges[i].high) {
+            return 1 + i;
+        }
+    }
     const bool stereo = c->depth == T3R_DEPTH_STEREO && c->views > 0;
-    const uint32_t least = c->width < c->height ? c->width : c->height;
-    static const struct {
-        uint32_t low : 6, high : 26;
-    } range[] = {RANGES(BOUNDS)};
-    const uint32_t value[] = {RANGES(VALUE)};
-    for (size_t i = 0; i < sizeof range / sizeof range[0]; i++) {
-        if (value[i] < range[i].low || value[i] > range[i].high) {
-            return i + 1;
+    const struct {
+        uint32_t value, low, high;
+    } relation[] = {RELATIONS(BOUNDS)};
+    for (size_t i = 0; i < sizeof relation / sizeof relation[0]; i++) {
+        if (relation[i].value < relation[i].low || relation[i].value > relation[i].high) {
+            return 1 + RANGES_COUNT + i;
         }
     }
     /* sizes are summed in size_t */

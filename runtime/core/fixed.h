@@ -11,6 +11,13 @@
 
 _Static_assert((-3 >> 1) == -2, "right shift of negative numbers must be arithmetic");
 
+/* What is too long to stand wherever it is called, in builds for size. */
+#ifdef __OPTIMIZE_SIZE__
+#define T3R_SHARED static __attribute__((noinline, unused))
+#else
+#define T3R_SHARED static inline
+#endif
+
 #define T3R_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define T3R_MAX(a, b) ((a) > (b) ? (a) : (b))
 
@@ -60,7 +67,7 @@ static inline int16_t t3r_mulr_q15(int16_t a, int16_t b)
 }
 
 /* n / d, round-half-up: floor(n / d + 1/2); d > 0 and below 2^62, 2 |n| + d below 2^63 */
-static inline int64_t t3r_round_div64(int64_t n, int64_t d)
+T3R_SHARED int64_t t3r_round_div64(int64_t n, int64_t d)
 {
     T3R_BOUND(d > 0 && d < INT64_C(1) << 62 && n >= -(INT64_MAX - d) / 2 && n <= (INT64_MAX - d) / 2);
     int64_t doubled = 2 * n + d;
