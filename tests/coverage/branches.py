@@ -29,8 +29,9 @@ def counted(folder, root=RUNTIME):
     groups = [objects[at:at + 8] for at in range(0, len(objects), 8)]
     taken = {}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for source in (source for found in pool.map(gcov, groups) for known in found for source in known["files"]):
-            path = pathlib.Path(os.path.normpath(pathlib.Path(source["file"])))
+        for folder_of, source in ((known["current_working_directory"], source)
+                                  for found in pool.map(gcov, groups) for known in found for source in known["files"]):
+            path = pathlib.Path(os.path.normpath(pathlib.Path(folder_of, source["file"]))) # ccache makes paths relative
             if not path.is_relative_to(root):
                 continue
             for line in source["lines"]:

@@ -111,6 +111,17 @@ static void same_bits_everywhere(void **state)
     }
 }
 
+/* Two readers of the features that look differently far, a depthwise layer, a layer that reads a coarser one alone. */
+static const made_layer odd_shape[] = {
+    {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 4},
+    {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 5, 1, 1, 4},
+    {T3R_LAYER_CONV, 1, {1, 2}, 3, 2, 1, 8},
+    {T3R_LAYER_DEPTHWISE, 1, {3, T3R_SOURCE_NONE}, 3, 1, 1, 8},
+    {T3R_LAYER_CONV, 0, {4, T3R_SOURCE_NONE}, 3, 1, 1, 16},
+    {T3R_LAYER_POINT, 0, {5, 0}, 1, 1, 1, T3R_HEAD_OUTPUTS},
+};
+static const uint32_t odd_layers = sizeof odd_shape / sizeof odd_shape[0];
+
 /* A view made band by band, each in work of its own that holds anything, has the Gaussians of the view made at once. */
 static void bands_give_the_whole_view(void **state)
 {
@@ -118,7 +129,7 @@ static void bands_give_the_whole_view(void **state)
     static const struct {
         const made_layer *layers;
         const uint32_t *count;
-    } shapes[] = {{small_shape, &small_layers}, {base_shape, &base_layers}};
+    } shapes[] = {{small_shape, &small_layers}, {base_shape, &base_layers}, {odd_shape, &odd_layers}};
     t3r_config config = learned_config(500);
     config.head = T3R_HEAD_ANALYTIC;
     arena memory = arena_of(&config, ARENA_AT_FULL);
@@ -131,16 +142,16 @@ static void bands_give_the_whole_view(void **state)
     t3r_head_input input = t3r_head_input_of(rt, views, 0, &settings);
     t3r_gaussian *whole = malloc(POINTS * sizeof *whole), *bands = malloc(POINTS * sizeof *bands);
     t3r_head_rows *const heads[] = {t3r_head_analytic, t3r_head_learned};
-    enum { ROUNDS = T3R_SANITIZED ? 24 : 160 }; /* 24 have every shape, width and kind of band */
+    enum { ROUNDS = T3R_SANITIZED ? 36 : 180 }; /* 36 have every shape, width and kind of band */
     uint32_t random = 1;
     for (uint32_t round = 0; round < ROUNDS; round++) {
-        const uint32_t bits = round / 2 % 4;
+        const uint32_t bits = round / 3 % 4;
         size_t bytes;
-        uint8_t *weights = make_weights(shapes[round % 2].layers, *shapes[round % 2].count, bits & 1 ? 16 : 8,
+        uint8_t *weights = make_weights(shapes[round % 3].layers, *shapes[round % 3].count, bits & 1 ? 16 : 8,
                                         bits & 2 ? 16 : 8, round, &bytes);
         const size_t work_bytes = t3r_head_learned_work_bytes(weights, W);
         t3r_head_rows *head = heads[round < 8 ? round / 2 % 2 : 1];
-        input.unadapted = round % 3 == 1;
+        input.unadapted = round / 12 % 3 == 1;
         input.weights = weights;
         input.work = aligned_alloc(16, (work_bytes + 15) / 16 * 16);
         input.work_bytes = work_bytes;

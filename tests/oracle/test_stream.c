@@ -496,6 +496,14 @@ static void refused(void **state)
     assert_int_equal(t3r_stream_overlap(s.rt, &far, W, H, &overlap_q8), T3R_ERR_CAMERA);
     /* of pictures so large it would have less than 8 pixels of focal length at the working size */
     assert_int_equal(t3r_stream_overlap(s.rt, &camera, T3R_MAX_SIDE, T3R_MAX_SIDE, &overlap_q8), T3R_ERR_CAMERA);
+    t3r_camera folded = camera; /* a lens most of whose picture shows nothing */
+    folded.distortion = T3R_DISTORTION_RADTAN;
+    folded.distortion_q24[0] = -(40 << 24);
+    assert_refused(s.rt, &frame, &folded, T3R_ERR_CAMERA);
+    assert_int_equal(scene_of(&s).count, CAP);
+    assert_int_equal(t3r_reset(s.rt), T3R_OK);
+    assert_int_equal(take(&s, &p, &report), T3R_OK);
+    memcpy(before.bytes, s.memory.bytes, s.memory.count);
     t3r_frame bad = frame;
     bad.stride_bytes[0] = 1;
     assert_refused(s.rt, &bad, &camera, T3R_ERR_FRAME);

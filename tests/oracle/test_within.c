@@ -254,6 +254,27 @@ static void cancelled_anywhere(void **state)
     arena_free(&s.memory);
 }
 
+/* Planes of a copied arena may say that nothing has depth: then nothing is off. */
+static void planes_without_depth_do_no_harm(void **state)
+{
+    (void)state;
+    make_views(90);
+    site s = site_of(VIEWS * PIXELS, VIEWS);
+    t3r_scene scene = within(&s, HALF_DB);
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(s.rt, views);
+    uint32_t error_q8;
+    assert_int_equal(t3r_refine_error(s.rt, views, &error_q8), T3R_OK);
+    assert_true(error_q8 > 0);
+    for (uint32_t v = 0; v < VIEWS; v++) {
+        memset(views[v].validity, T3R_NO_DEPTH, PIXELS);
+    }
+    assert_int_equal(t3r_refine_error(s.rt, views, &error_q8), T3R_OK);
+    assert_int_equal(error_q8, 0);
+    assert_int_equal(t3r_rebuild(s.rt, &half_db, &scene), T3R_OK);
+    arena_free(&s.memory);
+}
+
 static void refusals(void **state)
 {
     (void)state;
@@ -290,6 +311,7 @@ int main(void)
         cmocka_unit_test(a_blank_wall_needs_next_to_nothing),
         cmocka_unit_test(the_error_is_that_of_the_picture),
         cmocka_unit_test(cancelled_anywhere),
+        cmocka_unit_test(planes_without_depth_do_no_harm),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -484,6 +484,18 @@ static void fits_its_passes(void **state)
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     assert_int_equal(t3r_refinement_passes(rt), 2);
     free(memory);
+
+    /* a view alone says nothing of noise: 150 levels^2 are taken for it */
+    config = settings(T3R_MAX_REFINEMENTS);
+    config.gaussians = config.max_gaussians = BUDGET / 4;
+    config.fit_passes = 1;
+    rt = open_arena(&config, 16);
+    assert_int_equal(t3r_reset(rt), T3R_OK);
+    const t3r_frame frame = rgbd_frame(rgb[0], depth[0], SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
+    assert_int_equal(t3r_add_view(rt, &frame, &camera[0]), T3R_OK);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    assert_int_equal(t3r_refinement_passes(rt), lround(sqrt(512.0 * scene.valid_points / scene.count / 150)));
+    free(memory);
 }
 
 static uint64_t hash_with(uint32_t passes, uint32_t structural)
