@@ -81,7 +81,7 @@ static bool see(const t3r_stereo_planes *planes, uint32_t side, const t3r_ray_pl
     const t3r_column own = t3r_rectified_column(planes->rect, place[0]);
     const t3r_column other = t3r_rectified_column(planes->rect, place[0] + apart);
     const t3r_column *first = side == 0 ? &own : &other, *second = side == 0 ? &other : &own;
-    if (own.b_q24 <= 0 || other.b_q24 <= 0) {
+    if (other.b_q24 <= 0) { /* its own place is nearer than that, or it is nowhere */
         return false;
     }
     /* |a| <= 2^27, b <= 2^24: the difference of the cotangents times both b, Q48 to Q30 */

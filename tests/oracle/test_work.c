@@ -253,6 +253,33 @@ static void heads_are_compared(void **state)
     assert_true(moments > 0 && moments < count && count < before + T3R_MAX_CHOICES);
 }
 
+/* Of two networks the one that computes more is expected to lose less, like the shipped ones. */
+static void networks_are_rated_by_their_size(void **state)
+{
+    (void)state;
+    static const made_layer least[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
+    const struct {
+        const made_layer *layers;
+        uint32_t count;
+    } sizes[] = {{least, 1}, {small_shape, small_layers}, {base_shape, base_layers}};
+    uint32_t before = UINT32_MAX;
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        size_t bytes;
+        uint8_t *weights = make_weights(sizes[i].layers, sizes[i].count, 8, 8, 1, &bytes);
+        t3r_config c = config_of(1);
+        c.head = T3R_HEAD_LEARNED;
+        c.head_column_bytes = T3R_MAX_HEAD_COLUMN_BYTES;
+        const t3r_limits limits = {.gaussians = 96 * 64 * 2, .refinements = 0}; /* every point */
+        t3r_choice list[T3R_MAX_CHOICES];
+        uint32_t count = 0;
+        assert_int_equal(t3r_plan_choices(&c, weights, bytes, &limits, list, &count), T3R_OK);
+        assert_true(count == 1 && list[0].weights == weights && list[0].loss_q4 < before);
+        before = list[0].loss_q4;
+        assert_int_equal(t3r_plan_choices(&c, weights, bytes - 16, &limits, list, &count), T3R_ERR_WEIGHTS);
+        free(weights);
+    }
+}
+
 static void refuses_limits_out_of_range(void **state)
 {
     (void)state;
@@ -291,6 +318,7 @@ int main(void)
         cmocka_unit_test(lists_what_fits_best_first),
         cmocka_unit_test(shares_of_extreme_sizes),
         cmocka_unit_test(heads_are_compared),
+        cmocka_unit_test(networks_are_rated_by_their_size),
         cmocka_unit_test(refuses_limits_out_of_range),
     };
     return cmocka_run_group_tests_name("work", tests, NULL, NULL);

@@ -116,8 +116,28 @@ static void features_are_as_defined(void **state)
     assert_true(least[6] < -90 && most[6] > 90 && most[5] - least[5] > 30);
 }
 
+/* A copied arena's planes may call a depth of 0 measured: it has no slope. */
+static void no_depth_has_no_slope(void **state)
+{
+    (void)state;
+    const t3r_head_input input = {
+        .map = {.view = &view}, .settings = &settings, .clusters = clusters, .unadapted = true};
+    int8_t f[T3R_FEATURES];
+    fill_view(1);
+    memset(validity, T3R_MEASURED, sizeof validity);
+    for (int i = 0; i < PIXELS; i++) {
+        depth[i] = (uint16_t)(1500 + 40 * (i % W) + 30 * (i / W));
+    }
+    t3r_head_features_at(&input, 5, 5, f);
+    assert_true(f[7] > 0 && f[8] > 0);
+    depth[5 * W + 5] = 0;
+    t3r_head_features_at(&input, 5, 5, f);
+    assert_true(f[7] == 0 && f[8] == 0);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(features_are_as_defined)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(no_depth_has_no_slope),
+                                       cmocka_unit_test(features_are_as_defined)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
