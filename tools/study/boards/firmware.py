@@ -33,6 +33,9 @@ def left_out(options):
     return [feature for feature in FEATURES if feature not in options.features]
 
 
+CLOSED_FORM = {"analytic": [], "moment": ["-DMOMENT"]} # heads without weights: what says so to the compiler
+
+
 def is_small(options):
     """Whether the firmware is to be small: it lacks features, reads planes and no recording, and runs plain C."""
     return bool(left_out(options))
@@ -43,7 +46,7 @@ def sources_of(board, options):
     absent = {path for feature, pattern in rows if feature in left_out(options)
               for path in RUNTIME.glob(pattern) if not path.stem.endswith("_absent")}
     runtime = sorted(path for path in RUNTIME.rglob("*.c") if path.parent.name != "x86" and path not in absent)
-    weights = [] if options.head == "analytic" else [ROOT / "quant" / "heads" / f"{options.head}.c"]
+    weights = [] if options.head in CLOSED_FORM else [ROOT / "quant" / "heads" / f"{options.head}.c"]
     reader = () if is_small(options) else READER
     other_frames = "frames_recording" if is_small(options) else "frames_planes"
     port = [*sorted(BAREMETAL.glob("*.c")), *sorted((BAREMETAL / BOARDS[board]["port"]).glob("*.c"))]
@@ -53,8 +56,7 @@ def sources_of(board, options):
 
 def choices_of(options):
     """The compiler's words for features, weights and the firmware's kernels."""
-    head = [] if options.head == "analytic" else [f"-DHEAD=t3r_head_{options.head}",
-                                                  f"-DHEAD_BYTES=t3r_head_{options.head}_bytes"]
+    head = CLOSED_FORM.get(options.head, [f"-DHEAD=t3r_head_{options.head}", f"-DHEAD_BYTES=t3r_head_{options.head}_bytes"])
     return [*head, *(f"-DT3R_FEATURE_{name.upper()}=0" for name in left_out(options)),
             *(["-DPLAIN_C"] if is_small(options) else []), *(["-flto=auto"] if options.lto else [])]
 
@@ -91,7 +93,7 @@ def words(path, options):
     width, height = options.size
     return [f"frames={planes(path, options) if is_small(options) else path}", f"width={width}", f"height={height}", f"views={options.views}",
             f"gaussians={options.gaussians}", f"clusters={options.clusters}", f"refinements={options.refine}",
-            f"learned={int(options.head != 'analytic')}"]
+            f"learned={int(options.head not in CLOSED_FORM)}"]
 
 
 def said_by(board, *command):
