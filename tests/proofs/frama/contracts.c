@@ -1,0 +1,9 @@
+/* fixed.h with the contracts of contracts.h, for WP. */
+#include "contracts.h"
+
+#include "core/fixed.h"
+
+int main(void)
+{
+    return t3r_abs32(0);
+}
