@@ -243,6 +243,16 @@ static void average(void **state)
             }
         }
         for (int c = 0; c < 3; c++) {
+            memset(planes[c], 0x5a, (size_t)w * h);
+        }
+        const uint32_t first = from_h / 2; /* the same in two strips */
+        t3r_image_colour_strip(&t3r_kernels_c, &frame, w, h, 0, first, planes, work);
+        frame.planes[0] = grey + (size_t)first * from_w;
+        t3r_image_colour_strip(&t3r_kernels_c, &frame, w, h, first, from_h - first, planes, work);
+        for (uint32_t at = 0; at < w * h; at++) {
+            assert_int_equal(planes[1][at], box_average(grey, from_w, from_h, w, h, at % w, at / w));
+        }
+        for (int c = 0; c < 3; c++) {
             free(planes[c]);
         }
         free(work);

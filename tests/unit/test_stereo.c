@@ -397,18 +397,22 @@ static void units(void **state)
         assert_true(reach > 0.99 && reach < 1.1);
     }
     assert_int_equal(unit_of(&rect, views, 100, 50, &unit, &steps), T3R_PAIR_OK);
-    const int32_t exponent = rect.baseline_exponent;
-    const double exact = (double)rect.baseline_q31 * (1 << 24) / steps;
-    int fitting = 0;
-    for (rect.baseline_exponent = -80; rect.baseline_exponent < 120; rect.baseline_exponent++) {
-        const double wanted = floor(ldexp(exact, rect.baseline_exponent - 47) + 0.5);
-        const bool fits = wanted >= 1 && wanted < ldexp(1, 47);
-        assert_int_equal(unit_of(&rect, views, 100, 50, &unit, &steps), fits ? T3R_PAIR_OK : T3R_PAIR_SCALE);
-        assert_true(!fits || fabs((double)unit / wanted - 1) < 1e-6 || fabs((double)unit - wanted) <= 1);
-        fitting += fits;
+    for (int long_steps = 0; long_steps < 2; long_steps++) { /* of the nearest places, and of the farthest */
+        const double disparity = long_steps ? 0.6 : 100;
+        rect.baseline_q31 = long_steps ? 3719550786u : rect.baseline_q31; /* 2^31 sqrt 3, the longest there is */
+        (void)unit_of(&rect, views, disparity, disparity, &unit, &steps);
+        const double exact = (double)rect.baseline_q31 * (1 << 24) / steps;
+        int fitting = 0;
+        for (rect.baseline_exponent = -80; rect.baseline_exponent < 120; rect.baseline_exponent++) {
+            const double wanted = floor(ldexp(exact, rect.baseline_exponent - 47) + 0.5);
+            const bool fits = wanted >= 1 && wanted < ldexp(1, 47);
+            assert_int_equal(unit_of(&rect, views, disparity, disparity, &unit, &steps),
+                             fits ? T3R_PAIR_OK : T3R_PAIR_SCALE);
+            assert_true(!fits || fabs((double)unit / wanted - 1) < 1e-6 || fabs((double)unit - wanted) <= 1);
+            fitting += fits;
+        }
+        assert_in_range(fitting, 46, 48);
     }
-    assert_in_range(fitting, 46, 48);
-    rect.baseline_exponent = exponent;
     shot_free(a);
     shot_free(b);
 }
