@@ -52,7 +52,19 @@ static uint32_t density_ratio_q16(const t3r_head_input *input, uint32_t u, uint3
     return ratio_q16;
 }
 
-/* Both closed forms stay below 2^23, and the gain is below 1.2. */
+int32_t t3r_mean_density_q10(const t3r_budget_settings *settings, const t3r_cluster *clusters)
+{
+    uint32_t points = 0; /* at most 2^28 */
+    for (uint32_t k = 0; k < settings->clusters; k++) {
+        points += clusters[k].points - T3R_MIN(clusters[k].deferred, clusters[k].points);
+    }
+    if (settings->gaussians == 0 || settings->gaussians >= points) {
+        return 0;
+    }
+    return t3r_round_shift32(t3r_log2_q16(settings->gaussians) - t3r_log2_q16(points), 6);
+}
+
+/* Both closed forms stay below 2^23, and the gain below 8. */
 static int32_t scaled(int32_t x_q12, uint32_t gain_q16)
 {
     return (int32_t)t3r_round_shift64((int64_t)x_q12 * gain_q16, 16);
@@ -61,7 +73,12 @@ static int32_t scaled(int32_t x_q12, uint32_t gain_q16)
 void t3r_fit_widths(const t3r_head_input *input, uint32_t u, uint32_t v, t3r_footprint *footprint)
 {
     const int32_t log_ratio_q16 = t3r_log2_q16(density_ratio_q16(input, u, v)) - 16 * 65536; /* below 2^20 */
-    const uint32_t gain_q16 = t3r_exp2_q16(LOG_GAIN_Q16 - t3r_round_shift32(log_ratio_q16 * POWER_Q10, 10));
+    const size_t pixel = (size_t)v * input->map.view->width + u;
+    const int32_t density_q10 = t3r_log_density_q10(input->map.view, pixel, input->settings, input->clusters);
+    /* a quarter of it, Q10 to Q16 */
+    const int32_t log_sparseness_q16 = (input->covering->mean_density_q10 - density_q10) * 16;
+    const uint32_t gain_q16 =
+        t3r_exp2_q16(LOG_GAIN_Q16 + log_sparseness_q16 - t3r_round_shift32(log_ratio_q16 * POWER_Q10, 10));
     footprint->xx_q12 = scaled(footprint->xx_q12, gain_q16);
     footprint->xy_q12 = scaled(footprint->xy_q12, gain_q16);
     footprint->yy_q12 = scaled(footprint->yy_q12, gain_q16);

@@ -17,7 +17,8 @@
 typedef struct t3r_covering_views {
     const t3r_view *views;
     uint32_t count;
-    int32_t exponent; /* of the scene's frame */
+    int32_t exponent;         /* of the scene's frame */
+    int32_t mean_density_q10; /* log2 of the share of the points that is retained */
 } t3r_covering_views;
 
 /* What a head sees of one view. */

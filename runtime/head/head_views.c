@@ -2,6 +2,7 @@
 
 #include "core/features.h"
 #include "core/fixed.h"
+#include "fitted_widths.h"
 #include "pointmap/exposure.h"
 
 #define FUNCTION_OF(HEAD, name, function) [HEAD] = (function),
@@ -172,7 +173,9 @@ static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool a
     const t3r_workers workers = t3r_workers_of(rt);
     const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1; /* views between two reports */
     if (fits_widths(rt)) {
-        job->covering = (t3r_covering_views){job->views, rt->views, rt->frame.exponent};
+        job->covering =
+            (t3r_covering_views){job->views, rt->views, rt->frame.exponent,
+                                 t3r_mean_density_q10(job->settings, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS))};
     }
     job->asks = asks && !t3r_is_parallel(&workers);
     job->end = end;

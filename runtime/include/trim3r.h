@@ -258,9 +258,9 @@ typedef struct t3r_config {
      * t3r_refinement_passes() returns them. 0 = every build takes all of them, as a stream does in any case. [0] */
     uint32_t fit_passes;
     /* 1 = splats of T3R_HEAD_ANALYTIC and T3R_HEAD_MOMENT are as wide as the retained points of all views together ask
-     * for: narrower where several views cover a surface, and a little wider where one does. 0 = as wide as those of
-     * their own view ask for, as splats of T3R_HEAD_LEARNED, of a stream and of a head that nothing adapts are in any
-     * case. [0] */
+     * for: narrower where several views cover a surface, wider where one does or where points are few. 0 = as wide as
+     * those of their own view ask for, as splats of T3R_HEAD_LEARNED, of a stream and of a head that nothing adapts are
+     * in any case. [0] */
     uint32_t fit_widths;
     /* 1 = refinement takes the structure of what is missing for more than its level: from its second pass on local
      * contrast counts as structural similarity has it, and what a whole view shows brighter or with more contrast than

@@ -18,6 +18,7 @@ static uint16_t texture[PIXELS];
 static uint8_t label[VIEWS][PIXELS];
 static t3r_cluster clusters[CLUSTERS + 1];
 static t3r_budget_settings budget;
+static int32_t mean_density_q10;
 
 /* All views on one plane, in the places of a pair and one between; both groups retain a quarter of their points. */
 static rig *views_new(void)
@@ -29,7 +30,7 @@ static rig *views_new(void)
         s->view[v].texture = texture;
         s->view[v].label = label[v];
     }
-    clusters[0].density_q10 = clusters[1].density_q10 = -2 * 1024;
+    clusters[0].density_q10 = clusters[1].density_q10 = mean_density_q10 = -2 * 1024;
     budget = (t3r_budget_settings){.allocation = T3R_ALLOCATE_PAPER, .clusters = CLUSTERS, .pass_over_covered = true};
     return s;
 }
@@ -37,7 +38,7 @@ static rig *views_new(void)
 /* What the middle pixel of view 0 makes of a variance among the first `count` views, over what it was. */
 static double gain(const rig *s, uint32_t count)
 {
-    const t3r_covering_views covering = {s->view, count, 0};
+    const t3r_covering_views covering = {s->view, count, 0, mean_density_q10};
     const t3r_head_input input = {
         .map = t3r_pointmap_of(&s->view[0], 0), .settings = &budget, .clusters = clusters, .covering = &covering};
     t3r_footprint f = {.xx_q12 = ONE_Q12, .xy_q12 = -ONE_Q12 / 2, .yy_q12 = 2 * ONE_Q12};
@@ -82,6 +83,23 @@ static void of_unlike_densities(void **state)
     assert_gain(gain(s, 2), 1 + 4);
     s->view[1].fx_q16 = s->view[1].fy_q16 = F << 15;
     assert_gain(gain(s, 2), 1 + 1);
+    free(s);
+}
+
+static void wider_where_points_are_few(void **state)
+{
+    (void)state;
+    rig *s = views_new();
+    for (int32_t log_q10 = -4 * 1024; log_q10 <= 0; log_q10 += 128) {
+        clusters[0].density_q10 = log_q10;
+        assert_gain(gain(s, 1) * exp2((log_q10 + 2048) / 4096.0), 1);
+    }
+    clusters[0] = (t3r_cluster){.points = 700, .deferred = 100};
+    clusters[1] = (t3r_cluster){.points = 40};
+    budget.gaussians = 160;
+    assert_int_equal(t3r_mean_density_q10(&budget, clusters), -2 * 1024);
+    budget.gaussians = 641;
+    assert_int_equal(t3r_mean_density_q10(&budget, clusters), 0);
     free(s);
 }
 
@@ -211,6 +229,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_often_as_covered),
         cmocka_unit_test(of_unlike_densities),
+        cmocka_unit_test(wider_where_points_are_few),
         cmocka_unit_test(only_of_the_same_surface),
         cmocka_unit_test(builds_that_ask),
     };
