@@ -63,7 +63,9 @@ t3r_status t3r_reset(t3r_runtime *rt)
     rt->gaussians = 0;
     rt->valid_points = 0;
     rt->keyframes = 0;
-    rt->remembered = 0;
+    if (T3R_FEATURE_STREAMS) {
+        rt->remembered = 0;
+    }
     rt->next_slot = 0;
     rt->strips = (t3r_strips){0};
     t3r_reuse_nothing(rt);

@@ -251,7 +251,7 @@
     X(with, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                            \
     X(with, MAP_RECORDS, "map records", T3R_STREAMS_(shape) * T3R_GAUSSIANS_(shape) * T3R_MAP_RECORD_BYTES,            \
       T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
-    X(with, REMEMBERED, "remembered keyframes",                                                                        \
+    X(with, REMEMBERED, "remembered",                                                                                  \
       T3R_STREAMS_(shape) * T3R_REMEMBER_(shape) * T3R_REMEMBERED_BYTES(T3R_WIDTH_(shape), T3R_HEIGHT_(shape)),        \
       T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
     X(with, KEPT_TEXTURE, "kept textures", T3R_FOLLOWS_(shape) * T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE,             \

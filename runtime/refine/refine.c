@@ -416,7 +416,7 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
                      .scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE),
                      .records = records,
                      .idle_most = rt->config.views,
-                     .settles = rt->config.remember > 0};
+                     .settles = t3r_is_stream(&rt->config) && rt->config.remember > 0};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
     uint32_t total = passes * slices * (rt->views + t3r_remembered_a_pass(rt)), done = 0;
     t3r_structure structure[T3R_MAX_VIEWS] = {0};

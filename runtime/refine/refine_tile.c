@@ -7,20 +7,21 @@
 #include "core/memory.h"
 #include "state/remembered.h"
 
-/* Whether the pixel counts, and what it shows. */
-static bool sample(const t3r_refine_view *job, size_t at, uint32_t shown_q7[3])
+/* Whether the pixel counts. */
+static bool is_wanted(const t3r_refine_view *job, size_t at)
 {
-    const t3r_view *view = job->view;
     if (T3R_FEATURE_STREAMS && job->remembered != NULL) {
-        for (int c = 0; c < 3; c++) {
-            shown_q7[c] = t3r_remembered_q7(job->remembered[at], c);
-        }
         return t3r_is_remembered(job->remembered[at]);
     }
-    for (int c = 0; c < 3; c++) {
-        shown_q7[c] = view->colour[c][at] * 128u;
+    return t3r_has_depth(job->view->validity[at]);
+}
+
+static uint32_t shown_q7(const t3r_refine_view *job, size_t at, int channel)
+{
+    if (T3R_FEATURE_STREAMS && job->remembered != NULL) {
+        return t3r_remembered_q7(job->remembered[at], channel);
     }
-    return t3r_has_depth(view->validity[at]);
+    return job->view->colour[channel][at] * 128u;
 }
 
 /* What the drawn tile lacks; columns and rows beyond the image count for nothing. */
@@ -34,11 +35,10 @@ static void compare(const t3r_refine_view *job, uint32_t left, uint32_t top, t3r
     for (uint32_t j = 0; j < rows; j++) {
         size_t row = (size_t)(top + j) * view->width + left;
         for (uint32_t i = 0; i < columns; i++) {
-            uint32_t shown_q7[3];
-            want->counts[j][i] = sample(job, row + i, shown_q7) ? UINT16_MAX : 0;
+            want->counts[j][i] = is_wanted(job, row + i) ? UINT16_MAX : 0;
             for (int c = 0; c < 3; c++) {
                 int32_t drawn_q7 = T3R_MIN((int32_t)want->pixels.colour_q7[c][j][i], 32640);
-                int32_t residual_q7 = t3r_level_q7(shown_q7[c], job->gain_q14[c]) - drawn_q7;
+                int32_t residual_q7 = t3r_level_q7(shown_q7(job, row + i, c), job->gain_q14[c]) - drawn_q7;
                 want->residual_q4[c][j][i] = (int16_t)t3r_round_shift32(residual_q7, 3);
             }
         }
