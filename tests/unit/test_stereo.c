@@ -338,7 +338,7 @@ static void small_pictures_have_few_workers(void **state)
     void *work = aligned_alloc(64, (bytes + 63) / 64 * 64);
     const t3r_hooks hooks = {.parallel_for = by_worker_15};
     const t3r_stereo_settings one = {&t3r_kernels_c, MOST, 4, 1, {NULL, 1}},
-                              many = {&t3r_kernels_c, MOST, 4, 1, {&hooks, 16}};
+                              many = {&t3r_kernels_c, MOST, 4, 1, {&hooks, 16}, 0};
     uint32_t score, shared;
     assert_non_null(work);
     memset(work, 0, bytes);
