@@ -232,7 +232,8 @@ static void anything(void **state)
     shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.25, 0, 0, straight, 1, 1, 7);
     for (int turn = 0; turn < 60; turn++) {
         const t3r_stereo_settings how = {
-            &t3r_kernels_c, (uint32_t)unit_between(&seed, 1, 8) * 16, turn % 2 == 0 ? 4 : 8, turn % 5 != 0, {NULL, 1}, turn % 7 == 0};
+            &t3r_kernels_c, (uint32_t)unit_between(&seed, 1, 8) * 16, turn % 2 == 0 ? 4 : 8, turn % 5 != 0, {NULL, 1},
+            turn % 7 == 0};
         for (int i = 0; i < 3; i++) {
             b->camera.position_q32[i] = unit_between(&seed, -(INT64_C(3) << 30), INT64_C(3) << 30);
             b->camera.rotation_q30[1 + i] = (int32_t)unit_between(&seed, -(1 << 27), 1 << 27);
@@ -337,7 +338,7 @@ static void small_pictures_have_few_workers(void **state)
     const size_t bytes = T3R_STEREO_WORK_BYTES(SIDE, SIDE, MOST, 4);
     void *work = aligned_alloc(64, (bytes + 63) / 64 * 64);
     const t3r_hooks hooks = {.parallel_for = by_worker_15};
-    const t3r_stereo_settings one = {&t3r_kernels_c, MOST, 4, 1, {NULL, 1}},
+    const t3r_stereo_settings one = {&t3r_kernels_c, MOST, 4, 1, {NULL, 1}, 0},
                               many = {&t3r_kernels_c, MOST, 4, 1, {&hooks, 16}, 0};
     uint32_t score, shared;
     assert_non_null(work);

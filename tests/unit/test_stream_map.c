@@ -169,13 +169,14 @@ static void counts_are_held(void **state)
     fill(&s, &seed, 100);
     memset(s.validity, T3R_NO_DEPTH, sizeof s.validity);
     s.map.count = 1;
-    s.records[0].idle = s.records[0].faded_q10 = UINT16_MAX - 1;
+    s.records[0].idle = UINT8_MAX - 1;
+    s.records[0].faded_q10 = UINT16_MAX - 1;
     s.view.fx_q16 = s.view.fy_q16 = 30 << 16;
     s.view.depth_unit_q40 = UINT64_C(1) << 30;
     const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
     for (int n = 0; n < 3; n++) {
         assert_int_equal(t3r_map_see(&s.map, &keyframe, 0, 1), 0);
-        assert_int_equal(s.records[0].idle, UINT16_MAX);
+        assert_int_equal(s.records[0].idle, UINT8_MAX);
         assert_int_equal(s.records[0].faded_q10, UINT16_MAX);
     }
 }
