@@ -79,12 +79,16 @@ typedef struct view_job {
 #define SPLATS_A_CHUNK 65536u
 #define SPLATS_ALONE 256u
 
-/* A view that is drawn and compared while no Gaussian's sums change: what each band finds. */
+/* Bands that are measured at once: each finds more than there is stack for, for all that a hook may run. */
+#define MEASURED_AT_ONCE 4u
+
+/* A view that is drawn and compared while no Gaussian's sums change: what the bands find. */
 typedef struct measure_job {
     view_job job;
-    uint64_t error[T3R_MAX_WORKERS];
-    uint32_t pixels[T3R_MAX_WORKERS];
-    t3r_level_sums levels[T3R_MAX_WORKERS]; /* instead, where the view's levels are wanted */
+    uint32_t first; /* of the bands that are measured */
+    uint64_t error[MEASURED_AT_ONCE];
+    uint32_t pixels[MEASURED_AT_ONCE];
+    t3r_level_sums levels[MEASURED_AT_ONCE]; /* instead, where the view's levels are wanted */
 } measure_job;
 
 static uint32_t list_begin(const view_job *job, uint32_t tile)
@@ -164,10 +168,11 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
     measure_job *to = context;
     const view_job *job = &to->job;
     const t3r_binning *bin = job->bin;
+    const uint32_t band = to->first + index;
     t3r_refine_view view = *job->view;
-    view.wanted = wanted_of(job->work, index);
-    view.kept = job->work->kept + (size_t)index * job->work->kept_words;
-    for (uint32_t tile = job->bands[index].begin; tile < job->bands[index].end; tile++) {
+    view.wanted = wanted_of(job->work, band);
+    view.kept = job->work->kept + (size_t)band * job->work->kept_words;
+    for (uint32_t tile = job->bands[band].begin; tile < job->bands[band].end; tile++) {
         const uint32_t from = list_begin(job, tile), count = t3r_list_length(bin, from, tile);
         const uint32_t x = tile % bin->across, y = tile / bin->across;
         if (T3R_FEATURE_LOSS && view.structure != NULL) {
@@ -205,7 +210,9 @@ static t3r_status measure_view(const t3r_runtime *rt, const t3r_refine_layout *w
     to->job = (view_job){.rt = rt, .work = w, .view = &view, .bin = &bin, .done = done, .total = total};
     bool goes_on = next_chunk(&to->job);
     for (; goes_on && to->job.count > 0; goes_on = next_chunk(&to->job)) {
-        t3r_run_tasks(&workers, to->job.count, measure_band, to);
+        for (to->first = 0; to->first < to->job.count; to->first += MEASURED_AT_ONCE) {
+            t3r_run_tasks(&workers, T3R_MIN(to->job.count - to->first, MEASURED_AT_ONCE), measure_band, to);
+        }
     }
     return goes_on ? T3R_OK : T3R_ERR_CANCELLED;
 }
@@ -384,8 +391,8 @@ static t3r_status measure_levels(const t3r_runtime *rt, const t3r_refine_layout 
         if (status != T3R_OK) {
             return status;
         }
-        for (uint32_t band = 1; band < T3R_MAX_WORKERS; band++) {
-            t3r_join_levels(&found.levels[0], &found.levels[band]);
+        for (uint32_t i = 1; i < MEASURED_AT_ONCE; i++) {
+            t3r_join_levels(&found.levels[0], &found.levels[i]);
         }
         lines[v] = t3r_fit_levels(&found.levels[0]);
     }
@@ -464,9 +471,9 @@ t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *er
         if (status != T3R_OK) {
             return status;
         }
-        for (uint32_t band = 0; band < T3R_MAX_WORKERS; band++) {
-            error += found.error[band];
-            pixels += found.pixels[band];
+        for (uint32_t i = 0; i < MEASURED_AT_ONCE; i++) {
+            error += found.error[i];
+            pixels += found.pixels[i];
         }
     }
     *error_q8 = pixels == 0 ? 0 : (uint32_t)t3r_round_div64((int64_t)error, 3 * (int64_t)pixels);

@@ -46,7 +46,7 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
 uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                                uint32_t tile_y, uint32_t *pixels);
 
-/* The same, and adds what the tile tells of the view's levels, over those of job->structure as they are. */
+/* The same, and adds the tile to the sums of the view's levels, over those of job->structure as they are. */
 void t3r_refine_tile_levels(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                             uint32_t tile_y, t3r_level_sums *sums);
 
