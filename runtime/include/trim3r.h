@@ -249,7 +249,7 @@ typedef struct t3r_config {
     t3r_head head;
     /* The working memory of a learned head in bytes a column of the view, 0..T3R_MAX_HEAD_COLUMN_BYTES:
      * t3r_head_column_bytes() returns what a head needs. 0 = two bytes a pixel of the view.
-     * [T3R_HEAD_COLUMN_BYTES, enough for nano, small and base with 8-bit activations] */
+     * [T3R_HEAD_COLUMN_BYTES, enough for tiny, nano, small and base with 8-bit activations] */
     uint32_t head_column_bytes;
     /* The number of refinement passes on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS]
      */
@@ -717,7 +717,7 @@ t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 const char *t3r_weights_error(const void *weights, size_t bytes);
 
 /* The head_column_bytes with which this head works on views of this width, whatever their height, at least 1. 0 =
- * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds nano, small and base
+ * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds tiny, nano, small and base
  * with 8-bit activations; every arena holds heads that need no more than two bytes a pixel. */
 uint32_t t3r_head_column_bytes(const void *weights, size_t bytes, uint32_t width);
 

@@ -42,7 +42,7 @@
 #define T3R_GROUP_COUNT_BYTES 64 /* what the budget counts of a SuperCluster */
 #define T3R_RATIO_BINS 512       /* of a histogram of exposure */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
- * heads nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
+ * heads tiny, nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
 #define T3R_HEAD_COLUMN_BYTES 704
 #define T3R_HEAD_KERNEL_BYTES 4096
 #define T3R_CORRECTION_BYTES 20       /* what refinement will change in a Gaussian */

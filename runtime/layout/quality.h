@@ -5,14 +5,14 @@
 
 #include <stdint.h>
 
-#define T3R_QUALITY_HEADS 5
+#define T3R_QUALITY_HEADS 6
 #define T3R_QUALITY_PASSES 6
 #define T3R_QUALITY_SHARES 7
 
 static const uint8_t t3r_quality_passes[T3R_QUALITY_PASSES] = {0, 1, 2, 4, 8, 16};
 static const uint8_t t3r_quality_percent[T3R_QUALITY_SHARES] = {100, 50, 20, 10, 5, 2, 1};
 
-/* analytic, moment, nano, small, base */
+/* analytic, moment, tiny, nano, small, base */
 static const uint8_t t3r_quality_loss_q4[T3R_QUALITY_HEADS][T3R_QUALITY_PASSES][T3R_QUALITY_SHARES] = {
     {{99, 103, 127, 139, 153, 178, 202},
      {44, 45, 59, 71, 90, 122, 150},
@@ -26,6 +26,12 @@ static const uint8_t t3r_quality_loss_q4[T3R_QUALITY_HEADS][T3R_QUALITY_PASSES][
      {13, 17, 27, 34, 45, 68, 88},
      {10, 12, 19, 20, 29, 52, 71},
      {10, 12, 17, 16, 21, 38, 56}},
+    {{97, 101, 100, 112, 131, 163, 189},
+     {40, 42, 50, 67, 89, 115, 142},
+     {28, 30, 34, 44, 61, 91, 117},
+     {17, 18, 22, 30, 43, 70, 96},
+     {14, 14, 16, 17, 26, 50, 73},
+     {13, 12, 15, 13, 20, 35, 53}},
     {{97, 101, 100, 112, 131, 163, 189},
      {40, 42, 50, 67, 89, 115, 142},
      {28, 30, 34, 44, 61, 91, 117},

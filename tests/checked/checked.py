@@ -17,7 +17,7 @@ from checks import check, done, run  # noqa: E402
 FOLDER, DATA = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 HERE = pathlib.Path(__file__).resolve().parent
 PLANTED = 6
-HEADS = ("analytic", "moment", "nano", "small", "base")
+HEADS = ("analytic", "moment", "tiny", "nano", "small", "base")
 SIZE = "160x120"
 
 

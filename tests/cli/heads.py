@@ -15,7 +15,7 @@ def heads():
     weight_file("wide.t3w", "16")
     base = ["build", recording, "--working", "64x64", "--gaussians", 500, "-o", "head.ply"]
     hashes = {}
-    for head in ("analytic", "moment", "none", "nano", "small", "base", "mine.t3w", "wide.t3w"):
+    for head in ("analytic", "moment", "none", "tiny", "nano", "small", "base", "mine.t3w", "wide.t3w"):
         found = expect_json(*base, "--head", head, "--comments")
         hashes[head] = found["hash"]
         name = head.split(".")[0]

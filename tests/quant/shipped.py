@@ -27,7 +27,7 @@ with tempfile.TemporaryDirectory() as folder:
     (tree / "quant" / "heads").mkdir(parents=True)
     (tree / "tools" / "study" / "train" / "ship").write_bytes(ship.read_bytes())
     names = sorted(path.stem for path in heads.glob("*.safetensors"))
-    check(names == ["base", "nano", "small"], f"float heads: {names}")
+    check(names == ["base", "nano", "small", "tiny"], f"float heads: {names}")
     for name in names:
         (tree / "quant" / "heads" / f"{name}.safetensors").write_bytes((heads / f"{name}.safetensors").read_bytes())
 

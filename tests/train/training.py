@@ -123,7 +123,7 @@ class Training(unittest.TestCase):
         self.assertTrue(all(torch.equal(a, b) for a, b in zip(head.parameters(), again.parameters())))
 
     def test_shipped_sizes(self):
-        for name, most, parameters in (("nano", 1500, 16e3), ("small", 5000, 48e3), ("base", 16000, 128e3)):
+        for name, most, parameters in (("tiny", 400, 4e3), ("nano", 1500, 16e3), ("small", 5000, 48e3), ("base", 16000, 128e3)):
             head = head_net.Head(head_net.HEADS[name])
             self.assertLessEqual(head_net.multiply_accumulates(head.layers), most, name)
             self.assertLess(sum(p.numel() for p in head.parameters()), parameters, name)

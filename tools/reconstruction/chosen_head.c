@@ -19,6 +19,7 @@ static const struct {
     const uint8_t *weights;
     const uint32_t *bytes;
 } shipped[] = {
+    {"tiny", t3r_head_tiny, &t3r_head_tiny_bytes},
     {"nano", t3r_head_nano, &t3r_head_nano_bytes},
     {"small", t3r_head_small, &t3r_head_small_bytes},
     {"base", t3r_head_base, &t3r_head_base_bytes},

@@ -24,7 +24,7 @@ typedef struct chosen_head {
     void *owned; /* weights read from a file */
 } chosen_head;
 
-/* "nano, small, base, FILE.t3w, ...": all that --head takes. Returns `names`. */
+/* "tiny, nano, small, base, FILE.t3w, ...": all that --head takes. Returns `names`. */
 const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES]);
 /* Whether the text is one of the names or ends in .t3w. */
 bool chosen_head_is_one(const char *text);

@@ -10,8 +10,8 @@ from .errors import InputError
 
 HeadName = Union[str, "os.PathLike[str]"]
 
-_SHIPPED = {"nano": (lib.t3r_head_nano, lib.t3r_head_nano_bytes), "small": (lib.t3r_head_small, lib.t3r_head_small_bytes),
-            "base": (lib.t3r_head_base, lib.t3r_head_base_bytes)}
+_SHIPPED = {"tiny": (lib.t3r_head_tiny, lib.t3r_head_tiny_bytes), "nano": (lib.t3r_head_nano, lib.t3r_head_nano_bytes),
+            "small": (lib.t3r_head_small, lib.t3r_head_small_bytes), "base": (lib.t3r_head_base, lib.t3r_head_base_bytes)}
 _CLOSED = {"analytic": lib.T3R_HEAD_ANALYTIC, "moment": lib.T3R_HEAD_MOMENT}
 _BYTES_MOST = 1 << 24  # of a file of weights; one byte more is refused
 

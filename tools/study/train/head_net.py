@@ -19,6 +19,12 @@ def _conv(level, sources, inputs, outputs, kernel, stride=1):
                 phases=1, relu=True)  # fmt: skip
 
 
+def _depthwise(level, sources, channels, kernel, stride=1):
+    """Without a nonlinearity: the convolution of kernel 1 behind it completes it."""
+    return dict(kind="depthwise", level=level, sources=sources, inputs=channels, outputs=channels, kernel=kernel, stride=stride,
+                phases=1, relu=False)  # fmt: skip
+
+
 def _point(sources, inputs, outputs, phases=1, relu=True):
     return dict(kind="point", level=0, sources=sources, inputs=inputs, outputs=outputs, kernel=1, stride=1,
                 phases=phases, relu=relu)  # fmt: skip
@@ -42,7 +48,22 @@ def u_net(half, quarter, eighth, hidden):
     ]
 
 
-HEADS = {"nano": u_net(8, 16, 16, 10), "small": u_net(20, 28, 20, 20), "base": u_net(40, 44, 32, 32)}
+def small_u_net(channels, hidden):
+    """The same levels with a layer or two each, for microcontrollers."""
+    return [
+        _depthwise(1, [0], FEATURES, 4, 2),
+        _conv(1, [1], FEATURES, channels, 1),
+        _conv(2, [2], channels, channels, 3, 2),
+        _conv(2, [3], channels, channels, 3),
+        _conv(3, [4], channels, channels, 3, 2),
+        _conv(2, [4, 5], 2 * channels, channels, 1),
+        _conv(1, [2, 6], 2 * channels, channels, 1),
+        _point([7, 0], channels + FEATURES, hidden, 4),
+        _point([8], hidden, OUTPUTS, 1, False),
+    ]
+
+
+HEADS = {"tiny": small_u_net(8, 8), "nano": u_net(8, 16, 16, 10), "small": u_net(20, 28, 20, 20), "base": u_net(40, 44, 32, 32)}
 
 
 def multiply_accumulates(layers, kept=1.0):
