@@ -123,6 +123,10 @@ static void begin(const filling *f)
                 t3r_inverse_depth_q30(view->depth[i]) * 256 < bound_q8(f, u, v) - within_q8(f)) {
                 f->plane[i] = NO_PLANE; /* behind what bounds the room */
             }
+            if (f->plane[i] == NO_PLANE && view->match_confidence[i] < T3R_STEREO_SURE) {
+                view->depth[i] = 0; /* hardly matched, on no plane: better filled */
+                view->match_confidence[i] = T3R_STEREO_NONE;
+            }
             f->cost[i] = !is_matched(view, i) ? UINT16_MAX : f->plane[i] == NO_PLANE ? STRAY : 0;
         }
     }
@@ -174,8 +178,8 @@ static void finish(const filling *f)
             if (view->match_confidence[i] >= T3R_STEREO_LEAST || f->cost[i] == UINT16_MAX) {
                 continue;
             }
-            const int64_t own_q8 = f->plane[i] != NO_PLANE ? at_q8(f, f->plane[i], u, v)
-                                                           : t3r_inverse_depth_q30(view->depth[i]) * 256;
+            const int64_t own_q8 =
+                f->plane[i] != NO_PLANE ? at_q8(f, f->plane[i], u, v) : t3r_inverse_depth_q30(view->depth[i]) * 256;
             const int64_t inverse_q8 =
                 t3r_clamp64(T3R_MAX(own_q8, bound_q8(f, u, v)), (f->least_q8 + 1) / 2, 2 * f->most_q8);
             const int64_t depth = t3r_clamp64(t3r_round_div64(INT64_C(1) << 38, inverse_q8), 1, UINT16_MAX);

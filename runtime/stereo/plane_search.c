@@ -97,9 +97,9 @@ static void take_samples(search *s)
     s->samples = 0;
     for (uint32_t v = step / 2; v < view->height; v += step) {
         for (uint32_t u = step / 2; u < view->width; u += step) {
-            s->sample[s->samples++] = (t3r_plane_sample){(int16_t)((int32_t)u - s->middle_x),
-                                                         (int16_t)((int32_t)v - s->middle_y),
-                                                         matched_inverse(view, (size_t)v * view->width + u)};
+            s->sample[s->samples++] =
+                (t3r_plane_sample){(int16_t)((int32_t)u - s->middle_x), (int16_t)((int32_t)v - s->middle_y),
+                                   matched_inverse(view, (size_t)v * view->width + u)};
         }
     }
 }

@@ -21,7 +21,8 @@ typedef struct t3r_surface_slope {
 int64_t t3r_inverse_depth_q30(uint16_t depth);
 
 /* The slopes of the plane through one over depth by least squares. n > 0; n |x| and n |y| below 2^31. spread_q4: square
- * pixels, above 0, that are added to the spread of places, so that what lies in a row or column has little slope across.
+ * pixels, above 0, that are added to the spread of places, so that what lies in a row or column has little slope
+ * across.
  */
 t3r_surface_slope t3r_surface_slope_of(const t3r_surface_sums *sums, int32_t spread_q4);
 

@@ -64,7 +64,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     }
     const uint32_t width = 8 + h.width % 48u, height = 8 + h.height % 48u;
     const t3r_stereo_settings settings = {
-        &t3r_kernels_c, 16 * (1 + h.disparities % 16u), h.paths % 2 == 0 ? 4 : 8, h.paths >> 1 & 1, {NULL, 1}, h.paths >> 2 & 1};
+        &t3r_kernels_c,  16 * (1 + h.disparities % 16u), h.paths % 2 == 0 ? 4 : 8, h.paths >> 1 & 1, {NULL, 1},
+        h.paths >> 2 & 1};
     const size_t pixels = (size_t)width * height;
     const size_t bytes_of_work = T3R_STEREO_WORK_BYTES(width, height, settings.disparities, settings.paths);
     void *work = aligned_alloc(64, bytes_of_work);

@@ -155,7 +155,8 @@ static void anything(void **state)
         const int64_t spread = INT64_C(1) << (turn % 17);
         for (size_t i = 0; i < pixels; i++) {
             const bool hole = (i % width / 8 + i / width / 8 + turn) % 3 == 0 && turn % 5 != 0;
-            depth[0][i] = hole ? 0 : (uint16_t)unit_between(&seed, turn < 20 ? 1 : 65536 - spread, turn < 20 ? spread : 65535);
+            depth[0][i] =
+                hole ? 0 : (uint16_t)unit_between(&seed, turn < 20 ? 1 : 65536 - spread, turn < 20 ? spread : 65535);
             confidence[0][i] = hole ? T3R_STEREO_NONE : (uint8_t)unit_between(&seed, 1, 255);
             depth[0][i] = depth[0][i] == 0 && !hole ? 1 : depth[0][i];
             colour[i] = (uint8_t)unit_random(&seed);
@@ -197,7 +198,8 @@ static void outlines(void **state)
         memset(left, 90, sizeof left);
         memset(right, 90, sizeof right);
         memset(left, 0, 10);
-        memset(right, 0, (size_t)(10 + COUNT - 1 - 5 + moved)); /* disparity 5 leads from end to end, moved by as much */
+        memset(right, 0,
+               (size_t)(10 + COUNT - 1 - 5 + moved)); /* disparity 5 leads from end to end, moved by as much */
         memset(confidence, 70, sizeof confidence);
         for (int i = 0; i < RIGHT; i++) {
             disparity[0][i] = disparity[1][i] = 5 << T3R_DISPARITY_BITS;

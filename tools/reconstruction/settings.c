@@ -35,8 +35,7 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
             "source of depth; stereo matches the colours of two or more posed frames and ignores recorded depth",      \
             true, NULL)                                                                                                \
     SETTING("planes", "on|off", planes, SWITCH, 0, 1, NULL,                                                            \
-            "with --depth stereo: continue what nothing matched along the planes that matched pixels lie on", false,   \
-            "planes")                                                                                                  \
+            "continue what --depth stereo does not match along the planes of what it does", false, "planes")           \
     SETTING("wavelet", "NAME", wavelet, NAME, 0, UINT32_MAX, wavelet_name, "wavelet that measures texture", true,      \
             NULL)                                                                                                      \
     SETTING("levels", "N", wavelet_levels, NUMBER, 1, T3R_MAX_LEVELS, NULL, "wavelet levels", true, "levels")          \
