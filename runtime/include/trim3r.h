@@ -717,8 +717,8 @@ t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 const char *t3r_weights_error(const void *weights, size_t bytes);
 
 /* The head_column_bytes with which this head works on views of this width, whatever their height, at least 1. 0 =
- * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds tiny, nano, small and base
- * with 8-bit activations; every arena holds heads that need no more than two bytes a pixel. */
+ * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds tiny, nano, small and
+ * base with 8-bit activations; every arena holds heads that need no more than two bytes a pixel. */
 uint32_t t3r_head_column_bytes(const void *weights, size_t bytes, uint32_t width);
 
 /* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it, and so which file to bind again. */

@@ -276,7 +276,8 @@ static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t sl
 /* --- all of it ---------------------------------------------------------------------------------------------------- */
 
 /* The planes are the keyframe's; the views at hand include it. */
-static t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report)
+/* Neither this nor refine_map() is inlined, as their views are not needed at once. */
+static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
@@ -308,6 +309,19 @@ static t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report
     return status == T3R_OK ? add_points(rt, views, slot, report) : status;
 }
 
+static __attribute__((noinline)) t3r_status refine_map(t3r_runtime *rt)
+{
+    t3r_view all[T3R_MAX_VIEWS];
+    t3r_views_of(rt, all);
+    const bool follows = rt->config.warm && rt->keyframes > 1;
+    const uint32_t passes = follows ? t3r_following_refinements_of(&rt->config) : rt->config.refinements;
+    const t3r_status status = t3r_refine_scene(rt, all, passes, t3r_map_of(rt).records);
+    if (status == T3R_OK) {
+        t3r_hash_scene(rt, T3R_STAGE_REFINE);
+    }
+    return status;
+}
+
 t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_stream_report *report)
 {
     const uint32_t slot = rt->next_slot, views = rt->views;
@@ -334,15 +348,5 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     rt->has_scene = 1;
     report->keyframes = rt->keyframes;
     report->gaussians = rt->gaussians;
-    if (rt->config.refinements > 0) {
-        t3r_view all[T3R_MAX_VIEWS];
-        t3r_views_of(rt, all);
-        const bool follows = rt->config.warm && rt->keyframes > 1;
-        const uint32_t passes = follows ? t3r_following_refinements_of(&rt->config) : rt->config.refinements;
-        status = t3r_refine_scene(rt, all, passes, t3r_map_of(rt).records);
-        if (status == T3R_OK) {
-            t3r_hash_scene(rt, T3R_STAGE_REFINE);
-        }
-    }
-    return status;
+    return rt->config.refinements > 0 ? refine_map(rt) : T3R_OK;
 }

@@ -23,7 +23,8 @@ typedef struct keyframe_map_settings {
     uint32_t refinements;     /* likewise [T3R_DEFAULT_REFINEMENTS] */
     uint32_t warm;            /* likewise [0] */
     uint32_t threads;         /* 1..T3R_MAX_WORKERS [1] */
-    const char *head; /* analytic, moment, tiny, nano, small, base or a file .t3w; read by the call that opens [small] */
+    const char
+        *head; /* analytic, moment, tiny, nano, small, base or a file .t3w; read by the call that opens [small] */
 } keyframe_map_settings;
 
 keyframe_map_settings keyframe_map_defaults(void);
