@@ -279,7 +279,7 @@ static void nowhere(void **state)
     t3r_view_columns columns;
     rect.view[0].fx_q16 = 8 << 16;
     for (int32_t centre = -500; centre <= 500; centre += 1000) { /* rays up to 16 to the side of 1 ahead */
-        rect.view[0].cx_q16 = centre << 16;
+        rect.view[0].cx_q16 = centre * (1 << 16);
         t3r_view_columns_of(&rect, 0, 40, 3, &columns);
         for (int i = 0; i < 3; i++) {
             assert_int_equal(columns.x_q24[i], (centre < 0 ? 16 : -16) * (1 << 24));
