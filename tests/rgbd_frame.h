@@ -1,4 +1,4 @@
-/* A frame of rows without padding, as most tests make them. */
+/* A frame of rows without padding, and the camera of a square one, as most tests make them. */
 #ifndef T3R_TESTS_RGBD_FRAME_H
 #define T3R_TESTS_RGBD_FRAME_H
 
@@ -22,6 +22,17 @@ static inline t3r_frame rgbd_frame(const uint8_t *rgb, const uint8_t *depth, uin
                        .depth_height = height,
                        .depth_stride_bytes = 2 * width,
                        .depth_unit_q40 = unit_q40};
+}
+
+/* A camera at the origin that looks along z: a focal length of `side` pixels, the axis through the middle. */
+static inline t3r_camera straight_camera(uint32_t side)
+{
+    const int32_t focal_q16 = (int32_t)side << 16;
+    return (t3r_camera){.fx_q16 = focal_q16,
+                        .fy_q16 = focal_q16,
+                        .cx_q16 = focal_q16 / 2,
+                        .cy_q16 = focal_q16 / 2,
+                        .rotation_q30 = {1 << 30}};
 }
 
 #endif

@@ -58,6 +58,17 @@ const char *t3r_depth_name(t3r_depth depth)
     return pick(names, T3R_DEPTH_COUNT, (uint32_t)depth);
 }
 
+const char *t3r_effort_name(t3r_effort effort)
+{
+    static const char *const names[] = {
+        [T3R_EFFORT_FAST] = "fast",
+        [T3R_EFFORT_BALANCED] = "balanced",
+        [T3R_EFFORT_BEST] = "best",
+    };
+    EVERY_NAME(names, T3R_EFFORT_COUNT);
+    return pick(names, T3R_EFFORT_COUNT, (uint32_t)effort);
+}
+
 const char *t3r_wavelet_name(t3r_wavelet wavelet)
 {
     static const char *const names[] = {

@@ -210,6 +210,15 @@ enum {
     T3R_PAIR_COUNT
 };
 
+/* How much work a build is worth: t3r_set_effort(). */
+typedef uint32_t t3r_effort;
+enum {
+    T3R_EFFORT_FAST,     /* the least work that new views do not suffer from much */
+    T3R_EFFORT_BALANCED, /* most of the quality for a part of the work */
+    T3R_EFFORT_BEST,     /* the best new views, whatever they take */
+    T3R_EFFORT_COUNT
+};
+
 /* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). They hold for the life of
  * the runtime: no later call changes them. The default is in [brackets]. */
 typedef struct t3r_config {
@@ -641,6 +650,18 @@ static inline t3r_status t3r_preset(uint64_t bytes, t3r_config *config, t3r_pres
     return t3r_preset_as(t3r_header_interface(), bytes, config, info);
 }
 
+/* The settings that make the most of so much work, whatever the size and the budget: head, refinements, fit_passes and
+ * structural of `config`, which keeps its other fields. They were chosen on training scenes (docs/budgets.md, "How much
+ * work"). *weights gets the name of the head's weights in quant/heads, for t3r_bind_head(); `weights` may be NULL.
+ *
+ * T3R_ERR_ARGUMENT: config is NULL, or effort is none of t3r_effort. T3R_ERR_UNSUPPORTED: this library was built
+ * without what the row asks for. T3R_ERR_INTERFACE. After an error both are as before. */
+t3r_status t3r_set_effort_as(uint64_t digest, t3r_effort effort, t3r_config *config, const char **weights);
+static inline t3r_status t3r_set_effort(t3r_effort effort, t3r_config *config, const char **weights)
+{
+    return t3r_set_effort_as(t3r_header_interface(), effort, config, weights);
+}
+
 /* Counts the work of a build by this configuration in an arena of `bytes`, with a depth or a match for every pixel, and
  * of one view. weights: those of the head T3R_HEAD_LEARNED, as t3r_bind_head() takes them; else NULL and 0. Frames have
  * the working size. A stream has no count, and with `warm` it is that of a build that begins anew.
@@ -865,6 +886,7 @@ const char *t3r_work_name(t3r_work work);
 const char *t3r_allocation_name(t3r_allocation allocation);
 const char *t3r_head_name(t3r_head head);
 const char *t3r_depth_name(t3r_depth depth);
+const char *t3r_effort_name(t3r_effort effort);
 const char *t3r_wavelet_name(t3r_wavelet wavelet);
 const char *t3r_pixel_format_name(t3r_pixel_format format);
 /* Whether two views can be matched, and why not, as text for people. Never NULL. */

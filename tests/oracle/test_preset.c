@@ -1,4 +1,4 @@
-/* Settings for a size of RAM: they fit it, and too little is refused. */
+/* Settings for a size of RAM: they fit it, and too little is refused. Settings for so much work. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -66,11 +66,52 @@ static void too_little_is_refused(void **state)
     assert_memory_equal(&info, &info_before, sizeof info);
 }
 
+static void an_effort_chooses_head_and_refinement_alone(void **state)
+{
+    (void)state;
+    uint32_t before = 0;
+    for (t3r_effort effort = 0; effort < T3R_EFFORT_COUNT; effort++) {
+        const t3r_config given = t3r_default_config(48, 40, 3, 77);
+        t3r_config config = given;
+        const char *weights = NULL;
+        assert_int_equal(t3r_set_effort(effort, &config, &weights), T3R_OK);
+        assert_null(t3r_config_error(&config));
+        assert_non_null(weights);
+        assert_int_equal(config.head, T3R_HEAD_LEARNED);
+        assert_true(config.refinements > before); /* more work is more passes */
+        before = config.refinements;
+        t3r_config rest = config;
+        rest.head = given.head;
+        rest.refinements = given.refinements;
+        rest.fit_passes = given.fit_passes;
+        rest.structural = given.structural;
+        assert_memory_equal(&rest, &given, sizeof given);
+        t3r_config again = given;
+        assert_int_equal(t3r_set_effort(effort, &again, NULL), T3R_OK);
+        assert_memory_equal(&again, &config, sizeof config);
+    }
+}
+
+static void an_unknown_effort_is_refused(void **state)
+{
+    (void)state;
+    const t3r_config given = t3r_default_config(48, 40, 3, 77);
+    t3r_config config = given;
+    const char *const unset = "unset", *weights = unset;
+    assert_int_equal(t3r_set_effort(T3R_EFFORT_COUNT, &config, &weights), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_set_effort(T3R_EFFORT_FAST, NULL, &weights), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_set_effort_as(t3r_interface() + 1, T3R_EFFORT_FAST, &config, &weights), T3R_ERR_INTERFACE);
+    assert_memory_equal(&config, &given, sizeof given);
+    assert_ptr_equal(weights, unset);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_size_has_settings_that_fit),
         cmocka_unit_test(too_little_is_refused),
+        cmocka_unit_test(an_effort_chooses_head_and_refinement_alone),
+        cmocka_unit_test(an_unknown_effort_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

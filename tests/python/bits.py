@@ -44,6 +44,23 @@ def check_build(recording, folder, path):
     check((folder / "ours.ply").read_bytes() == (folder / "theirs.ply").read_bytes(), "the file")
 
 
+def check_efforts(recording, folder, path):
+    """The head and the settings of `--preset`."""
+    for name in ("fast", "balanced", "best"):
+        built = json.loads(program("build", path, "--context", "0,2", "--gaussians", "90", "--preset", name, "--json", "-o",
+                                   folder / "effort.ply"))
+        with small(**trim3r.effort(name)) as made:
+            made.add_view(recording[0])
+            made.add_view(recording[2])
+            made.build(90)
+            check(trim3r.run_hash(made.stage_hashes) == built["hash"], f"the effort {name}")
+    try:
+        trim3r.effort("quick")
+        check(False, "an unknown effort is taken")
+    except ValueError as error:
+        check("fast, balanced, best" in str(error), f"{error}")
+
+
 def check_same_bits():
     """Whatever must change no bit: an analysis that was kept, workers, the arena's size, a percentage for a count."""
     with with_views() as one, with_views(workers=3) as two, with_views(arena_bytes=1 << 20, gaussians=900) as three:
@@ -126,6 +143,7 @@ def main():
         recording = trim3r.Recording(path)
         check_frames(recording)
         check_build(recording, folder, path)
+        check_efforts(recording, folder, path)
         check_same_bits()
         check_heads()
         check_scene(folder)

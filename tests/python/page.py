@@ -25,7 +25,7 @@ def said(source, names):
 
 def main():
     blocks = [block.body for block in blocks_of((ROOT / "docs" / "python.md").read_text()) if block.language == "python"]
-    check(len(blocks) == 4, f"{len(blocks)} blocks of Python")
+    check(len(blocks) == 5, f"{len(blocks)} blocks of Python")
     names, before = {}, os.getcwd()
     with tempfile.TemporaryDirectory(prefix="trim3r-python-") as folder:
         os.chdir(folder)

@@ -25,11 +25,7 @@ static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
 
 static void add_two(t3r_runtime *rt)
 {
-    t3r_camera camera = {.fx_q16 = SIDE << 16,
-                         .fy_q16 = SIDE << 16,
-                         .cx_q16 = SIDE << 15,
-                         .cy_q16 = SIDE << 15,
-                         .rotation_q30 = {1 << 30}};
+    t3r_camera camera = straight_camera(SIDE);
     uint64_t seed = 3;
     for (uint32_t v = 0; v < 2; v++) {
         for (uint32_t i = 0; i < PIXELS; i++) {

@@ -29,11 +29,7 @@ static t3r_frame some_frame(void)
 
 static t3r_camera some_camera(void)
 {
-    return (t3r_camera){.fx_q16 = SIDE << 16,
-                        .fy_q16 = SIDE << 16,
-                        .cx_q16 = SIDE << 15,
-                        .cy_q16 = SIDE << 15,
-                        .rotation_q30 = {1 << 30}};
+    return straight_camera(SIDE);
 }
 
 static t3r_config some_config(void)

@@ -41,12 +41,9 @@ static void take(t3r_runtime *rt, int64_t x, double z, uint8_t level)
         depth[2 * i + 1] = (uint8_t)(i % SIDE == 0 ? 0 : mm >> 8);
     }
     const t3r_frame frame = rgbd_frame(rgb, depth, SIDE, SIDE, MILLIMETRE_Q40);
-    const t3r_camera camera = {.fx_q16 = SIDE << 16,
-                               .fy_q16 = SIDE << 16,
-                               .cx_q16 = SIDE << 15,
-                               .cy_q16 = SIDE << 15,
-                               .position_q32 = {x * ((int64_t)1 << 32), 0, (int64_t)(z * 4294967296.0)},
-                               .rotation_q30 = {1 << 30}};
+    t3r_camera camera = straight_camera(SIDE);
+    camera.position_q32[0] = x * ((int64_t)1 << 32);
+    camera.position_q32[2] = (int64_t)(z * 4294967296.0);
     assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
 }
 

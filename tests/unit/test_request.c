@@ -48,11 +48,7 @@ static t3r_runtime *with_view(const t3r_config *config)
     arena_bytes = plan.bytes;
     assert_int_equal(t3r_init(&rt, arena, arena_bytes, config), T3R_OK);
     t3r_frame frame = rgbd_frame(rgb, depth, SIDE, SIDE, MILLIMETRE_Q40);
-    t3r_camera camera = {.fx_q16 = SIDE << 16,
-                         .fy_q16 = SIDE << 16,
-                         .cx_q16 = SIDE << 15,
-                         .cy_q16 = SIDE << 15,
-                         .rotation_q30 = {1 << 30}};
+    t3r_camera camera = straight_camera(SIDE);
     assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_OK);
     return rt;
 }

@@ -44,11 +44,7 @@ static t3r_frame made_up_frame(void)
 
 static t3r_camera made_up_camera(void)
 {
-    return (t3r_camera){.fx_q16 = SIDE << 16,
-                        .fy_q16 = SIDE << 16,
-                        .cx_q16 = SIDE << 15,
-                        .cy_q16 = SIDE << 15,
-                        .rotation_q30 = {1 << 30}};
+    return straight_camera(SIDE);
 }
 
 static t3r_runtime *analysed_by(uint32_t clusters, t3r_scene *scene)

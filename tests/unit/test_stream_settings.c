@@ -12,12 +12,9 @@ static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
 
 static t3r_camera camera_at(uint32_t step)
 {
-    return (t3r_camera){.fx_q16 = SIDE << 16,
-                        .fy_q16 = SIDE << 16,
-                        .cx_q16 = SIDE << 15,
-                        .cy_q16 = SIDE << 15,
-                        .position_q32 = {(int64_t)step << 29},
-                        .rotation_q30 = {1 << 30}};
+    t3r_camera camera = straight_camera(SIDE);
+    camera.position_q32[0] = (int64_t)step << 29;
+    return camera;
 }
 
 static t3r_frame frame_at(uint32_t step)

@@ -22,11 +22,14 @@ enum {
     KEY_MAX_LOSS,
     KEY_IMPORTANCE,
     KEY_WORKING,
-    KEY_ARENA
+    KEY_ARENA,
+    KEY_PRESET
 };
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
+    {"preset", KEY_PRESET, "EFFORT", 0,
+     "head and refinement for so much work: fast, balanced, best; settings behind it change it", 0},
     {"auto", KEY_AUTO, NULL, 0,
      "take no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, and at most the "
      "budget (all valid points)",
@@ -102,6 +105,9 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_ARENA:
         reconstruction_parse_arena(state, arg, o);
+        return 0;
+    case KEY_PRESET:
+        option_effort(state, "preset", arg, &o->config, &o->head);
         return 0;
     case KEY_AUTO:
         o->automatic = true;

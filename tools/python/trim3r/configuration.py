@@ -1,7 +1,7 @@
 """Settings: a t3r_config of names and numbers."""
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Dict, Mapping, Optional, Union
 
-from ._native import ffi, lib, text_of, value_named
+from ._native import INTERFACE, check, ffi, lib, text_of, value_named
 from .errors import InputError
 from .heads import Head
 from .image_stage import default_config
@@ -40,3 +40,29 @@ def configuration(width: int, height: int, views: int, gaussians: Optional[int],
     if reason != ffi.NULL:
         raise InputError(text_of(reason), "T3R_ERR_CONFIG")
     return config
+
+
+def effort(name: str) -> Dict[str, Any]:
+    """Head and settings for so much work, as `--preset` of the program chooses them.
+
+    Parameters
+    ----------
+    name : str
+        "fast", "balanced" or "best".
+
+    Returns
+    -------
+    dict
+        The arguments `head` and `settings` of Reconstructor and evaluate(): Reconstructor(256, 256, **effort("fast")).
+
+    Raises
+    ------
+    ValueError
+        There is no such effort.
+    """
+    value = value_named("an effort", lib.t3r_effort_name, lib.T3R_EFFORT_COUNT, name)
+    before, after, weights = default_config(8, 8, 1, 1), default_config(8, 8, 1, 1), ffi.new("const char **")
+    check(lib.t3r_set_effort_as(INTERFACE, value, after, weights))
+    changed = {field: getattr(after, field) for field, _ in ffi.typeof("t3r_config").fields
+               if getattr(after, field) != getattr(before, field) and field != "head"}
+    return {"head": text_of(weights[0]), "settings": changed}

@@ -14,6 +14,7 @@
 #include "cli/option_values.h"
 #include "cli/processor_options.h"
 #include "reconstruction/head_option.h"
+#include "reconstruction/option_names.h"
 #include "pictures/plan_picture.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/settings.h"
@@ -65,8 +66,10 @@ static const struct argp_option options[] = {
      0},
     {"within", KEY_WITHIN, "BYTES[K|M|G]", 0,
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
-    {"preset", KEY_PRESET, "BYTES[K|M|G]", 0,
-     "bytes of a device's RAM: print the settings that serve it best, and what takes it", 0},
+    {"preset", KEY_PRESET, "BYTES[K|M|G]|EFFORT", 0,
+     "bytes of a device's RAM: print the settings that serve it best, and what takes it; or the head and refinement "
+     "that build has for fast, balanced or best",
+     0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
      0},
@@ -123,6 +126,16 @@ static void check_options(struct argp_state *state, plan_options *o)
     }
 }
 
+static void parse_preset(struct argp_state *state, const char *text, plan_options *o)
+{
+    uint64_t bytes;
+    if (bytes_of_text(text, &bytes)) {
+        o->preset = option_bytes(state, "preset", text);
+    } else {
+        option_effort(state, "preset", text, &o->config, &o->head);
+    }
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     plan_options *o = state->input;
@@ -158,7 +171,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->within = option_bytes(state, "within", arg);
         return 0;
     case KEY_PRESET:
-        o->preset = option_bytes(state, "preset", arg);
+        parse_preset(state, arg, o);
         return 0;
     case KEY_RENDER:
         option_size(state, "render", arg, 1, &c->render_width, &c->render_height);

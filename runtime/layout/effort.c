@@ -1,0 +1,38 @@
+/* How much work a build is worth, as settings. */
+#include "core/features.h"
+#include "state/state.h"
+
+typedef struct effort_row {
+    const char *weights;
+    uint32_t refinements; /* at most */
+    uint32_t structural;
+} effort_row;
+
+/* Chosen on training scenes (docs/study/efforts.md). */
+static const effort_row rows[] = {
+    [T3R_EFFORT_FAST] = {"tiny", 2, 0},
+    [T3R_EFFORT_BALANCED] = {"small", 8, 0},
+    [T3R_EFFORT_BEST] = {"small", 16, 1},
+};
+_Static_assert(sizeof rows / sizeof *rows == T3R_EFFORT_COUNT, "a row an effort");
+
+t3r_status t3r_set_effort_as(uint64_t digest, t3r_effort effort, t3r_config *config, const char **weights)
+{
+    T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
+    T3R_REFUSE_UNLESS(config != NULL, T3R_ERR_ARGUMENT);
+    if (effort >= T3R_EFFORT_COUNT) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (!t3r_has(T3R_HAS_LEARNED | T3R_HAS_REFINEMENT | T3R_HAS_LOSS)) {
+        return T3R_ERR_UNSUPPORTED;
+    }
+    const effort_row *row = &rows[effort];
+    config->head = T3R_HEAD_LEARNED;
+    config->refinements = row->refinements;
+    config->fit_passes = 1;
+    config->structural = row->structural;
+    if (weights != NULL) {
+        *weights = row->weights;
+    }
+    return T3R_OK;
+}
