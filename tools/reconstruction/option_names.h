@@ -1,5 +1,4 @@
-/* Values of options that name a head, a source of depth, an effort or methods, as cli/option_values.h reads the others.
- */
+/* Values of options that name a head, a source of depth, an effort or methods; cli/option_values.h reads the others. */
 #ifndef TRIM3R_TOOLS_OPTION_NAMES_H
 #define TRIM3R_TOOLS_OPTION_NAMES_H
 
