@@ -128,11 +128,17 @@ static bool is_view(const t3r_runtime *rt, uint32_t v)
     return is_depth(rt, &view);
 }
 
+/* Whether the configuration is one that t3r_init() keeps: t3r_config_check() lets through what it would have chosen. */
+static bool is_settled(const t3r_config *config)
+{
+    return config->clusters != 0 && config->cluster_batches != 0;
+}
+
 /* The numbers of the state, before anything that they lead to is read. */
 static bool is_state(const t3r_runtime *rt)
 {
     const size_t most_points = T3R_PIXELS_(rt->config.width, rt->config.height) * rt->config.views;
-    return rt->views <= rt->config.views && rt->gaussians <= rt->config.max_gaussians &&
+    return is_settled(&rt->config) && rt->views <= rt->config.views && rt->gaussians <= rt->config.max_gaussians &&
            rt->analysed <= (rt->views > 0) && rt->has_scene <= 1 && rt->valid_points <= most_points &&
            t3r_is_scene_frame(&rt->frame) && t3r_is_build(&rt->config, &rt->build) && is_slot(rt) && is_reuse(rt);
 }

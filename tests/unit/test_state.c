@@ -303,12 +303,33 @@ static void many_clusters_are_checked(void **state)
     assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_ERR_EPOCH);
 }
 
+/* A configuration that leaves a choice to t3r_init(): it has the same layout, but stages count on what was chosen. */
+static void choices_that_are_still_open_are_refused(void **state)
+{
+    (void)state;
+    t3r_scene scene;
+    for (uint32_t open = 0; open < 3; open++) {
+        t3r_runtime *rt = analysed_by(0, &scene);
+        assert_true(rt->config.clusters > 1 && rt->config.cluster_batches > 0);
+        memcpy(copy, arena, arena_bytes);
+        rt = (t3r_runtime *)(void *)copy;
+        rt->analysed = 0;
+        rt->config.clusters = open == 1 ? 0 : rt->config.clusters;
+        rt->config.cluster_batches = open == 2 ? 0 : rt->config.cluster_batches;
+        assert_int_equal(t3r_attach(&rt, copy, arena_bytes), open == 0 ? T3R_OK : T3R_ERR_EPOCH);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cancelled_rebuild_keeps_the_analysis), cmocka_unit_test(every_call_of_refinement_may_cancel),
-        cmocka_unit_test(refused_view_gives_no_stale_scene),    cmocka_unit_test(empty_depth_is_refused_at_the_door),
-        cmocka_unit_test(damaged_copies_are_refused),           cmocka_unit_test(many_clusters_are_checked),
+        cmocka_unit_test(cancelled_rebuild_keeps_the_analysis),
+        cmocka_unit_test(every_call_of_refinement_may_cancel),
+        cmocka_unit_test(refused_view_gives_no_stale_scene),
+        cmocka_unit_test(empty_depth_is_refused_at_the_door),
+        cmocka_unit_test(damaged_copies_are_refused),
+        cmocka_unit_test(many_clusters_are_checked),
+        cmocka_unit_test(choices_that_are_still_open_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
