@@ -40,7 +40,7 @@ static t3r_config config_of(base which)
 {
     t3r_config c = t3r_default_config(WIDTH, HEIGHT, which == SCENE_ONLY ? 0 : 3, 2 * BUDGET);
     c.gaussians = BUDGET;
-    c.clusters = which == ANALYSED_MANY ? MANY : FEW;
+    c.clusters = which == ANALYSED_MANY ? MANY : which == VIEWS_ONLY ? 0 : FEW; /* 0: t3r_init() chooses */
     c.cluster_batches = 2;
     c.refinements = 1;
     c.workers = 3;
@@ -217,6 +217,7 @@ static void damage_config(t3r_runtime *rt, input *in)
         break;
     case 4:
         c->cluster_batches = take_number(in, 3) % 8;
+        c->clusters = c->cluster_batches == 7 ? 0 : c->clusters;
         break;
     case 5:
         c->colour_weight_q8 = take_number(in, 1024);
