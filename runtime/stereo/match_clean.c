@@ -102,6 +102,20 @@ static uint32_t explore(const plane *p, uint32_t start, uint32_t least, uint8_t 
     return queued;
 }
 
+/* The region that begins at `start`: its pixels, if they are too few, else 0. */
+static uint32_t remove_speckle(const plane *p, uint32_t start, uint32_t least, uint8_t *mark, uint32_t *queue)
+{
+    bool large;
+    const uint32_t queued = explore(p, start, least, mark, queue, &large);
+    for (uint32_t n = 0; n < queued; n++) {
+        mark[queue[n]] = LARGE;
+        if (!large) {
+            p->confidence[queue[n]] = 0;
+        }
+    }
+    return large ? 0 : queued;
+}
+
 uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side)
 {
     const plane p = plane_of(match, side);
@@ -112,19 +126,17 @@ uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side)
         mark[i] = UNSEEN;
     }
     /* Every pixel is queued once: afterwards it is known to belong to a large region, or has no confidence any more. */
-    for (uint32_t i = 0; i < pixels; i++) {
-        if (p.confidence[i] == 0 || mark[i] != UNSEEN) {
-            continue;
-        }
-        bool large;
-        const uint32_t queued = explore(&p, i, least, mark, queue, &large);
-        for (uint32_t n = 0; n < queued; n++) {
-            mark[queue[n]] = LARGE;
-            if (!large) {
-                p.confidence[queue[n]] = 0;
+    for (uint32_t row = 0; row < pixels; row += p.width) {
+        for (uint32_t i = row; i < row + p.width; i++) {
+            if (p.confidence[i] == 0 || mark[i] != UNSEEN) {
+                continue;
+            }
+            if (i > row && mark[i - 1] == LARGE && joined(&p, i, i - 1)) { /* most are */
+                mark[i] = LARGE;
+            } else {
+                removed += remove_speckle(&p, i, least, mark, queue);
             }
         }
-        removed += large ? 0 : queued;
     }
     return removed;
 }

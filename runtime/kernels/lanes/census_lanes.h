@@ -38,10 +38,11 @@ static inline TARGET void mirror(const t3r_census_costs *row)
     t3r_census_mirror(row);
 }
 
-static inline TARGET void costs(const t3r_census_costs *row)
+/* count: the disparities */
+static inline __attribute__((always_inline)) TARGET void costs(const t3r_census_costs *given, const uint32_t count)
 {
-    const size_t width = row->width, right = T3R_MATCH_RIGHT(width, row->disparities);
-    const uint32_t count = row->disparities;
+    const t3r_census_costs all = *given, *row = &all; /* a copy: writing bytes changes none of what it holds */
+    const size_t width = row->width, right = T3R_MATCH_RIGHT(width, count);
     for (size_t x = 0; x < width; x++) {
         const bytes a = all_of(row->bits[x]), b = all_of(row->bits[width + x]), c = all_of(row->bits[2 * width + x]);
         const bytes shown = all_of(row->luma[x] != 0 ? UINT8_MAX : 0);

@@ -37,11 +37,13 @@ static inline TARGET bytes relaxed(bytes lower, bytes same, bytes upper, bytes l
     return minimum(minimum(same, minimum(lower, upper) + p1) - least, p2);
 }
 
-/* vectors: as many as hold the disparities, 1..MOST_VECTORS; paths: from the row before. */
-static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_row *row, const uint32_t vectors,
-                                                                const uint32_t paths)
+/* count: the disparities; paths: from the row before; along: whether there are sums. */
+static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_row *given, const uint32_t count,
+                                                                const uint32_t paths, const bool along)
 {
-    const uint32_t width = row->width, count = row->disparities;
+    t3r_path_row all = *given, *row = &all; /* a copy: writing bytes changes none of what it holds */
+    all.disparities = count;                /* as it is; this says so to compilers */
+    const uint32_t width = row->width, vectors = (count + BYTES - 1) / BYTES;
     const size_t pitch = (size_t)count + 1, state = T3R_PATH_STATE_BYTES(width, count);
     const size_t leasts = t3r_path_leasts(width, count);
     const bytes guard = all_of(row->costs->guard), p1 = all_of(row->costs->p1);
@@ -49,17 +51,21 @@ static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_r
     for (uint32_t i = 0; i < vectors; i++) {
         beside[i] = held(least, guard, count - i * BYTES);
     }
-    for (uint32_t i = 0; i < width; i++) {
-        const uint32_t x = row->reverse ? width - 1 - i : i;
-        const uint8_t *cost = row->cost + (size_t)x * count;
+    const size_t step = row->reverse ? SIZE_MAX : 1;
+    size_t x = row->reverse ? width - 1 : 0;
+    int32_t luma_behind = row->luma[x];
+    for (uint32_t i = 0; i < width; i++, x += step) {
+        const uint8_t *cost = row->cost + x * count;
         t3r_path_link links[3];
         bytes leasts_here[3], next_least = all_of(UINT8_MAX), lower = guard;
         _Pragma("GCC unroll 3") for (uint32_t path = 0; path < paths; path++)
         {
-            links[path] = t3r_path_link_of(row, path, x);
+            links[path] = t3r_path_link_of(row, path, (uint32_t)x);
             leasts_here[path] = next_least;
         }
-        const bytes p2 = all_of(t3r_path_p2_along(row, x, i));
+        const int32_t change = row->luma[x] - luma_behind;
+        const bytes p2 = all_of(row->costs->p2[change < 0 ? -change : change]);
+        luma_behind = row->luma[x];
         for (uint32_t n = 0; n < vectors; n++) {
             const uint32_t left = count - n * BYTES; /* disparities from here on */
             const bytes own = load(cost + n * BYTES, left);
@@ -71,18 +77,18 @@ static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_r
                 const bytes value = held(own + relaxed(load(from, left), same, load(from + 2, left),
                                                        all_of(links[path].least), p1, all_of(links[path].p2)),
                                          guard, left);
-                store(row->to + path * state + ((size_t)x + 1) * pitch + 1 + n * BYTES, value, left);
+                store(row->to + path * state + (x + 1) * pitch + 1 + n * BYTES, value, left);
                 leasts_here[path] = minimum(leasts_here[path], value);
                 values[path] = value;
             }
-            if (row->sums != NULL) {
+            if (along) {
                 const bytes same = beside[n], upper = n + 1 < vectors ? beside[n + 1] : guard;
                 const bytes value = own + relaxed(below(same, lower), same, above(same, upper), least, p1, p2);
                 lower = same;
                 beside[n] = held(value, guard, left);
                 next_least = minimum(next_least, beside[n]);
                 values[paths] = value;
-                sum(row->sums + (size_t)x * count + n * BYTES, values, paths + 1, left, row->reverse);
+                sum(row->sums + x * count + n * BYTES, values, paths + 1, left, row->reverse);
             }
         }
         least = least_of(next_least);

@@ -32,7 +32,7 @@ static inline TARGET words all_words(int16_t x)
 }
 
 /* The least k of the least sum, and the least of the sums but for those beside it. */
-static inline TARGET void left(const int16_t *sums, uint32_t count, int16_t least, uint16_t *first, uint16_t *second)
+static inline __attribute__((always_inline)) TARGET void left(const int16_t *sums, uint32_t count, int16_t least, uint16_t *first, uint16_t *second)
 {
     uint32_t k = 0, n = 0;
     for (; n < count; n += WORDS) {
@@ -51,10 +51,12 @@ static inline TARGET void left(const int16_t *sums, uint32_t count, int16_t leas
     *second = (uint16_t)least_word(other);
 }
 
-static inline TARGET void winners(const t3r_winner_row *row)
+/* count: the disparities */
+static inline __attribute__((always_inline)) TARGET void winners(const t3r_winner_row *given, const uint32_t count)
 {
     enum { VECTORS = T3R_PATH_MOST / WORDS };
-    const uint32_t width = row->width, count = row->disparities, vectors = (count + WORDS - 1) / WORDS;
+    const t3r_winner_row all = *given, *row = &all; /* a copy: writing vectors changes none of what it holds */
+    const uint32_t width = row->width, vectors = (count + WORDS - 1) / WORDS;
     const uint32_t last = (vectors - 1) * WORDS;
     const words none = all_words(INT16_MAX), nowhere = all_words(0);
     words best[VECTORS], at[VECTORS], places = all_words(0);

@@ -121,45 +121,48 @@ static inline TARGET uint32_t first_equal(words x, int16_t value)
     return mask == 0 ? WORDS : (uint32_t)__builtin_ctz(mask) / 2;
 }
 
-/* A function of its own for each number of vectors and of paths keeps everything in registers. */
-#define FOLLOW(name, vectors)                                                                                          \
-    static TARGET void name##_straight(const t3r_path_row *row)                                                        \
+/* A function of its own for each number of disparities keeps everything in registers. */
+#define FOLLOW(count)                                                                                                  \
+    static TARGET void down_##count(const t3r_path_row *row)                                                           \
     {                                                                                                                  \
-        follow(row, vectors, 1);                                                                                       \
+        follow(row, count, 1, false);                                                                                  \
     }                                                                                                                  \
-    static TARGET void name##_diagonal(const t3r_path_row *row)                                                        \
+    static TARGET void straight_##count(const t3r_path_row *row)                                                       \
     {                                                                                                                  \
-        follow(row, vectors, 3);                                                                                       \
+        follow(row, count, 1, true);                                                                                   \
     }                                                                                                                  \
-    static TARGET void name(const t3r_path_row *row)                                                                   \
+    static TARGET void diagonal_##count(const t3r_path_row *row)                                                       \
     {                                                                                                                  \
-        if (row->diagonals) {                                                                                          \
-            name##_diagonal(row);                                                                                      \
-        } else {                                                                                                       \
-            name##_straight(row);                                                                                      \
-        }                                                                                                              \
+        follow(row, count, 3, row->sums != NULL);                                                                      \
+    }                                                                                                                  \
+    static TARGET void costs_##count(const t3r_census_costs *row)                                                      \
+    {                                                                                                                  \
+        costs(row, count);                                                                                             \
+    }                                                                                                                  \
+    static TARGET void winners_##count(const t3r_winner_row *row)                                                      \
+    {                                                                                                                  \
+        winners(row, count);                                                                                           \
     }
+#define FOLLOWED(count)                                                                                                \
+    case count:                                                                                                        \
+        (row->diagonals ? diagonal_##count : row->sums != NULL ? straight_##count : down_##count)(row);                \
+        break;
+#define COSTED(count)                                                                                                  \
+    case count:                                                                                                        \
+        costs_##count(row);                                                                                            \
+        break;
+#define WON(count)                                                                                                     \
+    case count:                                                                                                        \
+        winners_##count(row);                                                                                          \
+        break;
 
-FOLLOW(follow_one, 1)
-FOLLOW(follow_two, 2)
-FOLLOW(follow_three, 3)
-FOLLOW(follow_four, 4)
+#define COUNTS(X) X(16) X(32) X(48) X(64) X(80) X(96) X(112) X(128)
+COUNTS(FOLLOW)
 
 TARGET void t3r_path_row_avx2(const t3r_path_row *row)
 {
-    switch ((row->disparities + BYTES - 1) / BYTES) {
-    case 1:
-        follow_one(row);
-        break;
-    case 2:
-        follow_two(row);
-        break;
-    case 3:
-        follow_three(row);
-        break;
-    case 4:
-        follow_four(row);
-        break;
+    switch (row->disparities) {
+        COUNTS(FOLLOWED)
     default:
         t3r_path_row_c(row); /* a first look's alone */
     }
@@ -168,12 +171,20 @@ TARGET void t3r_path_row_avx2(const t3r_path_row *row)
 TARGET void t3r_census_costs_avx2(const t3r_census_costs *row)
 {
     mirror(row);
-    costs(row);
+    switch (row->disparities) {
+        COUNTS(COSTED)
+    default:
+        costs(row, row->disparities);
+    }
 }
 
 TARGET void t3r_winner_row_avx2(const t3r_winner_row *row)
 {
-    winners(row);
+    switch (row->disparities) {
+        COUNTS(WON)
+    default:
+        winners(row, row->disparities);
+    }
 }
 
 #else

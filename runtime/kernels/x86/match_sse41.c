@@ -109,23 +109,22 @@ static inline TARGET uint32_t first_equal(words x, int16_t value)
 
 TARGET void t3r_path_row_sse41(const t3r_path_row *row)
 {
-    const uint32_t vectors = row->disparities / BYTES;
     if (row->diagonals) {
-        follow(row, vectors, 3);
+        follow(row, row->disparities, 3, row->sums != NULL);
     } else {
-        follow(row, vectors, 1);
+        follow(row, row->disparities, 1, row->sums != NULL);
     }
 }
 
 TARGET void t3r_census_costs_sse41(const t3r_census_costs *row)
 {
     mirror(row);
-    costs(row);
+    costs(row, row->disparities);
 }
 
 TARGET void t3r_winner_row_sse41(const t3r_winner_row *row)
 {
-    winners(row);
+    winners(row, row->disparities);
 }
 
 #else
