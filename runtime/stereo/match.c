@@ -18,7 +18,30 @@ static void census(const t3r_kernels *kernels, const uint8_t *luma, uint32_t wid
     kernels->census_row(rows, width, width, bits);
 }
 
-static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t y, uint8_t *cost)
+static void copy(uint8_t *restrict to, const uint8_t *restrict from, size_t bytes)
+{
+    for (size_t i = 0; i < bytes; i++) {
+        to[i] = from[i];
+    }
+}
+
+/* A row's census is made once: until the row has its disparities and confidences, it is kept in their place. */
+static void row_census(const t3r_match *match, uint32_t side, uint32_t width, uint32_t y, bool kept, uint8_t *bits)
+{
+    uint8_t *first = (uint8_t *)(match->disparity[side] + (size_t)y * width);
+    uint8_t *last = match->confidence[side] + (size_t)y * width;
+    if (kept) {
+        copy(bits, first, 2 * (size_t)width);
+        copy(bits + 2 * (size_t)width, last, width);
+        return;
+    }
+    census(match->kernels, match->luma[side], width, match->height, y, bits);
+    copy(first, bits, 2 * (size_t)width);
+    copy(last, bits + 2 * (size_t)width, width);
+}
+
+/* kept: whether the row had its costs before */
+static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t y, bool kept, uint8_t *cost)
 {
     const uint32_t width = match->width, right = (uint32_t)T3R_MATCH_RIGHT(width, match->disparities);
     const t3r_census_costs row = {.width = width,
@@ -30,16 +53,9 @@ static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t
                                   .mirrored = w->mirrored,
                                   .least = w->least,
                                   .cost = cost};
-    census(match->kernels, match->luma[0], width, match->height, y, w->bits);
-    census(match->kernels, match->luma[1], right, match->height, y, w->straight);
+    row_census(match, 0, width, y, kept, w->bits);
+    row_census(match, 1, right, y, kept, w->straight);
     match->kernels->census_costs(&row);
-}
-
-static void copy(uint8_t *restrict to, const uint8_t *restrict from, size_t bytes)
-{
-    for (size_t i = 0; i < bytes; i++) {
-        to[i] = from[i];
-    }
 }
 
 static void exchange(uint8_t *pair[2])
@@ -71,7 +87,7 @@ void t3r_match_pair(const t3r_match *match)
         if (y / rows + 1 == blocks) {
             break; /* the last block is done from its state */
         }
-        cost_row(match, &w, y, w.cost);
+        cost_row(match, &w, y, false, w.cost);
         row.luma = match->luma[0] + (size_t)y * width;
         row.luma_before = y > 0 ? row.luma - width : row.luma;
         row.cost = w.cost;
@@ -85,7 +101,7 @@ void t3r_match_pair(const t3r_match *match)
         copy(w.down[0], w.states + block * w.state_bytes, w.state_bytes);
         for (uint32_t y = first; y < end; y++) {
             const size_t at = (size_t)(y - first) * width * count;
-            cost_row(match, &w, y, w.cost + at);
+            cost_row(match, &w, y, block + 1 < blocks, w.cost + at);
             row.luma = match->luma[0] + (size_t)y * width;
             row.luma_before = y > 0 ? row.luma - width : row.luma;
             row.cost = w.cost + at;

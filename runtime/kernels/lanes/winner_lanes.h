@@ -94,7 +94,8 @@ static inline __attribute__((always_inline)) TARGET void winners(const t3r_winne
         store_words(at_to, next_at, count - last);
     }
     /* what is left in the window, which has moved once more */
-    for (uint32_t n = 0; n + 1 < count; n++) {
+    _Pragma("GCC unroll 1") for (uint32_t n = 0; n + 1 < count; n++)
+    {
         row->best[n] = best[(n + 1) / WORDS][(n + 1) % WORDS];
         row->at[n] = at[(n + 1) / WORDS][(n + 1) % WORDS];
     }
