@@ -53,8 +53,11 @@ static void take_columns(const t3r_rectification *rect, int64_t x_q16, uint32_t 
                          int32_t b_q24[T3R_RAYS])
 {
     for (uint32_t i = 0; i < T3R_RAYS; i++) {
+        a_q24[i] = b_q24[i] = 0;
+    }
+    for (uint32_t i = 0; i < count; i++) {
         const t3r_column c = t3r_rectified_column(rect, (int32_t)(x_q16 + (int64_t)i * 65536));
-        const bool any = i < count && c.b_q24 > 0;
+        const bool any = c.b_q24 > 0;
         a_q24[i] = any ? c.a_q24 : 0;
         b_q24[i] = any && rect->polar ? c.b_q24 : 0; /* a plane's b is in the map's base */
     }

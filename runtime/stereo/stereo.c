@@ -2,6 +2,7 @@
 #include "stereo.h"
 
 #include "core/fixed.h"
+#include "core/memory.h"
 #include "match_clean.h"
 #include "stereo_depth.h"
 #include "stereo_planes.h"
@@ -26,6 +27,7 @@ typedef struct planes {
     t3r_stereo_side side[2];
     size_t pixels[2]; /* there is room for so many */
     uint8_t *work;
+    size_t work_bytes;
 } planes;
 
 static planes divide(const t3r_stereo_settings *settings, uint32_t width, uint32_t height, void *work)
@@ -35,7 +37,8 @@ static planes divide(const t3r_stereo_settings *settings, uint32_t width, uint32
     for (int side = 0; side < 2; side++) {
         p.side[side] = t3r_take_side(&cut, p.pixels[side]);
     }
-    p.work = t3r_take(&cut, T3R_STEREO_REST_BYTES_(width, height, settings->disparities, settings->paths));
+    p.work_bytes = T3R_STEREO_REST_BYTES_(width, height, settings->disparities, settings->paths);
+    p.work = t3r_take(&cut, p.work_bytes);
     return p;
 }
 
@@ -127,10 +130,19 @@ static uint32_t lanes(uint32_t disparities)
     return (disparities + T3R_PATH_LANES - 1) / T3R_PATH_LANES * T3R_PATH_LANES;
 }
 
+/* The right plane as a first look has drawn it, in full size; columns, rows: 0 where it had no room to keep it. */
+typedef struct drawing {
+    const uint8_t *view; /* luma of the right view, from which it is drawn */
+    const uint8_t *luma;
+    uint32_t columns, rows;
+    int32_t begin_q16;
+} drawing;
+
 /* The right plane at a quarter of the size; each worker has `band` times four rows of the full size. */
 typedef struct quarter_job {
     side_job full; /* columns: a quarter of them */
     uint32_t band;
+    bool kept; /* all rows of the full size have their places */
     uint8_t *rows;
 } quarter_job;
 
@@ -139,9 +151,9 @@ static void quarter_rows(void *context, uint32_t begin, uint32_t end, uint32_t w
     const quarter_job *job = context;
     const side_job *full = &job->full;
     const uint32_t columns = QUARTER * full->columns;
-    uint8_t *rows = job->rows + (size_t)worker * job->band * QUARTER * columns;
     for (uint32_t first = begin; first < end; first += job->band) {
         const uint32_t last = T3R_MIN(first + job->band, end);
+        uint8_t *rows = job->rows + (size_t)(job->kept ? first : worker * job->band) * QUARTER * columns;
         t3r_rectified_rows(full->kernels, full->rect, full->side, full->luma, full->begin_q16,
                            (t3r_share){QUARTER * first, QUARTER * last}, columns, rows);
         for (uint32_t y = first; y < last; y++) {
@@ -151,11 +163,13 @@ static void quarter_rows(void *context, uint32_t begin, uint32_t end, uint32_t w
     }
 }
 
-/* What a first look finds: disparities from `first`, at most as many as the settings have, and the match score. */
+/* What a first look finds: disparities from `first`, at most as many as the settings have, and the match score; and
+ * what it has drawn. */
 typedef struct look {
     int32_t first;
     uint32_t disparities;
     uint32_t match_score; /* t3r_stereo_match_score() */
+    drawing right;
 } look;
 
 /* Each trusted pixel as far as its distance would be known, d / (d + HALF_KNOWN) of a disparity of d pixels, in 256ths.
@@ -190,9 +204,11 @@ static __attribute__((noinline)) void fill_left(const t3r_stereo_settings *setti
     }
 }
 
-/* The right plane at a quarter of the size. */
-static __attribute__((noinline)) void fill_right(const t3r_stereo_settings *settings, const t3r_rectification *rect,
-                                                 const t3r_view *view, const planes *full, uint32_t count, uint8_t *out)
+/* The right plane at a quarter of the size. In full size it is kept where the work ends, with the view's luma, if
+ * the matching of the first look leaves so much. */
+static __attribute__((noinline)) drawing fill_right(const t3r_stereo_settings *settings, const t3r_rectification *rect,
+                                                    const t3r_view *view, const planes *full, uint32_t count,
+                                                    uint8_t *out)
 {
     const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
     const uint32_t columns = (uint32_t)T3R_MATCH_RIGHT(width, count);
@@ -201,15 +217,56 @@ static __attribute__((noinline)) void fill_right(const t3r_stereo_settings *sett
                                 .side = 1,
                                 .columns = columns,
                                 .begin_q16 = begin_q16(rect, 1, rect->least_disparity, QUARTER * (count - 1) + 1),
-                                .luma = full->work,
                                 .out = out},
                        .rows = full->side[1].luma};
-    luma_of(view, full->work);
     const size_t room = full->pixels[1] / (QUARTER * QUARTER * (size_t)columns); /* for so many times four rows */
+    const size_t pixels = T3R_PIXELS_(view->width, view->height), bytes = QUARTER * QUARTER * (size_t)columns * height;
     const t3r_workers alone = {NULL, 1};
-    const t3r_workers *workers = settings->workers.count <= room ? &settings->workers : &alone;
-    job.band = (uint32_t)T3R_MIN(T3R_MAX(room / T3R_MAX(workers->count, 1), 1), BAND);
+    const t3r_workers *workers = &settings->workers;
+    uint8_t *luma = full->work;
+    if (T3R_MATCH_WORK_BYTES(width, height, count, settings->paths) + pixels + bytes <= full->work_bytes) {
+        luma = full->work + full->work_bytes - bytes - pixels;
+        job.rows = luma + pixels;
+        job.band = BAND;
+        job.kept = true;
+    } else {
+        workers = workers->count <= room ? workers : &alone;
+        job.band = (uint32_t)T3R_MIN(T3R_MAX(room / T3R_MAX(workers->count, 1), 1), BAND);
+    }
+    job.full.luma = luma;
+    luma_of(view, luma);
     t3r_run_rows(workers, height, quarter_rows, &job);
+    return job.kept ? (drawing){luma, job.rows, QUARTER * columns, QUARTER * height, job.full.begin_q16} : (drawing){0};
+}
+
+/* The right plane of the disparities that were found, from what is drawn of it. */
+typedef struct right_job {
+    side_job side;
+    drawing drawn;
+} right_job;
+
+static void finish_right(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const right_job *job = context;
+    const side_job *side = &job->side;
+    /* column x is drawn at x + apart, if it is between `from` and `to` */
+    const int32_t apart = (side->begin_q16 - job->drawn.begin_q16) / 65536, columns = (int32_t)side->columns;
+    const int32_t from = t3r_clamp32(-apart, 0, columns);
+    const int32_t to = t3r_clamp32((int32_t)job->drawn.columns - apart, from, columns);
+    for (uint32_t y = begin; y < end; y++) {
+        const bool drawn = y < job->drawn.rows;
+        const int32_t gaps[2][2] = {{0, drawn ? from : columns}, {drawn ? to : columns, columns}};
+        uint8_t *out = side->out + (size_t)y * side->columns;
+        for (int i = 0; i < 2; i++) {
+            t3r_rectified_rows(side->kernels, side->rect, side->side, side->luma,
+                               side->begin_q16 + gaps[i][0] * 65536, (t3r_share){y, y + 1},
+                               (uint32_t)(gaps[i][1] - gaps[i][0]), out + gaps[i][0]);
+        }
+        if (drawn) {
+            memcpy(out + from, job->drawn.luma + (size_t)y * job->drawn.columns + from + apart, (size_t)(to - from));
+        }
+    }
 }
 
 /* The range of disparities that the first look trusts, and what it is worth. */
@@ -267,7 +324,7 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
     const uint32_t count = lanes(T3R_MIN(wanted, room));
     const planes p = divide_quarter(full, width, height, count);
     fill_left(settings, rect, &views[0], full, p.side[0].luma);
-    fill_right(settings, rect, &views[1], full, count, p.side[1].luma);
+    found->right = fill_right(settings, rect, &views[1], full, count, p.side[1].luma);
     const t3r_match match = match_of(&p, settings, width, height, count);
     t3r_match_pair(&match);
     t3r_match_agree(&match);
@@ -314,15 +371,18 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
         found.disparity[side] = full.side[side].disparity;
         found.confidence[side] = full.side[side].confidence;
     }
-    luma_of(&views[1], full.work); /* the left plane's luma is the first look's */
-    side_job job = {.kernels = settings->kernels,
-                    .rect = &rect,
-                    .side = 1,
-                    .columns = found.columns[1],
-                    .begin_q16 = found.begin_q16[1],
-                    .luma = full.work,
-                    .out = full.side[1].luma};
-    t3r_run_rows(&settings->workers, rect.height, rectify_rows, &job);
+    if (seen.right.view == NULL) {
+        luma_of(&views[1], full.work); /* the left plane's luma is the first look's */
+    }
+    right_job job = {.side = {.kernels = settings->kernels,
+                              .rect = &rect,
+                              .side = 1,
+                              .columns = found.columns[1],
+                              .begin_q16 = found.begin_q16[1],
+                              .luma = seen.right.view != NULL ? seen.right.view : full.work,
+                              .out = full.side[1].luma},
+                     .drawn = seen.right};
+    t3r_run_rows(&settings->workers, rect.height, finish_right, &job);
     t3r_match_all(&match, settings->fill != 0);
     pair = t3r_stereo_unit(settings->kernels, &found, views, depth_unit_q40);
     for (uint32_t side = 0; side < 2 && pair == T3R_PAIR_OK; side++) {

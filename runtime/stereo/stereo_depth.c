@@ -26,6 +26,12 @@ typedef struct distance {
     uint8_t confidence;                     /* T3R_STEREO_... */
 } distance;
 
+/* At most a pixel apart; T3R_NO_DISPARITY is farther from any disparity, which is below 2^15. */
+static bool beside(int32_t k, int32_t own)
+{
+    return (uint32_t)(k - own + (1 << T3R_DISPARITY_BITS)) <= 2u << T3R_DISPARITY_BITS;
+}
+
 /* Disparity k in Q7 at a place of a plane and how far it can be trusted: between four pixels where they are of one kind
  * and one surface, else the nearest pixel's. False: none. */
 static bool look_up(const t3r_stereo_planes *planes, uint32_t side, const int32_t place_q16[2], int32_t *k_q7,
@@ -51,19 +57,16 @@ static bool look_up(const t3r_stereo_planes *planes, uint32_t side, const int32_
     if (left < 0 || top < 0 || left + 1 >= width || top + 1 >= height) {
         return true;
     }
-    const int32_t fx = (int32_t)(x & 255), fy = (int32_t)(y & 255);
-    const int32_t weight[4] = {(256 - fx) * (256 - fy), fx * (256 - fy), (256 - fx) * fy, fx * fy};
-    int64_t sum = 0; /* below 2^16 2^15 */
-    for (int i = 0; i < 4; i++) {
-        const size_t at = (size_t)((top + i / 2) * width + left + i % 2);
-        const int32_t k = planes->disparity[side][at];
-        if (k == T3R_NO_DISPARITY || (planes->confidence[side][at] != 0) != matched ||
-            t3r_abs32(k - own) > 1 << T3R_DISPARITY_BITS) {
-            return true;
-        }
-        sum += (int64_t)weight[i] * k;
+    const uint16_t *k = planes->disparity[side] + top * width + left, *below = k + width;
+    const uint8_t *c = planes->confidence[side] + top * width + left, *c_below = c + width;
+    if (!beside(k[0], own) || !beside(k[1], own) || !beside(below[0], own) || !beside(below[1], own) ||
+        (c[0] != 0) != matched || (c[1] != 0) != matched || (c_below[0] != 0) != matched ||
+        (c_below[1] != 0) != matched) {
+        return true;
     }
-    *k_q7 = (int32_t)t3r_round_shift64(sum, 16);
+    const int32_t fx = (int32_t)(x & 255), fy = (int32_t)(y & 255);
+    const int32_t upper = 256 * k[0] + fx * (k[1] - k[0]), lower = 256 * below[0] + fx * (below[1] - below[0]);
+    *k_q7 = (int32_t)t3r_round_shift64((int64_t)256 * upper + fy * (lower - upper), 16); /* below 2^15 2^16 */
     return true;
 }
 
