@@ -14,9 +14,11 @@
 #include "blur.h"
 #include "census.h"
 #include "convolve.h"
+#include "disparity_at.h"
 #include "hash_bytes.h"
 #include "image_rows.h"
 #include "keys.h"
+#include "luma_at.h"
 #include "nearest.h"
 #include "path_row.h"
 #include "place.h"
@@ -43,10 +45,12 @@ typedef struct t3r_kernels {
     t3r_locate_kernel *locate;
     /* stereo */
     t3r_ray_row_kernel *ray_row;
+    t3r_luma_at_kernel *luma_at;
     t3r_census_row_kernel *census_row;
     t3r_census_costs_kernel *census_costs;
     t3r_path_row_kernel *path_row;
     t3r_winner_row_kernel *winner_row;
+    t3r_disparity_at_kernel *disparity_at;
     /* wavelet */
     t3r_luma_row_kernel *luma_row;
     t3r_split_row_kernel *split_row;

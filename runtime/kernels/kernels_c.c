@@ -12,10 +12,12 @@ const t3r_kernels t3r_kernels_c = {
     .locate = t3r_locate_c,
 #if T3R_FEATURE_STEREO
     .ray_row = t3r_ray_row_c,
+    .luma_at = t3r_luma_at_c,
     .census_row = t3r_census_row_c,
     .census_costs = t3r_census_costs_c,
     .path_row = t3r_path_row_c,
     .winner_row = t3r_winner_row_c,
+    .disparity_at = t3r_disparity_at_c,
 #endif
     .luma_row = t3r_luma_row_c,
     .split_row = t3r_split_row_c,

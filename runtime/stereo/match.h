@@ -17,9 +17,6 @@
 #include "path.h"
 #include "trim3r_arena.h"
 
-#define T3R_NO_DISPARITY UINT16_MAX
-#define T3R_DISPARITY_BITS 7 /* disparities k are in Q7 */
-
 typedef struct t3r_match {
     const t3r_kernels *kernels;
     uint32_t width, height;  /* of the left plane; at least 8 x 8 */
@@ -28,7 +25,7 @@ typedef struct t3r_match {
     uint32_t p1, p2, p2_min; /* penalties: P1; P2 where luma does not change, and its least */
     bool distrust_outlines;  /* those that match each other (plane_outline.h) */
     const uint8_t *luma[2];  /* left, right: 1..255, 0 = no luma */
-    uint16_t *disparity[2];  /* k in Q7, or T3R_NO_DISPARITY; of the left plane's width, of the right one's */
+    uint16_t *disparity[2];  /* as kernels/disparity_at.h has it; of the left plane's width, of the right one's */
     uint8_t *confidence[2];  /* how much better the chosen disparity is than any other: 1..255, 0 = not to be trusted */
     void *work;
 } t3r_match;

@@ -50,14 +50,19 @@ typedef struct t3r_column {
     int32_t a_q24, b_q24; /* b <= 0: no such ray */
 } t3r_column;
 
+/* The column at a place in units of column, Q24: at most 4 in planes, 1 where there is a ray of polar ones. */
+static inline t3r_column t3r_column_of(bool polar, int64_t at_q24)
+{
+    if (!polar) {
+        return (t3r_column){(int32_t)at_q24, 1 << 24};
+    }
+    return (t3r_column){(int32_t)(2 * at_q24), (int32_t)((1 << 24) - t3r_round_shift64(at_q24 * at_q24, 24))};
+}
+
 /* The column x pixels from where the baseline's normal is, Q16: the plane's own first one is first_q16[0]. */
 static inline t3r_column t3r_rectified_column(const t3r_rectification *rect, int32_t x_q16)
 {
-    const int64_t at = t3r_divide_q24(&rect->column_scale, x_q16, 4);
-    if (!rect->polar) {
-        return (t3r_column){(int32_t)at, 1 << 24};
-    }
-    return (t3r_column){(int32_t)(2 * at), (int32_t)((1 << 24) - t3r_round_shift64(at * at, 24))};
+    return t3r_column_of(rect->polar, t3r_divide_q24(&rect->column_scale, x_q16, 4));
 }
 
 /* Where a view's pixel lies: column as above, row counted from the plane's first, Q16; and how far its ray goes from

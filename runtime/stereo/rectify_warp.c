@@ -22,18 +22,6 @@ static void row_direction(const t3r_rectification *rect, uint32_t row, int64_t e
     e_q24[1] = sector == 0 ? one : sector == 1 ? -slant : sector == -1 ? slant : -one;
 }
 
-/* Bilinear, as the undistortion has it: position to Q8, held to the picture, one rounding; 1..255. */
-static inline uint8_t sample(const uint8_t *luma, int32_t width, int32_t height, int32_t u_q16, int32_t v_q16)
-{
-    const int32_t u = t3r_clamp32(t3r_round_shift32(u_q16, 8), 0, (width - 1) << 8);
-    const int32_t v = t3r_clamp32(t3r_round_shift32(v_q16, 8), 0, (height - 1) << 8);
-    const int32_t x = u >> 8, y = v >> 8, fx = u & 255, fy = v & 255;
-    const int32_t right = T3R_MIN(x + 1, width - 1), below = T3R_MIN(y + 1, height - 1);
-    const uint8_t *a = luma + (size_t)y * (size_t)width, *b = luma + (size_t)below * (size_t)width;
-    const int32_t top = 256 * a[x] + fx * (a[right] - a[x]), bottom = 256 * b[x] + fx * (b[right] - b[x]);
-    return (uint8_t)T3R_MAX(t3r_round_shift32(256 * top + fy * (bottom - top), 16), 1);
-}
-
 /* A row's rays, seen by the view: what kernels/ray_row.h makes places of. */
 static void map_row(const t3r_rectification *rect, const t3r_rectified_view *v, uint32_t row, t3r_ray_map *map)
 {
@@ -67,7 +55,7 @@ void t3r_rectified_rows(const t3r_kernels *kernels, const t3r_rectification *rec
                         int32_t x_q16, t3r_share rows, uint32_t count, uint8_t *out)
 {
     const t3r_rectified_view *v = &rect->view[view];
-    const int32_t width = (int32_t)rect->view_width, height = (int32_t)rect->view_height;
+    const t3r_luma_picture picture = {luma, rect->view_width, rect->view_height};
     t3r_ray_map map = {.steepest = 16, .scale_q16 = {v->fx_q16, v->fy_q16}, .offset_q16 = {v->cx_q16, v->cy_q16}};
     for (uint32_t first = 0; first < count; first += T3R_RAYS) {
         const uint32_t columns = T3R_MIN(count - first, T3R_RAYS);
@@ -78,17 +66,7 @@ void t3r_rectified_rows(const t3r_kernels *kernels, const t3r_rectification *rec
             t3r_ray_places places;
             map_row(rect, v, row, &map);
             kernels->ray_row(&map, a_q24, b_q24, (columns + 15) & ~15u, &places);
-            for (uint32_t i = 0; i < columns; i++) {
-                /* positions far outside are held to 32 bits, and as far outside */
-                const int32_t u = places.x_q16[i], w = places.y_q16[i];
-                const uint32_t x = (uint32_t)(((u >> 15) + 1) >> 1), y = (uint32_t)(((w >> 15) + 1) >> 1);
-                const bool seen = places.z_q24[i] != 0 && x < (uint32_t)width && y < (uint32_t)height &&
-                                  luma[y * (uint32_t)width + x] != 0;
-                to[i] = 0;
-                if (seen) {
-                    to[i] = sample(luma, width, height, u, w);
-                }
-            }
+            kernels->luma_at(&picture, &places, columns, to);
         }
     }
 }

@@ -26,67 +26,45 @@ typedef struct distance {
     uint8_t confidence;                     /* T3R_STEREO_... */
 } distance;
 
-/* At most a pixel apart; T3R_NO_DISPARITY is farther from any disparity, which is below 2^15. */
-static bool beside(int32_t k, int32_t own)
+_Static_assert(T3R_STEREO_FILLED == 1 && T3R_STEREO_LEAST == 2, "kernels/disparity_at.h says so, too");
+
+/* Pixels of a view's row, seen in the planes. */
+typedef struct sight {
+    t3r_ray_places places;
+    t3r_disparities found;
+} sight;
+
+static void look_at(const t3r_kernels *kernels, const t3r_stereo_planes *planes, uint32_t side,
+                    const t3r_view_columns *columns, uint32_t v, sight *seen)
 {
-    return (uint32_t)(k - own + (1 << T3R_DISPARITY_BITS)) <= 2u << T3R_DISPARITY_BITS;
+    const t3r_disparity_plane plane = {.disparity = planes->disparity[side],
+                                       .confidence = planes->confidence[side],
+                                       .width = planes->columns[side],
+                                       .height = planes->rect->height,
+                                       .begin_q16 = planes->begin_q16[side],
+                                       .first = planes->first,
+                                       .right = side != 0,
+                                       .filled = planes->filled,
+                                       .scale = planes->rect->column_scale};
+    t3r_rectified_places(kernels, planes->rect, side, columns, v, &seen->places);
+    kernels->disparity_at(&plane, &seen->places, columns->count, &seen->found);
 }
 
-/* Disparity k in Q7 at a place of a plane and how far it can be trusted: between four pixels where they are of one kind
- * and one surface, else the nearest pixel's. False: none. */
-static bool look_up(const t3r_stereo_planes *planes, uint32_t side, const int32_t place_q16[2], int32_t *k_q7,
-                    uint8_t *confidence)
+/* What is at one of them. */
+static bool see(bool polar, uint32_t side, const sight *seen, uint32_t i, distance *s)
 {
-    const int64_t x = t3r_round_shift64((int64_t)place_q16[0] - planes->begin_q16[side], 8);
-    const int64_t y = t3r_round_shift64(place_q16[1], 8); /* Q8 */
-    const int64_t width = planes->columns[side], height = planes->rect->height;
-    const int64_t column = t3r_round_shift64(x, 8), row = t3r_round_shift64(y, 8);
-    if (column < 0 || row < 0 || column >= width || row >= height) {
+    s->confidence = (uint8_t)seen->found.confidence[i];
+    if (s->confidence == T3R_STEREO_NONE) {
         return false;
     }
-    const size_t nearest = (size_t)(row * width + column);
-    const int32_t own = planes->disparity[side][nearest];
-    const bool matched = planes->confidence[side][nearest] != 0;
-    if (own == T3R_NO_DISPARITY || (!matched && !planes->filled)) {
-        return false;
-    }
-    *k_q7 = own;
-    *confidence = (uint8_t)(matched ? T3R_MAX(planes->confidence[side][nearest], T3R_STEREO_LEAST) : T3R_STEREO_FILLED);
-
-    const int64_t left = x >> 8, top = y >> 8;
-    if (left < 0 || top < 0 || left + 1 >= width || top + 1 >= height) {
-        return true;
-    }
-    const uint16_t *k = planes->disparity[side] + top * width + left, *below = k + width;
-    const uint8_t *c = planes->confidence[side] + top * width + left, *c_below = c + width;
-    if (!beside(k[0], own) || !beside(k[1], own) || !beside(below[0], own) || !beside(below[1], own) ||
-        (c[0] != 0) != matched || (c[1] != 0) != matched || (c_below[0] != 0) != matched ||
-        (c_below[1] != 0) != matched) {
-        return true;
-    }
-    const int32_t fx = (int32_t)(x & 255), fy = (int32_t)(y & 255);
-    const int32_t upper = 256 * k[0] + fx * (k[1] - k[0]), lower = 256 * below[0] + fx * (below[1] - below[0]);
-    *k_q7 = (int32_t)t3r_round_shift64((int64_t)256 * upper + fy * (lower - upper), 16); /* below 2^15 2^16 */
-    return true;
-}
-
-/* What is at a view's pixel, given its place. */
-static bool see(const t3r_stereo_planes *planes, uint32_t side, const t3r_ray_places *places, uint32_t i, distance *s)
-{
-    const int32_t place[2] = {places->x_q16[i], places->y_q16[i]}, across_q24 = places->z_q24[i];
-    int32_t k_q7;
-    if (across_q24 == 0 || !look_up(planes, side, place, &k_q7, &s->confidence)) {
-        return false;
-    }
-    /* k is below 2^8, first and columns below 2^15 */
-    s->disparity_q16 = planes->first * 65536 + k_q7 * (1 << (16 - T3R_DISPARITY_BITS));
-    const int32_t apart = side == 0 ? -s->disparity_q16 : s->disparity_q16;
-    const t3r_column own = t3r_rectified_column(planes->rect, place[0]);
-    const t3r_column other = t3r_rectified_column(planes->rect, place[0] + apart);
+    const int32_t across_q24 = seen->places.z_q24[i];
+    const t3r_column own = t3r_column_of(polar, seen->found.own_q24[i]);
+    const t3r_column other = t3r_column_of(polar, seen->found.other_q24[i]);
     const t3r_column *first = side == 0 ? &own : &other, *second = side == 0 ? &other : &own;
     if (other.b_q24 <= 0) { /* its own place is nearer than that, or it is nowhere */
         return false;
     }
+    s->disparity_q16 = seen->found.disparity_q16[i];
     /* |a| <= 2^27, b <= 2^24: the difference of the cotangents times both b, Q48 to Q30 */
     int64_t apart_q30 =
         t3r_round_shift64((int64_t)first->a_q24 * second->b_q24 - (int64_t)second->a_q24 * first->b_q24, 18);
@@ -104,14 +82,14 @@ t3r_pair t3r_stereo_unit(const t3r_kernels *kernels, t3r_stereo_planes *planes, 
     for (uint32_t side = 0; side < 2; side++) {
         for (uint32_t first = 0; first < views[side].width; first += T3R_RAYS) {
             t3r_view_columns columns;
-            t3r_ray_places places;
+            sight seen;
             t3r_view_columns_of(rect, side, first, T3R_MIN(views[side].width - first, T3R_RAYS), &columns);
             for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
-                t3r_rectified_places(kernels, rect, side, &columns, v, &places);
+                look_at(kernels, planes, side, &columns, v, &seen);
                 for (uint32_t i = 0; i < columns.count; i += SAMPLING) {
                     distance s;
                     sampled++;
-                    if (!see(planes, side, &places, i, &s) || s.confidence < T3R_STEREO_SURE) {
+                    if (!see(rect->polar, side, &seen, i, &s) || s.confidence < T3R_STEREO_SURE) {
                         continue;
                     }
                     matched++;
@@ -177,19 +155,20 @@ static void view_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     const view_job all = *(const view_job *)context, *job = &all;
     const t3r_view its = *job->view, *view = &its;
     const t3r_stereo_planes parts = *job->planes, *planes = &parts;
+    const bool polar = planes->rect->polar;
     for (uint32_t first = 0; first < view->width; first += T3R_RAYS) {
         t3r_view_columns columns;
-        t3r_ray_places places;
+        sight seen;
         t3r_view_columns_of(planes->rect, job->side, first, T3R_MIN(view->width - first, T3R_RAYS), &columns);
         for (uint32_t v = begin; v < end; v++) {
-            t3r_rectified_places(job->kernels, planes->rect, job->side, &columns, v, &places);
+            look_at(job->kernels, planes, job->side, &columns, v, &seen);
             for (uint32_t i = 0; i < columns.count; i++) {
                 const size_t at = (size_t)v * view->width + first + i;
                 distance s;
                 view->depth[at] = 0;
                 view->match_confidence[at] = T3R_STEREO_NONE;
                 const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
-                if (shown && see(planes, job->side, &places, i, &s)) {
+                if (shown && see(polar, job->side, &seen, i, &s)) {
                     /* 2^22 x 2^25 x 2^6 */
                     int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
                     view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);

@@ -60,6 +60,46 @@ const char *check_ray_row(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
+const char *check_luma_at(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const int32_t width = (int32_t)unit_between(seed, 2, 40), height = (int32_t)unit_between(seed, 2, 40);
+    const uint32_t count = 1 + any_length(seed, T3R_RAYS - 1);
+    uint8_t *luma = guarded_take((size_t)width * (size_t)height, 1), *out = guarded_take(count, 1);
+    t3r_ray_places *places = guarded_take(sizeof *places, 4);
+    for (int32_t i = 0; i < width * height; i++) {
+        luma[i] = (uint8_t)(unit_random(seed) % 4 == 0 ? 0 : any_value(seed, 0, 255));
+    }
+    for (uint32_t i = 0; i < T3R_RAYS; i++) {
+        const bool far = unit_random(seed) % 8 == 0;
+        places->x_q16[i] = (int32_t)any_value(seed, far ? INT32_MIN : -2 * 65536, far ? INT32_MAX : (width + 2) * 65536);
+        places->y_q16[i] =
+            (int32_t)any_value(seed, far ? INT32_MIN : -2 * 65536, far ? INT32_MAX : (height + 2) * 65536);
+        places->z_q24[i] = (int32_t)(unit_random(seed) % 8 == 0 ? 0 : any_value(seed, 1 << 18, 1 << 27));
+    }
+    const t3r_luma_picture picture = {luma, (uint32_t)width, (uint32_t)height};
+    kernels->luma_at(&picture, places, count, out);
+    for (uint32_t i = 0; i < count; i++) {
+        const int64_t u = places->x_q16[i], v = places->y_q16[i], x = (u + 32768) >> 16, y = (v + 32768) >> 16;
+        int64_t want = 0;
+        if (places->z_q24[i] != 0 && x >= 0 && y >= 0 && x < width && y < height && luma[y * width + x] != 0) {
+            const int64_t u8 = T3R_MIN(T3R_MAX((u + 128) >> 8, 0), (width - 1) * 256);
+            const int64_t v8 = T3R_MIN(T3R_MAX((v + 128) >> 8, 0), (height - 1) * 256);
+            int64_t sum = 32768;
+            for (int k = 0; k < 4; k++) {
+                const int64_t column = T3R_MIN((u8 >> 8) + k % 2, width - 1);
+                const int64_t row = T3R_MIN((v8 >> 8) + k / 2, height - 1);
+                const int64_t weight_x = k % 2 == 0 ? 256 - u8 % 256 : u8 % 256;
+                sum += luma[row * width + column] * weight_x * (k / 2 == 0 ? 256 - v8 % 256 : v8 % 256);
+            }
+            want = T3R_MAX(sum >> 16, 1);
+        }
+        if (out[i] != want) {
+            return "a luma differs";
+        }
+    }
+    return NULL;
+}
+
 const char *check_census_row(const t3r_kernels *kernels, uint64_t *seed)
 {
     static const int extra[7][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {2, 0}, {-2, 0}, {0, 2}};

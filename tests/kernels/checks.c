@@ -13,6 +13,8 @@
     X(unproject, check_unproject)                                                                                      \
     X(locate, check_locate)                                                                                            \
     X(ray_row, check_ray_row)                                                                                          \
+    X(disparity_at, check_disparity_at)                                                                                \
+    X(luma_at, check_luma_at)                                                                                          \
     X(census_row, check_census_row)                                                                                    \
     X(census_costs, check_census_costs)                                                                                \
     X(path_row, check_path_row)                                                                                        \

@@ -29,8 +29,10 @@
     X(census_row, T3R_CPU_AVX2, t3r_census_row_avx2)                                                                   \
     X(census_costs, T3R_CPU_SSE41, t3r_census_costs_sse41)                                                             \
     X(census_costs, T3R_CPU_AVX2, t3r_census_costs_avx2)                                                               \
+    X(disparity_at, T3R_CPU_AVX2, t3r_disparity_at_avx2)                                                               \
     X(ray_row, T3R_CPU_AVX2, t3r_ray_row_avx2)                                                                         \
     X(ray_row, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_ray_row_avx512)                                                      \
+    X(luma_at, T3R_CPU_AVX2, t3r_luma_at_avx2)                                                                         \
     X(path_row, T3R_CPU_SSE41, t3r_path_row_sse41)                                                                     \
     X(path_row, T3R_CPU_AVX2, t3r_path_row_avx2)                                                                       \
     X(winner_row, T3R_CPU_SSE41, t3r_winner_row_sse41)                                                                 \
