@@ -17,9 +17,9 @@ typedef struct t3r_disparity_plane {
     uint32_t width, height; /* 2..8192 each */
     int32_t begin_q16;      /* where its columns begin */
     int32_t first;          /* the disparity of k = 0, pixels: |first| below 2^14 */
-    bool right;             /* of the second view: what matches lies to the right in the other plane, else to the left */
-    bool filled;            /* disparities of confidence 0 count */
-    t3r_divisor scale;      /* pixels a unit of column, Q16: 2^16 up to 2^29 */
+    bool right;        /* of the second view: what matches lies to the right in the other plane, else to the left */
+    bool filled;       /* disparities of confidence 0 count */
+    t3r_divisor scale; /* pixels a unit of column, Q16: 2^16 up to 2^29 */
 } t3r_disparity_plane;
 
 typedef struct t3r_disparities {

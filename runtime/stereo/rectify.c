@@ -380,15 +380,16 @@ bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u
     return true;
 }
 
-void t3r_view_columns_of(const t3r_rectification *rect, uint32_t view, uint32_t u, uint32_t count,
+void t3r_view_columns_of(const t3r_rectification *rect, uint32_t view, uint32_t u, uint32_t step, uint32_t count,
                          t3r_view_columns *columns)
 {
     const t3r_rectified_view *from = &rect->view[view];
     const t3r_divisor fx = t3r_divisor_of((uint32_t)from->fx_q16);
     columns->u = u;
+    columns->step = step;
     columns->count = count;
     for (uint32_t i = 0; i < T3R_RAYS; i++) {
-        const int64_t x_q16 = ((int64_t)(u + i) << 16) - from->cx_q16;
+        const int64_t x_q16 = ((int64_t)(u + i * step) << 16) - from->cx_q16;
         columns->x_q24[i] = i < count ? t3r_divide_q24(&fx, x_q16, RAY_MOST) : 0;
     }
 }
@@ -425,8 +426,8 @@ void t3r_rectified_places(const t3r_kernels *kernels, const t3r_rectification *r
     }
     for (uint32_t i = 0; i < columns->count; i++) {
         int32_t place[2] = {0, 0}, across_q24 = 0;
-        (void)t3r_rectified_place(rect, view, (int32_t)((columns->u + i) << 16), (int32_t)(v << 16), place,
-                                  &across_q24);
+        (void)t3r_rectified_place(rect, view, (int32_t)((columns->u + i * columns->step) << 16), (int32_t)(v << 16),
+                                  place, &across_q24);
         places->x_q16[i] = place[0];
         places->y_q16[i] = place[1];
         places->z_q24[i] = across_q24;

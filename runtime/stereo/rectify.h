@@ -70,13 +70,13 @@ static inline t3r_column t3r_rectified_column(const t3r_rectification *rect, int
 bool t3r_rectified_place(const t3r_rectification *rect, uint32_t view, int32_t u_q16, int32_t v_q16,
                          int32_t place_q16[2], int32_t *across_q24);
 
-/* Columns of a view from u on, count of them up to T3R_RAYS: how far to the side their rays go. */
+/* Columns of a view from u on, every step-th, count of them up to T3R_RAYS: how far to the side their rays go. */
 typedef struct t3r_view_columns {
-    uint32_t u, count;
+    uint32_t u, step, count;
     int32_t x_q24[T3R_RAYS]; /* 0 behind the last */
 } t3r_view_columns;
 
-void t3r_view_columns_of(const t3r_rectification *rect, uint32_t view, uint32_t u, uint32_t count,
+void t3r_view_columns_of(const t3r_rectification *rect, uint32_t view, uint32_t u, uint32_t step, uint32_t count,
                          t3r_view_columns *columns);
 
 /* The places of a view's pixels in such columns and row v, as t3r_rectified_place() has them: places->z_q24 is how far,

@@ -259,9 +259,8 @@ static void finish_right(void *context, uint32_t begin, uint32_t end, uint32_t w
         const int32_t gaps[2][2] = {{0, drawn ? from : columns}, {drawn ? to : columns, columns}};
         uint8_t *out = side->out + (size_t)y * side->columns;
         for (int i = 0; i < 2; i++) {
-            t3r_rectified_rows(side->kernels, side->rect, side->side, side->luma,
-                               side->begin_q16 + gaps[i][0] * 65536, (t3r_share){y, y + 1},
-                               (uint32_t)(gaps[i][1] - gaps[i][0]), out + gaps[i][0]);
+            t3r_rectified_rows(side->kernels, side->rect, side->side, side->luma, side->begin_q16 + gaps[i][0] * 65536,
+                               (t3r_share){y, y + 1}, (uint32_t)(gaps[i][1] - gaps[i][0]), out + gaps[i][0]);
         }
         if (drawn) {
             memcpy(out + from, job->drawn.luma + (size_t)y * job->drawn.columns + from + apart, (size_t)(to - from));

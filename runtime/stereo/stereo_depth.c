@@ -80,13 +80,14 @@ t3r_pair t3r_stereo_unit(const t3r_kernels *kernels, t3r_stereo_planes *planes, 
     const t3r_rectification *rect = planes->rect;
     uint32_t histogram[BINS] = {0}, sampled = 0, matched = 0, still = 0;
     for (uint32_t side = 0; side < 2; side++) {
-        for (uint32_t first = 0; first < views[side].width; first += T3R_RAYS) {
+        const uint32_t samples = (views[side].width + SAMPLING - 1) / SAMPLING;
+        for (uint32_t first = 0; first < samples; first += T3R_RAYS) {
             t3r_view_columns columns;
             sight seen;
-            t3r_view_columns_of(rect, side, first, T3R_MIN(views[side].width - first, T3R_RAYS), &columns);
+            t3r_view_columns_of(rect, side, SAMPLING * first, SAMPLING, T3R_MIN(samples - first, T3R_RAYS), &columns);
             for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
                 look_at(kernels, planes, side, &columns, v, &seen);
-                for (uint32_t i = 0; i < columns.count; i += SAMPLING) {
+                for (uint32_t i = 0; i < columns.count; i++) {
                     distance s;
                     sampled++;
                     if (!see(rect->polar, side, &seen, i, &s) || s.confidence < T3R_STEREO_SURE) {
@@ -159,7 +160,7 @@ static void view_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     for (uint32_t first = 0; first < view->width; first += T3R_RAYS) {
         t3r_view_columns columns;
         sight seen;
-        t3r_view_columns_of(planes->rect, job->side, first, T3R_MIN(view->width - first, T3R_RAYS), &columns);
+        t3r_view_columns_of(planes->rect, job->side, first, 1, T3R_MIN(view->width - first, T3R_RAYS), &columns);
         for (uint32_t v = begin; v < end; v++) {
             look_at(job->kernels, planes, job->side, &columns, v, &seen);
             for (uint32_t i = 0; i < columns.count; i++) {

@@ -71,7 +71,8 @@ const char *check_luma_at(const t3r_kernels *kernels, uint64_t *seed)
     }
     for (uint32_t i = 0; i < T3R_RAYS; i++) {
         const bool far = unit_random(seed) % 8 == 0;
-        places->x_q16[i] = (int32_t)any_value(seed, far ? INT32_MIN : -2 * 65536, far ? INT32_MAX : (width + 2) * 65536);
+        places->x_q16[i] =
+            (int32_t)any_value(seed, far ? INT32_MIN : -2 * 65536, far ? INT32_MAX : (width + 2) * 65536);
         places->y_q16[i] =
             (int32_t)any_value(seed, far ? INT32_MIN : -2 * 65536, far ? INT32_MAX : (height + 2) * 65536);
         places->z_q24[i] = (int32_t)(unit_random(seed) % 8 == 0 ? 0 : any_value(seed, 1 << 18, 1 << 27));
@@ -95,6 +96,96 @@ const char *check_luma_at(const t3r_kernels *kernels, uint64_t *seed)
         }
         if (out[i] != want) {
             return "a luma differs";
+        }
+    }
+    return NULL;
+}
+
+/* Disparities about some values, and some that are none. */
+static t3r_disparity_plane any_plane(uint64_t *seed)
+{
+    const uint32_t width = (uint32_t)unit_between(seed, 2, 40), height = (uint32_t)unit_between(seed, 2, 40);
+    uint16_t *disparity = guarded_take((size_t)2 * width * height, 2);
+    uint8_t *confidence = guarded_take((size_t)width * height, 1);
+    const int64_t base = any_value(seed, 0, (1 << 15) - 1);
+    const int spread = 1 << unit_between(seed, 0, 10), sparse = unit_random(seed) % 2 ? 64 : 3;
+    for (uint32_t i = 0; i < width * height; i++) {
+        const int64_t k = base + unit_between(seed, -spread, spread);
+        const bool none = unit_random(seed) % 32 == 0;
+        disparity[i] = (uint16_t)(none ? T3R_NO_DISPARITY : T3R_MIN(T3R_MAX(k, 0), (1 << 15) - 1));
+        confidence[i] = (uint8_t)(unit_random(seed) % (uint32_t)sparse == 0 ? 0 : any_value(seed, 1, 255));
+    }
+    return (t3r_disparity_plane){.disparity = disparity,
+                                 .confidence = confidence,
+                                 .width = width,
+                                 .height = height,
+                                 .begin_q16 = (int32_t)any_value(seed, -(1 << 29), 1 << 29),
+                                 .first = (int32_t)any_value(seed, -(1 << 13), 1 << 13),
+                                 .right = unit_random(seed) % 2 != 0,
+                                 .filled = unit_random(seed) % 2 != 0,
+                                 .scale = t3r_divisor_of((uint32_t)any_value(seed, 1 << 16, 1 << 29))};
+}
+
+/* The pixel's disparity at `at`, that of the nearest or between four. */
+static int64_t disparity_of(const t3r_disparity_plane *plane, int64_t x_q8, int64_t y_q8, int64_t nearest)
+{
+    const int64_t own = plane->disparity[nearest], left = x_q8 >> 8, top = y_q8 >> 8;
+    int64_t sum = 32768;
+    if (left < 0 || top < 0 || left + 1 >= plane->width || top + 1 >= plane->height) {
+        return own;
+    }
+    for (int k = 0; k < 4; k++) {
+        const int64_t at = (top + k / 2) * plane->width + left + k % 2, x = x_q8 & 255, y = y_q8 & 255;
+        if ((plane->confidence[at] != 0) != (plane->confidence[nearest] != 0) ||
+            t3r_abs64(plane->disparity[at] - own) > 128) {
+            return own;
+        }
+        sum += plane->disparity[at] * (k % 2 == 0 ? 256 - x : x) * (k / 2 == 0 ? 256 - y : y);
+    }
+    return sum >> 16;
+}
+
+static int64_t column_of(const t3r_disparity_plane *plane, int64_t x_q16)
+{
+    const int64_t most = 4 << 24;
+    return T3R_MIN(T3R_MAX(t3r_round_div64(x_q16 * (1 << 24), plane->scale.d), -most), most);
+}
+
+const char *check_disparity_at(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const t3r_disparity_plane plane = any_plane(seed);
+    const uint32_t count = 1 + any_length(seed, T3R_RAYS - 1);
+    t3r_ray_places *places = guarded_take(sizeof *places, 4);
+    t3r_disparities *out = guarded_take(sizeof *out, 4);
+    for (uint32_t i = 0; i < T3R_RAYS; i++) {
+        const bool far = unit_random(seed) % 8 == 0;
+        const int64_t end = plane.begin_q16 + (int64_t)(plane.width + 2) * 65536;
+        places->x_q16[i] =
+            (int32_t)any_value(seed, far ? INT32_MIN : plane.begin_q16 - 2 * 65536, far ? INT32_MAX : end);
+        places->y_q16[i] = (int32_t)any_value(seed, far ? INT32_MIN : -2 * 65536,
+                                              far ? INT32_MAX : (plane.height + 2) * INT64_C(65536));
+        places->z_q24[i] = (int32_t)(unit_random(seed) % 8 == 0 ? 0 : any_value(seed, 1 << 18, 1 << 27));
+    }
+    kernels->disparity_at(&plane, places, count, out);
+    for (uint32_t i = 0; i < count; i++) {
+        const int64_t x = (places->x_q16[i] - (int64_t)plane.begin_q16 + 128) >> 8;
+        const int64_t y = ((int64_t)places->y_q16[i] + 128) >> 8, column = (x + 128) >> 8, row = (y + 128) >> 8;
+        const bool inside = column >= 0 && row >= 0 && column < plane.width && row < plane.height;
+        const int64_t nearest = inside ? row * plane.width + column : 0;
+        const int32_t confidence = plane.confidence[nearest];
+        int64_t want[4] = {0};
+        if (places->z_q24[i] != 0 && inside && plane.disparity[nearest] != T3R_NO_DISPARITY &&
+            (confidence != 0 || plane.filled)) {
+            want[0] = confidence == 0 ? 1 : T3R_MAX(confidence, 2);
+            want[1] = plane.first * 65536 + disparity_of(&plane, x, y, nearest) * 512;
+            want[2] = column_of(&plane, places->x_q16[i]);
+            want[3] = column_of(&plane, places->x_q16[i] + (plane.right ? want[1] : -want[1]));
+        }
+        if (out->confidence[i] != want[0] || out->disparity_q16[i] != want[1]) {
+            return "a disparity differs";
+        }
+        if (out->own_q24[i] != want[2] || out->other_q24[i] != want[3]) {
+            return "a column differs";
         }
     }
     return NULL;

@@ -16,7 +16,8 @@ typedef const char *kernel_check(const t3r_kernels *kernels, uint64_t *seed);
 
 kernel_check check_packed_row, check_nv12_row, check_triple_row, check_box_sums, check_weigh_row, check_divide_row;
 kernel_check check_unproject, check_locate;
-kernel_check check_ray_row, check_luma_at, check_disparity_at, check_census_row, check_census_costs, check_path_row, check_winner_row;
+kernel_check check_ray_row, check_luma_at, check_disparity_at;
+kernel_check check_census_row, check_census_costs, check_path_row, check_winner_row;
 kernel_check check_luma_row, check_split_row, check_db2_predict, check_db2_lift, check_db2_split, check_db2_join;
 kernel_check check_subtract_row;
 kernel_check check_haar_update, check_cdf53_predict, check_cdf53_update;

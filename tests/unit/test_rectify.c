@@ -280,7 +280,7 @@ static void nowhere(void **state)
     rect.view[0].fx_q16 = 8 << 16;
     for (int32_t centre = -500; centre <= 500; centre += 1000) { /* rays up to 16 to the side of 1 ahead */
         rect.view[0].cx_q16 = centre * (1 << 16);
-        t3r_view_columns_of(&rect, 0, 40, 3, &columns);
+        t3r_view_columns_of(&rect, 0, 40, 1, 3, &columns);
         for (int i = 0; i < 3; i++) {
             assert_int_equal(columns.x_q24[i], (centre < 0 ? 16 : -16) * (1 << 24));
         }
@@ -310,11 +310,11 @@ static void steep_in_a_plane(void **state)
         for (uint32_t v = 0; v < TALL; v++) {
             t3r_ray_places places;
             t3r_view_columns columns;
-            t3r_view_columns_of(&rect, 0, 8, 60, &columns);
+            t3r_view_columns_of(&rect, 0, 8, 2, 60, &columns);
             t3r_rectified_places(&t3r_kernels_c, &rect, 0, &columns, v, &places);
             for (int i = 0; i < 60; i++) {
                 int32_t place[2] = {0, 0}, across = 0;
-                assert_true(t3r_rectified_place(&rect, 0, (8 + i) << 16, (int32_t)v << 16, place, &across));
+                assert_true(t3r_rectified_place(&rect, 0, (8 + 2 * i) << 16, (int32_t)v << 16, place, &across));
                 assert_int_equal(places.x_q16[i], place[0]);
                 assert_int_equal(places.y_q16[i], place[1]);
                 assert_int_equal(places.z_q24[i], across);
@@ -372,7 +372,7 @@ static void anything(void **state)
                                row);
             t3r_ray_places places;
             t3r_view_columns columns;
-            t3r_view_columns_of(&rect, side, 3, 45, &columns);
+            t3r_view_columns_of(&rect, side, 3, 1, 45, &columns);
             t3r_rectified_places(&t3r_kernels_c, &rect, side, &columns, v, &places);
             for (int i = 0; i < 45; i++) {
                 int32_t place[2] = {0, 0}, across = 0;

@@ -32,7 +32,8 @@ static inline TARGET words all_words(int16_t x)
 }
 
 /* The least k of the least sum, and the least of the sums but for those beside it. */
-static inline __attribute__((always_inline)) TARGET void left(const int16_t *sums, uint32_t count, int16_t least, uint16_t *first, uint16_t *second)
+static inline __attribute__((always_inline)) TARGET void left(const int16_t *sums, uint32_t count, int16_t least,
+                                                              uint16_t *first, uint16_t *second)
 {
     uint32_t k = 0, n = 0;
     for (; n < count; n += WORDS) {

@@ -72,15 +72,14 @@ static inline T3R_AVX2 void eight(const t3r_disparity_plane *plane, const int32_
     const lanes x = rounded(least(most(place, (lanes){0} + columns[0]), (lanes){0} + columns[1]) - plane->begin_q16, 8);
     const lanes y = rounded(load(places->y_q16 + i), 8);
     const lanes column = rounded(x, 8), row = rounded(y, 8);
-    const lanes inside = (column == held(column, width - 1)) & (row == held(row, height - 1)) &
-                         (load(places->z_q24 + i) != 0);
+    const lanes inside =
+        (column == held(column, width - 1)) & (row == held(row, height - 1)) & (load(places->z_q24 + i) != 0);
     /* a square of pixels, the nearest among them, where all are in the plane that about the place */
     const lanes left = held(x >> 8, width - 2), top = held(y >> 8, height - 2), at = top * width + left;
     const lanes k_upper = words_from(plane->disparity, at), k_lower = words_from(plane->disparity, at + width);
     const lanes c_upper = bytes_from(plane->confidence, at, last);
     const lanes c_lower = bytes_from(plane->confidence, at + width, last);
-    const square k = {k_upper & 65535, (lanes)((ulanes)k_upper >> 16), k_lower & 65535,
-                      (lanes)((ulanes)k_lower >> 16)};
+    const square k = {k_upper & 65535, (lanes)((ulanes)k_upper >> 16), k_lower & 65535, (lanes)((ulanes)k_lower >> 16)};
     const square c = {c_upper & 255, (c_upper >> 8) & 255, c_lower & 255, (c_lower >> 8) & 255};
     const lanes right = column != left, below = row != top;
     const lanes own = one_of(k, right, below), confidence = one_of(c, right, below), matched = confidence != 0;
@@ -101,7 +100,8 @@ T3R_AVX2 void t3r_disparity_at_avx2(const t3r_disparity_plane *given, const t3r_
 {
     const t3r_disparity_plane plane = *given; /* a copy: writing vectors changes none of what it holds */
     /* farther columns are held, so that differences from the first stay within 32 bits */
-    const int64_t from = (int64_t)plane.begin_q16 - 2 * 65536, to = plane.begin_q16 + ((int64_t)plane.width + 1) * 65536;
+    const int64_t from = (int64_t)plane.begin_q16 - 2 * 65536,
+                  to = plane.begin_q16 + ((int64_t)plane.width + 1) * 65536;
     const int32_t columns[2] = {(int32_t)T3R_MAX(from, INT32_MIN), (int32_t)T3R_MIN(to, INT32_MAX)};
     for (uint32_t i = 0; i < count; i += 8) {
         eight(&plane, columns, places, i, out);
