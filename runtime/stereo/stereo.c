@@ -393,11 +393,12 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
 void t3r_stereo_marks(const t3r_view *view, uint32_t least)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    const uint16_t *depth = view->depth;
+    const uint8_t *confidence = view->match_confidence, doubtful = t3r_marked(T3R_MEASURED, T3R_MARK_DOUBTFUL);
+    uint8_t *restrict validity = view->validity;
     for (size_t i = 0; i < pixels; i++) {
-        const uint8_t c = view->match_confidence[i];
-        view->validity[i] = view->depth[i] == 0     ? T3R_NO_DEPTH
-                            : c >= least            ? T3R_MEASURED
-                            : c >= T3R_STEREO_LEAST ? t3r_marked(T3R_MEASURED, T3R_MARK_DOUBTFUL)
-                                                    : T3R_FILLED;
+        const uint8_t c = confidence[i], matched = c >= least ? T3R_MEASURED : doubtful;
+        const uint8_t any = c >= T3R_STEREO_LEAST ? matched : T3R_FILLED;
+        validity[i] = depth[i] == 0 ? T3R_NO_DEPTH : any;
     }
 }
