@@ -75,13 +75,13 @@ static t3r_match match_of(const planes *p, const t3r_stereo_settings *settings, 
 }
 
 /* 1..255, 0 where the view shows nothing: there undistortion leaves black. */
-static void luma_of(const t3r_view *view, uint8_t *luma)
+static void luma_of(const t3r_view *view, uint8_t *restrict luma)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    const uint8_t *r = view->colour[0], *g = view->colour[1], *b = view->colour[2];
     for (size_t i = 0; i < pixels; i++) {
-        const int32_t r = view->colour[0][i], g = view->colour[1][i], b = view->colour[2][i];
-        const int32_t value = (77 * r + 150 * g + 29 * b + 128) >> 8;
-        luma[i] = (uint8_t)(r + g + b == 0 ? 0 : T3R_MAX(value, 1));
+        const uint8_t value = (uint8_t)((77 * r[i] + 150 * g[i] + 29 * b[i] + 128) >> 8), any = r[i] | g[i] | b[i];
+        luma[i] = value == 0 && any != 0 ? 1 : value;
     }
 }
 
