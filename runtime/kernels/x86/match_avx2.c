@@ -145,7 +145,13 @@ static inline TARGET uint32_t first_equal(words x, int16_t value)
     }
 #define FOLLOWED(count)                                                                                                \
     case count:                                                                                                        \
-        (row->diagonals ? diagonal_##count : row->sums != NULL ? straight_##count : down_##count)(row);                \
+        if (row->diagonals) {                                                                                          \
+            diagonal_##count(row);                                                                                     \
+        } else if (row->sums != NULL) {                                                                                \
+            straight_##count(row);                                                                                     \
+        } else {                                                                                                       \
+            down_##count(row);                                                                                         \
+        }                                                                                                              \
         break;
 #define COSTED(count)                                                                                                  \
     case count:                                                                                                        \
