@@ -204,39 +204,50 @@ static __attribute__((noinline)) void fill_left(const t3r_stereo_settings *setti
     }
 }
 
-/* The right plane at a quarter of the size. In full size it is kept where the work ends, with the view's luma, if
- * the matching of the first look leaves so much. */
-static __attribute__((noinline)) drawing fill_right(const t3r_stereo_settings *settings, const t3r_rectification *rect,
-                                                    const t3r_view *view, const planes *full, uint32_t count,
-                                                    uint8_t *out)
+/* Where the work ends, if the matching of the first look leaves so many bytes; else NULL. */
+static uint8_t *room_behind_look(const t3r_stereo_settings *settings, const planes *full, const t3r_match *coarse,
+                                 size_t bytes)
 {
-    const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
-    const uint32_t columns = (uint32_t)T3R_MATCH_RIGHT(width, count);
+    const size_t taken = T3R_MATCH_WORK_BYTES(coarse->width, coarse->height, coarse->disparities, settings->paths);
+    return taken + bytes <= full->work_bytes ? full->work + full->work_bytes - bytes : NULL;
+}
+
+/* The right plane at a quarter of the size. In full size it is kept behind the work of that look, if there is room,
+ * with the view's luma. */
+static __attribute__((noinline)) void fill_right(const t3r_stereo_settings *settings, const t3r_rectification *rect,
+                                                 const t3r_view *view, const planes *full, const t3r_match *coarse,
+                                                 uint8_t *out, drawing *drawn)
+{
+    const uint32_t count = coarse->disparities, columns = (uint32_t)T3R_MATCH_RIGHT(coarse->width, count);
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    const size_t four_rows = QUARTER * QUARTER * (size_t)columns;
     quarter_job job = {.full = {.kernels = settings->kernels,
                                 .rect = rect,
                                 .side = 1,
                                 .columns = columns,
                                 .begin_q16 = begin_q16(rect, 1, rect->least_disparity, QUARTER * (count - 1) + 1),
                                 .out = out},
-                       .rows = full->side[1].luma};
-    const size_t room = full->pixels[1] / (QUARTER * QUARTER * (size_t)columns); /* for so many times four rows */
-    const size_t pixels = T3R_PIXELS_(view->width, view->height), bytes = QUARTER * QUARTER * (size_t)columns * height;
-    const t3r_workers alone = {NULL, 1};
-    const t3r_workers *workers = &settings->workers;
-    uint8_t *luma = full->work;
-    if (T3R_MATCH_WORK_BYTES(width, height, count, settings->paths) + pixels + bytes <= full->work_bytes) {
-        luma = full->work + full->work_bytes - bytes - pixels;
-        job.rows = luma + pixels;
-        job.band = BAND;
+                       .band = BAND};
+    t3r_workers workers = settings->workers;
+    uint8_t *luma = room_behind_look(settings, full, coarse, pixels + four_rows * coarse->height);
+    if (luma != NULL) {
         job.kept = true;
+        job.rows = luma + pixels;
+        drawn->view = luma;
+        drawn->luma = job.rows;
+        drawn->columns = QUARTER * columns;
+        drawn->rows = QUARTER * coarse->height;
+        drawn->begin_q16 = job.full.begin_q16;
     } else {
-        workers = workers->count <= room ? workers : &alone;
-        job.band = (uint32_t)T3R_MIN(T3R_MAX(room / T3R_MAX(workers->count, 1), 1), BAND);
+        const size_t room = full->pixels[1] / four_rows;
+        workers.count = workers.count <= room ? workers.count : 1;
+        job.band = (uint32_t)T3R_MIN(T3R_MAX(room / T3R_MAX(workers.count, 1), 1), BAND);
+        job.rows = full->side[1].luma;
+        luma = full->work;
     }
     job.full.luma = luma;
     luma_of(view, luma);
-    t3r_run_rows(workers, height, quarter_rows, &job);
-    return job.kept ? (drawing){luma, job.rows, QUARTER * columns, QUARTER * height, job.full.begin_q16} : (drawing){0};
+    t3r_run_rows(&workers, coarse->height, quarter_rows, &job);
 }
 
 /* The right plane of the disparities that were found, from what is drawn of it. */
@@ -323,8 +334,8 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
     const uint32_t count = lanes(T3R_MIN(wanted, room));
     const planes p = divide_quarter(full, width, height, count);
     fill_left(settings, rect, &views[0], full, p.side[0].luma);
-    found->right = fill_right(settings, rect, &views[1], full, count, p.side[1].luma);
     const t3r_match match = match_of(&p, settings, width, height, count);
+    fill_right(settings, rect, &views[1], full, &match, p.side[1].luma, &found->right);
     t3r_match_pair(&match);
     t3r_match_agree(&match);
     (void)t3r_match_speckles(&match, 0);
