@@ -17,6 +17,12 @@ long long t3r_any(long long low, long long high);
     ensures low <= \result <= high; */
 unsigned long long t3r_any_unsigned(unsigned long long low, unsigned long long high);
 
+/* Any bytes. */
+/*@ requires room: count == 0 || \valid(bytes + (0 .. count - 1));
+    assigns bytes[0 .. count - 1] \from Frama_C_entropy_source;
+    ensures filled: \initialized(bytes + (0 .. count - 1)); */
+void t3r_any_bytes(unsigned char *bytes, unsigned long count);
+
 /* A bound of T3R_BOUND is proven wherever it stands: Eva has to show that this is never called. */
 /*@ requires bound: \false;
     assigns \nothing; */

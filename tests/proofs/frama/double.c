@@ -1,0 +1,35 @@
+/* platform/fixed_double.c: all doubles and floats, an exponent after another where a shift follows from it, to the
+ * fractions that readers ask for. */
+#include "fixed_double.h"
+
+static void doubles(uint64_t low, uint64_t high, uint32_t fraction_bits)
+{
+    int64_t fixed;
+    t3r_fixed_from_double(t3r_any_unsigned(low << 52, (high << 52) + ((UINT64_C(1) << 52) - 1)), fraction_bits, &fixed);
+}
+
+static void floats(uint32_t low, uint32_t high)
+{
+    int64_t fixed;
+    t3r_fixed_from_float((uint32_t)t3r_any_unsigned(low << 23, (high << 23) + ((1u << 23) - 1)), 40, &fixed);
+}
+
+int main(void)
+{
+    static const uint32_t fractions[] = {16, 24, 30, 32, 40};
+    for (uint32_t i = 0; i < sizeof fractions / sizeof fractions[0]; i++) {
+        for (uint32_t sign = 0; sign <= 2048; sign += 2048) {
+            doubles(sign, sign, fractions[i]);
+            doubles(sign + 1, sign + 970, fractions[i]); /* below a quarter of the last bit */
+            for (uint32_t exponent = sign + 971; exponent < sign + 1130; exponent++) {
+                doubles(exponent, exponent, fractions[i]);
+            }
+            doubles(sign + 1130, sign + 2046, fractions[i]); /* beyond every fraction */
+            doubles(sign + 2047, sign + 2047, fractions[i]);
+        }
+    }
+    for (uint32_t exponent = 0; exponent < 512; exponent++) {
+        floats(exponent, exponent);
+    }
+    return 0;
+}
