@@ -144,16 +144,16 @@ ends.
 ## Checks left out
 
 `double`, `messages`, `weights`, `blocks`, `reader`, `pose` and `attach` are run a second time at night, each with one check
-left out of the source. Eva has to find it. `attach` found a real fault: an arena whose configuration had no number of
-SuperClusters was taken, and the next analysis read past its buffers.
+left out of the source. Eva has to find it. A real fault showed when `attach` was made: an arena whose configuration had no
+number of SuperClusters was taken, and the next analysis read past its buffers. It is mended.
 
 ## What stays open
 
 - **Tables of weights with any shape.** Eva runs for more than ten minutes on any 16 MiB and gives false alarms. It looks at
   a layer's sources and level in a copy of the layer, and they are read anew from the file when the layers are counted. Where
   a weight lies is a product of two numbers from the file, and Eva bounds each alone. WP with contracts of `block_fault()` and
-  `sum_fits()` proves 156 of 167 goals. Most of the others hold such a product: Z3 does not end within 10 s, with an
-  invariant of the index, with a lemma of products, or with each side of a kernel as a case of its own.
+  `sum_fits()` proves 156 of 167 goals. Most of the others hold such a product, and Z3 does not prove them in 10 s.
+  Three ways do not help: an invariant of the index, a lemma of products, each side of a kernel as a case of its own.
 - **`t3r_frame_reader` as a whole.** The place of the next record is at most the end of its chunk, and that is at most the
   end of the source. Eva keeps a range for each, but not which is the larger. So after the second record it cannot tell
   whether the source has the bytes. `fuzz_frame_reader` ends where it asks for others. In messages it has to know the length
