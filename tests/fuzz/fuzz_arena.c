@@ -130,7 +130,8 @@ static bool has_labels(const t3r_runtime *rt)
 static void damage_bytes(t3r_runtime *rt, input *in, bool of_the_state)
 {
     const size_t range = of_the_state ? sizeof *rt : (size_t)rt->arena_bytes, at = take32(in) % range;
-    const size_t bytes = T3R_MIN((size_t)1 << below(in, of_the_state ? 4 : 12), range - at);
+    const size_t drawn = (size_t)1 << below(in, of_the_state ? 4 : 12); /* once: the macro takes its arguments twice */
+    const size_t bytes = T3R_MIN(drawn, range - at);
     const uint32_t pattern = take8(in), seed = take32(in);
     for (size_t i = 0; i < bytes; i++) {
         ((uint8_t *)rt)[at + i] = (uint8_t)(pattern & 1 ? seed : t3r_mix32(seed + (uint32_t)i));
