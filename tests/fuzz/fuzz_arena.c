@@ -123,7 +123,7 @@ static size_t points_of(const t3r_runtime *rt)
 
 static bool has_labels(const t3r_runtime *rt)
 {
-    return rt->config.views > 0 && !rt->config.stream;
+    return rt->config.views > 0 && !rt->config.stream && rt->config.clusters > 0;
 }
 
 /* Bytes of the state, or of any place. */
