@@ -20,6 +20,7 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
+    rt->build = t3r_build_of(&rt->config); /* a restored arena may hold another, whose head is not bound */
     t3r_stream_report outcome = {0};
     t3r_status status = t3r_stream_follow(rt, frame, camera);
     if (status == T3R_OK) {

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 
 #include "rgbd_frame.h"
+#include "state/state.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, BUDGET = 80, KEYFRAMES = 4 };
 
@@ -90,10 +91,29 @@ static void each_setting(void **state)
     }
 }
 
+/* As a damaged arena may hold it: another head than the configuration's, whose weights are not bound. */
+static void a_stream_builds_as_it_is_configured(void **state)
+{
+    (void)state;
+    const t3r_camera camera = camera_at(0);
+    const t3r_frame frame = frame_at(0);
+    t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
+    config.stream = 1;
+    t3r_runtime *rt;
+    t3r_plan_info plan;
+    assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
+    assert_int_equal(t3r_init(&rt, arena, plan.bytes, &config), T3R_OK);
+    rt->build.head = T3R_HEAD_LEARNED;
+    assert_int_equal(t3r_attach(&rt, arena, plan.bytes), T3R_OK);
+    assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
+    assert_int_equal(rt->build.head, T3R_HEAD_ANALYTIC);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_setting),
+        cmocka_unit_test(a_stream_builds_as_it_is_configured),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
