@@ -213,7 +213,7 @@ enum {
 /* How much work a build is worth: t3r_set_effort(). */
 typedef uint32_t t3r_effort;
 enum {
-    T3R_EFFORT_FAST,     /* the least work that new views do not suffer from much */
+    T3R_EFFORT_FAST,     /* little work, for new views that may be less sharp */
     T3R_EFFORT_BALANCED, /* most of the quality for a part of the work */
     T3R_EFFORT_BEST,     /* the best new views, whatever they take */
     T3R_EFFORT_COUNT
