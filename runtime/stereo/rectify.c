@@ -132,7 +132,7 @@ static int64_t sector_q24(int64_t y, int64_t z)
         return 2 * ONE_Q24 + t3r_round_div64(-z * ONE_Q24, y);
     }
     if (-y >= t3r_abs64(z)) {
-        return -2 * ONE_Q24 - t3r_round_div64(z * ONE_Q24, y);
+        return -2 * ONE_Q24 + t3r_round_div64(z * ONE_Q24, -y);
     }
     return (y >= 0 ? 4 : -4) * ONE_Q24 + t3r_round_div64(-y * ONE_Q24, -z);
 }

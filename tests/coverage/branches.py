@@ -23,6 +23,16 @@ def gcov(objects):
     return [json.loads(line) for line in said.stdout.splitlines() if line]
 
 
+def place_of(folder, file, root):
+    """A source file below `root`, or None if it is none. The build names files from the top of the tree, ccache from the folder
+    in which the compiler ran."""
+    for start in folder, root.parent:
+        path = pathlib.Path(os.path.normpath(pathlib.Path(start, file)))
+        if path.is_relative_to(root) and path.exists():
+            return path
+    return None
+
+
 def counted(folder, root=RUNTIME):
     """{(file, function, line): how often each branch there was taken}, added up over all objects of the folder."""
     objects = [path for path in sorted(folder.rglob("*.gcda")) if path.parent.name not in VECTORS]
@@ -31,8 +41,8 @@ def counted(folder, root=RUNTIME):
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for folder_of, source in ((known["current_working_directory"], source)
                                   for found in pool.map(gcov, groups) for known in found for source in known["files"]):
-            path = pathlib.Path(os.path.normpath(pathlib.Path(folder_of, source["file"]))) # ccache makes paths relative
-            if not path.is_relative_to(root):
+            path = place_of(folder_of, source["file"], root)
+            if path is None:
                 continue
             for line in source["lines"]:
                 ways = [branch["count"] for branch in line["branches"]]
