@@ -31,6 +31,8 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
         .head = T3R_HEAD_ANALYTIC,
         .head_column_bytes = T3R_HEAD_COLUMN_BYTES,
         .refinements = T3R_DEFAULT_REFINEMENTS,
+        .fit_passes = T3R_FEATURE_LOSS,
+        .fit_widths = T3R_FEATURE_COMPARISON,
         .depth = T3R_DEPTH_SENSOR,
         .fill_radius = 4,
         .bridge_radius = 64,

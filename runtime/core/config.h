@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "core/fixed.h"
 #include "trim3r.h"
 
 /* T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: t3r_config_error() has the reason. */
@@ -22,6 +23,15 @@ static inline uint32_t t3r_tile_splats_of(const t3r_config *config)
 static inline uint32_t t3r_following_refinements_of(const t3r_config *config)
 {
     return (config->refinements + 1) / 2;
+}
+
+/* The same of a stream's keyframe. What is fitted is T3R_STREAM_REFINEMENTS: each keyframe corrects what those before
+ * it did. */
+static inline uint32_t t3r_keyframe_refinements_of(const t3r_config *config, bool follows)
+{
+    const uint32_t passes =
+        config->fit_passes ? T3R_MIN(config->refinements, T3R_STREAM_REFINEMENTS) : config->refinements;
+    return follows ? (passes + 1) / 2 : passes;
 }
 
 /* At least the bytes of any arena for fields in range, counted generously and in 64 bits: sums in size_t may wrap. */

@@ -32,6 +32,7 @@ typedef struct t3r_head_input {
     void *work;          /* two bytes a pixel; `learned`: at least t3r_head_learned_work_bytes() */
     size_t work_bytes;
     const t3r_covering_views *covering; /* what widths are fitted to; NULL: the own view alone */
+    uint32_t narrowest_q12;             /* T3R_NARROWEST..., of this build */
     bool unadapted;                     /* the head takes every point for retained, spacing 1 */
     bool (*goes_on)(void *context);     /* asked before each row; NULL: the head is not to be stopped */
     void *context;                      /* of goes_on */
@@ -45,9 +46,16 @@ typedef struct t3r_footprint {
     uint16_t opacity_q15;
 } t3r_footprint;
 
+/* The least variance of a Gaussian in its own view, less the 0.3 px^2 that the rasterizer adds; Q12. What is corrected
+ * by what one view's pixels show must not be much narrower than these: other views look between them (Yu et al.,
+ * Mip-Splatting, 2024, section 5.1, who smooth by as much; DESIGN.md, "Network"). What nothing corrects stays as sharp
+ * as the head has it. */
+#define T3R_NARROWEST_Q12 82          /* 0.02 px^2 */
+#define T3R_NARROWEST_REFINED_Q12 819 /* 0.2 px^2 */
+
 /* A footprint at pixel (u, v) to a Gaussian: covariance [tu tv] (S - 0.3 I) [tu tv]^T and a thin normal term. The
  * rasterizer adds the 0.3 px^2 back. The pixel must have a depth. */
-void t3r_lift(const t3r_pointmap *map, uint32_t view_index, uint32_t u, uint32_t v, const t3r_footprint *footprint,
+void t3r_lift(const t3r_head_input *input, uint32_t u, uint32_t v, const t3r_footprint *footprint,
               t3r_gaussian *gaussian);
 
 /* Writes a factor, entries of `fraction` fraction bits below 2^62, as mantissas with a shared exponent: the largest

@@ -52,7 +52,7 @@ uint32_t t3r_head_analytic(const t3r_head_input *input, uint32_t begin, uint32_t
             uint32_t half = T3R_MIN(spacing >> 13, (uint32_t)WINDOW_MOST);
             local_mean(view, u, v, half, footprint.colour_q7);
             t3r_fit_widths_if_asked(input, u, v, &footprint);
-            t3r_lift(&input->map, input->view_index, u, v, &footprint, &out[count++]);
+            t3r_lift(input, u, v, &footprint, &out[count++]);
         }
     }
     return count;

@@ -102,7 +102,7 @@ static uint32_t lift_row(const t3r_head_input *input, uint32_t y, const int16_t 
         size_t pixel = (size_t)y * view->width + x;
         if (t3r_retained(view, pixel)) {
             t3r_footprint footprint = footprint_of(outputs[x], t3r_spacing_q12(input, pixel), view, pixel);
-            t3r_lift(&input->map, input->view_index, x, y, &footprint, &out[count++]);
+            t3r_lift(input, x, y, &footprint, &out[count++]);
         }
     }
     return count;

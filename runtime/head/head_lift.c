@@ -3,7 +3,6 @@
 #include "raster/raster_splat.h"
 
 #define DILATION_Q12 ((T3R_DILATION_Q24 + 2048) >> 12) /* what the rasterizer will add */
-#define VARIANCE_LEAST_Q12 82 /* 0.02 px^2: what is left of a footprint narrower than the dilation */
 /* Thickness along the normal, of the narrower in-plane deviation, as a power of two: 1/8 */
 #define THICKNESS_SHIFT 3
 
@@ -16,15 +15,15 @@ uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel)
     return t3r_exp2_q16(-density_q10 * 32) >> 4; /* 2^(-density / 2), Q12 */
 }
 
-/* The lower Cholesky factor of S - 0.3 I, Q12 pixels, both pivots held above VARIANCE_LEAST. */
-static void narrowed_factor(const t3r_footprint *f, int64_t lower_q12[3])
+/* The lower Cholesky factor of S - 0.3 I, Q12 pixels, both pivots at least `least`. */
+static void narrowed_factor(const t3r_footprint *f, int64_t least_q12, int64_t lower_q12[3])
 {
-    int64_t xx = T3R_MAX(f->xx_q12 - DILATION_Q12, VARIANCE_LEAST_Q12);
-    int64_t yy = T3R_MAX(f->yy_q12 - DILATION_Q12, VARIANCE_LEAST_Q12);
+    int64_t xx = T3R_MAX(f->xx_q12 - DILATION_Q12, least_q12);
+    int64_t yy = T3R_MAX(f->yy_q12 - DILATION_Q12, least_q12);
     lower_q12[0] = t3r_isqrt64((uint64_t)xx << 12);
     lower_q12[1] = ((int64_t)f->xy_q12 * 4096) / lower_q12[0];
     int64_t rest_q24 = (yy << 12) - lower_q12[1] * lower_q12[1];
-    lower_q12[2] = t3r_isqrt64((uint64_t)T3R_MAX(rest_q24, (int64_t)VARIANCE_LEAST_Q12 << 12));
+    lower_q12[2] = t3r_isqrt64((uint64_t)T3R_MAX(rest_q24, least_q12 << 12));
 }
 
 void t3r_pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gaussian)
@@ -40,15 +39,16 @@ void t3r_pack_factor(const int64_t entry[9], int32_t fraction, t3r_gaussian *gau
     gaussian->factor_exponent = (int8_t)t3r_clamp32(shift - fraction, -60, 15);
 }
 
-void t3r_lift(const t3r_pointmap *map, uint32_t view_index, uint32_t u, uint32_t v, const t3r_footprint *footprint,
+void t3r_lift(const t3r_head_input *input, uint32_t u, uint32_t v, const t3r_footprint *footprint,
               t3r_gaussian *gaussian)
 {
+    const t3r_pointmap *map = &input->map;
     const t3r_view *view = map->view;
     int32_t point[3], tu[3], tv[3];
     (void)t3r_point(map, u, v, point);
     (void)t3r_tangents(map, u, v, tu, tv);
     int64_t lower[3];
-    narrowed_factor(footprint, lower);
+    narrowed_factor(footprint, input->narrowest_q12, lower);
 
     /* Columns [tu tv] L, Q24 scene units: |t| < 2^31 and |L| < 2^12 px in Q12, so the products stay below 2^56. */
     int64_t entry[9];
@@ -91,6 +91,6 @@ void t3r_lift(const t3r_pointmap *map, uint32_t view_index, uint32_t u, uint32_t
         gaussian->reserved[i] = 0;
     }
     gaussian->opacity_q15 = footprint->opacity_q15;
-    gaussian->view = (uint8_t)view_index;
+    gaussian->view = (uint8_t)input->view_index;
     gaussian->confidence = t3r_confidence_of(view->validity[(size_t)v * view->width + u]);
 }

@@ -176,7 +176,7 @@ uint32_t t3r_head_moment(const t3r_head_input *input, uint32_t begin, uint32_t e
             moments m = input->unadapted ? alone(view, pixel) : gather(input, u, v, (int32_t)reach);
             t3r_footprint footprint = footprint_of(&m);
             t3r_fit_widths_if_asked(input, u, v, &footprint);
-            t3r_lift(&input->map, input->view_index, u, v, &footprint, &out[count++]);
+            t3r_lift(input, u, v, &footprint, &out[count++]);
         }
     }
     return count;

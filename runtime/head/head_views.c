@@ -53,6 +53,7 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
         .weights = rt->weights,
         .work = work_of(rt, 0),
         .work_bytes = work_bytes(rt),
+        .narrowest_q12 = rt->build.refinements > 0 ? T3R_NARROWEST_REFINED_Q12 : T3R_NARROWEST_Q12,
         .unadapted = rt->ablation.unadapted != 0,
     };
 }
@@ -73,11 +74,12 @@ static bool goes_on(void *context)
     return t3r_progress(job->rt, T3R_STAGE_HEAD, job->first, job->end);
 }
 
-/* A stream's keyframes see what is not in the map any more, and a head that nothing adapts takes no spacing. */
+/* Refinement finds widths by itself, better than from fitted ones (docs/study/tuning.md). A stream's keyframes see what
+ * is not in the map any more, and a head that nothing adapts takes no spacing. */
 static bool fits_widths(const t3r_runtime *rt)
 {
-    return T3R_FEATURE_COMPARISON && rt->config.fit_widths != 0 && !t3r_is_stream(&rt->config) &&
-           rt->ablation.unadapted == 0;
+    return T3R_FEATURE_COMPARISON && rt->config.fit_widths != 0 && rt->build.refinements == 0 &&
+           !t3r_is_stream(&rt->config) && rt->ablation.unadapted == 0;
 }
 
 static void make_band(void *context, uint32_t index, uint32_t worker)

@@ -55,7 +55,7 @@ extern "C" {
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
-#define T3R_BITS_EPOCH 8
+#define T3R_BITS_EPOCH 9
 
 #define T3R_MAX_SIDE 4096u        /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */
@@ -67,6 +67,7 @@ extern "C" {
 #define T3R_HARMONICS_DEGREE_MOST 3u
 #define T3R_HARMONICS_MOST 16u /* of each colour, degree 0 included */
 #define T3R_MAX_REFINEMENTS 16u
+#define T3R_STREAM_REFINEMENTS 4u /* of a keyframe at most, where they are fitted */
 #define T3R_MAX_LEVELS 5u /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536u
 #define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
@@ -263,13 +264,14 @@ typedef struct t3r_config {
     /* The number of refinement passes on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS]
      */
     uint32_t refinements;
-    /* 1 = `refinements` are the most, and a build takes as many as its budget and the agreement of its views pay for:
-     * t3r_refinement_passes() returns them. 0 = every build takes all of them, as a stream does in any case. [0] */
+    /* 1 = `refinements` are the most. A build takes as many as its budget and the agreement of its views pay for, and
+     * t3r_refinement_passes() returns them. A stream takes at most T3R_STREAM_REFINEMENTS a keyframe. 0 = every build
+     * and keyframe takes all of them. [1, where the library has the loss to fit them by] */
     uint32_t fit_passes;
     /* 1 = splats of T3R_HEAD_ANALYTIC and T3R_HEAD_MOMENT are as wide as the retained points of all views together ask
      * for: narrower where several views cover a surface, wider where one does or where points are few. 0 = as wide as
-     * those of their own view ask for, as splats of T3R_HEAD_LEARNED, of a stream and of a head that nothing adapts are
-     * in any case. [0] */
+     * those of their own view ask for, as splats of T3R_HEAD_LEARNED, of a stream, of a build with refinement and of a
+     * head that nothing adapts are in any case. [1, where the library compares views] */
     uint32_t fit_widths;
     /* 1 = refinement takes the structure of what is missing for more than its level: from its second pass on local
      * contrast counts as structural similarity has it, and what a whole view shows brighter or with more contrast than

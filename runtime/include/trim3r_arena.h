@@ -27,7 +27,8 @@
 /* Defaults of t3r_default_config() that an arena's bytes depend on. */
 /* t3r_config.clusters is chosen: one for 256 points of all views, at most 32. */
 #define T3R_CLUSTERS_OF_POINTS(points) ((points) < 512 ? 1 : (points) < 32 * 256 ? (points) / 256 : 32)
-#define T3R_DEFAULT_REFINEMENTS (T3R_FEATURE_REFINEMENT ? 4 : 0)
+/* At most so many passes of refinement, where their number is fitted (t3r_config.fit_passes). */
+#define T3R_DEFAULT_REFINEMENTS (!T3R_FEATURE_REFINEMENT ? 0 : T3R_FEATURE_LOSS ? 8 : 4)
 
 #define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
 #define T3R_MAX_(a, b) ((a) > (b) ? (a) : (b))

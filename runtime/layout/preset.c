@@ -24,6 +24,7 @@ static t3r_config config_of(const preset_row *row)
     config.head = row->weights != NULL ? T3R_HEAD_LEARNED : T3R_HEAD_ANALYTIC;
     config.head_column_bytes = row->column_bytes;
     config.refinements = row->refinements;
+    config.fit_passes = 0; /* the table's figures are of so many */
     return config;
 }
 

@@ -28,7 +28,7 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
 /* SETTING(option, argument, field of t3r_config, kind, low, high, names, help, column, word) */
 #define SETTINGS                                                                                                       \
     SETTING("refine", "N", refinements, NUMBER, 0, T3R_MAX_REFINEMENTS, NULL,                                          \
-            "refinement passes on the context views", true, "refine")                                                  \
+            "passes of refinement on the context views, at most where they are fitted", true, "refine")                \
     SETTING("allocate", "MODE", allocation, NAME, T3R_ALLOCATE_CONFIGURED + 1, UINT32_MAX, allocation_name,            \
             "allocation of the budget over the points", true, NULL)                                                    \
     SETTING("depth", "SOURCE", depth, NAME, 0, UINT32_MAX, depth_name,                                                 \
@@ -56,10 +56,10 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
     SETTING("redundancy", "on|off", redundancy, SWITCH, 0, 1, NULL,                                                    \
             "let small budgets pass over points whose surface another view shows as finely", false, "redundancy")      \
     SETTING("fit-passes", "on|off", fit_passes, SWITCH, 0, 1, NULL,                                                    \
-            "take at most --refine passes: as many as the budget and the agreement of the views pay for", false,       \
+            "take of --refine passes as many as the budget and the agreement of the views pay for", false,             \
             "fit-passes")                                                                                              \
     SETTING("fit-widths", "on|off", fit_widths, SWITCH, 0, 1, NULL,                                                    \
-            "fit the widths of splats of analytic and moment to the retained points of all views, not of one", false,  \
+            "without refinement, fit the widths of splats of analytic and moment to the points of all views", false,   \
             "fit-widths")                                                                                              \
     SETTING("structural", "on|off", structural, SWITCH, 0, 1, NULL,                                                    \
             "refine structure more than level: local contrast, and not what a whole view shows brighter", false,       \
