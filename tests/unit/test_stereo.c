@@ -315,7 +315,17 @@ static void by_worker_15(void *user, uint32_t count, void (*task)(void *context,
     }
 }
 
-/* So small a picture has no room for sixteen workers' rows of the first look. */
+static void backwards(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                      void *context)
+{
+    (void)user;
+    while (count > 0) {
+        count--;
+        task(context, count, count % 2);
+    }
+}
+
+/* A picture of fewer rows in the first look than there are workers. */
 static void small_pictures_have_few_workers(void **state)
 {
     (void)state;
@@ -354,6 +364,58 @@ static void small_pictures_have_few_workers(void **state)
     free(work);
     shot_free(s[0]);
     shot_free(s[1]);
+}
+
+/* Two cameras whose first look compares so many disparities that its matching leaves no room for what it draws: that is
+ * drawn in bands, each worker's its own. Any picture, any number of workers: the same. */
+static void bands_where_nothing_is_kept(void **state)
+{
+    (void)state;
+    enum { SIDE = 53, MOST = 16, COUNT = SIDE * SIDE };
+    static const t3r_camera cameras[2] = {{.fx_q16 = 9778159,
+                                           .fy_q16 = 9778159,
+                                           .cx_q16 = (SIDE - 1) << 15,
+                                           .cy_q16 = (SIDE - 1) << 15,
+                                           .rotation_q30 = {1 << 30, 130571952, 94199163, -104091023},
+                                           .position_q32 = {-1710267602, 1984259638, -1927800204}},
+                                          {.fx_q16 = 8654727,
+                                           .fy_q16 = 8654727,
+                                           .cx_q16 = (SIDE - 1) << 15,
+                                           .cy_q16 = (SIDE - 1) << 15,
+                                           .rotation_q30 = {1 << 30, -71127901, -123661275, -73165880},
+                                           .position_q32 = {166404872, 942228642, 1944734802}}};
+    static uint8_t colour[2][3][COUNT], confidence[2][2][COUNT];
+    static uint16_t depth[2][2][COUNT];
+    uint64_t seed = 4, unit[2];
+    for (int i = 0; i < COUNT; i++) {
+        for (int c = 0; c < 3; c++) {
+            colour[0][c][i] = (uint8_t)unit_random(&seed);
+            colour[1][c][i] = (uint8_t)unit_random(&seed);
+        }
+    }
+    const size_t bytes = T3R_STEREO_WORK_BYTES(SIDE, SIDE, MOST, 4);
+    void *work = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    assert_non_null(work);
+    static const uint32_t counts[] = {1, 2, 16};
+    const t3r_hooks hooks = {.parallel_for = backwards};
+    for (size_t k = 0; k < sizeof counts / sizeof counts[0]; k++) {
+        const size_t turn = k > 0;
+        const t3r_stereo_settings how = {&t3r_kernels_c, MOST, 4, 1, {&hooks, counts[k]}, 0};
+        t3r_view views[2];
+        for (int v = 0; v < 2; v++) {
+            views[v] = (t3r_view){.width = SIDE,
+                                  .height = SIDE,
+                                  .colour = {colour[v][0], colour[v][1], colour[v][2]},
+                                  .depth = depth[turn][v],
+                                  .match_confidence = confidence[turn][v]};
+        }
+        memset(work, (int)(90 * k), bytes);
+        assert_int_equal(t3r_stereo_depth(&how, cameras, views, work, &unit[turn]), T3R_PAIR_OK);
+        assert_int_equal(unit[0], unit[turn]);
+        assert_memory_equal(depth[0], depth[turn], sizeof depth[0]);
+        assert_memory_equal(confidence[0], confidence[turn], sizeof confidence[0]);
+    }
+    free(work);
 }
 
 /* Planes of two disparities, from each half of either view: the depth unit of a pair so far apart. */
@@ -441,6 +503,7 @@ int main(void)
                                        cmocka_unit_test(unfilled),
                                        cmocka_unit_test(dark_is_not_nothing),
                                        cmocka_unit_test(small_pictures_have_few_workers),
+                                       cmocka_unit_test(bands_where_nothing_is_kept),
                                        cmocka_unit_test(units),
                                        cmocka_unit_test(marks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
