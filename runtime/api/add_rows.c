@@ -53,7 +53,8 @@ t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
         return T3R_ERR_FRAME;
     }
     const bool begins = row == 0 && depth_row == 0 && (rows > 0 || rt->strips.rows == 0);
-    const t3r_strips before = begins ? (t3r_strips){.digest = digest} : rt->strips;
+    const t3r_strips none = {.digest = digest};
+    const t3r_strips before = begins ? none : rt->strips;
     T3R_REFUSE_UNLESS(row == before.rows && depth_row == before.depth_rows && digest == before.digest, T3R_ERR_STATE);
 
     const t3r_strips after = {digest, row + rows, depth_row + depth_rows};

@@ -74,8 +74,8 @@ t3r_view_levels t3r_fit_levels(const t3r_level_sums *sums)
 void t3r_center_levels(t3r_view_levels *lines, uint32_t count)
 {
     for (int c = 0; c < 3; c++) {
-        int32_t offset = 0, slope = 0;
-        for (uint32_t v = 0; v < count; v++) {
+        int32_t offset = lines[0].offset_q8[c], slope = lines[0].slope_q14[c];
+        for (uint32_t v = 1; v < count; v++) {
             offset += lines[v].offset_q8[c];
             slope += lines[v].slope_q14[c];
         }

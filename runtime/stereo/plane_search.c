@@ -104,12 +104,11 @@ static void take_samples(search *s)
     }
 }
 
-/* How far a cell's pixels are from its plane, their mean, Q30 + 8 */
-static uint32_t deviation_q8(const search *s, uint32_t column, uint32_t row, const t3r_plane *plane)
+/* How far a cell's pixels, `count` of which are matched, are from its plane, their mean, Q30 + 8 */
+static uint32_t deviation_q8(const search *s, uint32_t column, uint32_t row, int64_t count, const t3r_plane *plane)
 {
     const t3r_view *view = s->view;
     int64_t sum = 0; /* at most 2^16 pixels, each counted as at most 2^32 */
-    int64_t count = 0;
     for (uint32_t v = row * s->cell; v < view->height && v < (row + 1) * s->cell; v++) {
         for (uint32_t u = column * s->cell; u < view->width && u < (column + 1) * s->cell; u++) {
             const int64_t inverse = matched_inverse(view, (size_t)v * view->width + u);
@@ -117,7 +116,6 @@ static uint32_t deviation_q8(const search *s, uint32_t column, uint32_t row, con
                 const int64_t off =
                     inverse * 256 - t3r_plane_at_q8(plane, (int32_t)u - s->middle_x, (int32_t)v - s->middle_y);
                 sum += T3R_MIN(t3r_abs64(off), (int64_t)T3R_INVERSE_MOST * 256);
-                count++;
             }
         }
     }
@@ -151,7 +149,7 @@ static int64_t suppose(search *s, uint32_t *deviations)
                 const t3r_plane plane = plane_through(&sums, s->spread_q4);
                 s->hypothesis[s->hypotheses++] = (t3r_plane_hypothesis){plane, 0};
                 if (side == 1) {
-                    insert(deviations, cells++, deviation_q8(s, column, row, &plane));
+                    insert(deviations, cells++, deviation_q8(s, column, row, sums.n, &plane));
                 }
             }
         }

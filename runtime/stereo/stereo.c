@@ -204,12 +204,11 @@ static __attribute__((noinline)) void fill_left(const t3r_stereo_settings *setti
     }
 }
 
-/* Where the work ends, if the matching of the first look leaves so many bytes; else NULL. */
-static uint8_t *room_behind_look(const t3r_stereo_settings *settings, const planes *full, const t3r_match *coarse,
-                                 size_t bytes)
+/* Whether the matching of the first look leaves so many bytes of the work. */
+static bool look_leaves(const t3r_stereo_settings *settings, const planes *full, const t3r_match *coarse, size_t bytes)
 {
     const size_t taken = T3R_MATCH_WORK_BYTES(coarse->width, coarse->height, coarse->disparities, settings->paths);
-    return taken + bytes <= full->work_bytes ? full->work + full->work_bytes - bytes : NULL;
+    return taken + bytes <= full->work_bytes;
 }
 
 /* The right plane at a quarter of the size. In full size it is kept behind the work of that look, if there is room,
@@ -229,8 +228,10 @@ static __attribute__((noinline)) void fill_right(const t3r_stereo_settings *sett
                                 .out = out},
                        .band = BAND};
     t3r_workers workers = settings->workers;
-    uint8_t *luma = room_behind_look(settings, full, coarse, pixels + four_rows * coarse->height);
-    if (luma != NULL) {
+    const size_t bytes = pixels + four_rows * coarse->height;
+    uint8_t *luma = full->work;
+    if (look_leaves(settings, full, coarse, bytes)) {
+        luma += full->work_bytes - bytes;
         job.kept = true;
         job.rows = luma + pixels;
         drawn->view = luma;
@@ -243,7 +244,6 @@ static __attribute__((noinline)) void fill_right(const t3r_stereo_settings *sett
         workers.count = workers.count <= room ? workers.count : 1;
         job.band = (uint32_t)T3R_MIN(T3R_MAX(room / T3R_MAX(workers.count, 1), 1), BAND);
         job.rows = full->side[1].luma;
-        luma = full->work;
     }
     job.full.luma = luma;
     luma_of(view, luma);

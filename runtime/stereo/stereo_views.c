@@ -185,7 +185,7 @@ static void finish_view(void *context, uint32_t index, uint32_t worker)
     const t3r_view *view = &job->views[job->first + index];
     if (job->rt->config.fill_radius > 0) {
         uint8_t *work = (uint8_t *)t3r_buffer_at(job->rt, T3R_BUFFER_STEREO_WORK) + index * job->bytes;
-        if (job->rt->config.planes) {
+        if (job->rt->config.planes != 0) {
             t3r_plane_fill(view, work);
         }
         t3r_stereo_fill(view, work);

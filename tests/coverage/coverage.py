@@ -72,7 +72,8 @@ def files_of(counted):
     files = collections.defaultdict(lambda: (0, 0))
     for (file, _, _), ways in counted.items():
         known, taken = files[file]
-        files[file] = (known + len(ways), taken + sum(count > 0 for count in ways))
+        # below 0: gcov subtracts counts, of which threads that count at once lose some
+        files[file] = (known + len(ways), taken + sum(count != 0 for count in ways))
     return files
 
 

@@ -60,6 +60,30 @@ static void counts_follow_the_configuration(void **state)
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DEPTH], 0);
 }
 
+/* Fitted widths look at the other views; structure, at the tiles once more and at all views' levels in two passes. */
+static void counts_what_is_asked_for_beyond(void **state)
+{
+    (void)state;
+    t3r_config c = config_of(1000);
+    c.fit_widths = 1;
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000 + 1000 / 5);
+    c.head = T3R_HEAD_MOMENT;
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_MOMENT_GAUSSIANS], 1000 + 1000 / 12);
+    for (uint32_t views = 1; views <= 2; views++) {
+        for (uint32_t passes = 1; passes <= 4; passes++) {
+            c = t3r_default_config(96, 64, views, 1000);
+            c.refinements = passes;
+            const t3r_work_counts plain = counted(&c, NULL, 0);
+            c.structural = 1;
+            const t3r_work_counts work = counted(&c, NULL, 0);
+            const uint64_t pixels = plain.units[T3R_WORK_REFINE_PIXELS], levelled = passes < 2 ? passes : 2;
+            assert_int_equal(work.units[T3R_WORK_REFINE_PIXELS], pixels + pixels / 16);
+            assert_int_equal(work.units[T3R_WORK_REFINE_GAUSSIANS] - plain.units[T3R_WORK_REFINE_GAUSSIANS],
+                             views > 1 ? levelled * views * 1000 : 0);
+        }
+    }
+}
+
 /* What does not fit at once is refined in slices, and each draws the views. */
 static void small_arenas_draw_more_often(void **state)
 {
@@ -258,10 +282,12 @@ static void networks_are_rated_by_their_size(void **state)
 {
     (void)state;
     static const made_layer least[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
+    static const made_layer two[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 48},
+                                     {T3R_LAYER_POINT, 0, {1, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
     const struct {
         const made_layer *layers;
         uint32_t count;
-    } sizes[] = {{least, 1}, {small_shape, small_layers}, {base_shape, base_layers}};
+    } sizes[] = {{least, 1}, {two, 2}, {small_shape, small_layers}, {base_shape, base_layers}};
     uint32_t before = UINT32_MAX;
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         size_t bytes;
@@ -269,7 +295,7 @@ static void networks_are_rated_by_their_size(void **state)
         t3r_config c = config_of(1);
         c.head = T3R_HEAD_LEARNED;
         c.head_column_bytes = T3R_MAX_HEAD_COLUMN_BYTES;
-        const t3r_limits limits = {.gaussians = 96 * 64 * 2 / 50, .refinements = 0}; /* 2 % of the points */
+        const t3r_limits limits = {.gaussians = 96 * 64 * 2 / 50, .refinements = 16}; /* 2 % of the points */
         t3r_choice list[T3R_MAX_CHOICES];
         uint32_t count = 0;
         assert_int_equal(t3r_plan_choices(&c, weights, bytes, &limits, list, &count), T3R_OK);
@@ -309,17 +335,12 @@ static void refuses_limits_out_of_range(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_follow_the_configuration),
-        cmocka_unit_test(small_arenas_draw_more_often),
-        cmocka_unit_test(networks_count_by_their_layers),
-        cmocka_unit_test(some_networks_cannot_be_packed),
-        cmocka_unit_test(refuses_what_has_no_count),
-        cmocka_unit_test(prices_add_up_and_end_at_the_most),
-        cmocka_unit_test(lists_what_fits_best_first),
-        cmocka_unit_test(shares_of_extreme_sizes),
-        cmocka_unit_test(heads_are_compared),
-        cmocka_unit_test(networks_are_rated_by_their_size),
-        cmocka_unit_test(refuses_limits_out_of_range),
+        cmocka_unit_test(counts_follow_the_configuration),   cmocka_unit_test(counts_what_is_asked_for_beyond),
+        cmocka_unit_test(small_arenas_draw_more_often),      cmocka_unit_test(networks_count_by_their_layers),
+        cmocka_unit_test(some_networks_cannot_be_packed),    cmocka_unit_test(refuses_what_has_no_count),
+        cmocka_unit_test(prices_add_up_and_end_at_the_most), cmocka_unit_test(lists_what_fits_best_first),
+        cmocka_unit_test(shares_of_extreme_sizes),           cmocka_unit_test(heads_are_compared),
+        cmocka_unit_test(networks_are_rated_by_their_size),  cmocka_unit_test(refuses_limits_out_of_range),
     };
     return cmocka_run_group_tests_name("work", tests, NULL, NULL);
 }

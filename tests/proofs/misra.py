@@ -3,7 +3,10 @@
 some has a reason there."""
 import importlib.machinery
 import importlib.util
+import os
+import pathlib
 import sys
+import tempfile
 
 import proof
 
@@ -18,8 +21,28 @@ def script():
     return module
 
 
+def dies_unheard(misra, ending):
+    """Whether nothing is said when the addon's Python ends so."""
+    path = os.environ["PATH"]
+    with tempfile.TemporaryDirectory() as folder:
+        python = pathlib.Path(folder, "python3")
+        python.write_text(f"#!/bin/sh\n[ \"$1\" = --version ] && exec {sys.executable} --version\n{ending}\n")
+        python.chmod(0o755)
+        os.environ["PATH"] = f"{folder}:{path}"
+        try:
+            misra.findings_of(proof.PLANTED / "returns.c")
+        except SystemExit:
+            return False
+        finally:
+            os.environ["PATH"] = path
+    return True
+
+
 def main():
     misra = script()
+    for ending in "exit 1", "kill -9 $$", "echo out of memory; exit 1":
+        if misra.shutil.which("cppcheck") and dies_unheard(misra, ending):
+            proof.broken(f"blind: an addon that ends by '{ending}' is not noticed")
     found = misra.findings_of(proof.PLANTED / "returns.c")
     proof.must_find([rule for _, rule in found], "15.5", "returns.c")
     if misra.risen({"15.5": 2, "11.5": 1}, {"15.5": 1, "11.5": 1}) != ["15.5"]:

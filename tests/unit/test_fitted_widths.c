@@ -100,6 +100,19 @@ static void wider_where_points_are_few(void **state)
     assert_int_equal(t3r_mean_density_q10(&budget, clusters), -2 * 1024);
     budget.gaussians = 641;
     assert_int_equal(t3r_mean_density_q10(&budget, clusters), 0);
+    budget.gaussians = 0;
+    assert_int_equal(t3r_mean_density_q10(&budget, clusters), 0);
+    free(s);
+}
+
+/* A depth below half a step of scene units counts as one. */
+static void nothing_is_at_the_camera(void **state)
+{
+    (void)state;
+    rig *s = views_new();
+    s->view[0].depth_unit_q40 = 1;
+    s->depth[0][MIDDLE_Y * W + MIDDLE_X] = 1;
+    assert_gain(gain(s, 1), 1);
     free(s);
 }
 
@@ -227,11 +240,9 @@ static void builds_that_ask(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_often_as_covered),
-        cmocka_unit_test(of_unlike_densities),
-        cmocka_unit_test(wider_where_points_are_few),
-        cmocka_unit_test(only_of_the_same_surface),
-        cmocka_unit_test(builds_that_ask),
+        cmocka_unit_test(as_often_as_covered),        cmocka_unit_test(of_unlike_densities),
+        cmocka_unit_test(wider_where_points_are_few), cmocka_unit_test(nothing_is_at_the_camera),
+        cmocka_unit_test(only_of_the_same_surface),   cmocka_unit_test(builds_that_ask),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

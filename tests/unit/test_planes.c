@@ -114,6 +114,72 @@ static void bounded(void **state)
     free(s);
 }
 
+/* As many planes as there is room for, of twice as many strips; and none where nothing is matched. */
+static void counted(void **state)
+{
+    (void)state;
+    shot *s = shoot(0, W);
+    t3r_planes planes;
+    t3r_search_planes(&s->view, work, &planes);
+    assert_int_equal(planes.count, 0);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        s->depth[i] = (uint16_t)lround(1000 * pow(1.2, i % W * 16 / W));
+        s->confidence[i] = 200;
+    }
+    t3r_search_planes(&s->view, work, &planes);
+    assert_int_equal(planes.count, T3R_PLANES_MOST);
+    free(s);
+}
+
+/* So few samples of a patch are as it says at once: everything is filled at its distance. */
+static void of_a_patch(void **state)
+{
+    (void)state;
+    enum { WIDTH = 33, HEIGHT = 200, COUNT = WIDTH * HEIGHT, DEPTH = 1000 };
+    uint16_t *depth = unit_array(COUNT, 2);
+    uint8_t *confidence = unit_array(COUNT, 1), *grey = unit_array(COUNT, 1);
+    memset(depth, 0, COUNT * sizeof *depth);
+    memset(confidence, T3R_STEREO_NONE, COUNT);
+    memset(grey, 100, COUNT);
+    for (uint32_t y = 65; y < 72; y++) {
+        for (uint32_t x = 13; x < 20; x++) {
+            depth[y * WIDTH + x] = DEPTH;
+            confidence[y * WIDTH + x] = 200;
+        }
+    }
+    const t3r_view view = {
+        .width = WIDTH, .height = HEIGHT, .colour = {grey, grey, grey}, .depth = depth, .match_confidence = confidence};
+    uint8_t *room = aligned_alloc(64, T3R_PLANE_FILL_BYTES(WIDTH, HEIGHT));
+    t3r_plane_fill(&view, room);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        assert_int_equal(depth[i], DEPTH);
+    }
+    free(room);
+    free(depth);
+    free(confidence);
+    free(grey);
+}
+
+/* Stripes so unlike that a way across half a hundred of them is longer than any that counts. */
+static void out_of_reach(void **state)
+{
+    (void)state;
+    enum { MATCHED = 30, REACH = 51 };
+    shot *s = shoot(MATCHED, W);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        for (int c = 0; c < 3; c++) {
+            s->colour[c][i] = i % 2 == 0 ? 1 : 255; /* a step costs 5 + 5 x 254 */
+        }
+    }
+    t3r_plane_fill(&s->view, work);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        const bool reached = i % W < MATCHED + REACH;
+        assert_int_equal(s->depth[i] != 0, reached);
+        assert_int_equal(s->confidence[i] != T3R_STEREO_NONE, reached);
+    }
+    free(s);
+}
+
 /* Black pixels show nothing; what is beyond all steps is a hole; without planes nothing is done. */
 static void left_alone(void **state)
 {
@@ -228,8 +294,9 @@ static void outlines(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(found),      cmocka_unit_test(continued), cmocka_unit_test(bounded),
-        cmocka_unit_test(left_alone), cmocka_unit_test(anything),  cmocka_unit_test(outlines),
+        cmocka_unit_test(found),      cmocka_unit_test(counted),  cmocka_unit_test(continued),
+        cmocka_unit_test(of_a_patch), cmocka_unit_test(bounded),  cmocka_unit_test(out_of_reach),
+        cmocka_unit_test(left_alone), cmocka_unit_test(anything), cmocka_unit_test(outlines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

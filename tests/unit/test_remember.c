@@ -32,7 +32,7 @@ static t3r_runtime *begin(const t3r_config *config)
 }
 
 /* A grey wall two metres before a camera at x, z metres. The leftmost column has no depth. */
-static void take(t3r_runtime *rt, int64_t x, double z, uint8_t level)
+static t3r_status try_to_take(t3r_runtime *rt, double x, double z, uint8_t level)
 {
     const uint32_t mm = (uint32_t)((2 - z) * 1000);
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -42,9 +42,14 @@ static void take(t3r_runtime *rt, int64_t x, double z, uint8_t level)
     }
     const t3r_frame frame = rgbd_frame(rgb, depth, SIDE, SIDE, MILLIMETRE_Q40);
     t3r_camera camera = straight_camera(SIDE);
-    camera.position_q32[0] = x * ((int64_t)1 << 32);
+    camera.position_q32[0] = (int64_t)(x * 4294967296.0);
     camera.position_q32[2] = (int64_t)(z * 4294967296.0);
-    assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
+    return t3r_stream_keyframe(rt, &frame, &camera, NULL);
+}
+
+static void take(t3r_runtime *rt, double x, double z, uint8_t level)
+{
+    assert_int_equal(try_to_take(rt, x, z, level), T3R_OK);
 }
 
 static void five_bits_keep_the_mean(void **state)
@@ -157,6 +162,145 @@ static void holds_what_it_shows(void **state)
     }
 }
 
+/* Where a remembered keyframe had no depth it shows nothing. The second one stands eight columns to the right of the
+ * first: of what the first one gave the map, a column falls on its column without depth, and some miss it. */
+static void hides_what_had_no_depth(void **state)
+{
+    (void)state;
+    const t3r_config config = stream_config(1);
+    t3r_runtime *rt = begin(&config);
+    take(rt, -0.5, 0, 90);
+    const int32_t near_q8 = t3r_map_of(rt).records[0].grain_q8;
+    take(rt, 0, 0, 90);
+    take(rt, 0, -2, 90);
+    const t3r_map map = t3r_map_of(rt);
+    const double unit = ldexp(1, rt->frame.exponent - 20);
+    uint32_t held = 0, hidden = 0;
+    for (uint32_t i = 0; i < map.count; i++) {
+        const int32_t *at = map.gaussians[i].position_q20;
+        const double column = (at[0] * unit - 0.5) / (at[2] * unit) * SIDE + SIDE / 2.0;
+        const bool near_an_edge = fabs(column - floor(column) - 0.5) < 0.1;
+        if (map.records[i].grain_q8 == near_q8 && !near_an_edge) {
+            assert_int_equal(map.records[i].idle, column < 0.5);
+            held += column >= 0.5;
+            hidden += column > -0.5 && column < 0.5;
+        }
+    }
+    assert_true(held > 50 && hidden > 2);
+}
+
+/* One that saw everything from afar holds nothing that was seen closely. */
+static void holds_nothing_from_afar(void **state)
+{
+    (void)state;
+    const t3r_config config = stream_config(1);
+    t3r_runtime *rt = begin(&config);
+    take(rt, 0, 0, 90);
+    take(rt, 0, -2, 90);
+    const t3r_map_record *record = &t3r_map_of(rt).records[rt->gaussians / 2];
+    assert_int_equal(record->idle, 0);
+    take(rt, 0, -2, 90); /* the one from afar takes the place of the near one */
+    assert_int_equal(record->idle, 1);
+}
+
+static double units(const t3r_runtime *rt, int count)
+{
+    return ldexp(count, rt->frame.exponent);
+}
+
+/* The map's range is 1,024 units about an origin that follows the camera. What is beyond it neither holds nor refines,
+ * and is forgotten first, whatever its number. */
+static void forgets_first_what_is_out_of_range(void **state)
+{
+    (void)state;
+    const t3r_config config = stream_config(2);
+    t3r_runtime *rt = begin(&config);
+    take(rt, 0, 0, 90);
+    take(rt, 0, 0, 90);
+    take(rt, units(rt, 700), 0, 90);
+    assert_int_equal(numbers_of(rt), 1 << 1 | 1 << 2);
+    take(rt, units(rt, 1400), 0, 90);
+    assert_int_equal(numbers_of(rt), 1 << 3 | 1 << 2);
+    take(rt, units(rt, 1400), 0, 90);
+    assert_int_equal(numbers_of(rt), 1 << 3 | 1 << 4);
+}
+
+/* The keyframe whose planes are taken can itself be out of range. It shows nothing of the map. */
+static void remembers_what_is_out_of_range(void **state)
+{
+    (void)state;
+    const t3r_config config = stream_config(2);
+    t3r_runtime *rt = begin(&config);
+    take(rt, 0, 0, 90);
+    take(rt, 0, 0, 90);
+    take(rt, -units(rt, 500), 0, 90);
+    assert_int_equal(numbers_of(rt), 1 << 1 | 1 << 2);
+    take(rt, units(rt, 900), 0, 90); /* 1,400 units from the one before */
+    assert_int_equal(numbers_of(rt), 1 << 3 | 1 << 2);
+}
+
+/* A keyframe at hand that came out of range lost its depth, and is not remembered. */
+static void remembers_only_what_shows_something(void **state)
+{
+    (void)state;
+    t3r_config config = stream_config(2);
+    config.views = 3;
+    t3r_runtime *rt = begin(&config);
+    take(rt, 0, 0, 90);
+    take(rt, units(rt, 900), 0, 90);
+    take(rt, units(rt, 1800), 0, 90);
+    take(rt, units(rt, 1800), 0, 90);
+    assert_int_equal(rt->remembered, 0);
+    take(rt, units(rt, 1800), 0, 90);
+    assert_int_equal(numbers_of(rt), 1 << 2);
+}
+
+/* Memory may come back otherwise than it was: a camera that is none shows nothing, and is forgotten first. */
+static void passes_over_cameras_that_are_none(void **state)
+{
+    (void)state;
+    const t3r_config config = stream_config(3);
+    t3r_runtime *rt = begin(&config);
+    for (int i = 0; i < 3; i++) {
+        take(rt, 0, 0, 90);
+    }
+    t3r_remembered_at(rt, 1)->camera.fx_q16 = 0;
+    take(rt, 0, 0, 90);
+    assert_int_equal(numbers_of(rt), 1 << 1 | 1 << 2 | 1 << 3);
+    take(rt, 0, 0, 90);
+    assert_int_equal(numbers_of(rt), 1 << 1 | 1 << 4 | 1 << 3);
+}
+
+typedef struct steps {
+    uint32_t calls, cancel_at; /* 0 = never */
+} steps;
+
+static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    steps *s = user;
+    assert_true(stage < T3R_STAGE_COUNT && done <= total);
+    return ++s->calls == s->cancel_at;
+}
+
+/* A keyframe is cancelled while remembered ones refine the map, too. */
+static void is_cancelled_at_every_step(void **state)
+{
+    (void)state;
+    uint32_t calls = 1;
+    for (uint32_t at = 0; at <= calls; at++) {
+        const t3r_config config = stream_config(1);
+        t3r_runtime *rt = begin(&config);
+        take(rt, 0, 0, 90);
+        steps s = {0, at};
+        const t3r_hooks hooks = {.user = &s, .progress = progress};
+        assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
+        assert_int_equal(try_to_take(rt, 0, 0, 90), at == 0 ? T3R_OK : T3R_ERR_CANCELLED);
+        calls = at == 0 ? s.calls : calls;
+        assert_int_equal(s.calls, at == 0 ? calls : at);
+    }
+    assert_true(calls > 12); /* before and in each of two keyframes, in two passes, and before each stage */
+}
+
 /* As many keyframes as there is no room for are no state that the library left. */
 static void refuses_more_than_fit(void **state)
 {
@@ -175,9 +319,19 @@ static void refuses_more_than_fit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(five_bits_keep_the_mean), cmocka_unit_test(forgets_what_is_shown_often),
-        cmocka_unit_test(spreads_over_time),       cmocka_unit_test(the_map_remembers),
-        cmocka_unit_test(holds_what_it_shows),     cmocka_unit_test(refuses_more_than_fit),
+        cmocka_unit_test(five_bits_keep_the_mean),
+        cmocka_unit_test(forgets_what_is_shown_often),
+        cmocka_unit_test(spreads_over_time),
+        cmocka_unit_test(the_map_remembers),
+        cmocka_unit_test(holds_what_it_shows),
+        cmocka_unit_test(refuses_more_than_fit),
+        cmocka_unit_test(hides_what_had_no_depth),
+        cmocka_unit_test(holds_nothing_from_afar),
+        cmocka_unit_test(forgets_first_what_is_out_of_range),
+        cmocka_unit_test(remembers_what_is_out_of_range),
+        cmocka_unit_test(remembers_only_what_shows_something),
+        cmocka_unit_test(passes_over_cameras_that_are_none),
+        cmocka_unit_test(is_cancelled_at_every_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

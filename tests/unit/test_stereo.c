@@ -315,7 +315,17 @@ static void by_worker_15(void *user, uint32_t count, void (*task)(void *context,
     }
 }
 
-/* So small a picture has no room for sixteen workers' rows of the first look. */
+static void backwards(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                      void *context)
+{
+    (void)user;
+    while (count > 0) {
+        count--;
+        task(context, count, count % 2);
+    }
+}
+
+/* A picture of fewer rows in the first look than there are workers. */
 static void small_pictures_have_few_workers(void **state)
 {
     (void)state;
@@ -354,6 +364,58 @@ static void small_pictures_have_few_workers(void **state)
     free(work);
     shot_free(s[0]);
     shot_free(s[1]);
+}
+
+/* Two cameras whose first look compares so many disparities that its matching leaves no room for what it draws: that is
+ * drawn in bands, each worker's its own; in the larger picture of eight rows, which are the most. Any picture, any
+ * number of workers: the same. */
+static void bands_where_nothing_is_kept(void **state)
+{
+    (void)state;
+    enum { SIDE = 53, MOST = 16 };
+    static const int32_t focal_q16[2] = {9778159, 8654727};
+    static const uint32_t counts[] = {1, 2, 4, 16};
+    const t3r_hooks hooks = {.parallel_for = backwards};
+    t3r_camera cameras[2] = {{.rotation_q30 = {1 << 30, 130571952, 94199163, -104091023},
+                              .position_q32 = {-1710267602, 1984259638, -1927800204}},
+                             {.rotation_q30 = {1 << 30, -71127901, -123661275, -73165880},
+                              .position_q32 = {166404872, 942228642, 1944734802}}};
+    for (int times = 1; times <= 3; times += 2) {
+        const uint32_t side = (uint32_t)(times * SIDE);
+        const size_t count = (size_t)side * side, bytes = T3R_STEREO_WORK_BYTES(side, side, MOST, 4);
+        uint8_t *noise = unit_array(6 * count, 1), *confidence = unit_array(4 * count, 1);
+        uint16_t *depth = unit_array(4 * count, 2);
+        void *work = aligned_alloc(64, (bytes + 63) / 64 * 64);
+        assert_non_null(work);
+        uint64_t seed = 4, unit[2] = {0};
+        for (size_t i = 0; i < 6 * count; i++) {
+            noise[i] = (uint8_t)unit_random(&seed);
+        }
+        for (size_t k = 0; k < sizeof counts / sizeof counts[0]; k++) {
+            const size_t turn = k > 0;
+            const t3r_stereo_settings how = {&t3r_kernels_c, MOST, 4, 1, {&hooks, counts[k]}, 0};
+            t3r_view views[2];
+            for (size_t v = 0; v < 2; v++) {
+                cameras[v].fx_q16 = cameras[v].fy_q16 = times * focal_q16[v];
+                cameras[v].cx_q16 = cameras[v].cy_q16 = (int32_t)(side - 1) << 15;
+                uint8_t *at = noise + 3 * v * count;
+                views[v] = (t3r_view){.width = side,
+                                      .height = side,
+                                      .colour = {at, at + count, at + 2 * count},
+                                      .depth = depth + (2 * turn + v) * count,
+                                      .match_confidence = confidence + (2 * turn + v) * count};
+            }
+            memset(work, (int)(60 * k), bytes);
+            assert_int_equal(t3r_stereo_depth(&how, cameras, views, work, &unit[turn]), T3R_PAIR_OK); /* by chance */
+            assert_int_equal(unit[0], unit[turn]);
+            assert_memory_equal(depth, depth + 2 * turn * count, 4 * count);
+            assert_memory_equal(confidence, confidence + 2 * turn * count, 2 * count);
+        }
+        free(work);
+        free(noise);
+        free(confidence);
+        free(depth);
+    }
 }
 
 /* Planes of two disparities, from each half of either view: the depth unit of a pair so far apart. */
@@ -441,6 +503,7 @@ int main(void)
                                        cmocka_unit_test(unfilled),
                                        cmocka_unit_test(dark_is_not_nothing),
                                        cmocka_unit_test(small_pictures_have_few_workers),
+                                       cmocka_unit_test(bands_where_nothing_is_kept),
                                        cmocka_unit_test(units),
                                        cmocka_unit_test(marks)};
     return cmocka_run_group_tests(tests, NULL, NULL);

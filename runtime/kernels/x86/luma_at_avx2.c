@@ -46,7 +46,7 @@ T3R_AVX2 void t3r_luma_at_avx2(const t3r_luma_picture *given, const t3r_ray_plac
         eight(&picture, places, i, out + i);
     }
     if (whole < count) {
-        uint8_t rest[8];
+        uint8_t rest[8] = {0};
         eight(&picture, places, whole, rest);
         for (uint32_t i = whole; i < count; i++) {
             out[i] = rest[i - whole];
