@@ -68,7 +68,7 @@ extern "C" {
 #define T3R_HARMONICS_MOST 16u /* of each colour, degree 0 included */
 #define T3R_MAX_REFINEMENTS 16u
 #define T3R_STREAM_REFINEMENTS 4u /* of a keyframe at most, where they are fitted */
-#define T3R_MAX_LEVELS 5u /* most wavelet levels */
+#define T3R_MAX_LEVELS 5u         /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536u
 #define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
 #define T3R_MAX_WORKERS 16u

@@ -88,7 +88,8 @@ static void count_network(const void *weights, const t3r_config *c, const sizes 
 /* Gaussians of a closed form: fitting a width to one other view is 1/share of what one of them takes. */
 static uint64_t closed_forms(const t3r_config *c, const sizes *s, uint32_t share)
 {
-    return s->gaussians + (c->fit_widths != 0 ? s->gaussians * (s->views - 1) / share : 0);
+    const bool fits = c->fit_widths != 0 && c->refinements == 0;
+    return s->gaussians + (fits ? s->gaussians * (s->views - 1) / share : 0);
 }
 
 static void count_head(const t3r_config *c, const t3r_layout *layout, const void *weights, const sizes *s,

@@ -77,7 +77,7 @@ def reports(folder):
     scenes = {line.split(",")[0] for t in tables for line in open(t, encoding="utf-8").read().splitlines()[1:]}
     check(len(scenes) == 2 and rows > 20, f"{rows} rows")
     check(text.count("<script type=\"text/plain\"") > rows, "a picture a row, targets and masks")
-    check("trim3r \u00b7 refine 0" in text and "unless named, small, 8 bits, refine 4" in text, "names")
+    check("trim3r \u00b7 refine 0" in text and "unless named, small, 8 bits, refine 8" in text, "names")
     small = f"{folder}/small.html"
     run(trim3r, "chart", *tables, "--pictures", folders[0], "--pictures", folders[1], "-o", small, "--picture-mib", "1")
     check(os.path.getsize(small) <= os.path.getsize(page), "no more pictures than there is room for")

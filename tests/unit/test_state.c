@@ -110,7 +110,7 @@ static void every_call_of_refinement_may_cancel(void **state)
     calls_left = MANY_CALLS;
     assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
     const uint32_t calls = MANY_CALLS - calls_left;
-    assert_true(calls > T3R_DEFAULT_REFINEMENTS * (TILES + 1));
+    assert_true(calls > t3r_refinement_passes(rt) * (TILES + 1));
     for (uint32_t call = 0; call < calls; call += 1 + call / 8) {
         calls_left = call;
         assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_CANCELLED);
