@@ -127,7 +127,7 @@ static const struct argp argp = {
            "\vExamples:\n"
            "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
            "  trim3r build room.mcap --gaussians 13107 --head moment -o scene.ply\n"
-           "  trim3r build room.mcap --head moment --refine 0 --fit-widths on -o s.ply\n"
+           "  trim3r build room.mcap --head moment --refine 4 --fit-passes off -o s.ply\n"
            "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
            "  trim3r build room.mcap --auto --max-loss 0.5 -o scene.ply\n"
            "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
