@@ -18,7 +18,7 @@ def calibrated():
     check(abs(sum(ms for stage, ms in found["stages_ms"].items() if stage != "raster") - found["build_ms"]) < 0.01,
           f"stages are no build: {found['stages_ms']}, {found['build_ms']}")
     check(found["build_ms"] > 0 and found["render_ms"] > 0, "nothing takes time")
-    check(expect_json(*plan, "--refine", 8)["build_ms"] > found["build_ms"], "more passes take no longer")
+    check(expect_json(*plan, "--refine", 16)["build_ms"] > found["build_ms"], "more passes take no longer")
     expect(0, *plan, out=" ms\n")
     expect(2, *plan, "--threads", 2, err="--threads 1")
     # what a list promises is what plan says of the setting

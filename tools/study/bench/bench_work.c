@@ -65,6 +65,7 @@ static t3r_status open_scene(bench_work *w, bench_scene kind)
     config.depth = scene_settings[kind].stereo ? T3R_DEPTH_STEREO : w->source;
     config.keep_analysis = scene_settings[kind].keep;
     config.refinements = scene_settings[kind].refinements;
+    config.fit_passes = 0;
     if (head != NULL) {
         chosen_head_configure(head, &config);
     }
