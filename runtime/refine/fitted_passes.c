@@ -11,6 +11,9 @@
 
 uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8, uint32_t most)
 {
+    if (gaussians == 0) { /* a restored arena may be without points */
+        return 1;
+    }
     /* four times the square, which its root halves and rounds: below 2^11 x 2^8 x 2^32 */
     const uint64_t square = (uint64_t)4 * PAY * 256u * points / ((uint64_t)gaussians * T3R_MAX(disagreement_q8, 1u));
     return (uint32_t)t3r_clamp64(((int64_t)t3r_isqrt64(square) + 1) / 2, 1, most);
