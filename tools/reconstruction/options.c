@@ -68,8 +68,12 @@ static void check_settings(struct argp_state *state, reconstruction_options *o)
     if ((o->config.allocation == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
         argp_error(state, "--allocate given and --importance belong together");
     }
-    if (o->points_of != NULL && o->config.depth != T3R_DEPTH_SENSOR) {
-        argp_error(state, "--depth belongs to a recording's own points, not to --prune");
+    if (o->points_of != NULL) {
+        if (o->config.depth != T3R_DEPTH_SENSOR) {
+            argp_error(state, "--depth belongs to a recording's own points, not to --prune");
+        }
+        o->config.fit_passes =
+            0; /* means of Gaussians lie off the surface, and views disagree about them in any case */
     }
     if (o->max_loss > 0 && !o->automatic) {
         argp_error(state, "--max-loss belongs to --auto");
