@@ -9,11 +9,11 @@
 #define TRIAL_PART 100u     /* of the points are the first trial's; the second has twice as many */
 #define LEAST_PART 400u     /* of the points are kept whatever the prediction */
 #define PAIRS_LEAST 256u    /* below which views are not believed to disagree so much */
-#define UNSEEN_Q8 (4u << 8) /* levels^2, 42 dB: as much as roundings make; an error below it is not seen */
+#define UNSEEN_Q8 (2u << 8) /* levels^2, 45 dB: an error below it is not seen */
 
 /* Of the disagreement is added to the error by every dB that may be lost, and a quarter of that in any case: measured
  * on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
-#define SHARE_DIVISOR 10u
+#define SHARE_DIVISOR 14u
 #define LOSS_OFFSET_Q8 64u
 
 static uint64_t ceil_div(uint64_t a, uint64_t b)

@@ -13,15 +13,15 @@ from common import check, done, run, skip
 
 TRIM3R = os.path.abspath(sys.argv[1])
 LOSSES = (0.5, 2)  # dB asked for
-SLACK = 0.25  # dB above what was asked for or, of foliage, measured: 1.4 and 2.4 lost, as it is given too few
+SLACK = 0.25  # dB above what was asked for or, of foliage, measured: 1.8 and 3.0 lost, as it is given too few
 UNSEEN = 40  # dB: better than this a loss is not to be seen
 
-# The most that is lost, dB, and the largest share of the points, percent, of each loss. Measured: the room 0.1, 1.3 dB,
-# 21, 7.1 %; the plane 0.0, 0.5 dB, 68, 23 %; foliage 24, 8.1 %.
+# The most that is lost, dB, and the largest share of the points, percent, of each loss. Measured: the room 0.1, 0.4 dB,
+# 27, 8.9 %; the plane 0.0, 0.2 dB, 72, 24 %; foliage 35, 12 %.
 DRAWN = {
     "room": ((0.5 + SLACK, 28), (2 + SLACK, 9.5)),
     "scene-plane": ((0.5 + SLACK, 80), (2 + SLACK, 30)),
-    "scene-foliage": ((1.4 + SLACK, 32), (2.4 + SLACK, 11)),
+    "scene-foliage": ((1.8 + SLACK, 38), (3.0 + SLACK, 13)),
 }
 # Training scenes: every triplet within this, most of them within what was asked for, and the mean share. Measured of the
 # 20: 95 % within it, 0.54 and 2.04 dB at most, 3.4 and 1.1 %.

@@ -11,11 +11,11 @@ static const t3r_budget_evidence plain = {
     .disagreement_q8 = 500 * 256,
 };
 
-/* slope / ((loss + 1/4) / 10 yardstick), rounded up */
+/* slope / ((loss + 1/4) / 14 yardstick), rounded up */
 static void as_in_double(void **state)
 {
     (void)state;
-    assert_int_equal(t3r_predict_budget(&plain, 100000, 128), (uint32_t)ceil(200000 / (0.075 * 500)));
+    assert_int_equal(t3r_predict_budget(&plain, 100000, 128), (uint32_t)ceil(200000 / (0.75 / 14 * 500)));
     uint64_t seed = 5;
     for (int turn = 0; turn < 20000; turn++) {
         t3r_budget_evidence e = {.points = (uint32_t)unit_between(&seed, 1000, 1 << 28)};
@@ -26,10 +26,10 @@ static void as_in_double(void **state)
         e.disagreement_q8 = unit_random(&seed) % 4 == 0 ? 0 : (uint32_t)unit_between(&seed, 1, 1 << 24);
         uint32_t loss_q8 = (uint32_t)unit_between(&seed, 1, T3R_MAX_LOSS_Q8);
         double fall = e.error_q8[0] - (double)e.error_q8[1], ground = fmax(0, e.error_q8[1] - fall);
-        double yardstick = fmax(e.disagreement_q8 != 0 ? e.disagreement_q8 : ground, 4 * 256);
-        double wanted = fall * 2 * e.trial / ((loss_q8 / 256.0 + 0.25) / 10 * yardstick);
-        if (e.error_q8[1] < 4 * 256) {
-            wanted = fmin(wanted, fall * 2 * e.trial / (4 * 256 - ground));
+        double yardstick = fmax(e.disagreement_q8 != 0 ? e.disagreement_q8 : ground, 2 * 256);
+        double wanted = fall * 2 * e.trial / ((loss_q8 / 256.0 + 0.25) / 14 * yardstick);
+        if (e.error_q8[1] < 2 * 256) {
+            wanted = fmin(wanted, fall * 2 * e.trial / (2 * 256 - ground));
         }
         wanted = fmin(fmax(wanted, e.points / 400), e.points); /* whole points */
         double got = t3r_predict_budget(&e, e.points, loss_q8);
@@ -58,13 +58,13 @@ static void extremes(void **state)
     e.error_q8[1] = worst;
     assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), most_points / 400);
     assert_int_equal(t3r_predict_budget(&e, 7, 1), 7);
-    /* Just below 4 levels^2 nobody sees the second trial's error, and more than that trial is not needed; a 256th more
+    /* Just below 2 levels^2 nobody sees the second trial's error, and more than that trial is not needed; a 256th more
      * is seen, and has to come down to the yardstick's share. */
-    e = (t3r_budget_evidence){.points = 1000, .trial = 10, .error_q8 = {1400, 1023}, .disagreement_q8 = 1024};
+    e = (t3r_budget_evidence){.points = 1000, .trial = 10, .error_q8 = {700, 511}, .disagreement_q8 = 1024};
     assert_int_equal(t3r_predict_budget(&e, 1000, 1), 20);
     e.error_q8[0]++;
     e.error_q8[1]++;
-    assert_int_equal(t3r_predict_budget(&e, 1000, 1), 290);
+    assert_int_equal(t3r_predict_budget(&e, 1000, 1), 204);
     e = (t3r_budget_evidence){.points = 2, .trial = 1};
     assert_int_equal(t3r_predict_budget(&e, 2, T3R_MAX_LOSS_Q8), 1);
 }
