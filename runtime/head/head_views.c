@@ -44,6 +44,7 @@ static void *work_of(const t3r_runtime *rt, uint32_t worker)
 t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
                                  const t3r_budget_settings *settings)
 {
+    const bool unadapted = rt->ablation.unadapted != 0;
     return (t3r_head_input){
         .kernels = &rt->kernels,
         .map = t3r_pointmap_of(&views[view_index], rt->frame.exponent),
@@ -53,8 +54,8 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
         .weights = rt->weights,
         .work = work_of(rt, 0),
         .work_bytes = work_bytes(rt),
-        .narrowest_q12 = rt->build.refinements > 0 ? T3R_NARROWEST_REFINED_Q12 : T3R_NARROWEST_Q12,
-        .unadapted = rt->ablation.unadapted != 0,
+        .narrowest_q12 = !unadapted && rt->build.refinements > 0 ? T3R_NARROWEST_REFINED_Q12 : T3R_NARROWEST_Q12,
+        .unadapted = unadapted,
     };
 }
 

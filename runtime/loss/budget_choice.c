@@ -13,7 +13,7 @@
 
 /* Of the disagreement is added to the error by every dB that may be lost, and a quarter of that in any case: measured
  * on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
-#define SHARE_DIVISOR 14u
+#define SHARE_DIVISOR 17u
 #define LOSS_OFFSET_Q8 64u
 
 static uint64_t ceil_div(uint64_t a, uint64_t b)

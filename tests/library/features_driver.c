@@ -12,7 +12,7 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[4 << 20];
 static t3r_config plain_config(void)
 {
     t3r_config config = t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, SCENE_BUDGET);
-    config.refinements = 0;
+    config.refinements = config.fit_widths = 0; /* on by default where the library has what they need */
     return config;
 }
 

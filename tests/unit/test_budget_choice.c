@@ -11,11 +11,11 @@ static const t3r_budget_evidence plain = {
     .disagreement_q8 = 500 * 256,
 };
 
-/* slope / ((loss + 1/4) / 14 yardstick), rounded up */
+/* slope / ((loss + 1/4) / 17 yardstick), rounded up */
 static void as_in_double(void **state)
 {
     (void)state;
-    assert_int_equal(t3r_predict_budget(&plain, 100000, 128), (uint32_t)ceil(200000 / (0.75 / 14 * 500)));
+    assert_int_equal(t3r_predict_budget(&plain, 100000, 128), (uint32_t)ceil(200000 / (0.75 / 17 * 500)));
     uint64_t seed = 5;
     for (int turn = 0; turn < 20000; turn++) {
         t3r_budget_evidence e = {.points = (uint32_t)unit_between(&seed, 1000, 1 << 28)};
@@ -27,7 +27,7 @@ static void as_in_double(void **state)
         uint32_t loss_q8 = (uint32_t)unit_between(&seed, 1, T3R_MAX_LOSS_Q8);
         double fall = e.error_q8[0] - (double)e.error_q8[1], ground = fmax(0, e.error_q8[1] - fall);
         double yardstick = fmax(e.disagreement_q8 != 0 ? e.disagreement_q8 : ground, 2 * 256);
-        double wanted = fall * 2 * e.trial / ((loss_q8 / 256.0 + 0.25) / 14 * yardstick);
+        double wanted = fall * 2 * e.trial / ((loss_q8 / 256.0 + 0.25) / 17 * yardstick);
         if (e.error_q8[1] < 2 * 256) {
             wanted = fmin(wanted, fall * 2 * e.trial / (2 * 256 - ground));
         }
@@ -64,7 +64,7 @@ static void extremes(void **state)
     assert_int_equal(t3r_predict_budget(&e, 1000, 1), 20);
     e.error_q8[0]++;
     e.error_q8[1]++;
-    assert_int_equal(t3r_predict_budget(&e, 1000, 1), 204);
+    assert_int_equal(t3r_predict_budget(&e, 1000, 1), 248);
     e = (t3r_budget_evidence){.points = 2, .trial = 1};
     assert_int_equal(t3r_predict_budget(&e, 2, T3R_MAX_LOSS_Q8), 1);
 }
