@@ -80,7 +80,7 @@ static t3r_config configure(const options *o)
     config.clusters = o->clusters != 0 ? o->clusters : config.clusters;
     config.cluster_batches = o->batches != 0 ? o->batches : config.cluster_batches;
     config.refinements = o->refinements;
-    config.fit_passes = 0;
+    config.fit_passes = config.fit_widths = 0; /* the same work and bits, whatever the library was built with */
 #ifdef HEAD
     if (o->learned != 0) {
         config.head = T3R_HEAD_LEARNED;

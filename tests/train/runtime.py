@@ -129,12 +129,14 @@ class Runtime(unittest.TestCase):
                 outputs = head(features, (torch.zeros_like(y), y, x))
                 spacing = torch.from_numpy(points["spacing"].copy())
                 footprints = splatting.footprints(outputs, spacing, picture[:, y, x].T)
-                splats = splatting.planar_splats(*footprints, torch.stack((x, y), 1).float())
+                pixels = torch.stack((x, y), 1).float()
+                plain = splatting.planar_splats(*footprints, pixels)
+                splats = splatting.planar_splats(*footprints, pixels, splatting.VARIANCE_LEAST_REFINED)
             start = np.array([0, len(splats)], np.int32)
             order = splatting.order_by(np.zeros(len(splats)), start)  # one depth: by index
             said, before = [], 0
             for passes in range(PASSES + 1):
-                refined = splatting.refine(splats, start, order, picture[None], counts, passes)
+                refined = splatting.refine(splats if passes > 0 else plain, start, order, picture[None], counts, passes)
                 drawn = splatting.draw(refined, start, order, SIDE, SIDE)[0].permute(1, 2, 0).numpy()
                 ours = psnr(np.round(drawn * 255).clip(0, 255), image)
                 theirs = psnr(self.runtime_draws(image, camera, len(splats), passes), image)

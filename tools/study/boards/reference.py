@@ -17,5 +17,5 @@ def host(path, options):
     context = ",".join(map(str, range(options.views)))
     said = json.loads(run(options.program, "replay", path, "--context", context, "--head",
                           options.head, "--gaussians", options.gaussians, "--clusters", options.clusters, "--refine",
-                          options.refine, "--json"))
+                          options.refine, "--fit-passes", "off", "--fit-widths", "off", "--json"))
     return said["hash"], said["stages"]

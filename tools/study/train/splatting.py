@@ -4,7 +4,9 @@ import torch
 
 import native
 
-DILATION, VARIANCE_LEAST = 0.3, 0.02
+DILATION = 0.3
+# Of a splat before dilation. The shipped heads were trained with the first of both; see runtime/head/head.h.
+VARIANCE_LEAST, VARIANCE_LEAST_REFINED = 0.02, 0.2
 L_LEAST, L_MOST = 580 / 4096, 64  # of a Cholesky factor, pixels, as runtime/head/head_learned.c has them
 CHANGES = 10  # of a splat in a pass of refinement, its share of the step with them
 _library = None
@@ -104,14 +106,14 @@ def footprints(outputs, spacing, own_colour):
     return offset, factor, opacity, colour
 
 
-def narrowed(factor):
+def narrowed(factor, least=VARIANCE_LEAST):
     """The lower factor of the footprint less the rasterizer's dilation, as runtime/head/head_lift.c stores it."""
     l11, l21, l22 = factor.unbind(1)
-    xx = torch.clamp(l11 * l11 - DILATION, min=VARIANCE_LEAST)
-    yy = torch.clamp(l21 * l21 + l22 * l22 - DILATION, min=VARIANCE_LEAST)
+    xx = torch.clamp(l11 * l11 - DILATION, min=least)
+    yy = torch.clamp(l21 * l21 + l22 * l22 - DILATION, min=least)
     a = torch.sqrt(xx)
     b = l11 * l21 / a
-    c = torch.sqrt(torch.clamp(yy - b * b, min=VARIANCE_LEAST))
+    c = torch.sqrt(torch.clamp(yy - b * b, min=least))
     return torch.stack((a, b, c), 1)
 
 
@@ -122,9 +124,9 @@ def pack(mean, xx, xy, yy, opacity, colour):
     return torch.cat((mean, conic, opacity[:, None], colour), 1)
 
 
-def planar_splats(offset, factor, opacity, colour, pixel):
+def planar_splats(offset, factor, opacity, colour, pixel, least=VARIANCE_LEAST):
     """Footprints about `pixel` [n, 2] as their own view draws them."""
-    a, b, c = narrowed(factor).unbind(1)
+    a, b, c = narrowed(factor, least).unbind(1)
     return pack(pixel + offset, a * a + DILATION, a * b, b * b + c * c + DILATION, opacity, colour)
 
 
