@@ -1,4 +1,5 @@
-/* CRC-32 (IEEE 802.3, reflected, as zlib and MCAP use it). */
+/* CRC-32 (IEEE 802.3, reflected, as zlib and MCAP use it), for the recorder, which calls no library. Readers have
+ * zlib's. */
 #ifndef T3R_PLATFORM_CRC32_H
 #define T3R_PLATFORM_CRC32_H
 

@@ -4,10 +4,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 #include "bytes.h"
 #include "chunk_codec.h"
-#include "crc32.h"
 #include "grow.h"
 #include "reader_limits.h"
 #include "mcap.h"
@@ -129,7 +129,7 @@ static int read_attachment(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
     if (in->failed) {
         return malformed(w, T3R_MCAP_ATTACHMENT, place, short_fields);
     }
-    if (crc != 0 && crc != t3r_crc32(0, in->bytes, checked)) {
+    if (crc != 0 && crc != crc32_z(0, in->bytes, checked)) {
         return malformed(w, T3R_MCAP_ATTACHMENT, place, "its CRC does not match its bytes");
     }
     return 0;
@@ -297,7 +297,7 @@ static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
     int status = 0;
     const char *wrong = c->compression.count > 0 ? unpack_chunk(w, c, place, &own, &count, &status) : NULL;
     const uint8_t *records = own.bytes != NULL ? own.bytes : c->packed;
-    if (status == 0 && wrong == NULL && !c->cut && c->crc != 0 && c->crc != t3r_crc32(0, records, count)) {
+    if (status == 0 && wrong == NULL && !c->cut && c->crc != 0 && c->crc != crc32_z(0, records, count)) {
         wrong = "its CRC does not match its records";
     }
     w->damaged = status == 0 && wrong != NULL && w->cut && !c->cut;
@@ -340,7 +340,7 @@ static uint32_t crc_of(const walk *w, const uint8_t *bytes, uint64_t count)
 {
     uint32_t crc = 0;
     for (uint64_t at = 0; at < count; at += REST_BYTES) {
-        crc = t3r_crc32(crc, bytes + at, (size_t)(count - at < REST_BYTES ? count - at : REST_BYTES));
+        crc = (uint32_t)crc32_z(crc, bytes + at, (size_t)(count - at < REST_BYTES ? count - at : REST_BYTES));
         if (w->chunks->spill != NULL) {
             t3r_spill_rest(w->chunks->spill);
         }
@@ -378,7 +378,7 @@ static int read_footer(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
     }
     uint64_t start = summary != 0 ? summary : w->data_end;
     uint64_t stop = place.offset + T3R_MCAP_RECORD_HEAD_BYTES + 16;
-    if (crc != 0 && crc != t3r_crc32(0, w->bytes + start, (size_t)(stop - start))) {
+    if (crc != 0 && crc != crc32_z(0, w->bytes + start, (size_t)(stop - start))) {
         return malformed(w, T3R_MCAP_FOOTER, place, "the summary's CRC does not match its bytes");
     }
     return 0;

@@ -8,6 +8,7 @@
  * The stage_hash hook gets a hash of each stage's output. */
 #include "pipeline.h"
 
+#include "pointmap/align.h"
 #include "pointmap/bridge.h"
 #include "budget/budget.h"
 #include "depth/depth.h"
@@ -111,12 +112,21 @@ static t3r_status pointmap(t3r_runtime *rt, t3r_view *views)
     return status;
 }
 
-/* Of t3r_progress(), for every view: bridging takes three, flying pixels, exposure and redundancy one each. */
-#define POINTMAP_STEPS(rt) (6 * (rt)->views)
+/* Of t3r_progress(): those of alignment, where there is one. Then for every view bridging takes three, flying pixels,
+ * exposure and redundancy one each. */
+static uint32_t align_steps(const t3r_runtime *rt)
+{
+    return t3r_aligns(&rt->config) && rt->views > 1 ? T3R_ALIGN_STEPS : 0;
+}
+
+static uint32_t pointmap_steps(const t3r_runtime *rt)
+{
+    return align_steps(rt) + 6 * rt->views;
+}
 
 static bool pointmap_step(t3r_runtime *rt, uint32_t step)
 {
-    return t3r_progress(rt, T3R_STAGE_POINTMAP, step, POINTMAP_STEPS(rt));
+    return t3r_progress(rt, T3R_STAGE_POINTMAP, align_steps(rt) + step, pointmap_steps(rt));
 }
 
 static void bridge_view(void *context, uint32_t index, uint32_t worker)
@@ -142,7 +152,8 @@ static t3r_status bridge(t3r_runtime *rt, t3r_view *views)
         }
     }
     if (radius > 0) {
-        t3r_status status = each_view(rt, views, bridge_view, T3R_STAGE_POINTMAP, rt->views, POINTMAP_STEPS(rt));
+        t3r_status status =
+            each_view(rt, views, bridge_view, T3R_STAGE_POINTMAP, align_steps(rt) + rt->views, pointmap_steps(rt));
         if (status != T3R_OK) {
             return status;
         }
@@ -283,11 +294,17 @@ t3r_status t3r_analyse(t3r_runtime *rt)
             t3r_reset_comparison(&views[v], 1);
         }
     }
+    for (uint32_t v = 0; v < rt->views && t3r_aligns(&rt->config); v++) {
+        t3r_pose_as_given(rt, v);
+    }
     t3r_hash_image(rt, views, 0, rt->views);
 
     t3r_status status = depth(rt, views);
     if (status == T3R_OK) {
         status = pointmap(rt, views);
+    }
+    if (status == T3R_OK && align_steps(rt) > 0) {
+        status = t3r_align_views(rt, views, pointmap_steps(rt));
     }
     if (status == T3R_OK) {
         status = bridge(rt, views);

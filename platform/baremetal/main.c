@@ -80,7 +80,8 @@ static t3r_config configure(const options *o)
     config.clusters = o->clusters != 0 ? o->clusters : config.clusters;
     config.cluster_batches = o->batches != 0 ? o->batches : config.cluster_batches;
     config.refinements = o->refinements;
-    config.fit_passes = config.fit_widths = 0; /* the same work and bits, whatever the library was built with */
+    /* the same work and bits, whatever the library was built with */
+    config.fit_passes = config.fit_widths = config.align = 0;
 #ifdef HEAD
     if (o->learned != 0) {
         config.head = T3R_HEAD_LEARNED;

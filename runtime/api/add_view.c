@@ -65,6 +65,7 @@ t3r_status t3r_end_view(t3r_runtime *rt, uint32_t slot, const t3r_camera *undist
         return T3R_ERR_NO_DEPTH;
     }
     rt->camera[slot] = *undistorted;
+    t3r_note_placement(&rt->given[slot], undistorted);
     rt->depth_unit_q40[slot] = stereo ? 1 : depth_unit_q40; /* stereo chooses its own */
     rt->stereo_pair[slot] = T3R_PAIR_OK;
     rt->stereo_partner[slot] = (uint8_t)slot;

@@ -6,6 +6,7 @@
 #include "core/features.h"
 #include "core/scene_frame.h"
 #include "image/image.h"
+#include "pointmap/align.h"
 #include "superclusters/superclusters.h"
 
 /* Whether what counts as a depth is one: stages divide by it. Stereo makes its planes anew in every analysis. */
@@ -113,9 +114,17 @@ static bool is_slot(const t3r_runtime *rt)
     return rt->next_slot == 0 || (rt->config.warm && rt->views == rt->config.views && rt->next_slot < rt->views);
 }
 
+/* Whether the pose given is one that t3r_add_view() takes. Nothing but alignment reads it. */
+static bool is_given(const t3r_runtime *rt, uint32_t v)
+{
+    t3r_camera given = rt->camera[v];
+    t3r_place_camera(&given, &rt->given[v]);
+    return !t3r_aligns(&rt->config) || t3r_camera_check(&given) == T3R_OK;
+}
+
 static bool is_view(const t3r_runtime *rt, uint32_t v)
 {
-    if (rt->stereo_pair[v] >= T3R_PAIR_COUNT || rt->stereo_partner[v] >= rt->views ||
+    if (!is_given(rt, v) || rt->stereo_pair[v] >= T3R_PAIR_COUNT || rt->stereo_partner[v] >= rt->views ||
         t3r_camera_check(&rt->camera[v]) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
         rt->depth_unit_q40[v] > T3R_MAX_DEPTH_UNIT_Q40) {
         return false;

@@ -54,3 +54,10 @@ uint32_t t3r_refinement_passes(const t3r_runtime *rt)
 {
     return rt == NULL ? 0 : rt->passes;
 }
+
+t3r_status t3r_view_camera(const t3r_runtime *rt, uint32_t view, t3r_camera *camera)
+{
+    T3R_REFUSE_UNLESS(rt != NULL && camera != NULL && view < rt->views, T3R_ERR_ARGUMENT);
+    *camera = rt->camera[view];
+    return T3R_OK;
+}

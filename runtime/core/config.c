@@ -38,6 +38,7 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
         .bridge_radius = 64,
         .flying = 1,
         .redundancy = 1,
+        .align = T3R_FEATURE_ALIGN,
         .exposure = 1,
         .keep_analysis = 0,
         .warm = 0,
@@ -117,6 +118,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("bridge_radius must be 0..255", bridge_radius, 0, 255)                                                           \
     X("flying must be 0 or 1", flying, 0, 1)                                                                           \
     X("redundancy must be 0 or 1", redundancy, 0, 1)                                                                   \
+    X("align must be 0 or 1", align, 0, 1)                                                                             \
     X("exposure must be 0 or 1", exposure, 0, 1)                                                                       \
     X("keep_analysis must be 0 or 1", keep_analysis, 0, 1)                                                             \
     X("half_life must be 0..1024", half_life, 0, 1024)                                                                 \
@@ -141,6 +143,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)                       \
     X("this library was built without fitted passes", c->fit_passes ? T3R_HAS_LOSS : 0u)                               \
     X("this library was built without the structural loss", c->structural ? T3R_HAS_LOSS : 0u)                         \
+    X("this library was built without alignment", c->align ? T3R_HAS_ALIGN : 0u)                                       \
     X("this library was built without comparison of views",                                                            \
       c->views > 1 || c->stream || c->fit_widths ? T3R_HAS_COMPARISON : 0u)                                            \
     X("this library was built without this allocation", t3r_feature_of_allocation(c->allocation))                      \

@@ -55,7 +55,7 @@ extern "C" {
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
-#define T3R_BITS_EPOCH 9
+#define T3R_BITS_EPOCH 10
 
 #define T3R_MAX_SIDE 4096u        /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */
@@ -293,6 +293,11 @@ typedef struct t3r_config {
     uint32_t flying;
     /* 1 = small budgets pass over points that another view covers; 0 = every view competes for itself. [1] */
     uint32_t redundancy;
+    /* 1 = the poses of the views of a build are corrected first: by a rotation and a shift of each camera, at most 1/16
+     * radian and 1/16 scene unit an axis, until views show the same surfaces in the same colours. A
+     * correction is discarded unless the views then differ by at least a 16th less. 0 = poses stay as given, as with
+     * one view, with depth by stereo, with `warm` and in a stream in any case. t3r_view_camera() returns them. [1] */
+    uint32_t align;
     /* 1 = the colours of all views are brought to their mean exposure; 0 = they stay as they are. [1] */
     uint32_t exposure;
     /* 1 = the analysis outlives the build, which t3r_rebuild() and a bounded loss need; 0 = its memory is used again.
@@ -866,6 +871,10 @@ uint32_t t3r_render_passes(const t3r_runtime *rt);
 /* The number of refinement passes that the last build took, 0..`refinements`. 0 without a runtime, before a build, and
  * of a stream. */
 uint32_t t3r_refinement_passes(const t3r_runtime *rt);
+
+/* The camera of context view `view`, of the working size and without distortion, where the last analysis has it: with
+ * `align` its pose may be a corrected one. T3R_ERR_ARGUMENT: NULL, or a view that was not added. */
+t3r_status t3r_view_camera(const t3r_runtime *rt, uint32_t view, t3r_camera *camera);
 
 /* The image stage alone, as t3r_add_view() applies it: turns any frame into 8-bit RGB and 16-bit depth of the working
  * size, undistorted, in the caller's memory. depth_out may be NULL, and so may the frame's depth. *undistorted gets the

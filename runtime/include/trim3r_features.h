@@ -53,6 +53,13 @@
 #define T3R_FEATURE_COMPARISON 1
 #endif
 
+/* Poses corrected until views agree: t3r_config.align. */
+#ifndef T3R_FEATURE_ALIGN
+#define T3R_FEATURE_ALIGN T3R_FEATURE_COMPARISON
+#elif T3R_FEATURE_ALIGN && !T3R_FEATURE_COMPARISON
+#error "T3R_FEATURE_ALIGN needs T3R_FEATURE_COMPARISON"
+#endif
+
 /* Allocations of the budget other than by density: `paper`, `uniform`, `random` and `given`. */
 #ifndef T3R_FEATURE_ALLOCATIONS
 #define T3R_FEATURE_ALLOCATIONS 1
@@ -87,6 +94,7 @@
 #define T3R_HAS_WARM (1u << 10)
 #define T3R_HAS_LOSS (1u << 11)
 #define T3R_HAS_PLANES (1u << 12)
+#define T3R_HAS_ALIGN (1u << 13)
 
 /* Those that are left in. */
 #define T3R_FEATURES_BUILT                                                                                             \
@@ -96,6 +104,6 @@
      (T3R_FEATURE_COMPARISON ? T3R_HAS_COMPARISON : 0u) | (T3R_FEATURE_ALLOCATIONS ? T3R_HAS_ALLOCATIONS : 0u) |       \
      (T3R_FEATURE_WAVELETS ? T3R_HAS_WAVELETS : 0u) | (T3R_FEATURE_WORKERS ? T3R_HAS_WORKERS : 0u) |                   \
      (T3R_FEATURE_WARM ? T3R_HAS_WARM : 0u) | (T3R_FEATURE_LOSS ? T3R_HAS_LOSS : 0u) |                                 \
-     (T3R_FEATURE_PLANES ? T3R_HAS_PLANES : 0u))
+     (T3R_FEATURE_PLANES ? T3R_HAS_PLANES : 0u) | (T3R_FEATURE_ALIGN ? T3R_HAS_ALIGN : 0u))
 
 #endif

@@ -81,6 +81,7 @@
     X(t3r_config, bridge_radius)                                                                                       \
     X(t3r_config, flying)                                                                                              \
     X(t3r_config, redundancy)                                                                                          \
+    X(t3r_config, align)                                                                                               \
     X(t3r_config, exposure)                                                                                            \
     X(t3r_config, keep_analysis)                                                                                       \
     X(t3r_config, warm)                                                                                                \

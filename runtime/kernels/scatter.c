@@ -75,27 +75,29 @@ static void terms_of(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, 
     }
 }
 
-/* Factors of a group's pixels, row by row. */
-typedef int16_t group_plane[T3R_TILE_SIDE][T3R_LANES];
+/* Factors of a group's pixels, row by row: half a tile's rows at a time, which keeps the stack below its bound. */
+#define ROWS_AT_ONCE ((uint32_t)T3R_TILE_SIDE / 2)
+typedef int16_t group_plane[ROWS_AT_ONCE][T3R_LANES];
 typedef struct factors {
     group_plane x, y, xx, xy, yy;
     group_plane product, square, square_x, square_y, square_xx, square_xy, square_yy;
 } factors;
 
-static void factors_of(const pixel_terms *terms, const t3r_scatter_splat *splat, uint32_t group, uint32_t rows,
-                       uint32_t square_shift, uint32_t product_shift, factors *restrict f)
+/* Of `rows` rows below the first `above` ones of the splat; in `terms` they begin at `at`. */
+static void factors_of(const pixel_terms *terms, const t3r_scatter_splat *splat, uint32_t group, uint32_t above,
+                       uint32_t at, uint32_t rows, uint32_t square_shift, uint32_t product_shift, factors *restrict f)
 {
     const t3r_shift_steps by = t3r_shift_steps_of(square_shift), product_by = t3r_shift_steps_of(product_shift);
     uint16_t x_at[T3R_LANES], y_at[T3R_LANES]; /* modulo 2^16 */
     for (int32_t i = 0; i < T3R_LANES; i++) {
         const int32_t across = i + (int32_t)(group * T3R_LANES);
-        x_at[i] = (uint16_t)(splat->origin_q13[0] + across * splat->right_q13[0]);
-        y_at[i] = (uint16_t)(splat->origin_q13[1] + across * splat->right_q13[1]);
+        x_at[i] = (uint16_t)(splat->origin_q13[0] + across * splat->right_q13[0] + (int32_t)above * splat->down_q13[0]);
+        y_at[i] = (uint16_t)(splat->origin_q13[1] + across * splat->right_q13[1] + (int32_t)above * splat->down_q13[1]);
     }
     const uint16_t x_down = (uint16_t)splat->down_q13[0], y_down = (uint16_t)splat->down_q13[1];
     for (uint32_t j = 0; j < rows; j++) {
-        const uint32_t *square = terms->square[group * rows + j];
-        const int32_t *product = terms->product[group * rows + j];
+        const uint32_t *square = terms->square[at + j];
+        const int32_t *product = terms->product[at + j];
         for (int32_t i = 0; i < T3R_LANES; i++) {
             const int16_t x = (int16_t)x_at[i], y = (int16_t)y_at[i];
             const int16_t xx = t3r_mulr_q15(x, x), xy = t3r_mulr_q15(x, y), yy = t3r_mulr_q15(y, y);
@@ -175,9 +177,12 @@ void t3r_scatter_c(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, t3
     const uint32_t product_shift = t3r_term_shift(terms.products, terms.products_sum, all_rows);
     uint32_t gradient[T3R_REFINE_MOMENTS_2] = {0}, curvature[T3R_REFINE_MOMENTS_4] = {0};
     for (uint32_t group = 0; group < span->groups; group++) {
-        factors f;
-        factors_of(&terms, splat, group, rows, square_shift, product_shift, &f);
-        add_group(&f, rows, gradient, curvature);
+        for (uint32_t above = 0; above < rows; above += ROWS_AT_ONCE) {
+            const uint32_t some = T3R_MIN(rows - above, ROWS_AT_ONCE);
+            factors f;
+            factors_of(&terms, splat, group, above, group * rows + above, some, square_shift, product_shift, &f);
+            add_group(&f, some, gradient, curvature);
+        }
     }
 
     const t3r_sum_shifts by = t3r_sum_shifts_of(sums->area, splat->scale, less, square_shift, product_shift);

@@ -5,6 +5,7 @@
 #include "head/head.h"
 #include "head/weights.h"
 #include "operations.h"
+#include "pointmap/align.h"
 #include "refine/view_levels.h"
 #include "state/state.h"
 #include "stereo/stereo_views.h"
@@ -36,6 +37,17 @@ static sizes sizes_of(const t3r_config *c)
     };
 }
 
+/* Pixels that alignment compares where all have depth: in half of the rounds that it may take, as a level mostly ends
+ * early. Each takes about what a pixel of the other comparisons does. */
+static uint64_t aligned_pixels(const t3r_config *c, const sizes *s)
+{
+    if (!t3r_aligns(c) || s->views < 2) {
+        return 0;
+    }
+    const uint64_t compared = T3R_MIN(t3r_align_pixels((uint32_t)s->views), s->pixels / 4);
+    return T3R_ALIGN_STEPS / 2 * s->views * (s->views - 1) * compared;
+}
+
 static void count_clustering(const sizes *s, uint64_t *units)
 {
     units[T3R_WORK_SEEDING] = s->sampled * s->clusters;
@@ -55,7 +67,7 @@ static void count_analysis(const t3r_config *c, const sizes *s, uint64_t *units)
         units[T3R_WORK_DEPTH] = s->points;
     }
     units[T3R_WORK_POINTMAP] = s->points;
-    units[T3R_WORK_COMPARISON] = 2 * pairs * s->pixels;
+    units[T3R_WORK_COMPARISON] = 2 * pairs * s->pixels + aligned_pixels(c, s);
     units[T3R_WORK_WAVELET] = s->points;
     if (s->clusters > 1) {
         count_clustering(s, units);

@@ -1,5 +1,6 @@
 #include "budget_choice.h"
 
+#include "pointmap/align.h"
 #include "pointmap/disagreement.h"
 #include "core/fixed.h"
 #include "pipeline.h"
@@ -38,6 +39,34 @@ uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_
     return (uint32_t)T3R_MIN(T3R_MAX(wanted, least), (uint64_t)most);
 }
 
+/* Stands the views where their cameras are: where they were aligned to, or as they were given. */
+static void stand(const t3r_runtime *rt, t3r_view *views, bool as_given)
+{
+    for (uint32_t v = 0; v < rt->views; v++) {
+        t3r_camera camera = rt->camera[v];
+        if (as_given) {
+            t3r_place_camera(&camera, &rt->given[v]);
+        }
+        (void)t3r_pose_in_scene(&camera, &rt->frame, &views[v].pose); /* both were in range before */
+    }
+}
+
+/* How much the views disagree with the poses given: a view to be met has a pose from the same source, which nothing
+ * aligns. 0 = nothing to compare. */
+static uint32_t disagreement_as_given(t3r_runtime *rt, t3r_view *views)
+{
+    const bool aligned = t3r_aligns(&rt->config);
+    uint32_t pairs;
+    if (aligned) {
+        stand(rt, views, true);
+    }
+    const uint32_t found_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, 1, &pairs);
+    if (aligned) {
+        stand(rt, views, false);
+    }
+    return pairs < PAIRS_LEAST ? 0 : found_q8;
+}
+
 /* The error of a trial scene. */
 static t3r_status try_build(t3r_runtime *rt, const t3r_view *views, const t3r_build *trial,
                             const t3r_importance *importance, uint32_t *error_q8)
@@ -46,7 +75,7 @@ static t3r_status try_build(t3r_runtime *rt, const t3r_view *views, const t3r_bu
     return status == T3R_OK ? t3r_refine_error(rt, views, error_q8) : status;
 }
 
-t3r_status t3r_choose_budget(t3r_runtime *rt, const t3r_view *views, uint32_t max_loss_q8, t3r_build *build,
+t3r_status t3r_choose_budget(t3r_runtime *rt, t3r_view *views, uint32_t max_loss_q8, t3r_build *build,
                              const t3r_importance *importance)
 {
     const uint32_t most = T3R_MIN(build->gaussians, rt->valid_points);
@@ -58,9 +87,7 @@ t3r_status t3r_choose_budget(t3r_runtime *rt, const t3r_view *views, uint32_t ma
         build->gaussians = most;
         return T3R_OK;
     }
-    uint32_t pairs;
-    evidence.disagreement_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, 1, &pairs);
-    evidence.disagreement_q8 = pairs < PAIRS_LEAST ? 0 : evidence.disagreement_q8;
+    evidence.disagreement_q8 = disagreement_as_given(rt, views);
     for (uint32_t i = 0; i < 2; i++) {
         t3r_build trial = *build;
         trial.gaussians = evidence.trial << i;

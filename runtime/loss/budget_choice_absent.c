@@ -3,7 +3,7 @@
 
 #if !T3R_FEATURE_LOSS
 
-t3r_status t3r_choose_budget(t3r_runtime *rt, const t3r_view *views, uint32_t max_loss_q8, t3r_build *build,
+t3r_status t3r_choose_budget(t3r_runtime *rt, t3r_view *views, uint32_t max_loss_q8, t3r_build *build,
                              const t3r_importance *importance)
 {
     (void)rt;

@@ -9,6 +9,7 @@
 
 #include "ablation.h"
 #include "core/assertion.h"
+#include "core/placement.h"
 #include "kernels/kernels.h"
 #include "reuse.h"
 #include "trim3r.h"
@@ -55,10 +56,12 @@ struct t3r_runtime {
     t3r_ablation ablation;
     t3r_build build; /* of the scene, or of the last attempt at one */
     uint64_t offset[T3R_BUFFER_COUNT];
-    uint64_t list_capacity;           /* entries of the tile lists */
-    uint64_t refine_bytes;            /* of the refinement work */
-    uint32_t views;                   /* context views added */
-    t3r_camera camera[T3R_MAX_VIEWS]; /* of the working size, undistorted */
+    uint64_t list_capacity;                  /* entries of the tile lists */
+    uint64_t refine_bytes;                   /* of the refinement work */
+    uint32_t views;                          /* context views added */
+    t3r_camera camera[T3R_MAX_VIEWS];        /* of the working size, undistorted; the poses are those in use */
+    t3r_placement given[T3R_MAX_VIEWS];      /* as views were added; not of a stream */
+    int32_t deviation_q30[T3R_MAX_VIEWS][6]; /* of those in use from those given: radians, scene units */
     uint64_t depth_unit_q40[T3R_MAX_VIEWS];
     uint32_t analysed; /* labels, clusters and blurred textures are those of the current views */
     uint32_t has_scene;
@@ -94,6 +97,13 @@ static inline void *t3r_buffer_at(const t3r_runtime *rt, enum t3r_buffer buffer)
 static inline bool t3r_progress(const t3r_runtime *rt, t3r_stage stage, uint32_t done, uint32_t total)
 {
     return rt->hooks.progress == NULL || rt->hooks.progress(rt->hooks.user, stage, done, total) == 0;
+}
+
+/* View v's camera is where it was given to be. */
+static inline void t3r_pose_as_given(t3r_runtime *rt, uint32_t v)
+{
+    t3r_place_camera(&rt->camera[v], &rt->given[v]);
+    memset(rt->deviation_q30[v], 0, sizeof rt->deviation_q30[v]);
 }
 
 static inline t3r_workers t3r_workers_of(const t3r_runtime *rt)

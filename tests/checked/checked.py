@@ -47,6 +47,7 @@ def works(program, recording, folder):
         run(program, "build", recording, "--head", head, "--keep", "15", "-o", out)
     run(program, "build", recording, "--refine", "16", "--fit-passes", "on", "--keep", "2", "-o", out)
     run(program, "build", recording, "--head", "moment", "--fit-widths", "on", "--keep", "40", "-o", out)
+    run(program, "build", recording, "--align", "on", "--keep", "10", "-o", out)
     run(program, "build", recording, "--structural", "on", "--keep", "10", "-o", out)
     run(program, "build", recording, "--allocate", "paper", "--keep", "40", "--arena", "min", "-o", out)
     run(program, "build", recording, "--auto", "-o", out)

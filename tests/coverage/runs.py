@@ -66,6 +66,7 @@ def run_program(program, scratch):
                   ("--keep", "5%", "--fit-passes", "on", "--refine", 16),
                   ("--keep", "20%", "--fit-widths", "on", "--head", "analytic"),
                   ("--keep", "5%", "--structural", "on", "--context", "0,2"),
+                  ("--keep", "5%", "--align", "on", "--context", "0,2"),
                   ("--keep", "10%", "--exposure", "off", "--flying", "off", "--redundancy", "off"),
                   ("--keep", "10%", "--working", "64x64", "--depth", "stereo", "--context", "0,1,2")):
         trim3r(*base, *words)

@@ -78,6 +78,7 @@ static t3r_config take_settings(input *in, const drawn_case *c, bool stereo)
     k.flying = below(in, 2);
     k.redundancy = below(in, 2);
     k.exposure = below(in, 2);
+    k.align = below(in, 2);
     k.keep_analysis = below(in, 2);
     k.warm = (below(in, 2) && streams) || c->tells == SLIDE;
     k.stream = streams;

@@ -47,6 +47,7 @@ static t3r_config take_config(input *in)
     c.fit_widths = c.seed >> 3 & 1;
     c.planes = c.seed >> 4 & 1;
     c.structural = c.seed >> 5 & 1;
+    c.align = c.seed >> 6 & 1;
     c.depth = c.seed & 32 && c.width >= T3R_STEREO_LEAST_SIDE && c.height >= T3R_STEREO_LEAST_SIDE ? T3R_DEPTH_STEREO
                                                                                                    : T3R_DEPTH_SENSOR;
     c.remember = c.seed >> 3 & 3;

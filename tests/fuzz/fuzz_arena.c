@@ -246,7 +246,7 @@ static void damage_config(t3r_runtime *rt, input *in)
         c->tile_splats = take_number(in, BUDGET);
         break;
     case 12:
-        c->flying = c->redundancy = c->exposure = c->fit_passes = c->fit_widths = c->structural = c->planes =
+        c->flying = c->redundancy = c->exposure = c->fit_passes = c->fit_widths = c->structural = c->planes = c->align =
             take_number(in, 2);
         break;
     default:

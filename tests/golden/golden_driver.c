@@ -35,33 +35,36 @@ typedef struct configuration {
     uint32_t bits; /* of a learned head's weights, made up here, and activations; 0 = the shipped one, or no learned */
     t3r_depth depth;
     bool unadapted; /* splats stay as small as pixels */
+    bool displaced; /* views but the first stand where they are not said to, so that alignment moves them */
 } configuration;
 
 static const configuration configurations[] = {
     {"default", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR, false},
+     T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR, false, false},
     {"small", 128, 96, 61, 45, T3R_PIXEL_GREY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 3, 17, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_MOMENT, 700, true, 0, T3R_DEPTH_SENSOR, false},
+     T3R_HEAD_MOMENT, 700, true, 0, T3R_DEPTH_SENSOR, false, false},
     {"haar_paper", 128, 96, 64, 48, T3R_PIXEL_YUYV, T3R_DISTORTION_NONE, T3R_WAVELET_HAAR, 1, 32, T3R_ALLOCATE_PAPER,
-     T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR, false},
+     T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR, false, false},
     {"cdf53_pixel", 128, 96, 64, 48, T3R_PIXEL_NV12, T3R_DISTORTION_RADTAN, T3R_WAVELET_CDF53, 4, 300,
-     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0, T3R_DEPTH_SENSOR, false},
+     T3R_ALLOCATE_PIXEL, T3R_HEAD_MOMENT, 600, true, 0, T3R_DEPTH_SENSOR, false, false},
     {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_UNIFORM,
-     T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR, false},
+     T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR, false, false},
     {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_RANDOM,
-     T3R_HEAD_ANALYTIC, 600, false, 0, T3R_DEPTH_SENSOR, true},
+     T3R_HEAD_ANALYTIC, 600, false, 0, T3R_DEPTH_SENSOR, true, false},
     {"everything", 96, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR, false},
+     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR, false, false},
     {"learned", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false, false},
     {"learned_wide", 128, 96, 64, 48, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16, T3R_DEPTH_SENSOR, false},
+     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16, T3R_DEPTH_SENSOR, false, false},
     {"shipped", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR, false},
+     T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR, false, false},
     {"given", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_GIVEN,
-     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false, false},
     {"stereo", 128, 96, 96, 83, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO, false},
+     T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO, false, false},
+    {"aligned", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
+     T3R_HEAD_ANALYTIC, 1400, true, 0, T3R_DEPTH_SENSOR, false, true},
 };
 
 typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
@@ -285,6 +288,7 @@ static void capture(const configuration *c, uint32_t index, t3r_frame *frame, t3
     *frame = (t3r_frame){.format = c->format, .width = c->frame_width, .height = c->frame_height};
     room_frame(index, frame->width, frame->height, 1, rgb, depth_mm);
     room_camera(index, frame->width, frame->height, camera);
+    camera->position_q32[0] += c->displaced && index > 0 ? INT64_C(1) << 27 : 0; /* 1/32 m */
     encode(frame);
     encode_depth(frame, c->holes);
     put_lens(camera, c->distortion);

@@ -41,12 +41,12 @@ def of_cmake(folder):
 
 
 # What a feature needs: it goes with that.
-NEEDS = {"loss": "refinement", "planes": "stereo"}
+NEEDS = {"loss": "refinement", "planes": "stereo", "align": "comparison"}
 # What no configuration may ask for where views are not compared.
 OF_VIEWS = ("stereo", "streams", "planes")
 TEXTS = {"learned": "this head", "moment": "this head", "comparison": "comparison of views",
          "allocations": "this allocation", "wavelets": "this wavelet", "workers": "several workers",
-         "warm": "builds that follow one another"}
+         "warm": "builds that follow one another", "align": "alignment"}
 
 
 def expected(whole, left_out):
@@ -78,7 +78,7 @@ def main():
         if "--each" in sys.argv:
             check(of_cmake(folder) == reduced[0], "CMake's library without any feature is another")
     hashes = {line.split()[-1] for line in whole if re.fullmatch(r"\w+: [0-9a-f]{16}", line)}
-    same_bits = {"workers", "warm"}
+    same_bits = {"workers", "warm", "align"}  # poses that agree stay
     of_calls = {"lenses", "loss"}
     check(len(hashes) == 1 + len(set(FEATURES) - same_bits - of_calls),
           f"the whole library builds not all scenes, or two alike: {whole}")

@@ -12,7 +12,7 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[4 << 20];
 static t3r_config plain_config(void)
 {
     t3r_config config = t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, SCENE_BUDGET);
-    config.refinements = config.fit_widths = 0; /* on by default where the library has what they need */
+    config.refinements = config.fit_widths = config.align = 0; /* on by default where the library has what they need */
     return config;
 }
 
@@ -35,6 +35,9 @@ static void print_scenes(void)
     print_scene("plain", &config);
     config.views = SCENE_VIEWS;
     print_scene("comparison", &config);
+    config.align = 1;
+    print_scene("align", &config);
+    config.align = 0;
     config.depth = T3R_DEPTH_STEREO;
     print_scene("stereo", &config);
     config.planes = 1;

@@ -14,7 +14,7 @@ CONSUMERS = HERE / "consumers"
 HEADS = ROOT / "quant" / "heads"
 HASH = (HERE / "golden_hash.txt").read_text().strip()
 FEATURES = ("stereo", "streams", "learned", "moment", "refinement", "lenses", "comparison", "allocations", "wavelets",
-            "workers", "warm", "loss", "planes")
+            "workers", "warm", "loss", "planes", "align")
 WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 
 

@@ -62,7 +62,7 @@ static t3r_gaussian *reconstruct(uint32_t refinements, const splat_maker *maker,
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
     config.clusters = 16;
     config.refinements = refinements > 0 ? refinements : 1;
-    config.fit_passes = 0;
+    config.fit_passes = config.align = 0;
     config.head = maker->head;
     config.fill_radius = config.bridge_radius = 0;
     config.flying = config.redundancy = config.exposure = 0; /* nothing but refinement */

@@ -103,7 +103,7 @@ static t3r_config config_of(uint32_t warm)
     t3r_config c = t3r_default_config(W, H, 2, BUDGET);
     c.clusters = 40;
     c.refinements = PASSES;
-    c.fit_passes = 0;
+    c.fit_passes = c.align = 0; /* as builds that follow one another are */
     c.warm = warm;
     return c;
 }

@@ -37,6 +37,7 @@ static void counts_follow_the_configuration(void **state)
 {
     (void)state;
     t3r_config c = config_of(1000);
+    c.align = 0;
     const t3r_work_counts before = counted(&c, NULL, 0);
     const uint64_t points = 96 * 64 * 2;
     assert_int_equal(before.units[T3R_WORK_IMAGE], points);
@@ -58,6 +59,23 @@ static void counts_follow_the_configuration(void **state)
     c.depth = T3R_DEPTH_STEREO;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_STEREO], 96 * 64);
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DEPTH], 0);
+}
+
+/* In half of at most 32 rounds 1,024 pixels of each view; only where alignment has two views. */
+static void alignment_compares_pixels(void **state)
+{
+    (void)state;
+    t3r_config c = config_of(1000);
+    const uint64_t both = counted(&c, NULL, 0).units[T3R_WORK_COMPARISON];
+    c.align = 0;
+    const uint64_t plain = counted(&c, NULL, 0).units[T3R_WORK_COMPARISON];
+    assert_int_equal(both - plain, 16 * 2 * 1024);
+    c.align = 1;
+    c.depth = T3R_DEPTH_STEREO;
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_COMPARISON], plain);
+    c = config_of(1000);
+    c.views = 1;
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_COMPARISON], 0);
 }
 
 /* Fitted widths look at the other views; structure, at the tiles once more and at all views' levels in two passes. */
@@ -337,12 +355,19 @@ static void refuses_limits_out_of_range(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_follow_the_configuration),   cmocka_unit_test(counts_what_is_asked_for_beyond),
-        cmocka_unit_test(small_arenas_draw_more_often),      cmocka_unit_test(networks_count_by_their_layers),
-        cmocka_unit_test(some_networks_cannot_be_packed),    cmocka_unit_test(refuses_what_has_no_count),
-        cmocka_unit_test(prices_add_up_and_end_at_the_most), cmocka_unit_test(lists_what_fits_best_first),
-        cmocka_unit_test(shares_of_extreme_sizes),           cmocka_unit_test(heads_are_compared),
-        cmocka_unit_test(networks_are_rated_by_their_size),  cmocka_unit_test(refuses_limits_out_of_range),
+        cmocka_unit_test(counts_follow_the_configuration),
+        cmocka_unit_test(alignment_compares_pixels),
+        cmocka_unit_test(counts_what_is_asked_for_beyond),
+        cmocka_unit_test(small_arenas_draw_more_often),
+        cmocka_unit_test(networks_count_by_their_layers),
+        cmocka_unit_test(some_networks_cannot_be_packed),
+        cmocka_unit_test(refuses_what_has_no_count),
+        cmocka_unit_test(prices_add_up_and_end_at_the_most),
+        cmocka_unit_test(lists_what_fits_best_first),
+        cmocka_unit_test(shares_of_extreme_sizes),
+        cmocka_unit_test(heads_are_compared),
+        cmocka_unit_test(networks_are_rated_by_their_size),
+        cmocka_unit_test(refuses_limits_out_of_range),
     };
     return cmocka_run_group_tests_name("work", tests, NULL, NULL);
 }

@@ -43,11 +43,16 @@ class Depths:
     def __init__(self, graph, pointers):
         self.graph, self.findings, self.memo, self.pointers = graph, [], {}, pointers
 
-    def behind_pointer(self, title):
-        """The runtime's functions that a call through a pointer in this function may reach."""
+    def row_of(self, title, caller):
+        """The row of pointers.txt for a function, as its caller's file calls it where there is such a row."""
         source = self.graph.source[title]
-        key = f"{source} {plain(title)}"
-        key = key if key in self.pointers else source
+        own = f"{source} {plain(title)}"
+        keys = ([f"{own} from {self.graph.source[caller]}"] if caller else []) + [own, source]
+        return next((key for key in keys if key in self.pointers), source)
+
+    def behind_pointer(self, title, key):
+        """The runtime's functions that a call through a pointer in this function may reach, by its row."""
+        source = self.graph.source[title]
         if key not in self.pointers:
             self.findings.append(f"calls through a pointer, not declared in pointers.txt: {plain(title)} in {source}")
         return [t for t in self.graph.bytes if plain(t) in self.pointers.get(key, ())]
@@ -59,16 +64,17 @@ class Depths:
             return 0, ()
         if title not in self.graph.bytes:
             return 0, ()
-        if title not in self.memo:
+        row = self.row_of(title, path[-1] if path else None)
+        if (title, row) not in self.memo:
             # "dynamic,bounded" is realignment, and within the bytes that are told
             if self.graph.kind[title] not in ("static", "dynamic,bounded"):
                 self.findings.append(f"frame of unknown size: {plain(title)} ({self.graph.kind[title]})")
             below = (0, ())
             for callee in sorted(self.graph.calls.get(title, ())):
-                for reached in self.behind_pointer(title) if callee == INDIRECT else [callee]:
+                for reached in self.behind_pointer(title, row) if callee == INDIRECT else [callee]:
                     below = max(below, self.of(reached, (*path, title)), key=lambda depth: depth[0])
-            self.memo[title] = (self.graph.bytes[title] + below[0], (title, *below[1]))
-        return self.memo[title]
+            self.memo[title, row] = (self.graph.bytes[title] + below[0], (title, *below[1]))
+        return self.memo[title, row]
 
 
 def limit_of(target):
@@ -95,17 +101,30 @@ def check(graph, roots, pointers, limit):
 
 
 def declared_pointers():
-    """pointers.txt: source file, or file and function -> names of functions; each must still be there."""
+    """pointers.txt: source file, file and function, or these and the caller's file -> names of functions; each must still
+    be there."""
     text = re.sub(r"#.*", "", (proof.HERE / "pointers.txt").read_text())
     pointers = {source.strip(): names.split() for source, names in re.findall(r"^(.+?):(.*)$", text, flags=re.M)}
     runtime = {path.name: path.read_text() for path in proof.runtime_sources()}
     code = "".join([*runtime.values(), *(path.read_text() for path in proof.RUNTIME.rglob("*.h"))])
-    stale = [f"{source} is not in the runtime" for source in pointers if source.split()[0] not in runtime]
+    stale = [f"{source} is not in the runtime" for key in pointers for source in key.split() if source.endswith(".c")
+             and source not in runtime]
     stale += [f"{name} is not in the runtime" for names in pointers.values() for name in names
               if not re.search(rf"\b{name}\b", code)]
+    stale += misplaced(pointers, runtime)
     if stale:
         proof.broken("pointers.txt is out of date", stale)
     return pointers
+
+
+def misplaced(pointers, runtime):
+    """Rows of a caller's file that are not just those tasks of the whole list which that file names."""
+    for key in pointers:
+        function, _, caller = key.partition(" from ")
+        if caller in runtime:
+            named = {name for name in pointers[function.split()[0]] if re.search(rf"\b{name}\b", runtime[caller])}
+            if named != set(pointers[key]):
+                yield f"{key}: that file names {' '.join(sorted(named))}"
 
 
 def graph_of(target, sources, folder):

@@ -64,7 +64,7 @@ static void each_setting(void **state)
     base.stream = 1;
     base.refinements = 1;
     const uint32_t usually = run(&base, usual);
-    t3r_config other[12];
+    t3r_config other[13];
     size_t n = 0;
 #define OTHER(field, value) (other[n] = base, other[n].field = (value), n++)
     OTHER(bridge_radius, 0);
@@ -74,6 +74,7 @@ static void each_setting(void **state)
     OTHER(views, 1);
     OTHER(warm, 1);
     OTHER(structural, 1);
+    OTHER(align, 0);
     OTHER(remember, 1);
     OTHER(allocation, T3R_ALLOCATE_PAPER);
     OTHER(allocation, T3R_ALLOCATE_PIXEL);
@@ -85,8 +86,9 @@ static void each_setting(void **state)
         assert_int_equal(run(&other[i], again), count);
         assert_memory_equal(first, again, count * sizeof *first);
         const bool clustered = other[i].allocation == T3R_ALLOCATE_PAPER || other[i].allocation == T3R_ALLOCATE_PIXEL;
-        /* a stream has one SuperCluster, so that these are one allocation, and refines without the structural loss */
-        if (clustered || other[i].structural != 0) {
+        /* a stream has one SuperCluster, so that these are one allocation, and refines without the structural loss,
+         * with poses as they are given */
+        if (clustered || other[i].structural != 0 || other[i].align == 0) {
             assert_int_equal(count, usually);
             assert_memory_equal(first, usual, count * sizeof *first);
         }

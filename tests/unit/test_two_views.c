@@ -474,6 +474,7 @@ static void in_the_pipeline(void **state)
         config.clusters = 20;
         config.keep_analysis = 1;
         config.flying = config.redundancy = config.exposure = 1;
+        config.align = 0;
         config.gaussians = 300;
         config.allocation = (t3r_allocation)mode;
         t3r_plan_info plan;

@@ -64,6 +64,8 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
     SETTING("structural", "on|off", structural, SWITCH, 0, 1, NULL,                                                    \
             "refine structure more than level: local contrast, and not what a whole view shows brighter", false,       \
             "structural")                                                                                              \
+    SETTING("align", "on|off", align, SWITCH, 0, 1, NULL,                                                              \
+            "correct the poses of the views until they show the same surfaces in the same colours", false, "align")    \
     SETTING("exposure", "on|off", exposure, SWITCH, 0, 1, NULL,                                                        \
             "bring the colours of all views to their mean exposure", false, "exposure")                                \
     SETTING("warm", "on|off", warm, SWITCH, 0, 1, NULL,                                                                \

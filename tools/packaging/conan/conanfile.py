@@ -6,7 +6,7 @@ from conan.tools.cmake import CMake, CMakeToolchain, cmake_layout
 from conan.tools.files import copy
 
 FEATURES = ("stereo", "streams", "learned", "moment", "refinement", "lenses", "comparison", "allocations", "wavelets",
-            "workers", "warm", "loss", "planes")
+            "workers", "warm", "loss", "planes", "align")
 
 
 class Trim3rConan(ConanFile):

@@ -7,7 +7,7 @@ inherit cmake pkgconfig externalsrc
 
 EXTERNALSRC ?= "${THISDIR}/../../.."
 
-PACKAGECONFIG ??= "stereo streams learned moment refinement lenses comparison allocations wavelets workers warm loss planes"
+PACKAGECONFIG ??= "stereo streams learned moment refinement lenses comparison allocations wavelets workers warm loss planes align"
 PACKAGECONFIG[stereo] = "-DT3R_WITH_STEREO=ON,-DT3R_WITH_STEREO=OFF"
 PACKAGECONFIG[streams] = "-DT3R_WITH_STREAMS=ON,-DT3R_WITH_STREAMS=OFF"
 PACKAGECONFIG[learned] = "-DT3R_WITH_LEARNED=ON,-DT3R_WITH_LEARNED=OFF"
@@ -21,6 +21,7 @@ PACKAGECONFIG[workers] = "-DT3R_WITH_WORKERS=ON,-DT3R_WITH_WORKERS=OFF"
 PACKAGECONFIG[warm] = "-DT3R_WITH_WARM=ON,-DT3R_WITH_WARM=OFF"
 PACKAGECONFIG[loss] = "-DT3R_WITH_LOSS=ON,-DT3R_WITH_LOSS=OFF"
 PACKAGECONFIG[planes] = "-DT3R_WITH_PLANES=ON,-DT3R_WITH_PLANES=OFF"
+PACKAGECONFIG[align] = "-DT3R_WITH_ALIGN=ON,-DT3R_WITH_ALIGN=OFF"
 
 FILES:${PN} += "${datadir}/sbom"
 

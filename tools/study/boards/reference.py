@@ -17,5 +17,6 @@ def host(path, options):
     context = ",".join(map(str, range(options.views)))
     said = json.loads(run(options.program, "replay", path, "--context", context, "--head",
                           options.head, "--gaussians", options.gaussians, "--clusters", options.clusters, "--refine",
-                          options.refine, "--fit-passes", "off", "--fit-widths", "off", "--json"))
+                          options.refine, "--fit-passes", "off", "--fit-widths", "off", "--align", "off",
+                          "--json"))
     return said["hash"], said["stages"]

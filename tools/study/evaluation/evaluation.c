@@ -137,7 +137,8 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.config.fill_radius = options.config.bridge_radius = 0;
     options.head = "analytic";
     options.config.allocation = T3R_ALLOCATE_UNIFORM;
-    options.config.flying = options.config.redundancy = options.config.exposure = options.config.fit_widths = 0;
+    options.config.flying = options.config.redundancy = options.config.exposure = options.config.fit_widths =
+        options.config.align = 0;
     options.config.keep_analysis = false;
     options.config.refinements = 0;
     options.hash = false;

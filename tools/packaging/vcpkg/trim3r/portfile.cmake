@@ -15,7 +15,8 @@ vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
     workers T3R_WITH_WORKERS
     warm T3R_WITH_WARM
     loss T3R_WITH_LOSS
-    planes T3R_WITH_PLANES)
+    planes T3R_WITH_PLANES
+    align T3R_WITH_ALIGN)
 string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" "dynamic" WITH_SHARED)
 
 vcpkg_cmake_configure(
