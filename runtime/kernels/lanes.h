@@ -15,11 +15,21 @@
 #define T3R_C_LANES 1
 #endif
 
-typedef struct t3r_lanes {
-    uint16_t x[T3R_C_LANES];
-} t3r_lanes;
-
+/* GCC makes vectors of a loop over an array, as long as it does not unroll it first. Clang unrolls it, or leaves lanes
+ * in memory; it makes vectors of a vector. */
+#if defined(__clang__) && T3R_C_LANES > 1
+#define T3R_LANES_ARE_VECTOR
+typedef uint16_t t3r_lanes_row __attribute__((vector_size(2 * T3R_C_LANES)));
+typedef uint32_t t3r_lanes_wide __attribute__((vector_size(4 * T3R_C_LANES)));
+#define T3R_EACH_LANE for (int32_t i = 0; i < T3R_C_LANES; i++)
+#else
+typedef uint16_t t3r_lanes_row[T3R_C_LANES];
 #define T3R_EACH_LANE _Pragma("GCC unroll 1") for (int32_t i = 0; i < T3R_C_LANES; i++)
+#endif
+
+typedef struct t3r_lanes {
+    t3r_lanes_row x;
+} t3r_lanes;
 
 static inline t3r_lanes t3r_lanes_load(const uint16_t *from)
 {
@@ -51,19 +61,29 @@ static inline t3r_lanes t3r_lanes_of(uint16_t x)
 
 static inline t3r_lanes t3r_lanes_mul_q16(t3r_lanes a, t3r_lanes b)
 {
+#ifdef T3R_LANES_ARE_VECTOR /* t3r_mul_q16 of each: from 32 bits clang takes no such instruction */
+    const t3r_lanes_wide product =
+        __builtin_convertvector(a.x, t3r_lanes_wide) * __builtin_convertvector(b.x, t3r_lanes_wide);
+    a.x = __builtin_convertvector(product >> 16, t3r_lanes_row);
+#else
     T3R_EACH_LANE
     {
         a.x[i] = t3r_mul_q16(a.x[i], b.x[i]);
     }
+#endif
     return a;
 }
 
 static inline t3r_lanes t3r_lanes_mulr_q16(t3r_lanes a, t3r_lanes b)
 {
+#ifdef T3R_LANES_ARE_VECTOR
+    a.x = t3r_lanes_mul_q16(a, b).x + (a.x * b.x >> 15);
+#else
     T3R_EACH_LANE
     {
         a.x[i] = t3r_mulr_q16(a.x[i], b.x[i]);
     }
+#endif
     return a;
 }
 
