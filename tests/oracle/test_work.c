@@ -87,6 +87,9 @@ static void counts_what_is_asked_for_beyond(void **state)
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000); /* refinement finds widths by itself */
     c.refinements = 0;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000 + 1000 / 5);
+    c.fit_widths = 0;
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000);
+    c.fit_widths = 1;
     c.head = T3R_HEAD_MOMENT;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_MOMENT_GAUSSIANS], 1000 + 1000 / 12);
     for (uint32_t views = 1; views <= 2; views++) {

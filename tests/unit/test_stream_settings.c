@@ -95,6 +95,24 @@ static void each_setting(void **state)
     }
 }
 
+/* Where passes are fitted, a keyframe takes what a stream takes at most; else as many as are asked for. */
+static void fitted_passes_have_a_bound(void **state)
+{
+    (void)state;
+    static t3r_gaussian fitted[BUDGET], bound[BUDGET], more[BUDGET];
+    t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
+    config.stream = 1;
+    config.fit_passes = 1;
+    config.refinements = 2 * T3R_STREAM_REFINEMENTS;
+    const uint32_t count = run(&config, fitted);
+    config.fit_passes = 0;
+    assert_int_equal(run(&config, more), count);
+    config.refinements = T3R_STREAM_REFINEMENTS;
+    assert_int_equal(run(&config, bound), count);
+    assert_memory_equal(fitted, bound, count * sizeof *fitted);
+    assert_memory_not_equal(fitted, more, count * sizeof *fitted);
+}
+
 /* As a damaged arena may hold it: another head than the configuration's, whose weights are not bound. */
 static void a_stream_builds_as_it_is_configured(void **state)
 {
@@ -117,6 +135,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_setting),
+        cmocka_unit_test(fitted_passes_have_a_bound),
         cmocka_unit_test(a_stream_builds_as_it_is_configured),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
