@@ -169,10 +169,11 @@ t3r_pair_levels t3r_levels_of(const uint32_t bins[T3R_ALIGN_BINS], uint32_t coun
     for (uint32_t below = bins[0]; 2 * below < count; below += bins[middle + most]) {
         middle++;
     }
+    /* Half of the pixels lies on either side, the middle counted with both: within the bins. */
     for (uint32_t within = bins[middle + most]; 2 * within < count;) {
         spread++;
-        within += middle - spread >= -most ? bins[middle - spread + most] : 0;
-        within += middle + spread < most ? bins[middle + spread + most] : 0;
+        T3R_BOUND(spread <= most + middle && spread < most - middle);
+        within += bins[middle - spread + most] + bins[middle + spread + most];
     }
     return (t3r_pair_levels){(int16_t)middle, (int16_t)(2 * spread + 2)};
 }

@@ -67,9 +67,12 @@ def run_program(program, scratch):
                   ("--keep", "20%", "--fit-widths", "on", "--head", "analytic"),
                   ("--keep", "5%", "--structural", "on", "--context", "0,2"),
                   ("--keep", "5%", "--align", "on", "--context", "0,2"),
+                  ("--auto", "--max-loss", 1, "--align", "off"),
                   ("--keep", "10%", "--exposure", "off", "--flying", "off", "--redundancy", "off"),
                   ("--keep", "10%", "--working", "64x64", "--depth", "stereo", "--context", "0,1,2")):
         trim3r(*base, *words)
+    trim3r("room", "--size", "512x512", "--frames", 3, "-o", "large.mcap")
+    trim3r("build", "large.mcap", "--keep", "1%", "--refine", 1, "--context", "0,2", "-o", "large.ply")
     trim3r("render", "scene.ply", "room.mcap", "--view", 1, "-o", "view.png")
     for head in ("analytic", "small"):
         trim3r("plan", "--size", "64x48", "--views", 2, "--arena", "400K", "--head", head)

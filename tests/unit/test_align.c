@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/camera.h"
 #include "core/hash.h"
 #include "loss/budget_choice.h"
 #include "pointmap/align_solve.h"
@@ -172,6 +173,13 @@ static void a_bounded_loss_goes_by_the_poses_given(void **state)
     }
     print_message("poses off: %u Gaussians, as found: %u\n", chosen[0], chosen[1]);
     assert_true(2 * chosen[0] < chosen[1]);
+    config.align = 0;
+    rt = with_views(&config, camera);
+    (void)scene_hash(rt);
+    t3r_views_of(rt, views);
+    t3r_build build = t3r_build_of(&config);
+    assert_int_equal(t3r_choose_budget(rt, views, T3R_MAX_LOSS_Q8 / 4, &build, NULL), T3R_OK);
+    assert_true(2 * chosen[0] < build.gaussians); /* right poses, which nothing aligns */
 }
 
 static void three_views_meet(void **state)
@@ -206,6 +214,52 @@ static void right_poses_stay(void **state)
             assert_memory_equal(found.position_q32, camera[v].position_q32, sizeof found.position_q32);
         }
         assert_true(scene_hash(with_views(&plain, camera)) == hash);
+    }
+}
+
+/* Nothing differs, so nothing can differ less. */
+static void one_view_twice(void **state)
+{
+    (void)state;
+    const t3r_config config = settings(2, 1);
+    t3r_plan_info plan;
+    assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
+    free(memory);
+    memory = aligned_alloc(T3R_ARENA_ALIGN, plan.bytes);
+    t3r_runtime *rt = NULL;
+    assert_int_equal(t3r_init(&rt, memory, plan.bytes, &config), T3R_OK);
+    const t3r_frame frame = rgbd_frame(rgb[0], depth[0], SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
+    for (uint32_t v = 0; v < 2; v++) {
+        assert_int_equal(t3r_add_view(rt, &frame, &camera[0]), T3R_OK);
+    }
+    (void)scene_hash(rt);
+    for (uint32_t v = 0; v < 2; v++) {
+        t3r_camera found;
+        assert_int_equal(t3r_view_camera(rt, v, &found), T3R_OK);
+        assert_memory_equal(found.position_q32, camera[0].position_q32, sizeof found.position_q32);
+    }
+}
+
+/* Where the range of positions ends a view stays as given, and the other one goes on. */
+static void positions_stay_in_range(void **state)
+{
+    (void)state;
+    const t3r_config config = settings(2, 1);
+    const uint32_t outer = camera[1].position_q32[0] > camera[0].position_q32[0];
+    for (int far = 0; far < 2; far++) {
+        t3r_camera cameras[] = {camera[0], camera[1]}, found[2];
+        cameras[outer] = disturbed(&camera[outer], -0.01, -0.06); /* to be moved outwards */
+        const int64_t away = far ? T3R_MAX_POSITION_Q32 - 1 - cameras[outer].position_q32[0] : 0;
+        cameras[0].position_q32[0] += away;
+        cameras[1].position_q32[0] += away;
+        t3r_runtime *rt = with_views(&config, cameras);
+        (void)scene_hash(rt);
+        for (uint32_t v = 0; v < 2; v++) {
+            assert_int_equal(t3r_view_camera(rt, v, &found[v]), T3R_OK);
+            assert_int_equal(t3r_camera_check(&found[v]), T3R_OK);
+        }
+        assert_true((found[outer].position_q32[0] == cameras[outer].position_q32[0]) == far);
+        assert_true(turned(&found[1 - outer], &cameras[1 - outer]) > 0.005);
     }
 }
 
@@ -326,6 +380,8 @@ int main(void)
         cmocka_unit_test(a_bounded_loss_goes_by_the_poses_given),
         cmocka_unit_test(three_views_meet),
         cmocka_unit_test(right_poses_stay),
+        cmocka_unit_test(one_view_twice),
+        cmocka_unit_test(positions_stay_in_range),
         cmocka_unit_test(builds_that_follow_are_as_given),
         cmocka_unit_test(views_without_anything_in_common),
         cmocka_unit_test(it_can_be_cancelled),

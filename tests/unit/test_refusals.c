@@ -188,6 +188,7 @@ static void states_that_cannot_be(void **state)
     DAMAGED(damaged->reuse.views = 1);
     DAMAGED(damaged->reuse.centres = 1);
     DAMAGED(damaged->stereo_pair[0] = T3R_PAIR_COUNT);
+    DAMAGED(memset(damaged->given[0].rotation_q30, 0, sizeof damaged->given[0].rotation_q30));
     DAMAGED(damaged->depth_unit_q40[0] = T3R_MAX_DEPTH_UNIT_Q40 + 1);
     DAMAGED(damaged->median_depth_q20 = 2 << 20);
     DAMAGED(((t3r_cluster *)t3r_buffer_at(damaged, T3R_BUFFER_CLUSTERS))->texture_q4 = UINT16_MAX + 1u);
