@@ -188,6 +188,8 @@ static void states_that_cannot_be(void **state)
     DAMAGED(damaged->reuse.views = 1);
     DAMAGED(damaged->reuse.centres = 1);
     DAMAGED(damaged->stereo_pair[0] = T3R_PAIR_COUNT);
+    DAMAGED(damaged->stereo_partner[0] = 2);
+    DAMAGED(memset(damaged->camera[0].rotation_q30, 0, sizeof damaged->camera[0].rotation_q30));
     DAMAGED(memset(damaged->given[0].rotation_q30, 0, sizeof damaged->given[0].rotation_q30));
     DAMAGED(damaged->depth_unit_q40[0] = T3R_MAX_DEPTH_UNIT_Q40 + 1);
     DAMAGED(damaged->median_depth_q20 = 2 << 20);
