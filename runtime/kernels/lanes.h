@@ -61,7 +61,7 @@ static inline t3r_lanes t3r_lanes_of(uint16_t x)
 
 static inline t3r_lanes t3r_lanes_mul_q16(t3r_lanes a, t3r_lanes b)
 {
-#ifdef T3R_LANES_ARE_VECTOR /* t3r_mul_q16 of each: from 32 bits clang takes no such instruction */
+#ifdef T3R_LANES_ARE_VECTOR /* t3r_mul_q16 of each lane: in a loop clang multiplies in 32 bits */
     const t3r_lanes_wide product =
         __builtin_convertvector(a.x, t3r_lanes_wide) * __builtin_convertvector(b.x, t3r_lanes_wide);
     a.x = __builtin_convertvector(product >> 16, t3r_lanes_row);

@@ -169,7 +169,8 @@ t3r_pair_levels t3r_levels_of(const uint32_t bins[T3R_ALIGN_BINS], uint32_t coun
     for (uint32_t below = bins[0]; 2 * below < count; below += bins[middle + most]) {
         middle++;
     }
-    /* Half of the pixels lies on either side, the middle counted with both: within the bins. */
+    /* At least half of the pixels lie on either side, the middle counted with both, so the loop ends within the bins.
+     */
     for (uint32_t within = bins[middle + most]; 2 * within < count;) {
         spread++;
         T3R_BOUND(spread <= most + middle && spread < most - middle);

@@ -43,7 +43,8 @@ static t3r_config settings(uint32_t views, uint32_t align)
     return config;
 }
 
-static t3r_runtime *with_views(const t3r_config *config, const t3r_camera cameras[])
+static t3r_runtime *with_pictures(const t3r_config *config, const t3r_camera cameras[],
+                                  const uint8_t pictures[][SIDE * SIDE * 3])
 {
     t3r_plan_info plan;
     assert_int_equal(t3r_plan(config, &plan), T3R_OK);
@@ -52,10 +53,15 @@ static t3r_runtime *with_views(const t3r_config *config, const t3r_camera camera
     t3r_runtime *rt = NULL;
     assert_int_equal(t3r_init(&rt, memory, plan.bytes, config), T3R_OK);
     for (uint32_t v = 0; v < config->views; v++) {
-        const t3r_frame frame = rgbd_frame(rgb[v], depth[v], SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
+        const t3r_frame frame = rgbd_frame(pictures[v], depth[v], SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
         assert_int_equal(t3r_add_view(rt, &frame, &cameras[v]), T3R_OK);
     }
     return rt;
+}
+
+static t3r_runtime *with_views(const t3r_config *config, const t3r_camera cameras[])
+{
+    return with_pictures(config, cameras, (const uint8_t(*)[SIDE * SIDE * 3]) rgb);
 }
 
 static uint64_t scene_hash(t3r_runtime *rt)
@@ -221,24 +227,15 @@ static void right_poses_stay(void **state)
 static void grey_views(void **state)
 {
     (void)state;
-    static uint8_t grey[SIDE * SIDE * 3];
+    static uint8_t grey[2][SIDE * SIDE * 3];
     memset(grey, 128, sizeof grey);
     const t3r_config config = settings(2, 1);
-    t3r_plan_info plan;
-    assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
-    free(memory);
-    memory = aligned_alloc(T3R_ARENA_ALIGN, plan.bytes);
-    t3r_runtime *rt = NULL;
-    assert_int_equal(t3r_init(&rt, memory, plan.bytes, &config), T3R_OK);
-    const t3r_frame frame = rgbd_frame(grey, depth[0], SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
-    for (uint32_t v = 0; v < 2; v++) {
-        assert_int_equal(t3r_add_view(rt, &frame, &camera[0]), T3R_OK);
-    }
+    t3r_runtime *rt = with_pictures(&config, camera, (const uint8_t(*)[SIDE * SIDE * 3]) grey);
     (void)scene_hash(rt);
     for (uint32_t v = 0; v < 2; v++) {
         t3r_camera found;
         assert_int_equal(t3r_view_camera(rt, v, &found), T3R_OK);
-        assert_memory_equal(found.position_q32, camera[0].position_q32, sizeof found.position_q32);
+        assert_memory_equal(found.position_q32, camera[v].position_q32, sizeof found.position_q32);
     }
 }
 
@@ -277,26 +274,31 @@ static void builds_that_follow_are_as_given(void **state)
     assert_true(scene_hash(with_views(&config, cameras)) == asked);
 }
 
-/* Two pictures of noise, of which both see a narrow strip: looking away from it is not to see less difference. */
+/* Pictures of noise, of views that share a narrow strip. These differ less once they look away from it: that is not
+ * taken, and the poses stay. */
 static void narrow_strips_of_noise(void **state)
 {
     (void)state;
-    static uint8_t pictures[VIEWS][SIDE * SIDE * 3];
-    memcpy(pictures, rgb, sizeof rgb);
+    static const struct {
+        double angle;
+        uint64_t seed;
+    } of[] = {{0.8325, UINT64_C(17674948696127779841)},
+              {0.9045, UINT64_C(6744394396120544257)},
+              {0.9055, UINT64_C(14534929284800945153)}};
+    static uint8_t noise[VIEWS][SIDE * SIDE * 3];
     const t3r_config config = settings(2, 1);
-    uint64_t seed = 1;
-    for (int round = 0; round < 40; round++) {
-        for (size_t i = 0; i < sizeof rgb; i++) {
-            rgb[i / sizeof rgb[0]][i % sizeof rgb[0]] = (uint8_t)unit_between(&seed, 0, 255);
+    for (size_t n = 0; n < sizeof of / sizeof *of; n++) {
+        uint64_t seed = of[n].seed;
+        for (size_t i = 0; i < sizeof noise; i++) {
+            noise[i / sizeof noise[0]][i % sizeof noise[0]] = (uint8_t)unit_between(&seed, 0, 255);
         }
-        const t3r_camera cameras[] = {camera[0], disturbed(&camera[0], 0.5 + 0.01 * round, 0)};
-        t3r_runtime *rt = with_views(&config, cameras);
+        const t3r_camera cameras[] = {camera[0], disturbed(&camera[0], of[n].angle, 0)};
+        t3r_runtime *rt = with_pictures(&config, cameras, (const uint8_t(*)[SIDE * SIDE * 3]) noise);
         (void)scene_hash(rt);
         t3r_camera found;
         assert_int_equal(t3r_view_camera(rt, 1, &found), T3R_OK);
         assert_memory_equal(found.rotation_q30, cameras[1].rotation_q30, sizeof found.rotation_q30);
     }
-    memcpy(rgb, pictures, sizeof rgb);
 }
 
 /* Nothing is in common, or there is nothing to see: the poses stay. */

@@ -27,7 +27,7 @@ void rival_source_close(rival_source *source)
     *source = (rival_source){0};
 }
 
-/* The context views as pictures, of the frames and the size that a build resolved, and where the build found them. */
+/* The context views as pictures, of the frames and the size that a build resolved, with the poses that it aligned. */
 static int open_pictures(rival_source *source, const reconstruction *r)
 {
     reconstruction_options *o = &source->options;
@@ -41,9 +41,9 @@ static int open_pictures(rival_source *source, const reconstruction *r)
         code = source->rgb[v] == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
                                       : developed_frame(source->recording, source->path, o->context[v], o->config.width,
                                                         o->config.height, source->rgb[v], NULL, &source->camera[v]);
-        t3r_camera found; /* none of a scene that comes from a file */
-        if (code == CLI_OK && t3r_view_camera(r->runtime, v, &found) == T3R_OK) {
-            source->camera[v] = found;
+        t3r_camera aligned; /* a scene from a file has no views: poses are as given */
+        if (code == CLI_OK && t3r_view_camera(r->runtime, v, &aligned) == T3R_OK) {
+            source->camera[v] = aligned;
         }
     }
     source->opened = code == CLI_OK;
