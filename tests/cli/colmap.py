@@ -183,6 +183,45 @@ def lens_recording(folder):
     return f"{made}.mcap"
 
 
+def moved_recording(folder):
+    """Two frames of a smooth wall with a step, the second's pose rolled by half a degree."""
+    made = f"{folder}/moved"
+    os.mkdir(made)
+    random = numpy.random.default_rng(3)
+    wall = cv2.GaussianBlur(random.integers(0, 255, (400, 400, 3), dtype=numpy.uint8), (0, 0), 5)
+    wall = cv2.normalize(wall, None, 0, 255, cv2.NORM_MINMAX)
+    v, u = numpy.mgrid[0:64, 0:96].astype(numpy.float32)
+    frames = []
+    for i in range(2):
+        depth = numpy.where(v < 32, 2, 1.5)
+        x, y = (u - 47.5) / 90 * depth + 0.1 * i, (v - 31.5) / 90 * depth
+        shown = cv2.remap(wall, (200 + 100 * x).astype(numpy.float32), (200 + 100 * y).astype(numpy.float32),
+                          cv2.INTER_CUBIC)
+        cv2.imwrite(f"{made}/{i}.png", shown)
+        cv2.imwrite(f"{made}/{i}.depth.png", (1000 * depth).astype(numpy.uint16))
+        pose = numpy.diag([1.0, -1, -1, 1])
+        pose[:3, :3] = cv2.Rodrigues(numpy.array([0, 0, math.radians(0.5 * i)]))[0] @ pose[:3, :3]
+        pose[0, 3] = 0.1 * i
+        frames.append({"file_path": f"{i}.png", "depth_path": f"{i}.depth.png", "transform_matrix": pose.tolist()})
+    with open(f"{made}/transforms.json", "w", encoding="utf-8") as file:
+        json.dump({"fl_x": 90, "fl_y": 90, "cx": 48, "cy": 32, "w": 96, "h": 64, "integer_depth_scale": 0.001,
+                   "frames": frames}, file)
+    run("import", made, "-o", f"{made}.mcap")
+    return f"{made}.mcap"
+
+
+def aligned(recording, folder):
+    """Where a build corrects poses, the model has the corrected ones, and the report tells by how much."""
+    told = json.loads(run("build", recording, "--context", "0,1", "--keep", "5%", "-o", f"{folder}/a.ply", "--json"))["aligned"]
+    turned = sum(view["degrees"] for view in told)
+    check(0.3 < turned < 0.7, f"corrected by {turned} of half a degree")
+    text = run("build", recording, "--context", "0,1", "--keep", "5%", "-o", f"{folder}/a.ply", "--force")
+    check(f"pose of frame 1 corrected by {told[1]['degrees']:.2f} degrees" in text, "told")
+    still = json.loads(run("build", recording, "--context", "0,1", "--keep", "5%", "--align", "off", "-o", f"{folder}/b.ply",
+                           "--json"))["aligned"]
+    check(all(view["degrees"] == view["distance"] == 0 for view in still), "as given without --align")
+
+
 with tempfile.TemporaryDirectory() as folder:
     room, lens = f"{folder}/room.mcap", lens_recording(folder)
     run("room", "--size", "96x64", "-o", room)
@@ -191,6 +230,10 @@ with tempfile.TemporaryDirectory() as folder:
     os.mkdir(f"{folder}/b")
     retained_pixels(lens, f"{folder}/b", (64, 48), "1,0")
     adapted(room, folder, (96, 64))
+    moved = moved_recording(folder)
+    os.mkdir(f"{folder}/c")
+    aligned(moved, f"{folder}/c")
+    retained_pixels(moved, f"{folder}/c", (96, 64), "0,1")
     local(lens, folder, (64, 48))
     elsewhere(room, folder, (96, 64))
     budget = ("build", room, "--keep", "10%")

@@ -24,6 +24,18 @@ cJSON *pose_account_json(const uint32_t *frames, uint32_t index, const pose_acco
     return out;
 }
 
+void pose_add_json(cJSON *object, const t3r_camera *camera)
+{
+    cJSON *position = cJSON_AddArrayToObject(object, "position"),
+          *rotation = cJSON_AddArrayToObject(object, "rotation");
+    for (int k = 0; k < 3; k++) {
+        cJSON_AddItemToArray(position, cJSON_CreateNumber(ldexp((double)camera->position_q32[k], -32)));
+    }
+    for (int k = 0; k < 4; k++) {
+        cJSON_AddItemToArray(rotation, cJSON_CreateNumber(ldexp(camera->rotation_q30[k], -30)));
+    }
+}
+
 void poses_add_json(cJSON *object, const t3r_recording *recording, const uint32_t *frames, uint32_t count,
                     const pose_account *accounts)
 {
@@ -33,14 +45,7 @@ void poses_add_json(cJSON *object, const t3r_recording *recording, const uint32_
         t3r_capture_frame frame;
         char error[64];
         if (t3r_recording_frame(recording, frames[i], &frame, error, sizeof error) == T3R_CAPTURE_FRAME) {
-            cJSON *position = cJSON_AddArrayToObject(one, "position"),
-                  *rotation = cJSON_AddArrayToObject(one, "rotation");
-            for (int k = 0; k < 3; k++) {
-                cJSON_AddItemToArray(position, cJSON_CreateNumber(ldexp((double)frame.camera.position_q32[k], -32)));
-            }
-            for (int k = 0; k < 4; k++) {
-                cJSON_AddItemToArray(rotation, cJSON_CreateNumber(ldexp(frame.camera.rotation_q30[k], -30)));
-            }
+            pose_add_json(one, &frame.camera);
         }
         cJSON_AddItemToArray(poses, one);
     }

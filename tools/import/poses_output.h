@@ -1,4 +1,4 @@
-/* What is told of estimated poses. */
+/* What is told of poses. */
 #ifndef TRIM3R_TOOLS_POSES_OUTPUT_H
 #define TRIM3R_TOOLS_POSES_OUTPUT_H
 
@@ -7,6 +7,8 @@
 #include "posing/estimate.h"
 #include "recording.h"
 
+/* "position", in the recording's unit, and "rotation", a quaternion w x y z: exact. */
+void pose_add_json(cJSON *object, const t3r_camera *camera);
 /* "poses": one object a frame: what it rests on, and the pose as the recording now has it, exact. */
 void poses_add_json(cJSON *object, const t3r_recording *recording, const uint32_t *frames, uint32_t count,
                     const pose_account *accounts);

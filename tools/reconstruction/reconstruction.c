@@ -56,6 +56,10 @@ reconstruction_account reconstruction_told(const reconstruction *r)
     memcpy(told.bits, r->head.bits, sizeof told.bits);
     memcpy(told.crc, r->head.crc, sizeof told.crc);
     memcpy(told.context, r->context, sizeof told.context);
+    told.has_cameras = r->runtime != NULL && told.context_count > 0;
+    for (uint32_t v = 0; v < told.context_count && told.has_cameras; v++) {
+        told.has_cameras = t3r_view_camera(r->runtime, v, &told.camera[v]) == T3R_OK;
+    }
     return told;
 }
 

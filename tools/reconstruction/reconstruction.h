@@ -96,6 +96,8 @@ typedef struct reconstruction_account {
     uint32_t width, height;         /* working size */
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
+    bool has_cameras;                 /* a scene that was made elsewhere has none */
+    t3r_camera camera[T3R_MAX_VIEWS]; /* of the context views, as they were built with: `align` may have moved them */
     uint32_t valid_points, requested;
     size_t arena_bytes;
     double seconds; /* from recorded frames to the scene */

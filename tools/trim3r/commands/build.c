@@ -10,9 +10,9 @@
 #include "cli/file_options.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
-#include "scene/colmap_folder.h"
 #include "scene/tile_lists.h"
-#include "reconstruction/developed_frame.h"
+#include "reconstruction/aligned_poses.h"
+#include "reconstruction/colmap_start.h"
 #include "cli/json_output.h"
 #include "cli/recorded_frame.h"
 #include "cli/option_values.h"
@@ -155,6 +155,20 @@ static const struct argp argp = {
     .children = children,
 };
 
+/* What is told besides of the views that a scene was built from. */
+typedef struct found {
+    pose_account estimated[T3R_MAX_VIEWS]; /* of --poses, where it is not `given` */
+    pose_correction aligned[T3R_MAX_VIEWS];
+    tile_lists lists; /* of the view whose tiles list most */
+} found;
+
+/* Whether the last step was our refinement; Gaussians that a rival pruned or fine-tuned were loaded. */
+static bool refines(const build_options *o)
+{
+    return o->settings.config.refinements > 0 &&
+           (o->settings.method == METHOD_TRIM3R || method_way_of(o->settings.method) == METHOD_HEAD);
+}
+
 /* Frames that stereo could match with no other. */
 static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *told,
                           const reconstruction *r)
@@ -168,8 +182,7 @@ static void add_unmatched(cJSON *root, const build_options *o, const reconstruct
 }
 
 static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r,
-                       const t3r_recording *recording, const pose_account *accounts, const tile_lists *lists,
-                       const work_times *times)
+                       const t3r_recording *recording, const found *f, const work_times *times)
 {
     bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
     cJSON *root = cJSON_CreateObject();
@@ -186,7 +199,9 @@ static void print_json(const build_options *o, const reconstruction_account *tol
         cJSON_AddNumberToObject(root, "max_loss", o->settings.max_loss);
     }
     json_add_integer(root, "valid_points", told->valid_points);
-    json_add_integer(root, "passes", t3r_refinement_passes(r->runtime));
+    if (refines(o)) {
+        json_add_integer(root, "passes", t3r_refinement_passes(r->runtime));
+    }
     json_add_integers(root, "context", told->context, told->context_count);
     if (o->settings.points_of == NULL) {
         cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.config.depth));
@@ -214,13 +229,14 @@ static void print_json(const build_options *o, const reconstruction_account *tol
         stage_times_add_json(root, "stages_ms", &r->stages);
     }
     cJSON *listed = cJSON_AddObjectToObject(root, "tile_lists");
-    json_add_integer(listed, "entries", (int64_t)lists->entries);
-    json_add_integer(listed, "usual", (int64_t)lists->usual);
-    json_add_integer(listed, "widest", lists->widest);
+    json_add_integer(listed, "entries", (int64_t)f->lists.entries);
+    json_add_integer(listed, "usual", (int64_t)f->lists.usual);
+    json_add_integer(listed, "widest", f->lists.widest);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
     if (o->settings.poses != POSES_GIVEN) {
-        poses_add_json(root, recording, told->context, told->context_count, accounts);
+        poses_add_json(root, recording, told->context, told->context_count, f->estimated);
     }
+    aligned_poses_add_json(root, told, f->aligned);
     /* where float32 positions lose the world's origin: --local and this */
     cJSON *origin = cJSON_AddArrayToObject(root, "origin");
     for (int i = 0; i < 3; i++) {
@@ -258,35 +274,6 @@ static int build(const build_options *o, const t3r_recording *recording, reconst
     return code;
 }
 
-static int write_colmap(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
-                        const reconstruction_account *told, whole_folder *folder)
-{
-    colmap_view views[T3R_MAX_VIEWS] = {0};
-    char error[ERROR_BYTES] = "";
-    int code = CLI_OK;
-    for (uint32_t v = 0; v < told->context_count && code == CLI_OK; v++) {
-        views[v] = (colmap_view){.frame = told->context[v], .width = told->width, .height = told->height};
-        views[v].rgb = malloc((size_t)told->width * told->height * 3);
-        code = views[v].rgb == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                                    : developed_frame(recording, o->recording, told->context[v], told->width,
-                                                      told->height, views[v].rgb, NULL, &views[v].camera);
-    }
-    colmap_model model = {.views = views,
-                          .view_count = told->context_count,
-                          .scene = scene,
-                          .local = (o->flags & SCENE_FILE_LOCAL) != 0,
-                          .sourced =
-                              o->settings.points_of == NULL || method_kind_of(o->settings.method) == METHOD_TRIM3R};
-    if (code == CLI_OK && (colmap_folder_write(folder, &model, error, sizeof error) != 0 ||
-                           whole_folder_commit(folder, error, sizeof error) != 0)) {
-        code = cli_error(CLI_BAD_INPUT, "--colmap %s: %s", o->colmap, error);
-    }
-    for (uint32_t v = 0; v < told->context_count; v++) {
-        free(views[v].rgb);
-    }
-    return code;
-}
-
 static int write_all(const build_options *o, const t3r_recording *recording, const reconstruction *r,
                      const reconstruction_account *told, whole_folder *folder)
 {
@@ -295,7 +282,15 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
     if (o->output != NULL && scene_file_write(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    return o->colmap != NULL ? write_colmap(o, recording, &r->scene, told, folder) : CLI_OK;
+    const colmap_start start = {
+        .recording = recording,
+        .path = o->recording,
+        .scene = &r->scene,
+        .told = told,
+        .local = (o->flags & SCENE_FILE_LOCAL) != 0,
+        .sourced = o->settings.points_of == NULL || method_kind_of(o->settings.method) == METHOD_TRIM3R,
+    };
+    return o->colmap != NULL ? colmap_start_write(&start, folder, o->colmap) : CLI_OK;
 }
 
 /* What the context views cost to draw: of the one whose tiles list most. */
@@ -330,16 +325,17 @@ static void print_lists(const tile_lists *lists)
 }
 
 static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r,
-                       const pose_account *accounts, const tile_lists *lists, const work_times *times)
+                       const found *f, const work_times *times)
 {
     char text[WORK_TIMES_BYTES];
     if (o->settings.poses != POSES_GIVEN) {
-        poses_print(told->context, told->context_count, accounts);
+        poses_print(told->context, told->context_count, f->estimated);
     }
+    aligned_poses_print(told, f->aligned);
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes; %s\n",
            o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
            work_times_text(times, text));
-    if (o->settings.config.fit_passes) {
+    if (refines(o) && o->settings.config.fit_passes) {
         printf("refined in %" PRIu32 " of at most %" PRIu32 " passes\n", t3r_refinement_passes(r->runtime),
                o->settings.config.refinements);
     }
@@ -351,7 +347,7 @@ static void print_text(const build_options *o, const reconstruction_account *tol
                    told->context[partner], t3r_pair_text(pair));
         }
     }
-    print_lists(lists);
+    print_lists(&f->lists);
     if (o->profile) {
         stage_times_print(stdout, &r->stages);
     }
@@ -386,11 +382,11 @@ int command_build(int argc, char **argv)
     if (o.colmap != NULL && whole_folder_begin(&folder, o.colmap, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    pose_account accounts[T3R_MAX_VIEWS];
+    found f = {0};
     if (code == CLI_OK && o.settings.poses != POSES_GIVEN) {
         name_context(&o.settings, recording);
         code = recording_pose_views(recording, o.recording, o.settings.context, o.settings.context_count,
-                                    o.settings.poses, accounts);
+                                    o.settings.poses, f.estimated);
         work_times_end(&times, WORK_POSES);
     }
     reconstruction r;
@@ -402,14 +398,16 @@ int command_build(int argc, char **argv)
         work_times_pass(&times);
         code = write_all(&o, recording, &r, &told, &folder);
         work_times_end(&times, WORK_WRITE);
-        tile_lists lists = {0};
         if (code == CLI_OK) {
-            code = account_for_lists(&o, recording, &r.scene, &told, &lists);
+            code = account_for_lists(&o, recording, &r.scene, &told, &f.lists);
+        }
+        if (code == CLI_OK) {
+            code = aligned_poses_of(recording, o.recording, &told, f.aligned);
         }
         if (code == CLI_OK && o.json) {
-            print_json(&o, &told, &r, recording, accounts, &lists, &times);
+            print_json(&o, &told, &r, recording, &f, &times);
         } else if (code == CLI_OK) {
-            print_text(&o, &told, &r, accounts, &lists, &times);
+            print_text(&o, &told, &r, &f, &times);
         }
         reconstruction_close(&r);
     }

@@ -1,0 +1,77 @@
+#include "reconstruction/aligned_poses.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "cli/cli.h"
+#include "cli/recorded_frame.h"
+#include "import/poses_output.h"
+
+/* Of the rotation that turns one quaternion into the other. The vector part of their quotient, unlike its scalar part,
+ * keeps small angles exact. */
+static double degrees_between(const int32_t a_q30[4], const int32_t b_q30[4])
+{
+    double a[4], b[4];
+    for (int i = 0; i < 4; i++) {
+        a[i] = a_q30[i];
+        b[i] = b_q30[i];
+    }
+    const double scalar = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+    const double x = a[0] * b[1] - a[1] * b[0] - a[2] * b[3] + a[3] * b[2];
+    const double y = a[0] * b[2] - a[2] * b[0] - a[3] * b[1] + a[1] * b[3];
+    const double z = a[0] * b[3] - a[3] * b[0] - a[1] * b[2] + a[2] * b[1];
+    return 2 * atan2(sqrt(x * x + y * y + z * z), fabs(scalar)) * 180 / acos(-1);
+}
+
+static double distance_between(const int64_t a_q32[3], const int64_t b_q32[3])
+{
+    double squared = 0;
+    for (int i = 0; i < 3; i++) {
+        const double difference = ldexp((double)(a_q32[i] - b_q32[i]), -32);
+        squared += difference * difference;
+    }
+    return sqrt(squared);
+}
+
+int aligned_poses_of(const t3r_recording *recording, const char *path, const reconstruction_account *told,
+                     pose_correction corrections[T3R_MAX_VIEWS])
+{
+    for (uint32_t v = 0; v < told->context_count; v++) {
+        t3r_capture_frame frame;
+        const int code = recorded_frame_read(recording, path, told->context[v], &frame);
+        if (code != CLI_OK) {
+            return code;
+        }
+        const t3r_camera *given = &frame.camera, *built = &told->camera[v];
+        corrections[v] = (pose_correction){0};
+        if (told->has_cameras) {
+            corrections[v].degrees = degrees_between(given->rotation_q30, built->rotation_q30);
+            corrections[v].distance = distance_between(given->position_q32, built->position_q32);
+        }
+    }
+    return CLI_OK;
+}
+
+void aligned_poses_add_json(cJSON *object, const reconstruction_account *told, const pose_correction *corrections)
+{
+    cJSON *list = told->has_cameras ? cJSON_AddArrayToObject(object, "aligned") : NULL;
+    for (uint32_t v = 0; v < told->context_count && list != NULL; v++) {
+        cJSON *one = cJSON_CreateObject();
+        cJSON_AddNumberToObject(one, "frame", told->context[v]);
+        cJSON_AddNumberToObject(one, "degrees", corrections[v].degrees);
+        cJSON_AddNumberToObject(one, "distance", corrections[v].distance);
+        pose_add_json(one, &told->camera[v]);
+        cJSON_AddItemToArray(list, one);
+    }
+}
+
+void aligned_poses_print(const reconstruction_account *told, const pose_correction *corrections)
+{
+    for (uint32_t v = 0; v < told->context_count; v++) {
+        if (corrections[v].degrees > 0 || corrections[v].distance > 0) {
+            printf("pose of frame %" PRIu32 " corrected by %.2f degrees and %.4f units\n", told->context[v],
+                   corrections[v].degrees, corrections[v].distance);
+        }
+    }
+}
