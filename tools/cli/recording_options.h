@@ -12,7 +12,7 @@ typedef struct recording_options {
     bool unchunked;
 } recording_options;
 
-#define RECORDING_GROUP 20 /* of these options in --help */
+#define RECORDING_GROUP 25 /* of these options in --help, behind the settings of a build */
 
 /* --compression, --unchunked. Each parent's parser hands a recording_options * on in state->child_inputs[]; without
  * either, frames are chunks that are not compressed. */

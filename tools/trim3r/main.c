@@ -62,7 +62,7 @@ static void print_help(FILE *out)
     fprintf(out,
             "\n%sData flow:%s\n%s\n"
             "trim3r COMMAND --help lists a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
-            "3 budget or arena too small. With --json a command prints one JSON object on stdout.\n",
+            "3 budget or arena too small. All but chart and completion know --json: one object on stdout.\n",
             heading, end, data_flow);
 }
 

@@ -112,7 +112,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 
 static const struct argp_option argp_options[] = {
     OPTION_ARGUMENTS("HEAD.safetensors", OPTION_READS),
-    {NULL, 'o', "OUT", OPTION_WRITES(FILE_WEIGHTS | FILE_SOURCE),
+    {"output", 'o', "OUT", OPTION_WRITES(FILE_WEIGHTS | FILE_SOURCE),
      "file to write: OUT.t3w, a weight file, or OUT.c, the same as a C array t3r_head_NAME (needed)", 0},
     {"weights", KEY_WEIGHTS, "8|16", 0, "bits of the weights (8)", 0},
     {"activations", KEY_ACTIVATIONS, "8|16", 0, "bits of the activations (8)", 0},
