@@ -1,4 +1,4 @@
-/* The way of the data. The image stage comes before, frame by frame (develop.c), the raster behind (raster.c):
+/* The way of the data. The image stage comes before, frame by frame (develop.c), a view behind (render.c):
  *
  *     frames - image -+- wavelet -- texture energy --+
  *                     |                              +- superclusters - budget - mask - head - scene - refine - raster
@@ -11,6 +11,7 @@
 #include "pointmap/align.h"
 #include "pointmap/bridge.h"
 #include "budget/budget.h"
+#include "budget/cluster_texture.h"
 #include "depth/depth.h"
 #include "pointmap/exposure.h"
 #include "core/cut.h"

@@ -10,13 +10,7 @@
 static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
 {
     const t3r_view view = t3r_view_of(rt, index);
-    size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
-    for (size_t i = 0; i < pixels; i++) {
-        if (t3r_is_reliable(view.validity[i])) {
-            return true;
-        }
-    }
-    return false;
+    return t3r_is_reliable_anywhere(&view);
 }
 
 uint32_t t3r_slot_of_next(const t3r_runtime *rt)
@@ -30,12 +24,9 @@ bool t3r_takes_view(const t3r_runtime *rt)
            (t3r_is_warm(&rt->config) ? rt->config.views > 0 : rt->views < rt->config.views && !rt->has_scene);
 }
 
-/* Whether the frame's depth has no measurement at all. What cannot be read is for others to refuse. */
+/* Whether the checked frame's depth has no measurement at all. */
 static bool is_blind(const t3r_frame *frame)
 {
-    if (t3r_image_check(frame) != T3R_OK) {
-        return false;
-    }
     for (uint32_t y = 0; y < frame->depth_height; y++) {
         const uint8_t *row = frame->depth + (size_t)y * frame->depth_stride_bytes;
         for (uint32_t i = 0; i < 2 * frame->depth_width; i++) {
@@ -89,13 +80,17 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
     } else if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
+    t3r_camera undistorted;
+    t3r_status status = t3r_frame_check(rt, &shown, camera, &undistorted); /* before anything is discarded */
+    if (status != T3R_OK) {
+        return status;
+    }
     const bool replaces = slot < rt->views;
     if (replaces && !stereo && is_blind(frame)) {
         return T3R_ERR_NO_DEPTH; /* before the oldest view is overwritten */
     }
     t3r_begin_view(rt);
-    t3r_camera undistorted;
-    t3r_status status = t3r_develop_view(rt, slot, &shown, camera, &undistorted);
+    status = t3r_develop_view(rt, slot, &shown, camera, &undistorted);
     if (status != T3R_OK) {
         return status;
     }

@@ -1,7 +1,7 @@
 #include "restored.h"
 
 #include "api/checks.h"
-#include "budget/budget.h"
+#include "budget/cluster_texture.h"
 #include "core/camera.h"
 #include "core/features.h"
 #include "core/scene_frame.h"

@@ -1,4 +1,4 @@
-/* The scene in the arena: read, or written by whoever has one from a file. A render is checked in raster/raster.c. */
+/* The scene in the arena: read, or written by whoever has one from a file. */
 #include "api/checks.h"
 #include "core/features.h"
 #include "layout/arena.h"

@@ -23,7 +23,7 @@ typedef struct t3r_budget_settings {
     uint32_t gamma_q8;
     uint32_t clusters;
     uint32_t seed;
-    uint32_t shift;         /* of the blue noise: the number of the first view, so to speak */
+    uint32_t first_view;    /* its number, by which the blue noise is shifted */
     bool pass_over_covered; /* the budget is so small that points of surfaces seen twice are wanted once */
 } t3r_budget_settings;
 
@@ -67,25 +67,6 @@ static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r
 
 /* Whether Z is at most two thirds of the points that are neither doubtful nor covered by another view. */
 bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
-
-/* Blurs the texture planes with sigma 2 px (a 5 x 5 box twice), in place, by way of the key planes. */
-void t3r_blur_texture(const t3r_kernels *kernels, const t3r_view *views, uint32_t count, const t3r_workers *workers);
-
-/* Mean texture of every cluster (eq. 2), from the texture planes before they are blurred. */
-void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clusters, uint32_t cluster_count);
-
-/* Hands the textures of the clusters that have points round among them, every permutation alike likely. */
-void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t seed);
-
-/* Their order from the lowest texture up; whether they are in it, whatever the entries hold. */
-void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
-bool t3r_are_ranked(const t3r_cluster *clusters, uint32_t cluster_count);
-
-/* The keys of all pixels, of which t3r_allocate() retains the smallest; log2 of the density that a texture asks for, up
- * to a constant, Q10: key = T3R_KEY_ZERO + log2 of the threshold - wanted but for sure and deferred points. */
-void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
-                     const t3r_budget_work *work);
-int32_t t3r_log_wanted_q10(uint16_t texture_q4, const t3r_budget_settings *settings);
 
 /* Quotas, thresholds and masks: exactly min(Z, valid points) bits set, and at most Z whatever the clusters say. For
  * `given` the key planes hold the keys already (importance.h). */

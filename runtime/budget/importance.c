@@ -1,5 +1,6 @@
 #include "importance.h"
 
+#include "core/bits.h"
 #include "core/fixed.h"
 
 #define HALF 4 /* of the window in which retained points are counted: 9 x 9 pixels */
@@ -29,13 +30,6 @@ static uint32_t mask_bits(const uint32_t *mask, size_t first, uint32_t count)
         bits |= mask[first / 32 + 1] << (32 - shift); /* shift > 0, as count < 32 */
     }
     return bits & ((1u << count) - 1);
-}
-
-static uint32_t count_bits(uint32_t bits)
-{
-    bits -= bits >> 1 & 0x55555555u;
-    bits = (bits & 0x33333333u) + (bits >> 2 & 0x33333333u);
-    return ((bits + (bits >> 4)) & 0x0f0f0f0fu) * 0x01010101u >> 24;
 }
 
 /* log2(retained / valid), Q10; both below 2^28 */
@@ -75,7 +69,7 @@ static int32_t window_share_q10(const t3r_view *view, uint32_t x, uint32_t y)
     uint32_t retained = 0, valid = 0;
     for (uint32_t row = y0; row <= y1; row++) {
         size_t first = (size_t)row * view->width + x0;
-        retained += count_bits(mask_bits(view->mask, first, x1 - x0 + 1));
+        retained += t3r_ones(mask_bits(view->mask, first, x1 - x0 + 1));
         for (uint32_t i = 0; i <= x1 - x0; i++) {
             valid += t3r_has_depth(view->validity[first + i]);
         }

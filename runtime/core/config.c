@@ -8,7 +8,10 @@
 t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_bytes, uint32_t width, uint32_t height,
                                  uint32_t views, uint32_t gaussians)
 {
-    if (digest != t3r_header_interface()) {
+    if (config == NULL) {
+        return T3R_ERR_ARGUMENT;
+    }
+    if (digest != t3r_header_interface() || config_bytes != sizeof(t3r_config)) {
         memset(config, 0, config_bytes); /* the caller's, of whatever size */
         return T3R_ERR_INTERFACE;
     }
@@ -58,6 +61,9 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
 
 uint32_t t3r_cluster_count(const t3r_config *c)
 {
+    if (c == NULL) {
+        return 0;
+    }
     const uint32_t points = c->width * c->height * c->views; /* at most 2^28 */
     if (c->clusters != 0) {
         return c->clusters;
@@ -78,6 +84,9 @@ uint32_t t3r_cluster_count(const t3r_config *c)
 
 uint32_t t3r_cluster_batch_count(const t3r_config *c)
 {
+    if (c == NULL) {
+        return 0;
+    }
     const uint32_t batches = t3r_cluster_count(c) / CLUSTERS_A_BATCH;
     return c->cluster_batches != 0 ? c->cluster_batches : batches == 0 ? 1 : T3R_MIN(batches, MOST_BATCHES);
 }
@@ -108,7 +117,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("gamma_q8 must be 0..512", gamma_q8, 0, 512)                                                                     \
     X("head is none of t3r_head", head, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT - 1)                                   \
     X("head_column_bytes must be 0..65536", head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES)                           \
-    X("refinements must be 0..16", refinements, 0, T3R_MAX_REFINEMENTS)                                                \
+    X("refinements must be 0..32", refinements, 0, T3R_MAX_REFINEMENTS)                                                \
     X("fit_passes must be 0 or 1", fit_passes, 0, 1)                                                                   \
     X("fit_widths must be 0 or 1", fit_widths, 0, 1)                                                                   \
     X("structural must be 0 or 1", structural, 0, 1)                                                                   \

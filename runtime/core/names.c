@@ -127,7 +127,7 @@ const char *t3r_error_text(t3r_status status)
     case T3R_ERR_CANCELLED:
         return "cancelled";
     case T3R_ERR_EPOCH:
-        return "the arena was made by another version or settings";
+        return "the arena was made by another version or build, of another size, or damaged";
     case T3R_ERR_FULL:
         return "the scene has no room for another Gaussian";
     case T3R_ERR_STEREO:

@@ -23,7 +23,7 @@ static bool covers(const t3r_head_input *input, const t3r_view *other, const t3r
     }
     const t3r_depth_scale scale = t3r_depth_scale_of(other->depth_unit_q40, input->covering->exponent);
     const int32_t there_q20 = t3r_depth_q20(scale, other->depth[pixel]);
-    return 8 * t3r_abs64((int64_t)projected->z_q20 - there_q20) <= T3R_MIN(projected->z_q20, there_q20);
+    return t3r_is_one_surface(projected->z_q20, there_q20, 8);
 }
 
 /* The density of the retained points of all views about a pixel, over that of its own: Q16, at most 2^16 + 15 x 2^24.

@@ -48,7 +48,7 @@ typedef struct t3r_footprint {
 
 /* The least variance of a Gaussian in its own view, less the 0.3 px^2 that the rasterizer adds; Q12. What is corrected
  * by what one view's pixels show must not be much narrower than these: other views look between them (Yu et al.,
- * Mip-Splatting, 2024, section 5.1, who smooth by as much; DESIGN.md, "Network"). What nothing corrects stays as sharp
+ * Mip-Splatting, 2024, section 5.1, who smooth by as much; DESIGN.md, "Heads"). What nothing corrects stays as sharp
  * as the head has it. */
 #define T3R_NARROWEST_Q12 82          /* 0.02 px^2 */
 #define T3R_NARROWEST_REFINED_Q12 819 /* 0.2 px^2 */

@@ -1,5 +1,6 @@
 #include "head_views.h"
 
+#include "core/bits.h"
 #include "core/features.h"
 #include "core/fixed.h"
 #include "fitted_widths.h"
@@ -106,13 +107,6 @@ static void make_band(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-static uint32_t ones(uint32_t x)
-{
-    x -= x >> 1 & 0x55555555;
-    x = (x & 0x33333333) + (x >> 2 & 0x33333333);
-    return ((x + (x >> 4)) & 0x0f0f0f0f) * 0x01010101u >> 24;
-}
-
 static uint32_t count_retained(const t3r_view *view, uint32_t row)
 {
     const size_t begin = (size_t)row * view->width, last = begin + view->width - 1;
@@ -120,7 +114,7 @@ static uint32_t count_retained(const t3r_view *view, uint32_t row)
     for (size_t word = begin / 32; word <= last / 32; word++) {
         const uint32_t behind_begin = word == begin / 32 ? UINT32_MAX << begin % 32 : UINT32_MAX;
         const uint32_t up_to_last = word == last / 32 ? UINT32_MAX >> (31 - last % 32) : UINT32_MAX;
-        count += ones(view->mask[word] & behind_begin & up_to_last);
+        count += t3r_ones(view->mask[word] & behind_begin & up_to_last);
     }
     return count;
 }

@@ -37,23 +37,31 @@ static void undistort_rows(void *context, uint32_t begin, uint32_t end, uint32_t
     t3r_undistort_depth(job->grid, width, height, begin, end, job->depth, job->view->depth);
 }
 
-/* Checks frame and camera and cuts the work. *resized gets the camera of the working size, its lens too. */
-static t3r_status prepare(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_view *view,
-                          develop_job *job, t3r_camera *resized)
+t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_camera *resized)
 {
     t3r_status status = t3r_image_check(frame);
     if (status == T3R_OK) {
         status = t3r_camera_check(camera);
     }
+    if (status == T3R_OK) {
+        *resized = t3r_camera_resized(camera, frame->width, frame->height, rt->config.width, rt->config.height);
+        status = t3r_camera_check(resized);
+    }
+    if (status == T3R_OK && !T3R_FEATURE_LENSES && resized->distortion != T3R_DISTORTION_NONE) {
+        status = T3R_ERR_UNSUPPORTED;
+    }
+    return status;
+}
+
+/* Checks frame and camera and cuts the work. *resized gets the camera of the working size, its lens too. */
+static t3r_status prepare(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_view *view,
+                          develop_job *job, t3r_camera *resized)
+{
+    const t3r_status status = t3r_frame_check(rt, frame, camera, resized);
     if (status != T3R_OK) {
         return status;
     }
     const uint32_t width = rt->config.width, height = rt->config.height;
-    *resized = t3r_camera_resized(camera, frame->width, frame->height, width, height);
-    status = t3r_camera_check(resized);
-    if (status != T3R_OK) {
-        return status;
-    }
     t3r_cut cut =
         t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_IMAGE_WORK), T3R_IMAGE_WORK_BYTES_(width, height, rt->config.workers));
     const size_t pixels = T3R_PIXELS_(width, height);

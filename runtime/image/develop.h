@@ -6,6 +6,12 @@
 
 #include "trim3r.h"
 
+/* Whether the image stage takes this frame and camera, but for a lens that shows too little of the picture: nothing is
+ * written. *resized gets the camera of the working size, its lens too. T3R_ERR_UNSUPPORTED: a lens, and this library
+ * has none. */
+t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
+                           t3r_camera *resized);
+
 /* Checks frame and camera, then fills colour, depth and validity of view `index`: resized to the working size and
  * undistorted. *undistorted gets the camera of the planes. On an error the planes may be part written. */
 t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,

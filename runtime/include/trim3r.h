@@ -66,7 +66,7 @@ extern "C" {
 #define T3R_MAX_GAUSSIANS (1u << 24)
 #define T3R_HARMONICS_DEGREE_MOST 3u
 #define T3R_HARMONICS_MOST 16u /* of each colour, degree 0 included */
-#define T3R_MAX_REFINEMENTS 16u
+#define T3R_MAX_REFINEMENTS 32u
 #define T3R_STREAM_REFINEMENTS 4u /* of a keyframe at most, where they are fitted */
 #define T3R_MAX_LEVELS 5u         /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536u
@@ -599,8 +599,8 @@ static inline uint64_t t3r_header_interface(void)
 }
 uint64_t t3r_interface(void);
 
-/* Defaults for a working size, number of views and budget. With another interface than the library's all fields are 0,
- * which every other call refuses. */
+/* Defaults for a working size, number of views and budget. With another interface than the library's, or another number
+ * of bytes, all fields are 0, which every other call refuses. */
 t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_bytes, uint32_t width, uint32_t height,
                                  uint32_t views, uint32_t gaussians);
 static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
@@ -613,10 +613,11 @@ static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uin
 /* The SuperClusters that the configuration asks for. Where `clusters` is 0, its allocation chooses: 300 for
  * T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views' pixels
  * for T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters, and for streams. A request's own
- * allocation finds what the configuration's chose. */
+ * allocation finds what the configuration's chose. 0 without a configuration. */
 uint32_t t3r_cluster_count(const t3r_config *config);
 
-/* The mini-batches of the K-means. Where `cluster_batches` is 0, one for 8 SuperClusters, 1..24. */
+/* The mini-batches of the K-means. Where `cluster_batches` is 0, one for 8 SuperClusters, 1..24. 0 without a
+ * configuration. */
 uint32_t t3r_cluster_batch_count(const t3r_config *config);
 
 /* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does.
@@ -678,7 +679,8 @@ static inline t3r_status t3r_set_effort(t3r_effort effort, t3r_config *config, c
 t3r_status t3r_count_work(const t3r_config *config, size_t bytes, const void *weights, size_t weight_bytes,
                           t3r_work_counts *counts);
 
-/* What the work of a stage takes at these prices: whole nanoseconds, or operations. UINT64_MAX where it is more. */
+/* What the work of a stage takes at these prices: whole nanoseconds, or operations. UINT64_MAX where it is more;
+ * 0 without counts or prices. */
 uint64_t t3r_price_of(const t3r_work_counts *counts, const t3r_prices *prices, t3r_stage stage);
 /* The same of a build: all stages but the raster, which is a view's. */
 uint64_t t3r_price_of_build(const t3r_work_counts *counts, const t3r_prices *prices);
@@ -759,10 +761,12 @@ uint32_t t3r_head_crc(const t3r_runtime *rt);
  * T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than half of the picture lies beyond what the lens can show.
  * T3R_ERR_UNSUPPORTED: a lens that distorts, and this library has none. T3R_ERR_NO_DEPTH: no depth plane, or not one
  * measurement in it. T3R_ERR_STATE: there is no room for another view, or there is a scene already (t3r_reset()).
- * After an error no view is added, and an analysis that was kept is discarded.
+ * After an error no view is added. A lens that shows too little, and a depth plane without a measurement, also discard
+ * scene and analysis; after all other errors everything is as before.
  *
  * With `warm` a view may follow a scene, which it discards, and there is always room: the oldest view is replaced, and
- * the new one takes its number. T3R_ERR_NO_DEPTH of a frame whose measurements are lost in resizing discards all. */
+ * the new one takes its number. Then a depth plane without a measurement discards nothing, but if its measurements are
+ * lost in resizing it discards all. */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
 /* The same by strips of rows, as a camera delivers them, so that no frame need be whole in memory: rows row..row + rows
@@ -774,8 +778,9 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
  * A strip from row 0 of both begins a view, and discards one that came in part; so do t3r_add_view(), t3r_develop(),
  * t3r_reconstruct(), t3r_reset() and t3r_attach(). T3R_ERR_FRAME: also rows beyond the image, and with T3R_PIXEL_NV12
  * an odd number. T3R_ERR_STATE: also a strip out of order, another frame or camera than before, and with `warm` no room
- * without replacing a view. After these two what came stays. T3R_ERR_CAMERA and T3R_ERR_NO_DEPTH, as above, discard
- * it; with T3R_DEPTH_STEREO the rows of depth are ignored. */
+ * without replacing a view. After these two what came stays, and also after T3R_ERR_NO_DEPTH of a strip without a depth
+ * plane. T3R_ERR_CAMERA, and T3R_ERR_NO_DEPTH of a view without a measurement, discard it. With T3R_DEPTH_STEREO the
+ * rows of depth are ignored. */
 t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t row, uint32_t rows,
                         uint32_t depth_row, uint32_t depth_rows);
 
@@ -827,8 +832,9 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
  * 1,024 scene units behind is discarded. A Gaussian's `view` is its keyframe's number modulo `views`.
  *
  * T3R_ERR_STATE: the arena is not one for streams, the learned head has no weights, or the allocation is `given`.
- * T3R_ERR_UNSUPPORTED: this library has no streams. T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than 1,024
- * scene units from the origin. After these four everything is as before. T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens
+ * T3R_ERR_UNSUPPORTED: this library has no streams, or no lenses and the camera's distorts. T3R_ERR_FRAME.
+ * T3R_ERR_CAMERA: out of range, or more than 1,024 scene units from the origin. After these four everything is as
+ * before. T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens
  * that shows too little, and T3R_ERR_CANCELLED: the keyframe adds nothing. Refinement then uses neither it nor the one
  * of `views` keyframes ago, and Gaussians that it contradicts may be gone. T3R_ERR_CANCELLED during refinement: the
  * keyframe is taken, and passes are missing. The map stays valid and within its cap after any error. */
@@ -847,7 +853,9 @@ t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, u
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);
 
 /* For scenes that come from files: the first starts an empty scene in the given frame (exponent -24..24, |origin| <
- * 2^62) and discards the views, the second appends a Gaussian. Every field of it is checked. */
+ * 2^62) and discards the views, the second appends a Gaussian. T3R_ERR_ARGUMENT: a field is out of range; every one is
+ * checked. T3R_ERR_STATE: of a stream, and to append also where there is no scene. T3R_ERR_FULL: the arena holds no
+ * more Gaussians. */
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame);
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 
@@ -860,9 +868,10 @@ t3r_status t3r_harmonics_colour(const int16_t *coefficients_q12, uint32_t degree
                                 uint16_t colour_q7[3]);
 
 /* Draws the scene in the arena as seen by the camera. Its distortion is ignored: targets are pinhole. Without
- * keep_analysis and `warm` the views are discarded, for the raster works where their planes were. T3R_ERR_ARGUMENT:
- * sizes or strides are out of range, or depth or alpha is not aligned for its type. T3R_ERR_CAMERA: the camera is more
- * than 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is drawn in part. */
+ * keep_analysis and `warm` the views are discarded, for the raster works where their planes were. T3R_ERR_STATE: there
+ * is no scene. T3R_ERR_ARGUMENT: sizes or strides are out of range, or depth or alpha is not aligned for its type.
+ * T3R_ERR_CAMERA: the camera is more than 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is drawn in
+ * part. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);
 
 /* The number of passes over the scene that the last t3r_render() took: 1 when the arena had room for all splats. */

@@ -92,7 +92,8 @@ typedef struct t3r_kernels {
     /* the hash of each stage */
     t3r_hash_bytes_kernel *hash_bytes;
 
-    uint32_t strip_bytes; /* of an activation that convolve_packed reads: 2 are an int16, 1 is a byte less -128 */
+    uint32_t
+        strip_bytes; /* of an activation that convolve_packed reads: 2 are an int16, 1 is a byte of activation + 128 */
 } t3r_kernels;
 
 /* Plain C: the definition. */

@@ -39,7 +39,7 @@ typedef struct t3r_path_row {
                       path along the row is left out */
 } t3r_path_row;
 
-/* Where a path's state keeps the leasts: slot s has its at T3R_PATH_LEASTS() + s. */
+/* Where a path's state keeps the leasts: slot s has its at t3r_path_leasts() + s. */
 static inline size_t t3r_path_leasts(uint32_t width, uint32_t disparities)
 {
     return ((size_t)width + 2) * ((size_t)disparities + 1) + 1;

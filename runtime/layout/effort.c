@@ -12,7 +12,7 @@ typedef struct effort_row {
 static const effort_row rows[] = {
     [T3R_EFFORT_FAST] = {"tiny", 2, 0},
     [T3R_EFFORT_BALANCED] = {"small", 8, 0},
-    [T3R_EFFORT_BEST] = {"small", 16, 1},
+    [T3R_EFFORT_BEST] = {"small", 32, 1},
 };
 _Static_assert(sizeof rows / sizeof *rows == T3R_EFFORT_COUNT, "a row an effort");
 

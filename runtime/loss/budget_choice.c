@@ -12,8 +12,8 @@
 #define PAIRS_LEAST 256u    /* below which views are not believed to disagree so much */
 #define UNSEEN_Q8 (2u << 8) /* levels^2, 45 dB: an error below it is not seen */
 
-/* Of the disagreement is added to the error by every dB that may be lost, and a quarter of that in any case: measured
- * on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
+/* Each dB that may be lost lets the error grow by 1/17 of the disagreement; a quarter of that is always allowed.
+ * Measured on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
 #define SHARE_DIVISOR 17u
 #define LOSS_OFFSET_Q8 64u
 

@@ -88,7 +88,7 @@ static void shrink(const t3r_view *view, uint32_t level, uint8_t *out)
     }
 }
 
-/* The work holds a byte for each of 16 views' quarter of the pixels, and no less of a coarser level. */
+/* Level 1 of 16 views fits the work exactly; coarser levels take less. */
 static void show_level(alignment *a, uint32_t level)
 {
     uint8_t *room = (uint8_t *)a->work.pixels;

@@ -44,7 +44,7 @@ static void compare(const t3r_view *views, uint32_t v, uint32_t w, int32_t expon
                 continue;
             }
             int32_t there_q20 = t3r_depth_q20(to.scale, other->depth[projected.pixel]);
-            if (32 * t3r_abs64((int64_t)projected.z_q20 - there_q20) <= T3R_MIN(projected.z_q20, there_q20)) {
+            if (t3r_is_one_surface(projected.z_q20, there_q20, 32)) {
                 d->squares_q8 += squares_q8(view, pixel, gain_q14[v], other, projected.pixel, gain_q14[w]);
                 d->pairs++;
             }

@@ -28,8 +28,7 @@ static bool is_pair(const t3r_pointmap *from, size_t pixel, const t3r_pointmap *
         return false;
     }
     int32_t there = t3r_depth_q20(to->scale, to->view->depth[place]);
-    return 64 * t3r_abs64((int64_t)z_q20 - there) <= T3R_MIN(z_q20, there) && well_exposed(from->view, pixel) &&
-           well_exposed(to->view, place);
+    return t3r_is_one_surface(z_q20, there, 64) && well_exposed(from->view, pixel) && well_exposed(to->view, place);
 }
 
 typedef struct pairs_job {

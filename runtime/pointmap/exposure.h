@@ -13,7 +13,7 @@
  * is compared with the earlier ones, already levelled: its gain is the median of log2(its level / the other's) over
  * pairs of pixels. A pair is every second pixel of every second row that falls on a measured pixel of at most 1/64
  * other depth, all six levels in 16..239. A view with fewer than 256 pairs keeps gain 1 and levels no other. Returns
- * the number of other views, the first one among them. */
+ * the number of views that are levelled, the first one among them. */
 uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
                             const t3r_pointmap_work *work);
 

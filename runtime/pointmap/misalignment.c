@@ -6,7 +6,7 @@
 #include "kernels/points_parts.h"
 #include "reproject.h"
 
-#define SAME_SURFACE 16           /* depths that differ by less than a 16th of themselves */
+#define SAME_SURFACE 16           /* depths that differ by at most a 16th of the lesser */
 #define DERIVATIVE_MOST (1 << 20) /* levels a radian or scene unit */
 #define PULL_MOST (1 << 28)
 #define LEVER_MOST_Q20 (1 << 26)
@@ -29,7 +29,7 @@ static bool sees(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_poi
         return false;
     }
     const int64_t z = there.z_q20, surface = t3r_depth_q20(to->scale, view->depth[there.pixel]);
-    if (SAME_SURFACE * t3r_abs64(z - surface) > T3R_MIN(z, surface)) {
+    if (!t3r_is_one_surface(z, surface, SAME_SURFACE)) {
         return false;
     }
     const int32_t *r_q30 = view->pose.rotation_q30;
@@ -111,7 +111,7 @@ static void derivatives(const sighting *s, const int64_t pull_q8[3], const int32
     }
 }
 
-/* Adds one pixel. With fewer than 2^16 of them a view, each at most 2^20 a derivative, 2^12 a difference and 2^8 a
+/* Adds one pixel. With fewer than 2^16 of them a view, each at most 2^20 a derivative, 2^13 a difference and 2^8 a
  * weight, sums stay below 2^56. */
 static void add(t3r_align_sums *sums, const int32_t d[T3R_ALIGN_UNKNOWNS], int32_t difference_q4, int32_t weight_q8)
 {

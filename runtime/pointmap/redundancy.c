@@ -14,11 +14,6 @@ static bool fine_enough(const t3r_view *view, int32_t z_q20, const t3r_view *oth
     return earlier ? 16 * there <= 17 * here : 17 * there < 16 * here;
 }
 
-static bool same_surface_q20(int32_t a, int32_t b)
-{
-    return 32 * t3r_abs64((int64_t)a - b) <= T3R_MIN(a, b);
-}
-
 /* Whether what `to` has at the pixel is the surface of a point that `from` has at depth z. */
 static bool covers(const t3r_pointmap *from, int32_t z_q20, const t3r_pointmap *to, uint32_t pixel,
                    int32_t projected_z_q20, bool earlier)
@@ -28,7 +23,7 @@ static bool covers(const t3r_pointmap *from, int32_t z_q20, const t3r_pointmap *
         return false;
     }
     int32_t there = t3r_depth_q20(to->scale, to->view->depth[pixel]);
-    return same_surface_q20(projected_z_q20, there) &&
+    return t3r_is_one_surface(projected_z_q20, there, 32) &&
            fine_enough(from->view, z_q20, to->view, projected_z_q20, earlier);
 }
 

@@ -60,7 +60,7 @@ static void count_steps(void *context, uint32_t begin, uint32_t end, uint32_t wo
     }
 }
 
-/* As many workers as the work has room for; one always. */
+/* All workers where the work has room for each, else one. */
 static t3r_workers workers_of(const t3r_view *views, const t3r_pointmap_work *work)
 {
     const size_t room = (size_t)views[0].width * views[0].height + 3 * T3R_RATIO_BINS;

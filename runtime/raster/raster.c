@@ -6,7 +6,6 @@
 
 #include "core/features.h"
 #include "core/fixed.h"
-#include "kernels/hash_writer.h"
 #include "state/state.h"
 
 typedef struct tile_job {
@@ -70,46 +69,6 @@ static bool draw_long(const t3r_runtime *rt, const tile_job *job)
     return true;
 }
 
-/* Whether rows of `row_bytes` can be written there: aligned for their type, all of them. NULL: not wanted. */
-static bool is_plane(const void *plane, size_t element_bytes, uint32_t row_bytes, uint32_t stride_bytes)
-{
-    return plane == NULL ||
-           ((uintptr_t)plane % element_bytes == 0 && stride_bytes % element_bytes == 0 && stride_bytes >= row_bytes);
-}
-
-static t3r_status check_target(const t3r_runtime *rt, const t3r_target *t)
-{
-    if (t->width < 1 || t->height < 1 || t->width > rt->config.render_width || t->height > rt->config.render_height) {
-        return T3R_ERR_ARGUMENT;
-    }
-    const bool fits = is_plane(t->rgb, sizeof *t->rgb, 3 * t->width, t->rgb_stride_bytes) &&
-                      is_plane(t->depth_q20, sizeof *t->depth_q20, 4 * t->width, t->depth_stride_bytes) &&
-                      is_plane(t->alpha_q15, sizeof *t->alpha_q15, 2 * t->width, t->alpha_stride_bytes);
-    return fits ? T3R_OK : T3R_ERR_ARGUMENT;
-}
-
-static uint64_t hash_target(const t3r_runtime *rt, const t3r_target *target)
-{
-    t3r_hash_writer w;
-    t3r_hash_begin(&w, rt->kernels.hash_bytes);
-    t3r_write_u32(&w, target->width);
-    t3r_write_u32(&w, target->height);
-    for (uint32_t y = 0; y < target->height && target->rgb != NULL; y++) {
-        t3r_write_bytes(&w, target->rgb + (size_t)y * target->rgb_stride_bytes, (size_t)3 * target->width);
-    }
-    for (uint32_t y = 0; y < target->height && target->depth_q20 != NULL; y++) {
-        const uint32_t *row = target->depth_q20 + (size_t)y * (target->depth_stride_bytes / sizeof *row);
-        for (uint32_t x = 0; x < target->width; x++) {
-            t3r_write_u32(&w, row[x]);
-        }
-    }
-    for (uint32_t y = 0; y < target->height && target->alpha_q15 != NULL; y++) {
-        const uint16_t *row = target->alpha_q15 + (size_t)y * (target->alpha_stride_bytes / sizeof *row);
-        t3r_write_u16s(&w, row, target->width);
-    }
-    return t3r_hash_end(&w);
-}
-
 t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const t3r_target *target, uint32_t *passes)
 {
     const t3r_workers workers = t3r_workers_of(rt);
@@ -128,48 +87,6 @@ t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const
             job.first += T3R_MAX(tiles, 1u);
         }
         first = end;
-    }
-    return T3R_OK;
-}
-
-t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target)
-{
-    T3R_REFUSE_UNLESS(rt != NULL && camera != NULL && target != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(rt->has_scene, T3R_ERR_STATE);
-    t3r_status status = check_target(rt, target);
-    t3r_projection projection;
-    if (status == T3R_OK) {
-        status = t3r_projection_make(camera, &rt->frame, target->width, target->height, &projection);
-    }
-    if (status != T3R_OK) {
-        return status;
-    }
-    if (!rt->config.keep_analysis && !t3r_is_stream(&rt->config)) {
-        rt->analysed = 0; /* the raster's buffers lie where labels and clusters were */
-        if (!t3r_is_warm(&rt->config)) {
-            rt->views = 0; /* and the planes, which `warm` keeps apart */
-        }
-    }
-
-    if (!t3r_progress(rt, T3R_STAGE_RASTER, 0, (uint32_t)T3R_TILES_(target->width, target->height))) {
-        return T3R_ERR_CANCELLED;
-    }
-    t3r_raster_room room = {
-        .splats = t3r_buffer_at(rt, T3R_BUFFER_SPLATS),
-        .order = t3r_buffer_at(rt, T3R_BUFFER_ORDER),
-        .table = t3r_buffer_at(rt, T3R_BUFFER_TILES),
-        .lists = t3r_buffer_at(rt, T3R_BUFFER_LISTS),
-        .capacity = rt->list_capacity,
-    };
-    t3r_binning bin = t3r_raster_list(rt, &projection, &room);
-    uint32_t passes;
-    status = t3r_raster_tiles(rt, &bin, target, &passes);
-    if (status != T3R_OK) {
-        return status;
-    }
-    rt->render_passes = passes;
-    if (rt->hooks.stage_hash != NULL) {
-        rt->hooks.stage_hash(rt->hooks.user, T3R_STAGE_RASTER, hash_target(rt, target));
     }
     return T3R_OK;
 }

@@ -1,4 +1,4 @@
-/* What a build takes over from the one before (t3r_config.warm): noted when a scene is made, forgotten when a build
+/* What a build takes over from the one before (t3r_config.warm): noted when an analysis is made, forgotten when a build
  * fails. */
 #ifndef T3R_REUSE_H
 #define T3R_REUSE_H

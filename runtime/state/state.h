@@ -52,7 +52,7 @@ struct t3r_runtime {
     uint32_t bits_epoch;
     uint64_t arena_bytes;
     uint64_t layout_hash;
-    t3r_config config; /* as t3r_init() got it */
+    t3r_config config; /* of t3r_init(), with the numbers that 0 leaves open (t3r_settled) */
     t3r_ablation ablation;
     t3r_build build; /* of the scene, or of the last attempt at one */
     uint64_t offset[T3R_BUFFER_COUNT];

@@ -33,6 +33,17 @@ t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index)
     return view;
 }
 
+bool t3r_is_reliable_anywhere(const t3r_view *view)
+{
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    for (size_t i = 0; i < pixels; i++) {
+        if (t3r_is_reliable(view->validity[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS])
 {
     for (uint32_t v = 0; v < rt->config.views; v++) {

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/fixed.h"
 #include "core/scene_frame.h"
 #include "trim3r.h"
 
@@ -83,6 +84,12 @@ static inline bool t3r_is_reliable(uint8_t validity)
     return t3r_is_measured(validity) && !t3r_is_marked(validity);
 }
 
+/* Whether two depths in one unit, 0..2^32, differ by at most 1 / part of the lesser; part 1..64. */
+static inline bool t3r_is_one_surface(int64_t a, int64_t b, int32_t part)
+{
+    return part * t3r_abs64(a - b) <= T3R_MIN(a, b);
+}
+
 /* Measured or filled, and nothing speaks against it. */
 static inline bool t3r_is_known(uint8_t validity)
 {
@@ -145,6 +152,9 @@ static inline bool t3r_retained(const t3r_view *view, size_t pixel)
 {
     return (view->mask[pixel / 32] >> (pixel % 32) & 1) != 0;
 }
+
+/* Whether a pixel of the view is t3r_is_reliable(). */
+bool t3r_is_reliable_anywhere(const t3r_view *view);
 
 /* The planes of one of the views there is room for, as the stages take them; its pose only when it was added. */
 t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index);

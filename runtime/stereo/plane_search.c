@@ -8,7 +8,7 @@
 #define LEAST_FILLED 4
 /* A plane takes as many samples as a hundredth of all there are. */
 #define LEAST_SHARE 100
-/* What lies on a plane is within five times the mean deviation of the median cell from its own plane. */
+/* What lies on a plane is within six times the mean deviation of the median cell from its own plane. */
 #define DEVIATIONS 6
 /* But at least within a 128th of the mean: steps of depth are coarse near by. */
 #define LEAST_WITHIN 128

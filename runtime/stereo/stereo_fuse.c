@@ -5,12 +5,6 @@
 
 #define LEAST ((int32_t)T3R_STEREO_LEAST)
 
-/* Depths of a view that differ by at most 1/16 of the lesser belong to one surface. */
-static bool agree(int64_t a, int64_t b)
-{
-    return 16 * t3r_abs64(a - b) <= T3R_MIN(a, b);
-}
-
 void t3r_stereo_fuse(const t3r_view *view, const t3r_view *found)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
@@ -26,7 +20,7 @@ void t3r_stereo_fuse(const t3r_view *view, const t3r_view *found)
         }
         int64_t depth = steps;
         int32_t confidence = added;
-        if (old >= LEAST && agree(view->depth[i], steps)) {
+        if (old >= LEAST && t3r_is_one_surface(view->depth[i], steps, 16)) {
             depth = t3r_round_div64(view->depth[i] * (int64_t)old + steps * added, old + added);
             confidence = T3R_MIN(old + added, (int32_t)UINT8_MAX);
         } else if (old >= LEAST) {

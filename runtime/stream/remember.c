@@ -1,5 +1,6 @@
 #include "remember.h"
 
+#include "core/bits.h"
 #include "core/camera.h"
 #include "core/memory.h"
 #include "pointmap/reproject.h"
@@ -80,15 +81,6 @@ static bool shows_anything(const t3r_view *view)
     return false;
 }
 
-static uint32_t count_bits(uint32_t bits)
-{
-    uint32_t count = 0;
-    for (; bits != 0; bits &= bits - 1) {
-        count++;
-    }
-    return count;
-}
-
 /* Every second one weighs twice as much, every fourth four times: those that stay are spread over time. */
 static uint32_t weight_of(uint32_t number)
 {
@@ -124,7 +116,7 @@ static uint32_t least_needed(const t3r_runtime *rt, uint32_t slot)
     }
     uint64_t need_q8[T3R_MAX_REMEMBERED] = {0};
     for (uint32_t i = 0; i < map.count; i++) {
-        const uint32_t part_q8 = 256 / T3R_MAX(count_bits(shown_by[i]), 1u);
+        const uint32_t part_q8 = 256 / T3R_MAX(t3r_ones(shown_by[i]), 1u);
         for (uint32_t k = 0; k < rt->remembered; k++) {
             need_q8[k] += (shown_by[i] >> k & 1) * part_q8;
         }

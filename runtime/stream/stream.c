@@ -9,6 +9,8 @@
 #include "pointmap/bridge.h"
 #include "core/camera.h"
 #include "core/config.h"
+#include "budget/budget_keys.h"
+#include "budget/cluster_texture.h"
 #include "depth/depth.h"
 #include "image/develop.h"
 #include "pointmap/exposure.h"
@@ -48,15 +50,8 @@ static void rebase(t3r_runtime *rt, const int32_t position_q20[3])
 
 t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
 {
-    t3r_status status = t3r_image_check(frame);
-    if (status == T3R_OK) {
-        status = t3r_camera_check(camera);
-    }
-    if (status == T3R_OK) { /* before anything moves */
-        t3r_camera resized =
-            t3r_camera_resized(camera, frame->width, frame->height, rt->config.width, rt->config.height);
-        status = t3r_camera_check(&resized);
-    }
+    t3r_camera resized;
+    t3r_status status = t3r_frame_check(rt, frame, camera, &resized); /* before anything moves */
     if (status != T3R_OK || rt->keyframes == 0) {
         return status;
     }
@@ -99,17 +94,6 @@ static t3r_status develop(t3r_runtime *rt, uint32_t slot, const t3r_frame *frame
     rt->camera[slot] = undistorted;
     rt->depth_unit_q40[slot] = frame->depth_unit_q40;
     return T3R_OK;
-}
-
-static bool is_measured_anywhere(const t3r_view *view)
-{
-    size_t pixels = (size_t)view->width * view->height;
-    for (size_t i = 0; i < pixels; i++) {
-        if (t3r_is_reliable(view->validity[i])) {
-            return true;
-        }
-    }
-    return false;
 }
 
 /* The gains that bring the new keyframe and the one before to their mean exposure. Older ones keep theirs: what each
@@ -179,9 +163,9 @@ static uint32_t mark_shown(const t3r_pointmap *keyframe, const uint32_t *drawn_q
         if (drawn_q20[i] == 0 || t3r_is_marked(*validity) || !t3r_has_depth(*validity)) {
             continue;
         }
-        int64_t z = t3r_depth_q20(keyframe->scale, view->depth[i]), drawn = drawn_q20[i];
+        const int32_t z_q20 = t3r_depth_q20(keyframe->scale, view->depth[i]);
         /* whatever is seen in a wide hole is what is there */
-        if (t3r_is_bridged(*validity) || 16 * t3r_abs64(z - drawn) <= T3R_MIN(z, drawn)) {
+        if (t3r_is_bridged(*validity) || t3r_is_one_surface(z_q20, drawn_q20[i], 16)) {
             *validity = t3r_marked(*validity, T3R_MARK_COVERED);
             shown++;
         }
@@ -234,7 +218,7 @@ static t3r_budget_settings keyframe_settings(const t3r_runtime *rt)
         .gamma_q8 = config->gamma_q8,
         .clusters = 1,
         .seed = config->seed,
-        .shift = rt->keyframes % T3R_MAX_VIEWS,
+        .first_view = rt->keyframes % T3R_MAX_VIEWS,
         .pass_over_covered = true,
     };
 }
@@ -282,7 +266,7 @@ static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot,
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
     t3r_view *view = &views[slot];
-    if (!is_measured_anywhere(view)) {
+    if (!t3r_is_reliable_anywhere(view)) {
         return T3R_ERR_NO_DEPTH;
     }
     t3r_hash_image(rt, views, slot, slot + 1);

@@ -1,5 +1,6 @@
 #include "stream_map.h"
 
+#include "budget/budget_keys.h"
 #include "core/fixed.h"
 #include "core/memory.h"
 #include "pointmap/contradiction.h"
@@ -32,7 +33,7 @@ static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t
         return UNSEEN;
     }
     int32_t there = t3r_depth_q20(keyframe->scale, view->depth[projected.pixel]);
-    if (16 * t3r_abs64((int64_t)there - projected.z_q20) <= T3R_MIN(there, projected.z_q20)) {
+    if (t3r_is_one_surface(there, projected.z_q20, 16)) {
         int32_t wider_q8 = t3r_grain_q8(view, projected.z_q20) - record->grain_q8;
         return wider_q8 < -FINER_Q8 ? COARSE : wider_q8 <= T3R_AFAR_Q8 ? SEEN : SEEN_AFAR;
     }
@@ -148,7 +149,7 @@ t3r_map_cut t3r_map_compete(const t3r_map *map, const t3r_view *view, const t3r_
     return (t3r_map_cut){upper << 8 | lower, ties, points + more_points, gaussians + ties};
 }
 
-/* As wide as Gaussians 2^-density apart need to be. */
+/* As wide as Gaussians need to be of which 2^-thinned were left: 2^(thinned / 2) times as far apart. */
 static void widen(t3r_gaussian *g, int32_t thinned_q10)
 {
     int64_t scale_q16 = t3r_exp2_q16(T3R_MIN(thinned_q10, WIDEN_MOST_Q10) * 32); /* 2^(thinned / 2), at most 2^4 */

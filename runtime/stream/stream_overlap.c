@@ -1,5 +1,6 @@
 #include "stream_overlap.h"
 
+#include "core/bits.h"
 #include "core/camera.h"
 #include "core/fixed.h"
 #include "pointmap/reproject.h"
@@ -15,13 +16,9 @@ static uint64_t cell_of(const t3r_view *view, size_t pixel)
     return UINT64_C(1) << (y * GRID / view->height * GRID + x * GRID / view->width);
 }
 
-static uint32_t count_bits(uint64_t bits)
+static uint32_t count_cells(uint64_t cells)
 {
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < GRID * GRID; i++) {
-        count += (uint32_t)(bits >> i & 1);
-    }
-    return count;
+    return t3r_ones((uint32_t)cells) + t3r_ones((uint32_t)(cells >> 32));
 }
 
 t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
@@ -63,7 +60,7 @@ t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *came
         }
     }
     uint32_t of_points = points == 0 ? 0 : shown * 256 / points; /* below 2^22 x 2^8 */
-    uint32_t of_cells = points == 0 ? 0 : count_bits(cells) * 256 / count_bits(own_cells);
+    uint32_t of_cells = points == 0 ? 0 : count_cells(cells) * 256 / count_cells(own_cells);
     *overlap_q8 = T3R_MIN(of_points, of_cells);
     return T3R_OK;
 }

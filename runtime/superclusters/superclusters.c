@@ -268,8 +268,8 @@ static bool place_centres(const means_job *job, const t3r_cluster_settings *sett
     return true;
 }
 
-/* The first batch of centres that were taken over: those that get none of its points are placed anew. False: cancelled.
- */
+/* The first batch of centres that were taken over: those that get fewer than half of the mean number of its points are
+ * placed anew. False: cancelled. */
 static bool follow_centres(means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters, uint32_t total)
 {
     bool stays[T3R_MAX_CLUSTERS];

@@ -40,7 +40,7 @@ def refused():
         "--method": ["best", "", "pup+", "+finetune"],
         "--finetune-iterations": ["0", "100001", "x"],
         "--depth": ["Stereo", "radar", ""],
-        "--refine": ["17", "x"],
+        "--refine": ["33", "x"],
     }.items():
         for value in values:
             expect(2, "build", "room.mcap", "-o", "s.ply", f"{option}={value}", err=option)

@@ -12,6 +12,7 @@
 #include "rgbd_frame.h"
 #include "arguments.h"
 #include "budget/budget.h"
+#include "budget/cluster_texture.h"
 #include "core/fixed.h"
 #include "core/map_record.h"
 #include "state/state.h"

@@ -73,8 +73,8 @@ static void print_call(const char *name, t3r_status status)
     printf("%s, a call: %s\n", name, status == T3R_ERR_UNSUPPORTED ? "unsupported" : t3r_error_text(status));
 }
 
-/* A black picture of a lens that distorts a little, with a depth everywhere. */
-static t3r_status add_wide_angle(t3r_runtime *rt)
+/* A black picture with a depth everywhere, and its camera. */
+static t3r_frame black_frame(t3r_camera *camera)
 {
     static uint8_t colour[SCENE_SIDE * SCENE_SIDE * 3], depth[SCENE_SIDE * SCENE_SIDE * 2];
     const t3r_frame frame = {.format = T3R_PIXEL_RGB24,
@@ -87,15 +87,50 @@ static t3r_status add_wide_angle(t3r_runtime *rt)
                              .depth_height = SCENE_SIDE,
                              .depth_stride_bytes = SCENE_SIDE * 2,
                              .depth_unit_q40 = 1 << 30};
-    const t3r_camera camera = {.fx_q16 = SCENE_SIDE << 16,
-                               .fy_q16 = SCENE_SIDE << 16,
-                               .cx_q16 = SCENE_SIDE << 15,
-                               .cy_q16 = SCENE_SIDE << 15,
-                               .distortion = T3R_DISTORTION_RADTAN,
-                               .distortion_q24 = {1 << 18},
-                               .rotation_q30 = {1 << 30}};
+    *camera = (t3r_camera){.fx_q16 = SCENE_SIDE << 16,
+                           .fy_q16 = SCENE_SIDE << 16,
+                           .cx_q16 = SCENE_SIDE << 15,
+                           .cy_q16 = SCENE_SIDE << 15,
+                           .rotation_q30 = {1 << 30}};
     memset(depth, 3, sizeof depth);
+    return frame;
+}
+
+/* Of a lens that distorts a little. */
+static t3r_camera wide_angle(t3r_camera camera)
+{
+    camera.distortion = T3R_DISTORTION_RADTAN;
+    camera.distortion_q24[0] = 1 << 18;
+    return camera;
+}
+
+static t3r_status add_wide_angle(t3r_runtime *rt)
+{
+    t3r_camera camera;
+    const t3r_frame frame = black_frame(&camera);
+    camera = wide_angle(camera);
     return t3r_add_view(rt, &frame, &camera);
+}
+
+/* A line where a keyframe of such a lens is refused and the map is not as before. */
+static void print_lost_keyframe(void)
+{
+    static uint8_t before[sizeof arena];
+    t3r_config config = plain_config();
+    config.stream = 1;
+    t3r_camera camera;
+    const t3r_frame frame = black_frame(&camera);
+    const t3r_camera lens = wide_angle(camera);
+    t3r_runtime *rt;
+    if (t3r_init(&rt, arena, sizeof arena, &config) != T3R_OK ||
+        t3r_stream_keyframe(rt, &frame, &camera, NULL) != T3R_OK) {
+        return; /* no streams */
+    }
+    memcpy(before, arena, sizeof arena);
+    if (t3r_stream_keyframe(rt, &frame, &lens, NULL) == T3R_ERR_UNSUPPORTED &&
+        memcmp(before, arena, sizeof arena) != 0) {
+        printf("lenses, a keyframe: refused, and the map has changed\n");
+    }
 }
 
 /* Of a runtime that has no views. */
@@ -123,5 +158,6 @@ int main(void)
            (unsigned)t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, 1).refinements);
     print_scenes();
     print_calls();
+    print_lost_keyframe();
     return 0;
 }

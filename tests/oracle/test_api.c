@@ -180,7 +180,7 @@ static void config_ranges(void **state)
         RANGE(gamma_q8, 0, 512),
         RANGE(head, 1, T3R_HEAD_COUNT - 1),
         RANGE(head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES),
-        RANGE(refinements, 0, 16),
+        RANGE(refinements, 0, 32),
         RANGE(planes, 0, 1),
         RANGE(fill_radius, 0, 8),
         RANGE(bridge_radius, 0, 255),

@@ -305,8 +305,9 @@ static void errors_in_between(void **state)
     bad = look_from(&next, &camera);
     memset(depth, 0, sizeof depth);
     assert_int_equal(t3r_add_view(s->rt, &bad, &camera), T3R_ERR_NO_DEPTH);
-    move(s);
     t3r_scene scene;
+    assert_int_equal(t3r_get_scene(s->rt, &scene), T3R_OK); /* it is still there */
+    move(s);
     const t3r_request too_many = {.gaussians = BUDGET + 1};
     assert_int_equal(t3r_reconstruct(s->rt, &too_many, &scene), T3R_ERR_ARGUMENT);
     add(s, next);

@@ -84,7 +84,7 @@ SUBJECTS = {
     "attach": (
         [f"runtime/{name}.c" for name in (
             "api/open", "api/restored", "api/checks", "layout/arena", "core/config", "core/camera", "core/fixed", "state/views",
-            "state/reuse", "budget/budget")],
+            "state/reuse", "budget/cluster_texture")],
         ["-eva-precision", "2", "-eva-slevel", "200", "-eva-auto-loop-unroll", "30", "-eva-min-loop-unroll", "0", *APART, "8",
          "-eva-use-spec", "t3r_pose_in_scene"],
         "`t3r_attach()`",

@@ -98,7 +98,7 @@ def check_settings():
                            ("nano, small, base", {"head": "huge"}), ("sensor, stereo", {"depth": "lidar"}),
                            ("workers", {"workers": 17}), ("too small", {"arena_bytes": 1000}),
                            ("render", {"render_size": (5000, 5)}), ("no setting", {"settings": {"refinement": 3}}),
-                           ("refinements", {"settings": {"refinements": 17}}),
+                           ("refinements", {"settings": {"refinements": 33}}),
                            ("clusters", {"settings": {"clusters": -1}}),
                            ("db2", {"settings": {"wavelet": "db4"}}), ("number", {"settings": {"seed": "one"}})):
         with refused((ValueError, TypeError), words):

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "budget/budget.h"
+#include "budget/cluster_texture.h"
 #include "core/fixed.h"
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };

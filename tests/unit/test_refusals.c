@@ -79,6 +79,12 @@ static void another_interface(void **state)
     assert_int_equal(t3r_default_config_as(other, &config, sizeof config, SIDE, SIDE, 1, 1), T3R_ERR_INTERFACE);
     const t3r_config nothing = {0};
     assert_memory_equal(&config, &nothing, sizeof config);
+    config = some_config();
+    assert_int_equal(t3r_default_config_as(t3r_header_interface(), &config, sizeof config - 4, SIDE, SIDE, 1, 1),
+                     T3R_ERR_INTERFACE);
+    assert_memory_equal(&config, &nothing, sizeof config - 4);
+    assert_int_equal(t3r_default_config_as(t3r_header_interface(), NULL, sizeof config, SIDE, SIDE, 1, 1),
+                     T3R_ERR_ARGUMENT);
 }
 
 static void missing_pointers(void **state)
@@ -97,6 +103,13 @@ static void missing_pointers(void **state)
     assert_int_equal(t3r_plan_bytes(&config, &bytes, NULL), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_set_cpu(NULL, 0), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_head_crc(NULL), 0);
+    assert_int_equal(t3r_cluster_count(NULL), 0);
+    assert_int_equal(t3r_cluster_batch_count(NULL), 0);
+    static const t3r_work_counts counts = {{1}};
+    static const t3r_prices prices = {{1000}};
+    assert_int_equal(t3r_price_of(&counts, NULL, T3R_STAGE_IMAGE), 0);
+    assert_int_equal(t3r_price_of(NULL, &prices, T3R_STAGE_IMAGE), 0);
+    assert_int_equal(t3r_price_of_build(NULL, &prices), 0);
     assert_int_equal(t3r_refinement_passes(NULL), 0);
     assert_int_equal(t3r_render_passes(NULL), 0);
     t3r_runtime *rt = opened(&config);

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "budget/budget.h"
+#include "budget/cluster_texture.h"
 #include "rgbd_frame.h"
 #include "core/fixed.h"
 #include "core/hash.h"
