@@ -173,7 +173,7 @@ int main(void)
     for (uint32_t view = 0; view < o.views; view++) {
         add_view(rt, o.height);
     }
-    t3r_scene scene;
+    t3r_scene scene = {0};
     check(t3r_reconstruct(rt, NULL, &scene), "t3r_reconstruct");
     mark_other();
     if (o.scene[0] != '\0') {

@@ -6,8 +6,7 @@ enum { KEY_COMPRESSION = 0x190, KEY_UNCHUNKED };
 
 static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "How messages are stored in the recording:", RECORDING_GROUP},
-    {"compression", KEY_COMPRESSION, "NAME", 0,
-     "compression of the frames: none (default), zstd or lz4",
+    {"compression", KEY_COMPRESSION, "NAME", 0, "compression of the frames: none (default), zstd or lz4",
      RECORDING_GROUP},
     {"unchunked", KEY_UNCHUNKED, NULL, 0,
      "write messages without chunks and without their index, as a microcontroller does", RECORDING_GROUP},

@@ -67,7 +67,8 @@ static const struct argp_option options[] = {
     {"within", KEY_WITHIN, "BYTES[K|M|G]", 0,
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
     {"preset", KEY_PRESET, "RAM|EFFORT", 0,
-     "bytes of a device's RAM, as 256K or 4M: print the settings that serve it best, and what takes it; or the head and refinement "
+     "bytes of a device's RAM, as 256K or 4M: print the settings that serve it best, and what takes it; or the head "
+     "and refinement "
      "that build has for fast, balanced or best",
      0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
