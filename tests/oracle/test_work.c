@@ -318,7 +318,7 @@ static void networks_are_rated_by_their_size(void **state)
         t3r_config c = config_of(1);
         c.head = T3R_HEAD_LEARNED;
         c.head_column_bytes = T3R_MAX_HEAD_COLUMN_BYTES;
-        const t3r_limits limits = {.gaussians = 96 * 64 * 2 / 50, .refinements = 16}; /* 2 % of the points */
+        const t3r_limits limits = {.gaussians = 96 * 64 * 2 / 49, .refinements = 16}; /* just over 2 % of the points */
         t3r_choice list[T3R_MAX_CHOICES];
         uint32_t count = 0;
         assert_int_equal(t3r_plan_choices(&c, weights, bytes, &limits, list, &count), T3R_OK);
