@@ -834,10 +834,10 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
  * T3R_ERR_STATE: the arena is not one for streams, the learned head has no weights, or the allocation is `given`.
  * T3R_ERR_UNSUPPORTED: this library has no streams, or no lenses and the camera's distorts. T3R_ERR_FRAME.
  * T3R_ERR_CAMERA: out of range, or more than 1,024 scene units from the origin. After these four everything is as
- * before. T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens
- * that shows too little, and T3R_ERR_CANCELLED: the keyframe adds nothing. Refinement then uses neither it nor the one
- * of `views` keyframes ago, and Gaussians that it contradicts may be gone. T3R_ERR_CANCELLED during refinement: the
- * keyframe is taken, and passes are missing. The map stays valid and within its cap after any error. */
+ * before. T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens that shows too little, and T3R_ERR_CANCELLED: the keyframe adds
+ * nothing. Refinement then uses neither it nor the one of `views` keyframes ago, and Gaussians that it contradicts may
+ * be gone. T3R_ERR_CANCELLED during refinement: the keyframe is taken, and passes are missing. The map stays valid and
+ * within its cap after any error. */
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 

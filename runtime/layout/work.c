@@ -189,8 +189,9 @@ static const t3r_stage stages[] = {T3R_WORKS(STAGE_OF)};
 
 uint64_t t3r_price_of(const t3r_work_counts *counts, const t3r_prices *prices, t3r_stage stage)
 {
+    const bool known = counts != NULL && prices != NULL;
     uint64_t sum = 0;
-    for (int work = 0; work < T3R_WORK_COUNT && counts != NULL && prices != NULL; work++) {
+    for (int work = 0; work < T3R_WORK_COUNT && known; work++) {
         if (stages[work] == stage) {
             sum = add_to_most(sum, priced(counts->units[work], prices->milli[work]));
         }
