@@ -2,6 +2,8 @@
 """Same bits: every stage's hash, against the ones written down in this folder.
 
 golden.py host DRIVER             the driver as built here, in every way that must not matter (arena, tasks, moves)
+golden.py sanitized DRIVER        the driver as built here with sanitizers, in the way that differs most from the
+                                  usual one; plain C would take minutes here, and golden_clang_sanitized runs it
 golden.py build [--both-ways] [--vectors] [--run EMULATOR] COMPILER FLAG...
                                   the driver built by another compiler, for another processor; run in the usual way,
                                   with --both-ways in the one that differs most from it, too; with --vectors by the
@@ -20,8 +22,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 STAGES = HERE / "stages.txt"
 ROOM = HERE / "room.json"
+VECTORS = ["--cpu-mask", "all"]
 WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--moved"],
-        ["--tasks", "reverse", "--workers", "3"], ["--cpu-mask", "all"],
+        ["--tasks", "reverse", "--workers", "3"], VECTORS, ["--moved", *VECTORS],
         ["--arena", "min", "--tasks", "reverse", "--workers", "8", "--moved"]]
 REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"],
                ["--cpu-mask", "sse4.1"], ["--cpu-mask", "avx2"]]
@@ -61,9 +64,9 @@ def same(what, got, expected):
     print(f"same bits: {what}, {len(expected.splitlines())} lines")
 
 
-def check_host(driver):
+def check_host(driver, ways):
     expected = STAGES.read_text()
-    for way in WAYS:
+    for way in ways:
         same(" ".join(way) or "as usual", output_of([driver, *way]), expected)
 
 
@@ -109,7 +112,9 @@ def check_replay(program):
 
 def main():
     if sys.argv[1] == "host":
-        check_host(sys.argv[2])
+        check_host(sys.argv[2], WAYS)
+    elif sys.argv[1] == "sanitized":
+        check_host(sys.argv[2], [[*WAYS[-1], *VECTORS]])
     elif sys.argv[1] == "build":
         check_build(sys.argv[2:])
     elif sys.argv[1] == "replay":

@@ -230,9 +230,12 @@ static t3r_status begin_step(run *r, const char *step)
             return status;
         }
     }
-    t3r_status bound = t3r_bind_head(r->rt, r->weights, r->weights_bytes);
-    if (bound != T3R_OK) {
-        return bound;
+    t3r_status status = t3r_bind_head(r->rt, r->weights, r->weights_bytes);
+    if (status == T3R_OK) {
+        status = t3r_set_cpu(r->rt, r->ways.cpu);
+    }
+    if (status != T3R_OK) {
+        return status;
     }
     t3r_hooks hooks = {.user = r, .stage_hash = on_stage_hash};
     hooks.parallel_for = r->ways.reverse_tasks ? run_in_reverse : NULL;
