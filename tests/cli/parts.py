@@ -111,7 +111,7 @@ def by_a_signal():
             check(parts() == [] and not any(name.startswith("long") for name in os.listdir(".")) and
                   os.listdir("empty") == [], f"{what}: {number.name} leaves {parts()}, {os.listdir('.')}")
     # one that is ignored stays so, and a second one ends a capture
-    ignored = subprocess.Popen([TRIM3R, "room", "--size", "320x240", "--frames", "60", "-o", "done.mcap"],
+    ignored = subprocess.Popen([TRIM3R, "room", "--size", "320x240", "--frames", "8", "-o", "done.mcap"],
                                stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
     while not parts() and ignored.poll() is None:
         time.sleep(0.005)
@@ -123,7 +123,7 @@ def by_a_signal():
 ROWS = {
     "eval": ["eval", "room.mcap", "--keep", "60,50,40", "--methods", "trim3r,pup+finetune", "--finetune-iterations",
              "2000", "--csv", "rows.csv"],
-    "stress": ["stress", "room.mcap", "--working", "256x256", "--csv", "rows.csv"],
+    "stress": ["stress", "room.mcap", "--working", "128x128", "--csv", "rows.csv"],
 }
 
 

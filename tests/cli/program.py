@@ -70,9 +70,9 @@ def write(path, content):
     return path
 
 
-def room(size="64x64", name="room.mcap"):
+def room(size="64x64", name="room.mcap", frames=6):
     """The built-in recording: small, as every command takes longer on larger pictures."""
-    expect(0, "room", "--size", size, "-o", name)
+    expect(0, "room", "--size", size, "--frames", frames, "-o", name)
     return name
 
 

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Same bits: every stage's hash, against the ones written down in this folder.
 
-golden.py host DRIVER             the driver as built here, in every way that must not matter (arena, tasks, moves)
-golden.py sanitized DRIVER        the driver as built here with sanitizers, in the way that differs most from the
-                                  usual one; plain C would take minutes here, and golden_clang_sanitized runs it
+golden.py host [--few] DRIVER     the driver as built here, in every way that must not matter (arena, tasks, moves)
 golden.py build [--both-ways] [--vectors] [--run EMULATOR] COMPILER FLAG...
                                   the driver built by another compiler, for another processor; run in the usual way,
                                   with --both-ways in the one that differs most from it, too; with --vectors by the
                                   loops of the processor's instruction sets in the place of plain C
-golden.py replay TRIM3R           the built-in recording, made and replayed by the program
+golden.py replay [--few] TRIM3R   the built-in recording, made and replayed by the program
+                                  --few: one way that differs most from the usual one, by the vectors of this machine:
+                                  for builds with sanitizers, which take minutes for plain C (golden_clang_sanitized)
 Exit 0: the same; 1: other bits, naming the first stage that differs; 77: skipped, a tool is absent.
 """
 import json
@@ -28,6 +28,8 @@ WAYS = [[], ["--arena", "min"], ["--arena", "ten"], ["--tasks", "reverse"], ["--
         ["--arena", "min", "--tasks", "reverse", "--workers", "8", "--moved"]]
 REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"],
                ["--cpu-mask", "sse4.1"], ["--cpu-mask", "avx2"]]
+FEW_WAYS = [[*WAYS[-1], *VECTORS]]
+FEW_REPLAY_WAYS = [["--threads", "3", "--arena", "min"]]
 DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", ROOT / "quant" / "heads" / "small.c",
                   ROOT / "platform" / "cpu.c",
                   *sorted((ROOT / "tools" / "room").glob("*.c"))]
@@ -105,20 +107,19 @@ def replay(program, way=()):
     return json.dumps(kept, indent=2) + "\n"
 
 
-def check_replay(program):
-    for way in REPLAY_WAYS:
+def check_replay(program, ways):
+    for way in ways:
         same(" ".join(["the built-in recording", *way]), replay(program, way), ROOM.read_text())
 
 
 def main():
+    few = "--few" in sys.argv
     if sys.argv[1] == "host":
-        check_host(sys.argv[2], WAYS)
-    elif sys.argv[1] == "sanitized":
-        check_host(sys.argv[2], [[*WAYS[-1], *VECTORS]])
+        check_host(sys.argv[-1], FEW_WAYS if few else WAYS)
     elif sys.argv[1] == "build":
         check_build(sys.argv[2:])
     elif sys.argv[1] == "replay":
-        check_replay(sys.argv[2])
+        check_replay(sys.argv[-1], FEW_REPLAY_WAYS if few else REPLAY_WAYS)
     else:
         sys.exit(__doc__)
 

@@ -32,6 +32,7 @@ static bench bench_of(t3r_config config)
     bench b = {.config = config, .memory = arena_of(&config, ARENA_AT_MINIMUM)};
     b.before = arena_of_bytes(b.memory.count);
     assert_int_equal(t3r_init(&b.rt, b.memory.bytes, b.memory.count, &config), T3R_OK);
+    quicker_where_watched(b.rt);
     return b;
 }
 

@@ -97,6 +97,7 @@ static site site_of(t3r_config config, int arena_size)
 {
     site s = {.config = config, .memory = arena_of(&config, arena_size)};
     assert_int_equal(t3r_init(&s.rt, s.memory.bytes, s.memory.count, &config), T3R_OK);
+    quicker_where_watched(s.rt);
     return s;
 }
 
@@ -124,6 +125,7 @@ static void move_arena(site *s)
     arena_free(&s->memory);
     s->memory = other;
     assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_OK);
+    quicker_where_watched(s->rt);
 }
 
 /* Along the wall, to and fro a little, looking about. */

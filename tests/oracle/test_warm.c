@@ -115,6 +115,7 @@ static site *site_of(t3r_config config, int arena_size)
     s->config = config;
     s->memory = arena_of(&config, arena_size);
     assert_int_equal(t3r_init(&s->rt, s->memory.bytes, s->memory.count, &config), T3R_OK);
+    quicker_where_watched(s->rt);
     set_hooks(s);
     return s;
 }
@@ -134,6 +135,7 @@ static void move(site *s)
     arena_free(&s->memory);
     s->memory = elsewhere;
     assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_OK);
+    quicker_where_watched(s->rt);
     set_hooks(s);
 }
 

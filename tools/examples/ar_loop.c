@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "capture.h"
+#include "cpu.h"
 #include "trim3r_heads.h"
 
 enum { SIDE = 256, GAUSSIANS = 6000 };
@@ -64,7 +65,8 @@ static t3r_status start(t3r_runtime **rt)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, 1, GAUSSIANS);
     config.head = T3R_HEAD_LEARNED;
-    const t3r_status status = t3r_init(rt, arena, sizeof arena, &config);
+    t3r_status status = t3r_init(rt, arena, sizeof arena, &config);
+    status = status == T3R_OK ? t3r_set_cpu(*rt, t3r_cpu_features()) : status;
     return status == T3R_OK ? t3r_bind_head(*rt, t3r_head_small, t3r_head_small_bytes) : status;
 }
 

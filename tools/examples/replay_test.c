@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "capture.h"
+#include "cpu.h"
 
 enum { SIDE = 128, VIEWS = 2, GAUSSIANS = 2000 };
 
@@ -75,6 +76,7 @@ int main(int argc, char **argv)
     const t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, GAUSSIANS);
     t3r_runtime *rt;
     t3r_status status = t3r_init(&rt, arena, sizeof arena, &config);
+    status = status == T3R_OK ? t3r_set_cpu(rt, t3r_cpu_features()) : status;
     status = status == T3R_OK ? t3r_set_hooks(rt, &hooks) : status;
     status = status == T3R_OK ? replay(rt, source, &t) : status;
     if (status != T3R_OK || t3r_capture_error(source)[0] != '\0') {

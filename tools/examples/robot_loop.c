@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "capture.h"
+#include "cpu.h"
 
 #ifndef ROBOT_BYTES
 #define ROBOT_BYTES (1 << 20)
@@ -84,7 +85,8 @@ int main(int argc, char **argv)
     }
     const t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, GAUSSIANS);
     t3r_runtime *rt;
-    if (!fine(t3r_init(&rt, memory.arena, sizeof memory.arena, &config), 0)) {
+    if (!fine(t3r_init(&rt, memory.arena, sizeof memory.arena, &config), 0) ||
+        !fine(t3r_set_cpu(rt, t3r_cpu_features()), 0)) {
         return 1;
     }
     t3r_capture_frame frame;
