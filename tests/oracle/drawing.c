@@ -8,9 +8,6 @@
 
 #include <cmocka.h>
 
-#include "cpu.h"
-#include "sanitized.h"
-
 enum { GUARD_BYTES = 64, GUARD = 0x5a };
 
 arena arena_of_bytes(size_t count)
@@ -227,11 +224,6 @@ t3r_camera plain_camera(double focal, uint32_t width, uint32_t height)
         .cy_q16 = (int32_t)((height - 1) << 15),
         .rotation_q30 = {1 << 30, 0, 0, 0},
     };
-}
-
-void quicker_where_watched(t3r_runtime *rt)
-{
-    assert_int_equal(t3r_set_cpu(rt, T3R_SANITIZED ? t3r_cpu_features() : 0), T3R_OK);
 }
 
 t3r_camera camera_towards(double focal, uint32_t width, uint32_t height, const double position[3], const double at[3])

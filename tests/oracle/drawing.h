@@ -27,10 +27,6 @@ arena arena_of(const t3r_config *config, int size);
 arena arena_of_bytes(size_t count);
 void arena_free(arena *a);
 
-/* Plain C is what tests of a whole build run, but sanitizers make it ten times as slow: with them the processor's own
- * vectors, whose bits are the same (tests/kernels compares them, watched, too). */
-void quicker_where_watched(t3r_runtime *rt);
-
 /* A configuration that only renders. */
 t3r_config render_config(uint32_t max_gaussians, uint32_t width, uint32_t height);
 

@@ -14,6 +14,7 @@
 #include "drawing.h"
 #include "rgbd_frame.h"
 #include "weights_maker.h"
+#include "watched.h"
 
 enum { W = 32, H = 24, POINTS = W * H };
 

@@ -16,6 +16,7 @@
 #include "state/state.h"
 #include "sanitized.h"
 #include "stream/stream_map.h"
+#include "watched.h"
 
 enum { W = 24, H = 16, PIXELS = W * H, CAP = 150, AT_HAND = 3, WALL_MM = 2000, BOX_MM = 1600 };
 

@@ -15,6 +15,7 @@
 #include "rgbd_frame.h"
 #include "sanitized.h"
 #include "state/state.h"
+#include "watched.h"
 
 enum { W = 64, H = 48, PIXELS = W * H, BUDGET = 500, STEPS = 5, PASSES = 4 };
 

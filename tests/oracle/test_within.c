@@ -15,6 +15,7 @@
 #include "refine/refine.h"
 #include "sanitized.h"
 #include "state/state.h"
+#include "watched.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VIEWS = 2, HALF_DB = 128 };
 static const t3r_request half_db = {.max_loss_q8 = HALF_DB};
