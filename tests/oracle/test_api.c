@@ -13,8 +13,8 @@
 
 #include "drawing.h"
 #include "rgbd_frame.h"
+#include "sanitized_cpu.h"
 #include "weights_maker.h"
-#include "watched.h"
 
 enum { W = 32, H = 24, POINTS = W * H };
 
@@ -33,7 +33,7 @@ static bench bench_of(t3r_config config)
     bench b = {.config = config, .memory = arena_of(&config, ARENA_AT_MINIMUM)};
     b.before = arena_of_bytes(b.memory.count);
     assert_int_equal(t3r_init(&b.rt, b.memory.bytes, b.memory.count, &config), T3R_OK);
-    quicker_where_watched(b.rt);
+    vectors_if_sanitized(b.rt);
     return b;
 }
 

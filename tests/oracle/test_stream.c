@@ -15,8 +15,8 @@
 #include "rgbd_frame.h"
 #include "state/state.h"
 #include "sanitized.h"
+#include "sanitized_cpu.h"
 #include "stream/stream_map.h"
-#include "watched.h"
 
 enum { W = 24, H = 16, PIXELS = W * H, CAP = 150, AT_HAND = 3, WALL_MM = 2000, BOX_MM = 1600 };
 
@@ -98,7 +98,7 @@ static site site_of(t3r_config config, int arena_size)
 {
     site s = {.config = config, .memory = arena_of(&config, arena_size)};
     assert_int_equal(t3r_init(&s.rt, s.memory.bytes, s.memory.count, &config), T3R_OK);
-    quicker_where_watched(s.rt);
+    vectors_if_sanitized(s.rt);
     return s;
 }
 
@@ -126,7 +126,7 @@ static void move_arena(site *s)
     arena_free(&s->memory);
     s->memory = other;
     assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_OK);
-    quicker_where_watched(s->rt);
+    vectors_if_sanitized(s->rt);
 }
 
 /* Along the wall, to and fro a little, looking about. */

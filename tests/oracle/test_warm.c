@@ -14,8 +14,8 @@
 #include "drawing.h"
 #include "rgbd_frame.h"
 #include "sanitized.h"
+#include "sanitized_cpu.h"
 #include "state/state.h"
-#include "watched.h"
 
 enum { W = 64, H = 48, PIXELS = W * H, BUDGET = 500, STEPS = 5, PASSES = 4 };
 
@@ -116,7 +116,7 @@ static site *site_of(t3r_config config, int arena_size)
     s->config = config;
     s->memory = arena_of(&config, arena_size);
     assert_int_equal(t3r_init(&s->rt, s->memory.bytes, s->memory.count, &config), T3R_OK);
-    quicker_where_watched(s->rt);
+    vectors_if_sanitized(s->rt);
     set_hooks(s);
     return s;
 }
@@ -136,7 +136,7 @@ static void move(site *s)
     arena_free(&s->memory);
     s->memory = elsewhere;
     assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_OK);
-    quicker_where_watched(s->rt);
+    vectors_if_sanitized(s->rt);
     set_hooks(s);
 }
 

@@ -2,13 +2,13 @@
  * cancelled anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
 #include "unit.h"
 #include "rgbd_frame.h"
+#include "sanitized_cpu.h"
 
 #include "core/hash.h"
 #include "core/fixed.h"
 #include "refine/refine.h"
 #include "room/room.h"
 #include "state/state.h"
-#include "watched.h"
 
 enum { SIDE = 96, POINTS = 2 * SIDE * SIDE, BUDGET = POINTS / 10 };
 
@@ -83,7 +83,7 @@ static t3r_runtime *open_arena(const t3r_config *config, uint32_t share)
     assert_int_equal(posix_memalign(&memory, T3R_ARENA_ALIGN, memory_bytes), 0);
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, memory, memory_bytes, config), T3R_OK);
-    quicker_where_watched(rt);
+    vectors_if_sanitized(rt);
     for (uint32_t v = 0; v < config->views; v++) {
         t3r_frame frame = rgbd_frame(rgb[v], depth[v], SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
         assert_int_equal(t3r_add_view(rt, &frame, &camera[v]), T3R_OK);

@@ -2,11 +2,11 @@
  * has the hash that one worker gives it. */
 #include "unit/unit.h"
 #include "rgbd_frame.h"
+#include "sanitized_cpu.h"
 
 #include "room/room.h"
 #include "threads.h"
 #include "trim3r_heads.h"
-#include "watched.h"
 
 enum { WIDTH = 88, HEIGHT = 72, VIEWS = 3, BUDGET = VIEWS * WIDTH * HEIGHT / 8, KEYFRAMES = 4 };
 
@@ -89,7 +89,7 @@ static t3r_runtime *open_runtime(t3r_config config, const way *w, host *h, void 
     memset(*memory, 0xa5, bytes); /* nobody may read what was not written */
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, *memory, bytes, &config), T3R_OK);
-    quicker_where_watched(rt);
+    vectors_if_sanitized(rt);
     *h = (host){.workers = w->workers, .pool = w->threads ? t3r_threads_start(w->workers) : NULL};
     const t3r_hooks hooks = {.user = h, .stage_hash = note_hash, .parallel_for = w->threads ? by_threads : in_reverse};
     assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
