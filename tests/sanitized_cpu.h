@@ -3,7 +3,7 @@
 #ifndef TRIM3R_TESTS_SANITIZED_CPU_H
 #define TRIM3R_TESTS_SANITIZED_CPU_H
 
-#include "cpu.h"
+#include "host/cpu.h"
 #include "sanitized.h"
 #include "trim3r.h"
 

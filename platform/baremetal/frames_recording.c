@@ -1,7 +1,7 @@
 /* Frames of a recording. */
 #include "frames.h"
 
-#include "frame_reader.h"
+#include "recording/frame_reader.h"
 #include "report.h"
 #include "semihost.h"
 

@@ -9,7 +9,7 @@
 
 #include <linux/videodev2.h>
 
-#include "v4l2_system.h"
+#include "capture/v4l2_system.h"
 
 enum { FAKE_NODES = 2, FAKE_BUFFERS = 32, FAKE_SIZES = 4, FAKE_FORMATS = 8, FAKE_FAULTS = 8 };
 

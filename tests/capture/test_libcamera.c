@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "capture_adapter.h"
-#include "libcamera.h"
+#include "capture/capture_adapter.h"
+#include "capture/libcamera.h"
 
 enum { WIDTH = 16, HEIGHT = 8, STRIDE = 24, BUFFERS = 3, NEVER = 1000000 };
 

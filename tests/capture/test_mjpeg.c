@@ -11,11 +11,11 @@
 
 #include <cmocka.h>
 
-#include "capture_adapter.h"
+#include "capture/capture_adapter.h"
 #include "fake_v4l2.h"
-#include "mjpeg.h"
-#include "reader_limits.h"
-#include "v4l2.h"
+#include "capture/mjpeg.h"
+#include "mcap/reader_limits.h"
+#include "capture/v4l2.h"
 
 enum { WIDTH = 32, HEIGHT = 16 };
 

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "capture/clock_offset.h"
-#include "import/trajectory.h"
+#include "import/poses/trajectory.h"
 
 /* ---- reading ---- */
 

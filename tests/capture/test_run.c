@@ -14,13 +14,13 @@
 
 #include <cmocka.h>
 
-#include "capture_adapter.h"
+#include "capture/capture_adapter.h"
 #include "capture/run.h"
 #include "cli/cli.h"
 #include "fake_v4l2.h"
 #include "room/room.h"
 #include "scratch.h"
-#include "v4l2.h"
+#include "capture/v4l2.h"
 
 /* ---- the allocator: glibc's own, counted; it stands in for the whole process's, the C library included ---- */
 

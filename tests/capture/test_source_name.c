@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "source_name.h"
+#include "capture/source_name.h"
 
 static void names_hold_no_credentials_and_no_folders(void **state)
 {

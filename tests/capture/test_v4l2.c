@@ -10,9 +10,9 @@
 
 #include <cmocka.h>
 
-#include "capture_adapter.h"
+#include "capture/capture_adapter.h"
 #include "fake_v4l2.h"
-#include "v4l2.h"
+#include "capture/v4l2.h"
 
 enum { MOST_EVENTS = 512 };
 

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "cli/csv_read.h"
+#include "cli/tables/csv_read.h"
 
 static csv_reader reader;
 

@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "study/bench/machine.h"
-#include "study/bench/price_fit.h"
+#include "planning/machine.h"
+#include "planning/price_fit.h"
 
 static machine some_machine(void)
 {

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "threads.h"
+#include "host/threads.h"
 
 #define MOST 3000u
 

@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "cli/time_left.h"
+#include "cli/work/time_left.h"
 
 #define EXACT 1e-9
 

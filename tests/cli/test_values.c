@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "cli/cli.h"
-#include "cli/json_output.h"
+#include "cli/tables/json_output.h"
 #include "reconstruction/reconstruction.h"
 
 static void parses_lists(void **state)

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "scratch.h"
-#include "import/viewpoint.h"
+#include "import/poses/viewpoint.h"
 
 #define ONE_Q30 (1 << 30)
 

@@ -8,7 +8,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RUNTIME = ROOT / "runtime"
-VECTORS = ("x86", "arm", "wasm", "lanes")
+VECTORS = frozenset(("x86", "arm", "wasm", "lanes"))
 
 INLINED = "inlined" # gcov has no name for a function that the compiler must inline
 
@@ -35,7 +35,7 @@ def place_of(folder, file, root):
 
 def counted(folder, root=RUNTIME):
     """{(file, function, line): how often each branch there was taken}, added up over all objects of the folder."""
-    objects = [path for path in sorted(folder.rglob("*.gcda")) if path.parent.name not in VECTORS]
+    objects = [path for path in sorted(folder.rglob("*.gcda")) if VECTORS.isdisjoint(path.parts)]
     groups = [objects[at:at + 8] for at in range(0, len(objects), 8)]
     taken = {}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

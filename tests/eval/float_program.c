@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "file_bytes.h"
+#include "host/file_bytes.h"
 #include "float_run.h"
 #include "head/head.h"
 #include "head/head_features.h"

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "cli/cli.h"
-#include "cli/process_pool.h"
+#include "cli/work/process_pool.h"
 
 #define ITEMS 23u
 #define LARGE 300000u /* bytes: more than a pipe holds */

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "cli/csv.h"
-#include "cli/csv_read.h"
+#include "cli/tables/csv.h"
+#include "cli/tables/csv_read.h"
 #include "study/evaluation/table.h"
 #include "pictures/html_page.h"
 

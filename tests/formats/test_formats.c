@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bytes.h"
+#include "host/bytes.h"
 #include "core/fixed.h"
-#include "file_bytes.h"
+#include "host/file_bytes.h"
 #include "scene/gaussian_shape.h"
 #include "scene/scene_file.h"
 #include "scene/scene_turn.h"

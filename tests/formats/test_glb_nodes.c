@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/formats/glb_nodes.h"
+#include "scene/formats/glb/glb_nodes.h"
 
 #define Q "0.7071067811865476"
 

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "core/fixed.h"
-#include "scene/formats/palette.h"
+#include "scene/formats/sog/palette.h"
 
 enum { COUNT = 3000, STRIDE = 48, WIDTH = PALETTE_WIDTH_MOST };
 

@@ -20,7 +20,7 @@
 #include "superclusters/superclusters.h"
 #include "weights_maker.h"
 #ifdef T3R_FUZZ_EXPORT
-#include "scene/formats/ply.h"
+#include "scene/formats/ply/ply.h"
 #endif
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);

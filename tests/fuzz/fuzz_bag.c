@@ -2,8 +2,8 @@
  * `recording_tool seeds FOLDER` (tests/recordings). */
 #include <stdlib.h>
 
-#include "import/bag_frames.h"
-#include "import/bag_pictures.h"
+#include "import/bags/bag_frames.h"
+#include "import/bags/bag_pictures.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

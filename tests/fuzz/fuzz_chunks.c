@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bytes.h"
-#include "mcap.h"
-#include "recording.h"
+#include "host/bytes.h"
+#include "mcap/mcap.h"
+#include "recording/recording.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

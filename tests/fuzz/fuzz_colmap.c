@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/colmap_model.h"
-#include "reader_limits.h"
+#include "import/colmap/colmap_model.h"
+#include "mcap/reader_limits.h"
 
 #define MARKER "\n=\n"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/exr_depth.h"
+#include "import/depth/exr_depth.h"
 #include "trim3r.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -4,9 +4,9 @@
 
 #include "cli/cli.h"
 #include "core/camera.h"
-#include "import/viewpoint.h"
+#include "import/poses/viewpoint.h"
 #include "memory_file.h"
-#include "reconstruction/replay_expectation.h"
+#include "reconstruction/replay/replay_expectation.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -2,7 +2,7 @@
  * plain C gives, bit for bit, and touches no byte beside its buffers, which the sanitizer guards. The checks of
  * tests/kernels make the arguments, and draw from the bytes where a test draws at random. */
 #include "arguments.h"
-#include "cpu.h"
+#include "host/cpu.h"
 #include "kernels/checks.h"
 #include "kernels/guarded.h"
 #include "kernels/variants.h"

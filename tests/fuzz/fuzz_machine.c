@@ -1,7 +1,7 @@
 /* Any text as a machine of plans: a reason, or prices of a known machine. */
 #include <stdlib.h>
 
-#include "study/bench/machine.h"
+#include "planning/machine.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -1,7 +1,7 @@
 /* Any bytes as a picture of a live camera: decoded, or a reason; the decoder goes on after either. */
 #include <stdlib.h>
 
-#include "mjpeg.h"
+#include "capture/mjpeg.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/pointmaps.h"
+#include "import/pointmaps/pointmaps.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

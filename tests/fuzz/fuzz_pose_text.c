@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/matrix_text.h"
-#include "import/pose_matrix.h"
-#include "reader_limits.h"
+#include "import/poses/matrix_text.h"
+#include "import/poses/pose_matrix.h"
+#include "mcap/reader_limits.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -2,7 +2,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "import/raw_depth.h"
+#include "import/depth/raw_depth.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

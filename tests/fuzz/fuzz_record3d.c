@@ -2,8 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "import/record3d.h"
-#include "reader_limits.h"
+#include "import/folders/record3d.h"
+#include "mcap/reader_limits.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

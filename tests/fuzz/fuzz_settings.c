@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "core/fixed.h"
-#include "cpu.h"
+#include "host/cpu.h"
 #include "drawn_case.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);

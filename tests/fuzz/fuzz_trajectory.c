@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/trajectory.h"
+#include "import/poses/trajectory.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/transforms_json.h"
+#include "import/folders/transforms_json.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

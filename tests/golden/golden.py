@@ -31,7 +31,7 @@ REPLAY_WAYS = [[], ["--threads", "3"], ["--arena", "min"], ["--cpu-mask", "0"],
 FEW_WAYS = [[*WAYS[-1], *VECTORS]]
 FEW_REPLAY_WAYS = [["--threads", "3", "--arena", "min"]]
 DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", ROOT / "quant" / "heads" / "small.c",
-                  ROOT / "platform" / "cpu.c",
+                  ROOT / "platform" / "host" / "cpu.c",
                   *sorted((ROOT / "tools" / "room").glob("*.c"))]
 DRIVER_INCLUDES = [ROOT / "runtime" / "include", ROOT / "runtime", ROOT / "platform", ROOT / "tools", ROOT / "tests",
                    ROOT / "quant" / "heads"]

@@ -12,7 +12,7 @@
 
 #include "state/ablation.h"
 #include "core/hash.h"
-#include "cpu.h"
+#include "host/cpu.h"
 #include "room/room.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"

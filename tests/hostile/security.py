@@ -1,4 +1,4 @@
-"""SECURITY.md names every limit of platform/reader_limits.h with its value, and files that exist.
+"""SECURITY.md names every limit of platform/mcap/reader_limits.h with its value, and files that exist.
 
 security.py SOURCE_FOLDER
 """
@@ -7,7 +7,7 @@ import re
 import sys
 
 root = pathlib.Path(sys.argv[1])
-header = (root / "platform" / "reader_limits.h").read_text()
+header = (root / "platform" / "mcap" / "reader_limits.h").read_text()
 page = (root / "SECURITY.md").read_text()
 failures = []
 

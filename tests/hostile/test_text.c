@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "reason.h"
-#include "text.h"
+#include "host/reason.h"
+#include "host/text.h"
 
 static const struct {
     const char *given, *cleaned;

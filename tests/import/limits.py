@@ -1,4 +1,4 @@
-"""What import takes, build, replay and eval can use: values each side of every limit of platform/reader_limits.h, through
+"""What import takes, build, replay and eval can use: values each side of every limit of platform/mcap/reader_limits.h, through
 the program.
 
 limits.py TRIM3R

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "import/lens.h"
-#include "import/transform_tree.h"
+#include "import/poses/lens.h"
+#include "import/bags/transform_tree.h"
 
 #define MS INT64_C(1000000)
 

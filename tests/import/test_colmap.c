@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "import/colmap_camera.h"
-#include "import/colmap_model.h"
+#include "import/colmap/colmap_camera.h"
+#include "import/colmap/colmap_model.h"
 
 typedef int (*reader)(FILE *file, colmap_model *model, char *error, size_t error_bytes);
 

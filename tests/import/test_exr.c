@@ -10,9 +10,9 @@
 
 #include <cmocka.h>
 
-#include "file_bytes.h"
-#include "import/exr_depth.h"
-#include "import/raw_depth.h"
+#include "host/file_bytes.h"
+#include "import/depth/exr_depth.h"
+#include "import/depth/raw_depth.h"
 #include "scratch.h"
 
 #ifdef T3R_EXR

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "import/frame.h"
-#include "import/posed_folder.h"
+#include "import/folders/frame.h"
+#include "import/folders/posed_folder.h"
 #include "pictures/picture.h"
 #include "scratch.h"
 

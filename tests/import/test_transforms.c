@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "import/transforms_json.h"
+#include "import/folders/transforms_json.h"
 #include "posing/quaternion.h"
 
 #define IDENTITY "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "import/posed_folder.h"
+#include "import/folders/posed_folder.h"
 #include "scratch.h"
 
 static const double lens[9] = {500, 510, 319.5, 239.5, 0.1, 0, 0, 0, 0.2};

@@ -2,7 +2,7 @@
  * It needs no library, so that any cross compiler builds it. Exit 0: the same bits. */
 #include <stdio.h>
 
-#include "cpu.h"
+#include "host/cpu.h"
 #include "judge.h"
 
 /* A wrong variant is found within so many rounds. */

@@ -13,7 +13,7 @@ ROOT = HERE.parents[1]
 RUNTIME = ROOT / "runtime"
 SOURCES = [*sorted(HERE.glob("check*.c")), *(HERE / f"{name}.c" for name in ("cross_kernels", "guarded", "judge",
                                                                           "wrong_variants")),
-           ROOT / "platform" / "cpu.c", *sorted((RUNTIME / "kernels").rglob("*.c")),
+           ROOT / "platform" / "host" / "cpu.c", *sorted((RUNTIME / "kernels").rglob("*.c")),
            *sorted((RUNTIME / "core").glob("*.c"))]
 INCLUDES = [RUNTIME / "include", RUNTIME, ROOT / "platform", ROOT / "tests"]
 

@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-#include "cpu.h"
+#include "host/cpu.h"
 #include "guarded.h"
 
 typedef struct trial {

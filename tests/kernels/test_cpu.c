@@ -1,5 +1,5 @@
 /* Masks of processor features as text. */
-#include "cpu.h"
+#include "host/cpu.h"
 #include "trim3r.h"
 #include "unit/unit.h"
 

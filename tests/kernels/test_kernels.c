@@ -2,7 +2,7 @@
  * values, odd lengths, buffers that lie anywhere beside forbidden pages. A variant that fails is named with its input's
  * seed; `test_kernels ENTRY SEED` runs that one again. `test_kernels --rounds N FIRST` tries N seeds from FIRST on of
  * each, for as long as one likes. */
-#include "cpu.h"
+#include "host/cpu.h"
 #include "judge.h"
 #include "kernels/variants.h"
 #include "unit/unit.h"

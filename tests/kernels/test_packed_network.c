@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "cpu.h"
+#include "host/cpu.h"
 #include "head/network.h"
 #include "sanitized.h"
 #include "unit/unit.h"

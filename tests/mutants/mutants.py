@@ -35,7 +35,7 @@ from checks import check, done, skip  # noqa: E402
 # A suite is a program: a test, and what of the runtime it calls.
 SUITES = {
     "fixed": ("unit/test_fixed.c", "core/fixed.c"),
-    "domains": ("unit/test_domains.c", "core/fixed.c", "kernels/blend.c"),
+    "domains": ("unit/test_domains.c", "core/fixed.c", "kernels/plain/blend.c"),
     "cut": ("unit/test_cut.c",),
     "camera": ("unit/test_camera.c", "core/camera.c"),
     "scene_frame": ("unit/test_scene_frame.c", "core/scene_frame.c", "core/camera.c"),

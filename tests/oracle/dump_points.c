@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "oracle_analysis.h"
-#include "recording.h"
+#include "recording/recording.h"
 
 static int compare(const void *a, const void *b)
 {

@@ -14,7 +14,7 @@
 #include <time.h>
 
 #include "core/camera.h"
-#include "cpu.h"
+#include "host/cpu.h"
 #include "kernels/kernels.h"
 #include "stereo/match_clean.h"
 #include "stereo/stereo.h"

@@ -17,7 +17,7 @@
 
 #include "drawing.h"
 #include "oracle_raster.h"
-#include "recording.h"
+#include "recording/recording.h"
 #include "scene/scene_file.h"
 
 #define LEAST_DB 50.0

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "bytes.h"
+#include "host/bytes.h"
 #include "core/camera.h"
 #include "posing/estimate.h"
 #include "room/room.h"

@@ -53,7 +53,7 @@ SUBJECTS = {
         "multipliers, weights and all other bytes are any",
         "tables of other shapes, see below"),
     "double": (
-        ["platform/fixed_double.c"], ["-eva-precision", "2", "-eva-slevel", "4000"],
+        ["platform/messages/fixed_double.c"], ["-eva-precision", "2", "-eva-slevel", "4000"],
         "`t3r_fixed_from_double()`, `t3r_fixed_from_float()`",
         "all doubles to the fractions of a camera and of depth, all floats to that of depth",
         "other fractions; that the numbers are right: tests compare them"),
@@ -96,11 +96,11 @@ SUBJECTS = {
 LEFT_OUT = {
     "weights": ("runtime/head/weights.c", "bytes < T3R_WEIGHTS_HEADER_BYTES || ", "", "out of bounds read"),
     "blocks": ("runtime/head/weights.c", "block <= header->bytes - offset", "true", "out of bounds read"),
-    "reader": ("platform/frame_reader.c", "(rows + chroma) * step > reader->colour_room", "rows * step > reader->colour_room",
+    "reader": ("platform/recording/frame_reader.c", "(rows + chroma) * step > reader->colour_room", "rows * step > reader->colour_room",
                "precondition 'room'"),
-    "double": ("platform/fixed_double.c", "exponent > 62 || mantissa > (uint64_t)INT64_MAX >> exponent", "exponent > 62",
+    "double": ("platform/messages/fixed_double.c", "exponent > 62 || mantissa > (uint64_t)INT64_MAX >> exponent", "exponent > 62",
                "signed overflow"),
-    "messages": ("platform/cdr.c", "reader->failed || reader->count - reader->at < padding + size", "reader->failed",
+    "messages": ("platform/messages/cdr.c", "reader->failed || reader->count - reader->at < padding + size", "reader->failed",
                  "out of bounds read"),
     "pose": ("runtime/core/scene_frame.c", "if (shift > 0 && t3r_abs64(offset) > T3R_POSITION_MOST_Q20)", "if (shift > 20)",
              "t3r_bound_broken"),

@@ -12,7 +12,7 @@ import sys
 import proof
 
 # Rooms of the runtime from the foundation up: each may include those before it.
-ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
+ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "planes", "wavelet", "superclusters", "budget",
          "raster", "head", "refine", "stage_hash", "pipeline", "loss", "stream", "layout", "api")
 MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, room in enumerate(ROOMS)}
 RUNTIME = set(MAY)
@@ -39,13 +39,14 @@ tool("capture", "reconstruction")
 tool("viewer", "reconstruction")
 tool("ros", "reconstruction")
 tool("study/boards")
-tool("study/bench", "reconstruction", "room", base=("platform", "quant"))
+tool("planning", "reconstruction", "room", base=("platform", "quant"))
+tool("bench", "planning", base=("platform", "quant"))
 tool("study/chart", "pictures")
 tool("study/rivals", "reconstruction")
 tool("study/evaluation", "study/rivals")
 tool("study/stress", "study/evaluation")
 tool("study/train", "study/rivals")
-tool("trim3r", "capture", "viewer", "room", "study/bench", "study/chart", "study/stress")
+tool("trim3r", "capture", "viewer", "bench", "study/chart", "study/stress")
 tool("python", "room", "scene", base=("platform", "quant"))
 tool("examples", base=("platform", "quant"))
 

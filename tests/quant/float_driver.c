@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "file_bytes.h"
+#include "host/file_bytes.h"
 #include "float_run.h"
 
 static void give_up(const char *why)

@@ -1,5 +1,5 @@
 /* Recordings made by hand for the tests: MCAP files in memory, with CDR of either byte order, as a foreign writer
- * might make them. Independent of platform/cdr.c and of the recorder. */
+ * might make them. Independent of platform/messages/cdr.c and of the recorder. */
 #ifndef T3R_TESTS_BAG_H
 #define T3R_TESTS_BAG_H
 
@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "mcap_writer.h"
-#include "recording.h"
+#include "mcap/mcap_writer.h"
+#include "recording/recording.h"
 
 /* Bytes that grow. As a sink: `room_left` bytes fit, then it fails; what fitted can be read back. */
 typedef struct bag_bytes {

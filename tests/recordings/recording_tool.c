@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pixel_layout.h"
+#include "recording/pixel_layout.h"
 #include "sample.h"
 #include "seeds.h"
 

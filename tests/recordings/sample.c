@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "chunk_packer.h"
-#include "pixel_layout.h"
+#include "mcap/chunk_packer.h"
+#include "recording/pixel_layout.h"
 
 #define PADDING 5u /* bytes behind each row in memory, not to be recorded */
 

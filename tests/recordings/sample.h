@@ -2,7 +2,7 @@
 #ifndef T3R_TESTS_SAMPLE_H
 #define T3R_TESTS_SAMPLE_H
 
-#include "recording.h"
+#include "recording/recording.h"
 
 enum { SAMPLE_FRAMES = 3, SAMPLE_WIDTH = 6, SAMPLE_HEIGHT = 4, SAMPLE_DEPTH_WIDTH = 3, SAMPLE_DEPTH_HEIGHT = 2 };
 

@@ -1,4 +1,4 @@
-/* platform/fixed_double.c and platform/fixed_text.c against exact cases. */
+/* platform/messages/fixed_double.c and platform/host/fixed_text.c against exact cases. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,8 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "fixed_double.h"
-#include "fixed_text.h"
+#include "messages/fixed_double.h"
+#include "host/fixed_text.h"
 
 static uint32_t float_bits(float x)
 {

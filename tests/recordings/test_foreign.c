@@ -12,7 +12,7 @@
 #include <zstd.h>
 
 #include "bag.h"
-#include "crc32.h"
+#include "mcap/crc32.h"
 
 #define MS INT64_C(1000000)
 

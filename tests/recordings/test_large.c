@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "chunk_packer.h"
-#include "recording.h"
+#include "mcap/chunk_packer.h"
+#include "recording/recording.h"
 #include "scratch.h"
-#include "spill.h"
+#include "mcap/spill.h"
 
 /* 166 MB of pictures, in a file of a quarter of that: more than T3R_LIMIT_UNPACKED_HEAP. */
 enum { FRAMES = 20, WIDTH = 1920, HEIGHT = 1440, ROW_BYTES = WIDTH * 3, NOISE_BYTES = ROW_BYTES / 4 };

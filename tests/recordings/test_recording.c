@@ -10,11 +10,11 @@
 #include <cmocka.h>
 
 #include "bag.h"
-#include "capture.h"
-#include "chunk_packer.h"
-#include "fixed_double.h"
-#include "mcap_reader.h"
-#include "pixel_layout.h"
+#include "capture/capture.h"
+#include "mcap/chunk_packer.h"
+#include "messages/fixed_double.h"
+#include "mcap/mcap_reader.h"
+#include "recording/pixel_layout.h"
 #include "sample.h"
 
 static bag_bytes sample(t3r_pixel_format format, uint32_t storage)

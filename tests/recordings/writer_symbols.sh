@@ -7,10 +7,12 @@ compiler=$1
 source=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-files="recording_writer recorder_chunk recorder_messages recorder_summary mcap_chunk_writer mcap_writer cdr ros_messages ros_schemas pixel_layout fixed_camera fixed_double fixed_text text crc32"
+files="host/fixed_text host/text mcap/crc32 mcap/mcap_chunk_writer mcap/mcap_writer messages/cdr
+    messages/fixed_camera messages/fixed_double messages/ros_messages messages/ros_schemas recording/pixel_layout
+    recording/recorder_chunk recording/recorder_messages recording/recorder_summary recording/recording_writer"
 for file in $files; do
     "$compiler" -std=gnu11 -O2 -fno-stack-protector -I "$source/platform" -I "$source/runtime/include" \
-        -c "$source/platform/$file.c" -o "$scratch/$file.o"
+        -c "$source/platform/$file.c" -o "$scratch/$(basename "$file").o"
 done
 ld -r -o "$scratch/recorder.o" "$scratch"/*.o
 allowed='memcpy|memset|memcmp|bcmp|memmove|strlen|_GLOBAL_OFFSET_TABLE_'

@@ -9,8 +9,8 @@
 #include <string>
 
 extern "C" {
-#include "recording.h"
-#include "ros_messages.h"
+#include "recording/recording.h"
+#include "messages/ros_messages.h"
 }
 
 namespace play

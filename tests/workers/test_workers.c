@@ -5,7 +5,7 @@
 #include "sanitized_cpu.h"
 
 #include "room/room.h"
-#include "threads.h"
+#include "host/threads.h"
 #include "trim3r_heads.h"
 
 enum { WIDTH = 88, HEIGHT = 72, VIEWS = 3, BUDGET = VIEWS * WIDTH * HEIGHT / 8, KEYFRAMES = 4 };

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "fixed_double.h"
+#include "messages/fixed_double.h"
 
 t3r_recorded_camera capture_camera_recorded(const t3r_capture_frame *frame)
 {

@@ -5,8 +5,8 @@
 
 #include <stdbool.h>
 
-#include "capture.h"
-#include "recording.h"
+#include "capture/capture.h"
+#include "recording/recording.h"
 
 /* The camera of a frame with what it knows; exact. */
 t3r_recorded_camera capture_camera_recorded(const t3r_capture_frame *frame);

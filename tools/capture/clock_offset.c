@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "reason.h"
+#include "host/reason.h"
 
 #define MOST_SHIFT 8      /* of columns and rows between neighbours: a tenth of the picture */
 #define LEAST_MOTIONS 12u /* with poses at both ends */

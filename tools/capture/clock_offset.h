@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "import/trajectory.h"
+#include "import/poses/trajectory.h"
 #include "trim3r.h"
 
 enum { CLOCK_COLUMNS = 80, CLOCK_ROWS = 60 }; /* pictures are looked at in this size */

@@ -7,7 +7,7 @@
 
 #include "cli/cli.h"
 #include "reconstruction/reconstruction_error.h"
-#include "pixel_layout.h"
+#include "recording/pixel_layout.h"
 
 /* Of all rows without padding. */
 static size_t all_bytes(const t3r_frame *f)

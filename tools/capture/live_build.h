@@ -3,7 +3,7 @@
 #ifndef TRIM3R_TOOLS_LIVE_BUILD_H
 #define TRIM3R_TOOLS_LIVE_BUILD_H
 
-#include "capture.h"
+#include "capture/capture.h"
 #include "reconstruction/reconstruction.h"
 
 /* A context frame that had to go back to its driver. */

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/file_options.h"
-#include "cli/option_values.h"
+#include "cli/files/file_options.h"
+#include "cli/options/option_values.h"
 #include "scene/scene_options.h"
 
 enum {

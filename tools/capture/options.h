@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "capture.h"
-#include "cli/recording_options.h"
+#include "capture/capture.h"
+#include "cli/options/recording_options.h"
 #include "reconstruction/reconstruction.h"
 
 typedef struct capture_options {

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "capture/capture_camera.h"
-#include "cli/file_guard.h"
-#include "reason.h"
+#include "cli/files/file_guard.h"
+#include "host/reason.h"
 
 #define MESSAGE_OVERHEAD 1024u /* of a message without its data, of a camera_info or a pose, of a chunk: below it */
 #define EVENT_BYTES 2048u

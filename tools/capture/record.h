@@ -7,9 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "capture.h"
-#include "cli/recording_options.h"
-#include "recording_file.h"
+#include "capture/capture.h"
+#include "cli/options/recording_options.h"
+#include "recording/recording_file.h"
 
 typedef struct capture_record {
     const char *path;   /* of the first file; the n-th after it has -n before its ending */

@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "cli/json_output.h"
+#include "cli/tables/json_output.h"
 
 static double mean(const capture_times *times)
 {

@@ -10,7 +10,7 @@
 #include "capture/capture_camera.h"
 #include "cli/cli.h"
 #include "core/hash.h"
-#include "pixel_layout.h"
+#include "recording/pixel_layout.h"
 #include "scene/scene_file.h"
 
 #define MOST_FAILED 100u /* frames in a row that cannot be read: the source is useless */

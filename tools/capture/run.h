@@ -7,10 +7,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "capture.h"
+#include "capture/capture.h"
 #include "capture/record.h"
 #include "capture/live_build.h"
-#include "import/trajectory.h"
+#include "import/poses/trajectory.h"
 
 typedef struct capture_plan {
     const char *source;                    /* its name for messages and the recording */

@@ -9,9 +9,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "cli/style.h"
-#include "cli/time_left.h"
-#include "text.h"
+#include "cli/help/style.h"
+#include "cli/work/time_left.h"
+#include "host/text.h"
 
 #define MESSAGE_BYTES 2048
 #define WARNING "warning:"

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "capture.h"
-#include "cpu.h"
+#include "capture/capture.h"
+#include "host/cpu.h"
 #include "trim3r_heads.h"
 
 enum { SIDE = 256, GAUSSIANS = 6000 };

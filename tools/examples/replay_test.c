@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "capture.h"
-#include "cpu.h"
+#include "capture/capture.h"
+#include "host/cpu.h"
 
 enum { SIDE = 128, VIEWS = 2, GAUSSIANS = 2000 };
 

@@ -6,8 +6,8 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "capture.h"
-#include "cpu.h"
+#include "capture/capture.h"
+#include "host/cpu.h"
 
 #ifndef ROBOT_BYTES
 #define ROBOT_BYTES (1 << 20)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/markup.h"
+#include "cli/help/markup.h"
 #include "pictures/png_bytes.h"
 
 struct html_page {

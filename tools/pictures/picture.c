@@ -12,11 +12,11 @@
 #include <jerror.h>
 #include <png.h>
 
-#include "file_bytes.h"
-#include "jpeg_scans.h"
-#include "reason.h"
+#include "host/file_bytes.h"
+#include "capture/jpeg_scans.h"
+#include "host/reason.h"
 #include "trim3r.h"
-#include "cli/whole_file.h"
+#include "cli/files/whole_file.h"
 
 /* Both libraries report errors by longjmp. Everything that must survive one or be freed after one lives in a struct
  * of the caller's, so that no local variable is read after a jump. */

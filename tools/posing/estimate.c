@@ -8,7 +8,7 @@
 #include "cli/cli.h"
 #include "posing/quaternion.h"
 #include "posing/relative.h"
-#include "reason.h"
+#include "host/reason.h"
 
 #define DEEP_LEAST 20u  /* matching corners with depth in both views, or colour decides */
 #define SHARED_LEAST 8u /* depths that must agree on a scale */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "posing/five_point.h"
-#include "reason.h"
+#include "host/reason.h"
 
 #define MATCHES_LEAST 20u /* that agree with a motion */
 #define TRIES_LEAST 100u

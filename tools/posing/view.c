@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "reason.h"
+#include "host/reason.h"
 
 #define EDGE 0.05 /* depths around a corner that differ by more of the nearest one are of two surfaces */
 

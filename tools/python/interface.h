@@ -2,12 +2,12 @@
 #ifndef TRIM3R_PYTHON_INTERFACE_H
 #define TRIM3R_PYTHON_INTERFACE_H
 
-#include "cpu.h"
+#include "host/cpu.h"
 #include "pictures/metrics.h"
-#include "recording.h"
+#include "recording/recording.h"
 #include "room/room.h"
 #include "scene/scene_file.h"
-#include "threads.h"
+#include "host/threads.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
 

@@ -5,8 +5,8 @@
 #include <stdio.h>
 
 #include "cli/cli.h"
-#include "cli/recorded_frame.h"
-#include "import/poses_output.h"
+#include "cli/files/recorded_frame.h"
+#include "import/poses/poses_output.h"
 
 /* Of the rotation that turns one quaternion into the other. The vector part of their quotient, unlike its scalar part,
  * keeps small angles exact. */

@@ -5,7 +5,7 @@
 #include <cjson/cJSON.h>
 
 #include "reconstruction/reconstruction.h"
-#include "recording.h"
+#include "recording/recording.h"
 
 typedef struct pose_correction {
     double degrees;  /* of the rotation between the pose given and the one built with, 0..180 */

@@ -5,9 +5,9 @@
 
 #include "cli/cli.h"
 #include "reconstruction/reconstruction_error.h"
-#include "import/planar_recording.h"
+#include "import/folders/planar_recording.h"
 #include "reconstruction/reconstruction.h"
-#include "recording.h"
+#include "recording/recording.h"
 
 /* One scene of the context frames, at every budget. */
 static int add_scene(calibration *c, const t3r_recording *recording, const char *path, const uint32_t *context,

@@ -4,9 +4,9 @@
 
 #include <stdbool.h>
 
-#include "cli/whole_folder.h"
+#include "cli/files/whole_folder.h"
 #include "reconstruction/reconstruction.h"
-#include "recording.h"
+#include "recording/recording.h"
 
 typedef struct colmap_start {
     const t3r_recording *recording;

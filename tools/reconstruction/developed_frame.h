@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "recording.h"
+#include "recording/recording.h"
 #include "trim3r.h"
 
 /* Frame `index` at width x height, into rgb (width x height x 3) and depth (width x height steps of the frame's own

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "cli/word_list.h"
+#include "cli/tables/word_list.h"
 
 typedef enum method_kind {
     METHOD_TRIM3R, /* allocation and head as the settings say */

@@ -8,9 +8,9 @@
 
 #include "core/camera.h"
 #include "cli/cli.h"
-#include "cpu.h"
+#include "host/cpu.h"
 #include "reconstruction/reconstruction_error.h"
-#include "cli/recorded_frame.h"
+#include "cli/files/recorded_frame.h"
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "core/scene_frame.h"

@@ -10,14 +10,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "cli/processor_options.h"
-#include "reconstruction/chosen_head.h"
+#include "cli/options/processor_options.h"
+#include "reconstruction/options/chosen_head.h"
 #include "reconstruction/method.h"
-#include "reconstruction/stage_times.h"
+#include "reconstruction/replay/stage_times.h"
 #include "posing/poses_source.h"
-#include "recording.h"
+#include "recording/recording.h"
 #include "scene/scene_file.h"
-#include "threads.h"
+#include "host/threads.h"
 #include "trim3r.h"
 
 typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;

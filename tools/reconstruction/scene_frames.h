@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "recording.h"
+#include "recording/recording.h"
 #include "scene/scene_file.h"
 
 /* Reads a scene to be pruned, one Gaussian at least. An exit status of cli.h after a message. */

@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "recording.h"
+#include "recording/recording.h"
 #include "trim3r.h"
 
 #define ROOM_SIDE 256u /* default width and height */

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "frame_pairing.h"
-#include "import/bag_pictures.h"
-#include "message_frame.h"
-#include "pixel_layout.h"
-#include "reason.h"
+#include "recording/frame_pairing.h"
+#include "import/bags/bag_pictures.h"
+#include "messages/message_frame.h"
+#include "recording/pixel_layout.h"
+#include "host/reason.h"
 #include "ros/throttle.h"
 
 #define POSES_MOST 256u

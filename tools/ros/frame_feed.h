@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#include "ros_messages.h"
+#include "messages/ros_messages.h"
 #include "trim3r.h"
 
 #define FRAME_FEED_NAME_BYTES 128 /* of a frame id, its end included */

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "reason.h"
+#include "host/reason.h"
 #include "reconstruction/reconstruction.h"
 #include "scene/scene_file.h"
 

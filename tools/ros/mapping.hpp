@@ -1,6 +1,6 @@
-// ROS messages to and from the structures of platform/ros_messages.h. The templates take the messages of ROS 1 and of
-// ROS 2, whose fields differ in three names: nsec and nanosec, K and k, D and d. Nothing is copied but numbers: texts
-// and images stay in the message.
+// ROS messages to and from the structures of platform/messages/ros_messages.h. The templates take the messages of ROS 1
+// and of ROS 2, whose fields differ in three names: nsec and nanosec, K and k, D and d. Nothing is copied but numbers:
+// texts and images stay in the message.
 #ifndef TRIM3R_TOOLS_ROS_MAPPING_HPP
 #define TRIM3R_TOOLS_ROS_MAPPING_HPP
 

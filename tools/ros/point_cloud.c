@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "bytes.h"
+#include "host/bytes.h"
 #include "scene/gaussian_shape.h"
 
 #define NAME(name) #name,

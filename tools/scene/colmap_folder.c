@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "pictures/picture.h"
-#include "reason.h"
-#include "cli/whole_file.h"
+#include "host/reason.h"
+#include "cli/files/whole_file.h"
 
 #define NOWHERE UINT32_MAX
 

@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "cli/whole_folder.h"
+#include "cli/files/whole_folder.h"
 #include "trim3r.h"
 
 /* A context view as the scene was built from it. */

@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-#include "cli/markup.h"
+#include "cli/help/markup.h"
 
 /* Pixels of the picture. */
 #define LEFT 52

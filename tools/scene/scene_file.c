@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/whole_file.h"
-#include "file_bytes.h"
-#include "reason.h"
+#include "cli/files/whole_file.h"
+#include "host/file_bytes.h"
+#include "host/reason.h"
 #include "scene/scene_format.h"
 
 /* Every format. Of two with one suffix the first is written; `ply` is that of files which none of them knows. */

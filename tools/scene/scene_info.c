@@ -8,12 +8,12 @@
 
 #include "core/camera.h"
 #include "cli/cli.h"
-#include "cli/recorded_frame.h"
-#include "cli/json_output.h"
-#include "recording.h"
+#include "cli/files/recorded_frame.h"
+#include "cli/tables/json_output.h"
+#include "recording/recording.h"
 #include "scene/scale_picture.h"
 #include "scene/scene_file.h"
-#include "cli/whole_file.h"
+#include "cli/files/whole_file.h"
 
 #define ERROR_BYTES 512
 #define QUANTILES 5

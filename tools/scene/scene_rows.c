@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "core/scene_frame.h"
-#include "reason.h"
+#include "host/reason.h"
 #include "scene/gaussian_shape.h"
 
 /* Positions the runtime takes, scene units; a little is left for the rounding of the origin. */

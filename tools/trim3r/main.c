@@ -8,10 +8,10 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "cli/edit_distance.h"
-#include "cli/man_page.h"
-#include "cli/style.h"
-#include "text.h"
+#include "cli/help/edit_distance.h"
+#include "cli/help/man_page.h"
+#include "cli/help/style.h"
+#include "host/text.h"
 #include "trim3r/commands/commands.h"
 #include "trim3r.h"
 

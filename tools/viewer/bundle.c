@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bytes.h"
+#include "host/bytes.h"
 #include "viewer/bundle_layout.h"
 
 #define MOST_BYTES (UINT64_C(1) << 30)

@@ -5,8 +5,8 @@
 
 #include <cjson/cJSON.h>
 
-#include "cli/json_output.h"
-#include "cli/markup.h"
+#include "cli/tables/json_output.h"
+#include "cli/help/markup.h"
 
 /* What is embedded by the build: page/view.html with marks for the others, as <!--style-->. The module is empty where
  * there was no compiler for it. */

@@ -11,7 +11,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include "reason.h"
+#include "host/reason.h"
 
 enum { REQUEST_BYTES = 8192, SECONDS = 5 };
 

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "cli/recorded_frame.h"
-#include "import/viewpoint.h"
+#include "cli/files/recorded_frame.h"
+#include "import/poses/viewpoint.h"
 #include "reconstruction/developed_frame.h"
 
 #define DEGREES 60 /* across a scene that came without frames */

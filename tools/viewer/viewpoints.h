@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "recording.h"
+#include "recording/recording.h"
 #include "viewer/bundle.h"
 #include "viewer/bundle_layout.h"
 #include "viewer/page.h"

@@ -9,11 +9,11 @@
 #define t3r_box_sums_c ROW(box_sums)
 #define t3r_weigh_row_c ROW(weigh_row)
 #define t3r_divide_row_c ROW(divide_row)
-#include "kernels/image_rows.c"
+#include "kernels/plain/image_rows.c"
 
 #define t3r_sample_potential_c ROW(sample_potential)
 #define t3r_sample_approach_c ROW(sample_approach)
-#include "kernels/seed.c"
+#include "kernels/plain/seed.c"
 
 #define t3r_luma_row_c ROW(luma_row)
 #define t3r_split_row_c ROW(split_row)
@@ -29,6 +29,6 @@
 #define t3r_texture_coarse_c ROW(texture_coarse)
 #define t3r_texture_add_c ROW(texture_add)
 #define t3r_texture_spread_c ROW(texture_spread)
-#include "kernels/wavelet_rows.c"
+#include "kernels/plain/wavelet_rows.c"
 
 #endif

@@ -1,6 +1,6 @@
-/* platform/fixed_double.c: all doubles and floats, an exponent after another where a shift follows from it, to the
- * fractions that readers ask for. */
-#include "fixed_double.h"
+/* platform/messages/fixed_double.c: all doubles and floats, an exponent after another where a shift follows from it, to
+ * the fractions that readers ask for. */
+#include "messages/fixed_double.h"
 
 static void doubles(uint64_t low, uint64_t high, uint32_t fraction_bits)
 {

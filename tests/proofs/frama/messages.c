@@ -1,8 +1,8 @@
 /* The ROS messages of a recording, and what becomes of their numbers: any bytes. Which byte stands where follows from
  * the lengths of the texts, so each of a few lengths is tried, one after the other, and each length of the message. The
  * message ends where its array does: a step past its end is one out of bounds. */
-#include "fixed_double.h"
-#include "message_frame.h"
+#include "messages/fixed_double.h"
+#include "messages/message_frame.h"
 
 /* double.c proves it, for the fractions of a camera. */
 /*@ requires fraction: fraction_bits == 16 || fraction_bits == 24 || fraction_bits == 30 || fraction_bits == 32;

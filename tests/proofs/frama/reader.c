@@ -1,8 +1,8 @@
 /* The reader of recordings for firmware: records at any place, and rows of any image that it finds. The source gives
  * any bytes; that these are some that it has is not asked here. */
-#include "frame_reader.c"
+#include "recording/frame_reader.c"
 
-#include "fixed_double.h"
+#include "messages/fixed_double.h"
 
 /* double.c proves it, for this fraction. */
 /*@ requires fraction: fraction_bits == 40;

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "bytes.h"
+#include "host/bytes.h"
 
 static inline double load_float(const uint8_t *bytes)
 {

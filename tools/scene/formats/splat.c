@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "reason.h"
+#include "host/reason.h"
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/little_floats.h"
 #include "scene/scene_format.h"

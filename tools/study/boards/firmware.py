@@ -13,8 +13,9 @@ FEATURES = tuple(name.lower() for name in re.findall(
 BOARDS = {path.parent.name: json.loads(path.read_text()) for path in sorted(BAREMETAL.glob("boards/*/board.json"))}
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
 # What the firmware takes of the platform: the reader of recordings without a heap.
-READER = ("cdr", "fixed_camera", "fixed_double", "fixed_text", "frame_reader", "message_frame", "pixel_layout",
-          "ros_messages", "ros_schemas", "text")
+READER = ("host/fixed_text", "host/text", "messages/cdr", "messages/fixed_camera", "messages/fixed_double",
+          "messages/message_frame", "messages/ros_messages", "messages/ros_schemas", "recording/frame_reader",
+          "recording/pixel_layout")
 INCLUDES = (RUNTIME / "include", RUNTIME, ROOT / "platform", BAREMETAL, ROOT / "quant" / "heads")
 INCLUDE = tuple(word for folder in INCLUDES for word in ("-I", folder))
 FLAGS = ("-std=c11", "-ffunction-sections", "-fdata-sections", "-Wall", "-Wextra", "-Werror",
@@ -45,7 +46,7 @@ def sources_of(board, options):
     rows = [line.split() for line in (RUNTIME / "features.txt").read_text().splitlines() if not line.startswith("#")]
     absent = {path for feature, pattern in rows if feature in left_out(options)
               for path in RUNTIME.glob(pattern) if not path.stem.endswith("_absent")}
-    runtime = sorted(path for path in RUNTIME.rglob("*.c") if path.parent.name != "x86" and path not in absent)
+    runtime = sorted(path for path in RUNTIME.rglob("*.c") if "x86" not in path.parts and path not in absent)
     weights = [] if options.head in CLOSED_FORM else [ROOT / "quant" / "heads" / f"{options.head}.c"]
     reader = () if is_small(options) else READER
     other_frames = "frames_recording" if is_small(options) else "frames_planes"

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "frame_reader.h"
+#include "recording/frame_reader.h"
 #include "planes.h"
 
 static int read_file(void *user, uint64_t offset, void *bytes, size_t count)

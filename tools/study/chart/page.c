@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "study/chart/svg.h"
-#include "cli/markup.h"
+#include "cli/help/markup.h"
 
 /* What is embedded by the build: page.html with the marks <!--style-->, <!--svg-->, <!--data--> and <!--script-->. */
 extern const char chart_page_html[], chart_page_css[], chart_page_js[];

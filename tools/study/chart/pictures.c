@@ -8,7 +8,7 @@
 
 #include "pictures/picture.h"
 #include "pictures/png_bytes.h"
-#include "reason.h"
+#include "host/reason.h"
 
 #define PATH_BYTES 4096
 

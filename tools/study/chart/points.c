@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/csv_read.h"
-#include "reason.h"
+#include "cli/tables/csv_read.h"
+#include "host/reason.h"
 
 #define KEY_BYTES (CHART_SETTINGS * 11u + 1)
 _Static_assert(CHART_KEEP == CHART_SETTINGS - 1, "a series is all settings but the last");

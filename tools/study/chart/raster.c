@@ -8,8 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "reason.h"
-#include "cli/whole_file.h"
+#include "host/reason.h"
+#include "cli/files/whole_file.h"
 
 /* A program rather than its library: linked, that and what it needs would load with every call of ours. */
 #define RASTERIZER "rsvg-convert"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/markup.h"
+#include "cli/help/markup.h"
 
 /* Pixels. */
 #define WIDTH 1040.0

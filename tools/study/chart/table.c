@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/csv_read.h"
-#include "file_bytes.h"
-#include "reason.h"
+#include "cli/tables/csv_read.h"
+#include "host/file_bytes.h"
+#include "host/reason.h"
 
 #define NO_COLUMN UINT32_MAX
 #define BUDGET_BYTES 40

@@ -6,11 +6,11 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "import/planar_recording.h"
-#include "import/recording_poses.h"
-#include "cli/recorded_frame.h"
+#include "import/folders/planar_recording.h"
+#include "import/poses/recording_poses.h"
+#include "cli/files/recorded_frame.h"
 #include "study/evaluation/nearest_views.h"
-#include "text.h"
+#include "host/text.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "reconstruction/chosen_head.h"
+#include "reconstruction/options/chosen_head.h"
 #include "cli/cli.h"
 
 static int add_head(evaluation_contestants *chosen, const char *text, bool named)

@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "cli/part_files.h"
+#include "cli/files/part_files.h"
 #include "reconstruction/reconstruction_error.h"
-#include "cli/recorded_frame.h"
+#include "cli/files/recorded_frame.h"
 #include "reconstruction/developed_frame.h"
 #include "pictures/metrics.h"
 #include "study/rivals/rival.h"

@@ -12,7 +12,7 @@
 #include "study/evaluation/settings.h"
 #include "reconstruction/method.h"
 #include "reconstruction/reconstruction.h"
-#include "recording.h"
+#include "recording/recording.h"
 #include "trim3r.h"
 
 #define EVALUATION_NAME_BYTES 256 /* of a scene */

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "recording.h"
+#include "recording/recording.h"
 #include "trim3r.h"
 
 /* Where a frame was taken. */

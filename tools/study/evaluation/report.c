@@ -10,7 +10,7 @@
 #include "cli/cli.h"
 #include "study/evaluation/pictures.h"
 #include "study/evaluation/table.h"
-#include "cli/json_output.h"
+#include "cli/tables/json_output.h"
 
 #define ERROR_BYTES 512
 #define PATH_BYTES 4096

@@ -4,12 +4,12 @@
 
 #include <cjson/cJSON.h>
 
-#include "cli/csv_file.h"
+#include "cli/tables/csv_file.h"
 #include "study/evaluation/evaluation.h"
 #include "study/evaluation/resume.h"
 #include "study/evaluation/settings.h"
 #include "pictures/html_page.h"
-#include "cli/whole_file.h"
+#include "cli/files/whole_file.h"
 
 typedef struct evaluation_outputs {
     const char *csv, *images, *page; /* paths; NULL = none */

@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "cli/csv_read.h"
+#include "cli/tables/csv_read.h"
 #include "study/evaluation/table.h"
-#include "file_bytes.h"
+#include "host/file_bytes.h"
 
 #define TABLE_MOST ((size_t)32 << 20) /* bytes: a row of some fifty takes ten times as many */
 

@@ -7,7 +7,7 @@
 
 #include "cli/cli.h"
 #include "core/hash.h"
-#include "reconstruction/settings.h"
+#include "reconstruction/options/settings.h"
 
 /* A list with something between its items. */
 typedef struct words {

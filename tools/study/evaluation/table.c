@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/csv_read.h"
-#include "cli/style.h"
-#include "text.h"
+#include "cli/tables/csv_read.h"
+#include "cli/help/style.h"
+#include "host/text.h"
 
 typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */
 

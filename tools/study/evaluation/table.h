@@ -8,7 +8,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "cli/csv.h"
+#include "cli/tables/csv.h"
 #include "study/evaluation/evaluation.h"
 
 #define EVALUATION_COLUMNS 30u

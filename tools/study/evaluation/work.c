@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/process_pool.h"
+#include "cli/work/process_pool.h"
 
 /* With fewer cases a process than this, the contestants of a case are spread too, though what they share is then made
  * once a process. */

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "study/evaluation/evaluation.h"
-#include "recording.h"
+#include "recording/recording.h"
 
 typedef struct stress_view {
     uint8_t *rgb;    /* width x height x 3 */

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "cli/json_output.h"
+#include "cli/tables/json_output.h"
 #include "study/stress/table.h"
 #include "study/stress/verdict.h"
 

@@ -2,10 +2,10 @@
 #ifndef TRIM3R_TOOLS_STRESS_REPORT_H
 #define TRIM3R_TOOLS_STRESS_REPORT_H
 
-#include "cli/csv_file.h"
+#include "cli/tables/csv_file.h"
 #include "study/stress/measure.h"
 #include "study/stress/page.h"
-#include "cli/whole_file.h"
+#include "cli/files/whole_file.h"
 
 typedef struct stress_outputs {
     const char *csv, *page; /* paths; NULL = none */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/recorded_frame.h"
+#include "cli/files/recorded_frame.h"
 #include "study/rivals/rival.h"
 #include "study/stress/random.h"
 

@@ -4,7 +4,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "cli/csv.h"
+#include "cli/tables/csv.h"
 #include "study/stress/measure.h"
 
 void stress_csv_header(csv_table *table);

@@ -8,22 +8,22 @@
 #include <string.h>
 #include <time.h>
 
-#include "study/bench/bench_against.h"
-#include "study/bench/bench_kernels.h"
-#include "study/bench/bench_stages.h"
-#include "study/bench/calibrate.h"
-#include "study/bench/cpu_flags.h"
-#include "study/bench/machine.h"
-#include "study/bench/spread.h"
-#include "reconstruction/chosen_head.h"
+#include "bench/bench_against.h"
+#include "bench/bench_kernels.h"
+#include "bench/bench_stages.h"
+#include "planning/calibrate.h"
+#include "bench/cpu_flags.h"
+#include "planning/machine.h"
+#include "bench/spread.h"
+#include "reconstruction/options/chosen_head.h"
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
-#include "cli/processor_options.h"
-#include "cli/word_list.h"
-#include "cpu.h"
-#include "reconstruction/option_names.h"
+#include "cli/files/file_options.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
+#include "cli/options/processor_options.h"
+#include "cli/tables/word_list.h"
+#include "host/cpu.h"
+#include "reconstruction/options/option_names.h"
 
 #define MAX_RUNS BENCH_TURNS_MOST
 #define PATH_BYTES 4200

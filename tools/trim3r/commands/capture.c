@@ -6,15 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "capture.h"
+#include "capture/capture.h"
 #include "capture/options.h"
 #include "capture/result.h"
 #include "capture/run.h"
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "cli/part_files.h"
+#include "cli/files/file_options.h"
+#include "cli/files/part_files.h"
 #include "capture/clock_offset.h"
-#include "source_name.h"
+#include "capture/source_name.h"
 
 #define ERROR_BYTES 512
 #define MOST_MOTIONS 3000u           /* frames that an offset is estimated from */

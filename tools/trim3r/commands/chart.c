@@ -15,10 +15,10 @@
 #include "study/chart/table.h"
 #include "study/chart/view.h"
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "cli/option_values.h"
-#include "cli/whole_file.h"
-#include "cli/word_list.h"
+#include "cli/files/file_options.h"
+#include "cli/options/option_values.h"
+#include "cli/files/whole_file.h"
+#include "cli/tables/word_list.h"
 
 #define ERROR_BYTES 512
 #define MOST_COSTS ((uint32_t)(CHART_COSTS_END - CHART_QUALITIES))

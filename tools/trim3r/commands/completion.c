@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "cli/option_values.h"
-#include "cli/whole_file.h"
+#include "cli/files/file_options.h"
+#include "cli/options/option_values.h"
+#include "cli/files/whole_file.h"
 
 /* Of completion.bash and its like (tools/CMakeLists.txt). */
 extern const char completion_bash[], completion_zsh[], completion_fish[];

@@ -6,9 +6,9 @@
 #include <stdio.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
+#include "cli/files/file_options.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
 

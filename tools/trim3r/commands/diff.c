@@ -8,10 +8,10 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
+#include "cli/files/file_options.h"
 #include "scene/gaussian_shape.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
 #include "pictures/picture.h"
 #include "scene/scene_file.h"
 

@@ -9,18 +9,18 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "capture.h"
+#include "capture/capture.h"
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
-#include "cli/processor_options.h"
-#include "cpu.h"
+#include "cli/files/file_options.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
+#include "cli/options/processor_options.h"
+#include "host/cpu.h"
 #include "kernels/kernels.h"
-#include "study/bench/bench_kernels.h"
-#include "study/bench/cpu_flags.h"
-#include "study/bench/self_check.h"
-#include "text.h"
+#include "bench/bench_kernels.h"
+#include "bench/cpu_flags.h"
+#include "bench/self_check.h"
+#include "host/text.h"
 
 #define CAMERAS_FOLDER "/sys/class/video4linux"
 #define CAMERAS_MOST 64

@@ -8,12 +8,12 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "file_bytes.h"
+#include "cli/files/file_options.h"
+#include "host/file_bytes.h"
 #include "float_head.h"
-#include "cli/json_output.h"
+#include "cli/tables/json_output.h"
 #include "head/network.h"
-#include "cli/option_values.h"
+#include "cli/options/option_values.h"
 #include "trim3r.h"
 #include "weight_info.h"
 

@@ -7,12 +7,12 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
+#include "cli/files/file_options.h"
 #include "scene/scene_file.h"
-#include "cli/json_output.h"
-#include "import/bag_pictures.h"
-#include "cli/option_values.h"
-#include "recording.h"
+#include "cli/tables/json_output.h"
+#include "import/bags/bag_pictures.h"
+#include "cli/options/option_values.h"
+#include "recording/recording.h"
 #include "scene/scene_info.h"
 
 #define ERROR_BYTES 512

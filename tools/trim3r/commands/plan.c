@@ -8,20 +8,20 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
+#include "cli/files/file_options.h"
 #include "reconstruction/reconstruction_error.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
-#include "cli/processor_options.h"
-#include "reconstruction/head_option.h"
-#include "reconstruction/option_names.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
+#include "cli/options/processor_options.h"
+#include "reconstruction/options/head_option.h"
+#include "reconstruction/options/option_names.h"
 #include "pictures/plan_picture.h"
 #include "reconstruction/reconstruction.h"
-#include "reconstruction/settings.h"
-#include "cli/whole_file.h"
+#include "reconstruction/options/settings.h"
+#include "cli/files/whole_file.h"
 #include "core/fixed.h"
-#include "study/bench/fitting.h"
-#include "study/bench/work_table.h"
+#include "planning/fitting.h"
+#include "planning/work_table.h"
 
 typedef struct plan_options {
     t3r_config config; /* but for the head; a render_width of 0 is the working size */

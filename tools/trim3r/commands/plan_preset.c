@@ -4,8 +4,8 @@
 #include <stdio.h>
 
 #include "cli/cli.h"
-#include "cli/json_output.h"
-#include "reconstruction/chosen_head.h"
+#include "cli/tables/json_output.h"
+#include "reconstruction/options/chosen_head.h"
 #include "reconstruction/reconstruction_error.h"
 #include "trim3r.h"
 

@@ -11,16 +11,16 @@
 #include "calibrate.h"
 #include "reconstruction/calibration_input.h"
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "file_bytes.h"
+#include "cli/files/file_options.h"
+#include "host/file_bytes.h"
 #include "float_head.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
 #include "quantize.h"
 #include "trim3r.h"
 #include "weight_info.h"
 #include "weight_source.h"
-#include "cli/whole_file.h"
+#include "cli/files/whole_file.h"
 
 #define MOST_FILE_BYTES (256u << 20)
 #define PERCENTILE_8_BIT 99.99

@@ -9,16 +9,16 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
+#include "cli/files/file_options.h"
 #include "reconstruction/reconstruction_error.h"
-#include "cli/recorded_frame.h"
+#include "cli/files/recorded_frame.h"
 #include "core/hash.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
-#include "cli/work_times.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
+#include "cli/work/work_times.h"
 #include "pictures/picture.h"
 #include "reconstruction/reconstruction.h"
-#include "import/viewpoint.h"
+#include "import/poses/viewpoint.h"
 
 #define ERROR_BYTES 512
 #define MAX_PATH_BYTES 4096

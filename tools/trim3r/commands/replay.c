@@ -8,18 +8,18 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "cli/work_times.h"
+#include "cli/files/file_options.h"
+#include "cli/work/work_times.h"
 #include "reconstruction/reconstruction_error.h"
-#include "cli/recorded_frame.h"
+#include "cli/files/recorded_frame.h"
 #include "core/hash.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
 #include "reconstruction/reconstruction.h"
-#include "reconstruction/hash_report.h"
-#include "reconstruction/replay_expectation.h"
-#include "reconstruction/replay_slide.h"
-#include "reconstruction/replay_stream.h"
+#include "reconstruction/replay/hash_report.h"
+#include "reconstruction/replay/replay_expectation.h"
+#include "reconstruction/replay/replay_slide.h"
+#include "reconstruction/replay/replay_stream.h"
 #include "scene/scene_options.h"
 
 #define ERROR_BYTES 512

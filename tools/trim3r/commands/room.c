@@ -6,15 +6,15 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
+#include "cli/files/file_options.h"
 #include "core/hash.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
-#include "cli/recording_options.h"
-#include "reason.h"
-#include "recording.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
+#include "cli/options/recording_options.h"
+#include "host/reason.h"
+#include "recording/recording.h"
 #include "room/room.h"
-#include "cli/whole_file.h"
+#include "cli/files/whole_file.h"
 
 #define ERROR_BYTES 512
 #define DEFAULT_SEED 1u

@@ -8,15 +8,15 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/file_options.h"
-#include "cli/option_values.h"
-#include "cli/word_list.h"
-#include "reconstruction/option_names.h"
+#include "cli/files/file_options.h"
+#include "cli/options/option_values.h"
+#include "cli/tables/word_list.h"
+#include "reconstruction/options/option_names.h"
 #include "room/room.h"
 #include "study/stress/measure.h"
 #include "study/stress/report.h"
 #include "study/stress/scene.h"
-#include "text.h"
+#include "host/text.h"
 
 #define MOST_ROWS 64u
 #define MOST_CAPTURES 64u

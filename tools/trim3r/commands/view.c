@@ -9,11 +9,11 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "cli/file_kind.h"
-#include "cli/file_options.h"
-#include "cli/json_output.h"
-#include "cli/option_values.h"
-#include "cli/whole_file.h"
+#include "cli/files/file_kind.h"
+#include "cli/files/file_options.h"
+#include "cli/tables/json_output.h"
+#include "cli/options/option_values.h"
+#include "cli/files/whole_file.h"
 #include "reconstruction/reconstruction.h"
 #include "scene/scene_file.h"
 #include "viewer/page.h"

@@ -1,0 +1,112 @@
+/* The adapter `replay`: a recording's frames, one after the other, as fast as they are asked for. */
+#include <stdlib.h>
+
+#include "capture_adapter.h"
+#include "host/reason.h"
+#include "recording/recording.h"
+
+#define LONE_FRAME_NS 33333333          /* the interval after a recording of a single frame */
+#define MOST_AGO_NS (UINT64_C(1) << 61) /* a recording's stamps lie within 2^62: int64_t holds their sum */
+
+typedef struct replay {
+    t3r_capture capture; /* first: a t3r_capture * is a replay * */
+    t3r_recording *recording;
+    uint32_t next;    /* in the recording */
+    uint32_t index;   /* over all its turns */
+    bool started;     /* first_ns is known */
+    uint32_t turns;   /* left, this one included */
+    int64_t first_ns; /* of the recording's frames */
+    int64_t ago_ns;   /* how much later this turn's frames are, at most MOST_AGO_NS */
+    char clock[64];
+} replay;
+
+/* Once more from the start, later by the length of a turn: FRAME; END after the last turn; FAILED, and no turn is left,
+ * where the clock does not hold it. */
+static int turn_over(replay *self)
+{
+    if (self->turns <= 1 || self->next == 0) {
+        return T3R_CAPTURE_END;
+    }
+    uint32_t frames = self->next;
+    int64_t last_ns = self->capture.last_stamp_ns - self->ago_ns;
+    uint64_t span = last_ns > self->first_ns ? (uint64_t)last_ns - (uint64_t)self->first_ns : 0;
+    bool holds = span <= MOST_AGO_NS;
+    uint64_t turn_ns = holds && frames > 1 && span > 0 ? span + span / (frames - 1) : LONE_FRAME_NS;
+    if (!holds || turn_ns > MOST_AGO_NS - (uint64_t)self->ago_ns) {
+        self->turns = 1;
+        t3r_reason(self->capture.error, sizeof self->capture.error, "the clock does not hold another turn");
+        return T3R_CAPTURE_FAILED;
+    }
+    self->ago_ns += (int64_t)turn_ns;
+    self->turns--;
+    self->next = 0;
+    return T3R_CAPTURE_FRAME;
+}
+
+/* A frame that cannot be read is a failure once; the call after it goes on with the next one. */
+static int next(t3r_capture *capture, t3r_capture_frame *frame)
+{
+    replay *self = (replay *)capture;
+    int turned = self->next < t3r_recording_frame_count(self->recording) ? T3R_CAPTURE_FRAME : turn_over(self);
+    if (turned != T3R_CAPTURE_FRAME) {
+        return turned;
+    }
+    int got = t3r_recording_frame(self->recording, self->next, frame, capture->error, sizeof capture->error);
+    uint32_t index = self->index++;
+    self->next++;
+    if (got != T3R_CAPTURE_FRAME) {
+        return got;
+    }
+    self->first_ns = self->started ? self->first_ns : frame->stamp_ns;
+    self->started = true;
+    frame->stamp_ns += self->ago_ns;
+    frame->depth_stamp_ns += self->ago_ns;
+    frame->index = frame->sequence = index;
+    capture->counts.paired += frame->frame.depth != NULL;
+    return t3r_capture_deliver(capture, frame);
+}
+
+static void close_replay(t3r_capture *capture)
+{
+    replay *self = (replay *)capture;
+    t3r_recording_close(self->recording);
+    free(self);
+}
+
+t3r_capture *t3r_replay_open_repeated(const char *path, uint32_t times, char *error, size_t error_bytes)
+{
+    static const t3r_capture_operations operations = {next, NULL, close_replay};
+    replay *self = calloc(1, sizeof *self);
+    if (self == NULL) {
+        t3r_reason(error, error_bytes, "%s: out of memory", path);
+        return NULL;
+    }
+    self->capture.operations = &operations;
+    self->capture.recorded = true;
+    self->recording = t3r_recording_open(path, error, error_bytes);
+    if (self->recording == NULL) {
+        free(self);
+        return NULL;
+    }
+    self->turns = times;
+    t3r_reason(self->clock, sizeof self->clock, "%s", t3r_recording_clock(self->recording));
+    self->capture.clock = self->clock;
+    self->capture.depth_unit_q40 = t3r_recording_depth_unit_q40(self->recording);
+    if (t3r_recording_note(self->recording)[0] != '\0') {
+        t3r_capture_remark(&self->capture, "%s", t3r_recording_note(self->recording));
+    }
+    return &self->capture;
+}
+
+t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes)
+{
+    return t3r_replay_open_repeated(path, 1, error, error_bytes);
+}
+
+static t3r_capture *open_source(const char *path, const t3r_capture_settings *settings, char *error, size_t error_bytes)
+{
+    return t3r_replay_open_repeated(path, settings->repeat, error, error_bytes);
+}
+
+const t3r_capture_source t3r_source_replay = {
+    .name = "replay", .argument = "FILE", .says = "a recording, REC.mcap", .open = open_source};

@@ -1,0 +1,22 @@
+/* Compression of chunks, for recorders on machines with a heap (recording.h). Writer of what chunk_codec.h reads. */
+#ifndef T3R_PLATFORM_CHUNK_PACKER_H
+#define T3R_PLATFORM_CHUNK_PACKER_H
+
+#include "recording/recording.h"
+
+typedef enum t3r_compression {
+    T3R_COMPRESSION_NONE,
+    T3R_COMPRESSION_ZSTD, /* level 3 */
+    T3R_COMPRESSION_LZ4,  /* frames, the fastest level */
+    T3R_COMPRESSION_COUNT
+} t3r_compression;
+
+/* "none", "zstd", "lz4" */
+extern const char *const t3r_compression_names[T3R_COMPRESSION_COUNT];
+
+/* NULL for NONE, and when memory is out. The same bytes give the same bytes with the same library. */
+const t3r_chunk_packer *t3r_chunk_packer_open(t3r_compression compression);
+/* NULL is allowed. */
+void t3r_chunk_packer_close(const t3r_chunk_packer *packer);
+
+#endif

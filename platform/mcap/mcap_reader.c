@@ -1,0 +1,527 @@
+#include "mcap_reader.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "host/bytes.h"
+#include "chunk_codec.h"
+#include "host/grow.h"
+#include "reader_limits.h"
+#include "mcap.h"
+#include "mcap_fields.h"
+#include "host/reason.h"
+
+#define REST_BYTES (UINT64_C(32) << 20) /* of a file in the spill that are read before their pages may go */
+
+typedef struct walk {
+    const t3r_mcap_visitor *visitor;
+    t3r_mcap_chunks *chunks;
+    const uint8_t *bytes;
+    uint64_t limit;    /* records end here: at the end magic, or where a cut file ends */
+    bool cut;          /* the file has no end magic */
+    uint64_t data_end; /* where the summary starts; 0 while in the data section */
+    bool damaged;      /* a chunk of a cut file is not what was written: reading ends in front of it */
+    char *error;
+    size_t error_bytes;
+} walk;
+
+/* ---- reasons ---- */
+
+const char *t3r_mcap_place_text(t3r_mcap_place place, char text[T3R_MCAP_PLACE_BYTES])
+{
+    if (place.in_chunk) {
+        snprintf(text, T3R_MCAP_PLACE_BYTES, "byte %" PRIu64 " of the chunk at byte %" PRIu64, place.offset,
+                 place.chunk_offset);
+    } else {
+        snprintf(text, T3R_MCAP_PLACE_BYTES, "byte %" PRIu64, place.offset);
+    }
+    return text;
+}
+
+static const char *record_name(uint8_t opcode)
+{
+    static const char *const names[] = {"unknown",    "Header",        "Footer",          "Schema",
+                                        "Channel",    "Message",       "Chunk",           "MessageIndex",
+                                        "ChunkIndex", "Attachment",    "AttachmentIndex", "Statistics",
+                                        "Metadata",   "MetadataIndex", "SummaryOffset",   "DataEnd"};
+    return names[opcode < sizeof names / sizeof names[0] ? opcode : 0];
+}
+
+static int malformed(walk *w, uint8_t opcode, t3r_mcap_place place, const char *what)
+{
+    char text[T3R_MCAP_PLACE_BYTES];
+    return t3r_reason(w->error, w->error_bytes, "%s record at %s: %s", record_name(opcode),
+                      t3r_mcap_place_text(place, text), what);
+}
+
+static const char *const short_fields = "a field reaches past the record's end";
+
+/* ---- records that visitors see ---- */
+
+static int read_schema(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
+{
+    t3r_mcap_schema_record schema = {.id = t3r_mcap_take_u16(in)};
+    schema.name = t3r_mcap_take_text(in);
+    schema.encoding = t3r_mcap_take_text(in);
+    schema.definition = t3r_mcap_take_text(in);
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_SCHEMA, place, short_fields);
+    }
+    /* Id 0 means "no schema": such a record is to be ignored. */
+    return schema.id == 0 ? 0 : w->visitor->schema(w->visitor->user, &schema, place);
+}
+
+static int read_channel(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
+{
+    t3r_mcap_channel_record channel = {.id = t3r_mcap_take_u16(in)};
+    channel.schema = t3r_mcap_take_u16(in);
+    channel.topic = t3r_mcap_take_text(in);
+    channel.encoding = t3r_mcap_take_text(in);
+    t3r_mcap_take_text(in); /* the map of metadata, unused */
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_CHANNEL, place, short_fields);
+    }
+    return w->visitor->channel(w->visitor->user, &channel, place);
+}
+
+static int read_message(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
+{
+    t3r_mcap_message_record message = {.channel = t3r_mcap_take_u16(in)};
+    message.sequence = t3r_mcap_take_u32(in);
+    message.log_ns = t3r_mcap_take_u64(in);
+    message.publish_ns = t3r_mcap_take_u64(in);
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_MESSAGE, place, short_fields);
+    }
+    message.data = in->bytes + in->at;
+    message.bytes = in->count - in->at;
+    return w->visitor->message(w->visitor->user, &message, place);
+}
+
+static int read_metadata(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
+{
+    t3r_text name = t3r_mcap_take_text(in);
+    t3r_text map = t3r_mcap_take_text(in);
+    t3r_mcap_fields pairs = {(const uint8_t *)map.chars, map.count, 0, in->failed};
+    while (!pairs.failed && pairs.at < pairs.count) {
+        t3r_text key = t3r_mcap_take_text(&pairs);
+        t3r_text value = t3r_mcap_take_text(&pairs);
+        if (!pairs.failed && w->visitor->metadata(w->visitor->user, name, key, value, place) < 0) {
+            return -1;
+        }
+    }
+    return pairs.failed ? malformed(w, T3R_MCAP_METADATA, place, short_fields) : 0;
+}
+
+static int read_attachment(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
+{
+    t3r_mcap_take_u64(in); /* log_time */
+    t3r_mcap_take_u64(in); /* create_time */
+    t3r_mcap_take_text(in);
+    t3r_mcap_take_text(in);
+    uint64_t bytes = t3r_mcap_take_u64(in);
+    t3r_mcap_take(in, bytes);
+    size_t checked = in->at;
+    uint32_t crc = t3r_mcap_take_u32(in);
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_ATTACHMENT, place, short_fields);
+    }
+    if (crc != 0 && crc != crc32_z(0, in->bytes, checked)) {
+        return malformed(w, T3R_MCAP_ATTACHMENT, place, "its CRC does not match its bytes");
+    }
+    return 0;
+}
+
+/* ---- chunks ---- */
+
+static int count_message(walk *w)
+{
+    if (w->chunks->spill != NULL) {
+        w->chunks->message_bytes += T3R_LIMIT_MESSAGE_BYTES;
+        return w->chunks->message_bytes <= T3R_LIMIT_INDEX_BYTES ? 0 : -1;
+    }
+    w->chunks->bytes += T3R_LIMIT_MESSAGE_BYTES;
+    return w->chunks->bytes <= t3r_limit_unpacked_whole(w->limit) ? 0 : -1;
+}
+
+/* The records of a chunk; one that reaches past the end is an error, or, in a chunk that was cut, the end. 0,
+ * T3R_MCAP_KEPT once the visitor keeps any of them, or -1. */
+static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chunk_offset, bool cut, bool packed)
+{
+    t3r_mcap_place place = {0, true, chunk_offset};
+    int kept = 0;
+    for (size_t at = 0; at < count;) {
+        place.offset = at;
+        uint8_t opcode = bytes[at];
+        bool has_head = count - at >= T3R_MCAP_RECORD_HEAD_BYTES;
+        uint64_t length = has_head ? t3r_load_le64(bytes + at + 1) : 0;
+        if (!has_head || length > count - at - T3R_MCAP_RECORD_HEAD_BYTES) {
+            return cut ? kept : malformed(w, opcode, place, "it reaches past the chunk's end");
+        }
+        t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
+        int status = 0;
+        switch (opcode) {
+        case T3R_MCAP_SCHEMA:
+            status = read_schema(w, &in, place);
+            break;
+        case T3R_MCAP_CHANNEL:
+            status = read_channel(w, &in, place);
+            break;
+        case T3R_MCAP_MESSAGE:
+            status = read_message(w, &in, place);
+            break;
+        default: /* opcodes from 0x10 on are extensions, to be skipped */
+            status = opcode <= T3R_MCAP_DATA_END ? malformed(w, opcode, place, "it may not stand in a chunk") : 0;
+            break;
+        }
+        if (status < 0) {
+            return -1;
+        }
+        kept |= status;
+        if (packed && status == T3R_MCAP_KEPT && count_message(w) != 0) {
+            return malformed(w, opcode, place, "the chunks unpack to more messages than such a file may have");
+        }
+        at += T3R_MCAP_RECORD_HEAD_BYTES + (size_t)length;
+    }
+    return kept;
+}
+
+/* Room in w->chunks for one more; -1 when memory is out. */
+static int reserve_chunk(walk *w)
+{
+    t3r_mcap_chunks *chunks = w->chunks;
+    uint8_t **grown = t3r_grow(chunks->data, chunks->count, &chunks->capacity, sizeof *chunks->data);
+    chunks->data = grown != NULL ? grown : chunks->data;
+    return grown != NULL ? 0 : -1;
+}
+
+/* What a chunk of that many bytes may not become, or 0: asked before memory is. */
+static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
+{
+    const uint64_t most = w->chunks->spill != NULL ? t3r_limit_unpacked(w->limit) : t3r_limit_unpacked_whole(w->limit);
+    const uint64_t all = w->chunks->bytes;
+    if (all <= most && bytes <= most - all) {
+        return 0;
+    }
+    char what[200];
+    snprintf(what, sizeof what,
+             "it unpacks to %" PRIu64 " bytes, those before it to %" PRIu64 ": a file of %" PRIu64
+             " may unpack to %" PRIu64 "; one without compression is read at any size",
+             bytes, all, w->limit, most);
+    return malformed(w, T3R_MCAP_CHUNK, place, what);
+}
+
+/* A chunk's fields, and as much of its content as is there. */
+typedef struct chunk {
+    uint64_t unpacked_bytes;
+    uint32_t crc;
+    t3r_text compression;
+    const uint8_t *packed;
+    size_t packed_bytes;
+    bool cut;
+} chunk;
+
+/* A chunk's records. */
+typedef struct unpacked {
+    uint8_t *bytes; /* NULL: none */
+    size_t room;
+    bool spilled;
+} unpacked;
+
+static unpacked take_room(walk *w, size_t room)
+{
+    const t3r_mcap_chunks *chunks = w->chunks;
+    unpacked out = {.room = room > 0 ? room : 1};
+    out.spilled = chunks->spill != NULL && chunks->heap_bytes + out.room > T3R_LIMIT_UNPACKED_HEAP;
+    out.bytes = reserve_chunk(w) != 0 ? NULL : out.spilled ? t3r_spill_take(chunks->spill, out.room) : malloc(out.room);
+    return out;
+}
+
+/* Keeps what messages point into, or frees it. */
+static void leave_room(walk *w, const unpacked *u, bool is_kept)
+{
+    t3r_mcap_chunks *chunks = w->chunks;
+    if (u->spilled && is_kept) {
+        t3r_spill_rest(chunks->spill);
+    } else if (u->spilled && u->bytes != NULL) {
+        t3r_spill_return(chunks->spill, u->room);
+    } else if (is_kept) {
+        chunks->data[chunks->count++] = u->bytes;
+        chunks->heap_bytes += u->room;
+    } else {
+        free(u->bytes);
+    }
+}
+
+/* Its records, in memory of their own, for leave_room() also when it fails, and *count of its bytes. NULL, or what is
+ * wrong with the data, which a cut chunk may have; or -1 in *status, the reason given. */
+static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, unpacked *out, size_t *count,
+                                int *status)
+{
+    if (!t3r_chunk_codec_known(c->compression)) {
+        char name[32], what[96];
+        t3r_text_copy(name, sizeof name, c->compression);
+        snprintf(what, sizeof what, "its compression '%s' is not supported (lz4 and zstd are)", name);
+        *status = malformed(w, T3R_MCAP_CHUNK, place, what);
+        return NULL;
+    }
+    if (check_unpacked(w, place, c->unpacked_bytes) != 0) {
+        *status = -1;
+        return NULL;
+    }
+    uint64_t most = t3r_chunk_codec_most(c->compression, c->packed_bytes);
+    if (c->unpacked_bytes > most && !c->cut) {
+        return "its uncompressed_size is more than its data can hold";
+    }
+    uint64_t room = c->unpacked_bytes < most ? c->unpacked_bytes : most;
+    *out = take_room(w, (size_t)room);
+    if (out->bytes == NULL) {
+        *status = malformed(w, T3R_MCAP_CHUNK, place,
+                            out->spilled ? "there is no room on the disk for what it unpacks to (TMPDIR names another)"
+                                         : "out of memory");
+        return NULL;
+    }
+    w->chunks->bytes += room;
+    const char *wrong =
+        t3r_chunk_decompress(c->compression, c->packed, c->packed_bytes, out->bytes, (size_t)room, count);
+    return wrong == NULL && *count != c->unpacked_bytes ? "its data are shorter than its uncompressed_size" : wrong;
+}
+
+static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
+{
+    unpacked own = {.bytes = NULL};
+    size_t count = c->packed_bytes;
+    int status = 0;
+    const char *wrong = c->compression.count > 0 ? unpack_chunk(w, c, place, &own, &count, &status) : NULL;
+    const uint8_t *records = own.bytes != NULL ? own.bytes : c->packed;
+    if (status == 0 && wrong == NULL && !c->cut && c->crc != 0 && c->crc != crc32_z(0, records, count)) {
+        wrong = "its CRC does not match its records";
+    }
+    w->damaged = status == 0 && wrong != NULL && w->cut && !c->cut;
+    if (status == 0 && !w->damaged) {
+        status = wrong != NULL && !c->cut ? malformed(w, T3R_MCAP_CHUNK, place, wrong)
+                                          : walk_chunk(w, records, count, place.offset, c->cut, own.bytes != NULL);
+    }
+    leave_room(w, &own, own.bytes != NULL && status == T3R_MCAP_KEPT);
+    return status < 0 ? -1 : 0;
+}
+
+/* `in` holds the content, or as much of it as a cut file has left. */
+static int read_chunk(walk *w, t3r_mcap_fields *in, t3r_mcap_place place, bool cut)
+{
+    t3r_mcap_take_u64(in); /* message_start_time */
+    t3r_mcap_take_u64(in); /* message_end_time */
+    chunk c = {.unpacked_bytes = t3r_mcap_take_u64(in), .cut = cut};
+    c.crc = t3r_mcap_take_u32(in);
+    c.compression = t3r_mcap_take_text(in);
+    uint64_t packed_bytes = t3r_mcap_take_u64(in);
+    if (in->failed) {
+        return cut ? 0 : malformed(w, T3R_MCAP_CHUNK, place, short_fields);
+    }
+    size_t available = in->count - in->at;
+    if (packed_bytes > available && !cut) {
+        return malformed(w, T3R_MCAP_CHUNK, place, short_fields);
+    }
+    if (c.compression.count == 0 && c.unpacked_bytes != packed_bytes) {
+        return malformed(w, T3R_MCAP_CHUNK, place, "uncompressed_size differs from the size of its records");
+    }
+    c.packed = in->bytes + in->at;
+    c.packed_bytes = packed_bytes < available ? (size_t)packed_bytes : available;
+    return walk_packed(w, &c, place);
+}
+
+/* ---- the file ---- */
+
+/* The same of a file that lies in the spill, without all of it in memory at once. */
+static uint32_t crc_of(const walk *w, const uint8_t *bytes, uint64_t count)
+{
+    uint32_t crc = 0;
+    for (uint64_t at = 0; at < count; at += REST_BYTES) {
+        crc = (uint32_t)crc32_z(crc, bytes + at, (size_t)(count - at < REST_BYTES ? count - at : REST_BYTES));
+        if (w->chunks->spill != NULL) {
+            t3r_spill_rest(w->chunks->spill);
+        }
+    }
+    return crc;
+}
+
+static int read_data_end(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
+{
+    uint32_t crc = t3r_mcap_take_u32(in);
+    if (in->failed) {
+        return malformed(w, T3R_MCAP_DATA_END, place, short_fields);
+    }
+    if (crc != 0 && crc != crc_of(w, w->bytes, place.offset)) {
+        return malformed(w, T3R_MCAP_DATA_END, place, "the data section's CRC does not match its bytes");
+    }
+    w->data_end = place.offset + T3R_MCAP_RECORD_HEAD_BYTES + in->count;
+    return 0;
+}
+
+static int read_footer(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
+{
+    uint64_t summary = t3r_mcap_take_u64(in);
+    uint64_t summary_offset = t3r_mcap_take_u64(in);
+    uint32_t crc = t3r_mcap_take_u32(in);
+    if (in->failed || in->at != in->count) {
+        return malformed(w, T3R_MCAP_FOOTER, place, "its length is not 20 bytes");
+    }
+    if (w->data_end == 0) {
+        return malformed(w, T3R_MCAP_FOOTER, place, "no DataEnd record stands in front of it");
+    }
+    if ((summary != 0 && (summary < w->data_end || summary > place.offset)) ||
+        (summary_offset != 0 && (summary_offset < w->data_end || summary_offset > place.offset))) {
+        return malformed(w, T3R_MCAP_FOOTER, place, "it points outside the summary section");
+    }
+    uint64_t start = summary != 0 ? summary : w->data_end;
+    uint64_t stop = place.offset + T3R_MCAP_RECORD_HEAD_BYTES + 16;
+    if (crc != 0 && crc != crc32_z(0, w->bytes + start, (size_t)(stop - start))) {
+        return malformed(w, T3R_MCAP_FOOTER, place, "the summary's CRC does not match its bytes");
+    }
+    return 0;
+}
+
+static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_place place)
+{
+    bool in_summary = w->data_end != 0;
+    switch (opcode) {
+    case T3R_MCAP_HEADER:
+        if (place.offset != T3R_MCAP_MAGIC_BYTES) {
+            return malformed(w, opcode, place, "it is not the first record");
+        }
+        t3r_mcap_take_text(in); /* profile */
+        t3r_mcap_take_text(in); /* library */
+        return in->failed ? malformed(w, opcode, place, short_fields) : 0;
+    case T3R_MCAP_FOOTER:
+        return read_footer(w, in, place);
+    case T3R_MCAP_SCHEMA: /* those of the summary repeat the data section's */
+        return in_summary ? 0 : read_schema(w, in, place);
+    case T3R_MCAP_CHANNEL:
+        return in_summary ? 0 : read_channel(w, in, place);
+    case T3R_MCAP_MESSAGE:
+    case T3R_MCAP_CHUNK:
+    case T3R_MCAP_ATTACHMENT:
+    case T3R_MCAP_METADATA:
+    case T3R_MCAP_DATA_END:
+        if (in_summary) {
+            return malformed(w, opcode, place, "it stands behind the DataEnd record");
+        }
+        return opcode == T3R_MCAP_MESSAGE      ? read_message(w, in, place)
+               : opcode == T3R_MCAP_CHUNK      ? read_chunk(w, in, place, false)
+               : opcode == T3R_MCAP_ATTACHMENT ? read_attachment(w, in, place)
+               : opcode == T3R_MCAP_METADATA   ? read_metadata(w, in, place)
+                                               : read_data_end(w, in, place);
+    case 0:
+        return malformed(w, opcode, place, "0 is no opcode");
+    default: /* indexes, which a reader from front to back does not need, and extensions */
+        return 0;
+    }
+}
+
+const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count)
+{
+    size_t compared = count < T3R_MCAP_MAGIC_BYTES ? count : T3R_MCAP_MAGIC_BYTES;
+    if (count == 0) {
+        return "the file is empty";
+    }
+    if (memcmp(bytes, T3R_MCAP_MAGIC, compared) != 0) {
+        bool other_version = count >= T3R_MCAP_MAGIC_BYTES && memcmp(bytes, T3R_MCAP_MAGIC, 5) == 0 &&
+                             memcmp(bytes + 6, &T3R_MCAP_MAGIC[6], 2) == 0;
+        return other_version ? "byte 5: an MCAP version other than 0" : "byte 0: not an MCAP file";
+    }
+    return count < T3R_MCAP_MAGIC_BYTES ? "cut off inside the magic of its first 8 bytes" : NULL;
+}
+
+/* The footer was read; what follows must be the end magic, or the part of it that a cut file has left. */
+static int check_end(walk *w, uint64_t at, size_t count, t3r_mcap_end *end)
+{
+    uint64_t rest = count - at;
+    if (!w->cut) {
+        return rest == T3R_MCAP_MAGIC_BYTES
+                   ? 0
+                   : t3r_reason(w->error, w->error_bytes, "byte %" PRIu64 ": bytes between Footer and end magic", at);
+    }
+    if (rest >= T3R_MCAP_MAGIC_BYTES || memcmp(w->bytes + at, T3R_MCAP_MAGIC, (size_t)rest) != 0) {
+        return t3r_reason(w->error, w->error_bytes, "byte %" PRIu64 ": no end magic behind the Footer", at);
+    }
+    *end = (t3r_mcap_end){true, at};
+    return 0;
+}
+
+int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *visitor, t3r_mcap_chunks *chunks,
+                  t3r_mcap_end *end, char *error, size_t error_bytes)
+{
+    const char *wrong = t3r_mcap_magic_error(bytes, count);
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes, "%s", wrong);
+    }
+    bool whole = count >= 2 * T3R_MCAP_MAGIC_BYTES &&
+                 memcmp(bytes + count - T3R_MCAP_MAGIC_BYTES, T3R_MCAP_MAGIC, T3R_MCAP_MAGIC_BYTES) == 0;
+    walk w = {
+        .visitor = visitor,
+        .chunks = chunks,
+        .bytes = bytes,
+        .limit = whole ? count - T3R_MCAP_MAGIC_BYTES : count,
+        .cut = !whole,
+        .error = error,
+        .error_bytes = error_bytes,
+    };
+    *end = (t3r_mcap_end){false, 0};
+    uint64_t at = T3R_MCAP_MAGIC_BYTES, rested = 0;
+    while (at < w.limit) {
+        if (chunks->spill != NULL && at - rested > REST_BYTES) {
+            t3r_spill_rest(chunks->spill);
+            rested = at;
+        }
+        t3r_mcap_place place = {at, false, 0};
+        uint8_t opcode = bytes[at];
+        uint64_t rest = w.limit - at;
+        uint64_t length = rest >= T3R_MCAP_RECORD_HEAD_BYTES ? t3r_load_le64(bytes + at + 1) : 0;
+        bool fits = rest >= T3R_MCAP_RECORD_HEAD_BYTES && length <= rest - T3R_MCAP_RECORD_HEAD_BYTES;
+        /* A file system may leave zeros behind where a file was cut. */
+        if (w.cut && (!fits || opcode == 0)) {
+            *end = (t3r_mcap_end){true, at};
+            if (opcode == T3R_MCAP_CHUNK && rest > T3R_MCAP_RECORD_HEAD_BYTES && w.data_end == 0) {
+                t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES,
+                                      (size_t)(rest - T3R_MCAP_RECORD_HEAD_BYTES), 0, false};
+                return read_chunk(&w, &in, place, true);
+            }
+            return 0;
+        }
+        if (!fits) {
+            return malformed(&w, opcode, place, "it reaches past the file's end");
+        }
+        if (at == T3R_MCAP_MAGIC_BYTES && opcode != T3R_MCAP_HEADER) {
+            return malformed(&w, opcode, place, "the first record is not a Header");
+        }
+        t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
+        if (read_record(&w, opcode, &in, place) < 0) {
+            return -1;
+        }
+        if (w.damaged) {
+            *end = (t3r_mcap_end){true, at};
+            return 0;
+        }
+        at += T3R_MCAP_RECORD_HEAD_BYTES + length;
+        if (opcode == T3R_MCAP_FOOTER) {
+            return check_end(&w, at, count, end);
+        }
+    }
+    if (whole) {
+        return t3r_reason(error, error_bytes, "byte %" PRIu64 ": no Footer record in front of the end magic", at);
+    }
+    *end = (t3r_mcap_end){true, at};
+    return 0;
+}
+
+void t3r_mcap_chunks_free(t3r_mcap_chunks *chunks)
+{
+    for (size_t i = 0; i < chunks->count; i++) {
+        free(chunks->data[i]);
+    }
+    free(chunks->data);
+    *chunks = (t3r_mcap_chunks){0};
+}

@@ -1,0 +1,210 @@
+#include "message_frame.h"
+
+#include "host/bytes.h"
+#include "fixed_camera.h"
+#include "fixed_double.h"
+#include "recording/pixel_layout.h"
+
+/* ---- images ---- */
+
+/* Rows of row_bytes at image->step must lie inside the data. */
+static const char *rows_error(const t3r_ros_image *image, uint32_t row_bytes, uint32_t rows)
+{
+    if (image->step < row_bytes) {
+        return "step is less than a row's bytes";
+    }
+    return (uint64_t)image->step * rows > image->data_bytes ? "data hold fewer than step x rows bytes" : NULL;
+}
+
+bool t3r_message_is_metres(const t3r_ros_image *image)
+{
+    return t3r_text_is(image->encoding, "32FC1");
+}
+
+bool t3r_message_is_z16(const t3r_ros_image *image)
+{
+    return !t3r_message_is_metres(image) && !image->is_bigendian;
+}
+
+bool t3r_message_is_depth(const t3r_ros_image *image)
+{
+    return t3r_message_is_metres(image) || t3r_text_is(image->encoding, "16UC1") ||
+           t3r_text_is(image->encoding, "mono16");
+}
+
+const char *t3r_message_colour_shape(const t3r_ros_image *image, t3r_frame *frame)
+{
+    t3r_pixel_format format;
+    if (!t3r_pixel_format_of(image->encoding, &format)) {
+        return "encoding is none of rgb8, bgr8, mono8, yuv422_yuy2, yuv422, nv12";
+    }
+    const char *wrong = t3r_pixel_size_error(format, image->width, image->height);
+    if (wrong == NULL) {
+        const uint32_t rows = image->height + t3r_pixel_rows(format, 1, image->height);
+        wrong = rows_error(image, t3r_pixel_row_bytes(format, image->width), rows);
+    }
+    if (wrong != NULL) {
+        return wrong;
+    }
+    frame->format = format;
+    frame->width = image->width;
+    frame->height = image->height;
+    frame->stride_bytes[0] = image->step;
+    frame->stride_bytes[1] = format == T3R_PIXEL_NV12 ? image->step : 0;
+    return NULL;
+}
+
+const char *t3r_message_colour(const t3r_ros_image *image, t3r_frame *frame)
+{
+    const char *wrong = t3r_message_colour_shape(image, frame);
+    if (wrong == NULL) {
+        frame->planes[0] = image->data;
+        frame->planes[1] = frame->stride_bytes[1] != 0 ? image->data + (size_t)image->step * image->height : NULL;
+    }
+    return wrong;
+}
+
+const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame)
+{
+    if (!t3r_message_is_depth(image)) {
+        return "encoding is none of 16UC1, mono16, 32FC1";
+    }
+    if (image->width < 2 || image->height < 2 || image->width > T3R_MAX_SIDE || image->height > T3R_MAX_SIDE) {
+        return "width or height is outside 2..4096";
+    }
+    const char *wrong = rows_error(image, image->width * (t3r_message_is_metres(image) ? 4 : 2), image->height);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    const bool steps = t3r_message_is_z16(image);
+    frame->depth_width = image->width;
+    frame->depth_height = image->height;
+    frame->depth = steps ? image->data : NULL;
+    frame->depth_stride_bytes = steps ? image->step : image->width * 2;
+    return NULL;
+}
+
+/* Metres as a float's bits to steps of the unit: to Q40, then divided, both round-half-even. 0 = no measurement: NaN,
+ * infinity, nothing, behind the camera, or more than 65535 steps. */
+static uint16_t steps_of_metres(uint32_t bits, uint64_t unit_q40)
+{
+    int64_t depth_q40;
+    if (t3r_fixed_from_float(bits, 40, &depth_q40) != 0 || depth_q40 <= 0) {
+        return 0;
+    }
+    uint64_t steps = (uint64_t)depth_q40 / unit_q40, rest = (uint64_t)depth_q40 % unit_q40;
+    steps += rest > unit_q40 - rest || (rest == unit_q40 - rest && (steps & 1) != 0);
+    return steps <= UINT16_MAX ? (uint16_t)steps : 0;
+}
+
+void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *out)
+{
+    const bool metres = t3r_message_is_metres(image);
+    for (uint32_t y = 0; y < image->height; y++) {
+        const uint8_t *row = image->data + (size_t)y * image->step;
+        for (uint32_t x = 0; x < image->width; x++, out += 2) { /* what is written was read before */
+            const uint8_t *sample = row + (size_t)x * (metres ? 4 : 2);
+            uint16_t steps;
+            if (metres) {
+                steps = steps_of_metres(image->is_bigendian ? t3r_load_be32(sample) : t3r_load_le32(sample), unit_q40);
+            } else {
+                steps = (uint16_t)(image->is_bigendian ? sample[0] << 8 | sample[1] : t3r_load_le16(sample));
+            }
+            t3r_store_le16(out, steps);
+        }
+    }
+}
+
+/* ---- the camera ---- */
+
+static bool is_zero(uint64_t f64)
+{
+    return f64 << 1 == 0;
+}
+
+static const char *read_distortion(const t3r_ros_camera_info *info, t3r_camera *camera)
+{
+    uint32_t used = 0; /* coefficients up to the last one that is not 0 */
+    for (uint32_t i = 0; i < info->d_count; i++) {
+        used = is_zero(info->d_f64[i]) ? used : i + 1;
+    }
+    bool fisheye = t3r_text_is(info->distortion_model, "equidistant");
+    bool radtan =
+        t3r_text_is(info->distortion_model, "plumb_bob") || t3r_text_is(info->distortion_model, "rational_polynomial");
+    if (used == 0 && !fisheye) {
+        camera->distortion = T3R_DISTORTION_NONE;
+        return NULL;
+    }
+    if (!fisheye && !radtan) {
+        return "distortion_model is none of plumb_bob, equidistant, rational_polynomial";
+    }
+    camera->distortion = fisheye ? T3R_DISTORTION_FISHEYE : T3R_DISTORTION_RADTAN;
+    if (used > (fisheye ? 4 : 5)) {
+        return fisheye ? "D has more than the 4 coefficients of equidistant"
+                       : "D has terms beyond k1 k2 p1 p2 k3, which are not supported";
+    }
+    for (uint32_t i = 0; i < used; i++) {
+        if (!t3r_fixed_coefficient(info->d_f64[i], camera->distortion, i, &camera->distortion_q24[i])) {
+            return "D has a coefficient that is not a number within -128..128 (p1, p2: -16..16)";
+        }
+    }
+    return NULL;
+}
+
+/* Binning and regions of interest would need K adapted; recordings of whole images have neither. */
+static const char *window_error(const t3r_ros_camera_info *info)
+{
+    if (info->binning_x > 1 || info->binning_y > 1) {
+        return "binning is not supported";
+    }
+    bool whole = info->roi_x == 0 && info->roi_y == 0 && (info->roi_width == 0 || info->roi_width == info->width) &&
+                 (info->roi_height == 0 || info->roi_height == info->height);
+    return whole ? NULL : "a region of interest is not supported";
+}
+
+const char *t3r_message_intrinsics(const t3r_ros_camera_info *info, t3r_camera *camera)
+{
+#define FOCAL_RANGE " is not a number in [8, 16384)"
+#define CENTRE_RANGE " is not a number in (-16384, 16384)"
+    const char *wrong = window_error(info);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    if (!is_zero(info->k_f64[1]) || !is_zero(info->k_f64[3]) || !is_zero(info->k_f64[6]) || !is_zero(info->k_f64[7])) {
+        return "K has a skew, or entries where a camera matrix has none";
+    }
+    if (!t3r_fixed_focal(info->k_f64[0], &camera->fx_q16)) {
+        return "K[0] (fx)" FOCAL_RANGE;
+    }
+    if (!t3r_fixed_focal(info->k_f64[4], &camera->fy_q16)) {
+        return "K[4] (fy)" FOCAL_RANGE;
+    }
+    if (!t3r_fixed_centre(info->k_f64[2], &camera->cx_q16)) {
+        return "K[2] (cx)" CENTRE_RANGE;
+    }
+    if (!t3r_fixed_centre(info->k_f64[5], &camera->cy_q16)) {
+        return "K[5] (cy)" CENTRE_RANGE;
+    }
+    return read_distortion(info, camera);
+}
+
+const char *t3r_message_pose(const t3r_ros_pose *pose, t3r_camera *camera)
+{
+#define POSITION_RANGE " is not a number within -2^30..2^30"
+#define ROTATION_RANGE " is not a number within -1.5..1.5"
+    static const char *const positions[3] = {"position.x" POSITION_RANGE, "position.y" POSITION_RANGE,
+                                             "position.z" POSITION_RANGE};
+    static const char *const rotations[4] = {"orientation.x" ROTATION_RANGE, "orientation.y" ROTATION_RANGE,
+                                             "orientation.z" ROTATION_RANGE, "orientation.w" ROTATION_RANGE};
+    for (uint32_t i = 0; i < 3; i++) {
+        if (!t3r_fixed_position(pose->position_f64[i], &camera->position_q32[i])) {
+            return positions[i];
+        }
+    }
+    for (uint32_t i = 0; i < 4; i++) {
+        if (!t3r_fixed_rotation(pose->rotation_f64[i], &camera->rotation_q30[(i + 1) % 4])) {
+            return rotations[i];
+        }
+    }
+    return NULL;
+}

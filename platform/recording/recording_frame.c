@@ -1,0 +1,193 @@
+/* One frame of a recording, of its messages. */
+#include "recording_index.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "messages/message_frame.h"
+#include "pixel_layout.h"
+#include "host/reason.h"
+
+/* Which frame is being read, and where its reasons go. */
+typedef struct reading {
+    const t3r_recording *recording;
+    uint32_t index;
+    char *error;
+    size_t error_bytes;
+} reading;
+
+static int fail(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message, const char *what)
+{
+    char place[T3R_MCAP_PLACE_BYTES];
+    return t3r_reason(r->error, r->error_bytes, "frame %" PRIu32 ", %.64s at %s: %s", r->index, stream->topic,
+                      t3r_mcap_place_text(message->place, place), what);
+}
+
+/* ---- images ---- */
+
+/* A compressed image by the recording's decoder, whose sides are checked as those of others are. */
+static int decode(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message, bool depth,
+                  t3r_decoded_image *out)
+{
+    const t3r_image_decoder *decoder = &r->recording->decoder;
+    t3r_ros_compressed image;
+    const char *wrong = t3r_ros_read_compressed(message->data, message->bytes, &image);
+    char what[160];
+    if (wrong == NULL && decoder->decode == NULL) {
+        wrong = "compressed images are decoded by trim3r import";
+    }
+    if (wrong == NULL && decoder->decode(decoder->user, image.format, image.data, image.data_bytes, depth,
+                                         r->recording->depth_unit_q40, out, what, sizeof what) != 0) {
+        wrong = what;
+    }
+    if (wrong == NULL) {
+        wrong = t3r_pixel_size_error(depth ? T3R_PIXEL_GREY : out->format, out->width, out->height);
+    }
+    return wrong == NULL ? 0 : fail(r, stream, message, wrong);
+}
+
+static int read_colour(const reading *r, t3r_frame *frame)
+{
+    const t3r_stream *stream = &r->recording->streams[r->recording->colour];
+    const t3r_indexed_message *message = &stream->messages[r->index];
+    if (stream->compressed) {
+        t3r_decoded_image decoded;
+        if (decode(r, stream, message, false, &decoded) != 0) {
+            return -1;
+        }
+        frame->format = decoded.format;
+        frame->width = decoded.width;
+        frame->height = decoded.height;
+        frame->planes[0] = decoded.rows;
+        frame->stride_bytes[0] = t3r_pixel_row_bytes(decoded.format, decoded.width);
+        return 0;
+    }
+    t3r_ros_image image;
+    const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
+    wrong = wrong != NULL ? wrong : t3r_message_colour(&image, frame);
+    return wrong == NULL ? 0 : fail(r, stream, message, wrong);
+}
+
+static int read_depth(const reading *r, size_t link, t3r_frame *frame)
+{
+    const t3r_stream *stream = &r->recording->streams[r->recording->depth];
+    const t3r_indexed_message *message = &stream->messages[link];
+    frame->depth_unit_q40 = r->recording->depth_unit_q40;
+    if (stream->compressed) {
+        t3r_decoded_image decoded;
+        if (decode(r, stream, message, true, &decoded) != 0) {
+            return -1;
+        }
+        frame->depth_width = decoded.width;
+        frame->depth_height = decoded.height;
+        frame->depth = decoded.rows;
+        frame->depth_stride_bytes = decoded.width * 2;
+        return 0;
+    }
+    t3r_ros_image image;
+    const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
+    wrong = wrong != NULL ? wrong : t3r_message_depth(&image, frame);
+    if (wrong != NULL) {
+        return fail(r, stream, message, wrong);
+    }
+    if (frame->depth != NULL) {
+        return 0;
+    }
+    uint8_t **z16 = &r->recording->depth_z16[link];
+    if (*z16 == NULL) {
+        *z16 = malloc((size_t)image.width * image.height * 2);
+        if (*z16 == NULL) {
+            return fail(r, stream, message, "out of memory");
+        }
+        t3r_message_to_z16(&image, r->recording->depth_unit_q40, *z16);
+    }
+    frame->depth = *z16;
+    return 0;
+}
+
+/* ---- the camera ---- */
+
+static int read_intrinsics(const reading *r, size_t link, const t3r_frame *frame, t3r_camera *camera)
+{
+    const t3r_stream *stream = &r->recording->streams[r->recording->camera_info];
+    const t3r_indexed_message *message = &stream->messages[link];
+    t3r_ros_camera_info info;
+    const char *wrong = t3r_ros_read_camera_info(message->data, message->bytes, &info);
+    if (wrong == NULL && (info.width != frame->width || info.height != frame->height)) {
+        char what[96];
+        t3r_reason(what, sizeof what,
+                   "width x height is %" PRIu32 "x%" PRIu32 ", that of the image %" PRIu32 "x%" PRIu32, info.width,
+                   info.height, frame->width, frame->height);
+        return fail(r, stream, message, what);
+    }
+    wrong = wrong != NULL ? wrong : t3r_message_intrinsics(&info, camera);
+    return wrong == NULL ? 0 : fail(r, stream, message, wrong);
+}
+
+static int read_pose(const reading *r, size_t link, t3r_camera *camera)
+{
+    const t3r_stream *stream = &r->recording->streams[r->recording->pose];
+    const t3r_indexed_message *message = &stream->messages[link];
+    t3r_ros_pose pose;
+    const char *wrong = t3r_ros_read_pose(stream->type, message->data, message->bytes, &pose);
+    wrong = wrong != NULL ? wrong : t3r_message_pose(&pose, camera);
+    return wrong == NULL ? 0 : fail(r, stream, message, wrong);
+}
+
+int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *error,
+                        size_t error_bytes)
+{
+    if (index >= recording->pairing.frames) {
+        t3r_reason(error, error_bytes, "frame %" PRIu32 ": the recording holds %" PRIu32, index,
+                   recording->pairing.frames);
+        return T3R_CAPTURE_FAILED;
+    }
+    t3r_spill_rest(&recording->spill); /* of frames that were read before; their addresses stay */
+    const reading r = {recording, index, error, error_bytes};
+    const t3r_frame_links *links = &recording->links[index];
+    const t3r_set_pose *set =
+        recording->set_poses != NULL && recording->set_poses[index].set ? &recording->set_poses[index] : NULL;
+    t3r_capture_frame result = {
+        .index = index,
+        .sequence = index,
+        .stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
+        .depth_stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
+        .has_pose = links->pose != T3R_NO_MESSAGE || set != NULL,
+        .has_intrinsics = links->camera_info != T3R_NO_MESSAGE,
+    };
+    if (read_colour(&r, &result.frame) != 0 ||
+        (links->depth != T3R_NO_MESSAGE && read_depth(&r, links->depth, &result.frame) != 0) ||
+        (result.has_intrinsics && read_intrinsics(&r, links->camera_info, &result.frame, &result.camera) != 0) ||
+        (result.has_pose && set == NULL && read_pose(&r, links->pose, &result.camera) != 0)) {
+        return T3R_CAPTURE_FAILED;
+    }
+    if (links->depth != T3R_NO_MESSAGE) {
+        result.depth_stamp_ns = recording->streams[recording->depth].messages[links->depth].stamp_ns;
+    }
+    if (set != NULL) {
+        memcpy(result.camera.position_q32, set->position_q32, sizeof set->position_q32);
+        memcpy(result.camera.rotation_q30, set->rotation_q30, sizeof set->rotation_q30);
+    }
+    *frame = result;
+    return T3R_CAPTURE_FRAME;
+}
+
+int t3r_recording_set_pose(t3r_recording *recording, uint32_t index, const int64_t position_q32[3],
+                           const int32_t rotation_q30[4])
+{
+    if (index >= recording->pairing.frames) {
+        return -1;
+    }
+    if (recording->set_poses == NULL) {
+        recording->set_poses = calloc(recording->pairing.frames, sizeof *recording->set_poses);
+        if (recording->set_poses == NULL) {
+            return -1;
+        }
+    }
+    t3r_set_pose *pose = &recording->set_poses[index];
+    pose->set = true;
+    memcpy(pose->position_q32, position_q32, sizeof pose->position_q32);
+    memcpy(pose->rotation_q30, rotation_q30, sizeof pose->rotation_q30);
+    return 0;
+}

@@ -1,0 +1,105 @@
+/* What the files of the recording reader share: the messages of a recording by stream, and each frame's companions. */
+#ifndef T3R_PLATFORM_RECORDING_INDEX_H
+#define T3R_PLATFORM_RECORDING_INDEX_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "mcap/mcap_reader.h"
+#include "recording.h"
+#include "messages/ros_messages.h"
+
+#define T3R_NO_MESSAGE SIZE_MAX
+#define T3R_NOTE_BYTES 512
+#define T3R_UNUSED_BYTES 128
+
+typedef struct t3r_indexed_message {
+    const uint8_t *data;
+    size_t bytes;
+    int64_t stamp_ns; /* header.stamp, or the log time where that is 0 ("unset"); |stamp_ns| <= 2^62 */
+    size_t order;     /* in its stream */
+    t3r_mcap_place place;
+} t3r_indexed_message;
+
+typedef enum t3r_stream_role {
+    T3R_STREAM_OTHER,
+    T3R_STREAM_COLOUR,
+    T3R_STREAM_DEPTH,
+    T3R_STREAM_CAMERA_INFO,
+    T3R_STREAM_POSE,
+    T3R_STREAM_TF
+} t3r_stream_role;
+
+/* A channel. Messages are kept for the types that trim3r reads; others are counted. */
+typedef struct t3r_stream {
+    t3r_text name;        /* the topic as the file holds it; points into its bytes */
+    char *topic, *schema; /* printable copies */
+    uint16_t schema_id;
+    t3r_ros_type type; /* T3R_ROS_TYPE_COUNT = none that trim3r reads */
+    t3r_stream_role role;
+    bool compressed, mono;             /* of images */
+    t3r_text frame_id, child_frame_id; /* of its first message that is kept; point into the file's bytes */
+    t3r_stream_use use;
+    char unused[T3R_UNUSED_BYTES]; /* why it is not read */
+    uint64_t count;
+    int64_t first_ns, last_ns;
+    t3r_indexed_message *messages;
+    size_t kept, capacity;
+} t3r_stream;
+
+/* Indices into the messages of the streams chosen; T3R_NO_MESSAGE = none. */
+typedef struct t3r_frame_links {
+    size_t depth, pose, camera_info, depth_camera_info;
+} t3r_frame_links;
+
+/* What t3r_recording_set_pose() gave a frame. */
+typedef struct t3r_set_pose {
+    bool set;
+    int64_t position_q32[3];
+    int32_t rotation_q30[4];
+} t3r_set_pose;
+
+struct t3r_recording {
+    uint8_t *file;   /* owned, or NULL */
+    t3r_spill spill; /* a large file, and chunks for which there is no room in memory */
+    t3r_mcap_chunks chunks;
+    uint64_t file_bytes;
+    t3r_mcap_end cut;
+
+    t3r_stream *streams;
+    size_t stream_count, stream_capacity;
+    size_t colour, depth, pose, camera_info, depth_camera_info; /* the streams chosen, or T3R_NO_STREAM */
+    size_t transforms;                                          /* the first of them */
+    int64_t pair_ns;
+    t3r_image_decoder decoder; /* decode NULL: none */
+
+    t3r_frame_links *links;  /* one a message of the colour stream */
+    uint8_t **depth_z16;     /* one a message of the depth stream: its samples as Z16 once asked for, when the file
+                                holds them otherwise */
+    t3r_set_pose *set_poses; /* one a message of the colour stream; NULL until one is set */
+    t3r_pairing_info pairing;
+
+    uint32_t bits_epoch;
+    uint64_t depth_unit_q40;
+    char clock[64];
+    t3r_triplet *triplets;
+    uint32_t triplet_count;
+    char note[T3R_NOTE_BYTES];
+    const char *import_reason, *import_pose_reason; /* static texts; NULL: none */
+};
+
+/* Adds a remark to the note. */
+void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* recording_inspect.c: reads a message of a known type; its stamp, and on the stream what the first ones say of it:
+ * role, frames. NULL, or what is wrong. *usable: it may belong to a frame. */
+const char *t3r_recording_inspect(t3r_recording *recording, t3r_stream *stream, const uint8_t *bytes, size_t count,
+                                  int64_t *stamp_ns, bool *usable);
+
+/* recording_choice.c: chooses the streams. 0, or -1 with a reason where a topic that was named is not there. */
+int t3r_recording_choose(t3r_recording *recording, const t3r_recording_choice *choice, char *error, size_t error_bytes);
+
+/* recording_pairing.c: links each colour image to its companions. 0, or -1 when memory is out. */
+int t3r_recording_pair(t3r_recording *recording);
+
+#endif

@@ -1,8 +1,0 @@
-#include "hash_bytes.h"
-
-#include "core/hash.h"
-
-uint64_t t3r_hash_bytes_c(uint64_t hash, const uint8_t *bytes, size_t count)
-{
-    return t3r_hash_bytes(hash, bytes, count);
-}

@@ -1,0 +1,100 @@
+#include "kernels/place.h"
+
+#include <stdbool.h>
+
+#include "core/fixed.h"
+
+/* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
+#define LEVEL_MOST 6
+
+/* The least of q + 2 h t + a t^2 for t in [0, length], all Q18 but the length in pixels. */
+static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
+{
+    int64_t t_q8 = h >= 0 ? 0 : length << 8;
+    if (h < 0 && a > 0) {
+        t_q8 = T3R_MIN((-h * 256) / a, t_q8);
+    }
+    return q + ((h * t_q8) >> 7) + ((a * t_q8 * t_q8) >> 16);
+}
+
+/* Whether the quadratic of a splat whose centre lies elsewhere falls below LEVEL_MOST anywhere on eight columns of a
+ * tile (pixel centres). It is convex, so its least value there is on an edge. Within its box a splat is at most
+ * 2^14.6 px away: half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
+static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
+{
+    const int64_t width = T3R_LANES - 1, height = T3R_TILE_SIDE - 1;
+    int64_t left = ((int64_t)x << 12) - s->x_q12, top = ((int64_t)y << 12) - s->y_q12;
+    int64_t right = left + (width << 12), bottom = top + (height << 12);
+    int64_t a = s->a_q30 >> 12, c = s->c_q30 >> 12;
+    int64_t least = INT64_MAX;
+    for (int corner = 0; corner < 2; corner++) { /* top left, then bottom right */
+        int64_t dx = corner == 0 ? left : right, dy = corner == 0 ? top : bottom;
+        int64_t hx = (s->a_q30 * dx + s->b_q30 * dy) >> 24, hy = (s->b_q30 * dx + s->c_q30 * dy) >> 24;
+        int64_t q = (hx * dx + hy * dy) >> 12;
+        int64_t sign = corner == 0 ? 1 : -1;
+        least = T3R_MIN(least, least_along(q, sign * hx, a, width));
+        least = T3R_MIN(least, least_along(q, sign * hy, c, height));
+    }
+    return least < (int64_t)LEVEL_MOST << 18;
+}
+
+/* The quadratic about the group's first pixel. With the columns touched it is below 885 there (the root of 6 and the
+ * group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.3; the centre is less than 2^14.6
+ * px away: the two products of q sum to less than 2^62.8. */
+static void place_group(const t3r_splat *s, uint32_t x, uint32_t y, uint32_t group, t3r_tile_splat *out)
+{
+    int64_t dx = ((int64_t)x << 12) - s->x_q12, dy = ((int64_t)y << 12) - s->y_q12;
+    int64_t hx_q30 = t3r_round_shift64(s->a_q30 * dx + s->b_q30 * dy, 12);
+    int64_t hy_q30 = t3r_round_shift64(s->b_q30 * dx + s->c_q30 * dy, 12);
+    out->group[group].q = (int32_t)t3r_round_shift64(hx_q30 * dx + hy_q30 * dy, 25);
+    out->group[group].gx = (int32_t)t3r_round_shift64(hx_q30, 12);
+    out->group[group].gy = (int32_t)t3r_round_shift64(hy_q30, 12);
+}
+
+/* Whether a centre lies within T3R_SMALL_SPLAT pixels of the tile, along one axis. */
+static bool is_near(int32_t centre_q12, uint32_t tile)
+{
+    int32_t offset = centre_q12 - (int32_t)(tile << 12);
+    return offset >= -(T3R_SMALL_SPLAT << 12) && offset <= (T3R_SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12;
+}
+
+void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
+{
+    const uint32_t x0 = T3R_MAX(s->x0, left) - left, x1 = T3R_MIN(s->x1, left + T3R_TILE_SIDE - 1) - left;
+    const bool wide = x1 - x0 >= T3R_LANES;
+    for (int i = 0; i < 3; i++) {
+        out->colour_q7[i] = s->colour_q7[i];
+    }
+    out->column = (uint8_t)(wide ? 0 : T3R_MIN(x0, (uint32_t)T3R_TILE_SIDE - T3R_LANES));
+    out->groups = wide ? T3R_TILE_GROUPS : 1;
+    out->first = (uint8_t)(T3R_MAX(s->y0, top) - top);
+    out->last = (uint8_t)(T3R_MIN(s->y1, top + T3R_TILE_SIDE - 1) - top);
+    out->x0 = (uint8_t)x0;
+    out->x1 = (uint8_t)x1;
+}
+
+void t3r_place(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
+{
+    const bool small = is_near(s->x_q12, left) && is_near(s->y_q12, top);
+    t3r_splat_span(s, left, top, out);
+    out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
+    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12);
+    out->c = t3r_round_shift32(s->c_q30 >> 1, 12);
+    out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
+    out->drawn = 0;
+    for (uint32_t group = 0; group < out->groups; group++) {
+        const uint32_t x = left + out->column + group * T3R_LANES;
+        if (small || touches(s, x, top)) {
+            place_group(s, x, top, group, out);
+            out->drawn |= (uint8_t)(1 << group);
+        }
+    }
+}
+
+void t3r_place_c(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t left, uint32_t top,
+                 t3r_tile_splat *placed)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        t3r_place(&splats[list[i]], left, top, &placed[i]);
+    }
+}

@@ -1,0 +1,13 @@
+/* Projection, eight Gaussians at a time. */
+#include "kernels/x86/variants.h"
+
+#ifdef T3R_X86
+
+#include "lanes_avx2.h"
+
+#define PROJECT t3r_project_avx2
+#include "kernels/lanes/project_lanes.h"
+
+#else
+typedef int t3r_no_project_avx2; /* a file may not be empty */
+#endif

@@ -1,0 +1,16 @@
+/* A packed layer, four outputs a vector. */
+#include "kernels/x86/variants.h"
+
+#ifdef T3R_X86
+
+#include "lanes_sse41.h"
+
+#include "kernels/lanes/pairs_of_taps.h"
+
+#define PACK_LAYER t3r_pack_layer_sse41
+#define CONVOLVE_PACKED t3r_convolve_packed_sse41
+#include "kernels/lanes/convolve_packed_lanes.h"
+
+#else
+typedef int t3r_no_convolve_packed_sse41; /* a file may not be empty */
+#endif

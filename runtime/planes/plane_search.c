@@ -1,0 +1,254 @@
+#include "plane_search.h"
+
+#include "core/cut.h"
+#include "core/memory.h"
+#include "stereo/stereo.h"
+
+/* A hypothesis takes as many matched pixels as a quarter of its window has. */
+#define LEAST_FILLED 4
+/* A plane takes as many samples as a hundredth of all there are. */
+#define LEAST_SHARE 100
+/* What lies on a plane is within six times the mean deviation of the median cell from its own plane. */
+#define DEVIATIONS 6
+/* But at least within a 128th of the mean: steps of depth are coarse near by. */
+#define LEAST_WITHIN 128
+/* Least squares over what lies on a plane, so many times: the first sums are those of a few cells. */
+#define FITS 3
+/* What is added to the spread of places is one in so many of a cell's square pixels. */
+#define SPREAD 128
+/* Samples that a fit takes */
+#define LEAST_SAMPLES 8
+
+typedef struct search {
+    const t3r_view *view;
+    int32_t middle_x, middle_y;
+    uint32_t cell, columns, rows; /* side of a cell; their numbers */
+    int32_t spread_q4;
+    uint32_t samples, hypotheses;
+    t3r_surface_sums *sums;
+    t3r_plane_hypothesis *hypothesis;
+    t3r_plane_sample *sample;
+} search;
+
+/* One over the depth of a matched pixel, 0 of others */
+static int32_t matched_inverse(const t3r_view *view, size_t i)
+{
+    const bool matched = view->depth[i] != 0 && view->match_confidence[i] >= T3R_STEREO_LEAST;
+    return matched ? (int32_t)t3r_inverse_depth_q30(view->depth[i]) : 0;
+}
+
+static void add(t3r_surface_sums *s, int32_t x, int32_t y, int64_t i)
+{
+    /* at most 2^19.2 pixels, |x| at most 2^11, i at most 2^24 */
+    s->n++;
+    s->x += x;
+    s->y += y;
+    s->i += i;
+    s->xx += x * x;
+    s->xy += x * y;
+    s->yy += y * y;
+    s->xi += x * i;
+    s->yi += y * i;
+}
+
+static void merge(t3r_surface_sums *to, const t3r_surface_sums *s)
+{
+    to->n += s->n;
+    to->x += s->x;
+    to->y += s->y;
+    to->i += s->i;
+    to->xx += s->xx;
+    to->xy += s->xy;
+    to->yy += s->yy;
+    to->xi += s->xi;
+    to->yi += s->yi;
+}
+
+/* The plane through the sums' mean with their slopes; n > 0. */
+static t3r_plane plane_through(const t3r_surface_sums *s, int32_t spread_q4)
+{
+    const t3r_surface_slope slope = t3r_surface_slope_of(s, spread_q4);
+    const int64_t mean_q8 = t3r_round_div64(s->i * 256, s->n);
+    /* slopes below 2^31, sums of places below 2^31 */
+    const int64_t back_q8 = t3r_round_div64(s->x * slope.x_q8, s->n) + t3r_round_div64(s->y * slope.y_q8, s->n);
+    return (t3r_plane){mean_q8 - back_q8, slope.x_q8, slope.y_q8};
+}
+
+static void sum_cells(const search *s)
+{
+    const t3r_view *view = s->view;
+    memset(s->sums, 0, (size_t)s->columns * s->rows * sizeof *s->sums);
+    for (uint32_t v = 0; v < view->height; v++) {
+        for (uint32_t u = 0; u < view->width; u++) {
+            const int32_t inverse = matched_inverse(view, (size_t)v * view->width + u);
+            if (inverse != 0) {
+                add(&s->sums[v / s->cell * s->columns + u / s->cell], (int32_t)u - s->middle_x,
+                    (int32_t)v - s->middle_y, inverse);
+            }
+        }
+    }
+}
+
+/* The middle of every square of the sampling grid */
+static void take_samples(search *s)
+{
+    const t3r_view *view = s->view;
+    const uint32_t step = (T3R_MAX(view->width, view->height) + T3R_PLANE_SAMPLES - 1) / T3R_PLANE_SAMPLES;
+    s->samples = 0;
+    for (uint32_t v = step / 2; v < view->height; v += step) {
+        for (uint32_t u = step / 2; u < view->width; u += step) {
+            s->sample[s->samples++] =
+                (t3r_plane_sample){(int16_t)((int32_t)u - s->middle_x), (int16_t)((int32_t)v - s->middle_y),
+                                   matched_inverse(view, (size_t)v * view->width + u)};
+        }
+    }
+}
+
+/* How far a cell's pixels, `count` of which are matched, are from its plane, their mean, Q30 + 8 */
+static uint32_t deviation_q8(const search *s, uint32_t column, uint32_t row, int64_t count, const t3r_plane *plane)
+{
+    const t3r_view *view = s->view;
+    int64_t sum = 0; /* at most 2^16 pixels, each counted as at most 2^32 */
+    for (uint32_t v = row * s->cell; v < view->height && v < (row + 1) * s->cell; v++) {
+        for (uint32_t u = column * s->cell; u < view->width && u < (column + 1) * s->cell; u++) {
+            const int64_t inverse = matched_inverse(view, (size_t)v * view->width + u);
+            if (inverse != 0) {
+                const int64_t off =
+                    inverse * 256 - t3r_plane_at_q8(plane, (int32_t)u - s->middle_x, (int32_t)v - s->middle_y);
+                sum += T3R_MIN(t3r_abs64(off), (int64_t)T3R_INVERSE_MOST * 256);
+            }
+        }
+    }
+    return (uint32_t)T3R_MIN(t3r_round_div64(sum, count), (int64_t)UINT32_MAX);
+}
+
+static void insert(uint32_t *rising, uint32_t count, uint32_t value)
+{
+    uint32_t place = count;
+    for (; place > 0 && rising[place - 1] > value; place--) {
+        rising[place] = rising[place - 1];
+    }
+    rising[place] = value;
+}
+
+/* Hypotheses of all windows that are matched well enough; returns the median cell's deviation. */
+static int64_t suppose(search *s, uint32_t *deviations)
+{
+    uint32_t cells = 0;
+    s->hypotheses = 0;
+    for (uint32_t side = 1; side <= 3; side++) {
+        for (uint32_t row = 0; row + side <= s->rows; row++) {
+            for (uint32_t column = 0; column + side <= s->columns; column++) {
+                t3r_surface_sums sums = {0};
+                for (uint32_t k = 0; k < side * side; k++) {
+                    merge(&sums, &s->sums[(row + k / side) * s->columns + column + k % side]);
+                }
+                if (LEAST_FILLED * sums.n < (int64_t)(side * side) * s->cell * s->cell) {
+                    continue;
+                }
+                const t3r_plane plane = plane_through(&sums, s->spread_q4);
+                s->hypothesis[s->hypotheses++] = (t3r_plane_hypothesis){plane, 0};
+                if (side == 1) {
+                    insert(deviations, cells++, deviation_q8(s, column, row, sums.n, &plane));
+                }
+            }
+        }
+    }
+    return cells > 0 ? deviations[cells / 2] : 0;
+}
+
+/* How far what lies on a plane may be from it, Q30 + 8. */
+static int64_t width_of(const search *s, int64_t deviation)
+{
+    int64_t n = 0, sum = 0;
+    for (uint32_t k = 0; k < s->columns * s->rows; k++) {
+        n += s->sums[k].n;
+        sum += s->sums[k].i;
+    }
+    return T3R_MAX(DEVIATIONS * deviation, n > 0 ? t3r_round_div64(sum, n) * 256 / LEAST_WITHIN : 0);
+}
+
+/* Counts samples on a hypothesis. */
+static uint32_t count_on(const search *s, const t3r_plane *plane, int64_t within_q8)
+{
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < s->samples; k++) {
+        const t3r_plane_sample *at = &s->sample[k];
+        count += at->inverse != 0 && t3r_plane_holds(plane, at->x, at->y, (int64_t)at->inverse * 256, within_q8);
+    }
+    return count;
+}
+
+static const t3r_plane_hypothesis *best_of(const search *s)
+{
+    const t3r_plane_hypothesis *best = s->hypothesis;
+    for (uint32_t h = 1; h < s->hypotheses; h++) {
+        best = s->hypothesis[h].samples > best->samples ? &s->hypothesis[h] : best;
+    }
+    return best;
+}
+
+static t3r_plane refined(const search *s, t3r_plane plane, int64_t within_q8)
+{
+    for (uint32_t fit = 0; fit < FITS; fit++) {
+        t3r_surface_sums sums = {0};
+        for (uint32_t k = 0; k < s->samples; k++) {
+            const t3r_plane_sample *at = &s->sample[k];
+            if (at->inverse != 0 && t3r_plane_holds(&plane, at->x, at->y, (int64_t)at->inverse * 256, within_q8)) {
+                add(&sums, at->x, at->y, at->inverse);
+            }
+        }
+        plane = sums.n < LEAST_SAMPLES ? plane : plane_through(&sums, 1);
+    }
+    return plane;
+}
+
+/* Takes the samples on a plane from all hypotheses: each sample is taken once. */
+static void take_away(const search *s, const t3r_plane *plane, int64_t within_q8)
+{
+    for (uint32_t k = 0; k < s->samples; k++) {
+        t3r_plane_sample *at = &s->sample[k];
+        const int64_t inverse_q8 = (int64_t)at->inverse * 256;
+        if (inverse_q8 == 0 || !t3r_plane_holds(plane, at->x, at->y, inverse_q8, within_q8)) {
+            continue;
+        }
+        for (uint32_t h = 0; h < s->hypotheses; h++) {
+            s->hypothesis[h].samples -= t3r_plane_holds(&s->hypothesis[h].plane, at->x, at->y, inverse_q8, within_q8);
+        }
+        at->inverse = 0;
+    }
+}
+
+void t3r_search_planes(const t3r_view *view, void *work, t3r_planes *found)
+{
+    const size_t cells = (size_t)T3R_PLANE_CELLS * T3R_PLANE_CELLS;
+    t3r_cut cut = t3r_cut_of(work, T3R_PLANE_SEARCH_BYTES);
+    search s = {.view = view, .middle_x = (int32_t)view->width / 2, .middle_y = (int32_t)view->height / 2};
+    s.cell = (T3R_MAX(view->width, view->height) + T3R_PLANE_CELLS - 1) / T3R_PLANE_CELLS;
+    s.spread_q4 = (int32_t)T3R_MAX(16 * s.cell * s.cell / SPREAD, 1);
+    s.columns = (view->width + s.cell - 1) / s.cell;
+    s.rows = (view->height + s.cell - 1) / s.cell;
+    s.sums = t3r_take(&cut, cells * sizeof *s.sums);
+    s.hypothesis = t3r_take(&cut, T3R_PLANE_HYPOTHESES * sizeof *s.hypothesis);
+    s.sample = t3r_take(&cut, (size_t)T3R_PLANE_SAMPLES * T3R_PLANE_SAMPLES * sizeof *s.sample);
+    uint32_t *deviations = t3r_take(&cut, cells * sizeof *deviations);
+    sum_cells(&s);
+    take_samples(&s);
+    found->count = 0;
+    found->within_q8 = width_of(&s, suppose(&s, deviations));
+    for (uint32_t h = 0; h < s.hypotheses; h++) {
+        s.hypothesis[h].samples = count_on(&s, &s.hypothesis[h].plane, found->within_q8);
+    }
+    while (s.hypotheses > 0 && found->count < T3R_PLANES_MOST) {
+        const t3r_plane_hypothesis *best = best_of(&s);
+        if (LEAST_SHARE * best->samples < s.samples) {
+            break;
+        }
+        t3r_plane plane = refined(&s, best->plane, found->within_q8);
+        if (count_on(&s, &plane, found->within_q8) < best->samples) {
+            plane = best->plane;
+        }
+        take_away(&s, &plane, found->within_q8);
+        found->plane[found->count++] = plane;
+    }
+}

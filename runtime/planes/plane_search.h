@@ -1,0 +1,67 @@
+/* The planes that a view's matched pixels lie on (SPEC.md, "Stereo: planes"). */
+#ifndef T3R_PLANE_SEARCH_H
+#define T3R_PLANE_SEARCH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/fixed.h"
+#include "state/views.h"
+#include "stereo/surface.h"
+
+#define T3R_PLANES_MOST 8u
+
+/* Cells and samples that a view's longer side is cut into: hypotheses come from cells and are counted on samples. */
+#define T3R_PLANE_CELLS 16u
+#define T3R_PLANE_SAMPLES 64u
+
+/* One over depth, Q30 + 8, at the picture's middle and how it grows a pixel to the right and down */
+typedef struct t3r_plane {
+    int64_t middle_q8;
+    int32_t x_q8, y_q8;
+} t3r_plane;
+
+/* At a place counted from the picture's middle, Q30 + 8 */
+static inline int64_t t3r_plane_at_q8(const t3r_plane *plane, int32_t x, int32_t y)
+{
+    return plane->middle_q8 + (int64_t)plane->x_q8 * x + (int64_t)plane->y_q8 * y;
+}
+
+static inline bool t3r_plane_holds(const t3r_plane *plane, int32_t x, int32_t y, int64_t inverse_q8, int64_t within_q8)
+{
+    return t3r_abs64(inverse_q8 - t3r_plane_at_q8(plane, x, y)) <= within_q8;
+}
+
+typedef struct t3r_plane_sample {
+    int16_t x, y;
+    int32_t inverse; /* 0: not matched, or on a plane that was found */
+} t3r_plane_sample;
+
+typedef struct t3r_plane_hypothesis {
+    t3r_plane plane;
+    uint32_t samples; /* that lie on it */
+} t3r_plane_hypothesis;
+
+/* Windows of one, four and nine cells */
+#define T3R_PLANE_HYPOTHESES                                                                                           \
+    (T3R_PLANE_CELLS * T3R_PLANE_CELLS + (T3R_PLANE_CELLS - 1) * (T3R_PLANE_CELLS - 1) +                               \
+     (T3R_PLANE_CELLS - 2) * (T3R_PLANE_CELLS - 2))
+
+/* Bytes of work, aligned to 64 */
+#define T3R_PLANE_SEARCH_BYTES                                                                                         \
+    (T3R_UP_(T3R_PLANE_CELLS * T3R_PLANE_CELLS * sizeof(t3r_surface_sums)) +                                           \
+     T3R_UP_(T3R_PLANE_HYPOTHESES * sizeof(t3r_plane_hypothesis)) +                                                    \
+     T3R_UP_(T3R_PLANE_SAMPLES * T3R_PLANE_SAMPLES * sizeof(t3r_plane_sample)) +                                       \
+     T3R_UP_(T3R_PLANE_CELLS * T3R_PLANE_CELLS * sizeof(uint32_t)))
+
+typedef struct t3r_planes {
+    uint32_t count;
+    t3r_plane plane[T3R_PLANES_MOST]; /* those of more samples first */
+    int64_t within_q8;                /* how far one over depth may be from its plane */
+} t3r_planes;
+
+/* The planes with the most matched pixels, each without those of the ones before it. At most
+ * 2 T3R_PLANE_HYPOTHESES T3R_PLANE_SAMPLES^2 comparisons. */
+void t3r_search_planes(const t3r_view *view, void *work, t3r_planes *found);
+
+#endif

@@ -1,0 +1,25 @@
+/* This program's bench and another's, in turns: how many times as fast each stage is. */
+#ifndef TRIM3R_TOOLS_BENCH_AGAINST_H
+#define TRIM3R_TOOLS_BENCH_AGAINST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "bench/bench_stages.h"
+
+#define BENCH_TURNS_MOST 101u
+#define BENCH_PASSED_MOST 8
+
+typedef struct bench_contest {
+    const char *other;                     /* its file */
+    const bool *chosen;                    /* of bench_stages */
+    uint32_t turns;                        /* 1..BENCH_TURNS_MOST */
+    const char *passed[BENCH_PASSED_MOST]; /* options for both, as "--threads=2" */
+    uint32_t passed_count;
+    bool json;
+} bench_contest;
+
+/* Prints the table or one JSON object. An exit status of cli.h, after a message. */
+int bench_against(const bench_contest *contest);
+
+#endif

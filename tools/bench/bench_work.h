@@ -1,0 +1,82 @@
+/* The piece of work that the bench times: two 256x256 views of the built-in room, the scenes that are made of them, and
+ * what single stages need besides. */
+#ifndef TRIM3R_TOOLS_BENCH_WORK_H
+#define TRIM3R_TOOLS_BENCH_WORK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "cli/options/processor_options.h"
+#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/replay/stage_times.h"
+#include "bench/bench_points.h"
+#include "planning/bench_views.h"
+#include "host/threads.h"
+
+#define BENCH_SIDE 256u
+#define BENCH_VIEWS 2u
+#define BENCH_POINTS (BENCH_SIDE * BENCH_SIDE * BENCH_VIEWS)
+#define BENCH_TRIMMED_TO 13107u /* 10 % of them */
+#define BENCH_MORE_PATHS 8u     /* of stereo, beside the four of the pipeline */
+#define BENCH_WAVELET_WIDTH 1280u
+#define BENCH_WAVELET_HEIGHT 720u
+
+/* What the stages work on, each built before the first of them that needs it. */
+typedef enum bench_scene {
+    BENCH_FULL,
+    BENCH_TRIMMED,
+    BENCH_UNREFINED,
+    BENCH_LEARNED,
+    BENCH_REFINED,
+    BENCH_MATCHED,
+    BENCH_HEADED,
+    BENCH_NETWORKED,
+    BENCH_SCENES,
+    BENCH_NO_SCENE = BENCH_SCENES
+} bench_scene;
+
+typedef struct bench_settings {
+    const char *points; /* a file of points to cluster in the place of the room's; NULL = none */
+    const char *head;   /* of BENCH_HEADED and BENCH_NETWORKED */
+    t3r_depth depth;    /* of the scenes */
+    processor_options processor;
+} bench_settings;
+
+typedef struct bench_work {
+    t3r_depth source;
+    bench_views views;
+    t3r_camera viewpoint;
+    struct {
+        t3r_runtime *runtime;
+        void *arena;
+    } scene[BENCH_SCENES];
+    t3r_gaussian *start; /* what each measured pass of refinement begins with: its scene as it was built */
+    void *stereo_work;   /* of a pair matched with eight paths */
+    int8_t *features;    /* that the network alone runs on */
+    chosen_head small, measured;
+    t3r_threads *threads;
+    uint32_t cpu; /* features that kernels may use */
+    t3r_kernels kernels;
+    uint8_t *view; /* where renders go */
+    uint8_t *wavelet_rgb;
+    uint8_t *wavelet_planes;
+    int16_t *wavelet_plane, *wavelet_work;
+    uint16_t *texture;
+    uint8_t *copy_from, *copy_to;
+    double multiply_adds; /* that bench_multiply_adds() did last */
+    bench_points points;
+} bench_work;
+
+/* An exit status of cli.h after a message; bench_work_close() in any case. */
+int bench_work_open(bench_work *work, const bench_settings *settings);
+/* The scene is built, unless it was before. */
+t3r_status bench_work_open_scene(bench_work *work, bench_scene scene);
+/* Once more from the frames. */
+t3r_status bench_work_build(bench_work *work, bench_scene scene);
+/* The same, with the time that each stage takes; hashes are collected, so the whole takes longer. */
+t3r_status bench_work_profile(bench_work *work, bench_scene scene, stage_times *times);
+/* Seen from between the context views. */
+t3r_status bench_work_draw(bench_work *work, bench_scene scene);
+void bench_work_close(bench_work *work);
+
+#endif

@@ -1,0 +1,16 @@
+/* A small build and view of the built-in room, whose hash is the same on every machine. */
+#ifndef TRIM3R_TOOLS_SELF_CHECK_H
+#define TRIM3R_TOOLS_SELF_CHECK_H
+
+#include <stdint.h>
+
+#include "cli/options/processor_options.h"
+
+/* Of this version: stages of the build chained, then the view. */
+#define SELF_CHECK_HASH UINT64_C(0x19c8fc0d8cc14f74)
+
+/* Two views of 64x64 with depth, 400 Gaussians by the head `small`, four passes of refinement, and the view between
+ * them, with these threads and features of the processor. CLI_OK, or an exit status after a message. */
+int self_check_run(const processor_options *processor, uint64_t *hash);
+
+#endif

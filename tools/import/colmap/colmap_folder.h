@@ -1,0 +1,17 @@
+/* Folders with a sparse model of COLMAP. */
+#ifndef TRIM3R_TOOLS_COLMAP_FOLDER_H
+#define TRIM3R_TOOLS_COLMAP_FOLDER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "import/folders/posed_frame.h"
+
+bool colmap_folder_is(const char *directory);
+
+/* The model's images with a pose, in the order of their names, and depth: pictures where there are some and
+ * options->depth_unit is given, else COLMAP's own dense maps. The scale is that of the model. */
+int colmap_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                       size_t error_bytes);
+
+#endif

@@ -1,0 +1,54 @@
+/* One frame of a posed folder as the recording holds it: decoded, cropped, resized, its camera adapted. */
+#ifndef TRIM3R_TOOLS_IMPORT_FRAME_H
+#define TRIM3R_TOOLS_IMPORT_FRAME_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "pictures/picture.h"
+#include "import/folders/posed_frame.h"
+#include "recording/recording.h"
+
+/* A rectangle of whole pixels. */
+typedef struct import_crop {
+    uint32_t x, y, width, height;
+} import_crop;
+
+/* The largest centred rectangle of width:height in a picture; its other side is rounded to the nearest pixel, an odd
+ * pixel left over goes to the right or bottom. */
+import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height, uint32_t width, uint32_t height);
+
+/* The same share of a picture of another resolution, each edge at the nearest pixel. */
+import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_width, uint32_t from_height,
+                                      uint32_t width, uint32_t height);
+
+/* The sides of the frame's picture, by its header. 0, or -1 with "picture: what" in error[]. */
+int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                        size_t error_bytes);
+
+/* The same of its depth, which it has. */
+int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                      size_t error_bytes);
+
+/* Whether the frame's picture, or its depth, can be read: 0, or -1 with "picture: what" in error[]. */
+int import_check_picture(const char *directory, const posed_frame *frame, char *error, size_t error_bytes);
+int import_check_depth(const char *directory, const posed_frame *frame, char *error, size_t error_bytes);
+
+/* The camera of what is left after cropping and resizing to width x height. */
+void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, uint32_t width, uint32_t height);
+
+typedef struct import_buffers {
+    uint8_t *rgb;
+    uint16_t *depth;
+} import_buffers;
+
+/* Reads and adapts a frame: to width x height, or as it is when width is 0. depth: 16-bit steps made elsewhere, in the
+ * place of the frame's own (NULL: those), which the call uses up. `out` (all but its stamp) points into
+ * `buffers`, which import_buffers_free() releases in either case. 0, or with "picture: what" in error[]
+ * IMPORT_UNREADABLE where the picture or its depth cannot be read, and -1 for all else. */
+enum { IMPORT_UNREADABLE = 1 };
+int import_frame(const char *directory, const posed_frame *frame, picture *depth, uint32_t width, uint32_t height,
+                 import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes);
+void import_buffers_free(import_buffers *buffers);
+
+#endif

@@ -1,0 +1,105 @@
+#include "import/folders/posed_folder.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "host/file_bytes.h"
+#include "import/colmap/colmap_folder.h"
+#include "import/depth/exr_depth.h"
+#include "import/folders/picture_folder.h"
+#include "import/folders/pose_files.h"
+#include "import/folders/record3d.h"
+#include "import/folders/transforms_json.h"
+#include "import/folders/tum_rgbd.h"
+#include "mcap/reader_limits.h"
+#include "host/reason.h"
+
+static bool has_transforms(const char *directory)
+{
+    return posed_exists(directory, "transforms.json");
+}
+
+static bool has_tum_lists(const char *directory)
+{
+    return posed_exists(directory, "rgb.txt") || posed_exists(directory, "groundtruth.txt");
+}
+
+static int read_transforms(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                           size_t error_bytes)
+{
+    if (options != NULL && options->intrinsics_count != 0) {
+        return t3r_reason(error, error_bytes,
+                          "%s/transforms.json: has its own intrinsics; --intrinsics is for folders without", directory);
+    }
+    char *path = posed_path(directory, "transforms.json");
+    if (path == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    size_t bytes = 0;
+    char reason[512];
+    char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &bytes, error, error_bytes);
+    int status = -1;
+    if (text != NULL) {
+        status = transforms_json_parse(text, bytes, options, out, reason, sizeof reason);
+        if (status != 0) {
+            t3r_reason(error, error_bytes, "%s: %s", path, reason);
+        }
+    }
+    free(text);
+    free(path);
+    return status;
+}
+
+/* Every kind of folder, in the order in which they are looked for. */
+static const struct folder_kind {
+    const char *name;
+    bool (*is)(const char *directory);
+    int (*read)(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                size_t error_bytes);
+} kinds[] = {
+    {"transforms.json", has_transforms, read_transforms},  {"TUM RGB-D", has_tum_lists, tum_rgbd_read},
+    {"COLMAP", colmap_folder_is, colmap_folder_read},      {"Record3D", record3d_is, record3d_read},
+    {"pose files", pose_files_are_there, pose_files_read},
+};
+
+/* Any kind of folder may name depth that is OpenEXR. */
+static void mark_exr(posed_folder *folder)
+{
+    const double length = folder->exr_length != 0 ? folder->exr_length : 1;
+    for (uint32_t i = 0; i < folder->frame_count; i++) {
+        posed_frame *frame = &folder->frames[i];
+        if (frame->depth != NULL && exr_depth_is(frame->depth)) {
+            frame->depth_raw = (raw_depth){.kind = RAW_DEPTH_EXR, .unit = folder->depth_unit / length};
+            frame->no_depth = 0; /* floats have their own ways to say that */
+        }
+    }
+}
+
+int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                      size_t error_bytes)
+{
+    memset(out, 0, sizeof *out);
+    if (!posed_exists(directory, ".")) {
+        return t3r_reason(error, error_bytes, "%s: %s", directory, errno == ENOTDIR ? "not a folder" : strerror(errno));
+    }
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (kinds[i].is(directory)) {
+            int status = kinds[i].read(directory, options, out, error, error_bytes);
+            out->kind = kinds[i].name;
+            mark_exr(out);
+            return status;
+        }
+    }
+    if (options != NULL && options->without_poses) {
+        return picture_folder_read(directory, options, out, error, error_bytes);
+    }
+    return t3r_reason(
+        error, error_bytes,
+        "%s: neither transforms.json nor rgb.txt and groundtruth.txt (TUM RGB-D) nor a model of COLMAP nor poses as "
+        "texts (ScanNet, 7-Scenes) are there",
+        directory);
+}

@@ -1,0 +1,29 @@
+/* A recording once more, with frames that were changed. */
+#ifndef TRIM3R_TOOLS_POSED_RECORDING_H
+#define TRIM3R_TOOLS_POSED_RECORDING_H
+
+#include <stdio.h>
+
+#include "cli/options/recording_options.h"
+#include "recording/recording.h"
+
+/* Changes frame `index` before it is written; what it points to stays valid until the next call. 0, or -1 with a
+ * reason. */
+typedef struct posed_recording_change {
+    int (*make)(void *user, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes);
+    void *user;
+} posed_recording_change;
+
+typedef struct posed_recording_totals {
+    uint32_t frames, depth_frames, posed_frames;
+    uint64_t bytes; /* the caller's to fill in */
+} posed_recording_totals;
+
+/* Writes all frames of a recording, with the poses that they have now (t3r_recording_set_pose()), in the format and
+ * with the stamps, depth, intrinsics and triplets that they came with. source: what the new one says that it was made
+ * from. 0, or -1 with "frame N: why" in error[]. */
+int posed_recording_write(const t3r_recording *recording, const char *source, const recording_options *stored,
+                          const posed_recording_change *change, FILE *stream, posed_recording_totals *totals,
+                          char *error, size_t error_bytes);
+
+#endif

@@ -1,0 +1,301 @@
+/* TUM RGB-D folders: rgb.txt, depth.txt (optional) and groundtruth.txt, whose lines begin with a time in seconds.
+ * Depth is the nearest in time within 20 ms; poses are interpolated between neighbours at most 100 ms apart, else
+ * the nearest within 20 ms is taken, else the picture is left out. */
+#include "import/folders/tum_rgbd.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "host/file_bytes.h"
+#include "import/poses/pose_between.h"
+#include "mcap/reader_limits.h"
+#include "host/reason.h"
+#include "trim3r.h"
+
+#define NEAR_SECONDS 0.020
+#define BRACKET_SECONDS 0.100
+#define DEPTH_STEPS_PER_METRE 5000.0
+
+typedef struct stamped {
+    double stamp;
+    char *name;                /* picture lists */
+    double pose[POSE_NUMBERS]; /* the trajectory: tx ty tz qx qy qz qw */
+} stamped;
+
+typedef struct stamped_list {
+    stamped *items;
+    size_t count;
+} stamped_list;
+
+typedef struct intrinsics_row {
+    const char *set;
+    double numbers[9]; /* fx fy cx cy k1 k2 p1 p2 k3 */
+} intrinsics_row;
+
+/* Colour camera calibrations as published with the data set,
+ * https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats (formerly vision.in.tum.de), "Intrinsic Camera
+ * Calibration of the Kinect". Pixel (0, 0) is the centre of the top-left pixel. freiburg3 is rectified. */
+static const intrinsics_row published[] = {
+    {"freiburg1", {517.3, 516.5, 318.6, 255.3, 0.2624, -0.9531, -0.0054, 0.0026, 1.1633}},
+    {"freiburg2", {520.9, 521.0, 325.1, 249.7, 0.2312, -0.7849, -0.0033, -0.0001, 0.9172}},
+    {"freiburg3", {535.4, 539.2, 320.1, 247.6, 0, 0, 0, 0, 0}},
+};
+
+static void list_free(stamped_list *list)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        free(list->items[i].name);
+    }
+    free(list->items);
+    *list = (stamped_list){0};
+}
+
+static int by_stamp(const void *a, const void *b)
+{
+    double x = ((const stamped *)a)->stamp, y = ((const stamped *)b)->stamp;
+    return (x > y) - (x < y);
+}
+
+/* A finite number at *text, which moves behind it. */
+static bool take_number(char **text, double *value)
+{
+    char *end;
+    *value = strtod(*text, &end);
+    if (end == *text || !isfinite(*value)) {
+        return false;
+    }
+    *text = end;
+    return true;
+}
+
+/* One line to an item: NULL, or what is wrong with it. */
+static const char *parse_line(char *line, bool poses, stamped *item)
+{
+    char *at = line;
+    if (!take_number(&at, &item->stamp)) {
+        return "no time stamp";
+    }
+    if (!poses) {
+        char *name = strtok_r(at, " \t\r", &at);
+        if (name == NULL) {
+            return "no file name";
+        }
+        item->name = strdup(name);
+        return item->name != NULL ? NULL : "out of memory";
+    }
+    double norm = 0;
+    for (int i = 0; i < POSE_NUMBERS; i++) {
+        if (!take_number(&at, &item->pose[i])) {
+            return "not 'time tx ty tz qx qy qz qw' in finite numbers";
+        }
+        if (i < 3 && !(fabs(item->pose[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
+            return T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more");
+        }
+        norm += i >= 3 ? item->pose[i] * item->pose[i] : 0;
+    }
+    return norm >= 0.81 && norm <= 1.21 ? NULL : "the quaternion's norm is not 1 within 0.1";
+}
+
+static int parse_list(const char *path, char *text, bool poses, stamped_list *list, char *error, size_t error_bytes)
+{
+    size_t room = 0;
+    size_t line_number = 0;
+    for (char *line = text, *next; line != NULL; line = next) {
+        line_number++;
+        next = strchr(line, '\n');
+        if (next != NULL) {
+            *next++ = '\0';
+        }
+        line += strspn(line, " \t\r");
+        if (*line == '\0' || *line == '#') {
+            continue;
+        }
+        if (list->count == (poses ? T3R_LIMIT_POSES : T3R_LIMIT_PICTURES)) {
+            return t3r_reason(error, error_bytes, "%s: line %zu: more than %d entries", path, line_number,
+                              poses ? T3R_LIMIT_POSES : T3R_LIMIT_PICTURES);
+        }
+        if (list->count == room) {
+            room = room == 0 ? 1024 : room * 2;
+            stamped *grown = realloc(list->items, room * sizeof *grown);
+            if (grown == NULL) {
+                return t3r_reason(error, error_bytes, "%s: out of memory", path);
+            }
+            list->items = grown;
+        }
+        stamped *item = &list->items[list->count];
+        *item = (stamped){0};
+        const char *wrong = parse_line(line, poses, item);
+        if (wrong != NULL) {
+            return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, line_number, wrong);
+        }
+        list->count++;
+    }
+    if (list->count == 0) {
+        return t3r_reason(error, error_bytes, "%s: no entry", path);
+    }
+    qsort(list->items, list->count, sizeof *list->items, by_stamp);
+    return 0;
+}
+
+static int read_list(const char *directory, const char *name, bool poses, stamped_list *list, char *error,
+                     size_t error_bytes)
+{
+    char *path = posed_path(directory, name);
+    if (path == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    size_t bytes = 0;
+    char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &bytes, error, error_bytes);
+    int status = text == NULL ? -1 : parse_list(path, text, poses, list, error, error_bytes);
+    free(text);
+    free(path);
+    return status;
+}
+
+/* Index of the first item that is not before `stamp`; count when all are. */
+static size_t lower_bound(const stamped_list *list, double stamp)
+{
+    size_t low = 0, high = list->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (list->items[middle].stamp < stamp) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+/* The nearest item within NEAR_SECONDS; the earlier of two equally near. */
+static const stamped *nearest(const stamped_list *list, double stamp)
+{
+    size_t after = lower_bound(list, stamp);
+    const stamped *best = NULL;
+    double gap = NEAR_SECONDS;
+    for (size_t i = after > 0 ? after - 1 : 0; i <= after && i < list->count; i++) {
+        double here = fabs(list->items[i].stamp - stamp);
+        if (here <= gap && (best == NULL || here < gap)) {
+            best = &list->items[i];
+            gap = here;
+        }
+    }
+    return best;
+}
+
+static bool find_pose(const stamped_list *trajectory, double stamp, posed_frame *frame)
+{
+    size_t after = lower_bound(trajectory, stamp);
+    if (after > 0 && after < trajectory->count) {
+        const stamped *a = &trajectory->items[after - 1], *b = &trajectory->items[after];
+        double gap = b->stamp - a->stamp;
+        if (gap <= BRACKET_SECONDS) {
+            double pose[POSE_NUMBERS];
+            pose_between(a->pose, b->pose, (stamp - a->stamp) / gap, pose);
+            pose_split(pose, frame->position, frame->rotation);
+            return true;
+        }
+    }
+    const stamped *only = nearest(trajectory, stamp);
+    if (only != NULL) {
+        pose_split(only->pose, frame->position, frame->rotation);
+    }
+    return only != NULL;
+}
+
+static int find_intrinsics(const char *directory, const posed_folder_options *options, posed_intrinsics *out,
+                           char *error, size_t error_bytes)
+{
+    double numbers[9] = {0};
+    if (options != NULL && options->intrinsics_count != 0) {
+        memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
+    } else {
+        char *full = realpath(directory, NULL);
+        const intrinsics_row *row = NULL;
+        for (size_t i = 0; full != NULL && i < sizeof published / sizeof *published; i++) {
+            const char *base = strrchr(full, '/');
+            if (strstr(base != NULL ? base : full, published[i].set) != NULL) {
+                row = &published[i];
+            }
+        }
+        free(full);
+        if (row == NULL) {
+            return t3r_reason(error, error_bytes,
+                              "%s: intrinsics unknown: a TUM RGB-D folder does not hold them, and its name has none of "
+                              "freiburg1, freiburg2, freiburg3; give --intrinsics fx,fy,cx,cy[,k1,k2,p1,p2,k3] "
+                              "(525,525,319.5,239.5 is the data set's own default)",
+                              directory);
+        }
+        memcpy(numbers, row->numbers, sizeof numbers);
+    }
+    *out = posed_intrinsics_of(numbers);
+    return 0;
+}
+
+static int join(const stamped_list *colour, const stamped_list *depth, const stamped_list *trajectory,
+                const posed_intrinsics *intrinsics, bool without_poses, posed_folder *out, char *error,
+                size_t error_bytes)
+{
+    if (colour->count > T3R_LIMIT_FRAMES) {
+        return t3r_reason(error, error_bytes, "rgb.txt: more than %d pictures", T3R_LIMIT_FRAMES);
+    }
+    out->frames = calloc(colour->count, sizeof *out->frames);
+    if (out->frames == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    for (size_t i = 0; i < colour->count; i++) {
+        posed_frame *frame = &out->frames[out->frame_count];
+        frame->posed = find_pose(trajectory, colour->items[i].stamp, frame);
+        if (!frame->posed && !without_poses) {
+            if (text_list_add(&out->left_out, "%s: no pose near it in time", colour->items[i].name) != 0) {
+                return t3r_reason(error, error_bytes, "out of memory");
+            }
+            continue;
+        }
+        out->frame_count++;
+        if (!frame->posed) {
+            frame->rotation[0] = 1;
+        }
+        const stamped *measured = nearest(depth, colour->items[i].stamp);
+        frame->intrinsics = *intrinsics;
+        frame->image = strdup(colour->items[i].name);
+        frame->depth = measured != NULL ? strdup(measured->name) : NULL;
+        if (frame->image == NULL || (measured != NULL && frame->depth == NULL)) {
+            return t3r_reason(error, error_bytes, "out of memory");
+        }
+    }
+    if (out->frame_count == 0) {
+        return t3r_reason(error, error_bytes, "groundtruth.txt: no pose within 20 ms of any picture of rgb.txt");
+    }
+    return 0;
+}
+
+int tum_rgbd_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                  size_t error_bytes)
+{
+    memset(out, 0, sizeof *out);
+    out->depth_unit = 1 / DEPTH_STEPS_PER_METRE;
+    out->depth_unit_given = true;
+    posed_intrinsics intrinsics;
+    stamped_list colour = {0}, depth = {0}, trajectory = {0};
+    int status = find_intrinsics(directory, options, &intrinsics, error, error_bytes);
+    if (status == 0) {
+        status = read_list(directory, "rgb.txt", false, &colour, error, error_bytes);
+    }
+    bool without_poses = options != NULL && options->without_poses;
+    if (status == 0 && (!without_poses || posed_exists(directory, "groundtruth.txt"))) {
+        status = read_list(directory, "groundtruth.txt", true, &trajectory, error, error_bytes);
+    }
+    if (status == 0 && posed_exists(directory, "depth.txt")) {
+        status = read_list(directory, "depth.txt", false, &depth, error, error_bytes);
+    }
+    if (status == 0) {
+        status = join(&colour, &depth, &trajectory, &intrinsics, without_poses, out, error, error_bytes);
+    }
+    list_free(&colour);
+    list_free(&depth);
+    list_free(&trajectory);
+    return status;
+}

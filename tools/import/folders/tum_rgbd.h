@@ -1,0 +1,13 @@
+/* TUM RGB-D lists. */
+#ifndef TRIM3R_TOOLS_TUM_RGBD_H
+#define TRIM3R_TOOLS_TUM_RGBD_H
+
+#include <stddef.h>
+
+#include "import/folders/posed_frame.h"
+
+/* The three lists of a TUM RGB-D folder. */
+int tum_rgbd_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                  size_t error_bytes);
+
+#endif

@@ -1,0 +1,25 @@
+#include "import/poses/matrix_text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *matrix_text_parse(const char *text, double numbers[MATRIX_NUMBERS_MOST], uint32_t *count)
+{
+    *count = 0;
+    for (;;) {
+        char *end;
+        text += strspn(text, " \t\r\n,");
+        if (*text == '\0') {
+            return NULL;
+        }
+        if (*count == MATRIX_NUMBERS_MOST) {
+            return "more than 16 numbers";
+        }
+        numbers[*count] = strtod(text, &end);
+        if (end == text || strchr(" \t\r\n,", *end) == NULL) { /* the end of the text is one of these, too */
+            return "a word that is no number";
+        }
+        ++*count;
+        text = end;
+    }
+}

@@ -1,0 +1,201 @@
+/* The options that build, eval, replay and bench share. */
+#include "reconstruction/reconstruction.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "cli/files/file_options.h"
+#include "cli/options/option_values.h"
+#include "reconstruction/options/head_option.h"
+#include "reconstruction/options/option_names.h"
+#include "reconstruction/options/settings.h"
+
+enum {
+    KEY_GAUSSIANS = 256,
+    KEY_KEEP,
+    KEY_METHOD,
+    KEY_MASK_HEAD,
+    KEY_CONTEXT,
+    KEY_ITERATIONS,
+    KEY_AUTO,
+    KEY_MAX_LOSS,
+    KEY_IMPORTANCE,
+    KEY_WORKING,
+    KEY_ARENA,
+    KEY_PRESET
+};
+
+static const struct argp_option settings[] = {
+    {NULL, 0, NULL, 0, "Settings:", 20},
+    {"preset", KEY_PRESET, "EFFORT", 0,
+     "head and refinement for so much work: fast, balanced, best; settings behind it change it", 0},
+    {"auto", KEY_AUTO, NULL, 0,
+     "take no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, and at most the "
+     "budget (all valid points)",
+     0},
+    {"max-loss", KEY_MAX_LOSS, "DB", 0,
+     "decibels that --auto may lose on new views, against a scene of all valid points; 0.01..10 (0.5)", 0},
+    {"importance", KEY_IMPORTANCE, "PNG,PNG,...", OPTION_READS | OPTION_LIST | OPTION_FOLDER,
+     "importance of each pixel, for --allocate given: a grey picture for each context view, in their order and of the "
+     "working size, or a folder with <frame>.png; the brightest points are retained; 8-bit pictures are spread evenly "
+     "within a level",
+     0},
+    {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
+    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "iterations of the methods with +finetune, 1..100000 (200)", 0},
+    {"arena", KEY_ARENA, "BYTES[K|M|G]|min|full", 0,
+     "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
+    {0},
+};
+
+void reconstruction_parse_arena(struct argp_state *state, const char *text, reconstruction_options *o)
+{
+    if (strcmp(text, "full") == 0) {
+        o->arena = ARENA_FULL;
+    } else if (strcmp(text, "min") == 0) {
+        o->arena = ARENA_MIN;
+    } else {
+        if (!bytes_of_text(text, &o->arena_bytes)) {
+            argp_error(state, "--arena takes a number of bytes, with K, M or G behind it or not, min or full, not '%s'",
+                       text);
+        }
+        o->arena = ARENA_BYTES;
+    }
+}
+
+static void check_settings(struct argp_state *state, reconstruction_options *o)
+{
+    if ((o->config.allocation == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
+        argp_error(state, "--allocate given and --importance belong together");
+    }
+    if (o->points_of != NULL) {
+        if (o->config.depth != T3R_DEPTH_SENSOR) {
+            argp_error(state, "--depth belongs to a recording's own points, not to --prune");
+        }
+        o->config.fit_passes =
+            0; /* means of Gaussians lie off the surface, and views disagree about them in any case */
+    }
+    if (o->max_loss > 0 && !o->automatic) {
+        argp_error(state, "--max-loss belongs to --auto");
+    }
+    if (!o->automatic) {
+        return;
+    }
+    if (o->config.refinements == 0) {
+        argp_error(state, "--auto measures where refinement does: it needs --refine 1 or more");
+    }
+    if (o->max_loss <= 0) {
+        o->max_loss = RECONSTRUCTION_MAX_LOSS;
+    }
+}
+
+static error_t parse_setting(int key, char *arg, struct argp_state *state)
+{
+    reconstruction_options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->config;
+        state->child_inputs[1] = &o->processor;
+        state->child_inputs[2] = &o->head;
+        return 0;
+    case KEY_ITERATIONS:
+        o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
+        return 0;
+    case KEY_IMPORTANCE:
+        o->importance = arg;
+        return 0;
+    case KEY_WORKING:
+        option_size(state, "working", arg, T3R_MIN_SIDE, &o->config.width, &o->config.height);
+        return 0;
+    case KEY_ARENA:
+        reconstruction_parse_arena(state, arg, o);
+        return 0;
+    case KEY_PRESET:
+        option_effort(state, "preset", arg, &o->config, &o->head);
+        return 0;
+    case KEY_AUTO:
+        o->automatic = true;
+        return 0;
+    case KEY_MAX_LOSS:
+        o->max_loss = option_decimal(state, "max-loss", arg, 0.01, 10);
+        return 0;
+    case ARGP_KEY_END:
+        check_settings(state, o);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child settings_children[] = {
+    {.argp = &settings_argp}, {.argp = &processor_argp}, {.argp = &head_argp}, {0}};
+
+const struct argp reconstruction_settings_argp = {
+    .options = settings, .parser = parse_setting, .children = settings_children};
+
+static const struct argp_option budget[] = {
+    {NULL, 0, NULL, 0, "Views and budget:", 10},
+    {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, 1..16 (the first two)", 0},
+    {"gaussians", KEY_GAUSSIANS, "Z", 0, "number of Gaussians: exactly Z, or all valid points where there are fewer",
+     0},
+    {"keep", KEY_KEEP, "P%", 0, "percent of the valid points to retain, rounded half up to a number", 0},
+    {"method", KEY_METHOD, "METHOD", 0, METHOD_HELP, 0},
+    {"mask-head", KEY_MASK_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
+     "head whose unpruned scene a rival with +head ranks (the one of --head)", 0},
+    {0},
+};
+
+static error_t parse_budget(int key, char *arg, struct argp_state *state)
+{
+    reconstruction_options *o = state->input;
+    uint32_t count;
+    switch (key) {
+    case KEY_CONTEXT:
+        option_frames(state, "context", arg, o->context, &o->context_count);
+        return 0;
+    case KEY_GAUSSIANS:
+        o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);
+        return 0;
+    case KEY_KEEP:
+        option_keep(state, arg, &o->keep_percent, 1, &count);
+        return 0;
+    case KEY_METHOD:
+        o->method = method_named((list_word){arg, strlen(arg)});
+        if (o->method == METHOD_COUNT) {
+            argp_error(state, "--method does not know '%s'; there are %s", arg, METHOD_NAMES);
+        }
+        return 0;
+    case KEY_MASK_HEAD:
+        o->mask_head = option_head(state, "mask-head", arg);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->gaussians != 0 && o->keep_percent > 0) {
+            argp_error(state, "--gaussians and --keep exclude each other");
+        }
+        if (o->mask_head != NULL && !method_ranks_for_head(o->method)) {
+            argp_error(state, "--mask-head belongs to a rival with +head");
+        }
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp reconstruction_budget_argp = {.options = budget, .parser = parse_budget};
+
+/* ---- both ------------------------------------------------------------------------------------------------------ */
+
+static error_t parse_both(int key, char *arg, struct argp_state *state)
+{
+    (void)arg;
+    if (key == ARGP_KEY_INIT) {
+        state->child_inputs[0] = state->child_inputs[1] = state->input;
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const struct argp_child both[] = {
+    {.argp = &reconstruction_budget_argp}, {.argp = &reconstruction_settings_argp}, {0}};
+
+const struct argp reconstruction_argp = {.parser = parse_both, .children = both};

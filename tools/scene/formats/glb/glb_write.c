@@ -1,0 +1,234 @@
+#include <cjson/cJSON.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "host/bytes.h"
+#include "host/reason.h"
+#include "scene/formats/byte_codes.h"
+#include "scene/formats/glb/glb.h"
+#include "scene/formats/little_floats.h"
+
+/* One attribute behind the other, COLOR_0 last: what programs that do not know Gaussians draw, as points. */
+typedef struct glb_layout {
+    uint32_t count;
+    uint32_t attributes; /* without COLOR_0 */
+    double low[3], high[3];
+} glb_layout;
+
+enum { SHORTS_BYTES = 8, COLOUR_BYTES = 4 };
+
+/* Rotations are four shorts, all else floats. */
+static uint32_t bytes_of(uint32_t attribute)
+{
+    return attribute == GLB_ROTATION ? SHORTS_BYTES : 4 * glb_components(attribute);
+}
+
+static uint64_t binary_bytes(const glb_layout *layout)
+{
+    uint64_t each = COLOUR_BYTES;
+    for (uint32_t i = 0; i < layout->attributes; i++) {
+        each += bytes_of(i);
+    }
+    return each * layout->count;
+}
+
+/* ---- JSON -------------------------------------------------------------------------------------------------------- */
+
+static void add_numbers(cJSON *object, const char *name, const double values[3])
+{
+    cJSON *array = cJSON_AddArrayToObject(object, name);
+    for (int i = 0; i < 3; i++) {
+        cJSON_AddItemToArray(array, cJSON_CreateNumber((double)(float)values[i]));
+    }
+}
+
+/* The accessor of the next attribute, and its view. */
+static void add_attribute(cJSON *views, cJSON *accessors, cJSON *attributes, const char *name, const char *type,
+                          int component, double offset, double bytes, const glb_layout *layout)
+{
+    cJSON *view = cJSON_CreateObject(), *accessor = cJSON_CreateObject();
+    cJSON_AddNumberToObject(view, "buffer", 0);
+    cJSON_AddNumberToObject(view, "byteOffset", offset);
+    cJSON_AddNumberToObject(view, "byteLength", bytes);
+    cJSON_AddNumberToObject(view, "target", 34962); /* vertex attributes */
+    cJSON_AddNumberToObject(accessor, "bufferView", cJSON_GetArraySize(views));
+    cJSON_AddNumberToObject(accessor, "componentType", component);
+    cJSON_AddNumberToObject(accessor, "count", layout->count);
+    cJSON_AddStringToObject(accessor, "type", type);
+    if (component != GLB_FLOAT) {
+        cJSON_AddTrueToObject(accessor, "normalized");
+    }
+    if (strcmp(name, "POSITION") == 0) {
+        add_numbers(accessor, "min", layout->low);
+        add_numbers(accessor, "max", layout->high);
+    }
+    cJSON_AddNumberToObject(attributes, name, cJSON_GetArraySize(accessors));
+    cJSON_AddItemToArray(views, view);
+    cJSON_AddItemToArray(accessors, accessor);
+}
+
+static void add_attributes(cJSON *root, cJSON *attributes, const glb_layout *layout)
+{
+    static const char *const types[] = {[1] = "SCALAR", [3] = "VEC3", [4] = "VEC4"};
+    cJSON *views = cJSON_AddArrayToObject(root, "bufferViews"), *accessors = cJSON_AddArrayToObject(root, "accessors");
+    double offset = 0;
+    for (uint32_t i = 0; i < layout->attributes; i++) {
+        char name[GLB_NAME_BYTES];
+        const double bytes = (double)bytes_of(i) * layout->count;
+        add_attribute(views, accessors, attributes, glb_attribute_name(i, name), types[glb_components(i)],
+                      i == GLB_ROTATION ? GLB_SHORT : GLB_FLOAT, offset, bytes, layout);
+        offset += bytes;
+    }
+    add_attribute(views, accessors, attributes, "COLOR_0", "VEC4", GLB_UBYTE, offset,
+                  (double)COLOUR_BYTES * layout->count, layout);
+}
+
+/* The one object of an array. */
+static cJSON *only_item(cJSON *object, const char *array)
+{
+    cJSON *item = cJSON_CreateObject();
+    cJSON_AddItemToArray(cJSON_AddArrayToObject(object, array), item);
+    return item;
+}
+
+/* NULL: out of memory. */
+static char *make_json(const glb_layout *layout)
+{
+    const int none = 0;
+    cJSON *root = cJSON_CreateObject(), *item = cJSON_AddObjectToObject(root, "asset");
+    cJSON_AddStringToObject(item, "version", "2.0");
+    cJSON_AddStringToObject(item, "generator", "trim3r");
+    cJSON_AddItemToArray(cJSON_AddArrayToObject(root, "extensionsUsed"), cJSON_CreateString(GLB_EXTENSION));
+    cJSON_AddNumberToObject(root, "scene", 0);
+    item = only_item(root, "scenes");
+    cJSON_AddItemToObject(item, "nodes", cJSON_CreateIntArray(&none, 1));
+    item = only_item(root, "nodes");
+    cJSON_AddNumberToObject(item, "mesh", 0);
+    item = only_item(root, "buffers");
+    cJSON_AddNumberToObject(item, "byteLength", (double)binary_bytes(layout));
+    item = only_item(root, "meshes");
+    item = only_item(item, "primitives");
+    cJSON_AddNumberToObject(item, "mode", 0); /* points */
+    add_attributes(root, cJSON_AddObjectToObject(item, "attributes"), layout);
+    item = cJSON_AddObjectToObject(cJSON_AddObjectToObject(item, "extensions"), GLB_EXTENSION);
+    cJSON_AddStringToObject(item, "kernel", "ellipse");
+    cJSON_AddStringToObject(item, "colorSpace", "srgb_rec709_display");
+    char *text = cJSON_PrintUnformatted(root);
+    cJSON_Delete(root);
+    return text;
+}
+
+/* ---- numbers ----------------------------------------------------------------------------------------------------- */
+
+static void put_attribute(const scene_row *row, uint32_t attribute, uint8_t *out)
+{
+    const double opacity = scene_row_opacity(row);
+    double scale[3];
+    for (int i = 0; i < 3; i++) {
+        scale[i] = exp(row->log_scale[i]);
+    }
+    if (attribute == GLB_ROTATION) {
+        for (int i = 0; i < 4; i++) { /* x y z w */
+            t3r_store_le16(out + 2 * i, (uint16_t)(int16_t)nearbyint(32767 * row->rotation[(i + 1) % 4]));
+        }
+        return;
+    }
+    const double *values = attribute == GLB_POSITION   ? row->position
+                           : attribute == GLB_SCALE    ? scale
+                           : attribute == GLB_OPACITY  ? &opacity
+                           : attribute == GLB_HARMONIC ? row->harmonic
+                                                       : row->rest[attribute - GLB_REST];
+    for (uint32_t i = 0; i < glb_components(attribute); i++) {
+        store_float(out + 4 * i, values[i]);
+    }
+}
+
+/* COLOR_0 is linear light; what screens show is sRGB. */
+static double linear_light(double shown)
+{
+    return shown <= 0.04045 ? shown / 12.92 : pow((shown + 0.055) / 1.055, 2.4);
+}
+
+static void put_colour(const scene_row *row, uint8_t *out)
+{
+    for (int i = 0; i < 3; i++) {
+        out[i] = byte_of(255 * linear_light(fmin(fmax(scene_row_colour(row, i), 0), 1)));
+    }
+    out[3] = byte_of(255 * scene_row_opacity(row));
+}
+
+/* All numbers, by one pass over the scene; free() them. NULL: out of memory. */
+static uint8_t *make_numbers(const scene_source *source, const glb_layout *layout)
+{
+    uint8_t *bytes = malloc((size_t)binary_bytes(layout) + 1);
+    for (uint32_t i = 0; i < layout->count && bytes != NULL; i++) {
+        scene_row row;
+        uint8_t *at = bytes;
+        scene_source_row(source, i, &row);
+        for (uint32_t attribute = 0; attribute < layout->attributes; attribute++) {
+            put_attribute(&row, attribute, at + (size_t)i * bytes_of(attribute));
+            at += (size_t)layout->count * bytes_of(attribute);
+        }
+        put_colour(&row, at + (size_t)i * COLOUR_BYTES);
+    }
+    return bytes;
+}
+
+static glb_layout layout_of(const scene_source *source)
+{
+    glb_layout layout = {.count = source->scene->count, .attributes = GLB_REST + harmonics_rest(source->degree)};
+    for (uint32_t i = 0; i < layout.count; i++) {
+        double position[3];
+        scene_source_position(source, i, position);
+        for (int axis = 0; axis < 3; axis++) {
+            layout.low[axis] = i == 0 ? position[axis] : fmin(layout.low[axis], position[axis]);
+            layout.high[axis] = i == 0 ? position[axis] : fmax(layout.high[axis], position[axis]);
+        }
+    }
+    return layout;
+}
+
+static void write_chunk_header(FILE *file, uint64_t length, uint32_t kind)
+{
+    uint8_t bytes[GLB_CHUNK_BYTES];
+    t3r_store_le32(bytes, (uint32_t)length);
+    t3r_store_le32(bytes + 4, kind);
+    fwrite(bytes, 1, sizeof bytes, file);
+}
+
+static void write_file(FILE *file, const char *json, const uint8_t *numbers, uint64_t number_bytes, uint64_t whole)
+{
+    const size_t text = strlen(json), padding = (4 - text % 4) % 4;
+    uint8_t header[GLB_HEADER_BYTES] = GLB_MAGIC;
+    t3r_store_le32(header + GLB_VERSION_AT, GLB_VERSION);
+    t3r_store_le32(header + GLB_LENGTH_AT, (uint32_t)whole);
+    fwrite(header, 1, sizeof header, file);
+    write_chunk_header(file, text + padding, GLB_JSON);
+    fwrite(json, 1, text, file);
+    fwrite("   ", 1, padding, file);
+    write_chunk_header(file, number_bytes, GLB_BINARY);
+    fwrite(numbers, 1, (size_t)number_bytes, file);
+}
+
+int glb_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
+{
+    enum { JSON_BYTES_MOST = 65536 }; /* of 20 attributes */
+    const glb_layout layout = layout_of(source);
+    const uint64_t number_bytes = binary_bytes(&layout); /* a multiple of 4, as all attributes are */
+    if (number_bytes > UINT32_MAX - JSON_BYTES_MOST) {
+        return t3r_reason(error, error_bytes, "%" PRIu64 " bytes: a .glb ends at 4 GiB", number_bytes);
+    }
+    char *json = make_json(&layout);
+    uint8_t *numbers = make_numbers(source, &layout);
+    const bool is_made = json != NULL && numbers != NULL;
+    if (is_made) {
+        const uint64_t text = (strlen(json) + 3) / 4 * 4;
+        write_file(file, json, numbers, number_bytes, GLB_HEADER_BYTES + 2 * GLB_CHUNK_BYTES + text + number_bytes);
+    }
+    free(json);
+    free(numbers);
+    return is_made ? 0 : t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", layout.count);
+}

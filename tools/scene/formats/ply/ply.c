@@ -1,0 +1,12 @@
+#include "scene/formats/ply/ply.h"
+
+#include "scene/scene_format.h"
+
+const scene_format scene_format_ply = {
+    .suffix = ".ply",
+    .magic = "ply",
+    .foreign = "byte 0: not a .ply file, nor another scene",
+    .degree = 3,
+    .parse = ply_parse,
+    .write = ply_write,
+};

@@ -1,0 +1,157 @@
+/* 3DGS .ply, binary little-endian: floats or doubles in any order, beside anything else. */
+#include "scene/formats/ply/ply.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "host/reason.h"
+#include "scene/formats/little_floats.h"
+#include "scene/formats/ply/packed_ply.h"
+#include "scene/formats/ply/ply_header.h"
+#include "scene/scene_rows.h"
+
+/* What is read of each vertex, in this order; the harmonics above degree 0 follow. */
+enum { X, Y, Z, DC_0, DC_1, DC_2, OPACITY, SCALE_0, SCALE_1, SCALE_2, ROT_0, ROT_1, ROT_2, ROT_3, WANTED_COUNT };
+static const char *const wanted[WANTED_COUNT] = {"x",      "y",       "z",       "f_dc_0",  "f_dc_1",
+                                                 "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
+                                                 "rot_0",  "rot_1",   "rot_2",   "rot_3"};
+enum { VALUES_MOST = WANTED_COUNT + 3 * HARMONICS_REST_MOST };
+
+typedef struct ply_vertices {
+    const uint8_t *rows;
+    uint64_t at; /* the byte of the file at which they begin */
+    uint32_t row_bytes;
+    uint32_t degree;
+    uint32_t value_count; /* numbers that are read of a row */
+    const ply_property *values[VALUES_MOST];
+} ply_vertices;
+
+/* ---- header --------------------------------------------------------------------------------------------- */
+
+static int find_wanted(const ply_header *header, const ply_element *vertex, const char *name, const ply_property **out,
+                       char *error, size_t error_bytes)
+{
+    const ply_property *property = ply_header_property(header, vertex, name);
+    if (property != NULL && property->kind != 'f') {
+        return t3r_reason(error, error_bytes, "property %s is not a float or double", name);
+    }
+    *out = property;
+    return 0;
+}
+
+/* f_rest_0, f_rest_1 ...: first all of red, then of green, then of blue. Those of degree 4 are passed over, and all of
+ * them where their number is that of no degree. */
+static int find_rest(const ply_header *header, const ply_element *vertex, ply_vertices *out, char *error,
+                     size_t error_bytes)
+{
+    enum { DEGREES_KNOWN = 4 };
+    const ply_property *rest[3 * ((DEGREES_KNOWN + 1) * (DEGREES_KNOWN + 1) - 1) + 1];
+    uint32_t count = 0;
+    for (; count < sizeof rest / sizeof rest[0]; count++) {
+        char name[24];
+        snprintf(name, sizeof name, "f_rest_%" PRIu32, count);
+        if (find_wanted(header, vertex, name, &rest[count], error, error_bytes) != 0) {
+            return -1;
+        }
+        if (rest[count] == NULL) {
+            break;
+        }
+    }
+    for (uint32_t degree = 1; degree <= DEGREES_KNOWN; degree++) {
+        if (count == 3 * harmonics_rest(degree)) {
+            out->degree = degree < HARMONICS_DEGREE_MOST ? degree : HARMONICS_DEGREE_MOST;
+        }
+    }
+    const uint32_t read = harmonics_rest(out->degree);
+    for (uint32_t i = 0; i < 3 * read; i++) {
+        out->values[WANTED_COUNT + i] = rest[i / read * (count / 3) + i % read];
+    }
+    out->value_count = WANTED_COUNT + 3 * read;
+    return 0;
+}
+
+static int find_values(const ply_header *header, const ply_element *vertex, ply_vertices *out, char *error,
+                       size_t error_bytes)
+{
+    for (int i = 0; i < WANTED_COUNT; i++) {
+        if (find_wanted(header, vertex, wanted[i], &out->values[i], error, error_bytes) != 0) {
+            return -1;
+        }
+        if (out->values[i] == NULL) {
+            return t3r_reason(error, error_bytes, "property %s is missing: not a file of Gaussians", wanted[i]);
+        }
+    }
+    return find_rest(header, vertex, out, error, error_bytes);
+}
+
+/* ---- vertices --------------------------------------------------------------------------------------------- */
+
+/* Exporters write the logit of opacity 1 or 0, and the logarithm of scale 0, as infinities. */
+static bool is_meant(uint32_t index, double value)
+{
+    return isfinite(value) ||
+           (isinf(value) && (index == OPACITY || (index >= SCALE_0 && index <= SCALE_2 && value < 0)));
+}
+
+static int read_vertex(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes)
+{
+    const ply_vertices *vertices = user;
+    double value[VALUES_MOST];
+    const size_t at = (size_t)index * vertices->row_bytes;
+    for (uint32_t i = 0; i < vertices->value_count; i++) {
+        const ply_property *property = vertices->values[i];
+        const uint8_t *bytes = vertices->rows + at + property->offset;
+        value[i] = property->bytes == 8 ? load_double(bytes) : load_float(bytes);
+        if (!is_meant(i, value[i])) {
+            return t3r_reason(error, error_bytes, "byte %" PRIu64 ": vertex %" PRIu32 ": %s is not a finite number",
+                              vertices->at + at + property->offset, index, property->name);
+        }
+    }
+    *row = (scene_row){.position = {value[X], value[Y], value[Z]},
+                       .harmonic = {value[DC_0], value[DC_1], value[DC_2]},
+                       .opacity_logit = value[OPACITY],
+                       .log_scale = {value[SCALE_0], value[SCALE_1], value[SCALE_2]},
+                       .rotation = {value[ROT_0], value[ROT_1], value[ROT_2], value[ROT_3]}};
+    const uint32_t rest = harmonics_rest(vertices->degree);
+    for (uint32_t i = 0; i < 3 * rest; i++) {
+        row->rest[i % rest][i / rest] = value[WANTED_COUNT + i];
+    }
+    return 0;
+}
+
+static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t count, scene_file *out, char *error,
+                          size_t error_bytes)
+{
+    const ply_element *vertex;
+    ply_vertices vertices = {0};
+    if (ply_header_rows(header, "vertex", count, &vertex, error, error_bytes) != 0 ||
+        find_values(header, vertex, &vertices, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (vertex->count == 0) {
+        return t3r_reason(error, error_bytes, "the file holds no Gaussians");
+    }
+    vertices.rows = bytes + vertex->at;
+    vertices.at = vertex->at;
+    vertices.row_bytes = vertex->row_bytes;
+    scene_rows rows = {.count = vertex->count,
+                       .has_frame = header->has_exponent && header->has_origin,
+                       .local = header->local,
+                       .frame = header->frame,
+                       .degree = vertices.degree,
+                       .read = read_vertex,
+                       .user = &vertices};
+    return scene_file_from_rows(&rows, out, error, error_bytes);
+}
+
+int ply_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+{
+    *out = (scene_file){0};
+    ply_header header;
+    if (ply_header_read(bytes, count, &header, error, error_bytes) != 0) {
+        return -1;
+    }
+    return packed_ply_is(&header) ? packed_ply_parse(&header, bytes, count, out, error, error_bytes)
+                                  : parse_vertices(&header, bytes, count, out, error, error_bytes);
+}

@@ -1,6 +1,0 @@
-#include "scene/formats/sog.h"
-
-#include "scene/scene_format.h"
-
-const scene_format scene_format_sog = {
-    .suffix = ".sog", .magic = "PK\x03\x04", .degree = 3, .parse = sog_parse, .write = sog_write};

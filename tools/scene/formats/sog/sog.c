@@ -1,0 +1,6 @@
+#include "scene/formats/sog/sog.h"
+
+#include "scene/scene_format.h"
+
+const scene_format scene_format_sog = {
+    .suffix = ".sog", .magic = "PK\x03\x04", .degree = 3, .parse = sog_parse, .write = sog_write};

@@ -1,0 +1,100 @@
+#include "scene/formats/sog/sog_harmonics.h"
+
+#include <stdlib.h>
+
+#include "scene/formats/sog/palette.h"
+#include "scene/formats/sog/sog.h"
+
+/* Entries of the palette: as many as Gaussians, or half of them; the more a Gaussian, the larger the file. */
+static uint32_t entries_of(uint32_t count)
+{
+    uint32_t entries = PALETTE_ROWS_MOST;
+    while (entries > count) {
+        entries /= 2;
+    }
+    return entries;
+}
+
+/* Coefficients as the file's axes have them. Distances do not change by a turn, so that means are turned alone. */
+static void turn(const scene_source *source, palette *made)
+{
+    for (uint32_t i = 0; i < made->rows; i++) {
+        double position[3] = {0}, rotation[4] = {1}, rest[HARMONICS_REST_MOST][3] = {{0}};
+        double *mean = made->means + (size_t)i * made->width;
+        for (uint32_t k = 0; k < made->width; k++) {
+            rest[k / 3][k % 3] = mean[k] / 4096;
+        }
+        scene_turn_apply(&source->turn, position, rotation, source->degree, rest);
+        for (uint32_t k = 0; k < made->width; k++) {
+            mean[k] = rest[k / 3][k % 3];
+        }
+    }
+}
+
+static int begin_texels(webp_texels *out, uint32_t width, uint32_t height)
+{
+    *out = (webp_texels){width, height, calloc((size_t)width * height, 4)};
+    return out->rgba != NULL ? 0 : -1;
+}
+
+/* The codebook of all means, and the picture of their indices. */
+static int fill_centroids(const palette *made, sog_harmonics *out)
+{
+    const size_t count = (size_t)made->rows * made->width;
+    const uint32_t rest = made->width / 3;
+    double *values = malloc(count * sizeof *values);
+    if (values == NULL || begin_texels(&out->centroids, SOG_CENTROIDS_A_ROW * rest,
+                                       (made->rows + SOG_CENTROIDS_A_ROW - 1) / SOG_CENTROIDS_A_ROW) != 0) {
+        free(values);
+        return -1;
+    }
+    for (size_t i = 0; i < count; i++) {
+        values[i] = made->means[i];
+    }
+    codebook_make(values, count, out->codebook);
+    free(values);
+    for (size_t i = 0; i < count; i++) {
+        /* a row of the picture is SOG_CENTROIDS_A_ROW entries, so that texels follow without a gap */
+        out->centroids.rgba[i / 3 * 4 + i % 3] = codebook_index(out->codebook, made->means[i]);
+        out->centroids.rgba[i / 3 * 4 + 3] = 255;
+    }
+    return 0;
+}
+
+static void fill_labels(const palette *made, const uint32_t *order, uint32_t count, webp_texels *out)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const uint16_t label = made->labels[order[i]];
+        uint8_t *texel = out->rgba + (size_t)i * 4;
+        texel[0] = (uint8_t)label;
+        texel[1] = (uint8_t)(label >> 8);
+        texel[3] = 255;
+    }
+}
+
+int sog_harmonics_make(const scene_source *source, const uint32_t *order, uint32_t width, uint32_t height,
+                       sog_harmonics *out)
+{
+    const scene_file *scene = source->scene;
+    palette made;
+    *out = (sog_harmonics){0};
+    /* behind degree 0, whose coefficients are colours */
+    if (palette_make(scene->harmonics_q12 + 3, scene->count, scene_file_harmonics_count(scene),
+                     3 * harmonics_rest(source->degree), entries_of(scene->count), &made) != 0) {
+        return -1;
+    }
+    turn(source, &made);
+    const int result = fill_centroids(&made, out) == 0 && begin_texels(&out->labels, width, height) == 0 ? 0 : -1;
+    if (result == 0) {
+        out->count = made.rows;
+        fill_labels(&made, order, scene->count, &out->labels);
+    }
+    palette_free(&made);
+    return result;
+}
+
+void sog_harmonics_free(sog_harmonics *made)
+{
+    webp_texels_free(&made->centroids);
+    webp_texels_free(&made->labels);
+}

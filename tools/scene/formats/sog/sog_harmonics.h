@@ -1,0 +1,22 @@
+/* The harmonics of a SOG that is written: a palette of coefficients, and for each Gaussian its entry. */
+#ifndef TRIM3R_TOOLS_SOG_HARMONICS_H
+#define TRIM3R_TOOLS_SOG_HARMONICS_H
+
+#include "scene/formats/sog/codebook.h"
+#include "scene/formats/sog/webp_texels.h"
+#include "scene/scene_rows.h"
+
+typedef struct sog_harmonics {
+    uint32_t count;                   /* entries of the palette */
+    webp_texels centroids;            /* of the entries: a texel each coefficient, whose bytes name codebook's values */
+    webp_texels labels;               /* a texel each Gaussian: its entry in 16 bits */
+    double codebook[CODEBOOK_VALUES]; /* ascending */
+} sog_harmonics;
+
+/* Of a source of degree 1..3 whose Gaussians stand in `order`; labels get this width and height. 0, or -1 without
+ * memory; sog_harmonics_free() is due in either case. */
+int sog_harmonics_make(const scene_source *source, const uint32_t *order, uint32_t width, uint32_t height,
+                       sog_harmonics *out);
+void sog_harmonics_free(sog_harmonics *made);
+
+#endif

@@ -1,0 +1,103 @@
+#include "scene/formats/sog/webp_texels.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "host/reason.h"
+
+void webp_texels_free(webp_texels *texels)
+{
+    free(texels->rgba);
+    *texels = (webp_texels){0};
+}
+
+#ifdef T3R_WEBP
+
+#include <webp/decode.h>
+#include <webp/encode.h>
+
+int webp_texels_read(const uint8_t *bytes, size_t count, uint64_t most, webp_texels *out, char *error,
+                     size_t error_bytes)
+{
+    int width = 0, height = 0;
+    *out = (webp_texels){0};
+    if (WebPGetInfo(bytes, count, &width, &height) == 0) {
+        return t3r_reason(error, error_bytes, "not a WebP picture");
+    }
+    const uint64_t texels = (uint64_t)width * (uint64_t)height;
+    if (texels > most) {
+        return t3r_reason(error, error_bytes, "a picture of %dx%d; at most %" PRIu64 " texels are read", width, height,
+                          most);
+    }
+    out->rgba = malloc((size_t)texels * 4);
+    if (out->rgba == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory for a picture of %dx%d", width, height);
+    }
+    if (WebPDecodeRGBAInto(bytes, count, out->rgba, (size_t)texels * 4, width * 4) == NULL) {
+        webp_texels_free(out);
+        return t3r_reason(error, error_bytes, "a damaged WebP picture");
+    }
+    out->width = (uint32_t)width;
+    out->height = (uint32_t)height;
+    return 0;
+}
+
+/* The bytes under an alpha of 0 are kept, too. */
+static int encode(const webp_texels *texels, WebPMemoryWriter *writer)
+{
+    enum { LEVEL = 6 };
+    WebPConfig config;
+    WebPPicture picture;
+    if (!WebPConfigInit(&config) || !WebPConfigLosslessPreset(&config, LEVEL) || !WebPPictureInit(&picture)) {
+        return -1;
+    }
+    config.exact = 1;
+    picture.use_argb = 1;
+    picture.width = (int)texels->width;
+    picture.height = (int)texels->height;
+    picture.writer = WebPMemoryWrite;
+    picture.custom_ptr = writer;
+    const int made =
+        WebPPictureImportRGBA(&picture, texels->rgba, 4 * (int)texels->width) && WebPEncode(&config, &picture);
+    WebPPictureFree(&picture);
+    return made ? 0 : -1;
+}
+
+int webp_texels_write(const webp_texels *texels, uint8_t **bytes, size_t *count, char *error, size_t error_bytes)
+{
+    WebPMemoryWriter writer;
+    WebPMemoryWriterInit(&writer);
+    const int result = encode(texels, &writer);
+    *bytes = result == 0 ? malloc(writer.size) : NULL;
+    *count = writer.size;
+    if (*bytes != NULL) {
+        memcpy(*bytes, writer.mem, writer.size);
+    }
+    WebPMemoryWriterClear(&writer);
+    return *bytes != NULL ? 0
+                          : t3r_reason(error, error_bytes, "a picture of %" PRIu32 "x%" PRIu32 " was not made",
+                                       texels->width, texels->height);
+}
+
+#else
+
+int webp_texels_read(const uint8_t *bytes, size_t count, uint64_t most, webp_texels *out, char *error,
+                     size_t error_bytes)
+{
+    (void)bytes;
+    (void)count;
+    (void)most;
+    *out = (webp_texels){0};
+    return t3r_reason(error, error_bytes, "this build has no libwebp");
+}
+
+int webp_texels_write(const webp_texels *texels, uint8_t **bytes, size_t *count, char *error, size_t error_bytes)
+{
+    (void)texels;
+    *bytes = NULL;
+    *count = 0;
+    return t3r_reason(error, error_bytes, "this build has no libwebp");
+}
+
+#endif

@@ -1,0 +1,246 @@
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include "host/bytes.h"
+#include "mcap/reader_limits.h"
+#include "host/reason.h"
+#include "scene/formats/byte_codes.h"
+#include "scene/formats/spz/spz.h"
+
+typedef struct spz_file {
+    spz_layout layout;
+    const uint8_t *streams[SPZ_STREAMS];
+} spz_file;
+
+uint32_t spz_stream_bytes(const spz_layout *layout, int stream)
+{
+    static const uint32_t bytes[] = {
+        [SPZ_POSITIONS] = 9, [SPZ_ALPHAS] = 1, [SPZ_COLOURS] = 3, [SPZ_SCALES] = 3, [SPZ_ROTATIONS] = 4};
+    return stream == SPZ_HARMONICS                           ? 3 * harmonics_rest(layout->degree)
+           : stream == SPZ_ROTATIONS && layout->version == 2 ? 3
+                                                             : bytes[stream];
+}
+
+/* ---- Gaussians --------------------------------------------------------------------------------------------------- */
+
+static double position_of(const uint8_t *bytes, uint32_t fraction_bits)
+{
+    const uint32_t low = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16;
+    return ldexp((double)((int32_t)(low << 8) >> 8), -(int)fraction_bits);
+}
+
+/* x y z in bytes; w is what is left. */
+static void read_three(const uint8_t *bytes, double rotation[4])
+{
+    double left = 1;
+    for (int i = 0; i < 3; i++) {
+        rotation[1 + i] = bytes[i] / 127.5 - 1;
+        left -= rotation[1 + i] * rotation[1 + i];
+    }
+    rotation[0] = sqrt(fmax(left, 0));
+}
+
+/* The index of the largest of x y z w in the highest two bits, then sign and nine bits of each of the others, the last
+ * one lowest. */
+static void read_smallest(const uint8_t *bytes, double rotation[4])
+{
+    uint32_t word = t3r_load_le32(bytes);
+    const uint32_t largest = word >> 30;
+    double left = 1;
+    for (uint32_t i = 4; i-- > 0;) {
+        if (i != largest) {
+            const double size = (word & 511) / 511.0 * M_SQRT1_2;
+            rotation[(i + 1) % 4] = (word & 512) != 0 ? -size : size;
+            left -= size * size;
+            word >>= 10;
+        }
+    }
+    rotation[(largest + 1) % 4] = sqrt(fmax(left, 0));
+}
+
+static int read_row(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes)
+{
+    (void)error;
+    (void)error_bytes;
+    const spz_file *file = user;
+    const uint8_t *at[SPZ_STREAMS];
+    for (int i = 0; i < SPZ_STREAMS; i++) {
+        at[i] = file->streams[i] + (size_t)index * spz_stream_bytes(&file->layout, i);
+    }
+    *row = (scene_row){.opacity_logit = logit_of_byte(*at[SPZ_ALPHAS])};
+    for (int i = 0; i < 3; i++) {
+        row->position[i] = position_of(at[SPZ_POSITIONS] + 3 * i, file->layout.fraction_bits);
+        row->harmonic[i] = (at[SPZ_COLOURS][i] / 255.0 - 0.5) / SPZ_COLOUR_SCALE;
+        row->log_scale[i] = at[SPZ_SCALES][i] / SPZ_SCALE_STEPS + SPZ_SCALE_LEAST;
+    }
+    (file->layout.version == 2 ? read_three : read_smallest)(at[SPZ_ROTATIONS], row->rotation);
+    const uint32_t rest = harmonics_rest(file->layout.degree);
+    for (uint32_t i = 0; i < (rest < HARMONICS_REST_MOST ? rest : HARMONICS_REST_MOST); i++) {
+        for (int channel = 0; channel < 3; channel++) {
+            row->rest[i][channel] = (at[SPZ_HARMONICS][3 * i + (uint32_t)channel] - 128) / 128.0;
+        }
+    }
+    return 0;
+}
+
+static int make_scene(spz_file *file, scene_file *out, char *error, size_t error_bytes)
+{
+    const uint32_t degree = file->layout.degree;
+    const scene_rows rows = {.count = file->layout.count,
+                             .degree = degree < HARMONICS_DEGREE_MOST ? degree : HARMONICS_DEGREE_MOST,
+                             .axes = SCENE_AXES_RUB,
+                             .read = read_row,
+                             .user = file};
+    return scene_file_from_rows(&rows, out, error, error_bytes);
+}
+
+/* ---- containers -------------------------------------------------------------------------------------------------- */
+
+/* The fields that both headers have; `packed` bytes justify the Gaussians. */
+static int read_header(const uint8_t *bytes, uint64_t packed, spz_layout *out, char *error, size_t error_bytes)
+{
+    *out = (spz_layout){.version = t3r_load_le32(bytes + SPZ_VERSION_AT),
+                        .count = t3r_load_le32(bytes + SPZ_COUNT_AT),
+                        .degree = bytes[SPZ_DEGREE_AT],
+                        .fraction_bits = bytes[SPZ_FRACTION_AT]};
+    if (out->degree > SPZ_DEGREE_MOST || out->fraction_bits > 30) {
+        return t3r_reason(error, error_bytes,
+                          "byte %d: harmonics of degree %" PRIu32 ", positions of %" PRIu32 " fraction bits",
+                          SPZ_DEGREE_AT, out->degree, out->fraction_bits);
+    }
+    if (out->count == 0 || out->count > t3r_limit_gaussians(packed)) {
+        return t3r_reason(error, error_bytes,
+                          "byte %d: %" PRIu32 " Gaussians; 1..%" PRIu64 " are read from %" PRIu64 " bytes",
+                          SPZ_COUNT_AT, out->count, t3r_limit_gaussians(packed), packed);
+    }
+    return 0;
+}
+
+static size_t whole_bytes(const spz_layout *layout)
+{
+    size_t bytes = 0;
+    for (int i = 0; i < SPZ_STREAMS; i++) {
+        bytes += (size_t)layout->count * spz_stream_bytes(layout, i);
+    }
+    return bytes;
+}
+
+/* Unpacks the streams one behind the other. */
+static int unpack_streams(const uint8_t *bytes, size_t count, spz_file *file, uint8_t *whole, char *error,
+                          size_t error_bytes)
+{
+    const uint64_t table = t3r_load_le32(bytes + SPZ_TABLE_AT);
+    const uint32_t streams = bytes[SPZ_STREAMS_AT];
+    const uint32_t needed = file->layout.degree > 0 ? SPZ_STREAMS : SPZ_HARMONICS;
+    uint64_t at = table + (uint64_t)streams * SPZ_ENTRY_BYTES;
+    if (streams < needed || table < SPZ_HEADER_BYTES || at > count) {
+        return t3r_reason(error, error_bytes, "byte %d: %" PRIu32 " streams, their table at byte %" PRIu64,
+                          SPZ_STREAMS_AT, streams, table);
+    }
+    for (uint32_t i = 0; i < needed; i++) {
+        const uint64_t packed = t3r_load_le64(bytes + table + i * SPZ_ENTRY_BYTES);
+        const size_t size = (size_t)file->layout.count * spz_stream_bytes(&file->layout, (int)i);
+        if (packed > count - at) {
+            return t3r_reason(error, error_bytes, "byte %zu: cut off in stream %" PRIu32, count, i);
+        }
+        const size_t made = ZSTD_decompress(whole, size, bytes + at, (size_t)packed);
+        if (ZSTD_isError(made) || made != size) {
+            return t3r_reason(error, error_bytes, "byte %" PRIu64 ": stream %" PRIu32 " does not unpack to %zu bytes",
+                              at, i, size);
+        }
+        file->streams[i] = whole;
+        whole += size;
+        at += packed;
+    }
+    return 0;
+}
+
+int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+{
+    spz_file file = {0};
+    *out = (scene_file){0};
+    if (count < SPZ_HEADER_BYTES || memcmp(bytes, SPZ_MAGIC, 4) != 0) {
+        return t3r_reason(error, error_bytes, "byte 0: not an .spz file");
+    }
+    if (read_header(bytes, count, &file.layout, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (file.layout.version != SPZ_VERSION) {
+        return t3r_reason(error, error_bytes, "byte %d: version %" PRIu32 "; 2, 3 and 4 are read", SPZ_VERSION_AT,
+                          file.layout.version);
+    }
+    uint8_t *whole = malloc(whole_bytes(&file.layout));
+    if (whole == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", file.layout.count);
+    }
+    file.streams[SPZ_HARMONICS] = whole;
+    int result = unpack_streams(bytes, count, &file, whole, error, error_bytes);
+    if (result == 0) {
+        result = make_scene(&file, out, error, error_bytes);
+    }
+    free(whole);
+    return result;
+}
+
+/* Exactly `size` further bytes: 0, or -1. */
+static int inflate_bytes(z_stream *stream, uint8_t *out, size_t size)
+{
+    stream->next_out = out;
+    stream->avail_out = (uInt)size; /* below 2^32: 2^24 Gaussians of 93 bytes */
+    const int status = size == 0 ? Z_OK : inflate(stream, Z_SYNC_FLUSH);
+    return (status == Z_OK || status == Z_STREAM_END) && stream->avail_out == 0 ? 0 : -1;
+}
+
+static int inflate_file(z_stream *stream, uint64_t packed, spz_file *file, uint8_t **whole, char *error,
+                        size_t error_bytes)
+{
+    uint8_t header[SPZ_OLD_HEADER_BYTES];
+    if (inflate_bytes(stream, header, sizeof header) != 0 || memcmp(header, SPZ_MAGIC, 4) != 0) {
+        return t3r_reason(error, error_bytes, "byte 0: not an .spz file within gzip");
+    }
+    if (read_header(header, packed, &file->layout, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (file->layout.version != 2 && file->layout.version != 3) {
+        return t3r_reason(error, error_bytes, "version %" PRIu32 " within gzip; 2 and 3 are read",
+                          file->layout.version);
+    }
+    const size_t size = whole_bytes(&file->layout);
+    *whole = malloc(size);
+    if (*whole == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", file->layout.count);
+    }
+    if (inflate_bytes(stream, *whole, size) != 0) {
+        return t3r_reason(error, error_bytes, "what is packed is not %zu bytes and a header", size);
+    }
+    const uint8_t *at = *whole;
+    for (int i = 0; i < SPZ_STREAMS; i++) {
+        file->streams[i] = at;
+        at += (size_t)file->layout.count * spz_stream_bytes(&file->layout, i);
+    }
+    return 0;
+}
+
+int spz_parse_gzip(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+{
+    enum { GZIP = 16, WINDOW_BITS = 15 };
+    spz_file file = {0};
+    uint8_t *whole = NULL;
+    *out = (scene_file){0};
+    z_stream stream = {.next_in = (Bytef *)(uintptr_t)bytes,
+                       .avail_in = (uInt)(count < UINT32_MAX ? count : UINT32_MAX)};
+    if (inflateInit2(&stream, GZIP + WINDOW_BITS) != Z_OK) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    int result = inflate_file(&stream, count, &file, &whole, error, error_bytes);
+    if (result == 0) {
+        result = make_scene(&file, out, error, error_bytes);
+    }
+    free(whole);
+    inflateEnd(&stream);
+    return result;
+}
