@@ -47,9 +47,9 @@ extern "C" {
 #pragma GCC visibility push(default) /* what a shared library exports */
 #endif
 
-/* The version of this header; t3r_version() is that of the library. */
+/* The version of this header; t3r_version() returns that of the library. */
 #define T3R_VERSION_MAJOR 0
-#define T3R_VERSION_MINOR 1
+#define T3R_VERSION_MINOR 2
 #define T3R_VERSION_PATCH 0
 #define T3R_VERSION T3R_TEXT_(T3R_VERSION_MAJOR) "." T3R_TEXT_(T3R_VERSION_MINOR) "." T3R_TEXT_(T3R_VERSION_PATCH)
 #define T3R_TEXT_(number) T3R_QUOTE_(number)

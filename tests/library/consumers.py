@@ -9,12 +9,10 @@ import shutil
 import sys
 import tempfile
 
-from library import CONSUMERS, HASH, ended, there
+from library import CONSUMERS, HASH, SERIES, VERSION, ended, there
 
 import proof
 from checks import check, done, run
-
-VERSION = "0.1.0"
 
 
 def prints_hash(said, hash_wanted=HASH):
@@ -36,7 +34,7 @@ def by_cmake(installed, folder):
 
 def loads(program, installed):
     """Whether the program loads the installed shared library by its versioned name."""
-    return f"libtrim3r.so.0.1 => {installed}" in run("ldd", program).stdout
+    return f"libtrim3r.so.{SERIES} => {installed}" in run("ldd", program).stdout
 
 
 def by_pkg_config(installed, folder):

@@ -6,13 +6,13 @@ import re
 import sys
 import tempfile
 
-from library import CONSUMERS, HASH, there
+from library import CONSUMERS, HASH, SERIES, VERSION, there
 
 from checks import check, done, run
 
-VERSION = "0.1.0"
+SHARED = f"libtrim3r{SERIES}"
 FILES = {
-    "libtrim3r0.1": ["lib/libtrim3r.so.0.1", f"lib/libtrim3r.so.{VERSION}", "share/sbom/libtrim3r0.1.spdx.json"],
+    SHARED: [f"lib/libtrim3r.so.{SERIES}", f"lib/libtrim3r.so.{VERSION}", f"share/sbom/{SHARED}.spdx.json"],
     "libtrim3r-dev": ["include/trim3r.h", "include/trim3r_arena.h", "include/trim3r_features.h", "include/trim3r_heads.h",
                       "include/trim3r_interface.h",
                       "lib/cmake/trim3r/trim3r-config-release.cmake", "lib/cmake/trim3r/trim3r-config-version.cmake",
@@ -23,7 +23,7 @@ FILES = {
                "share/man/man1/trim3r.1", "share/sbom/trim3r.spdx.json", "share/zsh/site-functions/_trim3r",
                "share/zsh/vendor-completions/_trim3r"],
 }
-NEEDS = {"libtrim3r0.1": ["libc6"], "libtrim3r-dev": [f"libtrim3r0.1 (= {VERSION})"],
+NEEDS = {SHARED: ["libc6"], "libtrim3r-dev": [f"{SHARED} (= {VERSION})"],
          "trim3r": ["libc6", "libcjson1", "libjpeg", "liblapacke", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
 if any(pathlib.Path(sys.argv[1]).glob("python/trim3r/*.so")): # where the Python package was built
     FILES["python3-trim3r"] = sorted(f"lib/python3/dist-packages/trim3r/{path.name}"

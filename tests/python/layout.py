@@ -65,7 +65,8 @@ def main():
     gaussian = dtype_of("t3r_gaussian")
     check(gaussian.itemsize == ffi.sizeof("t3r_gaussian") and gaussian["factor"].shape == (9,), f"{gaussian}")
     check(np.zeros(1, gaussian)["position_q20"].dtype == np.int32, "a field's type")
-    check(trim3r.__version__ == "0.1.0" and trim3r.BITS_EPOCH == lib.T3R_BITS_EPOCH, "the version")
+    version = f"{lib.T3R_VERSION_MAJOR}.{lib.T3R_VERSION_MINOR}.{lib.T3R_VERSION_PATCH}"
+    check(trim3r.__version__ == version and trim3r.BITS_EPOCH == lib.T3R_BITS_EPOCH, "the version")
     done()
 
 

@@ -11,7 +11,7 @@ FEATURES = ("stereo", "streams", "learned", "moment", "refinement", "lenses", "c
 
 class Trim3rConan(ConanFile):
     name = "trim3r"
-    version = "0.1.0"
+    version = "0.2.0"
     license = "Apache-2.0"
     description = "Posed camera frames to a budgeted set of 3-D Gaussians, in integers"
     topics = ("gaussian-splatting", "embedded", "fixed-point", "reconstruction")
