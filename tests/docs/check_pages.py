@@ -19,8 +19,8 @@ STUDY = ROOT / "docs" / "study"
 COPIED = [ROOT / "README.md", ROOT / "docs" / "rivals.md"]  # tables with figures of MEASURED, by hand
 MEASURED = [STUDY / "paper.md", STUDY / "efforts.md", STUDY / "retrained.md"]
 # read for links and wording alone: formats and figures, not commands
-OTHERS = [ROOT / "SECURITY.md", ROOT / "runtime" / "DESIGN.md", ROOT / "runtime" / "SPEC.md", ROOT / "quant" / "heads" / "MODEL_CARD.md",
-          *sorted(STUDY.glob("*.md"))]
+OTHERS = [ROOT / "CHANGELOG.md", ROOT / "SECURITY.md", ROOT / "runtime" / "DESIGN.md", ROOT / "runtime" / "SPEC.md",
+          ROOT / "quant" / "heads" / "MODEL_CARD.md", *sorted(STUDY.glob("*.md"))]
 
 
 def main():

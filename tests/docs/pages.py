@@ -8,7 +8,7 @@ LINK = re.compile(r"!?\[([^\]]*)\]\(([^)\s]+)\)")
 
 
 def all_pages():
-    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "quant" / "README.md",
+    return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "quant" / "README.md",
             ROOT / "tools" / "study" / "train" / "README.md"]
 
 
