@@ -1,7 +1,7 @@
 #include "stage_hash.h"
 
 #include "core/fixed.h"
-#include "core/hash_writer.h"
+#include "kernels/hash_writer.h"
 #include "pointmap/pointmap.h"
 #include "superclusters/superclusters.h"
 

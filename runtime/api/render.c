@@ -1,7 +1,7 @@
 /* A view of the scene in the arena. */
 #include "core/features.h"
 #include "core/fixed.h"
-#include "core/hash_writer.h"
+#include "kernels/hash_writer.h"
 #include "raster/raster_list.h"
 #include "state/state.h"
 

@@ -5,7 +5,7 @@
 #include "match_clean.h"
 #include "match_layout.h"
 #include "match_winner.h"
-#include "planes/plane_outline.h"
+#include "stereo/planes/plane_outline.h"
 
 static void census(const t3r_kernels *kernels, const uint8_t *luma, uint32_t width, uint32_t height, uint32_t y,
                    uint8_t *bits)

@@ -3,7 +3,7 @@
 #include "core/cut.h"
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "planes/plane_fill.h"
+#include "stereo/planes/plane_fill.h"
 #include "state/state.h"
 #include "stereo.h"
 #include "stereo_fill.h"

@@ -7,7 +7,7 @@
 
 #include "arguments.h"
 #include "core/camera.h"
-#include "planes/plane_fill.h"
+#include "stereo/planes/plane_fill.h"
 #include "stereo/stereo.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);

@@ -12,7 +12,7 @@ import sys
 import proof
 
 # Rooms of the runtime from the foundation up: each may include those before it.
-ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "planes", "wavelet", "superclusters", "budget",
+ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
          "raster", "head", "refine", "stage_hash", "pipeline", "loss", "stream", "layout", "api")
 MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, room in enumerate(ROOMS)}
 RUNTIME = set(MAY)
@@ -41,6 +41,7 @@ tool("ros", "reconstruction")
 tool("study/boards")
 tool("planning", "reconstruction", "room", base=("platform", "quant"))
 tool("bench", "planning", base=("platform", "quant"))
+tool("study/peers")
 tool("study/chart", "pictures")
 tool("study/rivals", "reconstruction")
 tool("study/evaluation", "study/rivals")

@@ -5,7 +5,7 @@
 #include "core/divisor.h"
 #include "core/hash.h"
 #include "core/logarithm.h"
-#include "kernels/alpha.h"
+#include "core/alpha.h"
 #include "kernels/blend.h"
 #include "kernels/project_parts.h"
 

@@ -2,8 +2,8 @@
  * same on views of any side; and outlines that matched outlines. Whole builds are in test_stereo_views.c. */
 #include "unit.h"
 
-#include "planes/plane_fill.h"
-#include "planes/plane_outline.h"
+#include "stereo/planes/plane_fill.h"
+#include "stereo/planes/plane_outline.h"
 #include "stereo/stereo.h"
 #include "stereo/stereo_fill.h"
 

@@ -1,7 +1,7 @@
 #include "bench/bench_stereo.h"
 
 #include "state/state.h"
-#include "planes/plane_fill.h"
+#include "stereo/planes/plane_fill.h"
 #include "stereo/stereo.h"
 #include "stereo/stereo_fill.h"
 #include "stereo/stereo_views.h"

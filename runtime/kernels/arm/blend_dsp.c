@@ -8,7 +8,7 @@
 #include <stddef.h>
 
 #include "core/fixed.h"
-#include "kernels/alpha.h"
+#include "core/alpha.h"
 #include "products.h"
 
 /* Of less than this no alpha comes to 1/255, whatever the opacity. */

@@ -6,7 +6,7 @@
 #include <arm_mve.h>
 
 #include "core/memory.h"
-#include "kernels/alpha.h"
+#include "core/alpha.h"
 
 /* What is left of T3R_ALPHA_RANGE when q / 8 is taken away, 16 times, with the half that rounds, in the even and the
  * odd columns; from row to row, and what steps lose. Modulo 2^32, as plain C's sums are without overflow. */

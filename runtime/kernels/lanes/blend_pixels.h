@@ -4,7 +4,7 @@
 #define T3R_KERNELS_LANES_BLEND_PIXELS_H
 
 #include "core/memory.h"
-#include "kernels/alpha.h"
+#include "core/alpha.h"
 
 /* (a b + 2^15) / 2^16 of 16 unsigned bits: the high half and the top bit of the low one. */
 static inline T3R_LANES_TARGET lanes mulr_q16(lanes a, lanes b)

@@ -1,6 +1,6 @@
 #include "kernels/blend.h"
 
-#include "kernels/alpha.h"
+#include "core/alpha.h"
 #include "core/fixed.h"
 #include "core/memory.h"
 #include "kernels/lanes/lanes.h"
