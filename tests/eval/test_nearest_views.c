@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "study/evaluation/nearest_views.h"
+#include "evaluation/nearest_views.h"
 
 #define ONE_Q32 (INT64_C(1) << 32)
 #define ONE_Q30 (INT32_C(1) << 30)

@@ -13,7 +13,7 @@
 
 #include "cli/tables/csv.h"
 #include "cli/tables/csv_read.h"
-#include "study/evaluation/table.h"
+#include "evaluation/table.h"
 #include "pictures/html_page.h"
 
 static evaluation_row make_row(const char *scene, const char *method, double keep, double psnr, double holes)

@@ -5,8 +5,8 @@
 
 #include "cli/cli.h"
 #include "memory_file.h"
-#include "study/evaluation/resume.h"
-#include "study/evaluation/table.h"
+#include "evaluation/resume.h"
+#include "evaluation/table.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

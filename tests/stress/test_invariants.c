@@ -76,7 +76,7 @@ static void shapes_that_no_file_holds(void **state)
 
 static int open_plane(void **state)
 {
-    return plane_open(state, (stress_contest){.methods = {METHOD_TRIM3R}, .method_count = 1});
+    return plane_open(state, (stress_contest){.methods = {&method_trim3r}, .method_count = 1});
 }
 
 static void cell(plane *f, const perturbation *p)
@@ -119,15 +119,18 @@ static void arenas_too_small_for_perturbed_frames(void **state)
 static void arenas_that_change(void **state)
 {
     (void)state;
-    stress_row base = {.method = METHOD_TRIM3R}, row;
+    stress_row base = {.method = &method_trim3r}, row;
     base.value[STRESS_ARENA_BYTES] = base.value[STRESS_GAUSSIANS] = 1000;
     const struct {
-        method_id method;
+        const method *method;
         double arena, gaussians;
         stress_status expected;
-    } cases[] = {{METHOD_TRIM3R, 1000, 1000, STRESS_MEASURED}, {METHOD_TRIM3R, 1001, 1000, STRESS_BROKEN},
-                 {METHOD_TRIM3R, 999, 1000, STRESS_BROKEN},    {METHOD_TRIM3R, 999, 500, STRESS_MEASURED},
-                 {METHOD_EAGLES, 999, 1000, STRESS_MEASURED},  {METHOD_EAGLES, 1001, 1000, STRESS_MEASURED}};
+    } cases[] = {{&method_trim3r, 1000, 1000, STRESS_MEASURED},
+                 {&method_trim3r, 1001, 1000, STRESS_BROKEN},
+                 {&method_trim3r, 999, 1000, STRESS_BROKEN},
+                 {&method_trim3r, 999, 500, STRESS_MEASURED},
+                 {RIVAL_METHOD(METHOD_EAGLES, METHOD_PLAIN), 999, 1000, STRESS_MEASURED},
+                 {RIVAL_METHOD(METHOD_EAGLES, METHOD_PLAIN), 1001, 1000, STRESS_MEASURED}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         row = base;
         row.method = cases[i].method;
@@ -140,7 +143,7 @@ static void arenas_that_change(void **state)
 
 static stress_row still_row(double gaussians, double changed, double motion)
 {
-    stress_row row = {.what = STRESS_UNPERTURBED, .unit = "", .method = METHOD_TRIM3R, .keep = 10};
+    stress_row row = {.what = STRESS_UNPERTURBED, .unit = "", .method = &method_trim3r, .keep = 10};
     snprintf(row.scene, sizeof row.scene, "room");
     row.value[STRESS_GAUSSIANS] = gaussians;
     row.value[STRESS_MASK_CHANGED] = changed;
@@ -154,15 +157,21 @@ static void still_scenes_that_do_not_stay(void **state)
     (void)state;
     const double noise = 0.125;
     const struct {
-        method_id method;
+        const method *method;
         double gaussians, changed, motion;
         stress_status expected;
-    } cases[] = {{METHOD_TRIM3R, 300, 0.5, 0, STRESS_MEASURED},      {METHOD_TRIM3R, 300, 0.51, 0, STRESS_BROKEN},
-                 {METHOD_TRIM3R, 1200, 0.299, 0, STRESS_MEASURED},   {METHOD_TRIM3R, 1200, 0.301, 0, STRESS_BROKEN},
-                 {METHOD_TRIM3R, 30000, 0.0599, 0, STRESS_MEASURED}, {METHOD_TRIM3R, 30000, 0.0601, 0, STRESS_BROKEN},
-                 {METHOD_TRIM3R, 30000, 0, 0.874, STRESS_MEASURED},  {METHOD_TRIM3R, 30000, 0, 0.876, STRESS_BROKEN},
-                 {METHOD_TRIM3R, 299, 1, 1, STRESS_MEASURED},        {METHOD_TRIM3R, 30000, NAN, 0, STRESS_BROKEN},
-                 {METHOD_TRIM3R, 30000, 0, INFINITY, STRESS_BROKEN}, {METHOD_EAGLES, 30000, 1, 1, STRESS_MEASURED}};
+    } cases[] = {{&method_trim3r, 300, 0.5, 0, STRESS_MEASURED},
+                 {&method_trim3r, 300, 0.51, 0, STRESS_BROKEN},
+                 {&method_trim3r, 1200, 0.299, 0, STRESS_MEASURED},
+                 {&method_trim3r, 1200, 0.301, 0, STRESS_BROKEN},
+                 {&method_trim3r, 30000, 0.0599, 0, STRESS_MEASURED},
+                 {&method_trim3r, 30000, 0.0601, 0, STRESS_BROKEN},
+                 {&method_trim3r, 30000, 0, 0.874, STRESS_MEASURED},
+                 {&method_trim3r, 30000, 0, 0.876, STRESS_BROKEN},
+                 {&method_trim3r, 299, 1, 1, STRESS_MEASURED},
+                 {&method_trim3r, 30000, NAN, 0, STRESS_BROKEN},
+                 {&method_trim3r, 30000, 0, INFINITY, STRESS_BROKEN},
+                 {RIVAL_METHOD(METHOD_EAGLES, METHOD_PLAIN), 30000, 1, 1, STRESS_MEASURED}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         stress_row row = still_row(cases[i].gaussians, cases[i].changed, cases[i].motion);
         row.method = cases[i].method;
@@ -176,7 +185,7 @@ static void still_scenes_that_do_not_stay(void **state)
 static void exit_status_of_a_broken_invariant(void **state)
 {
     (void)state;
-    const stress_contest contest = {.methods = {METHOD_TRIM3R}, .method_count = 1, .keep = {10}, .keep_count = 1};
+    const stress_contest contest = {.methods = {&method_trim3r}, .method_count = 1, .keep = {10}, .keep_count = 1};
     const stress_outputs to = {.worst = 1};
     stress_row row = still_row(1000, 0, 0);
     stress_report report;

@@ -15,7 +15,8 @@
 
 static int open_plane(void **state)
 {
-    return plane_open(state, (stress_contest){.methods = {METHOD_TRIM3R, METHOD_RANDOM, METHOD_EAGLES},
+    return plane_open(state, (stress_contest){.methods = {&method_trim3r, RIVAL_METHOD(METHOD_RANDOM, METHOD_PLAIN),
+                                                          RIVAL_METHOD(METHOD_EAGLES, METHOD_PLAIN)},
                                               .method_count = METHODS,
                                               .captures = 3});
 }

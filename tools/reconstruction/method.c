@@ -1,33 +1,16 @@
 #include "reconstruction/method.h"
 
-const char *method_name(method_id m)
+#include "cli/cli.h"
+
+static int build(method_source *source, const t3r_recording *recording, const char *path,
+                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told)
 {
-    static const char *const names[METHOD_COUNT] = {"trim3r",
-                                                    "random",
-                                                    "eagles",
-                                                    "lightgaussian",
-                                                    "pup",
-                                                    "efficientgs",
-                                                    "trim3r+finetune",
-                                                    "random+finetune",
-                                                    "eagles+finetune",
-                                                    "lightgaussian+finetune",
-                                                    "pup+finetune",
-                                                    "efficientgs+finetune",
-                                                    "trim3r+head",
-                                                    "random+head",
-                                                    "eagles+head",
-                                                    "lightgaussian+head",
-                                                    "pup+head",
-                                                    "efficientgs+head"};
-    return names[m];
+    (void)source;
+    const int code = reconstruction_build(made, recording, path, options);
+    if (code == CLI_OK) {
+        *told = reconstruction_told(made);
+    }
+    return code;
 }
 
-method_id method_named(list_word name)
-{
-    method_id m = 0;
-    while (m < METHOD_COUNT && !word_is(name, method_name(m))) {
-        m++;
-    }
-    return m;
-}
+const method method_trim3r = {.name = "trim3r", .allocates = true, .refines = true, .build = build};

@@ -1,62 +1,37 @@
-/* The methods of build and eval: ours, and those that it is measured against, each as published, fine-tuned, or as the
- * choice of points for our head. */
+/* A way to make a scene of a recording: ours, and those that a program adds to it (tools/study has rivals). */
 #ifndef TRIM3R_TOOLS_METHOD_H
 #define TRIM3R_TOOLS_METHOD_H
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
-#include "cli/tables/word_list.h"
+#include "reconstruction/reconstruction.h"
 
-typedef enum method_kind {
-    METHOD_TRIM3R, /* allocation and head as the settings say */
-    /* rivals: the head's unpruned scene, of which those Gaussians stay that a score ranks highest (rivals/score.h) */
-    METHOD_RANDOM,
-    METHOD_EAGLES,
-    METHOD_LIGHTGAUSSIAN,
-    METHOD_PUP,
-    METHOD_EFFICIENTGS,
-    METHOD_KIND_COUNT
-} method_kind;
+/* What a method's scenes of one context have in common, made when first needed: many budgets share it. All zero:
+ * nothing is made. Context, settings and recording must not change until it is closed. */
+typedef struct method_source {
+    void *made;
+    void (*close)(void *made);
+} method_source;
 
-/* What becomes of the points that a kind chooses. */
-typedef enum method_way {
-    METHOD_PLAIN,
-    METHOD_FINETUNE, /* their Gaussians are fine-tuned on the context views */
-    METHOD_HEAD,     /* the head makes new ones of them (allocation `given`), refined as ours are */
-    METHOD_WAY_COUNT
-} method_way;
-
-/* A kind in a way: way x METHOD_KIND_COUNT + kind. */
-typedef uint32_t method_id;
-#define METHOD_COUNT ((uint32_t)METHOD_WAY_COUNT * METHOD_KIND_COUNT)
-#define METHOD_ITERATIONS 200u /* of fine-tuning, unless told otherwise */
-#define METHOD_ITERATIONS_MOST 100000u
-#define METHOD_NAMES "trim3r, random, eagles, lightgaussian, pup, efficientgs, each also with +finetune or +head"
-#define METHOD_HELP                                                                                                    \
-    "trim3r (default), or a rival: random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them "     \
-    "fine-tunes its Gaussians, +head makes new ones of its points"
-
-static inline method_kind method_kind_of(method_id m)
+static inline void method_source_close(method_source *source)
 {
-    return (method_kind)(m % METHOD_KIND_COUNT);
+    if (source->made != NULL) {
+        source->close(source->made);
+    }
+    *source = (method_source){0};
 }
 
-static inline method_way method_way_of(method_id m)
-{
-    return (method_way)(m / METHOD_KIND_COUNT);
-}
+typedef struct method {
+    const char *name;
+    bool allocates; /* it chooses points by the settings' allocation */
+    bool refines;   /* it refines what the head makes of them */
+    /* Makes *made, to be closed, at the budget of `options`, and fills *told. An exit status of cli.h. */
+    int (*build)(method_source *source, const t3r_recording *recording, const char *path,
+                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told);
+} method;
 
-/* Whether a rival's choice of points is what our head works on. */
-static inline bool method_ranks_for_head(method_id m)
-{
-    return method_way_of(m) == METHOD_HEAD && method_kind_of(m) != METHOD_TRIM3R;
-}
-
-/* "trim3r", "eagles+finetune", "eagles+head". */
-const char *method_name(method_id m);
-/* METHOD_COUNT where there is none. */
-method_id method_named(list_word name);
+/* reconstruction_build() */
+extern const method method_trim3r;
 
 #endif

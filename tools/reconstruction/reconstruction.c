@@ -27,7 +27,6 @@ void reconstruction_defaults(reconstruction_options *options)
         .hash = true,
         .arena = ARENA_FULL,
         .processor = processor_defaults(),
-        .finetune_iterations = METHOD_ITERATIONS,
     };
 }
 

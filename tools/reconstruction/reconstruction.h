@@ -12,7 +12,6 @@
 
 #include "cli/options/processor_options.h"
 #include "reconstruction/options/chosen_head.h"
-#include "reconstruction/method.h"
 #include "reconstruction/replay/stage_times.h"
 #include "posing/poses_source.h"
 #include "recording/recording.h"
@@ -37,13 +36,13 @@ typedef struct reconstruction_options {
     double keep_percent;             /* budget as percent of the valid points, (0, 100]; 0 = not given */
     bool automatic;                  /* fewer than the budget where they lose less than max_loss */
     double max_loss;                 /* dB, against all points; 0 unless automatic */
-    method_id method;                /* for callers: reconstruction_build() is METHOD_TRIM3R, rivals/rival.h all */
-    uint32_t finetune_iterations;    /* of the methods that are fine-tuned */
+    const struct method *method;     /* for callers that build by several (method.h); NULL = not asked for */
+    uint32_t finetune_iterations;    /* of methods that fine-tune; 0 = their own number */
     const char
         *importance; /* of the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
     const uint16_t *const *importance_planes; /* one a context view at the working size, rows without gaps */
     const char *head;                         /* a text that chosen_head_is_one() */
-    const char *mask_head; /* likewise, of a rival with +head: whose unpruned scene it ranks; NULL = `head` */
+    const char *mask_head; /* likewise, for methods that rank a scene of another head; NULL = `head` */
     t3r_ablation ablation; /* what is taken away from the method */
     bool hide_mask;        /* the network is told that every pixel was retained: hidden_mask.h */
     const char *points_of; /* a .ply whose Gaussians are the depth instead (scene_frames.h), and of which percents
@@ -58,8 +57,8 @@ typedef struct reconstruction_options {
 void reconstruction_defaults(reconstruction_options *options);
 
 /* argp children; each parent's parser hands reconstruction_options * on in state->child_inputs[].
- * `settings`: --auto --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep
- * --method. */
+ * `settings`: --auto --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians
+ * --keep. */
 extern const struct argp reconstruction_settings_argp;
 extern const struct argp reconstruction_budget_argp;
 extern const struct argp reconstruction_argp; /* both */

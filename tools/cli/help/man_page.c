@@ -215,7 +215,7 @@ static void print_part(const char *title, const char *text, size_t bytes)
     free(part);
 }
 
-/* What help prints behind the options, its examples in a section of their own. */
+/* Prints the notes, and their examples in a section of their own. */
 static void print_notes(const char *text)
 {
     size_t bytes;
@@ -236,6 +236,32 @@ static void print_notes(const char *text)
     print_part("EXAMPLES", examples, bytes);
 }
 
+/* Writes what help prints after the options, in the order of argp: each parser's own before its children's. */
+static void add_notes(FILE *out, const struct argp *argp)
+{
+    const char *notes = argp->doc != NULL ? strchr(argp->doc, '\v') : NULL;
+    char *shown = notes != NULL ? filtered(argp, ARGP_KEY_HELP_POST_DOC, notes + 1) : NULL;
+    char *more = filtered(argp, ARGP_KEY_HELP_EXTRA, NULL);
+    fprintf(out, "%s\n%s\n", shown != NULL ? shown : "", more != NULL ? more : "");
+    if (notes != NULL) {
+        release(shown, notes + 1);
+    }
+    free(more);
+    for (const struct argp_child *c = argp->children; c != NULL && c->argp != NULL; c++) {
+        add_notes(out, c->argp);
+    }
+}
+
+/* The parser whose description and arguments help prints: the first that has them. */
+static const struct argp *described(const struct argp *argp)
+{
+    const struct argp *found = argp->doc != NULL ? argp : NULL;
+    for (const struct argp_child *c = argp->children; found == NULL && c != NULL && c->argp != NULL; c++) {
+        found = described(c->argp);
+    }
+    return found;
+}
+
 static void print_synopsis(const char *command, const char *arguments)
 {
     man_page_section("SYNOPSIS");
@@ -252,22 +278,21 @@ static void print_synopsis(const char *command, const char *arguments)
 
 void man_page_of_command(const char *command, const char *summary, const struct argp *argp)
 {
-    char name[64];
+    char name[64], *notes = NULL;
+    size_t bytes;
     snprintf(name, sizeof name, "trim3r-%s", command);
-    const char *doc = argp->doc != NULL ? argp->doc : "", *notes = strchr(doc, '\v');
-    char *more = filtered(argp, ARGP_KEY_HELP_EXTRA, NULL);
+    const struct argp *about = described(argp);
+    FILE *out = open_memstream(&notes, &bytes);
     man_page_begin(name, summary);
-    print_synopsis(command, argp->args_doc);
-    print_part("DESCRIPTION", doc, notes != NULL ? (size_t)(notes - doc) : strlen(doc));
+    print_synopsis(command, about->args_doc);
+    print_part("DESCRIPTION", about->doc, strcspn(about->doc, "\v"));
     print_options(argp);
-    char *shown = notes != NULL ? filtered(argp, ARGP_KEY_HELP_POST_DOC, notes + 1) : NULL;
-    if (shown != NULL) {
-        print_notes(shown);
-        release(shown, notes + 1);
-    }
-    if (more != NULL) {
-        print_notes(more);
-        free(more);
+    if (out != NULL) {
+        add_notes(out, argp);
+        if (fclose(out) == 0) {
+            print_notes(notes);
+        }
+        free(notes);
     }
     man_page_end();
     man_page_section("\"SEE ALSO\"");

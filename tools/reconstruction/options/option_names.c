@@ -40,28 +40,3 @@ void option_effort(struct argp_state *state, const char *option, const char *tex
         argp_error(state, "--%s %s: %s", option, text, t3r_error_text(status));
     }
 }
-
-static void add_method(struct argp_state *state, const char *option, list_word name, method_id methods[METHOD_COUNT],
-                       uint32_t *count)
-{
-    method_id m = method_named(name);
-    if (m == METHOD_COUNT) {
-        argp_error(state, "--%s: '%.*s' is not a method; there are %s", option, (int)name.length, name.text,
-                   METHOD_NAMES);
-    }
-    for (uint32_t i = 0; i < *count; i++) {
-        if (methods[i] == m) {
-            argp_error(state, "--%s names %s twice", option, method_name(m));
-        }
-    }
-    methods[(*count)++] = m;
-}
-
-void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
-                    uint32_t *count)
-{
-    *count = 0;
-    for (list_word w = word_first(text); w.text != NULL; w = word_next(w)) {
-        add_method(state, option, w, methods, count);
-    }
-}

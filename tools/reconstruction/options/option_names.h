@@ -1,11 +1,10 @@
-/* Values of options that name a head, a source of depth, an effort or methods; cli/option_values.h reads the others. */
+/* Values of options that name a head, a source of depth or an effort; cli/option_values.h reads the others. */
 #ifndef TRIM3R_TOOLS_OPTION_NAMES_H
 #define TRIM3R_TOOLS_OPTION_NAMES_H
 
 #include <argp.h>
 #include <stdint.h>
 
-#include "reconstruction/method.h"
 #include "trim3r.h"
 
 /* A head's name, or a path that ends as weight files do. */
@@ -15,7 +14,5 @@ t3r_depth option_depth(struct argp_state *state, const char *option, const char 
 /* How much work a build is worth, by its name: the settings and the head for it. */
 void option_effort(struct argp_state *state, const char *option, const char *text, t3r_config *config,
                    const char **head);
-/* One to METHOD_COUNT different methods with commas between. */
-void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
-                    uint32_t *count);
+
 #endif

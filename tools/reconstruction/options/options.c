@@ -14,10 +14,7 @@
 enum {
     KEY_GAUSSIANS = 256,
     KEY_KEEP,
-    KEY_METHOD,
-    KEY_MASK_HEAD,
     KEY_CONTEXT,
-    KEY_ITERATIONS,
     KEY_AUTO,
     KEY_MAX_LOSS,
     KEY_IMPORTANCE,
@@ -42,7 +39,6 @@ static const struct argp_option settings[] = {
      "within a level",
      0},
     {"working", KEY_WORKING, "WxH", 0, "working size of the context views (the recording's)", 0},
-    {"finetune-iterations", KEY_ITERATIONS, "N", 0, "iterations of the methods with +finetune, 1..100000 (200)", 0},
     {"arena", KEY_ARENA, "BYTES[K|M|G]|min|full", 0,
      "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {0},
@@ -98,9 +94,6 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         state->child_inputs[1] = &o->processor;
         state->child_inputs[2] = &o->head;
         return 0;
-    case KEY_ITERATIONS:
-        o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, METHOD_ITERATIONS_MOST);
-        return 0;
     case KEY_IMPORTANCE:
         o->importance = arg;
         return 0;
@@ -139,9 +132,6 @@ static const struct argp_option budget[] = {
     {"gaussians", KEY_GAUSSIANS, "Z", 0, "number of Gaussians: exactly Z, or all valid points where there are fewer",
      0},
     {"keep", KEY_KEEP, "P%", 0, "percent of the valid points to retain, rounded half up to a number", 0},
-    {"method", KEY_METHOD, "METHOD", 0, METHOD_HELP, 0},
-    {"mask-head", KEY_MASK_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
-     "head whose unpruned scene a rival with +head ranks (the one of --head)", 0},
     {0},
 };
 
@@ -159,21 +149,9 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
     case KEY_KEEP:
         option_keep(state, arg, &o->keep_percent, 1, &count);
         return 0;
-    case KEY_METHOD:
-        o->method = method_named((list_word){arg, strlen(arg)});
-        if (o->method == METHOD_COUNT) {
-            argp_error(state, "--method does not know '%s'; there are %s", arg, METHOD_NAMES);
-        }
-        return 0;
-    case KEY_MASK_HEAD:
-        o->mask_head = option_head(state, "mask-head", arg);
-        return 0;
     case ARGP_KEY_END:
         if (o->gaussians != 0 && o->keep_percent > 0) {
             argp_error(state, "--gaussians and --keep exclude each other");
-        }
-        if (o->mask_head != NULL && !method_ranks_for_head(o->method)) {
-            argp_error(state, "--mask-head belongs to a rival with +head");
         }
         return 0;
     default:

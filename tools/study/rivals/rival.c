@@ -11,10 +11,13 @@
 #include "study/rivals/score.h"
 #include "study/rivals/traced.h"
 
+#define FINETUNE_ITERATIONS 200u /* unless the options have a number */
+
 /* ---- what is shared ------------------------------------------------------------------------------------------- */
 
-void rival_source_close(rival_source *source)
+static void close_source(void *made)
 {
+    rival_source *source = made;
     for (uint32_t v = 0; v < T3R_MAX_VIEWS; v++) {
         free(source->rgb[v]);
         splat_view_close(&source->views[v]);
@@ -24,7 +27,24 @@ void rival_source_close(rival_source *source)
     }
     splat_model_free(&source->model);
     reconstruction_close(&source->whole);
-    *source = (rival_source){0};
+    free(source);
+}
+
+/* NULL without memory. */
+static rival_source *open_source(method_source *shared, const t3r_recording *recording, const char *path,
+                                 const reconstruction_options *options)
+{
+    rival_source *source = shared->made;
+    if (source == NULL && (source = calloc(1, sizeof *source)) != NULL) {
+        *shared = (method_source){source, close_source};
+        source->recording = recording;
+        source->path = path;
+        source->options = *options;
+        if (options->mask_head != NULL) {
+            source->options.head = options->mask_head;
+        }
+    }
+    return source;
 }
 
 /* The context views as pictures, of the frames and the size that a build resolved, with the poses that it aligned. */
@@ -284,21 +304,18 @@ static int tune(const rival_source *source, uint32_t iterations, scene_file *sce
     return done ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
 }
 
-int rival_build(rival_source *source, const t3r_recording *recording, const char *path, method_id m,
+int rival_build(method_source *shared, const t3r_recording *recording, const char *path,
                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told)
 {
+    const method *m = options->method;
     if (options->automatic) {
-        return cli_error(CLI_BAD_USAGE, "--auto chooses for the method trim3r alone, not for %s", method_name(m));
+        return cli_error(CLI_BAD_USAGE, "--auto chooses for the method trim3r alone, not for %s", m->name);
     }
-    if (source->recording == NULL) {
-        source->recording = recording;
-        source->path = path;
-        source->options = *options;
-        if (options->mask_head != NULL) {
-            source->options.head = options->mask_head;
-        }
+    rival_source *source = open_source(shared, recording, path, options);
+    if (source == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    method_kind kind = method_kind_of(m);
+    const method_kind kind = method_kind_of(m);
     if (method_way_of(m) == METHOD_HEAD) {
         return build_by_head(source, kind, options, made, told);
     }
@@ -307,7 +324,8 @@ int rival_build(rival_source *source, const t3r_recording *recording, const char
                                      : prune_whole(source, kind, options, &scene, told);
     if (code == CLI_OK && method_way_of(m) == METHOD_FINETUNE) {
         double start = cli_now();
-        code = tune(source, options->finetune_iterations, &scene);
+        const uint32_t iterations = options->finetune_iterations;
+        code = tune(source, iterations != 0 ? iterations : FINETUNE_ITERATIONS, &scene);
         told->seconds += cli_now() - start;
     }
     if (code == CLI_OK) {

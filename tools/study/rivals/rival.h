@@ -4,14 +4,15 @@
 #ifndef TRIM3R_TOOLS_RIVALS_RIVAL_H
 #define TRIM3R_TOOLS_RIVALS_RIVAL_H
 
-#include "reconstruction/method.h"
 #include "reconstruction/reconstruction.h"
 #include "study/rivals/choose.h"
 #include "study/rivals/finetune.h"
+#include "study/rivals/methods.h"
 #include "study/rivals/splat_view.h"
 
-/* What the scenes of one context have in common; made when it is first asked for, so that many budgets and methods
- * share it. All zero: nothing is open. */
+/* What the scenes of one context have in common: rival_build() keeps it in its method_source. All zero: nothing is
+ * open.
+ */
 typedef struct rival_source {
     bool opened, built;
     const t3r_recording *recording;
@@ -29,16 +30,11 @@ typedef struct rival_source {
     double score_seconds[METHOD_KIND_COUNT];
 } rival_source;
 
-/* The scene of a method other than plain trim3r at the budget of `options`, in an arena that only renders, or with
- * +head in that of its build: *made, to be closed. *told says of it what reconstruction_told() says of a build: the
- * arena is that of the runtime's part, the largest, the time all of it, the unpruned scene, scoring and fine-tuning
- * included; of a scene from a file, which cannot be traced to points for a rival's +head, the points are its
- * Gaussians, the head "". Of `options` context, settings and recording must not change as long as the source is open.
- * An exit status of cli.h.
- */
-int rival_build(rival_source *source, const t3r_recording *recording, const char *path, method_id m,
+/* The `build` of every method but trim3r: in an arena that only renders, or with +head in that of its build. Of *told
+ * the arena is that of the runtime's part, the largest; the time is all of it, the unpruned scene, scoring and
+ * fine-tuning included. A scene from a file cannot be traced to points for a rival's +head: there the points are its
+ * Gaussians, and the head is "". */
+int rival_build(method_source *source, const t3r_recording *recording, const char *path,
                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told);
-
-void rival_source_close(rival_source *source);
 
 #endif

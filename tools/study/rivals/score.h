@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "reconstruction/method.h"
+#include "study/rivals/kinds.h"
 #include "study/rivals/splat_view.h"
 
 /* LightGaussian's exponent of the volume, as its authors released it. */

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "study/evaluation/evaluation.h"
+#include "evaluation/evaluation.h"
 #include "recording/recording.h"
 
 typedef struct stress_view {

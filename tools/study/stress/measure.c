@@ -76,15 +76,16 @@ static void take_scores(stress_row *row, const evaluation_row *scores)
 }
 
 /* Builds, checks, and scores (capture 0) or only draws. */
-static int measure_row(const cell *it, const stress_run *run, uint32_t keep, uint32_t index, uint32_t capture)
+static int measure_row(const cell *it, stress_run *run, uint32_t keep, uint32_t index, uint32_t capture)
 {
     stress_row *row = &it->rows[index];
     reconstruction_options options = stress_run_options(run, it->c, it->contest, keep);
+    options.method = row->method;
     reconstruction built;
     reconstruction_account told;
     char reason[STRESS_REASON_BYTES] = "";
     cli_keep_errors(reason, sizeof reason);
-    int code = evaluation_build(&built, &told, &run->views, &run->what, row->method, &options);
+    int code = stress_run_build(run, &options, &built, &told);
     cli_keep_errors(NULL, 0);
     if (code != CLI_OK) {
         return refuse(it, row, code, reason);
@@ -117,15 +118,16 @@ static int measure_row(const cell *it, const stress_run *run, uint32_t keep, uin
 }
 
 /* All points, as the rivals prune them; what is refused has no figures. */
-static int measure_all_points(cell *it, const stress_run *run, uint32_t capture)
+static int measure_all_points(cell *it, stress_run *run, uint32_t capture)
 {
     reconstruction_options options = stress_run_options(run, it->c, it->contest, it->contest->keep_count);
+    options.method = RIVAL_METHOD(METHOD_RANDOM, METHOD_PLAIN);
     uint8_t *render = it->now + stress_row_count(it->contest) * picture_bytes(it);
     reconstruction built;
     reconstruction_account told;
     char reason[STRESS_REASON_BYTES] = "";
     cli_keep_errors(reason, sizeof reason);
-    int code = evaluation_build(&built, &told, &run->views, &run->what, METHOD_RANDOM, &options);
+    int code = stress_run_build(run, &options, &built, &told);
     if (code == CLI_OK) {
         evaluation_row scores = {0};
         code = capture == 0 ? evaluation_score(&scores, render, &run->views, &run->what, &built)

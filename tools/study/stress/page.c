@@ -107,10 +107,10 @@ static int by_badness(const void *a, const void *b)
 static void caption(char *text, size_t bytes, const stress_row *row)
 {
     if (row->status != STRESS_MEASURED) {
-        snprintf(text, bytes, "%s, %.10g %% kept: %s", method_name(row->method), row->keep, row->reason);
+        snprintf(text, bytes, "%s, %.10g %% kept: %s", row->method->name, row->keep, row->reason);
     } else {
-        snprintf(text, bytes, "%s, %.10g %% kept: %.2f dB, %.2f lost, %.1f %% holes", method_name(row->method),
-                 row->keep, row->value[STRESS_PSNR], row->value[STRESS_PSNR_LOST], row->value[STRESS_HOLES] * 100);
+        snprintf(text, bytes, "%s, %.10g %% kept: %.2f dB, %.2f lost, %.1f %% holes", row->method->name, row->keep,
+                 row->value[STRESS_PSNR], row->value[STRESS_PSNR_LOST], row->value[STRESS_HOLES] * 100);
     }
 }
 
@@ -121,7 +121,7 @@ static void add_renders(html_page *page, const stress_picture *picture, const ui
     for (uint32_t i = 0; i < count; i++) {
         char text[320];
         caption(text, sizeof text, &picture->rows[i]);
-        html_page_picture(page, plain ? method_name(picture->rows[i].method) : text, picture->width, picture->height, 3,
+        html_page_picture(page, plain ? picture->rows[i].method->name : text, picture->width, picture->height, 3,
                           renders + i * bytes, 1);
     }
 }
@@ -174,7 +174,7 @@ static void add_why(html_page *page, const stress_row *rows, uint32_t count)
         if (row->status == STRESS_MEASURED) {
             continue;
         }
-        snprintf(who, sizeof who, "%s, %.10g %%", method_name(row->method), row->keep);
+        snprintf(who, sizeof who, "%s, %.10g %%", row->method->name, row->keep);
         add_cells(page,
                   (const char *const[]){row->scene, row->target, row->what, strength,
                                         alike && count > 1 ? "every method and budget" : who,
@@ -233,7 +233,7 @@ static void add_table(html_page *page, const stress_row *rows, uint32_t count)
         html_page_table_cell(page, row->what);
         stress_strength(row, text, sizeof text);
         html_page_table_cell(page, text);
-        html_page_table_cell(page, method_name(row->method));
+        html_page_table_cell(page, row->method->name);
         snprintf(text, sizeof text, "%.10g %%", row->keep);
         html_page_table_cell(page, text);
         for (uint32_t i = 0; i < sizeof columns / sizeof *columns; i++) {
@@ -254,7 +254,7 @@ int stress_album_write(stress_album *album, uint32_t worst, const stress_row *ro
              "Of each perturbation the cell in which %s at %.10g %% loses most PSNR against unperturbed frames (of the "
              "scene-* rows: against all points), the greatest loss first: the frames it was given and what each method "
              "made of them.",
-             method_name(contest->methods[0]), contest->keep[0]);
+             contest->methods[0]->name, contest->keep[0]);
     html_page *page = html_page_new("trim3r: where it fails", introduction);
     if (page == NULL) {
         return -1;

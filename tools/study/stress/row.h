@@ -40,7 +40,7 @@ typedef struct stress_row {
     const char *what, *unit; /* a perturbation, "unperturbed", or a synthetic scene */
     double strength;
     uint32_t grade; /* 1..STRESS_GRADES; 0 = unperturbed */
-    method_id method;
+    const method *method;
     double keep;
     stress_status status;
     char reason[STRESS_REASON_BYTES]; /* "" when measured */

@@ -5,7 +5,6 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
-#include "study/rivals/rival.h"
 #include "study/stress/random.h"
 
 int stress_case_open(stress_case *c, const stress_contest *contest)
@@ -58,9 +57,8 @@ int stress_run_open(stress_run *run, const stress_case *c, const stress_contest 
 {
     *run = (stress_run){.views = c->views};
     run->views.context_count = 0; /* context_psnr is not asked for */
-    run->views.rivals = calloc(1, sizeof *run->views.rivals);
-    if (run->views.rivals == NULL || !stress_capture_copy(&run->capture, &c->base) ||
-        !change(&run->capture, contest, p, strength, capture)) {
+    run->views.source = (method_source){0};
+    if (!stress_capture_copy(&run->capture, &c->base) || !change(&run->capture, contest, p, strength, capture)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
     run->recording = stress_capture_recording(&run->capture, &run->bytes);
@@ -85,10 +83,7 @@ int stress_run_open(stress_run *run, const stress_case *c, const stress_contest 
 
 void stress_run_close(stress_run *run)
 {
-    if (run->views.rivals != NULL) {
-        rival_source_close(run->views.rivals);
-        free(run->views.rivals);
-    }
+    method_source_close(&run->views.source);
     if (run->recording != NULL) {
         t3r_recording_close(run->recording);
     }
@@ -109,4 +104,10 @@ reconstruction_options stress_run_options(const stress_run *run, const stress_ca
     options.context_count = run->what.context_count;
     memcpy(options.context, run->what.context, sizeof options.context);
     return options;
+}
+
+int stress_run_build(stress_run *run, const reconstruction_options *options, reconstruction *built,
+                     reconstruction_account *told)
+{
+    return options->method->build(&run->views.source, run->recording, run->what.path, options, built, told);
 }

@@ -2,7 +2,8 @@
 #ifndef TRIM3R_TOOLS_STRESS_RUN_H
 #define TRIM3R_TOOLS_STRESS_RUN_H
 
-#include "study/evaluation/evaluation.h"
+#include "evaluation/evaluation.h"
+#include "study/rivals/methods.h"
 #include "study/stress/capture.h"
 #include "study/stress/perturbation.h"
 #include "study/stress/row.h"
@@ -12,7 +13,7 @@
 /* Who competes, and how often a still scene is captured. */
 typedef struct stress_contest {
     reconstruction_options settings;
-    method_id methods[METHOD_COUNT];
+    const method *methods[METHOD_COUNT];
     uint32_t method_count;
     double keep[STRESS_KEEPS_MOST];
     uint32_t keep_count;
@@ -43,7 +44,7 @@ typedef struct stress_run {
     uint8_t *bytes;
     t3r_recording *recording;
     evaluation_case what;
-    evaluation_views views; /* target and masks are the case's; rivals of its own */
+    evaluation_views views; /* target and masks are the case's; source of its own */
 } stress_run;
 
 /* Capture 0 is what is scored; later ones carry the noise of a still scene as well. `p` may be NULL. CLI_OK, or with a
@@ -54,5 +55,8 @@ void stress_run_close(stress_run *run);
 /* The settings of a build of the run at the budget of `keep` (an index; keep_count = all points). */
 reconstruction_options stress_run_options(const stress_run *run, const stress_case *c, const stress_contest *contest,
                                           uint32_t keep);
+/* Builds the run's scene by the options' method: *built, to be closed. An exit status of cli.h. */
+int stress_run_build(stress_run *run, const reconstruction_options *options, reconstruction *built,
+                     reconstruction_account *told);
 
 #endif

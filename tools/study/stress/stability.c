@@ -102,12 +102,12 @@ static int fill_untuned(snapshot *s, const stress_run *run, const reconstruction
     return code;
 }
 
-static int take(snapshot *s, const stress_row *row, const stress_case *c, const stress_run *run,
+static int take(snapshot *s, const stress_row *row, const stress_case *c, stress_run *run,
                 const reconstruction_options *options)
 {
     reconstruction built;
     reconstruction_account told;
-    int code = evaluation_build(&built, &told, &run->views, &run->what, row->method, options);
+    int code = stress_run_build(run, options, &built, &told);
     if (code != CLI_OK) {
         return code;
     }
@@ -115,8 +115,8 @@ static int take(snapshot *s, const stress_row *row, const stress_case *c, const 
     s->owner = malloc((size_t)c->base.views * c->base.width * c->base.height * sizeof *s->owner);
     bool done = s->owner != NULL && fill_places(s, &built.scene, run);
     if (done && method_kind_of(row->method) != METHOD_TRIM3R) {
-        done = fill_rival(s, run->views.rivals, method_kind_of(row->method));
-    } else if (done && row->method == METHOD_TRIM3R) {
+        done = fill_rival(s, run->views.source.made, method_kind_of(row->method));
+    } else if (done && row->method == &method_trim3r) {
         fill_owners(s, built.runtime, NULL);
     } else if (done) {
         code = fill_untuned(s, run, options);
@@ -180,7 +180,7 @@ void stress_judge_still(stress_row *row, uint32_t clusters, double noise)
 {
     double gaussians = row->value[STRESS_GAUSSIANS];
     double changed = stress_mask_changed_most(gaussians, clusters), motion = stress_motion_most(noise);
-    if (gaussians >= fmax(clusters, STRESS_JUDGED_LEAST) && row->method == METHOD_TRIM3R &&
+    if (gaussians >= fmax(clusters, STRESS_JUDGED_LEAST) && row->method == &method_trim3r &&
         !(row->value[STRESS_MASK_CHANGED] <= changed && row->value[STRESS_MOTION] <= motion)) {
         row->status = STRESS_BROKEN;
         snprintf(row->reason, sizeof row->reason,
@@ -203,6 +203,7 @@ static int add_capture(stress_row *rows, snapshot *last, const stress_case *c, c
         }
         reconstruction_options options = stress_run_options(&run, c, contest, i / contest->method_count);
         options.config.keep_analysis = true; /* the masks outlive the build */
+        options.method = rows[i].method;
         snapshot now = {0};
         code = take(&now, &rows[i], c, &run, &options);
         if (code == CLI_OK && capture > 1 && !compare(&rows[i], &last[i], &now, pixels)) {

@@ -39,8 +39,8 @@ static void describe(const stress_row *row, uint32_t column, char *text, size_t 
     snprintf(strength, sizeof strength, row->grade == 0 ? "0" : "%.10g", row->strength);
     snprintf(keep, sizeof keep, "%.10g", row->keep);
     const char *const cells[NAMES] = {
-        row->scene, row->context,          row->target, row->what, strength, row->unit, method_name(row->method),
-        keep,       statuses[row->status], row->reason};
+        row->scene,        row->context, row->target,           row->what,  strength, row->unit,
+        row->method->name, keep,         statuses[row->status], row->reason};
     snprintf(text, bytes, "%s", cells[column]);
 }
 
@@ -149,9 +149,9 @@ void stress_strength(const stress_row *row, char *text, size_t bytes)
     }
 }
 
-static int column_width(method_id m)
+static int column_width(const method *m)
 {
-    int length = (int)strlen(method_name(m)) + 2;
+    int length = (int)strlen(m->name) + 2;
     return length < 10 ? 10 : length;
 }
 
@@ -177,7 +177,7 @@ static void print_table(FILE *out, const stress_row *rows, uint32_t count, const
     fprintf(out, "%.10g %% kept: %s\n%-18s%-12s", contest->keep[keep], measures[measure].heading, "perturbation",
             "strength");
     for (uint32_t m = 0; m < contest->method_count; m++) {
-        fprintf(out, "%*s", column_width(contest->methods[m]), method_name(contest->methods[m]));
+        fprintf(out, "%*s", column_width(contest->methods[m]), contest->methods[m]->name);
     }
     fputc('\n', out);
     for (uint32_t i = 0; i < count; i++) {

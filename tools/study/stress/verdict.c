@@ -26,7 +26,7 @@ static void name_cell(FILE *out, const stress_row *row)
     char strength[32];
     stress_strength(row, strength, sizeof strength);
     fprintf(out, "%s: %s%s%s, %s at %.10g %%", row->scene, row->what, row->grade == 0 ? "" : " ", strength,
-            method_name(row->method), row->keep);
+            row->method->name, row->keep);
 }
 
 static void print_invariants(FILE *out, const stress_row *rows, uint32_t count)
@@ -90,7 +90,7 @@ static void print_stability(FILE *out, const stress_row *rows, uint32_t count, c
         fprintf(out,
                 "still scene, %s at %.10g %%: flicker %.2f levels, x %.2f that of all points; %.1f %% of the mask "
                 "changes; half of the Gaussians move by at most %.1f %% of their spacing",
-                method_name(like.method), like.keep, flicker, flicker / all, changed * 100,
+                like.method->name, like.keep, flicker, flicker / all, changed * 100,
                 stress_mean(rows, count, &like, STRESS_MOTION, NULL) * 100);
         fputc('\n', out);
     }
@@ -104,7 +104,7 @@ static void print_flicker(FILE *out, const stress_row *rows, uint32_t count, dou
     uint32_t measured = 0, within = 0;
     for (uint32_t i = 0; i < count; i++) {
         double ratio = rows[i].value[STRESS_FLICKER] / rows[i].value[STRESS_FLICKER_UNPRUNED];
-        if (rows[i].method != METHOD_TRIM3R || rows[i].keep != keep || !isfinite(ratio)) {
+        if (rows[i].method != &method_trim3r || rows[i].keep != keep || !isfinite(ratio)) {
             continue;
         }
         measured++;
@@ -127,15 +127,15 @@ static void print_flicker(FILE *out, const stress_row *rows, uint32_t count, dou
 
 static const char *const judged[] = {"noise", "exposure", "depth-lattice", "depth-blobs", "depth-all", "pose"};
 
-/* The rival that loses least, and how much; METHOD_COUNT where there is none. */
-static method_id least_loss(const stress_row *rows, uint32_t count, const stress_contest *contest, stress_row like,
-                            double *least)
+/* The rival that loses least, and how much; NULL where there is none. */
+static const method *least_loss(const stress_row *rows, uint32_t count, const stress_contest *contest, stress_row like,
+                                double *least)
 {
-    method_id best = METHOD_COUNT;
+    const method *best = NULL;
     for (uint32_t m = 0; m < contest->method_count; m++) {
         like.method = contest->methods[m];
         double lost = stress_mean(rows, count, &like, STRESS_PSNR_LOST, NULL);
-        if (method_kind_of(like.method) != METHOD_TRIM3R && !isnan(lost) && (best == METHOD_COUNT || lost < *least)) {
+        if (method_kind_of(like.method) != METHOD_TRIM3R && !isnan(lost) && (best == NULL || lost < *least)) {
             *least = lost;
             best = like.method;
         }
@@ -146,8 +146,8 @@ static method_id least_loss(const stress_row *rows, uint32_t count, const stress
 static void print_against(FILE *out, const stress_row *rows, uint32_t count, const stress_contest *contest,
                           const char *what, double keep)
 {
-    stress_row like = {.what = what, .grade = MIDDLE_GRADE, .method = METHOD_TRIM3R, .keep = keep};
-    stress_row plain = {.what = STRESS_UNPERTURBED, .method = METHOD_TRIM3R, .keep = keep};
+    stress_row like = {.what = what, .grade = MIDDLE_GRADE, .method = &method_trim3r, .keep = keep};
+    stress_row plain = {.what = STRESS_UNPERTURBED, .method = &method_trim3r, .keep = keep};
     double ours = stress_mean(rows, count, &like, STRESS_PSNR_LOST, NULL), least = 0;
     double psnr = stress_mean(rows, count, &like, STRESS_PSNR, NULL);
     double all = stress_mean(rows, count, &plain, STRESS_PSNR_UNPRUNED, NULL) -
@@ -157,11 +157,11 @@ static void print_against(FILE *out, const stress_row *rows, uint32_t count, con
     }
     fprintf(out, "%s at its middle strength, %.10g %%: trim3r loses %.2f dB to %.2f (all points lose %.2f)", what, keep,
             ours, psnr, all);
-    method_id best = least_loss(rows, count, contest, like, &least);
-    if (best != METHOD_COUNT) {
+    const method *best = least_loss(rows, count, contest, like, &least);
+    if (best != NULL) {
         like.method = best;
         double rival = stress_mean(rows, count, &like, STRESS_PSNR, NULL);
-        fprintf(out, ", %s %.2f dB to %.2f: %s", method_name(best), least, rival,
+        fprintf(out, ", %s %.2f dB to %.2f: %s", best->name, least, rival,
                 ours <= least / 2            ? "at most half"
                 : fabs(psnr - rival) < LEVEL ? "more than half, and level with it"
                 : psnr > rival               ? "more than half, but ahead: what has less to lose loses less"

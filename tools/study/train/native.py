@@ -55,8 +55,7 @@ def preparer():
     sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals
     sources += here("quant", "heads", "small.c") + here("runtime", "**", "*.c")
     headers = here("runtime", "**", "*.h") + here("tools", "study", "rivals", "*.h")
-    headers += here("tools", "scene", "*.h") + here("tools", "reconstruction", "method.h")
-    headers += here("tools", "study", "train", "prepare_rival.h")
+    headers += here("tools", "scene", "*.h") + here("tools", "study", "train", "prepare_rival.h")
     includes = (RUNTIME, os.path.join(RUNTIME, "include"), os.path.join(HERE, "..", ".."), HEADS)
     flags = ("-std=c11", "-O3", "-march=native", "-ffp-contract=off", *("-I" + folder for folder in includes))
     library = ctypes.CDLL(build("prepare", sources, flags, headers))

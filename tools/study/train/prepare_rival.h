@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "reconstruction/method.h"
+#include "study/rivals/kinds.h"
 #include "trim3r.h"
 
 /* The importance of every point for a t3r_request: 65535 at those of the `count` Gaussians that `kind` ranks

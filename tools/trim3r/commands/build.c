@@ -1,7 +1,6 @@
 /* trim3r build: frames of a recording to a scene file, or to the start of an outside optimiser. */
-#include "trim3r/commands/commands.h"
+#include "trim3r/commands/build.h"
 
-#include <argp.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,18 +22,9 @@
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/options/settings.h"
 #include "import/poses/recording_poses.h"
-#include "study/rivals/rival.h"
+#include "trim3r/commands/commands.h"
 
 #define ERROR_BYTES 512
-
-typedef struct build_options {
-    const char *recording;
-    const char *output; /* NULL = no scene file */
-    const char *colmap; /* NULL = no COLMAP model */
-    int flags;          /* SCENE_FILE_... */
-    bool profile, json;
-    reconstruction_options settings;
-} build_options;
 
 enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_UP, KEY_PROFILE, KEY_JSON };
 
@@ -106,11 +96,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "-o SCENE.ply is missing");
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
             argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
-        } else if (o->settings.points_of != NULL && method_ranks_for_head(o->settings.method)) {
-            argp_error(state,
-                       "--prune takes no rival with +head: which pixels a file's Gaussians came from is not known");
-        } else if (o->profile && o->settings.method != METHOD_TRIM3R) {
-            argp_error(state, "--profile belongs to the method trim3r, which has stages");
         }
         return 0;
     default:
@@ -119,7 +104,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {.argp = &poses_argp}, {0}};
-static const struct argp argp = {
+const struct argp build_argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap",
@@ -130,8 +115,6 @@ static const struct argp argp = {
            "  trim3r build room.mcap --head moment --refine 4 --fit-passes off -o s.ply\n"
            "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
            "  trim3r build room.mcap --auto --max-loss 0.5 -o scene.ply\n"
-           "  trim3r build room.mcap --keep 5% --method pup+finetune -o pup.ply\n"
-           "  trim3r build room.mcap --keep 5% --method eagles+head -o eagles.ply\n"
            "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
            "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% -o s.ply\n"
            "  trim3r build room.mcap --keep 10% --colmap start\n"
@@ -139,7 +122,7 @@ static const struct argp argp = {
            "The scene stands in the recording's world frame unless --local is given.\n\n"
            "--prune: the means of the file's Gaussians, seen from each context view, are its depth. They are in the "
            "same world, and those of an opacity below 0.05 do not count. trim3r makes new Gaussians of points among "
-           "them; the rivals keep some of the file's as they are. The recording's own depth is ignored.\n"
+           "them. The recording's own depth is ignored.\n"
            "\n"
            "--poses estimate: the first context view keeps its recorded pose, or is the origin. Each other view is "
            "joined to the best of those before it. With depth in both views, lengths are those of the depth; from "
@@ -162,11 +145,10 @@ typedef struct found {
     tile_lists lists; /* of the view whose tiles list most */
 } found;
 
-/* Whether the last step was our refinement; Gaussians that a rival pruned or fine-tuned were loaded. */
+/* Whether the last step was our refinement. */
 static bool refines(const build_options *o)
 {
-    return o->settings.config.refinements > 0 &&
-           (o->settings.method == METHOD_TRIM3R || method_way_of(o->settings.method) == METHOD_HEAD);
+    return o->settings.config.refinements > 0 && o->settings.method->refines;
 }
 
 /* Frames that stereo could match with no other. */
@@ -184,7 +166,6 @@ static void add_unmatched(cJSON *root, const build_options *o, const reconstruct
 static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r,
                        const t3r_recording *recording, const found *f, const work_times *times)
 {
-    bool rival = method_kind_of(o->settings.method) != METHOD_TRIM3R;
     cJSON *root = cJSON_CreateObject();
     if (o->output != NULL) {
         cJSON_AddStringToObject(root, "scene", o->output);
@@ -192,7 +173,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     if (o->colmap != NULL) {
         cJSON_AddStringToObject(root, "colmap", o->colmap);
     }
-    cJSON_AddStringToObject(root, "method", method_name(o->settings.method));
+    cJSON_AddStringToObject(root, "method", o->settings.method->name);
     json_add_integer(root, "gaussians", r->scene.count);
     json_add_integer(root, "requested", told->requested);
     if (o->settings.automatic) {
@@ -209,7 +190,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     }
     cJSON_AddNumberToObject(root, "width", told->width);
     cJSON_AddNumberToObject(root, "height", told->height);
-    if (!rival) {
+    if (o->settings.method->allocates) {
         cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.config.allocation));
     }
     if (o->settings.points_of != NULL) {
@@ -243,7 +224,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
         cJSON_AddItemToArray(origin, cJSON_CreateNumber((double)r->scene.frame.origin_q32[i] / 4294967296.0));
     }
     cJSON_AddNumberToObject(root, "exponent", r->scene.frame.exponent);
-    if (o->settings.method == METHOD_TRIM3R) { /* floats promise no bits */
+    if (o->settings.method == &method_trim3r) { /* floats promise no bits */
         json_add_hash(root, "hash", reconstruction_hash(r));
     }
     json_print(root);
@@ -256,22 +237,6 @@ static void note_head(const reconstruction_account *told, char *text, size_t byt
     if (told->crc[0] != '\0') {
         snprintf(text + length, bytes - (size_t)length, " crc %s", told->crc);
     }
-}
-
-static int build(const build_options *o, const t3r_recording *recording, reconstruction *r,
-                 reconstruction_account *told)
-{
-    if (o->settings.method != METHOD_TRIM3R) {
-        rival_source source = {0};
-        int code = rival_build(&source, recording, o->recording, o->settings.method, &o->settings, r, told);
-        rival_source_close(&source);
-        return code;
-    }
-    int code = reconstruction_build(r, recording, o->recording, &o->settings);
-    if (code == CLI_OK) {
-        *told = reconstruction_told(r);
-    }
-    return code;
 }
 
 static int write_all(const build_options *o, const t3r_recording *recording, const reconstruction *r,
@@ -288,7 +253,7 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
         .scene = &r->scene,
         .told = told,
         .local = (o->flags & SCENE_FILE_LOCAL) != 0,
-        .sourced = o->settings.points_of == NULL || method_kind_of(o->settings.method) == METHOD_TRIM3R,
+        .sourced = o->settings.points_of == NULL || o->settings.method->allocates,
     };
     return o->colmap != NULL ? colmap_start_write(&start, folder, o->colmap) : CLI_OK;
 }
@@ -363,55 +328,70 @@ static void name_context(reconstruction_options *settings, const t3r_recording *
     }
 }
 
-int command_build(int argc, char **argv)
+void build_defaults(build_options *o)
 {
-    build_options o = {0};
-    reconstruction_defaults(&o.settings);
-    file_options_parse(&argp, argc, argv, &o);
+    *o = (build_options){0};
+    reconstruction_defaults(&o->settings);
+    o->settings.method = &method_trim3r;
+}
 
+int build_run(build_options *o)
+{
     char error[ERROR_BYTES] = "";
     work_times times;
     work_times_begin(&times);
-    t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
+    t3r_recording *recording = t3r_recording_open(o->recording, error, sizeof error);
     if (recording == NULL) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     work_times_end(&times, WORK_READ);
     int code = CLI_OK;
     whole_folder folder = {0};
-    if (o.colmap != NULL && whole_folder_begin(&folder, o.colmap, error, sizeof error) != 0) {
+    if (o->colmap != NULL && whole_folder_begin(&folder, o->colmap, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     found f = {0};
-    if (code == CLI_OK && o.settings.poses != POSES_GIVEN) {
-        name_context(&o.settings, recording);
-        code = recording_pose_views(recording, o.recording, o.settings.context, o.settings.context_count,
-                                    o.settings.poses, f.estimated);
+    if (code == CLI_OK && o->settings.poses != POSES_GIVEN) {
+        name_context(&o->settings, recording);
+        code = recording_pose_views(recording, o->recording, o->settings.context, o->settings.context_count,
+                                    o->settings.poses, f.estimated);
         work_times_end(&times, WORK_POSES);
     }
     reconstruction r;
     reconstruction_account told;
-    code = code == CLI_OK ? build(&o, recording, &r, &told) : code;
+    method_source source = {0};
     if (code == CLI_OK) {
-        reconstruction_warn_of_budget(&o.settings, told.requested, r.scene.count);
+        code = o->settings.method->build(&source, recording, o->recording, &o->settings, &r, &told);
+        method_source_close(&source);
+    }
+    if (code == CLI_OK) {
+        reconstruction_warn_of_budget(&o->settings, told.requested, r.scene.count);
         times.seconds[WORK_BUILD] = told.seconds; /* without what was opened for it */
         work_times_pass(&times);
-        code = write_all(&o, recording, &r, &told, &folder);
+        code = write_all(o, recording, &r, &told, &folder);
         work_times_end(&times, WORK_WRITE);
         if (code == CLI_OK) {
-            code = account_for_lists(&o, recording, &r.scene, &told, &f.lists);
+            code = account_for_lists(o, recording, &r.scene, &told, &f.lists);
         }
         if (code == CLI_OK) {
-            code = aligned_poses_of(recording, o.recording, &told, f.aligned);
+            code = aligned_poses_of(recording, o->recording, &told, f.aligned);
         }
-        if (code == CLI_OK && o.json) {
-            print_json(&o, &told, &r, recording, &f, &times);
+        if (code == CLI_OK && o->json) {
+            print_json(o, &told, &r, recording, &f, &times);
         } else if (code == CLI_OK) {
-            print_text(&o, &told, &r, &f, &times);
+            print_text(o, &told, &r, &f, &times);
         }
         reconstruction_close(&r);
     }
     whole_folder_abandon(&folder); /* unless it was committed */
     t3r_recording_close(recording);
     return code;
+}
+
+int command_build(int argc, char **argv)
+{
+    build_options o;
+    build_defaults(&o);
+    file_options_parse(&build_argp, argc, argv, &o);
+    return build_run(&o);
 }

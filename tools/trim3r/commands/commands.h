@@ -3,7 +3,6 @@
 #ifndef TRIM3R_TOOLS_COMMANDS_H
 #define TRIM3R_TOOLS_COMMANDS_H
 
-int command_chart(int argc, char **argv);
 int command_import(int argc, char **argv);
 int command_capture(int argc, char **argv);
 int command_info(int argc, char **argv);
@@ -12,14 +11,12 @@ int command_convert(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_view(int argc, char **argv);
 int command_eval(int argc, char **argv);
-int command_stress(int argc, char **argv);
 int command_replay(int argc, char **argv);
 int command_diff(int argc, char **argv);
 int command_doctor(int argc, char **argv);
 int command_plan(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_room(int argc, char **argv);
-int command_quantize(int argc, char **argv);
 int command_head_info(int argc, char **argv);
 int command_completion(int argc, char **argv);
 

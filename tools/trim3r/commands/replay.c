@@ -160,10 +160,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             (o->streams || o->settings.context_count > 0 || o->settings.config.allocation == T3R_ALLOCATE_GIVEN)) {
             argp_error(state, "--slide takes no --stream, --context or --allocate given");
         }
-        if (o->settings.method != METHOD_TRIM3R) {
-            argp_error(state, "--method %s is made in floats, which promise no bits; trim3r alone is replayed",
-                       method_name(o->settings.method));
-        }
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -1,0 +1,47 @@
+/* What an evaluation goes through: the triplets of recordings, or images, each on a plane. */
+#ifndef TRIM3R_TOOLS_EVALUATION_CASES_H
+#define TRIM3R_TOOLS_EVALUATION_CASES_H
+
+#include "evaluation/evaluation.h"
+
+/* Scenes are named after the last parts of their paths, as many as tell them apart, at most this many. */
+#define EVALUATION_NAME_PARTS_MOST 8u
+
+typedef struct evaluation_cases {
+    char **inputs; /* the caller's */
+    uint32_t input_count;
+    bool planar;
+    uint32_t width, height; /* of planar images */
+    poses_source poses;     /* of the context views of recordings */
+    char (*names)[EVALUATION_NAME_BYTES];
+    t3r_recording **recordings; /* of each input; none of an image */
+    evaluation_case *list;      /* an image's recording is NULL until entered */
+    uint32_t count;
+} evaluation_cases;
+
+/* How many parts of their paths tell the inputs apart; 0, with a pair that nothing does, where there is none. */
+uint32_t evaluation_name_parts(char *const *inputs, uint32_t count, uint32_t pair[2]);
+
+/* All triplets of every recording, or the one of the settings' `context` (context_count above 0) and `target`. With
+ * `context_views` above 2 the frames nearest to a triplet's target, by the median depth of the triplet's first frame
+ * or, where it has none, what stereo makes of the triplet's context, fill its context up to that many
+ * (nearest_views.h); a recording that has too few is refused. Opens all of them: a bad one is told before the work. An
+ * exit status of cli.h; evaluation_cases_close() in any case. */
+int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count,
+                                   const reconstruction_options *settings, uint32_t target);
+int evaluation_cases_of_images(evaluation_cases *cases, char **inputs, uint32_t count, uint32_t width, uint32_t height);
+void evaluation_cases_close(evaluation_cases *cases);
+
+/* A case with its recording open. */
+typedef struct evaluation_entered {
+    evaluation_case what;
+    t3r_recording *own; /* an image's; or the case's, where its context views have poses of their own */
+    uint8_t *bytes;
+} evaluation_entered;
+
+/* Estimates the poses of the context views where that is wanted: the first view and the target keep theirs. An exit
+ * status of cli.h; evaluation_case_leave() after CLI_OK. */
+int evaluation_case_enter(evaluation_entered *entered, const evaluation_cases *cases, uint32_t index);
+void evaluation_case_leave(evaluation_entered *entered);
+
+#endif

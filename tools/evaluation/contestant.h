@@ -1,0 +1,35 @@
+/* Whatever has rows of its own in an evaluation: trim3r once a head, or what a program adds. */
+#ifndef TRIM3R_TOOLS_EVALUATION_CONTESTANT_H
+#define TRIM3R_TOOLS_EVALUATION_CONTESTANT_H
+
+#include "reconstruction/method.h"
+
+#define EVALUATION_HEADS_MOST 32u
+#define EVALUATION_CONTESTANTS_MOST 64u
+#define EVALUATION_LABEL_BYTES 40
+
+typedef struct evaluation_contestant {
+    reconstruction_options settings;
+    const char *ablation;               /* the row's; "" = none */
+    char label[EVALUATION_LABEL_BYTES]; /* over its pictures and in their names */
+} evaluation_contestant;
+
+typedef struct evaluation_contestants {
+    evaluation_contestant list[EVALUATION_CONTESTANTS_MOST];
+    uint32_t count;
+} evaluation_contestants;
+
+/* Adds a contestant by these settings: there is room for heads, methods and ablations. It is named for its method, or
+ * for its ablation where there is one. */
+void evaluation_contestants_add(evaluation_contestants *chosen, const reconstruction_options *settings,
+                                const char *ablation);
+
+/* Adds trim3r by these settings: once for each of `heads`, or of none with the head of the settings. Opens every head
+ * once: a bad one is reported before the work. An exit status of cli.h after a message. */
+int evaluation_contestants_add_heads(evaluation_contestants *chosen, char *const *heads, uint32_t head_count,
+                                     const reconstruction_options *settings);
+
+/* The settings' scene file alone. */
+void evaluation_contestants_scene(evaluation_contestants *chosen, const reconstruction_options *settings);
+
+#endif

@@ -1,0 +1,20 @@
+/* What an evaluation leaves to look at: PNG files in a folder a case, and an HTML page. */
+#ifndef TRIM3R_TOOLS_EVALUATION_PICTURES_H
+#define TRIM3R_TOOLS_EVALUATION_PICTURES_H
+
+#include "evaluation/evaluation.h"
+#include "pictures/html_page.h"
+
+/* FOLDER/target.png, mask.png, context_a.png, ... of a case (planar: target.png alone). */
+int evaluation_write_views(const char *folder, const evaluation_views *views, const evaluation_case *what);
+/* FOLDER and the row's `picture`. */
+int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_row *row,
+                            uint8_t *render);
+
+/* A section for a case: context views, target, mask. */
+void evaluation_page_views(html_page *page, const evaluation_views *views, const evaluation_case *what);
+/* A render under its scores. */
+void evaluation_page_render(html_page *page, const evaluation_views *views, const evaluation_row *row,
+                            const uint8_t *render);
+
+#endif

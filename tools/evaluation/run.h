@@ -1,0 +1,10 @@
+/* An evaluation from end to end: cases, rows, what is written of them. */
+#ifndef TRIM3R_TOOLS_EVALUATION_RUN_H
+#define TRIM3R_TOOLS_EVALUATION_RUN_H
+
+#include "evaluation/options.h"
+
+/* Measures the contestants on every case at every budget of the options. An exit status of cli.h. */
+int evaluation_run(const evaluation_options *options, const evaluation_contestants *contestants);
+
+#endif

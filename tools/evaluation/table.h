@@ -1,0 +1,45 @@
+/* Rows of an evaluation as cells of a table: the one list of columns that CSV, JSON, terminal and page share. */
+#ifndef TRIM3R_TOOLS_EVALUATION_TABLE_H
+#define TRIM3R_TOOLS_EVALUATION_TABLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cjson/cJSON.h>
+
+#include "cli/tables/csv.h"
+#include "evaluation/evaluation.h"
+
+#define EVALUATION_COLUMNS 30u
+#define EVALUATION_CELL_BYTES 512u /* of any cell, the end included */
+
+/* Stable order; NULL past the last. */
+const char *evaluation_column_name(uint32_t column);
+/* The cell as text; "" where it does not apply. */
+void evaluation_cell(const evaluation_row *row, uint32_t column, char *text, size_t bytes);
+
+void evaluation_csv_header(csv_table *table);
+void evaluation_csv_row(csv_table *table, const evaluation_row *row);
+/* A row of evaluation_cell()'s texts; those of method, allocate, depth, wavelet and ablation must outlive it. False
+ * where a number is none or a text too long. */
+bool evaluation_row_read(evaluation_row *row, const char *const cells[EVALUATION_COLUMNS]);
+/* Whether two rows have the same budget. */
+bool evaluation_same_budget(const evaluation_row *a, const evaluation_row *b);
+/* Whether two rows are of the same case, contestant, budget and settings. */
+bool evaluation_same(const evaluation_row *a, const evaluation_row *b);
+/* An object of all columns, null where one does not apply; NULL without memory. */
+cJSON *evaluation_json(const evaluation_row *row);
+
+/* Averages rows that differ in context and target alone (by_scene) or in the scene as well, in order of first
+ * appearance; decibels are averaged as decibels, cells that do not apply are left out. Returns how many means there
+ * are, at most `count`. */
+uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, bool by_scene, evaluation_row *means);
+
+/* For terminal and page: the columns worth reading at a glance, of recordings or of planar images, in fewer digits.
+ * False where the column is not among them. */
+bool evaluation_glance(const evaluation_row *row, uint32_t column, bool planar, char *text, size_t bytes);
+void evaluation_print_header(FILE *out, bool planar);
+void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar);
+
+#endif

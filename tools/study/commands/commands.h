@@ -1,0 +1,12 @@
+/* The commands of the study, as those in trim3r/commands/commands.h. Two take the place of the product's: they have its
+ * options, and more. */
+#ifndef TRIM3R_TOOLS_STUDY_COMMANDS_H
+#define TRIM3R_TOOLS_STUDY_COMMANDS_H
+
+int command_build_by_method(int argc, char **argv);
+int command_eval_methods(int argc, char **argv);
+int command_chart(int argc, char **argv);
+int command_stress(int argc, char **argv);
+int command_quantize(int argc, char **argv);
+
+#endif

@@ -1,0 +1,27 @@
+/* Options of commands that compare methods. */
+#ifndef TRIM3R_TOOLS_RIVALS_OPTIONS_H
+#define TRIM3R_TOOLS_RIVALS_OPTIONS_H
+
+#include <argp.h>
+#include <stdint.h>
+
+#include "study/rivals/methods.h"
+
+#define METHOD_HELP                                                                                                    \
+    "trim3r (default), or a rival: random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them "     \
+    "fine-tunes its Gaussians, +head makes new ones of its points"
+
+/* The value of an option: a method, or one to METHOD_COUNT different ones with commas between. */
+const method *option_method(struct argp_state *state, const char *option, const char *text);
+void option_methods(struct argp_state *state, const char *option, const char *text, const method *methods[METHOD_COUNT],
+                    uint32_t *count);
+
+/* --finetune-iterations and --mask-head, for a parent that hands reconstruction_options * on; its doc describes the
+ * rivals. */
+extern const struct argp rival_argp;
+
+/* A usage error where the settings do not go with one of the methods. */
+void rival_check_settings(struct argp_state *state, const reconstruction_options *settings,
+                          const method *const methods[], uint32_t count);
+
+#endif
