@@ -37,8 +37,6 @@ def refused():
         "--arena": ["x", "-1", "1x", "1KB", "K", ""],
         "--threads": ["0", "65"],
         "--cpu-mask": ["every", "avx2,", ",avx2", "0x", "-1", "4294967296", ""],
-        "--method": ["best", "", "pup+", "+finetune"],
-        "--finetune-iterations": ["0", "100001", "x"],
         "--depth": ["Stereo", "radar", ""],
         "--refine": ["33", "x"],
     }.items():
@@ -48,7 +46,6 @@ def refused():
         expect(2, "build", "room.mcap", "--auto", f"--max-loss={loss}", "-o", "s.ply", err="--max-loss")
     expect(2, "build", "room.mcap", "--keep", 10, "--max-loss", 1, "-o", "s.ply", err="belongs to --auto")
     expect(2, "build", "room.mcap", "--auto", "--refine", 0, "-o", "s.ply", err="--refine 1 or more")
-    expect(2, "build", "room.mcap", "--auto", "--method", "eagles", "-o", "s.ply", err="not for eagles")
     expect(2, "build", "room.mcap", "--keep", 10, "--context", "1,1", "-o", "s.ply", err="twice")
     expect(1, "build", "room.mcap", "--keep", 10, "--context", "0,99", "-o", "s.ply", err="no frame 99")
     expect(1, "build", "room.mcap", "--keep", 10, "-o", "missing/s.ply", err="missing/s.ply")
@@ -80,12 +77,12 @@ def built():
     for command in (["build", "-o", "all.ply"], ["build", "-o", "all.ply", "--json"], ["replay"]):
         expect(0, *command, "room.mcap", "--working", "32x32", "--gaussians", 100000,
                err="100000 Gaussians are more than the views have: all ")
-    for command in (["build", "-o", "few.ply"], ["eval"], ["replay"], ["stress", "--rows", "noise", "--strengths", "1"]):
+    for command in (["build", "-o", "few.ply"], ["eval"], ["replay"]):
         line = [*command, "room.mcap", "--working", "32x32", "--keep"]
         expect(0, *line, 0.5, err="warning: --keep 0.5 is 0.5 percent of the points; a share of 0.5 is --keep 50")
         check("warning" not in run(*line, 1)[2], f"{line}: a warning of 1 %")
-    expect(0, "build", "room.mcap", "--working", "32x32", "--gaussians", 9, "--head", "none", "--method", "random",
-           "--comments", "-o", "named.ply")
+    expect(0, "build", "room.mcap", "--working", "32x32", "--gaussians", 9, "--head", "none", "--comments",
+           "-o", "named.ply")
     named = open("named.ply", "rb").read()
     check(b"comment trim3r bits_epoch" in named, "--comments writes none")
     check(b"comment trim3r head none\n" in named, "--comments does not name the head")

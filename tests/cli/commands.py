@@ -6,8 +6,8 @@ import sys
 from program import TRIM3R, check, expect, fill_disk, in_scratch
 
 
-COMMANDS = ["import", "room", "info", "build", "render", "view", "eval", "replay", "diff", "plan", "bench", "quantize",
-            "head-info", "stress"]
+COMMANDS = ["import", "room", "info", "build", "render", "view", "eval", "replay", "diff", "plan", "bench", "head-info"]
+STUDY = ["stress", "quantize"]
 
 
 def every_command():
@@ -15,7 +15,7 @@ def every_command():
     expect(2, "paint", err="paint")
     expect(0, "--version", out="bits epoch")
     summary = expect(0, "--help", out="COMMAND")
-    for command in COMMANDS:
+    for command in COMMANDS + (STUDY if "\nStudy:\n" in summary else []):
         check(f"\n  {command} " in summary, f"--help does not list {command}")
         text = expect(0, command, "--help", out="trim3r " + command)
         check("Example" in text, f"{command} --help has no examples")

@@ -22,8 +22,7 @@ CONTENT = {
 
 
 def commands():
-    summary = expect(0, "--help").split("\n\n")[1]
-    return [line.split()[0] for line in summary.splitlines()]
+    return [line.split("\t")[0] for line in expect(0, "--commands").splitlines()]
 
 
 def table(command):

@@ -30,7 +30,16 @@ def rivals():
     expect(0, "render", "tuned.ply", recording, "--view", 1, "-o", "tuned.png")
     expect(0, *small, "--gaussians", 100000, "--method", "eagles", "-o", "all.ply",
            err="100000 Gaussians are more than the views have")
-    expect(2, "replay", recording, "--method", "pup", err="floats")
+    for method in ("best", "", "pup+", "+finetune"):
+        expect(2, *small, "--keep", 9, f"--method={method}", "-o", "x.ply", err=f"--method: '{method}' is not a method")
+    for iterations in ("0", "100001", "x"):
+        expect(2, *small, "--keep", 9, f"--finetune-iterations={iterations}", "-o", "x.ply", err="--finetune-iterations")
+    expect(2, *small, "--auto", "--method", "eagles", "-o", "x.ply", err="not for eagles")
+    expect(2, *small, "--keep", 9, "--method", "pup", "--profile", "-o", "x.ply", err="--profile belongs to the method trim3r")
+    expect(0, *small, "--gaussians", 9, "--head", "none", "--method", "random", "--comments", "-o", "named.ply")
+    check(b"comment trim3r head none\n" in open("named.ply", "rb").read(), "--comments does not name the head")
+    for command in ("replay", "view", "capture"):
+        expect(2, command, recording, "--method", "pup", err="--method")
 
     prune = ["build", recording, "--context", "0,2", "--working", "32x32", "--prune", "whole.ply"]
     found = expect_json(*prune, "--keep", "50%", "--method", "eagles", "-o", "half.ply")

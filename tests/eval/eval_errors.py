@@ -45,27 +45,12 @@ with tempfile.TemporaryDirectory() as folder:
     for context in ("0,", "a", ",".join(str(i) for i in range(17))):
         refuse(USAGE, "--context takes", [room, "--context", context, "--target", "1", "--keep", "10"])
     refuse(USAGE, "--target takes", [room, "--context", "0,2", "--target", "1,3", "--keep", "10"])
-    for method in ("best", "", "eagle", "eaglesX", "eagles+", "eagles+finetuned", "+finetune", "EAGLES"):
-        refuse(USAGE, f"'{method}' is not a method", "efficientgs", "+finetune",
-               [*one, "--keep", "10", "--methods", f"trim3r,{method}"])
-    refuse(USAGE, "trim3r twice", [*one, "--keep", "10", "--methods", "trim3r,random,trim3r"])
-    refuse(USAGE, "pup+finetune twice", [*one, "--keep", "10", "--methods", "pup,pup+finetune,pup+finetune"])
-    for iterations in ("0", "-1", "100001", "many", ""):
-        refuse(USAGE, "--finetune-iterations", [*one, "--keep", "10", f"--finetune-iterations={iterations}"])
-    refuse(BUDGET, "too small", [*one, "--keep", "10", "--methods", "eagles", "--arena", "1000"])
-    refuse(INPUT, room, "no frame 999", [room, "--context", "0,999", "--target", "1", "--keep", "10", "--methods", "pup"])
     refuse(USAGE, "--depth", [*one, "--keep", "10", "--depth", "radar"])
     refuse(USAGE, "--head", [*one, "--keep", "10", "--head", "huge"])
     refuse(USAGE, "--heads", [*one, "--keep", "10", "--heads", "small,huge"])
     refuse(USAGE, "--heads", [*one, "--keep", "10", "--heads", "small,"])
     refuse(USAGE, "exclude", [*one, "--keep", "10", "--heads", "small", "--head", "base"])
     refuse(USAGE, "same name and bits", [*one, "--keep", "10", "--heads", "small,nano,small"])
-    refuse(USAGE, "--ablate does not know 'texture'", [*one, "--ablate=full,texture"])
-    refuse(USAGE, "--ablate does not know ''", [*one, "--ablate="])
-    refuse(USAGE, "--ablate does not know ''", [*one, "--ablate=full,"])
-    refuse(USAGE, "--ablate names k-5 twice", [*one, "--ablate=k-5,full,k-5"])
-    refuse(USAGE, "excludes --methods and --heads", [*one, "--ablate", "--methods", "trim3r"])
-    refuse(USAGE, "excludes --methods and --heads", [*one, "--ablate", "--heads", "small,base"])
     with open(f"{folder}/bad.t3w", "wb") as file:
         file.write(b"T3RW" + bytes(100))
     result = run(trim3r, "eval", *one, "--keep", "10", "--heads", f"analytic,{folder}/bad.t3w", expect=INPUT)

@@ -16,11 +16,11 @@
 #include "evaluation/table.h"
 #include "pictures/html_page.h"
 
-static evaluation_row make_row(const char *scene, const char *method, double keep, double psnr, double holes)
+static evaluation_row make_row(const char *scene, const char *by, double keep, double psnr, double holes)
 {
     evaluation_row row = {.head = "analytic",
                           .bits = "",
-                          .method = method,
+                          .method = by,
                           .refine = "0",
                           .allocate = "density",
                           .depth = "sensor",

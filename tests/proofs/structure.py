@@ -41,13 +41,16 @@ tool("ros", "reconstruction")
 tool("study/boards")
 tool("planning", "reconstruction", "room", base=("platform", "quant"))
 tool("bench", "planning", base=("platform", "quant"))
+tool("evaluation", "reconstruction")
+tool("trim3r", "capture", "viewer", "bench", "evaluation")
 tool("study/peers")
 tool("study/chart", "pictures")
 tool("study/rivals", "reconstruction")
-tool("study/evaluation", "study/rivals")
-tool("study/stress", "study/evaluation")
+tool("study/ablation", "evaluation")
+tool("study/stress", "evaluation", "study/rivals")
+tool("study/commands", "trim3r", "study/chart", "study/ablation", "study/stress")
 tool("study/train", "study/rivals")
-tool("trim3r", "capture", "viewer", "bench", "study/chart", "study/stress")
+tool("study", "study/commands")
 tool("python", "room", "scene", base=("platform", "quant"))
 tool("examples", base=("platform", "quant"))
 
@@ -126,9 +129,15 @@ def circles(arrows):
     return found
 
 
+def is_study(area):
+    return area.split("/")[:2] == ["tools", "study"]
+
+
 def check_picture(may):
-    """The picture itself has no circle."""
-    return [f"the picture has a circle: {', '.join(circle)}" for circle in circles(may)]
+    """The picture itself has no circle, and no arrow from the product to its study."""
+    findings = [f"the picture has a circle: {', '.join(circle)}" for circle in circles(may)]
+    return findings + [f"{area} of the product may use {used}" for area, uses in may.items() for used in sorted(uses)
+                       if is_study(used) and not is_study(area)]
 
 
 def check_calls(libraries):
@@ -166,6 +175,7 @@ def planted_findings():
     if len(findings) != 5:
         proof.broken("the planted house has five offences, no more", findings)
     proof.must_find(check_picture({"a": {"b"}, "b": {"c"}, "c": {"a"}}), "a, b, c", "a picture of three")
+    proof.must_find(check_picture({"tools/trim3r": {"tools/study/rivals"}}), "of the product", "an arrow to the study")
     with proof.scratch() as folder:
         objects = proof.compile_each(proof.TARGETS["x86_64"], sorted((house / "calls").glob("*.c")), folder)
         library = folder / "calls.a"

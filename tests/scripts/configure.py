@@ -46,6 +46,10 @@ def main():
               f"without two libraries: {text}")
         status, text = configure(folder, ["cmocka", "libzip", "libcjson"], "-DT3R_TOOLS=OFF")
         check(status == 0, f"the runtime alone: {text}")
+        status, text = configure(folder, ["cmocka"], "-DT3R_STUDY=OFF", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
+        commands = (max(folder.glob("build-*/compile_commands.json"), key=os.path.getmtime)).read_text()
+        check(status == 0 and "/tools/trim3r/main.c" in commands and "/tools/study/" not in commands,
+              f"the product without its study: {text}")
     done()
 
 

@@ -38,8 +38,7 @@ def refused(room, scene, folder):
             (2, "are both recordings", room, room),
             (2, "are both scenes", scene, scene),
             (2, "--compare needs a recording", scene, "--compare", "1"),
-            (2, "own method", room, "--method", "pup"),
-            (2, "own method", room, "--allocate", "given", "--importance", folder),
+            (2, "own allocations", room, "--allocate", "given", "--importance", folder),
             (1, "frame 99", room, "--compare", "99", "-o", f"{folder}/no.html"),
             (1, "nowhere.mcap", f"{folder}/nowhere.mcap", "-o", f"{folder}/no.html")):
         ended = run(TRIM3R, "view", *line, expect=expect)
