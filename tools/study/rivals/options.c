@@ -85,7 +85,8 @@ const struct argp rival_argp = {
     .options = options,
     .parser = parse,
     .doc = "\vThe rivals rank the Gaussians that --head and --refine make of all points, by the score of their papers "
-           "over the context views. They draw the best ones unchanged.\n"
+           "over the context views. They draw the best ones unchanged. With --prune they rank those of the "
+           "file.\n"
            "  eagles         influence: the sum of blend weights\n"
            "  lightgaussian  hits x opacity x volume\n"
            "  pup            second-order sensitivity to place and scale\n"
