@@ -224,7 +224,7 @@ static void texture_of(const t3r_runtime *rt, const t3r_view *view, uint32_t wor
     int16_t *plane = t3r_take(&cut, T3R_PIXELS_(config->width, config->height) * sizeof *plane);
     int16_t *work = t3r_take(&cut, T3R_WAVELET_ROW_BYTES(config->width));
     t3r_wavelet_texture(&rt->kernels, (const uint8_t *const *)view->colour, config->width, config->height,
-                        config->wavelet_levels, config->wavelet, view->texture, plane, work);
+                        config->levels, config->wavelet, view->texture, plane, work);
 }
 
 void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view)
@@ -341,13 +341,13 @@ t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view
     const t3r_config *config = &rt->config;
     uint32_t gaussians = T3R_MIN(rt->build.gaussians, rt->valid_points); /* filled holes compete, but add no budget */
     return (t3r_budget_settings){
-        .allocation = rt->build.allocation,
+        .allocate = rt->build.allocate,
         .gaussians = gaussians,
         .keep_percent = config->keep_percent,
         .gamma_q8 = config->gamma_q8,
         .clusters = config->clusters,
         .seed = config->seed,
-        .pass_over_covered = config->redundancy && rt->build.allocation != T3R_ALLOCATE_GIVEN &&
+        .pass_over_covered = config->redundancy && rt->build.allocate != T3R_ALLOCATE_GIVEN &&
                              t3r_is_sparse(views, rt->views, gaussians),
     };
 }
@@ -377,11 +377,11 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
 static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
 {
     rt->passes = 0;
-    if (rt->build.refinements == 0) {
+    if (rt->build.refine == 0) {
         return T3R_OK;
     }
     rt->analysed &= rt->config.keep_analysis; /* else refinement works where labels and clusters are */
-    rt->passes = rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refinements) : rt->build.refinements;
+    rt->passes = rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refine) : rt->build.refine;
     t3r_status status = t3r_refine(rt, views, rt->passes);
     if (status == T3R_OK) {
         t3r_hash_scene(rt, T3R_STAGE_REFINE);

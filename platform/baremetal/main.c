@@ -2,7 +2,7 @@
  * on the command line, each KEY=NUMBER, say what is built; the defaults are those of t3r_default_config().
  *
  *     frames=IN.mcap view=OUT.ppm scene=OUT.t3g width=64 height=64 views=2 gaussians=819 clusters=32
- *     refinements=2 learned=1 hashes=1 plain=0 cpu=T3R_CPU_... arena=BYTES
+ *     refine=2 learned=1 hashes=1 plain=0 cpu=T3R_CPU_... arena=BYTES
  *
  * The first `views` frames are the context; the next one's camera is drawn. */
 #include <stdbool.h>
@@ -78,8 +78,8 @@ static t3r_config configure(const options *o)
 {
     t3r_config config = t3r_default_config(o->width, o->height, o->views, o->gaussians);
     config.clusters = o->clusters != 0 ? o->clusters : config.clusters;
-    config.cluster_batches = o->batches != 0 ? o->batches : config.cluster_batches;
-    config.refinements = o->refinements;
+    config.cluster_batches = o->cluster_batches != 0 ? o->cluster_batches : config.cluster_batches;
+    config.refine = o->refine;
     /* the same work and bits, whatever the library was built with */
     config.fit_passes = config.fit_widths = config.align = 0;
 #ifdef HEAD

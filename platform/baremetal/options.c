@@ -13,18 +13,12 @@ typedef struct number_option {
 } number_option;
 
 static const number_option numbers[] = {
-    {"width", offsetof(options, width)},
-    {"height", offsetof(options, height)},
-    {"views", offsetof(options, views)},
-    {"gaussians", offsetof(options, gaussians)},
-    {"clusters", offsetof(options, clusters)},
-    {"batches", offsetof(options, batches)},
-    {"refinements", offsetof(options, refinements)},
-    {"learned", offsetof(options, learned)},
-    {"hashes", offsetof(options, hashes)},
-    {"plain", offsetof(options, plain)},
-    {"cpu", offsetof(options, cpu)},
-    {"arena", offsetof(options, arena)},
+    {"width", offsetof(options, width)},       {"height", offsetof(options, height)},
+    {"views", offsetof(options, views)},       {"gaussians", offsetof(options, gaussians)},
+    {"clusters", offsetof(options, clusters)}, {"cluster_batches", offsetof(options, cluster_batches)},
+    {"refine", offsetof(options, refine)},     {"learned", offsetof(options, learned)},
+    {"hashes", offsetof(options, hashes)},     {"plain", offsetof(options, plain)},
+    {"cpu", offsetof(options, cpu)},           {"arena", offsetof(options, arena)},
 };
 
 static _Noreturn void refuse(const char *word, const char *why)

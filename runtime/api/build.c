@@ -26,9 +26,9 @@ static build_order order_of(const t3r_runtime *rt, const t3r_request *request)
     }
     order.build.gaussians = request->gaussians != 0 ? request->gaussians : order.build.gaussians;
     if (request->importance != NULL) {
-        order.build.allocation = T3R_ALLOCATE_GIVEN;
-    } else if (request->allocation != T3R_ALLOCATE_CONFIGURED) {
-        order.build.allocation = request->allocation;
+        order.build.allocate = T3R_ALLOCATE_GIVEN;
+    } else if (request->allocate != T3R_ALLOCATE_CONFIGURED) {
+        order.build.allocate = request->allocate;
     }
     order.build.head = request->head != T3R_HEAD_CONFIGURED ? request->head : order.build.head;
     order.max_loss_q8 = request->max_loss_q8;
@@ -54,8 +54,8 @@ static bool is_importance(const t3r_runtime *rt, const t3r_importance *importanc
 /* Whether an importance comes with no other allocation than `given`. */
 static bool agrees(const t3r_request *request)
 {
-    return request == NULL || request->importance == NULL || request->allocation == T3R_ALLOCATE_CONFIGURED ||
-           request->allocation == T3R_ALLOCATE_GIVEN;
+    return request == NULL || request->importance == NULL || request->allocate == T3R_ALLOCATE_CONFIGURED ||
+           request->allocate == T3R_ALLOCATE_GIVEN;
 }
 
 static bool is_request(const t3r_runtime *rt, const t3r_request *request, const build_order *order)
@@ -67,7 +67,7 @@ static bool is_request(const t3r_runtime *rt, const t3r_request *request, const 
 /* Whether the library was built with what the order asks for. */
 static bool is_supported(const build_order *order)
 {
-    return t3r_has(t3r_feature_of_head(order->build.head) | t3r_feature_of_allocation(order->build.allocation) |
+    return t3r_has(t3r_feature_of_head(order->build.head) | t3r_feature_of_allocation(order->build.allocate) |
                    (order->max_loss_q8 != 0 ? T3R_HAS_LOSS : 0u));
 }
 
@@ -75,8 +75,8 @@ static bool is_supported(const build_order *order)
 static bool can_be_built(const t3r_runtime *rt, const build_order *order)
 {
     return t3r_has_head(rt, order->build.head) &&
-           (order->build.allocation != T3R_ALLOCATE_GIVEN || order->importance.planes != NULL) &&
-           (order->max_loss_q8 == 0 || (rt->config.keep_analysis && rt->config.refinements > 0));
+           (order->build.allocate != T3R_ALLOCATE_GIVEN || order->importance.planes != NULL) &&
+           (order->max_loss_q8 == 0 || (rt->config.keep_analysis && rt->config.refine > 0));
 }
 
 static bool has_views(const t3r_runtime *rt)
@@ -110,7 +110,7 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scen
     rt->analysed = 0;
     t3r_status status = t3r_analyse(rt);
     if (status == T3R_OK && rt->follows) {
-        order.build.refinements = t3r_following_refinements_of(&rt->config);
+        order.build.refine = t3r_following_passes_of(&rt->config);
     }
     if (status == T3R_OK) {
         status = build(rt, &order, scene);

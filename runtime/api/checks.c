@@ -28,8 +28,8 @@ bool t3r_is_gaussian(const t3r_gaussian *g)
 bool t3r_is_build(const t3r_config *config, const t3r_build *build)
 {
     return build->gaussians >= 1 && build->gaussians <= config->max_gaussians &&
-           (uint32_t)build->allocation > T3R_ALLOCATE_CONFIGURED && (uint32_t)build->allocation < T3R_ALLOCATE_COUNT &&
-           build->refinements <= config->refinements && (uint32_t)build->head > T3R_HEAD_CONFIGURED &&
+           (uint32_t)build->allocate > T3R_ALLOCATE_CONFIGURED && (uint32_t)build->allocate < T3R_ALLOCATE_COUNT &&
+           build->refine <= config->refine && (uint32_t)build->head > T3R_HEAD_CONFIGURED &&
            (uint32_t)build->head < T3R_HEAD_COUNT && t3r_has(t3r_feature_of_head(build->head));
 }
 

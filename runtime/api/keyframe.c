@@ -15,7 +15,7 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     }
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(rt->config.stream && t3r_has_head(rt, rt->config.head) &&
-                          rt->config.allocation != T3R_ALLOCATE_GIVEN,
+                          rt->config.allocate != T3R_ALLOCATE_GIVEN,
                       T3R_ERR_STATE);
     if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;

@@ -17,7 +17,7 @@
 #include "state/views.h"
 
 typedef struct t3r_budget_settings {
-    t3r_allocation allocation;
+    t3r_allocation allocate;
     uint32_t gaussians;    /* Z */
     uint32_t keep_percent; /* N of `paper` */
     uint32_t gamma_q8;
@@ -48,7 +48,7 @@ typedef struct t3r_budget_work {
 static inline bool t3r_allocates(const t3r_budget_settings *settings, t3r_allocation allocation)
 {
     const bool is_by_density = allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL;
-    return (T3R_FEATURE_ALLOCATIONS || is_by_density) && settings->allocation == allocation;
+    return (T3R_FEATURE_ALLOCATIONS || is_by_density) && settings->allocate == allocation;
 }
 
 /* The marks of points that are retained only once all others are. */

@@ -24,16 +24,16 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
         .render_width = width,
         .render_height = height,
         .wavelet = T3R_WAVELET_DB2,
-        .wavelet_levels = 2,
+        .levels = 2,
         .clusters = 0,
         .cluster_batches = 0,
         .colour_weight_q8 = 256,
-        .allocation = T3R_ALLOCATE_DENSITY,
+        .allocate = T3R_ALLOCATE_DENSITY,
         .keep_percent = 10,
         .gamma_q8 = 179, /* 0.7 */
         .head = T3R_HEAD_ANALYTIC,
         .head_column_bytes = T3R_HEAD_COLUMN_BYTES,
-        .refinements = T3R_DEFAULT_REFINEMENTS,
+        .refine = T3R_DEFAULT_REFINE,
         .fit_passes = T3R_FEATURE_LOSS,
         .fit_widths = T3R_FEATURE_COMPARISON,
         .depth = T3R_DEPTH_SENSOR,
@@ -71,7 +71,7 @@ uint32_t t3r_cluster_count(const t3r_config *c)
     if (t3r_is_stream(c)) {
         return 1;
     }
-    switch (c->allocation) {
+    switch (c->allocate) {
     case T3R_ALLOCATE_DENSITY:
         return T3R_CLUSTERS_OF_POINTS(points);
     case T3R_ALLOCATE_PAPER:
@@ -108,7 +108,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("render_width must be 1..4096", render_width, 1, T3R_MAX_SIDE)                                                   \
     X("render_height must be 1..4096", render_height, 1, T3R_MAX_SIDE)                                                 \
     X("wavelet is none of t3r_wavelet", wavelet, 0, T3R_WAVELET_COUNT - 1)                                             \
-    X("wavelet_levels must be 1..5", wavelet_levels, 1, T3R_MAX_LEVELS)                                                \
+    X("levels must be 1..5", levels, 1, T3R_MAX_LEVELS)                                                                \
     X("clusters must be 0..512", clusters, 0, T3R_MAX_CLUSTERS)                                                        \
     X("cluster_batches must be 0..1024", cluster_batches, 0, 1024)                                                     \
     X("colour_weight_q8 must be 0..1024", colour_weight_q8, 0, 1024)                                                   \
@@ -117,7 +117,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("gamma_q8 must be 0..512", gamma_q8, 0, 512)                                                                     \
     X("head is none of t3r_head", head, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT - 1)                                   \
     X("head_column_bytes must be 0..65536", head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES)                           \
-    X("refinements must be 0..32", refinements, 0, T3R_MAX_REFINEMENTS)                                                \
+    X("refine must be 0..32", refine, 0, T3R_MAX_REFINE)                                                               \
     X("fit_passes must be 0 or 1", fit_passes, 0, 1)                                                                   \
     X("fit_widths must be 0 or 1", fit_widths, 0, 1)                                                                   \
     X("structural must be 0 or 1", structural, 0, 1)                                                                   \
@@ -149,13 +149,13 @@ t3r_config t3r_settled(const t3r_config *config)
     X("this library was built without stereo", c->depth == T3R_DEPTH_STEREO ? T3R_HAS_STEREO : 0u)                     \
     X("this library was built without streams", c->stream ? T3R_HAS_STREAMS : 0u)                                      \
     X("this library was built without this head", t3r_feature_of_head(c->head))                                        \
-    X("this library was built without refinement", c->refinements > 0 ? T3R_HAS_REFINEMENT : 0u)                       \
+    X("this library was built without refinement", c->refine > 0 ? T3R_HAS_REFINEMENT : 0u)                            \
     X("this library was built without fitted passes", c->fit_passes ? T3R_HAS_LOSS : 0u)                               \
     X("this library was built without the structural loss", c->structural ? T3R_HAS_LOSS : 0u)                         \
     X("this library was built without alignment", c->align ? T3R_HAS_ALIGN : 0u)                                       \
     X("this library was built without comparison of views",                                                            \
       c->views > 1 || c->stream || c->fit_widths ? T3R_HAS_COMPARISON : 0u)                                            \
-    X("this library was built without this allocation", t3r_feature_of_allocation(c->allocation))                      \
+    X("this library was built without this allocation", t3r_feature_of_allocation(c->allocate))                        \
     X("this library was built without this wavelet", t3r_feature_of_wavelet(c->wavelet))                               \
     X("this library was built without several workers", c->workers > 1 ? T3R_HAS_WORKERS : 0u)                         \
     X("this library was built without builds that follow one another", c->warm ? T3R_HAS_WARM : 0u)

@@ -20,17 +20,16 @@ static inline uint32_t t3r_tile_splats_of(const t3r_config *config)
 }
 
 /* The passes of refinement in a build that follows another (t3r_config.warm). */
-static inline uint32_t t3r_following_refinements_of(const t3r_config *config)
+static inline uint32_t t3r_following_passes_of(const t3r_config *config)
 {
-    return (config->refinements + 1) / 2;
+    return (config->refine + 1) / 2;
 }
 
-/* The same of a stream's keyframe. What is fitted is T3R_STREAM_REFINEMENTS: each keyframe corrects what those before
+/* The same of a stream's keyframe. What is fitted is T3R_STREAM_REFINE: each keyframe corrects what those before
  * it did. */
-static inline uint32_t t3r_keyframe_refinements_of(const t3r_config *config, bool follows)
+static inline uint32_t t3r_keyframe_passes_of(const t3r_config *config, bool follows)
 {
-    const uint32_t passes =
-        config->fit_passes ? T3R_MIN(config->refinements, T3R_STREAM_REFINEMENTS) : config->refinements;
+    const uint32_t passes = config->fit_passes ? T3R_MIN(config->refine, T3R_STREAM_REFINE) : config->refine;
     return follows ? (passes + 1) / 2 : passes;
 }
 

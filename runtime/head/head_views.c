@@ -55,7 +55,7 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
         .weights = rt->weights,
         .work = work_of(rt, 0),
         .work_bytes = work_bytes(rt),
-        .narrowest_q12 = !unadapted && rt->build.refinements > 0 ? T3R_NARROWEST_REFINED_Q12 : T3R_NARROWEST_Q12,
+        .narrowest_q12 = !unadapted && rt->build.refine > 0 ? T3R_NARROWEST_REFINED_Q12 : T3R_NARROWEST_Q12,
         .unadapted = unadapted,
     };
 }
@@ -80,7 +80,7 @@ static bool goes_on(void *context)
  * is not in the map any more, and a head that nothing adapts takes no spacing. */
 static bool fits_widths(const t3r_runtime *rt)
 {
-    return T3R_FEATURE_COMPARISON && rt->config.fit_widths != 0 && rt->build.refinements == 0 &&
+    return T3R_FEATURE_COMPARISON && rt->config.fit_widths != 0 && rt->build.refine == 0 &&
            !t3r_is_stream(&rt->config) && rt->ablation.unadapted == 0;
 }
 

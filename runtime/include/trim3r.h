@@ -66,9 +66,9 @@ extern "C" {
 #define T3R_MAX_GAUSSIANS (1u << 24)
 #define T3R_HARMONICS_DEGREE_MOST 3u
 #define T3R_HARMONICS_MOST 16u /* of each colour, degree 0 included */
-#define T3R_MAX_REFINEMENTS 32u
-#define T3R_STREAM_REFINEMENTS 4u /* of a keyframe at most, where they are fitted */
-#define T3R_MAX_LEVELS 5u         /* most wavelet levels */
+#define T3R_MAX_REFINE 32u
+#define T3R_STREAM_REFINE 4u /* of a keyframe at most, where they are fitted */
+#define T3R_MAX_LEVELS 5u    /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536u
 #define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
 #define T3R_MAX_WORKERS 16u
@@ -239,7 +239,7 @@ typedef struct t3r_config {
     /* The wavelet that measures texture. [T3R_WAVELET_DB2] */
     t3r_wavelet wavelet;
     /* The levels of the wavelet transform that texture is summed over, 1..T3R_MAX_LEVELS. [2] */
-    uint32_t wavelet_levels;
+    uint32_t levels;
     /* The number of SuperClusters, K in GaussianTrim3R, 0..T3R_MAX_CLUSTERS. 0 = t3r_cluster_count() chooses. With 1 no
      * K-means run. [0] */
     uint32_t clusters;
@@ -250,7 +250,7 @@ typedef struct t3r_config {
      * [256] */
     uint32_t colour_weight_q8;
     /* The allocation of the budget over the valid points. [T3R_ALLOCATE_DENSITY] */
-    t3r_allocation allocation;
+    t3r_allocation allocate;
     /* The percentage of its points that a trimmed SuperCluster keeps with T3R_ALLOCATE_PAPER, 0..100; 0 = none. [10] */
     uint32_t keep_percent;
     /* The exponent of texture in densities, 0..512, in 1/256; 0 = texture does not count. [179, which is 0.7] */
@@ -261,11 +261,11 @@ typedef struct t3r_config {
      * t3r_head_column_bytes() returns what a head needs. 0 = two bytes a pixel of the view.
      * [T3R_HEAD_COLUMN_BYTES, enough for tiny, nano, small and base with 8-bit activations] */
     uint32_t head_column_bytes;
-    /* The number of refinement passes on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS]
+    /* The number of refinement passes on the context views, 0..T3R_MAX_REFINE; 0 = none. [T3R_DEFAULT_REFINE]
      */
-    uint32_t refinements;
-    /* 1 = `refinements` are the most. A build takes as many as its budget and the agreement of its views pay for, and
-     * t3r_refinement_passes() returns them. A stream takes at most T3R_STREAM_REFINEMENTS a keyframe. 0 = every build
+    uint32_t refine;
+    /* 1 = `refine` are the most. A build takes as many as its budget and the agreement of its views pay for, and
+     * t3r_refinement_passes() returns them. A stream takes at most T3R_STREAM_REFINE a keyframe. 0 = every build
      * and keyframe takes all of them. [1, where the library has the loss to fit them by] */
     uint32_t fit_passes;
     /* 1 = splats of T3R_HEAD_ANALYTIC and T3R_HEAD_MOMENT are as wide as the retained points of all views together ask
@@ -344,7 +344,7 @@ typedef struct t3r_request {
     uint32_t max_loss_q8;
     /* The allocation of the budget. T3R_ALLOCATE_CONFIGURED (0) = the configuration's, or T3R_ALLOCATE_GIVEN with an
      * importance. An importance goes with no other allocation. */
-    t3r_allocation allocation;
+    t3r_allocation allocate;
     /* The head. T3R_HEAD_CONFIGURED (0) = the configuration's. */
     t3r_head head;
     /* The importance of each pixel, 0..65535. importance[v] is a plane of the working size for context view v, aligned
@@ -519,17 +519,17 @@ typedef struct t3r_limits {
     const t3r_prices *prices;
     /* The budget in Gaussians, 1..T3R_MAX_GAUSSIANS; 0 = each of some shares of the points. */
     uint32_t gaussians;
-    /* The number of refinement passes, 0..T3R_MAX_REFINEMENTS; T3R_ANY_REFINEMENTS = each of some. */
-    uint32_t refinements;
+    /* The number of refinement passes, 0..T3R_MAX_REFINE; T3R_ANY_REFINE = each of some. */
+    uint32_t refine;
 } t3r_limits;
 
-#define T3R_ANY_REFINEMENTS UINT32_MAX
+#define T3R_ANY_REFINE UINT32_MAX
 #define T3R_MAX_CHOICES 48u
 
 /* Settings that fit. */
 typedef struct t3r_choice {
     /* The fields of the configuration that are chosen; max_gaussians is gaussians. */
-    uint32_t gaussians, refinements;
+    uint32_t gaussians, refine;
     /* The configuration's head. */
     t3r_head head;
     /* The weights that came with it. */
@@ -658,7 +658,7 @@ static inline t3r_status t3r_preset(uint64_t bytes, t3r_config *config, t3r_pres
     return t3r_preset_as(t3r_header_interface(), bytes, config, info);
 }
 
-/* The settings that make the most of so much work, whatever the size and the budget: head, refinements, fit_passes and
+/* The settings that make the most of so much work, whatever the size and the budget: head, refine, fit_passes and
  * structural of `config`, which keeps its other fields. They were chosen on training scenes (docs/budgets.md, "How much
  * work"). *weights gets the name of the head's weights in quant/heads, for t3r_bind_head(); `weights` may be NULL.
  *
@@ -802,9 +802,9 @@ t3r_status t3r_reset(t3r_runtime *rt);
  * T3R_ERR_ARGUMENT: a field of the request is out of its range. T3R_ERR_UNSUPPORTED: this library was built without the
  * head, without the allocation, or without bounded losses. T3R_ERR_STATE: there are no views (by stereo, fewer
  * than two); the learned head has no weights; the allocation is `given` and no importance came; or a bounded loss
- * without keep_analysis and refinements. After these three everything is as it was. T3R_ERR_CAMERA: a view stands more
- * than 1,024 scene units from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() has the
- * reason. T3R_ERR_CANCELLED. After these three there is no scene, and the views stay. */
+ * without keep_analysis and refine above 0. After these three everything is as it was. T3R_ERR_CAMERA: a view stands
+ * more than 1,024 scene units from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() has
+ * the reason. T3R_ERR_CANCELLED. After these three there is no scene, and the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
 
 /* Builds another scene of the views analysed last, without analysing them again. Needs keep_analysis; otherwise as
@@ -877,7 +877,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
 /* The number of passes over the scene that the last t3r_render() took: 1 when the arena had room for all splats. */
 uint32_t t3r_render_passes(const t3r_runtime *rt);
 
-/* The number of refinement passes that the last build took, 0..`refinements`. 0 without a runtime, before a build, and
+/* The number of refinement passes that the last build took, 0..`refine`. 0 without a runtime, before a build, and
  * of a stream. */
 uint32_t t3r_refinement_passes(const t3r_runtime *rt);
 

@@ -28,7 +28,7 @@
 /* t3r_config.clusters is chosen: one for 256 points of all views, at most 32. */
 #define T3R_CLUSTERS_OF_POINTS(points) ((points) < 512 ? 1 : (points) < 32 * 256 ? (points) / 256 : 32)
 /* At most so many passes of refinement, where their number is fitted (t3r_config.fit_passes). */
-#define T3R_DEFAULT_REFINEMENTS (!T3R_FEATURE_REFINEMENT ? 0 : T3R_FEATURE_LOSS ? 8 : 4)
+#define T3R_DEFAULT_REFINE (!T3R_FEATURE_REFINEMENT ? 0 : T3R_FEATURE_LOSS ? 8 : 4)
 
 #define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
 #define T3R_MAX_(a, b) ((a) > (b) ? (a) : (b))
@@ -164,9 +164,9 @@
  * others are the fields of t3r_config with their names. */
 #define T3R_KEEP_MAP 2
 #define T3R_SHAPE_(width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep,    \
-                   refinements, stereo, workers, warm, remember)                                                       \
-    (width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep, refinements,     \
-     stereo, workers, warm, remember)
+                   refine, stereo, workers, warm, remember)                                                            \
+    (width, height, views, gaussians, clusters, render_width, render_height, head_column_bytes, keep, refine, stereo,  \
+     workers, warm, remember)
 #define T3R_WIDTH_(shape) T3R_SHAPE_WIDTH_ shape
 #define T3R_HEIGHT_(shape) T3R_SHAPE_HEIGHT_ shape
 #define T3R_VIEWS_(shape) T3R_SHAPE_VIEWS_ shape
@@ -176,7 +176,7 @@
 #define T3R_RENDER_HEIGHT_(shape) T3R_SHAPE_RENDER_HEIGHT_ shape
 #define T3R_COLUMN_BYTES_(shape) T3R_SHAPE_COLUMN_BYTES_ shape
 #define T3R_KEEP_(shape) T3R_SHAPE_KEEP_ shape
-#define T3R_REFINEMENTS_(shape) T3R_SHAPE_REFINEMENTS_ shape
+#define T3R_REFINE_(shape) T3R_SHAPE_REFINE_ shape
 #define T3R_STEREO_(shape) T3R_SHAPE_STEREO_ shape
 #define T3R_WORKERS_(shape) T3R_SHAPE_WORKERS_ shape
 #define T3R_WARM_(shape) T3R_SHAPE_WARM_ shape
@@ -190,7 +190,7 @@
 #define T3R_SHAPE_RENDER_HEIGHT_(a, b, c, d, e, f, render_height, ...) ((size_t)(render_height))
 #define T3R_SHAPE_COLUMN_BYTES_(a, b, c, d, e, f, g, head_column_bytes, ...) ((size_t)(head_column_bytes))
 #define T3R_SHAPE_KEEP_(a, b, c, d, e, f, g, h, keep, ...) ((size_t)(keep))
-#define T3R_SHAPE_REFINEMENTS_(a, b, c, d, e, f, g, h, i, refinements, ...) ((size_t)(refinements))
+#define T3R_SHAPE_REFINE_(a, b, c, d, e, f, g, h, i, refine, ...) ((size_t)(refine))
 #define T3R_SHAPE_STEREO_(a, b, c, d, e, f, g, h, i, j, stereo, ...) ((size_t)(stereo))
 #define T3R_SHAPE_WORKERS_(a, b, c, d, e, f, g, h, i, j, k, workers, ...) ((size_t)(workers))
 #define T3R_SHAPE_WARM_(a, b, c, d, e, f, g, h, i, j, k, l, warm, ...) ((size_t)(warm))
@@ -200,7 +200,7 @@
 #define T3R_BUILDS_(shape) (T3R_VIEWS_(shape) > 0 ? (size_t)1 : (size_t)0)
 #define T3R_STREAMS_(shape) (T3R_KEEP_(shape) == T3R_KEEP_MAP ? (size_t)1 : (size_t)0)
 #define T3R_REFINES_(shape)                                                                                            \
-    (T3R_BUILDS_(shape) * (T3R_REFINEMENTS_(shape) + T3R_STREAMS_(shape) > 0 ? (size_t)1 : (size_t)0))
+    (T3R_BUILDS_(shape) * (T3R_REFINE_(shape) + T3R_STREAMS_(shape) > 0 ? (size_t)1 : (size_t)0))
 
 /* 1 where planes outlive a build for the next one; a stream keeps its map in any case. */
 #define T3R_FOLLOWS_(shape)                                                                                            \
@@ -340,7 +340,7 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 #define T3R_DEFAULT_SHAPE_(width, height, views, gaussians, keep, stereo, warm)                                        \
     T3R_SHAPE_(width, height, views, gaussians,                                                                        \
                (keep) == T3R_KEEP_MAP ? 1 : T3R_CLUSTERS_OF_POINTS(T3R_PIXELS_(width, height) * (views)), width,       \
-               height, T3R_HEAD_COLUMN_BYTES, keep, T3R_DEFAULT_REFINEMENTS, stereo, 1, warm, 0)
+               height, T3R_HEAD_COLUMN_BYTES, keep, T3R_DEFAULT_REFINE, stereo, 1, warm, 0)
 
 /* The arena of the default configuration: the least bytes that work, and those with which a view takes one pass (views
  * of wide splats may take more). */

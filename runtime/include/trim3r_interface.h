@@ -62,16 +62,16 @@
     X(t3r_config, render_width)                                                                                        \
     X(t3r_config, render_height)                                                                                       \
     X(t3r_config, wavelet)                                                                                             \
-    X(t3r_config, wavelet_levels)                                                                                      \
+    X(t3r_config, levels)                                                                                              \
     X(t3r_config, clusters)                                                                                            \
     X(t3r_config, cluster_batches)                                                                                     \
     X(t3r_config, colour_weight_q8)                                                                                    \
-    X(t3r_config, allocation)                                                                                          \
+    X(t3r_config, allocate)                                                                                            \
     X(t3r_config, keep_percent)                                                                                        \
     X(t3r_config, gamma_q8)                                                                                            \
     X(t3r_config, head)                                                                                                \
     X(t3r_config, head_column_bytes)                                                                                   \
-    X(t3r_config, refinements)                                                                                         \
+    X(t3r_config, refine)                                                                                              \
     X(t3r_config, fit_passes)                                                                                          \
     X(t3r_config, fit_widths)                                                                                          \
     X(t3r_config, structural)                                                                                          \
@@ -93,7 +93,7 @@
     X(t3r_config, seed)                                                                                                \
     X(t3r_request, gaussians)                                                                                          \
     X(t3r_request, max_loss_q8)                                                                                        \
-    X(t3r_request, allocation)                                                                                         \
+    X(t3r_request, allocate)                                                                                           \
     X(t3r_request, head)                                                                                               \
     X(t3r_request, importance)                                                                                         \
     X(t3r_request, importance_stride_bytes)                                                                            \
@@ -139,9 +139,9 @@
     X(t3r_limits, most)                                                                                                \
     X(t3r_limits, prices)                                                                                              \
     X(t3r_limits, gaussians)                                                                                           \
-    X(t3r_limits, refinements)                                                                                         \
+    X(t3r_limits, refine)                                                                                              \
     X(t3r_choice, gaussians)                                                                                           \
-    X(t3r_choice, refinements)                                                                                         \
+    X(t3r_choice, refine)                                                                                              \
     X(t3r_choice, head)                                                                                                \
     X(t3r_choice, weights)                                                                                             \
     X(t3r_choice, min_bytes)                                                                                           \

@@ -66,12 +66,12 @@ static bool try_one(const search *s, t3r_choice *choice)
     (void)t3r_lay_out(c, 0, &layout); /* for the two sums */
     *choice = (t3r_choice){
         .gaussians = c->gaussians,
-        .refinements = c->refinements,
+        .refine = c->refine,
         .head = c->head,
         .weights = s->weights,
         .min_bytes = layout.min_bytes,
         .full_bytes = layout.bytes,
-        .loss_q4 = loss_of(s->row, c->refinements, c->gaussians, s->points),
+        .loss_q4 = loss_of(s->row, c->refine, c->gaussians, s->points),
     };
     const size_t bytes = s->limits->bytes == 0 ? layout.bytes : s->limits->bytes;
     t3r_work_counts counts;
@@ -116,7 +116,7 @@ static uint32_t add(t3r_choice *choices, uint32_t count, const t3r_choice *found
 static bool are_limits(const t3r_limits *limits)
 {
     return limits != NULL && (limits->most == 0 || limits->prices != NULL) && limits->gaussians <= T3R_MAX_GAUSSIANS &&
-           (limits->refinements <= T3R_MAX_REFINEMENTS || limits->refinements == T3R_ANY_REFINEMENTS);
+           (limits->refine <= T3R_MAX_REFINE || limits->refine == T3R_ANY_REFINE);
 }
 
 t3r_status t3r_plan_choices(const t3r_config *config, const void *weights, size_t weight_bytes,
@@ -125,7 +125,7 @@ t3r_status t3r_plan_choices(const t3r_config *config, const void *weights, size_
     T3R_REFUSE_UNLESS(config != NULL && are_limits(limits) && choices != NULL && count != NULL, T3R_ERR_ARGUMENT);
     search s = {.config = *config, .weights = weights, .weight_bytes = weight_bytes, .limits = limits};
     s.config.gaussians = s.config.max_gaussians = 1;
-    s.config.refinements = 0;
+    s.config.refine = 0;
     const t3r_status status = t3r_config_check(&s.config);
     if (status != T3R_OK || config->stream != 0) {
         return status != T3R_OK ? status : T3R_ERR_CONFIG;
@@ -138,8 +138,8 @@ t3r_status t3r_plan_choices(const t3r_config *config, const void *weights, size_
     for (uint32_t p = 0; p < T3R_QUALITY_PASSES; p++) {
         for (uint32_t share = 0; share < T3R_QUALITY_SHARES; share++) {
             t3r_choice found;
-            const bool any = limits->refinements == T3R_ANY_REFINEMENTS;
-            s.config.refinements = any ? t3r_quality_passes[p] : limits->refinements;
+            const bool any = limits->refine == T3R_ANY_REFINE;
+            s.config.refine = any ? t3r_quality_passes[p] : limits->refine;
             s.config.gaussians =
                 limits->gaussians != 0 ? limits->gaussians : share_of(s.points, t3r_quality_percent[share]);
             s.config.max_gaussians = s.config.gaussians;

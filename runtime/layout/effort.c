@@ -4,7 +4,7 @@
 
 typedef struct effort_row {
     const char *weights;
-    uint32_t refinements; /* at most */
+    uint32_t refine; /* at most */
     uint32_t structural;
 } effort_row;
 
@@ -28,7 +28,7 @@ t3r_status t3r_set_effort_as(uint64_t digest, t3r_effort effort, t3r_config *con
     }
     const effort_row *row = &rows[effort];
     config->head = T3R_HEAD_LEARNED;
-    config->refinements = row->refinements;
+    config->refine = row->refine;
     config->fit_passes = 1;
     config->structural = row->structural;
     if (weights != NULL) {

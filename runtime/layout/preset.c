@@ -11,7 +11,7 @@ typedef struct preset_row {
     uint16_t side, views;
     uint32_t gaussians;
     const char *weights;
-    uint16_t column_bytes, refinements;
+    uint16_t column_bytes, refine;
 } preset_row;
 
 #define ROW(...) {__VA_ARGS__},
@@ -23,7 +23,7 @@ static t3r_config config_of(const preset_row *row)
     t3r_config config = t3r_default_config(row->side, row->side, row->views, row->gaussians);
     config.head = row->weights != NULL ? T3R_HEAD_LEARNED : T3R_HEAD_ANALYTIC;
     config.head_column_bytes = row->column_bytes;
-    config.refinements = row->refinements;
+    config.refine = row->refine;
     config.fit_passes = 0; /* the table's figures are of so many */
     return config;
 }

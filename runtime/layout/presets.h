@@ -6,7 +6,7 @@
 #define T3R_PRESET_STACK_BYTES 12288u
 #define T3R_PRESET_PROGRAM_BYTES 4096u
 
-/* X(ram bytes, side, views, Gaussians, weights, head column bytes, refinements), a row a size; weights NULL:
+/* X(ram bytes, side, views, Gaussians, weights, head column bytes, refine), a row a size; weights NULL:
  * the head `analytic` */
 #define T3R_PRESETS(X)                                                                                                 \
     X(131072, 48, 2, 281, "nano", 192, 4)                                                                              \

@@ -100,7 +100,7 @@ static void count_network(const void *weights, const t3r_config *c, const sizes 
 /* Gaussians of a closed form: fitting a width to one other view is 1/share of what one of them takes. */
 static uint64_t closed_forms(const t3r_config *c, const sizes *s, uint32_t share)
 {
-    const bool fits = c->fit_widths != 0 && c->refinements == 0;
+    const bool fits = c->fit_widths != 0 && c->refine == 0;
     return s->gaussians + (fits ? s->gaussians * (s->views - 1) / share : 0);
 }
 
@@ -126,13 +126,13 @@ static void count_head(const t3r_config *c, const t3r_layout *layout, const void
 static void count_drawing(const t3r_config *c, const sizes *s, uint32_t slices, uint64_t *units)
 {
     /* each slice lists the views, and draws the tiles that its Gaussians reach into: measured, a third of them */
-    const uint64_t again = c->structural && s->views > 1 ? T3R_MIN(c->refinements, T3R_LEVELLED_PASSES) : 0;
-    const uint64_t listed = (c->refinements * slices + again) * s->views;
-    const uint64_t compared = c->refinements * s->views * s->pixels * (slices + 2) / 3;
+    const uint64_t again = c->structural && s->views > 1 ? T3R_MIN(c->refine, T3R_LEVELLED_PASSES) : 0;
+    const uint64_t listed = (c->refine * slices + again) * s->views;
+    const uint64_t compared = c->refine * s->views * s->pixels * (slices + 2) / 3;
     const uint64_t drawn = compared + (c->structural ? compared / 16 : 0); /* measured */
     units[T3R_WORK_REFINE_PIXELS] = drawn;
     units[T3R_WORK_REFINE_GAUSSIANS] = listed * s->gaussians;
-    units[T3R_WORK_CORRECTIONS] = c->refinements * s->gaussians;
+    units[T3R_WORK_CORRECTIONS] = c->refine * s->gaussians;
     if (c->max_gaussians < KEEPS_ALL) {
         units[T3R_WORK_REMADE_PIXELS] = drawn * (KEEPS_ALL - c->max_gaussians) / c->max_gaussians;
     }

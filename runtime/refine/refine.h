@@ -24,7 +24,7 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
 t3r_raster_room t3r_refine_room(const t3r_runtime *rt);
 
 /* How far the scene in the arena is from the context views: mean squared residual a channel, levels^2 Q8, at most 2^24,
- * over the pixels that refinement counts. Works where t3r_refine() does: needs refinements. */
+ * over the pixels that refinement counts. Works where t3r_refine() does: needs refine above 0. */
 t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *error_q8);
 
 #endif

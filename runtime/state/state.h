@@ -31,14 +31,14 @@
 /* What a scene is made by: the configuration's values, or those of the request. */
 typedef struct t3r_build {
     uint32_t gaussians; /* 1..max_gaussians */
-    t3r_allocation allocation;
+    t3r_allocation allocate;
     t3r_head head;
-    uint32_t refinements; /* 0..those of the configuration */
+    uint32_t refine; /* 0..those of the configuration */
 } t3r_build;
 
 static inline t3r_build t3r_build_of(const t3r_config *config)
 {
-    return (t3r_build){config->gaussians, config->allocation, config->head, config->refinements};
+    return (t3r_build){config->gaussians, config->allocate, config->head, config->refine};
 }
 
 /* A context view that came in part: the rows that are there, and what they are of. */

@@ -212,9 +212,9 @@ static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot,
 static t3r_budget_settings keyframe_settings(const t3r_runtime *rt)
 {
     const t3r_config *config = &rt->config;
-    bool clustered = config->allocation == T3R_ALLOCATE_DENSITY || config->allocation == T3R_ALLOCATE_PAPER;
+    bool clustered = config->allocate == T3R_ALLOCATE_DENSITY || config->allocate == T3R_ALLOCATE_PAPER;
     return (t3r_budget_settings){
-        .allocation = clustered ? T3R_ALLOCATE_PIXEL : config->allocation,
+        .allocate = clustered ? T3R_ALLOCATE_PIXEL : config->allocate,
         .gamma_q8 = config->gamma_q8,
         .clusters = 1,
         .seed = config->seed,
@@ -297,7 +297,7 @@ static __attribute__((noinline)) t3r_status refine_map(t3r_runtime *rt)
 {
     t3r_view all[T3R_MAX_VIEWS];
     t3r_views_of(rt, all);
-    const uint32_t passes = t3r_keyframe_refinements_of(&rt->config, rt->config.warm && rt->keyframes > 1);
+    const uint32_t passes = t3r_keyframe_passes_of(&rt->config, rt->config.warm && rt->keyframes > 1);
     const t3r_status status = t3r_refine_scene(rt, all, passes, t3r_map_of(rt).records);
     if (status == T3R_OK) {
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
@@ -331,5 +331,5 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     rt->has_scene = 1;
     report->keyframes = rt->keyframes;
     report->gaussians = rt->gaussians;
-    return rt->config.refinements > 0 ? refine_map(rt) : T3R_OK;
+    return rt->config.refine > 0 ? refine_map(rt) : T3R_OK;
 }

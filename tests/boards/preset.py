@@ -27,7 +27,7 @@ program, folder = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 folder.mkdir(parents=True, exist_ok=True)
 preset = json.loads(run(program, "plan", "--preset", PRESET, "--json"))
 options = SimpleNamespace(program=program, out=folder, recording=None, size=(preset["width"], preset["height"]),
-                          views=preset["views"], gaussians=preset["gaussians"], clusters=0, refine=preset["refinements"],
+                          views=preset["views"], gaussians=preset["gaussians"], clusters=0, refine=preset["refine"],
                           head=preset["head"], optimize="-O2", lto=False, clang=False, features=FEATURES, ram=RAM)
 path = recording(options)
 elf = cortex_m.firmware_of(BOARD, options)

@@ -195,7 +195,7 @@ static void nothing_is_allocated_once_it_runs(void **state)
     reconstruction_options build;
     reconstruction_defaults(&build);
     build.gaussians = 500;
-    build.config.refinements = 1;
+    build.config.refine = 1;
     const capture_plan plan = {.source = "test",
                                .output = recording,
                                .max_bytes = 400000, /* rolls over on its way */
@@ -259,7 +259,7 @@ static void a_recording_replays_what_was_live(void **state)
         reconstruction_options build;
         reconstruction_defaults(&build);
         build.keep_percent = 10;
-        build.config.refinements = 1;
+        build.config.refine = 1;
         build.config.clusters = 60; /* quicker */
         build.context_count = 2;
         build.context[1] = 3;
@@ -324,7 +324,7 @@ static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
         reconstruction_options build;
         reconstruction_defaults(&build);
         build.keep_percent = 10;
-        build.config.refinements = 0;
+        build.config.refine = 0;
         build.context_count = every > 0 ? 0 : 2;
         build.context[0] = 1;
         build.context[1] = 3;

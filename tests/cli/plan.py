@@ -53,7 +53,7 @@ def presets():
         found = expect_json("plan", "--preset", text)
         check(found["ram_bytes"] == ram == sum(found[part] for part in PARTS), f"--preset {text}: {found}")
         own = expect_json("plan", "--size", f"{found['width']}x{found['height']}", "--views", found["views"], "--gaussians",
-                          found["gaussians"], "--head", found["head"], "--refine", found["refinements"])
+                          found["gaussians"], "--head", found["head"], "--refine", found["refine"])
         check(own["min_bytes"] <= found["arena_bytes"] <= own["arena_bytes"], f"--preset {text}: the arena: {own}")
         check(own["head_column_bytes"] == found["head_column_bytes"], f"--preset {text}: the head's columns")
         check(found["strip_bytes"] == 5 * found["strip_rows"] * found["width"], f"--preset {text}: a strip of rows")

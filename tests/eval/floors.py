@@ -17,7 +17,7 @@ DATA = os.path.abspath(sys.argv[3])
 FLOAT_HEAD = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "quant", "heads", "small.safetensors")
 SLACK = 0.25  # dB below what was measured: a head trained anew may lose so much on a few cases, no more
 
-# Novel views of `small`, default refinements, 10 % kept: triplets (first context, second, target), PSNR in dB promised
+# Novel views of `small`, default passes, 10 % kept: triplets (first context, second, target), PSNR in dB promised
 # of the whole scene, and measured over these triplets. Of the rooms' eleven triplets, an easy, a middling and the two
 # hardest.
 NOVEL = {
@@ -29,7 +29,7 @@ NOVEL = {
 # behind it. It led by 0.15 dB before holes were bridged, which lifted both by 0.4 dB, and by 0.04 with 300 SuperClusters.
 LEVEL = 0.05  # dB
 # Every seventh of the 80 colour frames of the test scenes, and the PSNR that is promised of all 80 and was measured of
-# these, by percent kept: `small` with 2 refinements on a plane. The eleven measured within 0.05 dB of all (36.70 and
+# these, by percent kept: `small` with 2 passes on a plane. The eleven measured within 0.05 dB of all (36.70 and
 # 34.37), so the promise stands for them without a margin.
 PLANAR = (
     ("icl_livingroom_synth", "130.jpg"), ("icl_livingroom_synth", "20.jpg"), ("icl_livingroom_synth", "80.jpg"),
@@ -91,7 +91,7 @@ def planar():
         check([r["planar_psnr"] for r in integers] != [r["planar_psnr"] for r in floats], "floats were not used")
         for keep, (promised, measured) in PLANAR_FLOORS.items():
             reached, exact = (mean(rows, "planar_psnr", keep=keep) for rows in (integers, floats))
-            print(f"planar, {keep} %, {passes} refinements: int8 {reached:.2f} dB, float {exact:.2f}")
+            print(f"planar, {keep} %, {passes} passes: int8 {reached:.2f} dB, float {exact:.2f}")
             check(reached >= exact - QUANTIZATION_MOST, f"int8 loses {exact - reached:.2f} dB")
             if passes == "2":
                 check(reached >= promised and reached >= measured - SLACK, f"planar, {keep} %: {reached:.2f} dB")

@@ -57,17 +57,17 @@ static t3r_config take_settings(input *in, const drawn_case *c, bool stereo)
     k.render_width = LEAST_SIDE + below(in, 2 * FREQUENT_SIDES);
     k.render_height = LEAST_SIDE + below(in, 2 * FREQUENT_SIDES);
     k.wavelet = below(in, T3R_WAVELET_COUNT);
-    k.wavelet_levels = 1 + below(in, T3R_MAX_LEVELS);
+    k.levels = 1 + below(in, T3R_MAX_LEVELS);
     const uint32_t clusters = below(in, 44);
     k.clusters = clusters < 40 ? 1 + clusters : 0;
     k.cluster_batches = below(in, 4);
     k.colour_weight_q8 = below(in, 1025);
-    k.allocation = take_allocation(in, streams);
+    k.allocate = take_allocation(in, streams);
     k.keep_percent = below(in, 101);
     k.gamma_q8 = below(in, 513);
     k.head = T3R_HEAD_CONFIGURED + 1 + below(in, T3R_HEAD_COUNT - 1);
     k.head_column_bytes = take_head_column_bytes(in, c, width, height);
-    k.refinements = below(in, 3);
+    k.refine = below(in, 3);
     k.fit_passes = below(in, 2);
     k.fit_widths = below(in, 2);
     k.structural = below(in, 2);
@@ -129,22 +129,22 @@ static void take_importance(input *in, drawn_case *c)
 static t3r_request take_request(input *in, const drawn_case *c)
 {
     const uint32_t parts = take8(in), loss_q8 = 1 + below(in, T3R_MAX_LOSS_Q8);
-    const bool bounds = parts % 16 == 7 && c->config.keep_analysis && c->config.refinements > 0;
+    const bool bounds = parts % 16 == 7 && c->config.keep_analysis && c->config.refine > 0;
     const uint32_t drawn = take_gaussians(in, c->config.max_gaussians);
     t3r_request request = {.gaussians = T3R_MIN(drawn, c->config.max_gaussians),
                            .max_loss_q8 = bounds ? loss_q8 : 0,
-                           .allocation = take_allocation(in, false),
+                           .allocate = take_allocation(in, false),
                            .head = T3R_HEAD_CONFIGURED + 1 + below(in, T3R_HEAD_COUNT - 1)};
     if (parts & 32) {
         request.gaussians = 0;
     }
     if (parts & 64) {
-        request.allocation = T3R_ALLOCATE_CONFIGURED;
+        request.allocate = T3R_ALLOCATE_CONFIGURED;
     }
     if (parts & 128) {
         request.head = T3R_HEAD_CONFIGURED;
     }
-    const t3r_allocation allocation = request.allocation != 0 ? request.allocation : c->config.allocation;
+    const t3r_allocation allocation = request.allocate != 0 ? request.allocate : c->config.allocate;
     if (allocation == T3R_ALLOCATE_GIVEN) {
         request.importance = c->planes;
         request.importance_stride_bytes = c->config.width * 2;

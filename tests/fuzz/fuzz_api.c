@@ -29,11 +29,11 @@ static t3r_config take_config(input *in)
     c.clusters = 1 + below(in, 32);
     c.cluster_batches = below(in, 3);
     c.keep_analysis = flags & 1;
-    c.allocation = (t3r_allocation)(1 + (flags >> 1) % (T3R_ALLOCATE_COUNT - 1));
+    c.allocate = (t3r_allocation)(1 + (flags >> 1) % (T3R_ALLOCATE_COUNT - 1));
     c.head = (t3r_head)(1 + (flags >> 3) % (T3R_HEAD_COUNT - 1));
     c.wavelet = (t3r_wavelet)((flags >> 5) % T3R_WAVELET_COUNT);
-    c.wavelet_levels = 1 + below(in, T3R_MAX_LEVELS);
-    c.refinements = below(in, 3);
+    c.levels = 1 + below(in, T3R_MAX_LEVELS);
+    c.refine = below(in, 3);
     c.fill_radius = below(in, 9);
     c.bridge_radius = below(in, 33);
     c.colour_weight_q8 = below(in, 1025);
@@ -258,7 +258,7 @@ static void call_build(session *s, input *in, uint32_t parts)
     uint16_t *planes[T3R_MAX_VIEWS] = {NULL};
     t3r_request request = {.gaussians = parts & BUDGET ? below(in, MOST_GAUSSIANS + 20) : 0,
                            .max_loss_q8 = parts & LOSS ? below(in, T3R_MAX_LOSS_Q8 + 10) : 0,
-                           .allocation = (t3r_allocation)(parts & ALLOCATION ? below(in, T3R_ALLOCATE_COUNT + 1) : 0),
+                           .allocate = (t3r_allocation)(parts & ALLOCATION ? below(in, T3R_ALLOCATE_COUNT + 1) : 0),
                            .head = (t3r_head)(parts & HEAD ? below(in, T3R_HEAD_COUNT + 1) : 0)};
     const bool sound = !(parts & IMPORTANCE) || take_importance(s, in, planes, &request);
     t3r_scene scene;

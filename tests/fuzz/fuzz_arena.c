@@ -43,7 +43,7 @@ static t3r_config config_of(base which)
     c.gaussians = BUDGET;
     c.clusters = which == ANALYSED_MANY ? MANY : which == VIEWS_ONLY ? 0 : FEW; /* 0: t3r_init() chooses */
     c.cluster_batches = 2;
-    c.refinements = 1;
+    c.refine = 1;
     c.workers = 3;
     c.keep_analysis = which == ANALYSED || which == BY_STEREO || which == ANALYSED_MANY;
     c.depth = which == BY_STEREO ? T3R_DEPTH_STEREO : T3R_DEPTH_SENSOR;
@@ -168,7 +168,7 @@ static void damage_state(t3r_runtime *rt, input *in)
         rt->build.gaussians = take_number(in, most);
         break;
     case 8:
-        rt->build.allocation = (t3r_allocation)take_number(in, T3R_ALLOCATE_COUNT);
+        rt->build.allocate = (t3r_allocation)take_number(in, T3R_ALLOCATE_COUNT);
         break;
     case 9:
         rt->build.head = (t3r_head)take_number(in, T3R_HEAD_COUNT);
@@ -209,13 +209,13 @@ static void damage_config(t3r_runtime *rt, input *in)
         c->gaussians = take_number(in, c->max_gaussians);
         break;
     case 1:
-        c->allocation = (t3r_allocation)take_number(in, T3R_ALLOCATE_COUNT);
+        c->allocate = (t3r_allocation)take_number(in, T3R_ALLOCATE_COUNT);
         break;
     case 2:
         c->wavelet = (t3r_wavelet)take_number(in, T3R_WAVELET_COUNT);
         break;
     case 3:
-        c->wavelet_levels = take_number(in, T3R_MAX_LEVELS);
+        c->levels = take_number(in, T3R_MAX_LEVELS);
         break;
     case 4:
         c->cluster_batches = take_number(in, 3) % 8;
@@ -464,10 +464,10 @@ static void call_build(t3r_runtime *rt, input *in, bool again)
     }
     t3r_request request = {.gaussians = below(in, 2 * BUDGET + 1),
                            .max_loss_q8 = seed % 8 == 1 ? below(in, T3R_MAX_LOSS_Q8) : 0,
-                           .allocation = (t3r_allocation)below(in, T3R_ALLOCATE_COUNT),
+                           .allocate = (t3r_allocation)below(in, T3R_ALLOCATE_COUNT),
                            .head = (t3r_head)below(in, T3R_HEAD_COUNT)};
     if (seed & 2) {
-        request.allocation = T3R_ALLOCATE_GIVEN;
+        request.allocate = T3R_ALLOCATE_GIVEN;
         request.importance = planes;
         request.importance_stride_bytes = WIDTH * 2;
     }

@@ -417,7 +417,7 @@ static t3r_request request_of(const run *r)
     t3r_request q = *r->request;
     if (r->goes.room & ROOM_REQUEST) {
         q.gaussians = q.gaussians != 0 ? q.gaussians : r->config.gaussians;
-        q.allocation = q.allocation != 0 ? q.allocation : r->config.allocation;
+        q.allocate = q.allocate != 0 ? q.allocate : r->config.allocate;
         q.head = q.head != 0 ? q.head : r->config.head;
     }
     return q;
@@ -582,9 +582,9 @@ static void blame(const drawn_case *c, way goes, const trace *expected, trace *s
     fprintf(stderr,
             "settings: %ux%u, %u views, %u of %u Gaussians, wavelet %s of %u levels, %u clusters in %u batches, %s, "
             "head %s, "
-            "refinements %u%s%s%s, depth by %s%s%s%s%s%s\n",
-            k.width, k.height, k.views, k.gaussians, k.max_gaussians, t3r_wavelet_name(k.wavelet), k.wavelet_levels,
-            k.clusters, k.cluster_batches, t3r_allocation_name(k.allocation), t3r_head_name(k.head), k.refinements,
+            "refine %u%s%s%s, depth by %s%s%s%s%s%s\n",
+            k.width, k.height, k.views, k.gaussians, k.max_gaussians, t3r_wavelet_name(k.wavelet), k.levels, k.clusters,
+            k.cluster_batches, t3r_allocation_name(k.allocate), t3r_head_name(k.head), k.refine,
             k.fit_passes ? " at most" : "", k.structural ? " (structural)" : "", k.fit_widths ? ", widths fitted" : "",
             t3r_depth_name(k.depth), k.planes ? " and planes" : "", k.align ? ", aligned" : "",
             k.keep_analysis ? ", analysis kept" : "", k.warm ? ", warm" : "", k.stream ? ", a stream" : "");

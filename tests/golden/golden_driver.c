@@ -28,7 +28,7 @@ typedef struct configuration {
     t3r_distortion distortion;
     t3r_wavelet wavelet;
     uint32_t levels, clusters; /* 0 = as many as the points ask for */
-    t3r_allocation allocation;
+    t3r_allocation allocate;
     t3r_head head;
     uint32_t gaussians;
     bool holes;
@@ -248,9 +248,9 @@ static t3r_status begin_run(run *r, bool stream)
     t3r_config config = t3r_default_config(c->width, c->height, CONTEXT_VIEWS, c->gaussians);
     config.stream = stream;
     config.wavelet = c->wavelet;
-    config.wavelet_levels = c->levels;
+    config.levels = c->levels;
     config.clusters = c->clusters;
-    config.allocation = c->allocation;
+    config.allocate = c->allocate;
     config.head = c->head;
     config.depth = c->depth;
     config.keep_analysis = 1;
@@ -314,7 +314,7 @@ static t3r_status build(run *r, uint32_t rebudgeted, t3r_scene *scene)
     const uint16_t *const lent[CONTEXT_VIEWS] = {plane, plane};
     const uint32_t stride = r->configuration->width + GAP;
     t3r_request request = {.gaussians = rebudgeted};
-    if (r->configuration->allocation == T3R_ALLOCATE_GIVEN) {
+    if (r->configuration->allocate == T3R_ALLOCATE_GIVEN) {
         request.importance = lent;
         request.importance_stride_bytes = stride * 2;
     }
@@ -394,7 +394,7 @@ static const configuration streamed = {.name = "stream",
                                        .wavelet = T3R_WAVELET_DB2,
                                        .levels = 2,
                                        .clusters = 64,
-                                       .allocation = T3R_ALLOCATE_DENSITY,
+                                       .allocate = T3R_ALLOCATE_DENSITY,
                                        .head = T3R_HEAD_LEARNED,
                                        .gaussians = 700,
                                        .holes = true,

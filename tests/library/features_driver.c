@@ -12,7 +12,7 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[4 << 20];
 static t3r_config plain_config(void)
 {
     t3r_config config = t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, SCENE_BUDGET);
-    config.refinements = config.fit_widths = config.align = 0; /* on by default where the library has what they need */
+    config.refine = config.fit_widths = config.align = 0; /* on by default where the library has what they need */
     return config;
 }
 
@@ -52,10 +52,10 @@ static void print_scenes(void)
     config.head = T3R_HEAD_MOMENT;
     print_scene("moment", &config);
     config = plain_config();
-    config.refinements = 4;
+    config.refine = 4;
     print_scene("refinement", &config);
     config = plain_config();
-    config.allocation = T3R_ALLOCATE_UNIFORM;
+    config.allocate = T3R_ALLOCATE_UNIFORM;
     print_scene("allocations", &config);
     config = plain_config();
     config.wavelet = T3R_WAVELET_HAAR;
@@ -138,7 +138,7 @@ static void print_calls(void)
 {
     const t3r_config config = plain_config();
     const t3r_request moment = {.head = T3R_HEAD_MOMENT}, bounded = {.max_loss_q8 = 256};
-    const t3r_request random = {.allocation = T3R_ALLOCATE_RANDOM};
+    const t3r_request random = {.allocate = T3R_ALLOCATE_RANDOM};
     const t3r_frame frame = {0};
     const t3r_camera camera = {0};
     t3r_runtime *rt;
@@ -155,7 +155,7 @@ static void print_calls(void)
 int main(void)
 {
     printf("features %02x, %u passes of refinement\n", (unsigned)t3r_features(),
-           (unsigned)t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, 1).refinements);
+           (unsigned)t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, 1).refine);
     print_scenes();
     print_calls();
     print_lost_keyframe();

@@ -173,16 +173,16 @@ static void config_ranges(void **state)
         RANGE(render_width, 1, T3R_MAX_SIDE),
         RANGE(render_height, 1, T3R_MAX_SIDE),
         RANGE(wavelet, 0, T3R_WAVELET_COUNT - 1),
-        RANGE(wavelet_levels, 1, T3R_MAX_LEVELS),
+        RANGE(levels, 1, T3R_MAX_LEVELS),
         RANGE(clusters, 0, T3R_MAX_CLUSTERS),
         RANGE(cluster_batches, 0, 1024),
         RANGE(colour_weight_q8, 0, 1024),
-        RANGE(allocation, 1, T3R_ALLOCATE_COUNT - 1),
+        RANGE(allocate, 1, T3R_ALLOCATE_COUNT - 1),
         RANGE(keep_percent, 0, 100),
         RANGE(gamma_q8, 0, 512),
         RANGE(head, 1, T3R_HEAD_COUNT - 1),
         RANGE(head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES),
-        RANGE(refinements, 0, 32),
+        RANGE(refine, 0, 32),
         RANGE(planes, 0, 1),
         RANGE(fill_radius, 0, 8),
         RANGE(bridge_radius, 0, 255),
@@ -510,7 +510,7 @@ static void calls_out_of_order(void **state)
     const t3r_request bad[] = {
         {.gaussians = keep.max_gaussians + 1},
         {.max_loss_q8 = T3R_MAX_LOSS_Q8 + 1},
-        {.allocation = T3R_ALLOCATE_COUNT},
+        {.allocate = T3R_ALLOCATE_COUNT},
         {.head = T3R_HEAD_COUNT},
         /* importance: its budget, rows too short, odd, planes out of step, another allocation */
         {.gaussians = keep.max_gaussians + 1, .importance = planes, .importance_stride_bytes = W * 2},
@@ -518,15 +518,15 @@ static void calls_out_of_order(void **state)
         {.importance = planes, .importance_stride_bytes = W * 2 + 1},
         {.importance = planes, .importance_stride_bytes = 0},
         {.importance = odd, .importance_stride_bytes = W * 2},
-        {.allocation = T3R_ALLOCATE_PIXEL, .importance = planes, .importance_stride_bytes = W * 2},
-        {.allocation = T3R_ALLOCATE_COUNT, .importance = planes, .importance_stride_bytes = W * 2},
+        {.allocate = T3R_ALLOCATE_PIXEL, .importance = planes, .importance_stride_bytes = W * 2},
+        {.allocate = T3R_ALLOCATE_COUNT, .importance = planes, .importance_stride_bytes = W * 2},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         REFUSED(&b, t3r_rebuild(b.rt, &bad[i], &scene), T3R_ERR_ARGUMENT);
         REFUSED(&b, t3r_reconstruct(b.rt, &bad[i], &scene), T3R_ERR_ARGUMENT);
     }
     /* without importance `given` is refused, and without weights the learned head */
-    const t3r_request unserved[] = {{.allocation = T3R_ALLOCATE_GIVEN}, {.head = T3R_HEAD_LEARNED}};
+    const t3r_request unserved[] = {{.allocate = T3R_ALLOCATE_GIVEN}, {.head = T3R_HEAD_LEARNED}};
     for (size_t i = 0; i < sizeof unserved / sizeof unserved[0]; i++) {
         REFUSED(&b, t3r_rebuild(b.rt, &unserved[i], &scene), T3R_ERR_STATE);
         REFUSED(&b, t3r_reconstruct(b.rt, &unserved[i], &scene), T3R_ERR_STATE);
@@ -574,7 +574,7 @@ static void budgets(void **state)
             const uint32_t wanted[] = {1, 2, measured / 20, measured / 2, measured - 1, measured, measured + 1, POINTS};
             t3r_config config = good_config();
             config.max_gaussians = config.gaussians = POINTS;
-            config.allocation = (t3r_allocation)allocation;
+            config.allocate = (t3r_allocation)allocation;
             config.head = (t3r_head)head;
             config.keep_analysis = 1;
             bench b = bench_of(config);
@@ -590,7 +590,7 @@ static void budgets(void **state)
                 uint32_t expected = wanted[i] < measured ? wanted[i] : measured;
                 if (scene.count != expected) {
                     fail_msg("%s, %s: %u Gaussians for a budget of %u with %u valid points",
-                             t3r_allocation_name(config.allocation), t3r_head_name(config.head), scene.count, wanted[i],
+                             t3r_allocation_name(config.allocate), t3r_head_name(config.head), scene.count, wanted[i],
                              measured);
                 }
             }

@@ -43,10 +43,10 @@ static t3r_config random_config(dice *d, uint32_t most_side, uint32_t most_gauss
     c.render_width = log_uniform(d, 1, most_side);
     c.render_height = log_uniform(d, 1, most_side);
     c.clusters = log_uniform(d, 1, T3R_MAX_CLUSTERS);
-    c.wavelet_levels = 1 + dice_below(d, T3R_MAX_LEVELS);
+    c.levels = 1 + dice_below(d, T3R_MAX_LEVELS);
     c.wavelet = (t3r_wavelet)dice_below(d, T3R_WAVELET_COUNT);
     c.keep_analysis = dice_below(d, 2);
-    c.refinements = dice_below(d, 3);
+    c.refine = dice_below(d, 3);
     c.planes = dice_below(d, 2);
     c.fill_radius = dice_below(d, 9);
     c.bridge_radius = dice_below(d, 256);
@@ -104,7 +104,7 @@ static void plan_equals_macros(void **state)
         const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.clusters, c.render_width, c.render_height,               \
-               c.head_column_bytes, keep, c.refinements, c.depth == T3R_DEPTH_STEREO, c.workers, c.warm, c.remember)
+               c.head_column_bytes, keep, c.refine, c.depth == T3R_DEPTH_STEREO, c.workers, c.warm, c.remember)
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(SHAPE));
         assert_true(plan.bytes == T3R_FULL_BYTES_(SHAPE));
 #undef SHAPE
@@ -208,9 +208,9 @@ static void plan_depends_on_sizes_alone(void **state)
     assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
     c.gaussians = 7;
     c.wavelet = T3R_WAVELET_CDF53;
-    c.wavelet_levels = T3R_MAX_LEVELS;
+    c.levels = T3R_MAX_LEVELS;
     c.cluster_batches = 1024;
-    c.allocation = T3R_ALLOCATE_PAPER;
+    c.allocate = T3R_ALLOCATE_PAPER;
     c.head = T3R_HEAD_MOMENT;
     c.fill_radius = 8;
     c.bridge_radius = 255;

@@ -43,7 +43,7 @@ static t3r_config learned_config(uint32_t gaussians)
     c.clusters = 9;
     c.cluster_batches = 24;
     c.head = T3R_HEAD_LEARNED;
-    c.refinements = c.fit_widths = 0;
+    c.refine = c.fit_widths = 0;
     c.keep_analysis = 1;
     return c;
 }
@@ -253,11 +253,11 @@ static void unadapted_is_pruned(void **state)
     for (uint32_t h = 0; h < 3; h++) {
         t3r_config config = learned_config(2 * POINTS);
         config.head = heads[h];
-        config.allocation = T3R_ALLOCATE_UNIFORM;      /* at 100 % the density is 1 everywhere */
+        config.allocate = T3R_ALLOCATE_UNIFORM;        /* at 100 % the density is 1 everywhere */
         config.fill_radius = config.bridge_radius = 0; /* nor do filled points take measured ones' places */
         arena memory = arena_of(&config, ARENA_AT_FULL);
         uint32_t count = 0;
-        const t3r_request fewer = {.gaussians = 300, .allocation = T3R_ALLOCATE_DENSITY};
+        const t3r_request fewer = {.gaussians = 300, .allocate = T3R_ALLOCATE_DENSITY};
         for (uint32_t unadapted = 0; unadapted < 2; unadapted++) {
             t3r_runtime *rt = with_views(&memory, &config, 1);
             t3r_scene scene;

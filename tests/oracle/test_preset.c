@@ -78,11 +78,11 @@ static void an_effort_chooses_head_and_refinement_alone(void **state)
         assert_null(t3r_config_error(&config));
         assert_non_null(weights);
         assert_int_equal(config.head, T3R_HEAD_LEARNED);
-        assert_true(config.refinements > before); /* more work is more passes */
-        before = config.refinements;
+        assert_true(config.refine > before); /* more work is more passes */
+        before = config.refine;
         t3r_config rest = config;
         rest.head = given.head;
-        rest.refinements = given.refinements;
+        rest.refine = given.refine;
         rest.fit_passes = given.fit_passes;
         rest.structural = given.structural;
         assert_memory_equal(&rest, &given, sizeof given);

@@ -57,11 +57,11 @@ static int stop_before_refinement(void *user, t3r_stage stage, uint32_t done, ui
 }
 
 /* After so many passes; after none, what the head gives them to begin with. */
-static t3r_gaussian *reconstruct(uint32_t refinements, const splat_maker *maker, t3r_scene *scene)
+static t3r_gaussian *reconstruct(uint32_t refine, const splat_maker *maker, t3r_scene *scene)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
     config.clusters = 16;
-    config.refinements = refinements > 0 ? refinements : 1;
+    config.refine = refine > 0 ? refine : 1;
     config.fit_passes = config.align = 0;
     config.head = maker->head;
     config.fill_radius = config.bridge_radius = 0;
@@ -74,7 +74,7 @@ static t3r_gaussian *reconstruct(uint32_t refinements, const splat_maker *maker,
         t3r_frame frame = rgbd_frame(rgb[v], depth[v], SIDE, SIDE, MILLIMETRE_Q40);
         assert_int_equal(t3r_add_view(rt, &frame, &camera[v]), T3R_OK);
     }
-    if (refinements > 0) {
+    if (refine > 0) {
         assert_int_equal(t3r_reconstruct(rt, NULL, scene), T3R_OK);
     } else {
         assert_int_equal(t3r_set_hooks(rt, &(t3r_hooks){.progress = stop_before_refinement}), T3R_OK);

@@ -77,7 +77,7 @@ static void begin(session *s, t3r_config config)
 static t3r_config config_of(void)
 {
     t3r_config config = t3r_default_config(W, H, 2, 100);
-    config.refinements = 0;
+    config.refine = 0;
     return config;
 }
 

@@ -62,7 +62,7 @@ static t3r_config stream_config(void)
 {
     t3r_config c = t3r_default_config(W, H, AT_HAND, CAP);
     c.stream = 1;
-    c.refinements = 2;
+    c.refine = 2;
     return c;
 }
 
@@ -143,7 +143,7 @@ static void the_cap_holds(void **state)
     (void)state;
     enum { STRIDE = T3R_SANITIZED ? 5 : 1, KEYFRAMES = 10000 / STRIDE };
     t3r_config config = stream_config();
-    config.refinements = 1;
+    config.refine = 1;
     site s = site_of(config, ARENA_AT_FULL); /* every view takes one pass */
     t3r_hooks hooks = {.user = &s, .progress = progress};
     assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);

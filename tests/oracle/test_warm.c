@@ -103,7 +103,7 @@ static t3r_config config_of(uint32_t warm)
 {
     t3r_config c = t3r_default_config(W, H, 2, BUDGET);
     c.clusters = 40;
-    c.refinements = PASSES;
+    c.refine = PASSES;
     c.fit_passes = c.align = 0; /* as builds that follow one another are */
     c.warm = warm;
     return c;
@@ -239,7 +239,7 @@ static void a_drawn_arena_moves(void **state)
 {
     (void)state;
     t3r_config config = config_of(1);
-    config.refinements = 0;
+    config.refine = 0;
     site *s = site_of(config, ARENA_AT_MINIMUM);
     t3r_gaussian *expected = slide(s, false);
     site_free(s);

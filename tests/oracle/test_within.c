@@ -291,9 +291,9 @@ static void refusals(void **state)
     (void)within(&s, HALF_DB);
     assert_int_equal(t3r_rebuild(s.rt, &(t3r_request){.gaussians = 101, .max_loss_q8 = HALF_DB}, &scene),
                      T3R_ERR_ARGUMENT);
-    s.rt->config.refinements = 0;
+    s.rt->config.refine = 0;
     assert_int_equal(t3r_reconstruct(s.rt, &half_db, &scene), T3R_ERR_STATE);
-    s.rt->config.refinements = 4;
+    s.rt->config.refine = 4;
     s.rt->config.keep_analysis = 0;
     assert_int_equal(t3r_reconstruct(s.rt, &half_db, &scene), T3R_ERR_STATE);
     arena_free(&s.memory);

@@ -44,9 +44,9 @@ static void counts_follow_the_configuration(void **state)
     assert_int_equal(before.units[T3R_WORK_COMPARISON], points);
     assert_int_equal(before.units[T3R_WORK_DISC_GAUSSIANS], 1000);
     assert_int_equal(before.units[T3R_WORK_MACS] + before.units[T3R_WORK_UNPACKED_MACS], 0);
-    assert_int_equal(before.units[T3R_WORK_REFINE_PIXELS], c.refinements * points);
-    assert_int_equal(before.units[T3R_WORK_CORRECTIONS], c.refinements * 1000);
-    c.refinements *= 2;
+    assert_int_equal(before.units[T3R_WORK_REFINE_PIXELS], c.refine * points);
+    assert_int_equal(before.units[T3R_WORK_CORRECTIONS], c.refine * 1000);
+    c.refine *= 2;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_REFINE_GAUSSIANS],
                      2 * before.units[T3R_WORK_REFINE_GAUSSIANS]);
     c.clusters = 1; /* one takes no search */
@@ -85,7 +85,7 @@ static void counts_what_is_asked_for_beyond(void **state)
     t3r_config c = config_of(1000);
     c.fit_widths = 1;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000); /* refinement finds widths by itself */
-    c.refinements = 0;
+    c.refine = 0;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000 + 1000 / 5);
     c.fit_widths = 0;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000);
@@ -95,7 +95,7 @@ static void counts_what_is_asked_for_beyond(void **state)
     for (uint32_t views = 1; views <= 2; views++) {
         for (uint32_t passes = 1; passes <= 4; passes++) {
             c = t3r_default_config(96, 64, views, 1000);
-            c.refinements = passes;
+            c.refine = passes;
             const t3r_work_counts plain = counted(&c, NULL, 0);
             c.structural = 1;
             const t3r_work_counts work = counted(&c, NULL, 0);
@@ -215,7 +215,7 @@ static void check_list(const t3r_choice *list, uint32_t count, const t3r_limits 
         assert_true(limits->bytes == 0 || list[i].min_bytes <= limits->bytes);
         assert_true(limits->most == 0 || list[i].price <= limits->most);
         assert_true(limits->gaussians == 0 || list[i].gaussians == limits->gaussians);
-        assert_true(limits->refinements == T3R_ANY_REFINEMENTS || list[i].refinements == limits->refinements);
+        assert_true(limits->refine == T3R_ANY_REFINE || list[i].refine == limits->refine);
         for (uint32_t k = 0; k < i; k++) {
             assert_true(list[k].loss_q4 < list[i].loss_q4 ||
                         (list[k].loss_q4 == list[i].loss_q4 && list[k].price <= list[i].price));
@@ -239,13 +239,13 @@ static void lists_what_fits_best_first(void **state)
     (void)state;
     const t3r_config c = config_of(1);
     t3r_choice all[T3R_MAX_CHOICES], some[T3R_MAX_CHOICES];
-    t3r_limits limits = {.prices = &t3r_operations, .refinements = T3R_ANY_REFINEMENTS};
+    t3r_limits limits = {.prices = &t3r_operations, .refine = T3R_ANY_REFINE};
     const uint32_t count = listed(&c, &limits, all);
     assert_true(count > 8 && all[0].loss_q4 < 16 && all[0].head == T3R_HEAD_ANALYTIC);
     /* a row is a configuration: a build in such an arena, and its work */
     t3r_config chosen = c;
     chosen.gaussians = chosen.max_gaussians = all[0].gaussians;
-    chosen.refinements = all[0].refinements;
+    chosen.refine = all[0].refine;
     const t3r_work_counts work = counted(&chosen, NULL, 0);
     assert_int_equal(bytes_of(&chosen, true), all[0].full_bytes);
     assert_int_equal(t3r_price_of_build(&work, &t3r_operations), all[0].price);
@@ -257,7 +257,7 @@ static void lists_what_fits_best_first(void **state)
     assert_in_range(listed(&c, &limits, some), 1, count - 1);
     limits.bytes = 1000;
     assert_int_equal(listed(&c, &limits, some), 0);
-    limits = (t3r_limits){.gaussians = 500, .refinements = 3};
+    limits = (t3r_limits){.gaussians = 500, .refine = 3};
     assert_int_equal(listed(&c, &limits, some), 1);
     assert_int_equal(some[0].price, 0);
 }
@@ -267,7 +267,7 @@ static void shares_of_extreme_sizes(void **state)
 {
     (void)state;
     t3r_choice list[T3R_MAX_CHOICES];
-    const t3r_limits limits = {.prices = &t3r_operations, .refinements = 1};
+    const t3r_limits limits = {.prices = &t3r_operations, .refine = 1};
     t3r_config c = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
     uint32_t count = listed(&c, &limits, list), least = UINT32_MAX, most = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -287,7 +287,7 @@ static void heads_are_compared(void **state)
     (void)state;
     t3r_choice list[2 * T3R_MAX_CHOICES];
     uint32_t count = 0, moments = 0;
-    const t3r_limits limits = {.prices = &t3r_operations, .refinements = T3R_ANY_REFINEMENTS};
+    const t3r_limits limits = {.prices = &t3r_operations, .refine = T3R_ANY_REFINE};
     t3r_config c = config_of(1);
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &limits, list, &count), T3R_OK);
     const uint32_t before = count;
@@ -318,7 +318,7 @@ static void networks_are_rated_by_their_size(void **state)
         t3r_config c = config_of(1);
         c.head = T3R_HEAD_LEARNED;
         c.head_column_bytes = T3R_MAX_HEAD_COLUMN_BYTES;
-        const t3r_limits limits = {.gaussians = 96 * 64 * 2 / 49, .refinements = 16}; /* just over 2 % of the points */
+        const t3r_limits limits = {.gaussians = 96 * 64 * 2 / 49, .refine = 16}; /* just over 2 % of the points */
         t3r_choice list[T3R_MAX_CHOICES];
         uint32_t count = 0;
         assert_int_equal(t3r_plan_choices(&c, weights, bytes, &limits, list, &count), T3R_OK);
@@ -336,18 +336,18 @@ static void refuses_limits_out_of_range(void **state)
     t3r_choice list[T3R_MAX_CHOICES];
     uint32_t count = 0;
     const t3r_limits bad[] = {
-        {.most = 5, .refinements = 1}, {.gaussians = T3R_MAX_GAUSSIANS + 1}, {.refinements = T3R_MAX_REFINEMENTS + 1}};
+        {.most = 5, .refine = 1}, {.gaussians = T3R_MAX_GAUSSIANS + 1}, {.refine = T3R_MAX_REFINE + 1}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         assert_int_equal(t3r_plan_choices(&c, NULL, 0, &bad[i], list, &count), T3R_ERR_ARGUMENT);
     }
-    const t3r_limits good = {.refinements = 1};
+    const t3r_limits good = {.refine = 1};
     assert_int_equal(t3r_plan_choices(NULL, NULL, 0, &good, list, &count), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, NULL, list, &count), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, NULL, &count), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, NULL), T3R_ERR_ARGUMENT);
     c.head = T3R_HEAD_LEARNED;
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_WEIGHTS);
-    c.wavelet_levels = 0;
+    c.levels = 0;
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_CONFIG);
     c = config_of(1);
     c.stream = 1; /* keyframes come as they come */

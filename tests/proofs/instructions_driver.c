@@ -58,7 +58,7 @@ static bool read_build(const char *text, build *b)
     b->config = t3r_default_config(width, height, views, gaussians);
     b->config.clusters = clusters;
     b->config.cluster_batches = batches;
-    b->config.refinements = passes;
+    b->config.refine = passes;
     b->config.depth = strcmp(b->depth, "stereo") == 0 ? T3R_DEPTH_STEREO : T3R_DEPTH_SENSOR;
     b->config.head = strcmp(b->head, "moment") == 0 ? T3R_HEAD_MOMENT : T3R_HEAD_ANALYTIC;
     for (size_t i = 0; i < sizeof networks / sizeof networks[0]; i++) {

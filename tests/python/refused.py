@@ -98,7 +98,7 @@ def check_settings():
                            ("nano, small, base", {"head": "huge"}), ("sensor, stereo", {"depth": "lidar"}),
                            ("workers", {"workers": 17}), ("too small", {"arena_bytes": 1000}),
                            ("render", {"render_size": (5000, 5)}), ("no setting", {"settings": {"refinement": 3}}),
-                           ("refinements", {"settings": {"refinements": 33}}),
+                           ("refine", {"settings": {"refine": 33}}),
                            ("clusters", {"settings": {"clusters": -1}}),
                            ("db2", {"settings": {"wavelet": "db4"}}), ("number", {"settings": {"seed": "one"}})):
         with refused((ValueError, TypeError), words):
@@ -138,7 +138,7 @@ def check_builds():
                               ({"keep": 0}, "keep"), ({"keep": 101}, "keep"), ({"keep": NAN}, "keep"),
                               ({"gaussians": 1, "keep": 1}, "either"), ({"max_loss": -1}, "max_loss"),
                               ({"max_loss": 11}, "max_loss"), ({"max_loss": NAN}, "max_loss"),
-                              ({"allocation": "best"}, "density"), ({"head": "huge"}, "nano, small, base"),
+                              ({"allocate": "best"}, "density"), ({"head": "huge"}, "nano, small, base"),
                               ({"importance": [np.zeros((3, 3), np.uint16)] * 2}, "importance"),
                               ({"importance": [np.zeros((SIDE, SIDE))] * 2}, "importance"),
                               ({"importance": [np.zeros((SIDE, SIDE), np.uint16)]}, "importance")):

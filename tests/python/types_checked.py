@@ -17,7 +17,7 @@ import numpy as np
 import trim3r
 
 frame = trim3r.Frame(np.zeros((8, 8, 3), np.uint8), trim3r.Camera.calibrated(8, 8, 4, 4, np.eye(4)))
-with trim3r.Reconstructor(8, 8, views=1, settings={"refinements": 2, "wavelet": "haar"}) as made:
+with trim3r.Reconstructor(8, 8, views=1, settings={"refine": 2, "wavelet": "haar"}) as made:
     made.add_view(frame)
     scene = made.build(keep=10)
     image = made.render(trim3r.Camera.calibrated(8, 8, 4, 4, np.eye(4)))

@@ -279,7 +279,7 @@ static void test_features_of_a_pair(void **state)
         t3r_config config = t3r_default_config(PAIR_SIDE, PAIR_SIDE, PAIR, PAIR * PAIR_PIXELS);
         config.head = T3R_HEAD_LEARNED;
         config.keep_analysis = 1;
-        config.refinements = 0;
+        config.refine = 0;
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
         void *arena = NULL;

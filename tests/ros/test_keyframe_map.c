@@ -20,7 +20,7 @@ static keyframe_map_settings small(void)
     s.width = s.height = SIDE;
     s.gaussians = 100;
     s.head = "analytic";
-    s.refinements = 0;
+    s.refine = 0;
     return s;
 }
 

@@ -65,7 +65,7 @@ static void learned_and_refined(void **state)
     f->contest.settings.config.width = f->contest.settings.config.height = SIDE;
     f->contest.settings.config.clusters = 80;
     f->contest.method_count = 1;
-    assert_true(f->contest.settings.config.refinements > 0 && strcmp(f->contest.settings.head, "analytic") != 0);
+    assert_true(f->contest.settings.config.refine > 0 && strcmp(f->contest.settings.head, "analytic") != 0);
     const stress_scene *scene;
     for (uint32_t i = 0; (scene = stress_scene_at(i)) != NULL; i++) {
         stress_case c = {.name = scene->name, .context = "0,1", .target = "2"};

@@ -38,7 +38,7 @@ APART_MOST = 0.05  # dB; measured 0.02
 class _Settings(ctypes.Structure):
     _fields_ = [
         (name, ctypes.c_uint32)
-        for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed", "refinements")
+        for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed", "refine")
     ]
 
 
@@ -99,8 +99,8 @@ class Runtime(unittest.TestCase):
         self.assertLess(made[~shown, 5].max() / 32768, 0.0101)
         self.assertLess(np.abs(made[:, 6:] / (255 * 128) - colour).max(), 1e-5)
 
-    def runtime_draws(self, image, camera, gaussians, refinements):
-        settings = _Settings(gaussians, samples.ALLOCATIONS["density"], round(0.7 * 256), 300, 4, 1, refinements)
+    def runtime_draws(self, image, camera, gaussians, refine):
+        settings = _Settings(gaussians, samples.ALLOCATIONS["density"], round(0.7 * 256), 300, 4, 1, refine)
         drawn, camera = np.empty_like(image), np.asarray(camera, np.float64)
         status = self.library.tie_draw(
             ctypes.c_uint32(SIDE), ctypes.c_uint32(SIDE), ctypes.c_void_p(image.ctypes.data),

@@ -7,7 +7,7 @@
 #include "trim3r_heads.h"
 
 typedef struct tie_settings {
-    uint32_t gaussians, allocation, gamma_q8, clusters, cluster_batches, seed, refinements;
+    uint32_t gaussians, allocation, gamma_q8, clusters, cluster_batches, seed, refine;
 } tie_settings;
 
 /* Footprints of `count` pixels. outputs: [count][T3R_HEAD_OUTPUTS]; spacing_q12 [count]; own colours, three planes of
@@ -40,13 +40,13 @@ int32_t tie_draw(uint32_t width, uint32_t height, const uint8_t *rgb, const doub
                  const tie_settings *settings, uint8_t *drawn)
 {
     t3r_config config = t3r_default_config(width, height, 1, settings->gaussians);
-    config.allocation = (t3r_allocation)settings->allocation;
+    config.allocate = (t3r_allocation)settings->allocate;
     config.gamma_q8 = settings->gamma_q8;
     config.clusters = settings->clusters;
     config.cluster_batches = settings->cluster_batches;
     config.seed = settings->seed;
     config.head = T3R_HEAD_LEARNED;
-    config.refinements = settings->refinements;
+    config.refine = settings->refine;
     t3r_plan_info plan;
     t3r_status status = t3r_plan(&config, &plan);
     if (status != T3R_OK) {

@@ -38,7 +38,7 @@ static int draw_room(void **state)
 static t3r_config settings(uint32_t views, uint32_t align)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, views, BUDGET);
-    config.refinements = 1;
+    config.refine = 1;
     config.align = align;
     return config;
 }

@@ -54,7 +54,7 @@ static uint32_t retained_of(const t3r_view *view)
 
 static t3r_budget_settings settings_of(t3r_allocation allocation, uint32_t gaussians)
 {
-    return (t3r_budget_settings){.allocation = allocation,
+    return (t3r_budget_settings){.allocate = allocation,
                                  .gaussians = gaussians,
                                  .keep_percent = 10,
                                  .gamma_q8 = 179,

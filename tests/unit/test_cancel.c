@@ -62,7 +62,7 @@ static void at_every_step(const plan *p, const uint8_t *weights, size_t weight_b
     config.head = p->head;
     config.clusters = p->clusters;
     config.keep_analysis = p->keep_analysis;
-    config.refinements = 1;
+    config.refine = 1;
     t3r_runtime *rt;
     t3r_plan_info info;
     t3r_scene scene;

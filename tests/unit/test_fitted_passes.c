@@ -22,19 +22,19 @@ static void as_in_double(void **state)
         const uint32_t gaussians = (uint32_t)unit_between(&seed, 1 + points / 64, points);
         const uint32_t disagreement_q8 = (uint32_t)unit_between(&seed, 1, 1 << (8 + turn % 16));
         const double exact = wanted(points, gaussians, disagreement_q8);
-        const uint32_t got = t3r_predict_passes(points, gaussians, disagreement_q8, T3R_MAX_REFINEMENTS);
-        assert_true(got >= fmin(fmax(exact - 0.5001, 1), T3R_MAX_REFINEMENTS));
-        assert_true(got <= fmin(fmax(exact + 0.5001, 1), T3R_MAX_REFINEMENTS));
+        const uint32_t got = t3r_predict_passes(points, gaussians, disagreement_q8, T3R_MAX_REFINE);
+        assert_true(got >= fmin(fmax(exact - 0.5001, 1), T3R_MAX_REFINE));
+        assert_true(got <= fmin(fmax(exact + 0.5001, 1), T3R_MAX_REFINE));
     }
 }
 
 static void fewer_where_less_is_shared(void **state)
 {
     (void)state;
-    uint32_t by_share = T3R_MAX_REFINEMENTS, by_views = T3R_MAX_REFINEMENTS;
+    uint32_t by_share = T3R_MAX_REFINE, by_views = T3R_MAX_REFINE;
     for (uint32_t n = 1; n <= 1000; n++) {
-        const uint32_t share = t3r_predict_passes(1000, n, 100 * 256, T3R_MAX_REFINEMENTS);
-        const uint32_t views = t3r_predict_passes(1000, 100, n * 256, T3R_MAX_REFINEMENTS);
+        const uint32_t share = t3r_predict_passes(1000, n, 100 * 256, T3R_MAX_REFINE);
+        const uint32_t views = t3r_predict_passes(1000, 100, n * 256, T3R_MAX_REFINE);
         assert_true(share <= by_share && views <= by_views);
         by_share = share;
         by_views = views;

@@ -31,7 +31,7 @@ static rig *views_new(void)
         s->view[v].label = label[v];
     }
     clusters[0].density_q10 = clusters[1].density_q10 = mean_density_q10 = -2 * 1024;
-    budget = (t3r_budget_settings){.allocation = T3R_ALLOCATE_PAPER, .clusters = CLUSTERS, .pass_over_covered = true};
+    budget = (t3r_budget_settings){.allocate = T3R_ALLOCATE_PAPER, .clusters = CLUSTERS, .pass_over_covered = true};
     return s;
 }
 
@@ -172,7 +172,7 @@ typedef struct way {
 
 static uint64_t scene_hash(t3r_config config, way taken)
 {
-    config.refinements = 0;
+    config.refine = 0;
     config.workers = taken.parallel ? 3 : 1;
     t3r_plan_info plan;
     assert_int_equal(t3r_plan(&config, &plan), T3R_OK);

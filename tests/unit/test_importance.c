@@ -78,7 +78,7 @@ static void make_up(t3r_view views[VIEWS], t3r_cluster clusters[CLUSTERS + 1], u
 
 static t3r_budget_settings settings_of(uint32_t gaussians)
 {
-    return (t3r_budget_settings){.allocation = T3R_ALLOCATE_GIVEN,
+    return (t3r_budget_settings){.allocate = T3R_ALLOCATE_GIVEN,
                                  .gaussians = gaussians,
                                  .keep_percent = 10,
                                  .gamma_q8 = 179,
@@ -263,7 +263,7 @@ static t3r_config config_of(t3r_allocation allocation)
 {
     t3r_config config = t3r_default_config(W, H, VIEWS, 900);
     config.clusters = 12;
-    config.allocation = allocation;
+    config.allocate = allocation;
     config.keep_analysis = 1;
     return config;
 }
@@ -331,7 +331,7 @@ static void nothing_stays_behind(void **state)
         for (int told = 0; told < 2; told++) {
             config.gaussians = config.max_gaussians = 400;
             config.keep_analysis = 0;
-            config.allocation = told ? T3R_ALLOCATE_GIVEN : T3R_ALLOCATE_DENSITY;
+            config.allocate = told ? T3R_ALLOCATE_GIVEN : T3R_ALLOCATE_DENSITY;
             rt = with_views(&config);
             memcpy(copy, arena, arena_bytes);
             assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_OK);

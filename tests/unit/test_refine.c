@@ -65,10 +65,10 @@ static int draw_room(void **state)
     return 0;
 }
 
-static t3r_config settings(uint32_t refinements)
+static t3r_config settings(uint32_t refine)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
-    config.refinements = refinements;
+    config.refine = refine;
     config.fit_passes = config.fit_widths = 0;
     config.clusters = 64;
     return config;
@@ -111,9 +111,9 @@ static double context_psnr(t3r_runtime *rt)
     return 10 * log10(255.0 * 255.0 * 2 * sizeof drawn / sum);
 }
 
-static double refined_psnr(t3r_head head, uint32_t refinements, uint32_t gaussians)
+static double refined_psnr(t3r_head head, uint32_t refine, uint32_t gaussians)
 {
-    t3r_config config = settings(refinements);
+    t3r_config config = settings(refine);
     config.gaussians = config.max_gaussians = gaussians;
     config.head = head;
     config.flying = config.redundancy = config.exposure = 0; /* measured against the pictures as they came */
@@ -462,7 +462,7 @@ static void fits_its_passes(void **state)
     for (uint32_t all = 0; all < 2; all++) {
         uint64_t hash[2];
         for (uint32_t given = 0; given < 2; given++) {
-            t3r_config config = settings(given ? passes[all] : T3R_MAX_REFINEMENTS);
+            t3r_config config = settings(given ? passes[all] : T3R_MAX_REFINE);
             config.gaussians = config.max_gaussians = all ? POINTS : BUDGET / 2;
             config.fit_passes = !given;
             t3r_runtime *rt = open_arena(&config, 16);
@@ -477,7 +477,7 @@ static void fits_its_passes(void **state)
         assert_true(hash[0] == hash[1]);
     }
     print_message("%u passes for a twentieth, %u for all\n", passes[0], passes[1]);
-    assert_true(passes[0] > passes[1] && passes[1] >= 1 && passes[0] <= T3R_MAX_REFINEMENTS);
+    assert_true(passes[0] > passes[1] && passes[1] >= 1 && passes[0] <= T3R_MAX_REFINE);
 
     t3r_config config = settings(2);
     config.gaussians = config.max_gaussians = BUDGET / 20;
@@ -489,7 +489,7 @@ static void fits_its_passes(void **state)
     free(memory);
 
     /* a view alone says nothing of noise: 150 levels^2 are taken for it */
-    config = settings(T3R_MAX_REFINEMENTS);
+    config = settings(T3R_MAX_REFINE);
     config.gaussians = config.max_gaussians = BUDGET / 4;
     config.fit_passes = 1;
     rt = open_arena(&config, 16);

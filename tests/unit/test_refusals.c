@@ -36,7 +36,7 @@ static t3r_config some_config(void)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.clusters = 6;
-    config.refinements = 1;
+    config.refine = 1;
     return config;
 }
 
@@ -136,7 +136,7 @@ static void missing_pointers(void **state)
     assert_int_equal(t3r_stream_overlap(rt, &camera, T3R_MAX_SIDE + 1, SIDE, &overlap_q8), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_stream_overlap(rt, &camera, SIDE, 1, &overlap_q8), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_stream_overlap(rt, &camera, SIDE, T3R_MAX_SIDE + 1, &overlap_q8), T3R_ERR_ARGUMENT);
-    config.allocation = T3R_ALLOCATE_GIVEN;
+    config.allocate = T3R_ALLOCATE_GIVEN;
     rt = opened(&config);
     assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_ERR_STATE);
     config = some_config();
@@ -193,9 +193,9 @@ static void states_that_cannot_be(void **state)
     DAMAGED(damaged->frame.origin_q32[2] = -(INT64_C(1) << 62));
     DAMAGED(damaged->frame.origin_q32[1] = (INT64_C(1) << 62) - 1); /* the camera is too far from it */
     DAMAGED(damaged->build.gaussians = config.max_gaussians + 1);
-    DAMAGED(damaged->build.allocation = T3R_ALLOCATE_CONFIGURED);
-    DAMAGED(damaged->build.allocation = T3R_ALLOCATE_COUNT);
-    DAMAGED(damaged->build.refinements = config.refinements + 1);
+    DAMAGED(damaged->build.allocate = T3R_ALLOCATE_CONFIGURED);
+    DAMAGED(damaged->build.allocate = T3R_ALLOCATE_COUNT);
+    DAMAGED(damaged->build.refine = config.refine + 1);
     DAMAGED(damaged->build.head = T3R_HEAD_CONFIGURED);
     DAMAGED(damaged->next_slot = 1);
     DAMAGED(damaged->reuse.views = 1);

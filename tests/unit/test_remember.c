@@ -15,7 +15,7 @@ static t3r_config stream_config(uint32_t remember)
 {
     t3r_config c = t3r_default_config(SIDE, SIDE, 1, BUDGET);
     c.stream = 1;
-    c.refinements = 2;
+    c.refine = 2;
     c.remember = remember;
     c.exposure = c.fill_radius = c.bridge_radius = 0;
     return c;

@@ -34,7 +34,7 @@ static t3r_config good_config(void)
     config.gaussians = BUDGET;
     config.clusters = 12;
     config.cluster_batches = 24;
-    config.refinements = 1;
+    config.refine = 1;
     config.keep_analysis = 1;
     return config;
 }
@@ -75,8 +75,8 @@ static void expected_of(const t3r_request *request, kept_scene *expected)
 {
     t3r_config config = good_config();
     config.gaussians = request->gaussians != 0 ? request->gaussians : config.gaussians;
-    config.allocation = request->allocation != 0 ? request->allocation : config.allocation;
-    config.allocation = request->importance != NULL ? T3R_ALLOCATE_GIVEN : config.allocation;
+    config.allocate = request->allocate != 0 ? request->allocate : config.allocate;
+    config.allocate = request->importance != NULL ? T3R_ALLOCATE_GIVEN : config.allocate;
     config.head = request->head != 0 ? request->head : config.head;
     t3r_request rest = {.max_loss_q8 = request->max_loss_q8,
                         .importance = request->importance,
@@ -98,17 +98,17 @@ static void every_combination(void **state)
         t3r_request request = {
             .gaussians = parts & 1 ? FEWER : 0,
             .max_loss_q8 = parts & 2 ? HALF_DB : 0,
-            .allocation = parts & 4 ? T3R_ALLOCATE_UNIFORM : T3R_ALLOCATE_CONFIGURED,
+            .allocate = parts & 4 ? T3R_ALLOCATE_UNIFORM : T3R_ALLOCATE_CONFIGURED,
             .head = parts & 8 ? T3R_HEAD_MOMENT : T3R_HEAD_CONFIGURED,
             .importance = parts & 16 ? planes : NULL,
             .importance_stride_bytes = parts & 32 || parts & 16 ? SIDE * 2 : 0, /* says nothing without planes */
         };
         t3r_scene scene;
         t3r_runtime *rt;
-        if (request.importance != NULL && request.allocation != 0) {
+        if (request.importance != NULL && request.allocate != 0) {
             rt = with_view(&config);
             assert_int_equal(t3r_reconstruct(rt, &request, &scene), T3R_ERR_ARGUMENT);
-            request.allocation = T3R_ALLOCATE_GIVEN; /* says it once more */
+            request.allocate = T3R_ALLOCATE_GIVEN; /* says it once more */
         }
         expected_of(&request, &expected);
         assert_true(expected.count <= (request.gaussians != 0 ? request.gaussians : BUDGET));
@@ -133,7 +133,7 @@ static void every_allocation_and_head(void **state)
     const t3r_config config = good_config();
     for (int allocation = T3R_ALLOCATE_CONFIGURED + 1; allocation < T3R_ALLOCATE_GIVEN; allocation++) {
         for (int head = T3R_HEAD_CONFIGURED + 1; head < T3R_HEAD_LEARNED; head++) {
-            const t3r_request request = {.allocation = (t3r_allocation)allocation, .head = (t3r_head)head};
+            const t3r_request request = {.allocate = (t3r_allocation)allocation, .head = (t3r_head)head};
             expected_of(&request, &expected);
             t3r_runtime *rt = with_view(&config);
             t3r_scene scene;
@@ -153,13 +153,13 @@ static void a_refused_request_leaves_all_as_it_was(void **state)
     const t3r_request refused[] = {
         {.gaussians = MOST + 1},
         {.max_loss_q8 = T3R_MAX_LOSS_Q8 + 1},
-        {.allocation = T3R_ALLOCATE_COUNT},
-        {.allocation = T3R_ALLOCATE_GIVEN},
+        {.allocate = T3R_ALLOCATE_COUNT},
+        {.allocate = T3R_ALLOCATE_GIVEN},
         {.head = T3R_HEAD_COUNT},
         {.head = T3R_HEAD_LEARNED},
         {.importance = planes, .importance_stride_bytes = SIDE * 2 - 2},
         {.importance = planes, .importance_stride_bytes = SIDE * 2, .max_loss_q8 = T3R_MAX_LOSS_Q8 + 1},
-        {.importance = planes, .importance_stride_bytes = SIDE * 2, .allocation = T3R_ALLOCATE_DENSITY},
+        {.importance = planes, .importance_stride_bytes = SIDE * 2, .allocate = T3R_ALLOCATE_DENSITY},
     };
     const t3r_config config = good_config();
     t3r_runtime *rt = with_view(&config);
@@ -186,7 +186,7 @@ static void a_bounded_loss_needs_its_settings(void **state)
     for (size_t i = 0; i < 2; i++) {
         for (int missing = 0; missing < 2; missing++) {
             t3r_config config = good_config();
-            *(missing ? &config.keep_analysis : &config.refinements) = 0;
+            *(missing ? &config.keep_analysis : &config.refine) = 0;
             t3r_runtime *rt = with_view(&config);
             t3r_scene scene;
             memcpy(before, arena, arena_bytes);

@@ -42,7 +42,7 @@ static void fill(site *s, uint64_t *seed, uint32_t key_range)
                          .texture = s->texture,
                          .key = s->key,
                          .label = s->label};
-    s->settings = (t3r_budget_settings){.allocation = T3R_ALLOCATE_PIXEL, .clusters = 1, .pass_over_covered = true};
+    s->settings = (t3r_budget_settings){.allocate = T3R_ALLOCATE_PIXEL, .clusters = 1, .pass_over_covered = true};
 }
 
 static uint32_t key_of(const t3r_map_record *r)

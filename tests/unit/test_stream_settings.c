@@ -62,7 +62,7 @@ static void each_setting(void **state)
     static t3r_gaussian first[BUDGET], again[BUDGET], usual[BUDGET];
     t3r_config base = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     base.stream = 1;
-    base.refinements = 1;
+    base.refine = 1;
     const uint32_t usually = run(&base, usual);
     t3r_config other[13];
     size_t n = 0;
@@ -70,22 +70,22 @@ static void each_setting(void **state)
     OTHER(bridge_radius, 0);
     OTHER(flying, 0);
     OTHER(exposure, 0);
-    OTHER(refinements, 0);
+    OTHER(refine, 0);
     OTHER(views, 1);
     OTHER(warm, 1);
     OTHER(structural, 1);
     OTHER(align, 0);
     OTHER(remember, 1);
-    OTHER(allocation, T3R_ALLOCATE_PAPER);
-    OTHER(allocation, T3R_ALLOCATE_PIXEL);
-    OTHER(allocation, T3R_ALLOCATE_UNIFORM);
-    OTHER(allocation, T3R_ALLOCATE_RANDOM);
+    OTHER(allocate, T3R_ALLOCATE_PAPER);
+    OTHER(allocate, T3R_ALLOCATE_PIXEL);
+    OTHER(allocate, T3R_ALLOCATE_UNIFORM);
+    OTHER(allocate, T3R_ALLOCATE_RANDOM);
 #undef OTHER
     for (size_t i = 0; i < n; i++) {
         const uint32_t count = run(&other[i], first);
         assert_int_equal(run(&other[i], again), count);
         assert_memory_equal(first, again, count * sizeof *first);
-        const bool clustered = other[i].allocation == T3R_ALLOCATE_PAPER || other[i].allocation == T3R_ALLOCATE_PIXEL;
+        const bool clustered = other[i].allocate == T3R_ALLOCATE_PAPER || other[i].allocate == T3R_ALLOCATE_PIXEL;
         /* a stream has one SuperCluster, so that these are one allocation, and refines without the structural loss,
          * with poses as they are given */
         if (clustered || other[i].structural != 0 || other[i].align == 0) {
@@ -103,11 +103,11 @@ static void fitted_passes_have_a_bound(void **state)
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.stream = 1;
     config.fit_passes = 1;
-    config.refinements = 2 * T3R_STREAM_REFINEMENTS;
+    config.refine = 2 * T3R_STREAM_REFINE;
     const uint32_t count = run(&config, fitted);
     config.fit_passes = 0;
     assert_int_equal(run(&config, more), count);
-    config.refinements = T3R_STREAM_REFINEMENTS;
+    config.refine = T3R_STREAM_REFINE;
     assert_int_equal(run(&config, bound), count);
     assert_memory_equal(fitted, bound, count * sizeof *fitted);
     assert_memory_not_equal(fitted, more, count * sizeof *fitted);

@@ -30,7 +30,7 @@ static void every_height_of_blocks(void **state)
         const uint32_t height = heights[h];
         t3r_config config = t3r_default_config(W, height, 2, BUDGET);
         config.depth = T3R_DEPTH_STEREO;
-        config.refinements = 0;
+        config.refine = 0;
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
         void *arena = aligned_alloc(T3R_ARENA_ALIGN, plan.bytes / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN + T3R_ARENA_ALIGN);

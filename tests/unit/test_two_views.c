@@ -476,7 +476,7 @@ static void in_the_pipeline(void **state)
         config.flying = config.redundancy = config.exposure = 1;
         config.align = 0;
         config.gaussians = 300;
-        config.allocation = (t3r_allocation)mode;
+        config.allocate = (t3r_allocation)mode;
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
         void *arena = aligned_alloc(T3R_ARENA_ALIGN, (plan.bytes + 63) / 64 * 64);

@@ -160,7 +160,7 @@ static t3r_config settings(t3r_head head)
 {
     t3r_config config = t3r_default_config(WIDTH, HEIGHT, VIEWS, BUDGET);
     config.clusters = 40;
-    config.refinements = 2;
+    config.refine = 2;
     config.head = head;
     return config;
 }

@@ -19,7 +19,7 @@ static const struct {
     uint32_t gaussians;
     enum { ANALYTIC, SMALL, MEASURED } head; /* the closed form; `small`; the one that --head names */
     bool keep;                               /* the analysis, to run a stage alone again */
-    uint32_t refinements;
+    uint32_t refine;
     bool stereo; /* whatever --depth says */
 } scene_settings[BENCH_SCENES] = {
     [BENCH_FULL] = {BENCH_POINTS, ANALYTIC, false, REFINEMENTS, false},
@@ -64,7 +64,7 @@ static t3r_status open_scene(bench_work *w, bench_scene kind)
     const chosen_head *head = heads[scene_settings[kind].head];
     config.depth = scene_settings[kind].stereo ? T3R_DEPTH_STEREO : w->source;
     config.keep_analysis = scene_settings[kind].keep;
-    config.refinements = scene_settings[kind].refinements;
+    config.refine = scene_settings[kind].refine;
     config.fit_passes = 0;
     if (head != NULL) {
         chosen_head_configure(head, &config);

@@ -231,7 +231,7 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "neither -o REC.mcap nor --build SCENE.ply says what is to become of the frames");
     } else if (o->scene == NULL && (o->every > 0 || budget || o->build.context_count > 0 || o->local)) {
         argp_error(state, "--every, --local, --context and budgets belong to --build");
-    } else if (o->scene != NULL && o->build.config.allocation == T3R_ALLOCATE_GIVEN) {
+    } else if (o->scene != NULL && o->build.config.allocate == T3R_ALLOCATE_GIVEN) {
         argp_error(state, "--allocate given needs a recording: trim3r build");
     } else if (o->build.config.depth == T3R_DEPTH_STEREO) {
         argp_error(state, "--depth stereo needs a recording: trim3r build");

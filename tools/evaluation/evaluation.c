@@ -132,11 +132,11 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.automatic = false;
     options.config.fill_radius = options.config.bridge_radius = 0;
     options.head = "analytic";
-    options.config.allocation = T3R_ALLOCATE_UNIFORM;
+    options.config.allocate = T3R_ALLOCATE_UNIFORM;
     options.config.flying = options.config.redundancy = options.config.exposure = options.config.fit_widths =
         options.config.align = 0;
     options.config.keep_analysis = false;
-    options.config.refinements = 0;
+    options.config.refine = 0;
     options.hash = false;
     options.arena = ARENA_FULL;
     options.context_count = what->context_count;
@@ -281,12 +281,12 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evalua
     const bool allocated = settings->method->allocates;
     const bool built = allocated || settings->points_of == NULL; /* others take Gaussians out of the file */
     if (built) {
-        snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->config.refinements);
+        snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->config.refine);
         row->wavelet = t3r_wavelet_name(settings->config.wavelet);
-        snprintf(row->levels, sizeof row->levels, "%" PRIu32, settings->config.wavelet_levels);
+        snprintf(row->levels, sizeof row->levels, "%" PRIu32, settings->config.levels);
     }
     if (allocated) {
-        row->allocate = t3r_allocation_name(settings->config.allocation);
+        row->allocate = t3r_allocation_name(settings->config.allocate);
         name_clusters(row, settings->config.clusters);
     }
     if (budget.gaussians > 0) {

@@ -60,7 +60,7 @@ static t3r_config config_of(uint32_t index, const processor_options *processor)
                                            (uint32_t)(points * settings[index].percent / 100));
     config.clusters = settings[index].clusters;
     config.cluster_batches = settings[index].batches;
-    config.refinements = settings[index].passes;
+    config.refine = settings[index].passes;
     config.fit_passes = 0;
     config.depth = settings[index].depth;
     config.workers = processor->threads;

@@ -69,7 +69,7 @@ static int find(fitting_choices *list, const t3r_config *config, const t3r_limit
                                                    list->items, &list->count);
         if (status != T3R_OK) {
             with_head.gaussians = with_head.max_gaussians = 1;
-            with_head.refinements = 0;
+            with_head.refine = 0;
             return reconstruction_error(status, "settings", &with_head, 0);
         }
     }
@@ -117,7 +117,7 @@ static void print_json(const fitting_choices *list, const t3r_config *config, co
         cJSON *item = cJSON_CreateObject();
         cJSON_AddStringToObject(item, "head", head_name(list, c));
         json_add_integer(item, "gaussians", c->gaussians);
-        json_add_integer(item, "refine", c->refinements);
+        json_add_integer(item, "refine", c->refine);
         cJSON_AddNumberToObject(item, "expected_loss_db", c->loss_q4 / 16.0);
         json_add_integer(item, "min_bytes", (int64_t)c->min_bytes);
         json_add_integer(item, "arena_bytes", (int64_t)c->full_bytes);
@@ -143,8 +143,7 @@ static void print_text(const fitting_choices *list, const t3r_config *config, co
         const t3r_choice *c = &list->items[i];
         printf(markdown ? "| %s | %" PRIu32 " | %.3g | %" PRIu32 " | %.1f | %zu |"
                         : "%-10s %10" PRIu32 " %7.3g %7" PRIu32 " %8.1f %12zu",
-               head_name(list, c), c->gaussians, percent_of(c, config), c->refinements, c->loss_q4 / 16.0,
-               c->full_bytes);
+               head_name(list, c), c->gaussians, percent_of(c, config), c->refine, c->loss_q4 / 16.0, c->full_bytes);
         if (timed) {
             printf(markdown ? " %.3g |" : " %10.3g", (double)c->price * 1e-6);
         }
@@ -185,7 +184,7 @@ int fitting_list(const fitting_options *o, const t3r_config *config, const char 
         .most = o->nanoseconds,
         .prices = timed ? &m.prices : NULL,
         .gaussians = config->gaussians,
-        .refinements = config->refinements,
+        .refine = config->refine,
     };
     int code = open_heads(&list, head);
     code = code == CLI_OK && timed ? fitting_machine(o, config->workers, &m) : code;

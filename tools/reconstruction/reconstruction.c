@@ -207,9 +207,9 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
     t3r_config *c = &counted.config;
     *c = t3r_default_config(r->config.width, r->config.height, r->context_count, 1);
     c->depth = T3R_DEPTH_STEREO;
-    c->flying = c->redundancy = c->exposure = c->refinements = c->cluster_batches = 0;
+    c->flying = c->redundancy = c->exposure = c->refine = c->cluster_batches = 0;
     c->wavelet = T3R_WAVELET_HAAR;
-    c->wavelet_levels = c->clusters = c->render_width = c->render_height = 1;
+    c->levels = c->clusters = c->render_width = c->render_height = 1;
     int code = open_arena(&counted, &(reconstruction_options){.arena = ARENA_MIN, .processor = processor_defaults()});
     t3r_status status = T3R_OK;
     for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
@@ -457,10 +457,10 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
         r->pruned = made.gaussians;
         r->add_views_seconds = made.seconds;
     }
-    if (options->config.allocation == T3R_ALLOCATE_GIVEN) {
+    if (options->config.allocate == T3R_ALLOCATE_GIVEN) {
         planes = options->importance_planes;
     }
-    if (code == CLI_OK && options->config.allocation == T3R_ALLOCATE_GIVEN && options->importance != NULL) {
+    if (code == CLI_OK && options->config.allocate == T3R_ALLOCATE_GIVEN && options->importance != NULL) {
         code = importance_pictures_read(&pictures, options->importance, r->context, r->context_count, r->config.width,
                                         r->config.height);
         planes = (const uint16_t *const *)pictures.planes;

@@ -25,7 +25,7 @@ keyframe_map_settings keyframe_map_defaults(void)
         .every = 3,
         .half_life = config.half_life,
         .remember = config.remember,
-        .refinements = T3R_STREAM_REFINEMENTS,
+        .refine = T3R_STREAM_REFINE,
         .threads = 1,
         .head = CHOSEN_HEAD_DEFAULT,
     };
@@ -51,7 +51,7 @@ static int open_stream(keyframe_map *map, const keyframe_map_settings *settings)
     options.processor.threads = settings->threads;
     options.config.half_life = settings->half_life;
     options.config.remember = settings->remember;
-    options.config.refinements = settings->refinements;
+    options.config.refine = settings->refine;
     options.config.fit_passes = 0; /* exactly so many */
     options.config.warm = settings->warm;
     int code = reconstruction_live_stream(&map->r, settings->width, settings->height, &options, settings->at_hand);

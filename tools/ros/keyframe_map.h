@@ -20,7 +20,7 @@ typedef struct keyframe_map_settings {
     uint32_t overlap_percent; /* less in common with the last keyframe makes a frame one, 0..100; 0 = not asked [0] */
     uint32_t half_life;       /* as t3r_config has it [32] */
     uint32_t remember;        /* likewise [0] */
-    uint32_t refinements;     /* the passes of each keyframe [T3R_STREAM_REFINEMENTS] */
+    uint32_t refine;          /* the passes of each keyframe [T3R_STREAM_REFINE] */
     uint32_t warm;            /* likewise [0] */
     uint32_t threads;         /* 1..T3R_MAX_WORKERS [1] */
     const char

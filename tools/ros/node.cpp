@@ -45,7 +45,7 @@ keyframe_map_settings map_settings(const parameters &p)
     s.overlap_percent = count_from(p.overlap, "overlap");
     s.half_life = count_from(p.half_life, "half_life");
     s.remember = count_from(p.remember, "remember");
-    s.refinements = count_from(p.refine, "refine");
+    s.refine = count_from(p.refine, "refine");
     s.threads = count_from(p.threads, "threads");
     s.warm = p.warm ? 1 : 0;
     s.head = p.head.c_str();

@@ -20,7 +20,7 @@ namespace trim3r_ros
 struct parameters {
     int width = 256, height = 256; // the working size
     int gaussians = 10000;         // the most in the map
-    int at_hand = 4, every = 3, overlap = 0, half_life = 32, remember = 0, refine = T3R_STREAM_REFINEMENTS, threads = 1;
+    int at_hand = 4, every = 3, overlap = 0, half_life = 32, remember = 0, refine = T3R_STREAM_REFINE, threads = 1;
     bool warm = false;
     std::string head = "small";
     int queue = 8;

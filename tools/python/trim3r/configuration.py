@@ -9,7 +9,7 @@ from .image_stage import default_config
 Settings = Mapping[str, Union[int, str]]
 
 NAMES = {  # of settings that take a name, too
-    "allocation": (lib.t3r_allocation_name, lib.T3R_ALLOCATE_COUNT),
+    "allocate": (lib.t3r_allocation_name, lib.T3R_ALLOCATE_COUNT),
     "depth": (lib.t3r_depth_name, lib.T3R_DEPTH_COUNT),
     "wavelet": (lib.t3r_wavelet_name, lib.T3R_WAVELET_COUNT),
 }

@@ -96,8 +96,8 @@ def _masks(context: Sequence[Frame], pictures: Sequence[Frame], width: int, heig
            settings: Settings) -> List["NDArray[np.bool_]"]:
     """Where the unpruned scene of the frames' own depth covers each picture."""
     sensed = all(frame.depth is not None for frame in context)
-    plain: Settings = {**settings, "fill_radius": 0, "bridge_radius": 0, "allocation": "uniform", "flying": 0,
-                       "redundancy": 0, "exposure": 0, "fit_widths": 0, "align": 0, "refinements": 0,
+    plain: Settings = {**settings, "fill_radius": 0, "bridge_radius": 0, "allocate": "uniform", "flying": 0,
+                       "redundancy": 0, "exposure": 0, "fit_widths": 0, "align": 0, "refine": 0,
                        "keep_analysis": 0}
     with Reconstructor(width, height, views=len(context), head="analytic", depth="sensor" if sensed else depth,
                        workers=workers, settings=plain) as made:

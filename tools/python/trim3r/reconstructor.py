@@ -50,7 +50,7 @@ class Reconstructor:
         Called with the name of the stage, what is done and the total of that, now and then, from any thread. To raise
         an exception in it stops the work; the call that works raises it again.
     settings : mapping of str to int or str
-        Any other field of t3r_config, as trim3r.h has it: {"refinements": 8} say. allocation and wavelet take names, too.
+        Any other field of t3r_config, as trim3r.h has it: {"refine": 8} say. allocate and wavelet take names, too.
         `keep_analysis` is 1 here unless it is given.
 
     Raises
@@ -62,7 +62,7 @@ class Reconstructor:
 
     Notes
     -----
-    `max_loss` needs `keep_analysis` and refinements, as is the default.
+    `max_loss` needs `keep_analysis` and `refine` above 0, as is the default.
     """
 
     def __init__(self, width: int, height: int, *, views: int = 2, gaussians: Optional[int] = None,
@@ -185,7 +185,7 @@ class Reconstructor:
     # ---- scenes ----
 
     def build(self, gaussians: Optional[int] = None, *, keep: Optional[float] = None, max_loss: float = 0,
-              allocation: Optional[str] = None, head: Optional[HeadName] = None,
+              allocate: Optional[str] = None, head: Optional[HeadName] = None,
               importance: Optional[Importance] = None) -> Scene:
         """Makes a scene of the views.
 
@@ -198,7 +198,7 @@ class Reconstructor:
             Without either: that of the constructor.
         max_loss : float
             Where above 0: as few Gaussians, at most the budget, as are predicted to lose so many dB at most, 0..10.
-        allocation : str, optional
+        allocate : str, optional
             How the budget is spread: "density", "paper", "pixel", "uniform", "random". That of the constructor without
             it.
         head : str or path-like, optional
@@ -218,16 +218,16 @@ class Reconstructor:
         StateError
             There are no views.
         """
-        return self._make(lib.t3r_reconstruct, gaussians, keep, max_loss, allocation, head, importance)
+        return self._make(lib.t3r_reconstruct, gaussians, keep, max_loss, allocate, head, importance)
 
     def rebuild(self, gaussians: Optional[int] = None, *, keep: Optional[float] = None, max_loss: float = 0,
-                allocation: Optional[str] = None, head: Optional[HeadName] = None,
+                allocate: Optional[str] = None, head: Optional[HeadName] = None,
                 importance: Optional[Importance] = None) -> Scene:
         """Makes another scene of the views analysed last, without a new analysis. Otherwise as build().
 
         Raises StateError also where there is no analysis.
         """
-        return self._make(lib.t3r_rebuild, gaussians, keep, max_loss, allocation, head, importance)
+        return self._make(lib.t3r_rebuild, gaussians, keep, max_loss, allocate, head, importance)
 
     def load(self, scene: Scene) -> None:
         """Takes a scene from elsewhere to be drawn, in the place of views and scene.
@@ -361,10 +361,10 @@ class Reconstructor:
         self._generation += 1
 
     def _make(self, function: Callable[..., int], gaussians: Optional[int], keep: Optional[float], max_loss: float,
-              allocation: Optional[str], head: Optional[HeadName], importance: Optional[Importance]) -> Scene:
+              allocate: Optional[str], head: Optional[HeadName], importance: Optional[Importance]) -> Scene:
         with self._at_work() as runtime, self._bound(runtime, head) as head_value:
             budget = self._budget(runtime, gaussians, keep)
-            request, kept = request_of(self._config, len(self._points), budget, max_loss, allocation, importance)
+            request, kept = request_of(self._config, len(self._points), budget, max_loss, allocate, importance)
             request.head = head_value
             self._go_on()
             if function == lib.t3r_reconstruct:

@@ -11,7 +11,7 @@ Importance = Sequence["NDArray[np.uint16]"]
 _LOSS_MOST = 10  # dB
 
 
-def request_of(config: Any, views: int, gaussians: int, max_loss: float, allocation: Optional[str],
+def request_of(config: Any, views: int, gaussians: int, max_loss: float, allocate: Optional[str],
                importance: Optional[Importance]) -> Tuple[Any, Any]:
     """A t3r_request for so many views, and what must outlive its use; 0 and None leave the configuration's value.
 
@@ -20,8 +20,8 @@ def request_of(config: Any, views: int, gaussians: int, max_loss: float, allocat
     if not 0 <= max_loss <= _LOSS_MOST:
         raise ValueError(f"max_loss is 0..{_LOSS_MOST} dB, not {max_loss}")
     request = ffi.new("t3r_request *", {"gaussians": gaussians, "max_loss_q8": round(max_loss * 256)})
-    if allocation is not None:
-        request.allocation = value_named("allocation", *NAMES["allocation"], allocation)
+    if allocate is not None:
+        request.allocate = value_named("allocate", *NAMES["allocate"], allocate)
     if importance is None:
         return request, None
     planes = [np.ascontiguousarray(plane) for plane in importance]

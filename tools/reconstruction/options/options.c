@@ -61,7 +61,7 @@ void reconstruction_parse_arena(struct argp_state *state, const char *text, reco
 
 static void check_settings(struct argp_state *state, reconstruction_options *o)
 {
-    if ((o->config.allocation == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
+    if ((o->config.allocate == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
         argp_error(state, "--allocate given and --importance belong together");
     }
     if (o->points_of != NULL) {
@@ -77,7 +77,7 @@ static void check_settings(struct argp_state *state, reconstruction_options *o)
     if (!o->automatic) {
         return;
     }
-    if (o->config.refinements == 0) {
+    if (o->config.refine == 0) {
         argp_error(state, "--auto measures where refinement does: it needs --refine 1 or more");
     }
     if (o->max_loss <= 0) {

@@ -27,7 +27,7 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
 
 /* SETTING(option, argument, field of t3r_config, kind, low, high, names, help, column, word) */
 #define SETTINGS                                                                                                       \
-    SETTING("refine", "N", refinements, NUMBER, 0, T3R_MAX_REFINEMENTS, NULL,                                          \
+    SETTING("refine", "N", refine, NUMBER, 0, T3R_MAX_REFINE, NULL,                                                    \
             "passes of refinement on the context views, at most where they are fitted", true, "refine")                \
     SETTING("allocate", "MODE", allocation, NAME, T3R_ALLOCATE_CONFIGURED + 1, UINT32_MAX, allocation_name,            \
             "allocation of the budget over the points", true, NULL)                                                    \
@@ -38,7 +38,7 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
             "continue what --depth stereo does not match along the planes of what it does", false, "planes")           \
     SETTING("wavelet", "NAME", wavelet, NAME, 0, UINT32_MAX, wavelet_name, "wavelet that measures texture", true,      \
             NULL)                                                                                                      \
-    SETTING("levels", "N", wavelet_levels, NUMBER, 1, T3R_MAX_LEVELS, NULL, "wavelet levels", true, "levels")          \
+    SETTING("levels", "N", levels, NUMBER, 1, T3R_MAX_LEVELS, NULL, "wavelet levels", true, "levels")                  \
     SETTING("clusters", "K", clusters, NUMBER, 0, T3R_MAX_CLUSTERS, NULL,                                              \
             "number of SuperClusters; 0 = as many as the allocation and the points ask for", true, "k")                \
     SETTING("gamma", "G", gamma_q8, Q8, 0, 2, NULL, "exponent of texture in the density", false, "gamma")              \

@@ -84,24 +84,24 @@ void ablation_apply(uint32_t ablation, reconstruction_options *settings)
         settings->hide_mask = true;
         break;
     case SHUFFLED_PAPER:
-        settings->config.allocation = T3R_ALLOCATE_PAPER;
+        settings->config.allocate = T3R_ALLOCATE_PAPER;
         settings->ablation.shuffle = 1;
         break;
     case SHUFFLED:
         settings->ablation.shuffle = 1;
         break;
     case ALLOCATION:
-        settings->config.allocation = (t3r_allocation)value;
+        settings->config.allocate = (t3r_allocation)value;
         break;
     case CLUSTERS:
         settings->config.clusters = value;
         break;
     case PAPER_PERCENT:
-        settings->config.allocation = T3R_ALLOCATE_PAPER;
+        settings->config.allocate = T3R_ALLOCATE_PAPER;
         settings->config.keep_percent = value;
         break;
     case UNREFINED:
-        settings->config.refinements = 0;
+        settings->config.refine = 0;
         break;
     case FLYING_OFF:
         settings->config.flying = 0;

@@ -93,7 +93,7 @@ def words(path, options):
     """The firmware's command line, but for hashes and the view."""
     width, height = options.size
     return [f"frames={planes(path, options) if is_small(options) else path}", f"width={width}", f"height={height}", f"views={options.views}",
-            f"gaussians={options.gaussians}", f"clusters={options.clusters}", f"refinements={options.refine}",
+            f"gaussians={options.gaussians}", f"clusters={options.clusters}", f"refine={options.refine}",
             f"learned={int(options.head not in CLOSED_FORM)}"]
 
 

@@ -20,7 +20,7 @@ static int add_scene(calibration *c, const t3r_recording *recording, const char 
     settings.keep_percent = 100; /* an arena for the largest */
     settings.config.keep_analysis = 1;
     settings.hash = false;
-    settings.config.refinements = 0;
+    settings.config.refine = 0;
     settings.head = "analytic"; /* what heads see does not depend on the head */
     settings.context_count = count;
     memcpy(settings.context, context, count * sizeof *context);

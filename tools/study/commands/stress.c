@@ -137,7 +137,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         rival_check_settings(state, &c->settings, c->methods, c->method_count);
-        if (c->settings.config.allocation == T3R_ALLOCATE_GIVEN) {
+        if (c->settings.config.allocate == T3R_ALLOCATE_GIVEN) {
             argp_error(state, "--allocate given is of pictures of one recording; stress has scenes of its own");
         }
         return 0;

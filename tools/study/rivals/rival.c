@@ -266,7 +266,7 @@ static int build_by_head(rival_source *source, method_kind kind, const reconstru
     }
     if (code == CLI_OK) {
         reconstruction_options given = *options;
-        given.config.allocation = T3R_ALLOCATE_GIVEN;
+        given.config.allocate = T3R_ALLOCATE_GIVEN;
         given.importance = NULL;
         given.importance_planes = (const uint16_t *const *)points.planes;
         code = reconstruction_build(made, source->recording, source->path, &given);

@@ -27,7 +27,7 @@ int traced_points_make(traced_points *points, const t3r_recording *recording, co
     reconstruction_options plain = *options;
     plain.head = "none";
     plain.hide_mask = false;
-    plain.config.refinements = 0;
+    plain.config.refine = 0;
     plain.config.keep_analysis = 1;
     plain.hash = false;
     plain.arena = ARENA_FULL;

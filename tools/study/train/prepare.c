@@ -103,12 +103,12 @@ static t3r_config config_of(const prepare_views *views, const prepare_settings *
         config.head = T3R_HEAD_LEARNED;
         return config;
     }
-    config.allocation = (t3r_allocation)settings->allocation;
+    config.allocate = (t3r_allocation)settings->allocate;
     config.gamma_q8 = settings->gamma_q8;
     config.clusters = settings->clusters;
     config.cluster_batches = settings->cluster_batches;
     config.seed = settings->seed;
-    config.refinements = 0; /* of the scene nothing is read */
+    config.refine = 0; /* of the scene nothing is read */
     return config;
 }
 
@@ -119,7 +119,7 @@ static t3r_status open_runtime(preparation *p, const t3r_config *config)
     if (status != T3R_OK) {
         return status;
     }
-    size_t bytes = config->refinements > 0 ? plan.bytes : plan.min_bytes;
+    size_t bytes = config->refine > 0 ? plan.bytes : plan.min_bytes;
     p->arena = aligned_alloc(T3R_ARENA_ALIGN, (bytes + T3R_ARENA_ALIGN - 1) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN);
     if (p->arena == NULL) {
         return T3R_ERR_ARENA;

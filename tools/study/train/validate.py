@@ -33,7 +33,7 @@ def picture_of(path):
 
 
 def planar_psnr(head, picture, kept, passes):
-    """[len(passes)] dB of one picture [SIDE, SIDE, 3] with a share `kept` of its pixels after so many refinements."""
+    """[len(passes)] dB of one picture [SIDE, SIDE, 3] with a share `kept` of its pixels after so many passes."""
     depth = np.full((SIDE, SIDE), samples.PLANE, np.uint16)
     camera = (SIDE, SIDE, (SIDE - 1) / 2, (SIDE - 1) / 2)
     batch = objective.Batch([samples.prepare(picture, depth, camera, kept)], "cpu")
@@ -57,7 +57,7 @@ def main():
     passes = [int(p) for p in options.refine.split(",")]
     head, name = head_net.load_safetensors(options.head)
     pictures = [picture_of(path) for path in options.images]
-    print(f"{name}, {len(pictures)} pictures, dB after {options.refine} refinements")
+    print(f"{name}, {len(pictures)} pictures, dB after {options.refine} passes")
     with torch.no_grad():
         for keep in options.keep.split(","):
             rows = [planar_psnr(head, p, float(keep) / 100, passes) for p in pictures]

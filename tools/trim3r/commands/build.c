@@ -148,7 +148,7 @@ typedef struct found {
 /* Whether the last step was our refinement. */
 static bool refines(const build_options *o)
 {
-    return o->settings.config.refinements > 0 && o->settings.method->refines;
+    return o->settings.config.refine > 0 && o->settings.method->refines;
 }
 
 /* Frames that stereo could match with no other. */
@@ -191,7 +191,7 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     cJSON_AddNumberToObject(root, "width", told->width);
     cJSON_AddNumberToObject(root, "height", told->height);
     if (o->settings.method->allocates) {
-        cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.config.allocation));
+        cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.config.allocate));
     }
     if (o->settings.points_of != NULL) {
         cJSON_AddStringToObject(root, "pruned", o->settings.points_of);
@@ -302,7 +302,7 @@ static void print_text(const build_options *o, const reconstruction_account *tol
            work_times_text(times, text));
     if (refines(o) && o->settings.config.fit_passes) {
         printf("refined in %" PRIu32 " of at most %" PRIu32 " passes\n", t3r_refinement_passes(r->runtime),
-               o->settings.config.refinements);
+               o->settings.config.refine);
     }
     for (uint32_t v = 0; v < told->context_count; v++) {
         uint32_t partner;

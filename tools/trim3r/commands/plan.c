@@ -90,7 +90,7 @@ static bool lists(const plan_options *o)
 static t3r_config unset(void)
 {
     t3r_config config = t3r_default_config(0, 0, 2, 0);
-    config.refinements = T3R_ANY_REFINEMENTS;
+    config.refine = T3R_ANY_REFINE;
     return config;
 }
 
@@ -364,8 +364,8 @@ int command_plan(int argc, char **argv)
     if (lists(&o)) {
         return fitting_list(&o.fitting, &config, o.head, o.json, o.markdown);
     }
-    if (config.refinements == T3R_ANY_REFINEMENTS) {
-        config.refinements = T3R_DEFAULT_REFINEMENTS;
+    if (config.refine == T3R_ANY_REFINE) {
+        config.refine = T3R_DEFAULT_REFINE;
     }
     chosen_head head;
     int code = chosen_head_open(&head, o.head != NULL ? o.head : CHOSEN_HEAD_DEFAULT);

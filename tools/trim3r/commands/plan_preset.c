@@ -45,7 +45,7 @@ static void print_json(const t3r_config *c, const t3r_preset_info *info, const c
     json_add_integer(root, "clusters", t3r_cluster_count(c));
     cJSON_AddStringToObject(root, "head", head);
     json_add_integer(root, "head_column_bytes", c->head_column_bytes);
-    json_add_integer(root, "refinements", c->refinements);
+    json_add_integer(root, "refine", c->refine);
     json_add_integer(root, "strip_rows", info->strip_rows);
     json_add_integer(root, "operations", (int64_t)operations);
     for (int i = 0; i < PARTS; i++) {
@@ -63,7 +63,7 @@ static void print_table(const t3r_config *c, const t3r_preset_info *info, const 
     printf("%-36s %" PRIu32 "\n", "  Gaussians", c->gaussians);
     printf("%-36s %" PRIu32 "\n", "  SuperClusters", t3r_cluster_count(c));
     printf("%-36s %s\n", "  head", head);
-    printf("%-36s %" PRIu32 "\n", "  refinement passes", c->refinements);
+    printf("%-36s %" PRIu32 "\n", "  refinement passes", c->refine);
     printf("%-36s %" PRIu32 "\n", "  rows of a frame at once", info->strip_rows);
     printf("%-36s %.0f\n\nbytes of RAM\n", "  M operations of a build", (double)operations / 1e6);
     uint64_t all = 0;

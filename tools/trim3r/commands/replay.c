@@ -94,7 +94,7 @@ static void check_stream(struct argp_state *state, const replay_options *o)
     scene_output_option(state, "-o", o->stream.output);
     if (o->streams &&
         (o->settings.context_count > 0 || o->settings.automatic || o->settings.config.depth == T3R_DEPTH_STEREO ||
-         o->settings.config.allocation == T3R_ALLOCATE_GIVEN)) {
+         o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
         argp_error(state, "--stream takes no --context, --auto, --allocate given or --depth stereo");
     }
 }
@@ -157,7 +157,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         }
         check_stream(state, o);
         if (o->slides &&
-            (o->streams || o->settings.context_count > 0 || o->settings.config.allocation == T3R_ALLOCATE_GIVEN)) {
+            (o->streams || o->settings.context_count > 0 || o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
             argp_error(state, "--slide takes no --stream, --context or --allocate given");
         }
         return 0;

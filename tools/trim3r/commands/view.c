@@ -59,7 +59,7 @@ static void check_options(struct argp_state *state, view_options *o)
     }
     if (o->inputs[0] == NULL) {
         argp_error(state, "REC.mcap or SCENE.ply is missing");
-    } else if (o->settings.config.allocation == T3R_ALLOCATE_GIVEN) {
+    } else if (o->settings.config.allocate == T3R_ALLOCATE_GIVEN) {
         argp_error(state, "a page builds by trim3r's own allocations alone");
     } else if (o->compare_count > 0 && o->recording == NULL) {
         argp_error(state, "--compare needs a recording");
