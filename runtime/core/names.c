@@ -58,15 +58,15 @@ const char *t3r_depth_name(t3r_depth depth)
     return pick(names, T3R_DEPTH_COUNT, (uint32_t)depth);
 }
 
-const char *t3r_effort_name(t3r_effort effort)
+const char *t3r_preset_name(t3r_preset preset)
 {
     static const char *const names[] = {
-        [T3R_EFFORT_FAST] = "fast",
-        [T3R_EFFORT_BALANCED] = "balanced",
-        [T3R_EFFORT_BEST] = "best",
+        [T3R_PRESET_FAST] = "fast",
+        [T3R_PRESET_BALANCED] = "balanced",
+        [T3R_PRESET_BEST] = "best",
     };
-    EVERY_NAME(names, T3R_EFFORT_COUNT);
-    return pick(names, T3R_EFFORT_COUNT, (uint32_t)effort);
+    EVERY_NAME(names, T3R_PRESET_COUNT);
+    return pick(names, T3R_PRESET_COUNT, (uint32_t)preset);
 }
 
 const char *t3r_wavelet_name(t3r_wavelet wavelet)

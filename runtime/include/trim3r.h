@@ -211,13 +211,13 @@ enum {
     T3R_PAIR_COUNT
 };
 
-/* How much work a build is worth: t3r_set_effort(). */
-typedef uint32_t t3r_effort;
+/* How much work a build is worth: t3r_set_preset(). */
+typedef uint32_t t3r_preset;
 enum {
-    T3R_EFFORT_FAST,     /* little work, for new views that may be less sharp */
-    T3R_EFFORT_BALANCED, /* most of the quality for a part of the work */
-    T3R_EFFORT_BEST,     /* the best new views, whatever they take */
-    T3R_EFFORT_COUNT
+    T3R_PRESET_FAST,     /* little work, for new views that may be less sharp */
+    T3R_PRESET_BALANCED, /* most of the quality for a part of the work */
+    T3R_PRESET_BEST,     /* the best new views, whatever they take */
+    T3R_PRESET_COUNT
 };
 
 /* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). They hold for the life of
@@ -543,9 +543,9 @@ typedef struct t3r_choice {
     uint32_t loss_q4;
 } t3r_choice;
 
-/* The RAM of a device, shared out: t3r_preset(). The parts of a build and of a view add up to at most the bytes asked
- * for. */
-typedef struct t3r_preset_info {
+/* The RAM of a device, shared out: t3r_ram_config(). The parts of a build and of a view add up to at most the bytes
+ * asked for. */
+typedef struct t3r_ram_info {
     /* The RAM that the settings were chosen for, at most the bytes asked for. */
     uint64_t ram_bytes;
     /* The arena: what is left for it, at most the bytes for full speed; a multiple of T3R_ARENA_ALIGN. */
@@ -562,7 +562,7 @@ typedef struct t3r_preset_info {
     size_t program_bytes;
     /* The weights in quant/heads for t3r_bind_head(): "nano", "small" or "base". NULL = the head is a closed form. */
     const char *weights;
-} t3r_preset_info;
+} t3r_ram_info;
 
 /* What a keyframe did to the map of a stream. */
 typedef struct t3r_stream_report {
@@ -647,27 +647,27 @@ static inline t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
 }
 
 /* The settings that serve so many bytes of RAM best: the row for the largest size that is not above them, of 128, 192,
- * 256 and 512 KiB, 1 and 4 MiB. They were chosen by the quality of new views on training scenes (docs/presets.md). All
+ * 256 and 512 KiB, 1 and 4 MiB. They were chosen by the quality of new views on training scenes (docs/ram.md). All
  * of RAM counts: arena, camera rows, picture and stack. `info` may be NULL.
  *
  * T3R_ERR_ARENA: fewer bytes than the smallest row takes. T3R_ERR_UNSUPPORTED: this library was built without what the
  * row asks for. T3R_ERR_INTERFACE. After an error both are as before. */
-t3r_status t3r_preset_as(uint64_t digest, uint64_t bytes, t3r_config *config, t3r_preset_info *info);
-static inline t3r_status t3r_preset(uint64_t bytes, t3r_config *config, t3r_preset_info *info)
+t3r_status t3r_ram_config_as(uint64_t digest, uint64_t bytes, t3r_config *config, t3r_ram_info *info);
+static inline t3r_status t3r_ram_config(uint64_t bytes, t3r_config *config, t3r_ram_info *info)
 {
-    return t3r_preset_as(t3r_header_interface(), bytes, config, info);
+    return t3r_ram_config_as(t3r_header_interface(), bytes, config, info);
 }
 
 /* The settings that make the most of so much work, whatever the size and the budget: head, refine, fit_passes and
  * structural of `config`, which keeps its other fields. They were chosen on training scenes (docs/budgets.md, "How much
  * work"). *weights gets the name of the head's weights in quant/heads, for t3r_bind_head(); `weights` may be NULL.
  *
- * T3R_ERR_ARGUMENT: config is NULL, or effort is none of t3r_effort. T3R_ERR_UNSUPPORTED: this library was built
+ * T3R_ERR_ARGUMENT: config is NULL, or preset is none of t3r_preset. T3R_ERR_UNSUPPORTED: this library was built
  * without what the row asks for. T3R_ERR_INTERFACE. After an error both are as before. */
-t3r_status t3r_set_effort_as(uint64_t digest, t3r_effort effort, t3r_config *config, const char **weights);
-static inline t3r_status t3r_set_effort(t3r_effort effort, t3r_config *config, const char **weights)
+t3r_status t3r_set_preset_as(uint64_t digest, t3r_preset preset, t3r_config *config, const char **weights);
+static inline t3r_status t3r_set_preset(t3r_preset preset, t3r_config *config, const char **weights)
 {
-    return t3r_set_effort_as(t3r_header_interface(), effort, config, weights);
+    return t3r_set_preset_as(t3r_header_interface(), preset, config, weights);
 }
 
 /* Counts the work of a build by this configuration in an arena of `bytes`, with a depth or a match for every pixel, and
@@ -906,7 +906,7 @@ const char *t3r_work_name(t3r_work work);
 const char *t3r_allocation_name(t3r_allocation allocation);
 const char *t3r_head_name(t3r_head head);
 const char *t3r_depth_name(t3r_depth depth);
-const char *t3r_effort_name(t3r_effort effort);
+const char *t3r_preset_name(t3r_preset preset);
 const char *t3r_wavelet_name(t3r_wavelet wavelet);
 const char *t3r_pixel_format_name(t3r_pixel_format format);
 /* Whether two views can be matched, and why not, as text for people. Never NULL. */

@@ -31,7 +31,7 @@
     X(t3r_prices)                                                                                                      \
     X(t3r_limits)                                                                                                      \
     X(t3r_choice)                                                                                                      \
-    X(t3r_preset_info)                                                                                                 \
+    X(t3r_ram_info)                                                                                                    \
     X(t3r_stream_report)
 
 /* X(type, field), a row a field. */
@@ -148,14 +148,14 @@
     X(t3r_choice, full_bytes)                                                                                          \
     X(t3r_choice, price)                                                                                               \
     X(t3r_choice, loss_q4)                                                                                             \
-    X(t3r_preset_info, ram_bytes)                                                                                      \
-    X(t3r_preset_info, arena_bytes)                                                                                    \
-    X(t3r_preset_info, strip_rows)                                                                                     \
-    X(t3r_preset_info, strip_bytes)                                                                                    \
-    X(t3r_preset_info, target_bytes)                                                                                   \
-    X(t3r_preset_info, stack_bytes)                                                                                    \
-    X(t3r_preset_info, program_bytes)                                                                                  \
-    X(t3r_preset_info, weights)                                                                                        \
+    X(t3r_ram_info, ram_bytes)                                                                                         \
+    X(t3r_ram_info, arena_bytes)                                                                                       \
+    X(t3r_ram_info, strip_rows)                                                                                        \
+    X(t3r_ram_info, strip_bytes)                                                                                       \
+    X(t3r_ram_info, target_bytes)                                                                                      \
+    X(t3r_ram_info, stack_bytes)                                                                                       \
+    X(t3r_ram_info, program_bytes)                                                                                     \
+    X(t3r_ram_info, weights)                                                                                           \
     X(t3r_stream_report, keyframes)                                                                                    \
     X(t3r_stream_report, gaussians)                                                                                    \
     X(t3r_stream_report, added)                                                                                        \

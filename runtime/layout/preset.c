@@ -1,65 +1,38 @@
-/* The best settings for a size of RAM. */
-#include "arena.h"
-#include "core/config.h"
-#include "core/fixed.h"
-#include "core/memory.h"
-#include "presets.h"
+/* How much work a build is worth, as settings. */
+#include "core/features.h"
 #include "state/state.h"
 
 typedef struct preset_row {
-    uint32_t ram_bytes;
-    uint16_t side, views;
-    uint32_t gaussians;
     const char *weights;
-    uint16_t column_bytes, refine;
+    uint32_t refine; /* at most */
+    uint32_t structural;
 } preset_row;
 
-#define ROW(...) {__VA_ARGS__},
-static const preset_row rows[] = {T3R_PRESETS(ROW)};
-enum { ROWS = sizeof rows / sizeof rows[0] };
+/* Chosen on training scenes (docs/study/presets.md). */
+static const preset_row rows[] = {
+    [T3R_PRESET_FAST] = {"tiny", 2, 0},
+    [T3R_PRESET_BALANCED] = {"small", 8, 0},
+    [T3R_PRESET_BEST] = {"small", 32, 1},
+};
+_Static_assert(sizeof rows / sizeof *rows == T3R_PRESET_COUNT, "a row a preset");
 
-static t3r_config config_of(const preset_row *row)
-{
-    t3r_config config = t3r_default_config(row->side, row->side, row->views, row->gaussians);
-    config.head = row->weights != NULL ? T3R_HEAD_LEARNED : T3R_HEAD_ANALYTIC;
-    config.head_column_bytes = row->column_bytes;
-    config.refine = row->refine;
-    config.fit_passes = 0; /* the table's figures are of so many */
-    return config;
-}
-
-t3r_status t3r_preset_as(uint64_t digest, uint64_t bytes, t3r_config *config, t3r_preset_info *info)
+t3r_status t3r_set_preset_as(uint64_t digest, t3r_preset preset, t3r_config *config, const char **weights)
 {
     T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
     T3R_REFUSE_UNLESS(config != NULL, T3R_ERR_ARGUMENT);
-    if (bytes < rows[0].ram_bytes) {
-        return T3R_ERR_ARENA;
+    if (preset >= T3R_PRESET_COUNT) {
+        return T3R_ERR_ARGUMENT;
     }
-    size_t at = 0;
-    while (at + 1 < ROWS && bytes >= rows[at + 1].ram_bytes) {
-        at++;
+    if (!t3r_has(T3R_HAS_LEARNED | T3R_HAS_REFINEMENT | T3R_HAS_LOSS)) {
+        return T3R_ERR_UNSUPPORTED;
     }
-    const preset_row *row = &rows[at];
-    const t3r_config chosen = config_of(row);
-    size_t least, most;
-    const t3r_status status = t3r_plan_bytes(&chosen, &least, &most);
-    if (status != T3R_OK) {
-        return status;
-    }
-    const size_t strip = (size_t)T3R_PRESET_STRIP_ROWS * row->side * 5, target = T3R_PIXELS_(row->side, row->side) * 3;
-    const uint64_t left = bytes - strip - target - T3R_PRESET_STACK_BYTES - T3R_PRESET_PROGRAM_BYTES;
-    *config = chosen;
-    if (info != NULL) {
-        *info = (t3r_preset_info){
-            .ram_bytes = row->ram_bytes,
-            .arena_bytes = left < most ? (size_t)left / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN : most,
-            .strip_rows = T3R_PRESET_STRIP_ROWS,
-            .strip_bytes = strip,
-            .target_bytes = target,
-            .stack_bytes = T3R_PRESET_STACK_BYTES,
-            .program_bytes = T3R_PRESET_PROGRAM_BYTES,
-            .weights = row->weights,
-        };
+    const preset_row *row = &rows[preset];
+    config->head = T3R_HEAD_LEARNED;
+    config->refine = row->refine;
+    config->fit_passes = 1;
+    config->structural = row->structural;
+    if (weights != NULL) {
+        *weights = row->weights;
     }
     return T3R_OK;
 }

@@ -70,20 +70,20 @@ def a_head_that_makes_haze_is_named():
     check("warning" not in expect(0, *few), "a warning of what --tile-splats has cut off")
 
 
-def efforts():
+def presets():
     recording = room()
-    base = ["build", recording, "--working", "64x64", "--keep", 2, "-o", "effort.ply"]
+    base = ["build", recording, "--working", "64x64", "--keep", 2, "-o", "preset.ply"]
     hashes = {}
-    for effort, head, passes, structural in (("fast", "tiny", 2, "off"), ("balanced", "small", 8, "off"), ("best", "small", 32, "on")):
+    for preset, head, passes, structural in (("fast", "tiny", 2, "off"), ("balanced", "small", 8, "off"), ("best", "small", 32, "on")):
         same = ["--head", head, "--refine", passes, "--fit-passes", "on", "--structural", structural]
-        hashes[effort] = expect_json(*base, "--preset", effort)["hash"]
-        check(hashes[effort] == expect_json(*base, *same)["hash"], f"--preset {effort} is not {same}")
+        hashes[preset] = expect_json(*base, "--preset", preset)["hash"]
+        check(hashes[preset] == expect_json(*base, *same)["hash"], f"--preset {preset} is not {same}")
         planned = ["plan", "--size", "64x64", "--keep", 20]
-        check(expect_json(*planned, "--preset", effort) == expect_json(*planned, *same), f"plan --preset {effort} is not {same}")
-    check(len(set(hashes.values())) == len(hashes), f"efforts give the same scene: {hashes}")
+        check(expect_json(*planned, "--preset", preset) == expect_json(*planned, *same), f"plan --preset {preset} is not {same}")
+    check(len(set(hashes.values())) == len(hashes), f"presets give the same scene: {hashes}")
     check(expect_json(*base, "--preset", "fast", "--head", "nano")["head"] == "nano", "what stands behind --preset changes nothing")
     for command in (base, ["plan", "--size", "64x64", "--keep", 20]):
         expect(2, *command, "--preset", "quick", err="--preset does not know 'quick'; there are fast, balanced, best")
 
 
-sys.exit(in_scratch(heads, efforts, a_head_that_makes_haze_is_named))
+sys.exit(in_scratch(heads, presets, a_head_that_makes_haze_is_named))

@@ -46,30 +46,30 @@ SIZES = {"128K": 128 << 10, "192K": 192 << 10, "256K": 256 << 10, "512K": 512 <<
 PARTS = ("arena_bytes", "strip_bytes", "target_bytes", "stack_bytes", "program_bytes", "left_bytes")
 
 
-def presets():
+def sizes_of_ram():
     """A size of RAM leads to settings, and all that they take is within it."""
     before = 0
     for text, ram in SIZES.items():
-        found = expect_json("plan", "--preset", text)
-        check(found["ram_bytes"] == ram == sum(found[part] for part in PARTS), f"--preset {text}: {found}")
+        found = expect_json("plan", "--ram", text)
+        check(found["ram_bytes"] == ram == sum(found[part] for part in PARTS), f"--ram {text}: {found}")
         own = expect_json("plan", "--size", f"{found['width']}x{found['height']}", "--views", found["views"], "--gaussians",
                           found["gaussians"], "--head", found["head"], "--refine", found["refine"])
-        check(own["min_bytes"] <= found["arena_bytes"] <= own["arena_bytes"], f"--preset {text}: the arena: {own}")
-        check(own["head_column_bytes"] == found["head_column_bytes"], f"--preset {text}: the head's columns")
-        check(found["strip_bytes"] == 5 * found["strip_rows"] * found["width"], f"--preset {text}: a strip of rows")
-        check(found["target_bytes"] == 3 * found["width"] * found["height"], f"--preset {text}: a picture")
-        check(found["gaussians"] > before, f"--preset {text}: no more Gaussians than with less RAM")
+        check(own["min_bytes"] <= found["arena_bytes"] <= own["arena_bytes"], f"--ram {text}: the arena: {own}")
+        check(own["head_column_bytes"] == found["head_column_bytes"], f"--ram {text}: the head's columns")
+        check(found["strip_bytes"] == 5 * found["strip_rows"] * found["width"], f"--ram {text}: a strip of rows")
+        check(found["target_bytes"] == 3 * found["width"] * found["height"], f"--ram {text}: a picture")
+        check(found["gaussians"] > before, f"--ram {text}: no more Gaussians than with less RAM")
         before = found["gaussians"]
-        told = expect(0, "plan", "--preset", text, out=str(found["arena_bytes"]))
-        check(all(f" {found[part]}\n" in told for part in PARTS), f"--preset {text}: a line a part: {told}")
-    between = expect_json("plan", "--preset", "255K")
+        told = expect(0, "plan", "--ram", text, out=str(found["arena_bytes"]))
+        check(all(f" {found[part]}\n" in told for part in PARTS), f"--ram {text}: a line a part: {told}")
+    between = expect_json("plan", "--ram", "255K")
     check(between["ram_bytes"] == SIZES["192K"] and sum(between[part] for part in PARTS) == 255 << 10, "between two rows")
-    check(expect_json("plan", "--preset", "4G")["left_bytes"] > 1 << 30, "what the largest row leaves")
-    expect(3, "plan", "--preset", (128 << 10) - 1, err="131071 bytes of RAM are too few: the smallest preset is for 131072")
-    expect(2, "plan", "--preset", "much", err="--preset")
+    check(expect_json("plan", "--ram", "4G")["left_bytes"] > 1 << 30, "what the largest row leaves")
+    expect(3, "plan", "--ram", (128 << 10) - 1, err="131071 bytes of RAM are too few: the smallest size is 131072")
+    expect(2, "plan", "--ram", "much", err="--ram")
     for more in (("--size", "64x64"), ("--gaussians", 5), ("--head", "nano"), ("--refine", 2), ("--within", "1M"),
                  ("--arena", "1M"), ("--markdown",), ("--svg", "a.svg")):
-        expect(2, "plan", "--preset", "256K", *more, err="--preset chooses the settings")
+        expect(2, "plan", "--ram", "256K", *more, err="--ram chooses the settings")
 
 
 def plan():
@@ -132,7 +132,7 @@ def plan():
     check(expect_json(*tall, "analytic")["min_bytes"] <= expect_json(*tall, "small")["min_bytes"], "a closed form needs more")
     shares_and_operations(base, found)
     lists()
-    presets()
+    sizes_of_ram()
     check(wide["head_column_bytes"] > small["head_column_bytes"], "16-bit activations need no more")
     expect(2, *base, "--head", "big", err="--head")
 

@@ -17,7 +17,7 @@ from wording import markers, sentences
 README_LINES = 200
 STUDY = ROOT / "docs" / "study"
 COPIED = [ROOT / "README.md", ROOT / "docs" / "rivals.md"]  # tables with figures of MEASURED, by hand
-MEASURED = [STUDY / "paper.md", STUDY / "efforts.md", STUDY / "retrained.md"]
+MEASURED = [STUDY / "paper.md", STUDY / "presets.md", STUDY / "retrained.md"]
 # read for links and wording alone: formats and figures, not commands
 OTHERS = [ROOT / "CHANGELOG.md", ROOT / "SECURITY.md", ROOT / "runtime" / "DESIGN.md", ROOT / "runtime" / "SPEC.md",
           ROOT / "quant" / "heads" / "MODEL_CARD.md", *sorted(STUDY.glob("*.md"))]

@@ -748,9 +748,9 @@ static const char *depth_name(int i)
     return t3r_depth_name((t3r_depth)i);
 }
 
-static const char *effort_name(int i)
+static const char *preset_name(int i)
 {
-    return t3r_effort_name((t3r_effort)i);
+    return t3r_preset_name((t3r_preset)i);
 }
 
 static void texts(void **state)
@@ -779,7 +779,7 @@ static void texts(void **state)
         {wavelet_name, 0, T3R_WAVELET_COUNT},
         {pixel_format_name, 0, T3R_PIXEL_FORMAT_COUNT},
         {depth_name, 0, T3R_DEPTH_COUNT},
-        {effort_name, 0, T3R_EFFORT_COUNT},
+        {preset_name, 0, T3R_PRESET_COUNT},
     };
     for (int pair = -2; pair <= T3R_PAIR_COUNT; pair++) {
         assert_non_null(t3r_pair_text((t3r_pair)pair));

@@ -15,9 +15,9 @@ enum { SIZES = sizeof sizes / sizeof sizes[0] };
 static void settings_fit(uint64_t bytes, uint64_t row)
 {
     t3r_config config;
-    t3r_preset_info info;
+    t3r_ram_info info;
     size_t least, most;
-    assert_int_equal(t3r_preset(bytes, &config, &info), T3R_OK);
+    assert_int_equal(t3r_ram_config(bytes, &config, &info), T3R_OK);
     assert_true(info.ram_bytes == row);
     assert_int_equal(t3r_plan_bytes(&config, &least, &most), T3R_OK);
     assert_true(least <= info.arena_bytes && info.arena_bytes <= most);
@@ -31,7 +31,7 @@ static void settings_fit(uint64_t bytes, uint64_t row)
     assert_int_equal(t3r_init(&rt, memory.bytes, info.arena_bytes, &config), T3R_OK);
     arena_free(&memory);
     t3r_config again;
-    assert_int_equal(t3r_preset(bytes, &again, NULL), T3R_OK);
+    assert_int_equal(t3r_ram_config(bytes, &again, NULL), T3R_OK);
     assert_memory_equal(&config, &again, sizeof config);
 }
 
@@ -53,28 +53,28 @@ static void too_little_is_refused(void **state)
 {
     (void)state;
     t3r_config config, before;
-    t3r_preset_info info, info_before;
+    t3r_ram_info info, info_before;
     memset(&config, 0x5a, sizeof config);
     memset(&info, 0x5a, sizeof info);
     memcpy(&before, &config, sizeof config);
     memcpy(&info_before, &info, sizeof info);
-    assert_int_equal(t3r_preset(0, &config, &info), T3R_ERR_ARENA);
-    assert_int_equal(t3r_preset(sizes[0] - 1, &config, &info), T3R_ERR_ARENA);
-    assert_int_equal(t3r_preset(sizes[0], NULL, &info), T3R_ERR_ARGUMENT);
-    assert_int_equal(t3r_preset_as(t3r_interface() + 1, sizes[0], &config, &info), T3R_ERR_INTERFACE);
+    assert_int_equal(t3r_ram_config(0, &config, &info), T3R_ERR_ARENA);
+    assert_int_equal(t3r_ram_config(sizes[0] - 1, &config, &info), T3R_ERR_ARENA);
+    assert_int_equal(t3r_ram_config(sizes[0], NULL, &info), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_ram_config_as(t3r_interface() + 1, sizes[0], &config, &info), T3R_ERR_INTERFACE);
     assert_memory_equal(&config, &before, sizeof config);
     assert_memory_equal(&info, &info_before, sizeof info);
 }
 
-static void an_effort_chooses_head_and_refinement_alone(void **state)
+static void a_preset_chooses_head_and_refinement_alone(void **state)
 {
     (void)state;
     uint32_t before = 0;
-    for (t3r_effort effort = 0; effort < T3R_EFFORT_COUNT; effort++) {
+    for (t3r_preset preset = 0; preset < T3R_PRESET_COUNT; preset++) {
         const t3r_config given = t3r_default_config(48, 40, 3, 77);
         t3r_config config = given;
         const char *weights = NULL;
-        assert_int_equal(t3r_set_effort(effort, &config, &weights), T3R_OK);
+        assert_int_equal(t3r_set_preset(preset, &config, &weights), T3R_OK);
         assert_null(t3r_config_error(&config));
         assert_non_null(weights);
         assert_int_equal(config.head, T3R_HEAD_LEARNED);
@@ -87,20 +87,20 @@ static void an_effort_chooses_head_and_refinement_alone(void **state)
         rest.structural = given.structural;
         assert_memory_equal(&rest, &given, sizeof given);
         t3r_config again = given;
-        assert_int_equal(t3r_set_effort(effort, &again, NULL), T3R_OK);
+        assert_int_equal(t3r_set_preset(preset, &again, NULL), T3R_OK);
         assert_memory_equal(&again, &config, sizeof config);
     }
 }
 
-static void an_unknown_effort_is_refused(void **state)
+static void an_unknown_preset_is_refused(void **state)
 {
     (void)state;
     const t3r_config given = t3r_default_config(48, 40, 3, 77);
     t3r_config config = given;
     const char *const unset = "unset", *weights = unset;
-    assert_int_equal(t3r_set_effort(T3R_EFFORT_COUNT, &config, &weights), T3R_ERR_ARGUMENT);
-    assert_int_equal(t3r_set_effort(T3R_EFFORT_FAST, NULL, &weights), T3R_ERR_ARGUMENT);
-    assert_int_equal(t3r_set_effort_as(t3r_interface() + 1, T3R_EFFORT_FAST, &config, &weights), T3R_ERR_INTERFACE);
+    assert_int_equal(t3r_set_preset(T3R_PRESET_COUNT, &config, &weights), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_set_preset(T3R_PRESET_FAST, NULL, &weights), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_set_preset_as(t3r_interface() + 1, T3R_PRESET_FAST, &config, &weights), T3R_ERR_INTERFACE);
     assert_memory_equal(&config, &given, sizeof given);
     assert_ptr_equal(weights, unset);
 }
@@ -110,8 +110,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_size_has_settings_that_fit),
         cmocka_unit_test(too_little_is_refused),
-        cmocka_unit_test(an_effort_chooses_head_and_refinement_alone),
-        cmocka_unit_test(an_unknown_effort_is_refused),
+        cmocka_unit_test(a_preset_chooses_head_and_refinement_alone),
+        cmocka_unit_test(an_unknown_preset_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

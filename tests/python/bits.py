@@ -44,19 +44,19 @@ def check_build(recording, folder, path):
     check((folder / "ours.ply").read_bytes() == (folder / "theirs.ply").read_bytes(), "the file")
 
 
-def check_efforts(recording, folder, path):
+def check_presets(recording, folder, path):
     """The head and the settings of `--preset`."""
     for name in ("fast", "balanced", "best"):
         built = json.loads(program("build", path, "--context", "0,2", "--gaussians", "90", "--preset", name, "--json", "-o",
-                                   folder / "effort.ply"))
-        with small(**trim3r.effort(name)) as made:
+                                   folder / "preset.ply"))
+        with small(**trim3r.preset(name)) as made:
             made.add_view(recording[0])
             made.add_view(recording[2])
             made.build(90)
-            check(trim3r.run_hash(made.stage_hashes) == built["hash"], f"the effort {name}")
+            check(trim3r.run_hash(made.stage_hashes) == built["hash"], f"the preset {name}")
     try:
-        trim3r.effort("quick")
-        check(False, "an unknown effort is taken")
+        trim3r.preset("quick")
+        check(False, "an unknown preset is taken")
     except ValueError as error:
         check("fast, balanced, best" in str(error), f"{error}")
 
@@ -143,7 +143,7 @@ def main():
         recording = trim3r.Recording(path)
         check_frames(recording)
         check_build(recording, folder, path)
-        check_efforts(recording, folder, path)
+        check_presets(recording, folder, path)
         check_same_bits()
         check_heads()
         check_scene(folder)

@@ -34,7 +34,7 @@ def main():
         depth, alpha = map(float, said(blocks[1], names).split())
         check(1.9 < depth < 2.1 and alpha > 0.9, f"a wall two metres away: {depth}, {alpha}")
         check(said(blocks[2], names).split() == ["1000"], "a view by strips of rows")
-        check(25 < float(said(blocks[3], names)) < 35, "an effort")
+        check(25 < float(said(blocks[3], names)) < 35, "a preset")
         rows = said(blocks[4], names).splitlines()
         check([row.split()[1] for row in rows] == ["13107", "2621"], f"rows: {rows}")
         shown = re.search(r"::\n\n(.*?)\n\n[A-Z]", trim3r.__doc__, re.S)[1]

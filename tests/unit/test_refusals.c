@@ -65,13 +65,13 @@ static void another_interface(void **state)
     const uint64_t other = t3r_header_interface() + 1;
     t3r_config config = some_config();
     t3r_plan_info plan;
-    t3r_preset_info preset;
+    t3r_ram_info ram;
     t3r_runtime *rt = opened(&config);
     size_t least, most;
     assert_int_equal(t3r_plan_as(other, &config, &plan), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_plan_bytes_as(other, &config, &least, &most), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_plan_within_as(other, SIZE_MAX, &config), T3R_ERR_INTERFACE);
-    assert_int_equal(t3r_preset_as(other, 1 << 20, &config, &preset), T3R_ERR_INTERFACE);
+    assert_int_equal(t3r_ram_config_as(other, 1 << 20, &config, &ram), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_attach_as(other, &rt, arena, arena_bytes), T3R_ERR_INTERFACE);
     assert_null(rt);
     assert_int_equal(t3r_init_as(other, &rt, arena, arena_bytes, &config), T3R_ERR_INTERFACE);

@@ -18,7 +18,7 @@ the right and y down; poses are camera-to-world; lengths are in world units, met
 """
 from .built_in import room
 from .camera import Camera
-from .configuration import Settings, effort
+from .configuration import Settings, preset
 from .errors import Cancelled, DepthError, InputError, StateError, Trim3rError, UnsupportedError
 from .evaluation import Row, evaluate
 from .frame import Frame
@@ -34,5 +34,5 @@ from .version import BITS_EPOCH, __version__
 __all__ = [
     "BITS_EPOCH", "STAGES", "Camera", "Cancelled", "DepthError", "Frame", "InputError", "Picture", "Reconstructor",
     "Recording", "Row", "Scene", "Settings", "StateError", "Trim3rError", "Triplet", "UnsupportedError", "__version__",
-    "develop", "effort", "evaluate", "flip", "psnr", "room", "run_hash", "sharp", "ssim",
+    "develop", "evaluate", "flip", "preset", "psnr", "room", "run_hash", "sharp", "ssim",
 ]

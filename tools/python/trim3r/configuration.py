@@ -42,7 +42,7 @@ def configuration(width: int, height: int, views: int, gaussians: Optional[int],
     return config
 
 
-def effort(name: str) -> Dict[str, Any]:
+def preset(name: str) -> Dict[str, Any]:
     """Head and settings for so much work, as `--preset` of the program chooses them.
 
     Parameters
@@ -53,16 +53,16 @@ def effort(name: str) -> Dict[str, Any]:
     Returns
     -------
     dict
-        The arguments `head` and `settings` of Reconstructor and evaluate(): Reconstructor(256, 256, **effort("fast")).
+        The arguments `head` and `settings` of Reconstructor and evaluate(): Reconstructor(256, 256, **preset("fast")).
 
     Raises
     ------
     ValueError
-        There is no such effort.
+        There is no such preset.
     """
-    value = value_named("an effort", lib.t3r_effort_name, lib.T3R_EFFORT_COUNT, name)
+    value = value_named("a preset", lib.t3r_preset_name, lib.T3R_PRESET_COUNT, name)
     before, after, weights = default_config(8, 8, 1, 1), default_config(8, 8, 1, 1), ffi.new("const char **")
-    check(lib.t3r_set_effort_as(INTERFACE, value, after, weights))
+    check(lib.t3r_set_preset_as(INTERFACE, value, after, weights))
     changed = {field: getattr(after, field) for field, _ in ffi.typeof("t3r_config").fields
                if getattr(after, field) != getattr(before, field) and field != "head"}
     return {"head": text_of(weights[0]), "settings": changed}

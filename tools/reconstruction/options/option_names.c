@@ -25,17 +25,17 @@ t3r_depth option_depth(struct argp_state *state, const char *option, const char 
     return (t3r_depth)depth;
 }
 
-void option_effort(struct argp_state *state, const char *option, const char *text, t3r_config *config,
+void option_preset(struct argp_state *state, const char *option, const char *text, t3r_config *config,
                    const char **head)
 {
-    t3r_effort effort = 0;
-    while (effort < T3R_EFFORT_COUNT && strcmp(text, t3r_effort_name(effort)) != 0) {
-        effort++;
+    t3r_preset preset = 0;
+    while (preset < T3R_PRESET_COUNT && strcmp(text, t3r_preset_name(preset)) != 0) {
+        preset++;
     }
-    if (effort == T3R_EFFORT_COUNT) {
+    if (preset == T3R_PRESET_COUNT) {
         argp_error(state, "--%s does not know '%s'; there are fast, balanced, best", option, text);
     }
-    const t3r_status status = t3r_set_effort(effort, config, head);
+    const t3r_status status = t3r_set_preset(preset, config, head);
     if (status != T3R_OK) {
         argp_error(state, "--%s %s: %s", option, text, t3r_error_text(status));
     }

@@ -1,4 +1,4 @@
-/* Values of options that name a head, a source of depth or an effort; cli/option_values.h reads the others. */
+/* Values of options that name a head, a source of depth or a preset; cli/option_values.h reads the others. */
 #ifndef TRIM3R_TOOLS_OPTION_NAMES_H
 #define TRIM3R_TOOLS_OPTION_NAMES_H
 
@@ -12,7 +12,7 @@ const char *option_head(struct argp_state *state, const char *option, const char
 /* A source of depth by its name. */
 t3r_depth option_depth(struct argp_state *state, const char *option, const char *text);
 /* How much work a build is worth, by its name: the settings and the head for it. */
-void option_effort(struct argp_state *state, const char *option, const char *text, t3r_config *config,
+void option_preset(struct argp_state *state, const char *option, const char *text, t3r_config *config,
                    const char **head);
 
 #endif

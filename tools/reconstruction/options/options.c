@@ -25,7 +25,7 @@ enum {
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
-    {"preset", KEY_PRESET, "EFFORT", 0,
+    {"preset", KEY_PRESET, "PRESET", 0,
      "head and refinement for so much work: fast, balanced, best; settings behind it change it", 0},
     {"auto", KEY_AUTO, NULL, 0,
      "take no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, and at most the "
@@ -104,7 +104,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         reconstruction_parse_arena(state, arg, o);
         return 0;
     case KEY_PRESET:
-        option_effort(state, "preset", arg, &o->config, &o->head);
+        option_preset(state, "preset", arg, &o->config, &o->head);
         return 0;
     case KEY_AUTO:
         o->automatic = true;

@@ -1,6 +1,6 @@
 /* trim3r plan: what an arena holds and how much work a build is, before anything runs; or which settings fit. */
 #include "trim3r/commands/commands.h"
-#include "trim3r/commands/plan_preset.h"
+#include "trim3r/commands/plan_ram.h"
 
 #include <argp.h>
 #include <inttypes.h>
@@ -26,7 +26,7 @@
 typedef struct plan_options {
     t3r_config config; /* but for the head; a render_width of 0 is the working size */
     uint64_t within;   /* bytes of the arena; 0 = as many as it takes */
-    uint64_t preset;   /* bytes of RAM; 0 = the settings are given */
+    uint64_t ram;      /* bytes of RAM; 0 = the settings are given */
     double keep;       /* the budget as percent of the points; 0 = as a count */
     fitting_options fitting;
     bool json, markdown;
@@ -40,6 +40,7 @@ enum {
     KEY_VIEWS,
     KEY_GAUSSIANS,
     KEY_WITHIN,
+    KEY_RAM,
     KEY_PRESET,
     KEY_RENDER,
     KEY_KEEP,
@@ -66,11 +67,9 @@ static const struct argp_option options[] = {
      0},
     {"within", KEY_WITHIN, "BYTES[K|M|G]", 0,
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
-    {"preset", KEY_PRESET, "RAM|EFFORT", 0,
-     "bytes of a device's RAM, as 256K or 4M: print the settings that serve it best, and what takes it; or the head "
-     "and refinement "
-     "that build has for fast, balanced or best",
-     0},
+    {"ram", KEY_RAM, "BYTES[K|M|G]", 0,
+     "bytes of a device's RAM, as 256K or 4M: print the settings that serve it best, and what takes it", 0},
+    {"preset", KEY_PRESET, "PRESET", 0, "head and refinement that build has for so much work: fast, balanced, best", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
      0},
@@ -97,11 +96,11 @@ static t3r_config unset(void)
 static void check_options(struct argp_state *state, plan_options *o)
 {
     t3r_config *c = &o->config;
-    if (o->preset != 0) {
+    if (o->ram != 0) {
         const t3r_config as_before = unset();
         if (memcmp(c, &as_before, sizeof *c) != 0 || o->within != 0 || o->keep > 0 || lists(o) || o->svg != NULL ||
             o->markdown || o->head != NULL || o->fitting.machine != NULL) {
-            argp_error(state, "--preset chooses the settings: --json alone goes with it");
+            argp_error(state, "--ram chooses the settings: --json alone goes with it");
         }
         return;
     }
@@ -124,16 +123,6 @@ static void check_options(struct argp_state *state, plan_options *o)
     if (o->keep > 0) {
         const uint64_t points = (uint64_t)c->width * c->height * (c->views > 0 ? c->views : 1);
         c->gaussians = c->max_gaussians = T3R_MIN(reconstruction_budget((uint32_t)points, o->keep), T3R_MAX_GAUSSIANS);
-    }
-}
-
-static void parse_preset(struct argp_state *state, const char *text, plan_options *o)
-{
-    uint64_t bytes;
-    if (bytes_of_text(text, &bytes)) {
-        o->preset = option_bytes(state, "preset", text);
-    } else {
-        option_effort(state, "preset", text, &o->config, &o->head);
     }
 }
 
@@ -171,8 +160,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_WITHIN:
         o->within = option_bytes(state, "within", arg);
         return 0;
+    case KEY_RAM:
+        o->ram = option_bytes(state, "ram", arg);
+        return 0;
     case KEY_PRESET:
-        parse_preset(state, arg, o);
+        option_preset(state, "preset", arg, &o->config, &o->head);
         return 0;
     case KEY_RENDER:
         option_size(state, "render", arg, 1, &c->render_width, &c->render_height);
@@ -214,7 +206,7 @@ static const struct argp argp = {
         "  trim3r plan --size 256x256 --views 2 --gaussians 13107\n"
         "  trim3r plan --size 256x256 --keep 10% --head analytic\n"
         "  trim3r plan --size 96x96 --within 512K\n"
-        "  trim3r plan --preset 256K\n"
+        "  trim3r plan --ram 256K\n"
         "  trim3r plan --arena 2M --time 100ms\n"
         "  trim3r plan --arena 2M --time 0.5s --head small --machine board.json\n"
         "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
@@ -223,7 +215,7 @@ static const struct argp argp = {
         "--head, --gaussians, --keep and --refine fix theirs. The expected loss is against the best settings "
         "measured, on training scenes at 256x256: it orders settings and predicts no scene. Operations are "
         "instructions of plain C.\n\n"
-        "A preset is for 128K, 192K, 256K, 512K, 1M or 4M of RAM, or the next smaller of these: arena, rows of a "
+        "--ram knows 128K, 192K, 256K, 512K, 1M or 4M of RAM, or the next smaller of these: arena, rows of a "
         "frame, "
         "picture, stack and the program's own variables together.",
     .children = children,
@@ -352,8 +344,8 @@ int command_plan(int argc, char **argv)
 {
     plan_options o = {.config = unset()};
     file_options_parse(&argp, argc, argv, &o);
-    if (o.preset != 0) {
-        return plan_preset(o.preset, o.json);
+    if (o.ram != 0) {
+        return plan_ram(o.ram, o.json);
     }
 
     t3r_config config = o.config;

@@ -1,4 +1,4 @@
-#include "trim3r/commands/plan_preset.h"
+#include "trim3r/commands/plan_ram.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@ typedef struct part {
     uint64_t bytes;
 } part;
 
-static void parts_of(uint64_t bytes, const t3r_preset_info *info, part parts[PARTS])
+static void parts_of(uint64_t bytes, const t3r_ram_info *info, part parts[PARTS])
 {
     const uint64_t taken =
         info->arena_bytes + info->strip_bytes + info->target_bytes + info->stack_bytes + info->program_bytes;
@@ -33,7 +33,7 @@ static void parts_of(uint64_t bytes, const t3r_preset_info *info, part parts[PAR
     }
 }
 
-static void print_json(const t3r_config *c, const t3r_preset_info *info, const char *head, uint64_t operations,
+static void print_json(const t3r_config *c, const t3r_ram_info *info, const char *head, uint64_t operations,
                        const part parts[PARTS])
 {
     cJSON *root = cJSON_CreateObject();
@@ -54,7 +54,7 @@ static void print_json(const t3r_config *c, const t3r_preset_info *info, const c
     json_print(root);
 }
 
-static void print_table(const t3r_config *c, const t3r_preset_info *info, const char *head, uint64_t operations,
+static void print_table(const t3r_config *c, const t3r_ram_info *info, const char *head, uint64_t operations,
                         const part parts[PARTS])
 {
     printf("settings for %" PRIu64 " bytes of RAM\n", info->ram_bytes);
@@ -74,14 +74,14 @@ static void print_table(const t3r_config *c, const t3r_preset_info *info, const 
     printf("  %-34s %10" PRIu64 "\n", "all", all);
 }
 
-/* The smallest preset, found from below by halves. */
+/* The smallest size, found from below by halves. */
 static uint64_t least_bytes(void)
 {
     uint64_t low = 0, high = UINT64_C(1) << 40;
     t3r_config config;
     while (low < high) {
         const uint64_t middle = low + (high - low) / 2;
-        if (t3r_preset(middle, &config, NULL) == T3R_ERR_ARENA) {
+        if (t3r_ram_config(middle, &config, NULL) == T3R_ERR_ARENA) {
             low = middle + 1;
         } else {
             high = middle;
@@ -90,19 +90,18 @@ static uint64_t least_bytes(void)
     return low;
 }
 
-int plan_preset(uint64_t bytes, bool json)
+int plan_ram(uint64_t bytes, bool json)
 {
     t3r_config config;
-    t3r_preset_info info;
-    t3r_status status = t3r_preset(bytes, &config, &info);
+    t3r_ram_info info;
+    t3r_status status = t3r_ram_config(bytes, &config, &info);
     if (status == T3R_ERR_ARENA) {
         return cli_error(CLI_BUDGET_TOO_SMALL,
-                         "%" PRIu64 " bytes of RAM are too few: the smallest preset is for %" PRIu64
-                         " (--preset %" PRIu64 "K)",
+                         "%" PRIu64 " bytes of RAM are too few: the smallest size is %" PRIu64 " (--ram %" PRIu64 "K)",
                          bytes, least_bytes(), least_bytes() >> 10);
     }
     if (status != T3R_OK) {
-        return reconstruction_error(status, "preset", &config, 0);
+        return reconstruction_error(status, "ram", &config, 0);
     }
     const char *name = info.weights != NULL ? info.weights : t3r_head_name(config.head);
     chosen_head head;
@@ -114,7 +113,7 @@ int plan_preset(uint64_t bytes, bool json)
     status = t3r_count_work(&config, info.arena_bytes, head.weights, head.bytes, &work);
     chosen_head_close(&head);
     if (status != T3R_OK) {
-        return reconstruction_error(status, "preset", &config, info.arena_bytes);
+        return reconstruction_error(status, "ram", &config, info.arena_bytes);
     }
     part parts[PARTS];
     parts_of(bytes, &info, parts);

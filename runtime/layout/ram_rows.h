@@ -1,14 +1,14 @@
-/* The best settings for some sizes of RAM: tools/study/scripts/presets --write makes this file. */
-#ifndef T3R_PRESETS_H
-#define T3R_PRESETS_H
+/* The best settings for some sizes of RAM: tools/study/scripts/ram --write makes this file. */
+#ifndef T3R_RAM_ROWS_H
+#define T3R_RAM_ROWS_H
 
-#define T3R_PRESET_STRIP_ROWS 8u
-#define T3R_PRESET_STACK_BYTES 12288u
-#define T3R_PRESET_PROGRAM_BYTES 4096u
+#define T3R_RAM_STRIP_ROWS 8u
+#define T3R_RAM_STACK_BYTES 12288u
+#define T3R_RAM_PROGRAM_BYTES 4096u
 
 /* X(ram bytes, side, views, Gaussians, weights, head column bytes, refine), a row a size; weights NULL:
  * the head `analytic` */
-#define T3R_PRESETS(X)                                                                                                 \
+#define T3R_RAM_ROWS(X)                                                                                                \
     X(131072, 48, 2, 281, "nano", 192, 4)                                                                              \
     X(196608, 64, 2, 434, "nano", 206, 4)                                                                              \
     X(262144, 80, 2, 724, "nano", 216, 4)                                                                              \

@@ -18,34 +18,34 @@ from firmware import FEATURES, run, words  # noqa: E402
 from reference import host, recording  # noqa: E402
 
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
-BOARD, PRESET, RAM = "mps2-an385", "128K", 128 << 10
+BOARD, SIZE, RAM = "mps2-an385", "128K", 128 << 10
 STRETCH_MOST = 20_000_000
 
 if any(shutil.which(tool) is None for tool in cortex_m.TOOLS):
     skip("no cross compiler or emulator here")
 program, folder = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 folder.mkdir(parents=True, exist_ok=True)
-preset = json.loads(run(program, "plan", "--preset", PRESET, "--json"))
-options = SimpleNamespace(program=program, out=folder, recording=None, size=(preset["width"], preset["height"]),
-                          views=preset["views"], gaussians=preset["gaussians"], clusters=0, refine=preset["refine"],
-                          head=preset["head"], optimize="-O2", lto=False, clang=False, features=FEATURES, ram=RAM)
+settings = json.loads(run(program, "plan", "--ram", SIZE, "--json"))
+options = SimpleNamespace(program=program, out=folder, recording=None, size=(settings["width"], settings["height"]),
+                          views=settings["views"], gaussians=settings["gaussians"], clusters=0, refine=settings["refine"],
+                          head=settings["head"], optimize="-O2", lto=False, clang=False, features=FEATURES, ram=RAM)
 path = recording(options)
 elf = cortex_m.firmware_of(BOARD, options)
 places = {line.split()[-1]: int(line.split()[0], 16) for line in run("arm-none-eabi-nm", elf).splitlines()}
-check(places["stack_top_at"] - places["data_begin_at"] == RAM, "RAM has as many bytes as the preset")
+check(places["stack_top_at"] - places["data_begin_at"] == RAM, "RAM has as many bytes as it should")
 said = cortex_m.start(BOARD, elf, [*words(path, options), "hashes=1"])
 whole, stages = host(path, options)
 check(said["hash final"] == whole, f"the board has the bits of this machine: {said['hash final']}, {whole}")
 check(all(said[f"hash {stage}"] == hash_of for stage, hash_of in stages.items()), "of every stage")
-check(int(said["gaussians"]) == preset["gaussians"], "the budget is exact")
+check(int(said["gaussians"]) == settings["gaussians"], "the budget is exact")
 taken = sum(int(said[f"{part}_bytes"]) for part in ("data", "memory", "stack_room"))
-check(taken <= RAM and int(said["stack_bytes"]) <= preset["stack_bytes"], f"{taken} bytes of RAM: {said}")
-shown = re.search(r"\n## The preset for 128 KiB\n.*?\n\| RAM, bytes \| ([\d,]+) \|", PAGE, re.S)
-check(shown is not None, "docs/study/boards.md shows the preset")
+check(taken <= RAM and int(said["stack_bytes"]) <= settings["stack_bytes"], f"{taken} bytes of RAM: {said}")
+shown = re.search(r"\n## 128 KiB of RAM\n.*?\n\| RAM, bytes \| ([\d,]+) \|", PAGE, re.S)
+check(shown is not None, "docs/study/boards.md shows the settings for 128 KiB")
 used = sum(int(said[f"{part}_bytes"]) for part in ("data", "memory", "stack"))
 near(used, float(shown[1].replace(",", "")), 0.02 * RAM, "RAM as on the page")
 check(int(said["arena_bytes"]) >= int(said["arena_min_bytes"]), "the arena is no smaller than the least")
-dealt = sum(preset[f"{part}_bytes"] for part in ("strip", "target")) + int(said["arena_bytes"])
+dealt = sum(settings[f"{part}_bytes"] for part in ("strip", "target")) + int(said["arena_bytes"])
 check(int(said["memory_bytes"]) <= dealt + 3 * 64, f"of a frame no more than a strip is in memory: {said}")
 _, longest = cortex_m.count(BOARD, elf, words(path, options), options)
 check(longest <= STRETCH_MOST, f"a watchdog is fed every {STRETCH_MOST:,} instructions: {longest:,}")

@@ -1,0 +1,11 @@
+/* trim3r plan --ram: the settings for a size of RAM, and what takes it. */
+#ifndef T3R_PLAN_RAM_H
+#define T3R_PLAN_RAM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Prints them; an exit code of cli/cli.h. */
+int plan_ram(uint64_t bytes, bool json);
+
+#endif
