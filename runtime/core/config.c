@@ -112,7 +112,7 @@ t3r_config t3r_settled(const t3r_config *config)
     X("clusters must be 0..512", clusters, 0, T3R_MAX_CLUSTERS)                                                        \
     X("cluster_batches must be 0..1024", cluster_batches, 0, 1024)                                                     \
     X("colour_weight_q8 must be 0..1024", colour_weight_q8, 0, 1024)                                                   \
-    X("allocation is none of t3r_allocation", allocation, T3R_ALLOCATE_CONFIGURED + 1, T3R_ALLOCATE_COUNT - 1)         \
+    X("allocate is none of t3r_allocation", allocate, T3R_ALLOCATE_CONFIGURED + 1, T3R_ALLOCATE_COUNT - 1)         \
     X("keep_percent must be 0..100", keep_percent, 0, 100)                                                             \
     X("gamma_q8 must be 0..512", gamma_q8, 0, 512)                                                                     \
     X("head is none of t3r_head", head, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT - 1)                                   \

@@ -29,7 +29,7 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
 #define SETTINGS                                                                                                       \
     SETTING("refine", "N", refine, NUMBER, 0, T3R_MAX_REFINE, NULL,                                                    \
             "passes of refinement on the context views, at most where they are fitted", true, "refine")                \
-    SETTING("allocate", "MODE", allocation, NAME, T3R_ALLOCATE_CONFIGURED + 1, UINT32_MAX, allocation_name,            \
+    SETTING("allocate", "MODE", allocate, NAME, T3R_ALLOCATE_CONFIGURED + 1, UINT32_MAX, allocation_name,            \
             "allocation of the budget over the points", true, NULL)                                                    \
     SETTING("depth", "SOURCE", depth, NAME, 0, UINT32_MAX, depth_name,                                                 \
             "source of depth; stereo matches the colours of two or more posed frames and ignores recorded depth",      \
