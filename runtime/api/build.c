@@ -67,7 +67,7 @@ static bool is_request(const t3r_runtime *rt, const t3r_request *request, const 
 /* Whether the library was built with what the order asks for. */
 static bool is_supported(const build_order *order)
 {
-    return t3r_has(t3r_feature_of_head(order->build.head) | t3r_feature_of_allocation(order->build.allocate) |
+    return t3r_has(t3r_feature_of_head(order->build.head) | T3R_NEED(allocate, order->build.allocate) |
                    (order->max_loss_q8 != 0 ? T3R_HAS_LOSS : 0u));
 }
 

@@ -48,7 +48,7 @@ typedef struct t3r_budget_work {
 static inline bool t3r_allocates(const t3r_budget_settings *settings, t3r_allocation allocation)
 {
     const bool is_by_density = allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL;
-    return (T3R_FEATURE_ALLOCATIONS || is_by_density) && settings->allocate == allocation;
+    return (T3R_FEATURE_EXTRAS || is_by_density) && settings->allocate == allocation;
 }
 
 /* The marks of points that are retained only once all others are. */

@@ -15,7 +15,7 @@ typedef struct key_job {
 
 static bool follows_texture(const t3r_budget_settings *settings)
 {
-    return !T3R_FEATURE_ALLOCATIONS || t3r_allocates(settings, T3R_ALLOCATE_DENSITY) ||
+    return !T3R_FEATURE_EXTRAS || t3r_allocates(settings, T3R_ALLOCATE_DENSITY) ||
            t3r_allocates(settings, T3R_ALLOCATE_PIXEL);
 }
 

@@ -12,16 +12,24 @@ static inline bool t3r_has(uint32_t features)
     return (features & ~T3R_FEATURES_BUILT) == 0;
 }
 
+/* The feature that a setting needs, and from which value. */
+#define T3R_NEED_(name, kind, low, high, usual, feature, from, ...)                                                    \
+    T3R_FEATURE_OF_##name = T3R_HAS_##feature, T3R_FROM_##name = (from),
+enum { T3R_SETTINGS(T3R_NEED_) T3R_NEEDS_COUNT };
+
+/* What a value of a setting needs of the library, T3R_HAS_... */
+#define T3R_NEED(name, value) ((value) >= T3R_FROM_##name ? (uint32_t)T3R_FEATURE_OF_##name : 0u)
+
 /* What a head needs, 0 for one that every library has. */
 static inline uint32_t t3r_feature_of_head(t3r_head head)
 {
-    return head == T3R_HEAD_LEARNED ? T3R_HAS_LEARNED : head == T3R_HEAD_MOMENT ? T3R_HAS_MOMENT : 0u;
+    return head == T3R_HEAD_MOMENT ? T3R_HAS_MOMENT : T3R_NEED(head, head);
 }
 
 /* Whether builds follow one another; the compiler knows that they do not where that is left out. */
 static inline bool t3r_is_warm(const t3r_config *config)
 {
-    return T3R_FEATURE_WARM && config->warm != 0;
+    return T3R_FEATURE_STREAMS && config->warm != 0;
 }
 
 /* Whether depth is made of the colours; the compiler knows that it is not where stereo is left out. */
@@ -34,18 +42,6 @@ static inline bool t3r_is_by_stereo(const t3r_config *config)
 static inline bool t3r_is_stream(const t3r_config *config)
 {
     return T3R_FEATURE_STREAMS && config->stream != 0;
-}
-
-/* What an allocation needs. */
-static inline uint32_t t3r_feature_of_allocation(t3r_allocation allocation)
-{
-    return allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL ? 0u : T3R_HAS_ALLOCATIONS;
-}
-
-/* What a wavelet needs. */
-static inline uint32_t t3r_feature_of_wavelet(t3r_wavelet wavelet)
-{
-    return wavelet == T3R_WAVELET_DB2 ? 0u : T3R_HAS_WAVELETS;
 }
 
 #endif

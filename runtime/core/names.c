@@ -37,23 +37,20 @@ const char *t3r_work_name(t3r_work work)
     return pick(names, T3R_WORK_COUNT, (uint32_t)work);
 }
 
+#define ALLOCATION_NAME(NAME, name) [T3R_ALLOCATE_##NAME] = #name,
+
 const char *t3r_allocation_name(t3r_allocation allocation)
 {
-    static const char *const names[] = {
-        [T3R_ALLOCATE_CONFIGURED] = NULL, [T3R_ALLOCATE_DENSITY] = "density", [T3R_ALLOCATE_PAPER] = "paper",
-        [T3R_ALLOCATE_PIXEL] = "pixel",   [T3R_ALLOCATE_UNIFORM] = "uniform", [T3R_ALLOCATE_RANDOM] = "random",
-        [T3R_ALLOCATE_GIVEN] = "given",
-    };
+    static const char *const names[] = {T3R_ALLOCATIONS(ALLOCATION_NAME)};
     EVERY_NAME(names, T3R_ALLOCATE_COUNT);
     return pick(names, T3R_ALLOCATE_COUNT, (uint32_t)allocation);
 }
 
+#define DEPTH_NAME(NAME, name) [T3R_DEPTH_##NAME] = #name,
+
 const char *t3r_depth_name(t3r_depth depth)
 {
-    static const char *const names[] = {
-        [T3R_DEPTH_SENSOR] = "sensor",
-        [T3R_DEPTH_STEREO] = "stereo",
-    };
+    static const char *const names[] = {T3R_DEPTHS(DEPTH_NAME)};
     EVERY_NAME(names, T3R_DEPTH_COUNT);
     return pick(names, T3R_DEPTH_COUNT, (uint32_t)depth);
 }
@@ -69,13 +66,11 @@ const char *t3r_preset_name(t3r_preset preset)
     return pick(names, T3R_PRESET_COUNT, (uint32_t)preset);
 }
 
+#define WAVELET_NAME(NAME, name) [T3R_WAVELET_##NAME] = #name,
+
 const char *t3r_wavelet_name(t3r_wavelet wavelet)
 {
-    static const char *const names[] = {
-        [T3R_WAVELET_DB2] = "db2",
-        [T3R_WAVELET_HAAR] = "haar",
-        [T3R_WAVELET_CDF53] = "cdf53",
-    };
+    static const char *const names[] = {T3R_WAVELETS(WAVELET_NAME)};
     EVERY_NAME(names, T3R_WAVELET_COUNT);
     return pick(names, T3R_WAVELET_COUNT, (uint32_t)wavelet);
 }

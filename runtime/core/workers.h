@@ -20,7 +20,7 @@ typedef struct t3r_workers {
 /* The compiler knows that they are not where several workers are left out. */
 static inline bool t3r_is_parallel(const t3r_workers *workers)
 {
-    return T3R_FEATURE_WORKERS && workers->count > 1 && workers->hooks != NULL && workers->hooks->parallel_for != NULL;
+    return T3R_FEATURE_EXTRAS && workers->count > 1 && workers->hooks != NULL && workers->hooks->parallel_for != NULL;
 }
 
 /* Runs task(context, 0..count-1, worker) and returns when all are done. */

@@ -47,7 +47,7 @@ t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const 
         *resized = t3r_camera_resized(camera, frame->width, frame->height, rt->config.width, rt->config.height);
         status = t3r_camera_check(resized);
     }
-    if (status == T3R_OK && !T3R_FEATURE_LENSES && resized->distortion != T3R_DISTORTION_NONE) {
+    if (status == T3R_OK && !T3R_FEATURE_EXTRAS && resized->distortion != T3R_DISTORTION_NONE) {
         status = T3R_ERR_UNSUPPORTED;
     }
     return status;

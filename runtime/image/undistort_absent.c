@@ -1,7 +1,7 @@
 /* What stands for lenses that distort where they are left out: a camera with distortion is refused. */
 #include "undistort.h"
 
-#if !T3R_FEATURE_LENSES
+#if !T3R_FEATURE_EXTRAS
 
 t3r_status t3r_undistort_grid(const t3r_camera *camera, uint32_t width, uint32_t height, int32_t *grid)
 {

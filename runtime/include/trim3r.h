@@ -39,6 +39,7 @@
 #include "trim3r_arena.h"
 #include "trim3r_features.h"
 #include "trim3r_interface.h"
+#include "trim3r_settings.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -57,21 +58,21 @@ extern "C" {
 /* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
 #define T3R_BITS_EPOCH 10
 
-#define T3R_MAX_SIDE 4096u        /* largest width or height of working size, frame or target, in pixels */
-#define T3R_MIN_SIDE 8u           /* smallest working width or height, in pixels */
+#define T3R_MAX_SIDE 4096         /* largest width or height of working size, frame or target, in pixels */
+#define T3R_MIN_SIDE 8            /* smallest working width or height, in pixels */
 #define T3R_STEREO_LEAST_SIDE 32u /* smallest working width or height with depth by stereo, in pixels */
-#define T3R_MAX_VIEWS 16u         /* most context views */
-#define T3R_MAX_REMEMBERED 16u    /* most keyframes that a stream remembers without planes */
-#define T3R_MAX_CLUSTERS 512u     /* most SuperClusters */
-#define T3R_MAX_GAUSSIANS (1u << 24)
+#define T3R_MAX_VIEWS 16          /* most context views */
+#define T3R_MAX_REMEMBERED 16     /* most keyframes that a stream remembers without planes */
+#define T3R_MAX_CLUSTERS 512      /* most SuperClusters */
+#define T3R_MAX_GAUSSIANS 16777216
 #define T3R_HARMONICS_DEGREE_MOST 3u
 #define T3R_HARMONICS_MOST 16u /* of each colour, degree 0 included */
-#define T3R_MAX_REFINE 32u
+#define T3R_MAX_REFINE 32
 #define T3R_STREAM_REFINE 4u /* of a keyframe at most, where they are fitted */
-#define T3R_MAX_LEVELS 5u    /* most wavelet levels */
-#define T3R_MAX_HEAD_COLUMN_BYTES 65536u
+#define T3R_MAX_LEVELS 5     /* most wavelet levels */
+#define T3R_MAX_HEAD_COLUMN_BYTES 65536
 #define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
-#define T3R_MAX_WORKERS 16u
+#define T3R_MAX_WORKERS 16
 
 /* What enumerates has 32 bits, here and below: how wide an enum type is depends on the compiler and its options. */
 typedef int32_t t3r_status;
@@ -167,19 +168,15 @@ typedef struct t3r_camera {
 } t3r_camera;
 
 typedef uint32_t t3r_wavelet;
-enum { T3R_WAVELET_DB2, T3R_WAVELET_HAAR, T3R_WAVELET_CDF53, T3R_WAVELET_COUNT };
+#define T3R_WAVELET_ROW_(NAME, name) T3R_WAVELET_##NAME,
+enum { T3R_WAVELETS(T3R_WAVELET_ROW_) T3R_WAVELET_COUNT };
 
-/* How the budget Z is spread over the valid points (runtime/SPEC.md, "Budget"). */
+/* How the budget Z is spread over the valid points (runtime/SPEC.md, "Budget"): T3R_ALLOCATIONS. */
 typedef uint32_t t3r_allocation;
+#define T3R_ALLOCATE_ROW_(NAME, name) T3R_ALLOCATE_##NAME,
 enum {
     T3R_ALLOCATE_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
-    T3R_ALLOCATE_DENSITY,    /* over SuperClusters by |SC| x Texture(SC)^gamma, inside one by texture density */
-    T3R_ALLOCATE_PAPER,      /* GaussianTrim3R eq. 2: lowest texture first, each keeps N % */
-    T3R_ALLOCATE_PIXEL,      /* texture density without clusters */
-    T3R_ALLOCATE_UNIFORM,    /* blue noise alone */
-    T3R_ALLOCATE_RANDOM,     /* white noise of the seed */
-    T3R_ALLOCATE_GIVEN,      /* by an importance of each pixel, which comes with the request */
-    T3R_ALLOCATE_COUNT
+    T3R_ALLOCATIONS(T3R_ALLOCATE_ROW_) T3R_ALLOCATE_COUNT
 };
 
 typedef uint32_t t3r_head;
@@ -191,13 +188,10 @@ enum {
     T3R_HEAD_COUNT
 };
 
-/* Where depth comes from. */
+/* Where depth comes from: T3R_DEPTHS. */
 typedef uint32_t t3r_depth;
-enum {
-    T3R_DEPTH_SENSOR, /* the frames' own */
-    T3R_DEPTH_STEREO, /* the colours of two and more posed views; the frames' own depth is ignored */
-    T3R_DEPTH_COUNT
-};
+#define T3R_DEPTH_ROW_(NAME, name) T3R_DEPTH_##NAME,
+enum { T3R_DEPTHS(T3R_DEPTH_ROW_) T3R_DEPTH_COUNT };
 
 /* Whether two views can be matched, and why not. */
 typedef uint32_t t3r_pair;
@@ -221,117 +215,10 @@ enum {
 };
 
 /* Settings. t3r_default_config() fills every field; change what you need before t3r_init(). They hold for the life of
- * the runtime: no later call changes them. The default is in [brackets]. */
+ * the runtime: no later call changes them. trim3r_settings.h has the fields, with their ranges and defaults. */
+#define T3R_SETTING_(name, ...) uint32_t name;
 typedef struct t3r_config {
-    /* The working size, to which every view is resized, in pixels, T3R_MIN_SIDE..T3R_MAX_SIDE each; with depth by
-     * stereo at least T3R_STEREO_LEAST_SIDE. */
-    uint32_t width, height;
-    /* The most context views that the arena has room for, 0..T3R_MAX_VIEWS; of a stream, the newest keyframes that it
-     * refines on. 0 = an arena that only renders scenes from files. */
-    uint32_t views;
-    /* The most Gaussians that the arena has room for, 1..T3R_MAX_GAUSSIANS. */
-    uint32_t max_gaussians;
-    /* The budget of a scene in Gaussians, 1..max_gaussians. A scene has exactly so many, or as many as there are valid
-     * points where these are fewer. [max_gaussians] */
-    uint32_t gaussians;
-    /* The largest target that t3r_render() may draw, in pixels, 1..T3R_MAX_SIDE each. [the working size] */
-    uint32_t render_width, render_height;
-    /* The wavelet that measures texture. [T3R_WAVELET_DB2] */
-    t3r_wavelet wavelet;
-    /* The levels of the wavelet transform that texture is summed over, 1..T3R_MAX_LEVELS. [2] */
-    uint32_t levels;
-    /* The number of SuperClusters, K in GaussianTrim3R, 0..T3R_MAX_CLUSTERS. 0 = t3r_cluster_count() chooses. With 1 no
-     * K-means run. [0] */
-    uint32_t clusters;
-    /* The number of mini-batches of the K-means before every point is assigned, 0..1024. 0 = t3r_cluster_batch_count()
-     * chooses. [0] */
-    uint32_t cluster_batches;
-    /* The weight of r, g, b against x, y, z in the metric of the K-means, 0..1024, in 1/256; 0 = position alone.
-     * [256] */
-    uint32_t colour_weight_q8;
-    /* The allocation of the budget over the valid points. [T3R_ALLOCATE_DENSITY] */
-    t3r_allocation allocate;
-    /* The percentage of its points that a trimmed SuperCluster keeps with T3R_ALLOCATE_PAPER, 0..100; 0 = none. [10] */
-    uint32_t keep_percent;
-    /* The exponent of texture in densities, 0..512, in 1/256; 0 = texture does not count. [179, which is 0.7] */
-    uint32_t gamma_q8;
-    /* The head, which makes Gaussians of retained points. [T3R_HEAD_ANALYTIC] */
-    t3r_head head;
-    /* The working memory of a learned head in bytes a column of the view, 0..T3R_MAX_HEAD_COLUMN_BYTES:
-     * t3r_head_column_bytes() returns what a head needs. 0 = two bytes a pixel of the view.
-     * [T3R_HEAD_COLUMN_BYTES, enough for tiny, nano, small and base with 8-bit activations] */
-    uint32_t head_column_bytes;
-    /* The number of refinement passes on the context views, 0..T3R_MAX_REFINE; 0 = none. [T3R_DEFAULT_REFINE]
-     */
-    uint32_t refine;
-    /* 1 = `refine` are the most. A build takes as many as its budget and the agreement of its views pay for, and
-     * t3r_refinement_passes() returns them. A stream takes at most T3R_STREAM_REFINE a keyframe. 0 = every build
-     * and keyframe takes all of them. [1, where the library has the loss to fit them by] */
-    uint32_t fit_passes;
-    /* 1 = splats of T3R_HEAD_ANALYTIC and T3R_HEAD_MOMENT are as wide as the retained points of all views together ask
-     * for: narrower where several views cover a surface, wider where one does or where points are few. 0 = as wide as
-     * those of their own view ask for, as splats of T3R_HEAD_LEARNED, of a stream, of a build with refinement and of a
-     * head that nothing adapts are in any case. [1, where the library compares views] */
-    uint32_t fit_widths;
-    /* 1 = refinement takes the structure of what is missing for more than its level: from its second pass on local
-     * contrast counts as structural similarity has it, and what a whole view shows brighter or with more contrast than
-     * the others counts for nothing. 0 = every missing level counts the same, as in a stream in any case. [0] */
-    uint32_t structural;
-    /* The source of depth. [T3R_DEPTH_SENSOR] */
-    t3r_depth depth;
-    /* 1 = what stereo cannot match continues the planes that the matched pixels of its view lie on; 0 = the surface
-     * next to it in the picture. Without effect unless depth is by stereo and fill_radius above 0. [0] */
-    uint32_t planes;
-    /* The reach of hole filling in pixels, 0..8: holes of a depth sensor are filled where measurements bracket them
-     * within it. 0 = no hole is filled. [4] */
-    uint32_t fill_radius;
-    /* The reach of bridging in pixels, 0..255: wider holes of a depth sensor are bridged where measurements bracket
-     * them within it and no other view measured the surface. 0 = no hole is bridged. [64] */
-    uint32_t bridge_radius;
-    /* 1 = flying pixels are retained last: points between surfaces, or in front of what another view measured. 0 = they
-     * count like others. [1] */
-    uint32_t flying;
-    /* 1 = small budgets pass over points that another view covers; 0 = every view competes for itself. [1] */
-    uint32_t redundancy;
-    /* 1 = the poses of the views of a build are corrected first: by a rotation and a shift of each camera, at most 1/16
-     * radian and 1/16 scene unit an axis, until views show the same surfaces in the same colours. A
-     * correction is discarded unless the views then differ by at least a 16th less. 0 = poses stay as given, as with
-     * one view, with depth by stereo, with `warm` and in a stream in any case. t3r_view_camera() returns them. [1] */
-    uint32_t align;
-    /* 1 = the colours of all views are brought to their mean exposure; 0 = they stay as they are. [1] */
-    uint32_t exposure;
-    /* 1 = the analysis outlives the build, which t3r_rebuild() and a bounded loss need; 0 = its memory is used again.
-     * [0] */
-    uint32_t keep_analysis;
-    /* 1 = builds follow one another, and each takes over what still holds from the one before; 0 = every build begins
-     * anew. Views then outlive the scene: t3r_add_view() adds to those of the last one, and where there is no room the
-     * newest replaces the oldest. So a pair slides along a camera's way by one view at a time. Of a view that stays,
-     * its depth with filled and bridged holes, its doubtful pixels and its texture are not made again. The K-means
-     * begin with the last centres and take a sixth of the batches. The scene's frame stays. Refinement takes half the
-     * passes. Both are rounded up. A build begins anew after t3r_init(), t3r_reset() and a build that failed, where the
-     * exponent of the frame changes, and beyond 512 scene units from its origin. A stream halves its passes from the
-     * second keyframe on. The bits are a function of all calls since t3r_init() or t3r_reset(). A build that begins
-     * anew has those of a build with 0. Must be 0 with depth by stereo. [0] */
-    uint32_t warm;
-    /* 1 = a map of at most `gaussians` follows a camera with a depth sensor, by t3r_stream_keyframe() alone; 0 = scenes
-     * are built of all views at once. Must be 0 without views and with depth by stereo. [0] */
-    uint32_t stream;
-    /* The number of keyframes after which what a stream no longer sees counts half as dense, 0..1024; 0 = nothing
-     * fades. [32] */
-    uint32_t half_life;
-    /* The number of keyframes that a stream remembers when newer ones have taken their planes, 0..T3R_MAX_REMEMBERED:
-     * their colours in two bytes a pixel. Each pass of refinement draws two of them in turn, and what many keyframes
-     * saw changes by smaller steps. So the map keeps showing what the camera left. Where there is no room, the one
-     * that the map needs least is forgotten. 0 = none; not read without `stream`. [0] */
-    uint32_t remember;
-    /* The number of tasks that t3r_hooks.parallel_for may run at once, 1..T3R_MAX_WORKERS. Each has a part of the arena
-     * for itself. The number never changes a bit. [1] */
-    uint32_t workers;
-    /* The most Gaussians that a tile of 16 x 16 pixels is drawn from, the nearest of those that reach into it,
-     * 0..T3R_MAX_GAUSSIANS; 0 = all of them. It bounds the time of a scene that is not trusted. [0] */
-    uint32_t tile_splats;
-    /* The seed, any number, of the K-means, of T3R_ALLOCATE_RANDOM and of ties in blue noise. [1] */
-    uint32_t seed;
+    T3R_SETTINGS(T3R_SETTING_)
 } t3r_config;
 
 /* What one build shall be. A field that is 0 leaves the configuration's value, so {0} is the same as NULL. A request
@@ -595,6 +482,7 @@ static inline uint64_t t3r_header_interface(void)
     uint64_t digest = T3R_FEATURES_BUILT;
     T3R_INTERFACE_TYPES_(T3R_DIGEST_TYPE_)
     T3R_INTERFACE_FIELDS_(T3R_DIGEST_FIELD_)
+    T3R_SETTINGS(T3R_DIGEST_SETTING_)
     return digest;
 }
 uint64_t t3r_interface(void);

@@ -4,21 +4,23 @@
 #ifndef TRIM3R_FEATURES_H
 #define TRIM3R_FEATURES_H
 
-/* Depth by stereo: T3R_DEPTH_STEREO. */
+/* Several views, which are compared and whose poses are corrected: t3r_config.views above 1, align, fit_widths. */
+#ifndef T3R_FEATURE_COMPARISON
+#define T3R_FEATURE_COMPARISON 1
+#endif
+
+/* Depth by stereo, with its planes: T3R_DEPTH_STEREO. */
 #ifndef T3R_FEATURE_STEREO
-#define T3R_FEATURE_STEREO 1
+#define T3R_FEATURE_STEREO T3R_FEATURE_COMPARISON
+#elif T3R_FEATURE_STEREO && !T3R_FEATURE_COMPARISON
+#error "T3R_FEATURE_STEREO needs T3R_FEATURE_COMPARISON"
 #endif
 
-/* Planes where stereo matches nothing: t3r_config.planes. */
-#ifndef T3R_FEATURE_PLANES
-#define T3R_FEATURE_PLANES T3R_FEATURE_STEREO
-#elif T3R_FEATURE_PLANES && !T3R_FEATURE_STEREO
-#error "T3R_FEATURE_PLANES needs T3R_FEATURE_STEREO"
-#endif
-
-/* Maps that follow a camera: t3r_config.stream. */
+/* Maps that follow a camera, and builds that follow one another: t3r_config.stream, warm. */
 #ifndef T3R_FEATURE_STREAMS
-#define T3R_FEATURE_STREAMS 1
+#define T3R_FEATURE_STREAMS T3R_FEATURE_COMPARISON
+#elif T3R_FEATURE_STREAMS && !T3R_FEATURE_COMPARISON
+#error "T3R_FEATURE_STREAMS needs T3R_FEATURE_COMPARISON"
 #endif
 
 /* Heads that are networks: T3R_HEAD_LEARNED. */
@@ -31,79 +33,43 @@
 #define T3R_FEATURE_MOMENT 1
 #endif
 
-/* Refinement on the context views. */
+/* Refinement on the context views: t3r_config.refine above 0. */
 #ifndef T3R_FEATURE_REFINEMENT
 #define T3R_FEATURE_REFINEMENT 1
 #endif
 
-/* Budgets by a bounded loss, which refinement measures: t3r_request.max_loss_q8. */
-#ifndef T3R_FEATURE_LOSS
-#define T3R_FEATURE_LOSS T3R_FEATURE_REFINEMENT
-#elif T3R_FEATURE_LOSS && !T3R_FEATURE_REFINEMENT
-#error "T3R_FEATURE_LOSS needs T3R_FEATURE_REFINEMENT"
+/* What few firmwares use: lenses with distortion, wavelets other than db2, allocations other than by density, several
+ * workers, and the losses that refinement measures. */
+#ifndef T3R_FEATURE_EXTRAS
+#define T3R_FEATURE_EXTRAS 1
 #endif
 
-/* Lenses with distortion: t3r_camera.distortion. */
-#ifndef T3R_FEATURE_LENSES
-#define T3R_FEATURE_LENSES 1
-#endif
-
-/* Comparison of views: t3r_config.views above 1, and streams, which need it. */
-#ifndef T3R_FEATURE_COMPARISON
-#define T3R_FEATURE_COMPARISON 1
-#endif
-
-/* Poses corrected until views agree: t3r_config.align. */
-#ifndef T3R_FEATURE_ALIGN
-#define T3R_FEATURE_ALIGN T3R_FEATURE_COMPARISON
-#elif T3R_FEATURE_ALIGN && !T3R_FEATURE_COMPARISON
-#error "T3R_FEATURE_ALIGN needs T3R_FEATURE_COMPARISON"
-#endif
-
-/* Allocations of the budget other than by density: `paper`, `uniform`, `random` and `given`. */
-#ifndef T3R_FEATURE_ALLOCATIONS
-#define T3R_FEATURE_ALLOCATIONS 1
-#endif
-
-/* Wavelets other than db2. */
-#ifndef T3R_FEATURE_WAVELETS
-#define T3R_FEATURE_WAVELETS 1
-#endif
-
-/* Several workers: t3r_config.workers above 1. */
-#ifndef T3R_FEATURE_WORKERS
-#define T3R_FEATURE_WORKERS 1
-#endif
-
-/* Builds that follow one another: t3r_config.warm. */
-#ifndef T3R_FEATURE_WARM
-#define T3R_FEATURE_WARM 1
-#endif
+/* Losses that refinement measures: t3r_config.fit_passes and structural, t3r_request.max_loss_q8. */
+#define T3R_FEATURE_LOSS (T3R_FEATURE_REFINEMENT && T3R_FEATURE_EXTRAS)
 
 /* The features as bits: what t3r_features() returns. */
-#define T3R_HAS_STEREO (1u << 0)
-#define T3R_HAS_STREAMS (1u << 1)
-#define T3R_HAS_LEARNED (1u << 2)
-#define T3R_HAS_MOMENT (1u << 3)
+#define T3R_HAS_NONE 0u
+#define T3R_HAS_COMPARISON (1u << 0)
+#define T3R_HAS_STEREO (1u << 1)
+#define T3R_HAS_STREAMS (1u << 2)
+#define T3R_HAS_LEARNED (1u << 3)
 #define T3R_HAS_REFINEMENT (1u << 4)
-#define T3R_HAS_LENSES (1u << 5)
-#define T3R_HAS_COMPARISON (1u << 6)
-#define T3R_HAS_ALLOCATIONS (1u << 7)
-#define T3R_HAS_WAVELETS (1u << 8)
-#define T3R_HAS_WORKERS (1u << 9)
-#define T3R_HAS_WARM (1u << 10)
-#define T3R_HAS_LOSS (1u << 11)
-#define T3R_HAS_PLANES (1u << 12)
-#define T3R_HAS_ALIGN (1u << 13)
+#define T3R_HAS_EXTRAS (1u << 5)
+#define T3R_HAS_MOMENT (1u << 6)
+#define T3R_HAS_LOSS (T3R_HAS_REFINEMENT | T3R_HAS_EXTRAS)
+
+/* X(FEATURE, name), a row a bit. */
+#define T3R_FEATURE_ROWS(X)                                                                                            \
+    X(COMPARISON, comparison)                                                                                          \
+    X(STEREO, stereo)                                                                                                  \
+    X(STREAMS, streams)                                                                                                \
+    X(LEARNED, learned)                                                                                                \
+    X(REFINEMENT, refinement)                                                                                          \
+    X(EXTRAS, extras)                                                                                                  \
+    X(MOMENT, moment)
 
 /* Those that are left in. */
-#define T3R_FEATURES_BUILT                                                                                             \
-    ((T3R_FEATURE_STEREO ? T3R_HAS_STEREO : 0u) | (T3R_FEATURE_STREAMS ? T3R_HAS_STREAMS : 0u) |                       \
-     (T3R_FEATURE_LEARNED ? T3R_HAS_LEARNED : 0u) | (T3R_FEATURE_MOMENT ? T3R_HAS_MOMENT : 0u) |                       \
-     (T3R_FEATURE_REFINEMENT ? T3R_HAS_REFINEMENT : 0u) | (T3R_FEATURE_LENSES ? T3R_HAS_LENSES : 0u) |                 \
-     (T3R_FEATURE_COMPARISON ? T3R_HAS_COMPARISON : 0u) | (T3R_FEATURE_ALLOCATIONS ? T3R_HAS_ALLOCATIONS : 0u) |       \
-     (T3R_FEATURE_WAVELETS ? T3R_HAS_WAVELETS : 0u) | (T3R_FEATURE_WORKERS ? T3R_HAS_WORKERS : 0u) |                   \
-     (T3R_FEATURE_WARM ? T3R_HAS_WARM : 0u) | (T3R_FEATURE_LOSS ? T3R_HAS_LOSS : 0u) |                                 \
-     (T3R_FEATURE_PLANES ? T3R_HAS_PLANES : 0u) | (T3R_FEATURE_ALIGN ? T3R_HAS_ALIGN : 0u))
+#define T3R_BUILT_(FEATURE, name) | (T3R_FEATURE_##FEATURE ? T3R_HAS_##FEATURE : 0u)
+#define T3R_FEATURES_BUILT (0u T3R_FEATURE_ROWS(T3R_BUILT_))
 
 #endif

@@ -14,6 +14,8 @@
 #define T3R_DIGEST_TYPE_(type) T3R_DIGEST_(sizeof(type))
 #define T3R_DIGEST_FIELD_(type, field) T3R_DIGEST_(offsetof(type, field)) T3R_DIGEST_(T3R_FIELD_BYTES_(type, field))
 
+#define T3R_DIGEST_SETTING_(name, ...) T3R_DIGEST_(sizeof #name)
+
 /* X(type), a row a struct. */
 #define T3R_INTERFACE_TYPES_(X)                                                                                        \
     X(t3r_frame)                                                                                                       \
@@ -34,7 +36,7 @@
     X(t3r_ram_info)                                                                                                    \
     X(t3r_stream_report)
 
-/* X(type, field), a row a field. */
+/* X(type, field), a row a field; T3R_SETTINGS has those of t3r_config. */
 #define T3R_INTERFACE_FIELDS_(X)                                                                                       \
     X(t3r_frame, format)                                                                                               \
     X(t3r_frame, width)                                                                                                \
@@ -54,43 +56,6 @@
     X(t3r_camera, distortion_q24)                                                                                      \
     X(t3r_camera, position_q32)                                                                                        \
     X(t3r_camera, rotation_q30)                                                                                        \
-    X(t3r_config, width)                                                                                               \
-    X(t3r_config, height)                                                                                              \
-    X(t3r_config, views)                                                                                               \
-    X(t3r_config, max_gaussians)                                                                                       \
-    X(t3r_config, gaussians)                                                                                           \
-    X(t3r_config, render_width)                                                                                        \
-    X(t3r_config, render_height)                                                                                       \
-    X(t3r_config, wavelet)                                                                                             \
-    X(t3r_config, levels)                                                                                              \
-    X(t3r_config, clusters)                                                                                            \
-    X(t3r_config, cluster_batches)                                                                                     \
-    X(t3r_config, colour_weight_q8)                                                                                    \
-    X(t3r_config, allocate)                                                                                            \
-    X(t3r_config, keep_percent)                                                                                        \
-    X(t3r_config, gamma_q8)                                                                                            \
-    X(t3r_config, head)                                                                                                \
-    X(t3r_config, head_column_bytes)                                                                                   \
-    X(t3r_config, refine)                                                                                              \
-    X(t3r_config, fit_passes)                                                                                          \
-    X(t3r_config, fit_widths)                                                                                          \
-    X(t3r_config, structural)                                                                                          \
-    X(t3r_config, depth)                                                                                               \
-    X(t3r_config, planes)                                                                                              \
-    X(t3r_config, fill_radius)                                                                                         \
-    X(t3r_config, bridge_radius)                                                                                       \
-    X(t3r_config, flying)                                                                                              \
-    X(t3r_config, redundancy)                                                                                          \
-    X(t3r_config, align)                                                                                               \
-    X(t3r_config, exposure)                                                                                            \
-    X(t3r_config, keep_analysis)                                                                                       \
-    X(t3r_config, warm)                                                                                                \
-    X(t3r_config, stream)                                                                                              \
-    X(t3r_config, half_life)                                                                                           \
-    X(t3r_config, remember)                                                                                            \
-    X(t3r_config, workers)                                                                                             \
-    X(t3r_config, tile_splats)                                                                                         \
-    X(t3r_config, seed)                                                                                                \
     X(t3r_request, gaussians)                                                                                          \
     X(t3r_request, max_loss_q8)                                                                                        \
     X(t3r_request, allocate)                                                                                           \

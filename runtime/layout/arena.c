@@ -41,7 +41,7 @@ typedef struct buffer_table {
         c->width, c->height, c->views, c->max_gaussians, t3r_cluster_count(c), c->render_width, c->render_height,      \
         c->head_column_bytes, T3R_FEATURE_STREAMS && c->stream != 0 ? T3R_KEEP_MAP : c->keep_analysis,                 \
         T3R_FEATURE_REFINEMENT ? c->refine : 0, T3R_FEATURE_STEREO && c->depth == T3R_DEPTH_STEREO,                    \
-        T3R_FEATURE_WORKERS ? c->workers : 1, T3R_FEATURE_WARM && c->warm, T3R_FEATURE_STREAMS ? c->remember : 0)
+        T3R_FEATURE_EXTRAS ? c->workers : 1, T3R_FEATURE_STREAMS && c->warm, T3R_FEATURE_STREAMS ? c->remember : 0)
 
 static void read_table(const t3r_config *c, buffer_table *table)
 {

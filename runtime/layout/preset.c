@@ -23,7 +23,7 @@ t3r_status t3r_set_preset_as(uint64_t digest, t3r_preset preset, t3r_config *con
     if (preset >= T3R_PRESET_COUNT) {
         return T3R_ERR_ARGUMENT;
     }
-    if (!t3r_has(T3R_HAS_LEARNED | T3R_HAS_REFINEMENT | T3R_HAS_LOSS)) {
+    if (!t3r_has(T3R_HAS_LEARNED | T3R_HAS_LOSS)) {
         return T3R_ERR_UNSUPPORTED;
     }
     const preset_row *row = &rows[preset];

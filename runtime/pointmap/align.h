@@ -12,7 +12,7 @@
  * must be those of a build or keyframe before. */
 static inline bool t3r_aligns(const t3r_config *config)
 {
-    return T3R_FEATURE_ALIGN && config->align != 0 && !t3r_is_by_stereo(config) && !t3r_is_warm(config) &&
+    return T3R_FEATURE_COMPARISON && config->align != 0 && !t3r_is_by_stereo(config) && !t3r_is_warm(config) &&
            !t3r_is_stream(config);
 }
 

@@ -1,11 +1,18 @@
 /* What stands for the comparison of views where it is left out: no configuration asks for a second view, nor for a
  * stream (core/config.c). */
+#include "align.h"
 #include "bridge.h"
 #include "contradiction.h"
 #include "exposure.h"
 #include "redundancy.h"
 
 #if !T3R_FEATURE_COMPARISON
+
+t3r_status t3r_align_views(t3r_runtime *rt, t3r_view *views, uint32_t steps)
+{
+    (void)rt, (void)views, (void)steps;
+    return T3R_OK;
+}
 
 void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, const t3r_pointmap_work *work)
 {

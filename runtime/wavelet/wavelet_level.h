@@ -57,7 +57,7 @@ typedef struct t3r_level {
 /* The wavelet; the compiler knows it where there is one alone. */
 static inline t3r_wavelet t3r_kind_of(const t3r_level *level)
 {
-    return T3R_FEATURE_WAVELETS ? level->kind : T3R_WAVELET_DB2;
+    return T3R_FEATURE_EXTRAS ? level->kind : T3R_WAVELET_DB2;
 }
 
 /* Length of one side after `levels` halvings that keep the odd sample. */

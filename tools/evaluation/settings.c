@@ -52,15 +52,28 @@ static void add_text(words *w, const char *name, const char *text, bool whole)
     }
 }
 
-/* The settings of the runtime that are not the default: those with a column of their own, or the others. */
+/* Whether rows have a column of their own for it. */
+static bool has_column(const setting *s)
+{
+    static const char *const columns[] = {"refine", "allocate", "depth", "wavelet", "levels", "clusters"};
+    bool found = false;
+    for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++) {
+        found = found || strcmp(s->option, columns[i]) == 0;
+    }
+    return found;
+}
+
+/* Adds the settings of the runtime that are not the default: those with a column of their own, or the others. A name
+ * of an enumeration stands alone. */
 static void add_settings(words *w, bool columns, const t3r_config *config, const t3r_config *usual)
 {
     for (uint32_t i = 0; i < settings_count; i++) {
         const setting *s = &settings_table[i];
-        if (s->column == columns && setting_value(s, config) != setting_value(s, usual)) {
+        if (has_column(s) == columns && setting_value(s, config) != setting_value(s, usual)) {
             char value[32];
             setting_text(s, config, value, sizeof value);
-            add(w, "%s%s%s", s->word != NULL ? s->word : "", s->word != NULL ? "-" : "", value);
+            const bool named = s->kind == SETTING_name;
+            add(w, "%s%s%s", named ? "" : s->option, named ? "" : "-", value);
         }
     }
 }

@@ -14,6 +14,7 @@ _trim3r() {
     case $wanted in
     file) compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -f -- "$word")) ;;
     value) COMPREPLY=() ;;
+    *'|'*) COMPREPLY=($(compgen -W "${wanted//|/$IFS}" -- "$word")) ;;
     *)
         if [[ $word == -* ]]; then
             COMPREPLY=($(compgen -W "${names[*]}" -- "$word"))

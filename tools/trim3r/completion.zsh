@@ -16,6 +16,7 @@ _trim3r() {
     case $wanted in
     file) _files ;;
     value) _message value ;;
+    *'|'*) compadd -- "${(@s:|:)wanted}" ;;
     *) if [[ $words[CURRENT] == -* ]]; then _describe option names; else _files; fi ;;
     esac
 }

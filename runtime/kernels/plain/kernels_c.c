@@ -26,7 +26,7 @@ const t3r_kernels t3r_kernels_c = {
     .db2_split = t3r_db2_split_c,
     .db2_join = t3r_db2_join_c,
     .subtract_row = t3r_subtract_row_c,
-#if T3R_FEATURE_WAVELETS
+#if T3R_FEATURE_EXTRAS
     .haar_update = t3r_haar_update_c,
     .cdf53_predict = t3r_cdf53_predict_c,
     .cdf53_update = t3r_cdf53_update_c,

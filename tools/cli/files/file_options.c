@@ -230,7 +230,14 @@ static void print_listing(const option_list *list)
     json_print(rows);
 }
 
-/* For completion: each option, what its value is ("file", "value" or nothing), and its help, tabs between. */
+/* Whether help lists the values themselves: "on|off". */
+static bool lists_values(const char *argument)
+{
+    return strchr(argument, '|') != NULL && argument[strspn(argument, "abcdefghijklmnopqrstuvwxyz0123456789|")] == '\0';
+}
+
+/* For completion: each option, what its value is ("file", "value", "one|other" or nothing), and its help, tabs
+ * between. */
 static void print_completion(const option_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {
@@ -239,7 +246,7 @@ static void print_completion(const option_list *list)
             continue;
         }
         const bool file = (o->flags & (OPTION_READS | OPTION_WRITES_BIT)) != 0;
-        const char *kind = o->arg == NULL ? "" : file ? "file" : "value";
+        const char *kind = o->arg == NULL ? "" : file ? "file" : lists_values(o->arg) ? o->arg : "value";
         printf("--%s\t%s\t%s\n", o->name, kind, o->doc != NULL ? o->doc : "");
         if (option_has_short(o)) {
             printf("-%c\t%s\t%s\n", o->key, kind, o->doc != NULL ? o->doc : "");

@@ -25,8 +25,8 @@ enum {
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
-    {"preset", KEY_PRESET, "PRESET", 0,
-     "head and refinement for so much work: fast, balanced, best; settings behind it change it", 0},
+    {"preset", KEY_PRESET, "fast|balanced|best", 0,
+     "head and refinement for so much work (balanced); settings after it change it", 0},
     {"auto", KEY_AUTO, NULL, 0,
      "take no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, and at most the "
      "budget (all valid points)",

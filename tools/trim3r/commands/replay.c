@@ -15,6 +15,7 @@
 #include "core/hash.h"
 #include "cli/tables/json_output.h"
 #include "cli/options/option_values.h"
+#include "reconstruction/options/settings.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/replay/hash_report.h"
 #include "reconstruction/replay/replay_expectation.h"
@@ -29,7 +30,7 @@ typedef struct replay_options {
     const char *expect;
     bool json;
     replay_stream_options stream;
-    bool streams, has_half_life, has_remember, slides;
+    bool streams, slides;
     reconstruction_options settings;
 } replay_options;
 
@@ -43,18 +44,7 @@ typedef struct replayed_view {
     work_times times;
 } replayed_view;
 
-enum {
-    KEY_EXPECT = 0x1000,
-    KEY_JSON,
-    KEY_STREAM,
-    KEY_EVERY,
-    KEY_AT_HAND,
-    KEY_HALF_LIFE,
-    KEY_REMEMBER,
-    KEY_OVERLAP,
-    KEY_IMAGES,
-    KEY_SLIDE
-};
+enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_OVERLAP, KEY_IMAGES, KEY_SLIDE };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
@@ -72,11 +62,6 @@ static const struct argp_option options[] = {
     {"overlap", KEY_OVERLAP, "P%", 0,
      "least percent that a frame shares with the last keyframe; with less it becomes a keyframe too, 1..100", 0},
     {"at-hand", KEY_AT_HAND, "K", 0, "number of keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
-    {"half-life", KEY_HALF_LIFE, "K", 0,
-     "number of keyframes that halve the density of what they do not see, 0..1024; 0 = nothing fades (32)", 0},
-    {"remember", KEY_REMEMBER, "K", 0,
-     "number of keyframes whose colours are remembered when their planes are gone, for refinement in turn, 0..16 (0)",
-     0},
     {"images", KEY_IMAGES, "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
@@ -87,8 +72,10 @@ static const struct argp_option options[] = {
 
 static void check_stream(struct argp_state *state, const replay_options *o)
 {
-    if (!o->streams && (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || o->has_half_life ||
-                        o->has_remember || o->stream.images != NULL || o->stream.output != NULL)) {
+    const t3r_config *c = &o->settings.config, usual = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
+    if (!o->streams &&
+        (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || c->half_life != usual.half_life ||
+         c->remember != usual.remember || o->stream.images != NULL || o->stream.output != NULL)) {
         argp_error(state, "--every, --overlap, --at-hand, --half-life, --remember, --images and -o belong to --stream");
     }
     scene_output_option(state, "-o", o->stream.output);
@@ -105,6 +92,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
+        state->child_inputs[1] = &o->settings.config;
         return 0;
     case KEY_EXPECT:
         o->expect = arg;
@@ -130,14 +118,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
     case KEY_AT_HAND:
         o->stream.at_hand = option_number(state, "at-hand", arg, 1, T3R_MAX_VIEWS);
-        return 0;
-    case KEY_HALF_LIFE:
-        o->settings.config.half_life = option_number(state, "half-life", arg, 0, 1024);
-        o->has_half_life = true;
-        return 0;
-    case KEY_REMEMBER:
-        o->settings.config.remember = option_number(state, "remember", arg, 0, T3R_MAX_REMEMBERED);
-        o->has_remember = true;
         return 0;
     case KEY_IMAGES:
         o->stream.images = arg;
@@ -166,7 +146,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {0}};
+static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {.argp = &stream_settings_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,

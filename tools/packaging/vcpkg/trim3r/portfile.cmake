@@ -3,20 +3,13 @@ get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../../.." ABSOL
 
 vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
   FEATURES
+    comparison T3R_WITH_COMPARISON
     stereo T3R_WITH_STEREO
     streams T3R_WITH_STREAMS
     learned T3R_WITH_LEARNED
-    moment T3R_WITH_MOMENT
     refinement T3R_WITH_REFINEMENT
-    lenses T3R_WITH_LENSES
-    comparison T3R_WITH_COMPARISON
-    allocations T3R_WITH_ALLOCATIONS
-    wavelets T3R_WITH_WAVELETS
-    workers T3R_WITH_WORKERS
-    warm T3R_WITH_WARM
-    loss T3R_WITH_LOSS
-    planes T3R_WITH_PLANES
-    align T3R_WITH_ALIGN)
+    extras T3R_WITH_EXTRAS
+    moment T3R_WITH_MOMENT)
 string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" "dynamic" WITH_SHARED)
 
 vcpkg_cmake_configure(

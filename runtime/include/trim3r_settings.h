@@ -1,0 +1,147 @@
+/* The settings of the runtime: a row each. From the rows are made the fields of t3r_config, their defaults and ranges,
+ * what each needs of the library, the program's options with their help, the settings of the Python package, the draws
+ * of the fuzzers and the list of docs/library.md. */
+#ifndef TRIM3R_SETTINGS_H
+#define TRIM3R_SETTINGS_H
+
+/* X(name, kind, low, high, default, feature, from, group, option, help):
+ *
+ *     name              the field of t3r_config
+ *     kind              number; q8 = a number in 1/256; toggle = 0 or 1; wavelet, allocation, head and depth = an
+ *                       enumeration of that name
+ *     low, high         the range
+ *     default           width, height, views and gaussians are those handed to t3r_default_config()
+ *     feature, from     values of `from` and more need this T3R_FEATURE_ of the library
+ *     group, option     the program's option: BUILD = of all builds, STREAM = of streams, FIELD = there is none
+ *     help              of the option and in tables; the comment above the row has what else a program must know */
+#define T3R_SETTINGS(X)                                                                                                \
+    /* The working size, to which every view is resized. With depth by stereo at least T3R_STEREO_LEAST_SIDE           \
+     * each. */                                                                                                        \
+    X(width, number, T3R_MIN_SIDE, T3R_MAX_SIDE, width, NONE, 0, FIELD, NULL, "width of the working size in pixels")   \
+    X(height, number, T3R_MIN_SIDE, T3R_MAX_SIDE, height, NONE, 0, FIELD, NULL,                                        \
+      "height of the working size in pixels")                                                                          \
+    /* Of a stream, the newest keyframes that it refines on. */                                                        \
+    X(views, number, 0, T3R_MAX_VIEWS, views, COMPARISON, 2, FIELD, NULL,                                              \
+      "most context views that the arena has room for; 0 = it renders scenes from files alone")                        \
+    X(max_gaussians, number, 1, T3R_MAX_GAUSSIANS, gaussians, NONE, 0, FIELD, NULL,                                    \
+      "most Gaussians that the arena has room for")                                                                    \
+    /* A scene has exactly so many, or as many as there are valid points where these are fewer. */                     \
+    X(gaussians, number, 1, T3R_MAX_GAUSSIANS, gaussians, NONE, 0, FIELD, NULL,                                        \
+      "budget of a scene in Gaussians, at most max_gaussians")                                                         \
+    /* The largest target that t3r_render() may draw. */                                                               \
+    X(render_width, number, 1, T3R_MAX_SIDE, width, NONE, 0, FIELD, NULL,                                              \
+      "width of the largest picture to draw in pixels")                                                                \
+    X(render_height, number, 1, T3R_MAX_SIDE, height, NONE, 0, FIELD, NULL,                                            \
+      "height of the largest picture to draw in pixels")                                                               \
+    X(wavelet, wavelet, 0, T3R_WAVELET_COUNT - 1, T3R_WAVELET_DB2, EXTRAS, 1, BUILD, "wavelet",                        \
+      "wavelet that measures texture")                                                                                 \
+    X(levels, number, 1, T3R_MAX_LEVELS, 2, NONE, 0, BUILD, "levels",                                                  \
+      "levels of the wavelet that texture is summed over")                                                             \
+    /* K in GaussianTrim3R. 0 = t3r_cluster_count() chooses. With 1 no K-means run. */                                 \
+    X(clusters, number, 0, T3R_MAX_CLUSTERS, 0, NONE, 0, BUILD, "clusters",                                            \
+      "number of SuperClusters; 0 = as many as the allocation and the points ask for")                                 \
+    /* 0 = t3r_cluster_batch_count() chooses. */                                                                       \
+    X(cluster_batches, number, 0, 1024, 0, NONE, 0, FIELD, NULL,                                                       \
+      "mini-batches of the K-means before every point is assigned; 0 = a number for the SuperClusters")                \
+    X(colour_weight_q8, q8, 0, 1024, 256, NONE, 0, FIELD, NULL,                                                        \
+      "weight of r, g, b against x, y, z in the metric of the K-means; 0 = position alone")                            \
+    X(allocate, allocation, T3R_ALLOCATE_DENSITY, T3R_ALLOCATE_COUNT - 1, T3R_ALLOCATE_DENSITY, EXTRAS,                \
+      T3R_ALLOCATE_PAPER, BUILD, "allocate", "allocation of the budget over the valid points")                         \
+    X(keep_percent, number, 0, 100, 10, NONE, 0, BUILD, "keep-percent",                                                \
+      "percent of its points that a trimmed SuperCluster keeps, with --allocate paper")                                \
+    X(gamma_q8, q8, 0, 512, 179, NONE, 0, BUILD, "gamma",                                                              \
+      "exponent of texture in the density; 0 = texture does not count")                                                \
+    X(head, head, T3R_HEAD_ANALYTIC, T3R_HEAD_COUNT - 1, T3R_HEAD_ANALYTIC, LEARNED, T3R_HEAD_LEARNED, FIELD, NULL,    \
+      "head that makes Gaussians of the retained points")                                                              \
+    /* t3r_head_column_bytes() returns what a head needs. The default is enough for tiny, nano, small and base         \
+     * with 8-bit activations. */                                                                                      \
+    X(head_column_bytes, number, 0, T3R_MAX_HEAD_COLUMN_BYTES, T3R_HEAD_COLUMN_BYTES, NONE, 0, FIELD, NULL,            \
+      "working memory of a learned head in bytes a column of the view; 0 = two bytes a pixel of the view")             \
+    X(refine, number, 0, T3R_MAX_REFINE, T3R_DEFAULT_REFINE, REFINEMENT, 1, BUILD, "refine",                           \
+      "passes of refinement on the context views, at most where they are fitted")                                      \
+    /* 1 = `refine` is the most, and t3r_refinement_passes() returns the number taken. A stream takes at most          \
+     * T3R_STREAM_REFINE a keyframe. 0 = every build and keyframe takes all of them. */                                \
+    X(fit_passes, toggle, 0, 1, T3R_FEATURE_LOSS, LOSS, 1, BUILD, "fit-passes",                                        \
+      "take of the passes of refinement as many as the budget and the agreement of the views are worth")               \
+    /* 1 = splats are as wide as the retained points of all views together ask for: narrower where several             \
+     * views cover a surface, wider where one does or where points are few. 0 = as wide as those of their own          \
+     * view ask for, as splats of T3R_HEAD_LEARNED, of a stream, of a build with refinement and of a head that         \
+     * nothing adapts are in any case. */                                                                              \
+    X(fit_widths, toggle, 0, 1, T3R_FEATURE_COMPARISON, COMPARISON, 1, BUILD, "fit-widths",                            \
+      "without refinement, fit the widths of splats of analytic and moment to the points of all views")                \
+    /* 1 = from its second pass on refinement weights local contrast as structural similarity does, and ignores        \
+     * what a whole view shows brighter or with more contrast than the others. 0 = every missing level counts          \
+     * the same, as in a stream in any case. */                                                                        \
+    X(structural, toggle, 0, 1, 0, LOSS, 1, BUILD, "structural",                                                       \
+      "refine structure more than level: local contrast, and not what a whole view shows brighter")                    \
+    X(depth, depth, T3R_DEPTH_SENSOR, T3R_DEPTH_COUNT - 1, T3R_DEPTH_SENSOR, STEREO, T3R_DEPTH_STEREO, BUILD, "depth", \
+      "source of depth; stereo matches the colours of two or more posed frames and ignores recorded depth")            \
+    /* 1 = what stereo cannot match continues the planes that the matched pixels of its view lie on; 0 = the           \
+     * surface next to it in the picture. Without effect unless depth is by stereo and fill_radius above 0. */         \
+    X(planes, toggle, 0, 1, 0, STEREO, 1, BUILD, "planes",                                                             \
+      "continue what --depth stereo does not match along the planes of what it does")                                  \
+    X(fill_radius, number, 0, 8, 4, NONE, 0, BUILD, "fill-radius",                                                     \
+      "fill holes of a depth sensor that measurements bracket within N pixels; 0 fills none")                          \
+    X(bridge_radius, number, 0, 255, 64, NONE, 0, BUILD, "bridge-radius",                                              \
+      "bridge wider holes, bracketed within N pixels, where no other view measured the surface; 0 bridges "            \
+      "none")                                                                                                          \
+    X(flying, toggle, 0, 1, 1, NONE, 0, BUILD, "flying",                                                               \
+      "retain flying pixels last: points between surfaces, or in front of what another view measured")                 \
+    X(redundancy, toggle, 0, 1, 1, NONE, 0, BUILD, "redundancy",                                                       \
+      "let small budgets pass over points whose surface another view shows as finely")                                 \
+    X(exposure, toggle, 0, 1, 1, NONE, 0, BUILD, "exposure", "bring the colours of all views to their mean exposure")  \
+    /* 1 = the poses of the views of a build are corrected first: by a rotation and a shift of each camera, at         \
+     * most 1/16 radian and 1/16 scene unit an axis. A correction is discarded unless the views then differ by         \
+     * at least a 16th less. 0 = poses stay as given, as with one view, with depth by stereo, with `warm` and          \
+     * in a stream in any case. t3r_view_camera() returns them. */                                                     \
+    X(align, toggle, 0, 1, T3R_FEATURE_COMPARISON, COMPARISON, 1, BUILD, "align",                                      \
+      "correct the poses of the views until they show the same surfaces in the same colours")                          \
+    X(keep_analysis, toggle, 0, 1, 0, NONE, 0, FIELD, NULL,                                                            \
+      "keep the analysis after the build, which t3r_rebuild() and a bounded loss need")                                \
+    /* 1 = builds follow one another, and each takes over what still holds from the one before; 0 = every build        \
+     * begins anew. Views then outlive the scene: t3r_add_view() adds to those of the last one, and where there        \
+     * is no room the newest replaces the oldest. So a pair slides along a camera's way by one view at a time.         \
+     * Of a view that stays, its depth with filled and bridged holes, its doubtful pixels and its texture are          \
+     * not made again. The K-means begin with the last centres and take a sixth of the batches. The scene's            \
+     * frame stays. Refinement takes half the passes. Both are rounded up. A build begins anew after                   \
+     * t3r_init(), t3r_reset() and a build that failed, where the exponent of the frame changes, and beyond 512        \
+     * scene units from its origin. A stream halves its passes from the second keyframe on. The bits are a             \
+     * function of all calls since t3r_init() or t3r_reset(). A build that begins anew has those of a build            \
+     * with 0. Must be 0 with depth by stereo. */                                                                      \
+    X(warm, toggle, 0, 1, 0, STREAMS, 1, BUILD, "warm",                                                                \
+      "let a build take over what still holds from the one before: with --slide and --stream of replay")               \
+    /* 1 = by t3r_stream_keyframe() alone; 0 = scenes are built of all views at once. Must be 0 without views          \
+     * and with depth by stereo. */                                                                                    \
+    X(stream, toggle, 0, 1, 0, STREAMS, 1, FIELD, NULL,                                                                \
+      "let a map of at most `gaussians` follow a camera with a depth sensor")                                          \
+    X(half_life, number, 0, 1024, 32, NONE, 0, STREAM, "half-life",                                                    \
+      "number of keyframes that halve the density of what they do not see; 0 = nothing fades")                         \
+    /* In two bytes a pixel. Each pass of refinement draws two of them in turn, and what many keyframes saw            \
+     * changes by smaller steps. So the map keeps showing what the camera left. Where there is no room, the one        \
+     * that the map needs least is forgotten. Not read without `stream`. */                                            \
+    X(remember, number, 0, T3R_MAX_REMEMBERED, 0, NONE, 0, STREAM, "remember",                                         \
+      "number of keyframes whose colours are remembered when their planes are gone, for refinement in "                \
+      "turn")                                                                                                          \
+    /* Each has a part of the arena for itself. The number never changes a bit. */                                     \
+    X(workers, number, 1, T3R_MAX_WORKERS, 1, EXTRAS, 2, FIELD, NULL,                                                  \
+      "number of tasks that t3r_hooks.parallel_for may run at once")                                                   \
+    /* It bounds the time of a scene that is not trusted. */                                                           \
+    X(tile_splats, number, 0, T3R_MAX_GAUSSIANS, 0, NONE, 0, BUILD, "tile-splats",                                     \
+      "draw a tile of 16 x 16 pixels from its N nearest Gaussians alone; 0 = from all")                                \
+    X(seed, number, 0, UINT32_MAX, 1, NONE, 0, BUILD, "seed",                                                          \
+      "seed of the K-means, of --allocate random and of ties in blue noise")
+
+/* X(ENUMERATOR, name), a row a value, from the first that a configuration may have. */
+#define T3R_WAVELETS(X) X(DB2, db2) X(HAAR, haar) X(CDF53, cdf53)
+#define T3R_ALLOCATIONS(X)                                                                                             \
+    X(DENSITY, density) /* over SuperClusters by |SC| x Texture(SC)^gamma, inside one by texture density */            \
+    X(PAPER, paper)     /* GaussianTrim3R eq. 2: lowest texture first, each keeps N % */                               \
+    X(PIXEL, pixel)     /* texture density without clusters */                                                         \
+    X(UNIFORM, uniform) /* blue noise alone */                                                                         \
+    X(RANDOM, random)   /* white noise of the seed */                                                                  \
+    X(GIVEN, given)     /* by an importance of each pixel, which comes with the request */
+#define T3R_DEPTHS(X)                                                                                                  \
+    X(SENSOR, sensor) /* the frames' own */                                                                            \
+    X(STEREO, stereo) /* the colours of two and more posed views; the frames' own depth is ignored */
+
+#endif
