@@ -62,7 +62,7 @@
     /* 1 = `refine` is the most, and t3r_refinement_passes() returns the number taken. A stream takes at most          \
      * T3R_STREAM_REFINE a keyframe. 0 = every build and keyframe takes all of them. */                                \
     X(fit_passes, toggle, 0, 1, T3R_FEATURE_LOSS, LOSS, 1, BUILD, "fit-passes",                                        \
-      "take of the passes of refinement as many as the budget and the agreement of the views are worth")               \
+      "fit the number of passes to the budget and the agreement of the views, at most --refine")                       \
     /* 1 = splats are as wide as the retained points of all views together ask for: narrower where several             \
      * views cover a surface, wider where one does or where points are few. 0 = as wide as those of their own          \
      * view ask for, as splats of T3R_HEAD_LEARNED, of a stream, of a build with refinement and of a head that         \

@@ -34,6 +34,31 @@ uint32_t take_side(input *in)
     return x < 252 ? 2 + x % (MOST_SIDE + 8) : wild[x - 252];
 }
 
+#define LOW(name, kind, low, ...) .name = (low),
+#define HIGH(name, kind, low, high, ...) .name = (high),
+
+t3r_config most_settings(void)
+{
+    return (t3r_config){T3R_SETTINGS(HIGH)};
+}
+
+static uint32_t setting_of(const t3r_config *config, size_t at)
+{
+    uint32_t value;
+    memcpy(&value, (const uint8_t *)config + at * sizeof value, sizeof value);
+    return value;
+}
+
+void take_settings(input *in, size_t first, const t3r_config *most, t3r_config *config)
+{
+    static const t3r_config least = {T3R_SETTINGS(LOW)};
+    for (size_t i = first; i < sizeof *config / sizeof(uint32_t); i++) {
+        const uint32_t low = setting_of(&least, i), high = setting_of(most, i);
+        const uint32_t value = high > low ? low + below(in, high - low + 1) : low;
+        memcpy((uint8_t *)config + i * sizeof value, &value, sizeof value);
+    }
+}
+
 void *allocate(size_t bytes)
 {
     void *p = calloc(1, bytes == 0 ? 1 : bytes);

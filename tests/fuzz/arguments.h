@@ -32,6 +32,13 @@ uint32_t below(input *in, uint32_t bound);
 /* A size near the small ones, or one that must be refused. */
 uint32_t take_side(input *in);
 
+/* The settings from the `first` on, each in its range, at most that of `most`; nothing is drawn of one with no choice.
+ */
+void take_settings(input *in, size_t first, const t3r_config *most, t3r_config *config);
+#define SETTING_AT(name) (offsetof(t3r_config, name) / sizeof(uint32_t))
+/* The most that each may be. */
+t3r_config most_settings(void);
+
 /* Zeros; ends the program when there is no memory. */
 void *allocate(size_t bytes);
 uint8_t *allocate_arena(size_t bytes);

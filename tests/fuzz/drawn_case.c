@@ -24,20 +24,19 @@ static uint32_t take_gaussians(input *in, uint32_t points)
     return T3R_MIN(drawn, MOST_GAUSSIANS);
 }
 
-static t3r_allocation take_allocation(input *in, bool streams)
+static t3r_allocation allocation_for(t3r_allocation drawn, bool streams)
 {
-    const t3r_allocation drawn = T3R_ALLOCATE_CONFIGURED + 1 + below(in, T3R_ALLOCATE_COUNT - 1);
     return streams && drawn == T3R_ALLOCATE_GIVEN ? T3R_ALLOCATE_DENSITY : drawn;
 }
 
-/* What the head needs at least, or more, or by a default. */
-static uint32_t take_head_column_bytes(input *in, const drawn_case *c, uint32_t width, uint32_t height)
+/* What the head needs at least, or more, or by a default: `drawn` has a kind above eight bits of more. */
+static uint32_t head_column_bytes_for(const drawn_case *c, const t3r_config *k, uint32_t drawn)
 {
-    const uint32_t kind = below(in, 4), more = below(in, 256);
-    const uint32_t needed = t3r_head_column_bytes(c->weights, c->weights_bytes, width);
+    const uint32_t kind = drawn >> 8, more = drawn & 255;
+    const uint32_t needed = t3r_head_column_bytes(c->weights, c->weights_bytes, k->width);
     switch (kind) {
     case 0:
-        return T3R_HEAD_WORK_(width, height, needed) <= T3R_HEAD_WORK_(width, height, 0) ? 0 : needed;
+        return T3R_HEAD_WORK_(k->width, k->height, needed) <= T3R_HEAD_WORK_(k->width, k->height, 0) ? 0 : needed;
     case 1:
         return T3R_MAX(needed, T3R_HEAD_COLUMN_BYTES);
     default:
@@ -45,48 +44,45 @@ static uint32_t take_head_column_bytes(input *in, const drawn_case *c, uint32_t 
     }
 }
 
-static t3r_config take_settings(input *in, const drawn_case *c, bool stereo)
+/* What keeps a case small. */
+static t3r_config most_drawn(void)
+{
+    t3r_config most = most_settings();
+    most.clusters = 43;
+    most.cluster_batches = 3;
+    most.head_column_bytes = 1023;
+    most.refine = 2;
+    most.depth = 0; /* by the case, as stream is */
+    most.bridge_radius = MOST_BRIDGE - 1;
+    most.stream = 0;
+    most.half_life = 3;
+    most.remember = 3;
+    most.workers = 1;
+    most.tile_splats = 159;
+    most.seed = 255;
+    return most;
+}
+
+static t3r_config take_case(input *in, const drawn_case *c, bool stereo)
 {
     const bool streams = c->tells == STREAM;
     const uint32_t least = stereo ? T3R_STEREO_LEAST_SIDE : LEAST_SIDE;
     const uint32_t width = take_working_side(in, least), height = take_working_side(in, least);
     const uint32_t drawn = 1 + below(in, 4), views = stereo && drawn == 1 ? 2 : drawn;
-    const uint32_t most = take_gaussians(in, width * height * views), budget = take_gaussians(in, most);
-    t3r_config k = t3r_default_config(width, height, views, most);
-    k.gaussians = T3R_MIN(budget, most);
+    const uint32_t gaussians = take_gaussians(in, width * height * views), budget = take_gaussians(in, gaussians);
+    t3r_config k = t3r_default_config(width, height, views, gaussians);
+    k.gaussians = T3R_MIN(budget, gaussians);
     k.render_width = LEAST_SIDE + below(in, 2 * FREQUENT_SIDES);
     k.render_height = LEAST_SIDE + below(in, 2 * FREQUENT_SIDES);
-    k.wavelet = below(in, T3R_WAVELET_COUNT);
-    k.levels = 1 + below(in, T3R_MAX_LEVELS);
-    const uint32_t clusters = below(in, 44);
-    k.clusters = clusters < 40 ? 1 + clusters : 0;
-    k.cluster_batches = below(in, 4);
-    k.colour_weight_q8 = below(in, 1025);
-    k.allocate = take_allocation(in, streams);
-    k.keep_percent = below(in, 101);
-    k.gamma_q8 = below(in, 513);
-    k.head = T3R_HEAD_CONFIGURED + 1 + below(in, T3R_HEAD_COUNT - 1);
-    k.head_column_bytes = take_head_column_bytes(in, c, width, height);
-    k.refine = below(in, 3);
-    k.fit_passes = below(in, 2);
-    k.fit_widths = below(in, 2);
-    k.structural = below(in, 2);
+    const t3r_config most = most_drawn();
+    take_settings(in, SETTING_AT(wavelet), &most, &k);
+    k.clusters = k.clusters < 40 ? 1 + k.clusters : 0;
+    k.allocate = allocation_for(k.allocate, streams);
+    k.head_column_bytes = head_column_bytes_for(c, &k, k.head_column_bytes);
     k.depth = stereo ? T3R_DEPTH_STEREO : T3R_DEPTH_SENSOR;
-    k.planes = below(in, 2);
-    k.fill_radius = below(in, 9);
-    k.bridge_radius = below(in, MOST_BRIDGE);
-    k.flying = below(in, 2);
-    k.redundancy = below(in, 2);
-    k.exposure = below(in, 2);
-    k.align = below(in, 2);
-    k.keep_analysis = below(in, 2);
-    k.warm = (below(in, 2) && streams) || c->tells == SLIDE;
+    k.warm = (k.warm && streams) || c->tells == SLIDE;
     k.stream = streams;
-    k.half_life = below(in, 4);
-    k.remember = below(in, 4);
-    const uint32_t tile_splats = below(in, 160);
-    k.tile_splats = tile_splats < 40 ? tile_splats : 0;
-    k.seed = take8(in);
+    k.tile_splats = k.tile_splats < 40 ? k.tile_splats : 0;
     return k;
 }
 
@@ -133,7 +129,7 @@ static t3r_request take_request(input *in, const drawn_case *c)
     const uint32_t drawn = take_gaussians(in, c->config.max_gaussians);
     t3r_request request = {.gaussians = T3R_MIN(drawn, c->config.max_gaussians),
                            .max_loss_q8 = bounds ? loss_q8 : 0,
-                           .allocate = take_allocation(in, false),
+                           .allocate = T3R_ALLOCATE_CONFIGURED + 1 + below(in, T3R_ALLOCATE_COUNT - 1),
                            .head = T3R_HEAD_CONFIGURED + 1 + below(in, T3R_HEAD_COUNT - 1)};
     if (parts & 32) {
         request.gaussians = 0;
@@ -295,7 +291,7 @@ void draw_case(input *in, drawn_case *c)
     const uint32_t kind = below(in, 16);
     c->tells = told[kind % 8];
     take_weights(in, c);
-    c->config = take_settings(in, c, kind % 8 == 2 || kind % 8 == 3);
+    c->config = take_case(in, c, kind % 8 == 2 || kind % 8 == 3);
     const uint32_t more = 1 + below(in, 2), ablated = take8(in);
     c->frames = c->tells == ONE_BUILD ? c->config.views : T3R_MIN(c->config.views + more, MOST_FRAMES);
     c->ablation = (t3r_ablation){.shuffle = ablated % 8 == 1, .unadapted = ablated % 8 == 2};

@@ -22,37 +22,22 @@ static t3r_config take_config(input *in)
 {
     t3r_config c = t3r_default_config(T3R_MIN_SIDE + below(in, MOST_SIDE), T3R_MIN_SIDE + below(in, MOST_SIDE),
                                       below(in, 4), 1 + below(in, MOST_GAUSSIANS));
-    uint32_t flags = take8(in);
     c.gaussians = 1 + below(in, c.max_gaussians);
     c.render_width = 1 + below(in, MOST_SIDE);
     c.render_height = 1 + below(in, MOST_SIDE);
-    c.clusters = 1 + below(in, 32);
-    c.cluster_batches = below(in, 3);
-    c.keep_analysis = flags & 1;
-    c.allocate = (t3r_allocation)(1 + (flags >> 1) % (T3R_ALLOCATE_COUNT - 1));
-    c.head = (t3r_head)(1 + (flags >> 3) % (T3R_HEAD_COUNT - 1));
-    c.wavelet = (t3r_wavelet)((flags >> 5) % T3R_WAVELET_COUNT);
-    c.levels = 1 + below(in, T3R_MAX_LEVELS);
-    c.refine = below(in, 3);
-    c.fill_radius = below(in, 9);
-    c.bridge_radius = below(in, 33);
-    c.colour_weight_q8 = below(in, 1025);
-    c.gamma_q8 = below(in, 513);
-    c.keep_percent = below(in, 101);
-    c.seed = take8(in);
-    c.flying = flags >> 7;
-    c.redundancy = c.seed & 1;
-    c.exposure = c.seed >> 1 & 1;
-    c.fit_passes = c.seed >> 2 & 1;
-    c.fit_widths = c.seed >> 3 & 1;
-    c.planes = c.seed >> 4 & 1;
-    c.structural = c.seed >> 5 & 1;
-    c.align = c.seed >> 6 & 1;
-    c.depth = c.seed & 32 && c.width >= T3R_STEREO_LEAST_SIDE && c.height >= T3R_STEREO_LEAST_SIDE ? T3R_DEPTH_STEREO
-                                                                                                   : T3R_DEPTH_SENSOR;
-    c.remember = c.seed >> 3 & 3;
-    c.stream = c.seed >> 6 == 3 && c.views > 0 && c.depth == T3R_DEPTH_SENSOR;
-    c.head_column_bytes = c.seed & 4 ? below(in, 2048) : c.head_column_bytes;
+    const bool by_sensor = c.width < T3R_STEREO_LEAST_SIDE || c.height < T3R_STEREO_LEAST_SIDE || take8(in) < 192;
+    t3r_config most = most_settings();
+    most.clusters = 32;
+    most.cluster_batches = 2;
+    most.head_column_bytes = 2048;
+    most.refine = 2;
+    most.depth = by_sensor ? T3R_DEPTH_SENSOR : T3R_DEPTH_STEREO;
+    most.bridge_radius = 32;
+    most.warm = most.stream = 0;
+    most.workers = 1;
+    most.tile_splats = 512;
+    take_settings(in, SETTING_AT(wavelet), &most, &c);
+    c.stream = c.views > 0 && c.depth == T3R_DEPTH_SENSOR && take8(in) < 64;
     return c;
 }
 

@@ -200,60 +200,22 @@ static void damage_state(t3r_runtime *rt, input *in)
     }
 }
 
-/* Settings on which no byte of the layout depends. */
+/* Damages a setting on which no byte of the layout depends. */
 static void damage_config(t3r_runtime *rt, input *in)
 {
-    t3r_config *c = &rt->config;
-    switch (below(in, 15)) {
-    case 0:
-        c->gaussians = take_number(in, c->max_gaussians);
-        break;
-    case 1:
-        c->allocate = (t3r_allocation)take_number(in, T3R_ALLOCATE_COUNT);
-        break;
-    case 2:
-        c->wavelet = (t3r_wavelet)take_number(in, T3R_WAVELET_COUNT);
-        break;
-    case 3:
-        c->levels = take_number(in, T3R_MAX_LEVELS);
-        break;
-    case 4:
-        c->cluster_batches = take_number(in, 3) % 8;
-        c->clusters = c->cluster_batches == 7 ? 0 : c->clusters;
-        break;
-    case 5:
-        c->colour_weight_q8 = take_number(in, 1024);
-        break;
-    case 6:
-        c->keep_percent = take_number(in, 100);
-        break;
-    case 7:
-        c->gamma_q8 = take_number(in, 512);
-        break;
-    case 8:
-        c->head = (t3r_head)take_number(in, T3R_HEAD_COUNT);
-        break;
-    case 9:
-        c->fill_radius = take_number(in, 8);
-        break;
-    case 10:
-        c->bridge_radius = take_number(in, 255);
-        break;
-    case 11:
-        c->half_life = take_number(in, 1024);
-        c->remember = take_number(in, T3R_MAX_REMEMBERED);
-        break;
-    case 14:
-        c->tile_splats = take_number(in, BUDGET);
-        break;
-    case 12:
-        c->flying = c->redundancy = c->exposure = c->fit_passes = c->fit_widths = c->structural = c->planes = c->align =
-            take_number(in, 2);
-        break;
-    default:
-        c->seed = take32(in);
-        break;
-    }
+    static const uint8_t laid_out[] = {SETTING_AT(clusters),      SETTING_AT(head_column_bytes),
+                                       SETTING_AT(refine),        SETTING_AT(depth),
+                                       SETTING_AT(keep_analysis), SETTING_AT(warm),
+                                       SETTING_AT(stream),        SETTING_AT(workers)};
+    t3r_config most = most_settings();
+    most.gaussians = rt->config.max_gaussians;
+    most.tile_splats = BUDGET;
+    const size_t drawn = SETTING_AT(wavelet) + below(in, sizeof most / sizeof(uint32_t) - SETTING_AT(wavelet));
+    const size_t at = memchr(laid_out, (int)drawn, sizeof laid_out) == NULL ? drawn : SETTING_AT(gaussians);
+    uint32_t high;
+    memcpy(&high, (const uint8_t *)&most + at * sizeof high, sizeof high);
+    const uint32_t value = take_number(in, high);
+    memcpy((uint8_t *)&rt->config + at * sizeof value, &value, sizeof value);
 }
 
 static void damage_depth(t3r_runtime *rt, input *in)

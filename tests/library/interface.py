@@ -25,19 +25,21 @@ COMPILERS = {"x86-64": (["gcc"], ["clang"]),
 # What another version of the header could have.
 PLANTED = {
     "a field more": ("typedef struct t3r_config {", "typedef struct t3r_config {\n    uint32_t planted;"),
-    "a wider field": ("uint32_t render_width, render_height;", "uint64_t render_width, render_height;"),
+    "a wider field": ("uint32_t rgb_stride_bytes;", "uint64_t rgb_stride_bytes;"),
+    "a setting of another name": ("X(fill_radius,", "X(fill_reach,"),
     "two fields in another order": ("    int8_t factor_exponent;\n", "    uint8_t planted;\n    int8_t factor_exponent;\n"),
 }
 ENUM = ("typedef uint32_t t3r_head;", "typedef enum t3r_planted { T3R_PLANTED } t3r_head;")
 
 
 def header(folder, change=None):
-    """A folder with the headers, one change made in trim3r.h."""
+    """A folder with the headers, one change made in one of them."""
     shutil.copytree(INCLUDE, folder)
     if change:
-        text = (folder / "trim3r.h").read_text()
-        check(text.count(change[0]) == 1, f"trim3r.h has not one '{change[0]}'")
-        (folder / "trim3r.h").write_text(text.replace(*change))
+        texts = {path: path.read_text() for path in folder.glob("*.h")}
+        changed = [path for path, text in texts.items() if change[0] in text]
+        check(len(changed) == 1 and texts[changed[0]].count(change[0]) == 1, f"not one '{change[0]}' in the headers")
+        changed[0].write_text(texts[changed[0]].replace(*change))
     return folder
 
 
@@ -65,13 +67,14 @@ def fields_of(text):
 
 
 def check_rows():
-    """Each struct and each field has its row in trim3r_interface.h."""
-    fields = list(fields_of((INCLUDE / "trim3r.h").read_text()))
+    """Each struct and each field has its row in trim3r_interface.h; settings have theirs in trim3r_settings.h."""
+    header = (INCLUDE / "trim3r.h").read_text()
+    fields = list(fields_of(header))
     rows = (INCLUDE / "trim3r_interface.h").read_text()
     check(len(fields) > 100, f"blind: {len(fields)} fields found")
     check(re.findall(r"X\((t3r_\w+), (\w+)\)", rows) == fields,
           f"trim3r_interface.h lacks rows, or has others: {set(re.findall(r'X.(t3r_.+), (.+?).[ )]', rows)) ^ set(fields)}")
-    check(re.findall(r"X\((t3r_\w+)\)", rows) == list(dict.fromkeys(name for name, _ in fields)), "rows of structs")
+    check(re.findall(r"X\((t3r_\w+)\)", rows) == re.findall(r"^typedef struct (\w+) \{$", header, flags=re.M), "rows of structs")
 
 
 def answers(include, library, folder, *words):

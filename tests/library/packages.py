@@ -14,7 +14,7 @@ SHARED = f"libtrim3r{SERIES}"
 FILES = {
     SHARED: [f"lib/libtrim3r.so.{SERIES}", f"lib/libtrim3r.so.{VERSION}", f"share/sbom/{SHARED}.spdx.json"],
     "libtrim3r-dev": ["include/trim3r.h", "include/trim3r_arena.h", "include/trim3r_features.h", "include/trim3r_heads.h",
-                      "include/trim3r_interface.h",
+                      "include/trim3r_interface.h", "include/trim3r_settings.h",
                       "lib/cmake/trim3r/trim3r-config-release.cmake", "lib/cmake/trim3r/trim3r-config-version.cmake",
                       "lib/cmake/trim3r/trim3r-config.cmake", "lib/libtrim3r.a", "lib/libtrim3r.so",
                       "lib/libtrim3r_heads.a", "lib/pkgconfig/trim3r-heads.pc", "lib/pkgconfig/trim3r.pc",

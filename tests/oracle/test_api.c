@@ -165,29 +165,9 @@ static void config_ranges(void **state)
         uint32_t least_bad, most_good, too_low; /* too_low UINT32_MAX: 0 is allowed */
     } ranges[] = {
 #define RANGE(field, low, high) {offsetof(t3r_config, field), (high) + 1u, (high), (low) == 0 ? UINT32_MAX : (low)-1u}
-        RANGE(width, T3R_MIN_SIDE, T3R_MAX_SIDE),
-        RANGE(height, T3R_MIN_SIDE, T3R_MAX_SIDE),
-        RANGE(views, 0, T3R_MAX_VIEWS),
-        RANGE(max_gaussians, 200, T3R_MAX_GAUSSIANS), /* the budget is 200 */
+#define SETTING_RANGE(name, kind, low, high, ...) RANGE(name, low, high),
+        T3R_SETTINGS(SETTING_RANGE) RANGE(max_gaussians, 200, T3R_MAX_GAUSSIANS), /* the budget is 200 */
         RANGE(gaussians, 1, 200),
-        RANGE(render_width, 1, T3R_MAX_SIDE),
-        RANGE(render_height, 1, T3R_MAX_SIDE),
-        RANGE(wavelet, 0, T3R_WAVELET_COUNT - 1),
-        RANGE(levels, 1, T3R_MAX_LEVELS),
-        RANGE(clusters, 0, T3R_MAX_CLUSTERS),
-        RANGE(cluster_batches, 0, 1024),
-        RANGE(colour_weight_q8, 0, 1024),
-        RANGE(allocate, 1, T3R_ALLOCATE_COUNT - 1),
-        RANGE(keep_percent, 0, 100),
-        RANGE(gamma_q8, 0, 512),
-        RANGE(head, 1, T3R_HEAD_COUNT - 1),
-        RANGE(head_column_bytes, 0, T3R_MAX_HEAD_COLUMN_BYTES),
-        RANGE(refine, 0, 32),
-        RANGE(planes, 0, 1),
-        RANGE(fill_radius, 0, 8),
-        RANGE(bridge_radius, 0, 255),
-        RANGE(keep_analysis, 0, 1),
-        RANGE(warm, 0, 1),
     };
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
         const uint32_t bad[] = {ranges[i].least_bad, UINT32_MAX, ranges[i].too_low};

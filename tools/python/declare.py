@@ -1,7 +1,7 @@
 """declare.py HEADER ROOT PACKAGE BUILD COMPILER OPTION...: what the Python package knows of C, out of the headers.
 
 PACKAGE/_declarations.py has every type and constant that HEADER leads to below ROOT, and the functions of the headers
-that HEADER itself includes, in the form that cffi loads. BUILD/exports.ld makes the linker take these functions and
+that HEADER itself includes, in the form that cffi loads. PACKAGE/_settings.py has the settings. BUILD/exports.ld makes the linker take these functions and
 data from their archives, and BUILD/exports.map exports nothing else.
 """
 import pathlib
@@ -43,6 +43,14 @@ def declarations(text):
     return INLINE.sub("", "\n".join(kept) + "\n")
 
 
+def settings_of(header, compiler):
+    """Python: {setting: (kind, help)}, out of the rows of T3R_SETTINGS."""
+    rows = "#define ROW(name, kind, low, high, usual, feature, from, group, option, help) #name: (#kind, help),\n"
+    text = f'#include "{header}"\n{rows}SETTINGS = {{T3R_SETTINGS(ROW)}}\n'
+    done = subprocess.run([*compiler, "-E", "-P", "-x", "c", "-"], input=text, check=True, capture_output=True, text=True)
+    return done.stdout[done.stdout.rindex("SETTINGS = {"):].replace("), ", "),\n            ")
+
+
 def main():
     header, root, package, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:5])
     compiler = sys.argv[5:]
@@ -59,6 +67,7 @@ def main():
     ffi.cdef(whole)
     ffi.set_source(MODULE, None)
     ffi.emit_python_code(str(package / f"{MODULE}.py"))
+    (package / "_settings.py").write_text(settings_of(header, compiler))
     (build / "exports.ld").write_text(f"EXTERN({' '.join(exports)})\n")
     (build / "exports.map").write_text("{ global: " + " ".join(f"{name};" for name in exports) + " local: *; };\n")
 

@@ -2,18 +2,24 @@
 from typing import Any, Dict, Mapping, Optional, Union
 
 from ._native import INTERFACE, check, ffi, lib, text_of, value_named
+from ._settings import SETTINGS
 from .errors import InputError
 from .heads import Head
 from .image_stage import default_config
 
 Settings = Mapping[str, Union[int, str]]
 
-NAMES = {  # of settings that take a name, too
-    "allocate": (lib.t3r_allocation_name, lib.T3R_ALLOCATE_COUNT),
-    "depth": (lib.t3r_depth_name, lib.T3R_DEPTH_COUNT),
-    "wavelet": (lib.t3r_wavelet_name, lib.T3R_WAVELET_COUNT),
-}
+_NUMBERS = ("number", "q8", "toggle")  # the kinds of settings whose values have no names
+_VALUES_MOST = 16
 _GAUSSIANS_MOST = 1 << 24
+
+
+def setting_value(name: str, value: str) -> int:
+    """The value of a setting that takes names. Raises ValueError, which lists the names, where there is none."""
+    kind = SETTINGS[name][0]
+    if kind in _NUMBERS:
+        raise ValueError(f"{name} is a number, not {value!r}")
+    return value_named(name, getattr(lib, f"t3r_{kind}_name"), _VALUES_MOST, value)
 
 
 def configuration(width: int, height: int, views: int, gaussians: Optional[int], head: Head,
@@ -26,12 +32,10 @@ def configuration(width: int, height: int, views: int, gaussians: Optional[int],
     config = default_config(width, height, views, most)
     config.head, config.head_column_bytes = head.value, head.column_bytes(width)
     for name, value in settings.items():
-        if name not in (field for field, _ in ffi.typeof("t3r_config").fields):
-            raise ValueError(f"there is no setting {name!r}: trim3r.h lists those of t3r_config")
+        if name not in SETTINGS:
+            raise ValueError(f"there is no setting {name!r}; there are {', '.join(SETTINGS)}")
         if isinstance(value, str):
-            if name not in NAMES:
-                raise ValueError(f"{name} is a number, not {value!r}")
-            value = value_named(name, *NAMES[name], value)
+            value = setting_value(name, value)
         try:
             setattr(config, name, value)
         except (OverflowError, TypeError) as error:
@@ -63,6 +67,6 @@ def preset(name: str) -> Dict[str, Any]:
     value = value_named("a preset", lib.t3r_preset_name, lib.T3R_PRESET_COUNT, name)
     before, after, weights = default_config(8, 8, 1, 1), default_config(8, 8, 1, 1), ffi.new("const char **")
     check(lib.t3r_set_preset_as(INTERFACE, value, after, weights))
-    changed = {field: getattr(after, field) for field, _ in ffi.typeof("t3r_config").fields
-               if getattr(after, field) != getattr(before, field) and field != "head"}
+    changed = {name: getattr(after, name) for name in SETTINGS
+               if getattr(after, name) != getattr(before, name) and name != "head"}
     return {"head": text_of(weights[0]), "settings": changed}

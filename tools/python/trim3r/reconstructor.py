@@ -50,7 +50,7 @@ class Reconstructor:
         Called with the name of the stage, what is done and the total of that, now and then, from any thread. To raise
         an exception in it stops the work; the call that works raises it again.
     settings : mapping of str to int or str
-        Any other field of t3r_config, as trim3r.h has it: {"refine": 8} say. allocate and wavelet take names, too.
+        Any other setting, as docs/library.md lists them: {"refine": 8} say. allocate and wavelet take names, too.
         `keep_analysis` is 1 here unless it is given.
 
     Raises

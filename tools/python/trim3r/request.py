@@ -4,8 +4,8 @@ from typing import Any, Optional, Sequence, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._native import address, ffi, value_named
-from .configuration import NAMES
+from ._native import address, ffi
+from .configuration import setting_value
 
 Importance = Sequence["NDArray[np.uint16]"]
 _LOSS_MOST = 10  # dB
@@ -21,7 +21,7 @@ def request_of(config: Any, views: int, gaussians: int, max_loss: float, allocat
         raise ValueError(f"max_loss is 0..{_LOSS_MOST} dB, not {max_loss}")
     request = ffi.new("t3r_request *", {"gaussians": gaussians, "max_loss_q8": round(max_loss * 256)})
     if allocate is not None:
-        request.allocate = value_named("allocate", *NAMES["allocate"], allocate)
+        request.allocate = setting_value("allocate", allocate)
     if importance is None:
         return request, None
     planes = [np.ascontiguousarray(plane) for plane in importance]

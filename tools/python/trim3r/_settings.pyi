@@ -1,0 +1,4 @@
+# Made by declare.py when the package is built.
+from typing import Dict, Tuple
+
+SETTINGS: Dict[str, Tuple[str, str]]
