@@ -38,7 +38,7 @@ APART_MOST = 0.05  # dB; measured 0.02
 class _Settings(ctypes.Structure):
     _fields_ = [
         (name, ctypes.c_uint32)
-        for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed", "refine")
+        for name in ("gaussians", "allocate", "gamma_q8", "clusters", "batches", "seed", "refine")
     ]
 
 

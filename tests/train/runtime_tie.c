@@ -7,7 +7,7 @@
 #include "trim3r_heads.h"
 
 typedef struct tie_settings {
-    uint32_t gaussians, allocation, gamma_q8, clusters, cluster_batches, seed, refine;
+    uint32_t gaussians, allocate, gamma_q8, clusters, cluster_batches, seed, refine;
 } tie_settings;
 
 /* Footprints of `count` pixels. outputs: [count][T3R_HEAD_OUTPUTS]; spacing_q12 [count]; own colours, three planes of

@@ -14,7 +14,7 @@
 #include "trim3r_heads.h"
 
 typedef struct prepare_settings {
-    uint32_t gaussians, allocation, gamma_q8, clusters, cluster_batches, seed;
+    uint32_t gaussians, allocate, gamma_q8, clusters, cluster_batches, seed;
     uint32_t rival; /* a method_kind: those points are retained that it keeps of the scene that the shipped `small`
                        makes of all; METHOD_TRIM3R: by the allocation */
 } prepare_settings;

@@ -30,7 +30,7 @@ class _Views(ctypes.Structure):
 class _Settings(ctypes.Structure):
     _fields_ = [
         (name, ctypes.c_uint32)
-        for name in ("gaussians", "allocation", "gamma_q8", "clusters", "batches", "seed", "rival")
+        for name in ("gaussians", "allocate", "gamma_q8", "clusters", "batches", "seed", "rival")
     ]
 
 
