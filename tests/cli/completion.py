@@ -29,6 +29,8 @@ def bash_completes():
     check(set(completed("info", "sc")) == {"scene.ply", "script.bash"}, f"files: {completed('info', 'sc')}")
     check("scene.ply" in completed("build", "--prune", "sce"), "no file for --prune")
     check(completed("build", "--gaussians", "sce") == [], "a file for a number")
+    check(completed("build", "--wavelet", "h") == ["haar"], f"--wavelet h: {completed('build', '--wavelet', 'h')}")
+    check(completed("replay", "--align", "") == ["on", "off"], f"--align: {completed('replay', '--align', '')}")
 
 
 def other_shells():
