@@ -16,7 +16,7 @@ t3r_config t3r_settled(const t3r_config *config);
 /* The most splats that a tile is drawn from. */
 static inline uint32_t t3r_tile_splats_of(const t3r_config *config)
 {
-    return config->tile_splats != 0 ? config->tile_splats >> config->halvings : UINT32_MAX;
+    return config->tile_splats != 0 ? config->tile_splats : UINT32_MAX;
 }
 
 /* The passes of refinement in a build that follows another (t3r_config.warm). */

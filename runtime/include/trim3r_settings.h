@@ -128,7 +128,6 @@
     /* It bounds the time of a scene that is not trusted. */                                                           \
     X(tile_splats, number, 0, T3R_MAX_GAUSSIANS, 0, NONE, 0, BUILD, "tile-splats",                                     \
       "draw a tile of 16 x 16 pixels from its N nearest Gaussians alone; 0 = from all")                                \
-    X(halvings, number, 0, 8, 0, NONE, 0, BUILD, "halvings", "number of times that --tile-splats is halved")           \
     X(seed, number, 0, UINT32_MAX, 1, NONE, 0, BUILD, "seed",                                                          \
       "seed of the K-means, of --allocate random and of ties in blue noise")
 
