@@ -51,7 +51,7 @@ typedef struct plan {
 
 static const plan plans[] = {
     {"one SuperCluster", T3R_HEAD_ANALYTIC, 1, 0, {0}},
-    {"moment", T3R_HEAD_MOMENT, 6, 0, {0}},
+    {"SuperClusters", T3R_HEAD_ANALYTIC, 6, 0, {0}},
     {"a network", T3R_HEAD_LEARNED, 6, 0, {0}},
     {"a bounded loss", T3R_HEAD_ANALYTIC, 6, 1, {.max_loss_q8 = HALF_DB}},
 };

@@ -63,7 +63,7 @@ def small_u_net(channels, hidden):
     ]
 
 
-HEADS = {"tiny": small_u_net(8, 8), "nano": u_net(8, 16, 16, 10), "small": u_net(20, 28, 20, 20), "base": u_net(40, 44, 32, 32)}
+HEADS = {"tiny": small_u_net(8, 8), "small": u_net(20, 28, 20, 20)}
 
 
 def multiply_accumulates(layers, kept=1.0):
