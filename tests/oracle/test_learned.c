@@ -43,6 +43,7 @@ static t3r_config learned_config(uint32_t gaussians)
     c.clusters = 9;
     c.cluster_batches = 24;
     c.head = T3R_HEAD_LEARNED;
+    c.head_column_bytes = SMALL_SHAPE_COLUMN_BYTES;
     c.refinements = c.fit_widths = 0;
     c.keep_analysis = 1;
     return c;

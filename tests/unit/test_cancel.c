@@ -60,6 +60,7 @@ static void at_every_step(const plan *p, const uint8_t *weights, size_t weight_b
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.head = p->head;
+    config.head_column_bytes = SMALL_SHAPE_COLUMN_BYTES;
     config.clusters = p->clusters;
     config.keep_analysis = p->keep_analysis;
     config.refinements = 1;

@@ -167,6 +167,7 @@ static void a_refused_request_leaves_all_as_it_was(void **state)
     t3r_runtime *rt = with_view(&config);
     t3r_scene scene;
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    assert_int_equal(t3r_bind_head(rt, NULL, 0), T3R_OK);
     memcpy(before, arena, arena_bytes);
     for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
         assert_true(t3r_reconstruct(rt, &refused[i], &scene) != T3R_OK);
