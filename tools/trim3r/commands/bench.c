@@ -130,7 +130,7 @@ static const struct argp argp = {
         "thread, or with more of them elapsed time."
         "\vExamples:\n"
         "  trim3r bench\n"
-        "  trim3r bench --head base\n"
+        "  trim3r bench --head tiny\n"
         "  trim3r bench --depth stereo\n"
         "  trim3r bench --json --runs 21\n"
         "  trim3r bench --stages build_small_ms --profile\n"
