@@ -122,7 +122,8 @@ class Network(unittest.TestCase):
     def test_a_wider_head_does_at_first_what_the_narrow_one_does(self):
         features, mask = head_file.random_view(np.random.default_rng(9), *SIZES[0])
         narrow, wide = head_net.u_net(8, 16, 16, 10), head_net.u_net(40, 44, 32, 32)
-        for narrow, wide in ((narrow, HEADS["small"]), (HEADS["small"], wide), (narrow, wide)):
+        for narrow, wide in ((narrow, HEADS["small"]), (HEADS["small"], wide), (narrow, wide),
+                             (HEADS["tiny"], head_net.small_u_net(12, 10))):
             head = head_net.Head(narrow, 1)
             with torch.no_grad():
                 for parameter in head.parameters():

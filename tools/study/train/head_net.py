@@ -208,6 +208,8 @@ def widened(head, layers, seed=0):
             for source in new["sources"]:  # channels of the old inputs among the new ones
                 places += range(first, first + width[source])
                 first += wide[source]
+            if new["kind"] == "depthwise":
+                places = [0]  # each output has one input
             outputs, point = old["outputs"], new["kind"] == "point"
             rows = made.weight[n][:, :outputs] if point else made.weight[n][:outputs]
             rows.zero_()
