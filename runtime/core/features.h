@@ -15,7 +15,7 @@ static inline bool t3r_has(uint32_t features)
 /* What a head needs, 0 for one that every library has. */
 static inline uint32_t t3r_feature_of_head(t3r_head head)
 {
-    return head == T3R_HEAD_LEARNED ? T3R_HAS_LEARNED : head == T3R_HEAD_MOMENT ? T3R_HAS_MOMENT : 0u;
+    return head == T3R_HEAD_LEARNED ? T3R_HAS_LEARNED : 0u;
 }
 
 /* Whether builds follow one another; the compiler knows that they do not where that is left out. */

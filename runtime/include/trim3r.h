@@ -186,7 +186,6 @@ typedef uint32_t t3r_head;
 enum {
     T3R_HEAD_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
     T3R_HEAD_ANALYTIC,   /* a disc on the surface, as wide as its retained neighbours are apart */
-    T3R_HEAD_MOMENT,     /* moments of the pruned pixels that lie nearest in position and colour */
     T3R_HEAD_LEARNED,    /* a network sees image, mask and density: t3r_bind_head() */
     T3R_HEAD_COUNT
 };
@@ -258,8 +257,8 @@ typedef struct t3r_config {
     /* The head, which makes Gaussians of retained points. [T3R_HEAD_ANALYTIC] */
     t3r_head head;
     /* The working memory of a learned head in bytes a column of the view, 0..T3R_MAX_HEAD_COLUMN_BYTES:
-     * t3r_head_column_bytes() returns what a head needs. 0 = two bytes a pixel of the view.
-     * [T3R_HEAD_COLUMN_BYTES, enough for tiny, nano, small and base with 8-bit activations] */
+     * t3r_head_column_bytes() returns what a head needs. 0 = none, for builds by other heads.
+     * [T3R_HEAD_COLUMN_BYTES, enough for tiny and small with 8-bit activations] */
     uint32_t head_column_bytes;
     /* The number of refinement passes on the context views, 0..T3R_MAX_REFINEMENTS; 0 = none. [T3R_DEFAULT_REFINEMENTS]
      */
@@ -268,7 +267,7 @@ typedef struct t3r_config {
      * t3r_refinement_passes() returns them. A stream takes at most T3R_STREAM_REFINEMENTS a keyframe. 0 = every build
      * and keyframe takes all of them. [1, where the library has the loss to fit them by] */
     uint32_t fit_passes;
-    /* 1 = splats of T3R_HEAD_ANALYTIC and T3R_HEAD_MOMENT are as wide as the retained points of all views together ask
+    /* 1 = splats of T3R_HEAD_ANALYTIC are as wide as the retained points of all views together ask
      * for: narrower where several views cover a surface, wider where one does or where points are few. 0 = as wide as
      * those of their own view ask for, as splats of T3R_HEAD_LEARNED, of a stream, of a build with refinement and of a
      * head that nothing adapts are in any case. [1, where the library compares views] */
@@ -474,8 +473,6 @@ typedef struct t3r_plan_info {
     X(BUDGET, "budget", BUDGET)                                                                                        \
     X(DISC_PIXELS, "disc_pixels", HEAD)                                                                                \
     X(DISC_GAUSSIANS, "disc_gaussians", HEAD)                                                                          \
-    X(MOMENT_PIXELS, "moment_pixels", HEAD)                                                                            \
-    X(MOMENT_GAUSSIANS, "moment_gaussians", HEAD)                                                                      \
     X(FEATURES, "features", HEAD)                                                                                      \
     X(LIFTS, "lifts", HEAD)                                                                                            \
     X(ACTIVATIONS, "activations", HEAD)                                                                                \
@@ -560,7 +557,7 @@ typedef struct t3r_preset_info {
     size_t stack_bytes;
     /* What is left for the program's own variables. */
     size_t program_bytes;
-    /* The weights in quant/heads for t3r_bind_head(): "nano", "small" or "base". NULL = the head is a closed form. */
+    /* The weights in quant/heads for t3r_bind_head(): "tiny" or "small". NULL = the head `analytic`. */
     const char *weights;
 } t3r_preset_info;
 
@@ -747,8 +744,8 @@ t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 const char *t3r_weights_error(const void *weights, size_t bytes);
 
 /* The head_column_bytes with which this head works on views of this width, whatever their height, at least 1. 0 =
- * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds tiny, nano, small and
- * base with 8-bit activations; every arena holds heads that need no more than two bytes a pixel. */
+ * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds tiny and small
+ * with 8-bit activations. */
 uint32_t t3r_head_column_bytes(const void *weights, size_t bytes, uint32_t width);
 
 /* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it, and so which file to bind again. */

@@ -26,11 +26,6 @@
 #define T3R_FEATURE_LEARNED 1
 #endif
 
-/* The head of moments: T3R_HEAD_MOMENT. */
-#ifndef T3R_FEATURE_MOMENT
-#define T3R_FEATURE_MOMENT 1
-#endif
-
 /* Refinement on the context views. */
 #ifndef T3R_FEATURE_REFINEMENT
 #define T3R_FEATURE_REFINEMENT 1
@@ -84,26 +79,25 @@
 #define T3R_HAS_STEREO (1u << 0)
 #define T3R_HAS_STREAMS (1u << 1)
 #define T3R_HAS_LEARNED (1u << 2)
-#define T3R_HAS_MOMENT (1u << 3)
-#define T3R_HAS_REFINEMENT (1u << 4)
-#define T3R_HAS_LENSES (1u << 5)
-#define T3R_HAS_COMPARISON (1u << 6)
-#define T3R_HAS_ALLOCATIONS (1u << 7)
-#define T3R_HAS_WAVELETS (1u << 8)
-#define T3R_HAS_WORKERS (1u << 9)
-#define T3R_HAS_WARM (1u << 10)
-#define T3R_HAS_LOSS (1u << 11)
-#define T3R_HAS_PLANES (1u << 12)
-#define T3R_HAS_ALIGN (1u << 13)
+#define T3R_HAS_REFINEMENT (1u << 3)
+#define T3R_HAS_LENSES (1u << 4)
+#define T3R_HAS_COMPARISON (1u << 5)
+#define T3R_HAS_ALLOCATIONS (1u << 6)
+#define T3R_HAS_WAVELETS (1u << 7)
+#define T3R_HAS_WORKERS (1u << 8)
+#define T3R_HAS_WARM (1u << 9)
+#define T3R_HAS_LOSS (1u << 10)
+#define T3R_HAS_PLANES (1u << 11)
+#define T3R_HAS_ALIGN (1u << 12)
 
 /* Those that are left in. */
 #define T3R_FEATURES_BUILT                                                                                             \
     ((T3R_FEATURE_STEREO ? T3R_HAS_STEREO : 0u) | (T3R_FEATURE_STREAMS ? T3R_HAS_STREAMS : 0u) |                       \
-     (T3R_FEATURE_LEARNED ? T3R_HAS_LEARNED : 0u) | (T3R_FEATURE_MOMENT ? T3R_HAS_MOMENT : 0u) |                       \
-     (T3R_FEATURE_REFINEMENT ? T3R_HAS_REFINEMENT : 0u) | (T3R_FEATURE_LENSES ? T3R_HAS_LENSES : 0u) |                 \
-     (T3R_FEATURE_COMPARISON ? T3R_HAS_COMPARISON : 0u) | (T3R_FEATURE_ALLOCATIONS ? T3R_HAS_ALLOCATIONS : 0u) |       \
-     (T3R_FEATURE_WAVELETS ? T3R_HAS_WAVELETS : 0u) | (T3R_FEATURE_WORKERS ? T3R_HAS_WORKERS : 0u) |                   \
-     (T3R_FEATURE_WARM ? T3R_HAS_WARM : 0u) | (T3R_FEATURE_LOSS ? T3R_HAS_LOSS : 0u) |                                 \
-     (T3R_FEATURE_PLANES ? T3R_HAS_PLANES : 0u) | (T3R_FEATURE_ALIGN ? T3R_HAS_ALIGN : 0u))
+     (T3R_FEATURE_LEARNED ? T3R_HAS_LEARNED : 0u) | (T3R_FEATURE_REFINEMENT ? T3R_HAS_REFINEMENT : 0u) |               \
+     (T3R_FEATURE_LENSES ? T3R_HAS_LENSES : 0u) | (T3R_FEATURE_COMPARISON ? T3R_HAS_COMPARISON : 0u) |                 \
+     (T3R_FEATURE_ALLOCATIONS ? T3R_HAS_ALLOCATIONS : 0u) | (T3R_FEATURE_WAVELETS ? T3R_HAS_WAVELETS : 0u) |           \
+     (T3R_FEATURE_WORKERS ? T3R_HAS_WORKERS : 0u) | (T3R_FEATURE_WARM ? T3R_HAS_WARM : 0u) |                           \
+     (T3R_FEATURE_LOSS ? T3R_HAS_LOSS : 0u) | (T3R_FEATURE_PLANES ? T3R_HAS_PLANES : 0u) |                             \
+     (T3R_FEATURE_ALIGN ? T3R_HAS_ALIGN : 0u))
 
 #endif

@@ -31,18 +31,11 @@ static t3r_allocation take_allocation(input *in, bool streams)
 }
 
 /* What the head needs at least, or more, or by a default. */
-static uint32_t take_head_column_bytes(input *in, const drawn_case *c, uint32_t width, uint32_t height)
+static uint32_t take_head_column_bytes(input *in, const drawn_case *c, uint32_t width)
 {
-    const uint32_t kind = below(in, 4), more = below(in, 256);
+    const uint32_t kind = below(in, 3), more = below(in, 256);
     const uint32_t needed = t3r_head_column_bytes(c->weights, c->weights_bytes, width);
-    switch (kind) {
-    case 0:
-        return T3R_HEAD_WORK_(width, height, needed) <= T3R_HEAD_WORK_(width, height, 0) ? 0 : needed;
-    case 1:
-        return T3R_MAX(needed, T3R_HEAD_COLUMN_BYTES);
-    default:
-        return needed + (kind == 2 ? more : 0);
-    }
+    return kind == 0 ? T3R_MAX(needed, T3R_HEAD_COLUMN_BYTES) : needed + (kind == 1 ? more : 0);
 }
 
 static t3r_config take_settings(input *in, const drawn_case *c, bool stereo)
@@ -66,7 +59,7 @@ static t3r_config take_settings(input *in, const drawn_case *c, bool stereo)
     k.keep_percent = below(in, 101);
     k.gamma_q8 = below(in, 513);
     k.head = T3R_HEAD_CONFIGURED + 1 + below(in, T3R_HEAD_COUNT - 1);
-    k.head_column_bytes = take_head_column_bytes(in, c, width, height);
+    k.head_column_bytes = take_head_column_bytes(in, c, width);
     k.refinements = below(in, 3);
     k.fit_passes = below(in, 2);
     k.fit_widths = below(in, 2);

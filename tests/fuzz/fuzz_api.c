@@ -52,7 +52,7 @@ static t3r_config take_config(input *in)
                                                                                                    : T3R_DEPTH_SENSOR;
     c.remember = c.seed >> 3 & 3;
     c.stream = c.seed >> 6 == 3 && c.views > 0 && c.depth == T3R_DEPTH_SENSOR;
-    c.head_column_bytes = c.seed & 4 ? below(in, 2048) : c.head_column_bytes;
+    c.head_column_bytes = c.seed & 4 ? below(in, 2048) : SMALL_SHAPE_COLUMN_BYTES;
     return c;
 }
 

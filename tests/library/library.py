@@ -16,8 +16,8 @@ VERSION = ".".join(re.findall(r"#define T3R_VERSION_\w+ (\d+)", (ROOT / "runtime
 SERIES = VERSION.rpartition(".")[0] # what shared libraries and packages are named by
 HEADS = ROOT / "quant" / "heads"
 HASH = (HERE / "golden_hash.txt").read_text().strip()
-FEATURES = ("stereo", "streams", "learned", "moment", "refinement", "lenses", "comparison", "allocations", "wavelets",
-            "workers", "warm", "loss", "planes", "align")
+FEATURES = ("stereo", "streams", "learned", "refinement", "lenses", "comparison", "allocations", "wavelets", "workers",
+            "warm", "loss", "planes", "align")
 WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 
 

@@ -211,7 +211,7 @@ static void plan_depends_on_sizes_alone(void **state)
     c.wavelet_levels = T3R_MAX_LEVELS;
     c.cluster_batches = 1024;
     c.allocation = T3R_ALLOCATE_PAPER;
-    c.head = T3R_HEAD_MOMENT;
+    c.head = T3R_HEAD_LEARNED;
     c.fill_radius = 8;
     c.bridge_radius = 255;
     c.seed = 12345;

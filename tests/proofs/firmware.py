@@ -51,8 +51,8 @@ def main():
         heads = proof.compile_each(target, sorted(HEADS.glob("*.c")), folder / "heads", EXTRA)
         library = folder / "libheads.a"
         proof.run([target.prefix + "ar", "rcs", library, *heads], check=True)
-        proof.must_find(check(target, objects, library, folder, "small", ["-DSECOND_HEAD=t3r_head_base"]),
-                        "holds base, small", "a firmware that names two")
+        proof.must_find(check(target, objects, library, folder, "small", ["-DSECOND_HEAD=t3r_head_tiny"]),
+                        "holds small, tiny", "a firmware that names two")
         proof.must_find(check(target, objects, library, folder, "large",
                               ["-DHEAD=t3r_head_large", "-DHEAD_BYTES=1"]), "does not link", "one that is not shipped")
         findings = []

@@ -9,7 +9,7 @@ import sys
 import proof
 
 DRIVER = proof.HERE / "instructions_driver.c"
-HEAD_SOURCES = [proof.ROOT / "quant" / "heads" / f"{name}.c" for name in ("nano", "small", "base")]
+HEAD_SOURCES = [proof.ROOT / "quant" / "heads" / f"{name}.c" for name in ("tiny", "small")]
 TARGET = proof.TARGETS["x86_64-O2"]
 
 

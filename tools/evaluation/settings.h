@@ -9,7 +9,7 @@
 /* "flying-off gamma-0.5": those that no column of its own tells. "default" where there are none. */
 void evaluation_settings_rest(const reconstruction_options *settings, char text[EVALUATION_SETTINGS_BYTES]);
 
-/* "_moment_refine-0_k-50_flying-off": all of them; the head where it is `named`. An exit status of cli.h. */
+/* "_analytic_refine-0_k-50_flying-off": all of them; the head where it is `named`. An exit status of cli.h. */
 int evaluation_settings_suffix(const reconstruction_options *settings, bool named,
                                char text[EVALUATION_SETTINGS_BYTES]);
 

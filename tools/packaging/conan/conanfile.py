@@ -5,7 +5,7 @@ from conan import ConanFile
 from conan.tools.cmake import CMake, CMakeToolchain, cmake_layout
 from conan.tools.files import copy
 
-FEATURES = ("stereo", "streams", "learned", "moment", "refinement", "lenses", "comparison", "allocations", "wavelets",
+FEATURES = ("stereo", "streams", "learned", "refinement", "lenses", "comparison", "allocations", "wavelets",
             "workers", "warm", "loss", "planes", "align")
 
 

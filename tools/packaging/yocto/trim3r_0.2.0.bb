@@ -7,11 +7,10 @@ inherit cmake pkgconfig externalsrc
 
 EXTERNALSRC ?= "${THISDIR}/../../.."
 
-PACKAGECONFIG ??= "stereo streams learned moment refinement lenses comparison allocations wavelets workers warm loss planes align"
+PACKAGECONFIG ??= "stereo streams learned refinement lenses comparison allocations wavelets workers warm loss planes align"
 PACKAGECONFIG[stereo] = "-DT3R_WITH_STEREO=ON,-DT3R_WITH_STEREO=OFF"
 PACKAGECONFIG[streams] = "-DT3R_WITH_STREAMS=ON,-DT3R_WITH_STREAMS=OFF"
 PACKAGECONFIG[learned] = "-DT3R_WITH_LEARNED=ON,-DT3R_WITH_LEARNED=OFF"
-PACKAGECONFIG[moment] = "-DT3R_WITH_MOMENT=ON,-DT3R_WITH_MOMENT=OFF"
 PACKAGECONFIG[refinement] = "-DT3R_WITH_REFINEMENT=ON,-DT3R_WITH_REFINEMENT=OFF"
 PACKAGECONFIG[lenses] = "-DT3R_WITH_LENSES=ON,-DT3R_WITH_LENSES=OFF"
 PACKAGECONFIG[comparison] = "-DT3R_WITH_COMPARISON=ON,-DT3R_WITH_COMPARISON=OFF"

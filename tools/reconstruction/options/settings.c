@@ -59,7 +59,7 @@ _Static_assert(sizeof(t3r_wavelet) == 4 && sizeof(t3r_allocation) == 4 && sizeof
             "take of --refine passes as many as the budget and the agreement of the views pay for", false,             \
             "fit-passes")                                                                                              \
     SETTING("fit-widths", "on|off", fit_widths, SWITCH, 0, 1, NULL,                                                    \
-            "without refinement, fit the widths of splats of analytic and moment to the points of all views", false,   \
+            "without refinement, fit the widths of splats of analytic to the points of all views", false,              \
             "fit-widths")                                                                                              \
     SETTING("structural", "on|off", structural, SWITCH, 0, 1, NULL,                                                    \
             "refine structure more than level: local contrast, and not what a whole view shows brighter", false,       \

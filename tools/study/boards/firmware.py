@@ -34,7 +34,7 @@ def left_out(options):
     return [feature for feature in FEATURES if feature not in options.features]
 
 
-CLOSED_FORM = {"analytic": [], "moment": ["-DMOMENT"]} # heads without weights: what says so to the compiler
+CLOSED_FORM = "analytic" # the head without weights
 
 
 def is_small(options):
@@ -47,7 +47,7 @@ def sources_of(board, options):
     absent = {path for feature, pattern in rows if feature in left_out(options)
               for path in RUNTIME.glob(pattern) if not path.stem.endswith("_absent")}
     runtime = sorted(path for path in RUNTIME.rglob("*.c") if "x86" not in path.parts and path not in absent)
-    weights = [] if options.head in CLOSED_FORM else [ROOT / "quant" / "heads" / f"{options.head}.c"]
+    weights = [] if options.head == CLOSED_FORM else [ROOT / "quant" / "heads" / f"{options.head}.c"]
     reader = () if is_small(options) else READER
     other_frames = "frames_recording" if is_small(options) else "frames_planes"
     port = [*sorted(BAREMETAL.glob("*.c")), *sorted((BAREMETAL / BOARDS[board]["port"]).glob("*.c"))]
@@ -57,7 +57,8 @@ def sources_of(board, options):
 
 def choices_of(options):
     """The compiler's words for features, weights and the firmware's kernels."""
-    head = CLOSED_FORM.get(options.head, [f"-DHEAD=t3r_head_{options.head}", f"-DHEAD_BYTES=t3r_head_{options.head}_bytes"])
+    weights = f"t3r_head_{options.head}"
+    head = [] if options.head == CLOSED_FORM else [f"-DHEAD={weights}", f"-DHEAD_BYTES={weights}_bytes"]
     return [*head, *(f"-DT3R_FEATURE_{name.upper()}=0" for name in left_out(options)),
             *(["-DPLAIN_C"] if is_small(options) else []), *(["-flto=auto"] if options.lto else [])]
 
@@ -94,7 +95,7 @@ def words(path, options):
     width, height = options.size
     return [f"frames={planes(path, options) if is_small(options) else path}", f"width={width}", f"height={height}", f"views={options.views}",
             f"gaussians={options.gaussians}", f"clusters={options.clusters}", f"refinements={options.refine}",
-            f"learned={int(options.head not in CLOSED_FORM)}"]
+            f"learned={int(options.head != CLOSED_FORM)}"]
 
 
 def said_by(board, *command):

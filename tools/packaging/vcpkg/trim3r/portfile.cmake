@@ -6,7 +6,6 @@ vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
     stereo T3R_WITH_STEREO
     streams T3R_WITH_STREAMS
     learned T3R_WITH_LEARNED
-    moment T3R_WITH_MOMENT
     refinement T3R_WITH_REFINEMENT
     lenses T3R_WITH_LENSES
     comparison T3R_WITH_COMPARISON
