@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 
 #define COMPRESSION_ROOM 8u /* "zstd", "lz4" or "" */
 #define CHUNK_FIELDS 48u    /* bytes before the records, with the most of a name */

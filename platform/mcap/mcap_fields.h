@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "host/text.h"
 
 typedef struct t3r_mcap_fields {

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <zlib.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "chunk_codec.h"
 #include "host/grow.h"
 #include "reader_limits.h"

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "messages/cdr.h"
 #include "host/fixed_text.h"
 #include "mcap/mcap.h"

@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "host/little_floats.h"
 #include "import/colmap/colmap_camera.h"
 #include "import/colmap/colmap_model.h"
 #include "mcap/reader_limits.h"
@@ -37,9 +37,9 @@ static bool take_doubles(FILE *file, double *values, uint32_t count)
 {
     bool taken = true;
     for (uint32_t i = 0; i < count && taken; i++) {
-        uint64_t bits;
-        taken = take_u64(file, &bits);
-        memcpy(&values[i], &bits, sizeof bits);
+        uint8_t bytes[8];
+        taken = take_bytes(file, bytes, sizeof bytes);
+        values[i] = taken ? t3r_load_double(bytes) : 0;
     }
     return taken;
 }

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "messages/fixed_camera.h"
 #include "import/depth/register_depth.h"
 #include "host/reason.h"

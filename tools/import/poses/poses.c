@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "cli/cli.h"
 #include "messages/fixed_camera.h"
 #include "import/folders/frame.h"
