@@ -7,7 +7,7 @@ compiler=$1
 source=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-files="host/fixed_text host/text mcap/crc32 mcap/mcap_chunk_writer mcap/mcap_writer messages/cdr
+files="host/fixed_text host/text mcap/crc32 mcap/mcap_chunk_writer mcap/mcap_records mcap/mcap_writer messages/cdr
     messages/fixed_camera messages/fixed_double messages/ros_messages messages/ros_schemas recording/pixel_layout
     recording/recorder_chunk recording/recorder_messages recording/recorder_summary recording/recording_writer"
 for file in $files; do

@@ -13,7 +13,7 @@ FEATURES = tuple(name.lower() for name in re.findall(
 BOARDS = {path.parent.name: json.loads(path.read_text()) for path in sorted(BAREMETAL.glob("boards/*/board.json"))}
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
 # What the firmware takes of the platform: the reader of recordings without a heap.
-READER = ("host/fixed_text", "host/text", "messages/cdr", "messages/fixed_camera", "messages/fixed_double",
+READER = ("host/fixed_text", "host/text", "mcap/mcap_records", "messages/cdr", "messages/fixed_camera", "messages/fixed_double",
           "messages/message_frame", "messages/ros_messages", "messages/ros_schemas", "recording/frame_reader",
           "recording/pixel_layout")
 INCLUDES = (RUNTIME / "include", RUNTIME, ROOT / "platform", BAREMETAL, ROOT / "quant" / "heads")
