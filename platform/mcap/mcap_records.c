@@ -40,7 +40,8 @@ t3r_text t3r_mcap_take_text(t3r_mcap_fields *in)
 {
     const uint32_t count = t3r_mcap_take_u32(in);
     const uint8_t *bytes = t3r_mcap_take(in, count);
-    return bytes == NULL ? (t3r_text){"", 0} : (t3r_text){(const char *)bytes, count};
+    /* a text that is not there is empty, and lies in the record as others do */
+    return bytes == NULL ? (t3r_text){(const char *)in->bytes, 0} : (t3r_text){(const char *)bytes, count};
 }
 
 bool t3r_mcap_head_of(const uint8_t *bytes, uint64_t rest, t3r_mcap_head *head)

@@ -29,11 +29,12 @@ def tool(name, *uses, base=("platform",)):
 
 
 tool("cli")
+tool("geometry", base=())
 tool("room")
 tool("pictures", "cli")
-tool("posing", "cli")
+tool("posing", "cli", "geometry")
 tool("import", "pictures", "posing")
-tool("scene", "pictures", "posing")
+tool("scene", "pictures", "geometry")
 tool("reconstruction", "import", "scene", base=("platform", "quant"))
 tool("capture", "reconstruction")
 tool("viewer", "reconstruction")

@@ -86,9 +86,9 @@ static const char *read_image(FILE *file, colmap_model *model)
 {
     uint32_t id, camera;
     uint64_t points;
-    double rotation[4], translation[3];
+    rigid pose;
     char name[COLMAP_NAME_BYTES];
-    if (!take_u32(file, &id) || !take_doubles(file, rotation, 4) || !take_doubles(file, translation, 3) ||
+    if (!take_u32(file, &id) || !take_doubles(file, pose.rotation, 4) || !take_doubles(file, pose.position, 3) ||
         !take_u32(file, &camera)) {
         return cut;
     }
@@ -101,7 +101,7 @@ static const char *read_image(FILE *file, colmap_model *model)
         fseeko(file, (off_t)(points * POINT_BYTES), SEEK_CUR) != 0) {
         return "its points reach past the file's end";
     }
-    return colmap_model_add_image(model, name, camera, rotation, translation);
+    return colmap_model_add_image(model, name, camera, pose);
 }
 
 /* A count, and so many of what `read` takes; each is at least as many bytes as its fields, so a lie ends at the end. */

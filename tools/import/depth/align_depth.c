@@ -28,7 +28,7 @@ bool align_depth_same(const posed_intrinsics *colour, const posed_intrinsics *de
 static int lens_of(const posed_intrinsics *intrinsics, uint32_t width, uint32_t height, lens *out, char *error,
                    size_t error_bytes)
 {
-    const posed_frame frame = {.intrinsics = *intrinsics, .rotation = {1, 0, 0, 0}};
+    const posed_frame frame = {.intrinsics = *intrinsics, .pose = {.rotation = {1, 0, 0, 0}}};
     t3r_recorded_camera recorded = {0};
     t3r_camera fixed;
     if (posed_frame_camera(&frame, width, height, &recorded, error, error_bytes) != 0) {
