@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/quaternion.h"
 #include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 
@@ -48,6 +49,7 @@ const char *colmap_model_add_image(colmap_model *model, const char *name, uint32
         return "no name";
     }
     const char *wrong = pose_check(&from_world);
+    quaternion_normalise(from_world.rotation);
     image.pose = rigid_inverse(&from_world);
     wrong = wrong != NULL ? wrong : pose_check_position(image.pose.position);
     if (wrong != NULL) {

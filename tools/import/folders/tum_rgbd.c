@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "host/file_bytes.h"
+#include "geometry/quaternion.h"
 #include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 #include "host/reason.h"
@@ -90,7 +91,9 @@ static const char *parse_line(char *line, bool poses, stamped *item)
             return "not 'time tx ty tz qx qy qz qw' in finite numbers";
         }
     }
-    return pose_check(&item->pose);
+    const char *wrong = pose_check(&item->pose);
+    quaternion_normalise(item->pose.rotation);
+    return wrong;
 }
 
 static int parse_list(const char *path, char *text, bool poses, stamped_list *list, char *error, size_t error_bytes)

@@ -18,13 +18,10 @@ const char *pose_check_position(const double position[3])
     return NULL;
 }
 
-const char *pose_check(rigid *pose)
+const char *pose_check(const rigid *pose)
 {
     const char *wrong = pose_check_position(pose->position);
     const double norm = quaternion_norm(pose->rotation);
-    if (wrong == NULL && !(norm >= 0.9 && norm <= 1.1)) { /* also where it is not a number */
-        return "the quaternion's norm is not 1 within 0.1";
-    }
-    quaternion_normalise(pose->rotation);
-    return wrong;
+    /* also where it is not a number */
+    return wrong == NULL && !(norm >= 0.9 && norm <= 1.1) ? "the quaternion's norm is not 1 within 0.1" : wrong;
 }

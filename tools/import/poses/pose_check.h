@@ -4,9 +4,9 @@
 
 #include "geometry/rigid.h"
 
-/* Gives the quaternion the norm 1. NULL, or what is wrong: a number that is not finite, a position of
- * 2^T3R_LIMIT_POSITION_LOG2 or more, a norm that is not 1 within 0.1. */
-const char *pose_check(rigid *pose);
+/* NULL, or what is wrong: a number that is not finite, a position of 2^T3R_LIMIT_POSITION_LOG2 or more, a quaternion
+ * whose norm is not 1 within 0.1. */
+const char *pose_check(const rigid *pose);
 /* The position alone. */
 const char *pose_check_position(const double position[3]);
 

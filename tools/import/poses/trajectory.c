@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/quaternion.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
 #include "import/poses/pose_check.h"
@@ -275,13 +276,15 @@ bool trajectory_at(const trajectory *t, int64_t stamp_ns, rigid *pose)
     if (low == 0 || low == t->count) {
         return false;
     }
-    const trajectory_pose *a = &t->poses[low - 1], *b = &t->poses[low];
+    trajectory_pose a = t->poses[low - 1], b = t->poses[low];
     /* b is later; stamps of a bag may be as far apart as uint64_t alone holds */
-    uint64_t gap = (uint64_t)b->stamp_ns - (uint64_t)a->stamp_ns;
+    uint64_t gap = (uint64_t)b.stamp_ns - (uint64_t)a.stamp_ns;
     if (gap > TRAJECTORY_BRACKET_NS) {
         return false;
     }
-    *pose = rigid_between(&a->pose, &b->pose, (double)(stamp_ns - a->stamp_ns) / (double)gap);
+    quaternion_normalise(a.pose.rotation);
+    quaternion_normalise(b.pose.rotation);
+    *pose = rigid_between(&a.pose, &b.pose, (double)(stamp_ns - a.stamp_ns) / (double)gap);
     return true;
 }
 

@@ -30,8 +30,8 @@ int trajectory_read(const char *path, const char *topic, trajectory *out, char *
 int trajectory_parse(char *text, const char *path, trajectory *out, char *error, size_t error_bytes);
 void trajectory_free(trajectory *t);
 
-/* The pose at a time of the trajectory's clock: one of that very time, else between two that are at most
- * TRAJECTORY_BRACKET_NS apart. False where there is none; no memory is asked for. */
+/* The pose at a time of the trajectory's clock: one of that very time as it was read, else between two that are at most
+ * TRAJECTORY_BRACKET_NS apart, its quaternion of norm 1. False where there is none; no memory is asked for. */
 bool trajectory_at(const trajectory *t, int64_t stamp_ns, rigid *pose);
 /* The pose at a time of another clock, `offset_ns` behind the trajectory's; no time of int64_t: none. */
 bool trajectory_at_offset(const trajectory *t, int64_t stamp_ns, int64_t offset_ns, rigid *pose);
