@@ -54,13 +54,15 @@ static int malformed(walk *w, uint8_t opcode, t3r_mcap_place place, const char *
                       t3r_mcap_place_text(place, text), what);
 }
 
+static const char *const short_fields = "a field reaches past the record's end";
+
 /* ---- records that visitors see ---- */
 
 static int read_schema(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
     const t3r_mcap_schema_record schema = t3r_mcap_schema_of(in);
     if (in->failed) {
-        return malformed(w, T3R_MCAP_SCHEMA, place, t3r_mcap_short_fields);
+        return malformed(w, T3R_MCAP_SCHEMA, place, short_fields);
     }
     return schema.id == 0 ? 0 : w->visitor->schema(w->visitor->user, &schema, place);
 }
@@ -68,14 +70,14 @@ static int read_schema(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 static int read_channel(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
     const t3r_mcap_channel_record channel = t3r_mcap_channel_of(in);
-    return in->failed ? malformed(w, T3R_MCAP_CHANNEL, place, t3r_mcap_short_fields)
+    return in->failed ? malformed(w, T3R_MCAP_CHANNEL, place, short_fields)
                       : w->visitor->channel(w->visitor->user, &channel, place);
 }
 
 static int read_message(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
     const t3r_mcap_message_record message = t3r_mcap_message_of(in);
-    return in->failed ? malformed(w, T3R_MCAP_MESSAGE, place, t3r_mcap_short_fields)
+    return in->failed ? malformed(w, T3R_MCAP_MESSAGE, place, short_fields)
                       : w->visitor->message(w->visitor->user, &message, place);
 }
 
@@ -88,7 +90,7 @@ static int read_metadata(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
             return -1;
         }
     }
-    return in->failed || metadata.pairs.failed ? malformed(w, T3R_MCAP_METADATA, place, t3r_mcap_short_fields) : 0;
+    return in->failed || metadata.pairs.failed ? malformed(w, T3R_MCAP_METADATA, place, short_fields) : 0;
 }
 
 static int read_attachment(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
@@ -102,7 +104,7 @@ static int read_attachment(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
     size_t checked = in->at;
     uint32_t crc = t3r_mcap_take_u32(in);
     if (in->failed) {
-        return malformed(w, T3R_MCAP_ATTACHMENT, place, t3r_mcap_short_fields);
+        return malformed(w, T3R_MCAP_ATTACHMENT, place, short_fields);
     }
     if (crc != 0 && crc != crc32_z(0, in->bytes, checked)) {
         return malformed(w, T3R_MCAP_ATTACHMENT, place, "its CRC does not match its bytes");
@@ -282,9 +284,11 @@ static int read_chunk(walk *w, t3r_mcap_fields *in, t3r_mcap_place place, uint64
     if (in->failed && cut) {
         return 0;
     }
-    const char *wrong = in->failed ? t3r_mcap_short_fields : t3r_mcap_chunk_error(&c.record, bytes - in->at);
-    if (wrong != NULL) {
-        return malformed(w, T3R_MCAP_CHUNK, place, wrong);
+    if (in->failed || c.record.packed_bytes > bytes - in->at) {
+        return malformed(w, T3R_MCAP_CHUNK, place, short_fields);
+    }
+    if (c.record.compression.count == 0 && c.record.unpacked_bytes != c.record.packed_bytes) {
+        return malformed(w, T3R_MCAP_CHUNK, place, "uncompressed_size differs from the size of its records");
     }
     const size_t there = in->count - in->at;
     c.packed = in->bytes + in->at;
@@ -311,7 +315,7 @@ static int read_data_end(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
     uint32_t crc = t3r_mcap_take_u32(in);
     if (in->failed) {
-        return malformed(w, T3R_MCAP_DATA_END, place, t3r_mcap_short_fields);
+        return malformed(w, T3R_MCAP_DATA_END, place, short_fields);
     }
     if (crc != 0 && crc != crc_of(w, w->bytes, place.offset)) {
         return malformed(w, T3R_MCAP_DATA_END, place, "the data section's CRC does not match its bytes");
@@ -353,7 +357,7 @@ static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_pl
         }
         t3r_mcap_take_text(in); /* profile */
         t3r_mcap_take_text(in); /* library */
-        return in->failed ? malformed(w, opcode, place, t3r_mcap_short_fields) : 0;
+        return in->failed ? malformed(w, opcode, place, short_fields) : 0;
     case T3R_MCAP_FOOTER:
         return read_footer(w, in, place);
     case T3R_MCAP_SCHEMA: /* those of the summary repeat the data section's */

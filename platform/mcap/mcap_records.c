@@ -4,8 +4,6 @@
 
 #include "core/little_endian.h"
 
-const char *const t3r_mcap_short_fields = "a field reaches past the record's end";
-
 /* Compared so that Frama-C, which follows no relation between `at` and `count`, sees that the bytes are there. */
 const uint8_t *t3r_mcap_take(t3r_mcap_fields *in, uint64_t count)
 {
@@ -96,14 +94,6 @@ t3r_mcap_chunk_record t3r_mcap_chunk_of(t3r_mcap_fields *in)
     chunk.compression = t3r_mcap_take_text(in);
     chunk.packed_bytes = t3r_mcap_take_u64(in);
     return chunk;
-}
-
-const char *t3r_mcap_chunk_error(const t3r_mcap_chunk_record *chunk, uint64_t bytes)
-{
-    return chunk->packed_bytes > bytes ? t3r_mcap_short_fields
-           : chunk->compression.count == 0 && chunk->unpacked_bytes != chunk->packed_bytes
-               ? "uncompressed_size differs from the size of its records"
-               : NULL;
 }
 
 t3r_mcap_metadata_record t3r_mcap_metadata_of(t3r_mcap_fields *in)

@@ -71,8 +71,6 @@ typedef struct t3r_mcap_chunk_record {
     48u /* bytes before the records, with a name of 8 bytes; "zstd", "lz4" and "" are shorter */
 /* The records follow. */
 t3r_mcap_chunk_record t3r_mcap_chunk_of(t3r_mcap_fields *in);
-/* What is wrong with a chunk of which `bytes` bytes follow its fields, or NULL. */
-const char *t3r_mcap_chunk_error(const t3r_mcap_chunk_record *chunk, uint64_t bytes);
 
 /* The name; the pairs follow, as many bytes of them as are there. */
 typedef struct t3r_mcap_metadata_record {
@@ -87,8 +85,5 @@ bool t3r_mcap_pair_of(t3r_mcap_fields *pairs, t3r_text *key, t3r_text *value);
 
 /* What is wrong with the first bytes of a file, 8 of them and more if there are, or NULL. */
 const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count);
-
-/* What is wrong with a record whose fields failed. */
-extern const char *const t3r_mcap_short_fields;
 
 #endif

@@ -164,8 +164,7 @@ static int enter_chunk(t3r_frame_reader *reader, const record *r)
     if (chunk.compression.count > 0) {
         return fail(reader, "its chunks are compressed; trim3r import --compression none unpacks them");
     }
-    const char *wrong = t3r_mcap_chunk_error(&chunk, r->bytes - in.at);
-    if (wrong != NULL || chunk.packed_bytes != r->bytes - in.at) {
+    if (chunk.packed_bytes != r->bytes - in.at) {
         return fail(reader, "a chunk's size is not that of its records");
     }
     reader->at = r->at + in.at;
@@ -405,7 +404,7 @@ int t3r_frame_reader_open(t3r_frame_reader *reader, const t3r_byte_source *sourc
     if (source->bytes >= sizeof magic && read_at(reader, 0, magic, sizeof magic) != 0) {
         return -1;
     }
-    return t3r_mcap_magic_error(magic, sizeof magic) == NULL ? 0 : fail(reader, "this is no MCAP file");
+    return memcmp(magic, T3R_MCAP_MAGIC, sizeof magic) == 0 ? 0 : fail(reader, "this is no MCAP file");
 }
 
 int t3r_frame_reader_find(t3r_frame_reader *reader, t3r_capture_frame *frame)
