@@ -65,11 +65,11 @@ uint32_t t3r_cluster_count(const t3r_config *c)
         return 0;
     }
     const uint32_t points = c->width * c->height * c->views; /* at most 2^28 */
-    if (c->clusters != 0) {
-        return c->clusters;
-    }
     if (t3r_is_stream(c)) {
         return 1;
+    }
+    if (c->clusters != 0) {
+        return c->clusters;
     }
     switch (c->allocation) {
     case T3R_ALLOCATE_DENSITY:

@@ -18,12 +18,6 @@ static inline uint32_t t3r_feature_of_head(t3r_head head)
     return head == T3R_HEAD_LEARNED ? T3R_HAS_LEARNED : 0u;
 }
 
-/* Whether builds follow one another; the compiler knows that they do not where that is left out. */
-static inline bool t3r_is_warm(const t3r_config *config)
-{
-    return T3R_FEATURE_WARM && config->warm != 0;
-}
-
 /* Whether depth is made of the colours; the compiler knows that it is not where stereo is left out. */
 static inline bool t3r_is_by_stereo(const t3r_config *config)
 {
@@ -34,6 +28,12 @@ static inline bool t3r_is_by_stereo(const t3r_config *config)
 static inline bool t3r_is_stream(const t3r_config *config)
 {
     return T3R_FEATURE_STREAMS && config->stream != 0;
+}
+
+/* Whether builds follow one another; the compiler knows that they do not where that is left out. */
+static inline bool t3r_is_warm(const t3r_config *config)
+{
+    return T3R_FEATURE_WARM && config->warm != 0 && !t3r_is_stream(config);
 }
 
 /* What an allocation needs. */

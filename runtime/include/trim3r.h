@@ -240,7 +240,7 @@ typedef struct t3r_config {
     /* The levels of the wavelet transform that texture is summed over, 1..T3R_MAX_LEVELS. [2] */
     uint32_t wavelet_levels;
     /* The number of SuperClusters, K in GaussianTrim3R, 0..T3R_MAX_CLUSTERS. 0 = t3r_cluster_count() chooses. With 1 no
-     * K-means run. [0] */
+     * K-means run. A stream has one, whatever this is. [0] */
     uint32_t clusters;
     /* The number of mini-batches of the K-means before every point is assigned, 0..1024. 0 = t3r_cluster_batch_count()
      * chooses. [0] */
@@ -607,10 +607,10 @@ static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uin
     return config;
 }
 
-/* The SuperClusters that the configuration asks for. Where `clusters` is 0, its allocation chooses: 300 for
- * T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views' pixels
- * for T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters, and for streams. A request's own
- * allocation finds what the configuration's chose. 0 without a configuration. */
+/* The SuperClusters that the configuration asks for: 1 for a stream. Where `clusters` is 0, its allocation chooses: 300
+ * for T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views'
+ * pixels for T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters. A request's own allocation finds
+ * what the configuration's chose. 0 without a configuration. */
 uint32_t t3r_cluster_count(const t3r_config *config);
 
 /* The mini-batches of the K-means. Where `cluster_batches` is 0, one for 8 SuperClusters, 1..24. 0 without a

@@ -14,7 +14,7 @@
 #include "state/state.h"
 #include "drawing.h"
 #include "head/head_views.h"
-#include "pipeline.h"
+#include "stages.h"
 #include "sanitized.h"
 #include "weights_maker.h"
 
