@@ -114,8 +114,12 @@ def main():
     copy_of_tree(folder)
     for preset in sorted({fault.preset for fault in chosen}):
         build_folder = folder / "build" / preset
-        generator = [] if build_folder.exists() or shutil.which("ninja") is None else ["-G", "Ninja"]
-        run("cmake", "-S", folder, "--preset", preset, *generator, "-B", build_folder, "-DT3R_TESTS=ON", "-Wno-dev")
+        words = ["-DT3R_TESTS=ON", "-Wno-dev"]
+        if not build_folder.exists() and shutil.which("ninja"):
+            words += ["-G", "Ninja"]
+        if shutil.which("ccache"):
+            words += ["-DCMAKE_C_COMPILER_LAUNCHER=ccache"]
+        run("cmake", "-S", folder, "--preset", preset, "-B", build_folder, *words)
     missed = []
     for fault in chosen:
         path = file_of(folder, fault)
