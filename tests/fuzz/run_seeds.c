@@ -1,5 +1,5 @@
-/* run_seeds [FOLDER...]: a fuzz target without a fuzzer, for the build with sanitizers. Runs every file of the folders, each
- * also with some bytes changed, and strings of random bytes: the same ones each time. */
+/* run_seeds [FOLDER...]: a fuzz target without a fuzzer, for the build with sanitizers. Runs every file of the folders,
+ * each also with some bytes changed, and strings of random bytes: the same ones each time. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>

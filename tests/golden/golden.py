@@ -7,8 +7,7 @@ golden.py build [--both-ways] [--vectors] [--run EMULATOR] COMPILER FLAG...
                                   with --both-ways in the one that differs most from it, too; with --vectors by the
                                   loops of the processor's instruction sets in the place of plain C
 golden.py replay [--few] TRIM3R   the built-in recording, made and replayed by the program
-                                  with --few only in the way that differs most from the usual one, by vectors: with
-                                  sanitizers plain C takes minutes, and golden_clang_sanitized runs it
+                                  with --few only in the way that differs most from the usual one, by vectors
 Exit 0: the same; 1: other bits, naming the first stage that differs; 77: skipped, a tool is absent.
 """
 import json

@@ -33,7 +33,7 @@ class Fault(NamedTuple):
 
 FAULTS = (
     Fault("bits", "plain C rounds another way", "runtime", "blend.c", "(q_q17[i] + 8) >> 4", "(q_q17[i] + 7) >> 4",
-          "release", "golden_driver", "golden_stages"),
+          "release", "golden_driver", "golden_stages_ways"),
     Fault("vectors", "an AVX2 loop rounds another way", "runtime", "luma_at_avx2.c", "(sum + 32768) >> 16",
           "(sum + 32767) >> 16", "release", "test_kernels", "kernels"),
     Fault("endian", "bytes are not swapped where the machine is big-endian", "runtime", "little_endian.h",
