@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHANGED_A_FILE = 8, RANDOM_STRINGS = 40, MOST_RANDOM_BYTES = 300, MOST_FILE_BYTES = 1 << 20 };
+enum { CHANGED_A_FILE = 64, RANDOM_STRINGS = 200, MOST_RANDOM_BYTES = 300, MOST_FILE_BYTES = 1 << 20 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
