@@ -5,6 +5,8 @@ import re
 import subprocess
 import sys
 
+import objects
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 BAREMETAL = ROOT / "platform" / "baremetal"
 RUNTIME = ROOT / "runtime"
@@ -43,40 +45,42 @@ def is_small(options):
 
 
 def sources_of(board, options):
+    """The firmware's own, and the runtime's."""
     rows = [line.split() for line in (RUNTIME / "features.txt").read_text().splitlines() if not line.startswith("#")]
     absent = {path for feature, pattern in rows if feature in left_out(options)
               for path in RUNTIME.glob(pattern) if not path.stem.endswith("_absent")}
-    runtime = sorted(path for path in RUNTIME.rglob("*.c") if "x86" not in path.parts and path not in absent)
+    runtime = [path for path in objects.sources() if path not in absent]
     weights = [] if options.head == CLOSED_FORM else [ROOT / "quant" / "heads" / f"{options.head}.c"]
     reader = () if is_small(options) else READER
     other_frames = "frames_recording" if is_small(options) else "frames_planes"
     port = [*sorted(BAREMETAL.glob("*.c")), *sorted((BAREMETAL / BOARDS[board]["port"]).glob("*.c"))]
-    return [*(path for path in port if path.stem != other_frames), *runtime, *weights,
-            *(ROOT / "platform" / f"{name}.c" for name in reader)]
+    own = [*(path for path in port if path.stem != other_frames), *weights,
+           *(ROOT / "platform" / f"{name}.c" for name in reader)]
+    return own, runtime
+
+
+def features_of(options):
+    """The compiler's words for the runtime."""
+    return [*(f"-DT3R_FEATURE_{name.upper()}=0" for name in left_out(options)), *(["-flto=auto"] if options.lto else [])]
 
 
 def choices_of(options):
     """The compiler's words for features, weights and the firmware's kernels."""
     weights = f"t3r_head_{options.head}"
     head = [] if options.head == CLOSED_FORM else [f"-DHEAD={weights}", f"-DHEAD_BYTES={weights}_bytes"]
-    return [*head, *(f"-DT3R_FEATURE_{name.upper()}=0" for name in left_out(options)),
-            *(["-DPLAIN_C"] if is_small(options) else []), *(["-flto=auto"] if options.lto else [])]
+    return [*head, *features_of(options), *(["-DPLAIN_C"] if is_small(options) else [])]
 
 
-def build(board, suffix, compiler, link, options, compiled=lambda sources: sources):
-    """The board's firmware, by this compiler with these words for the linker; `compiled` may make objects of sources
-    by another."""
+def build(board, suffix, compiler, link, options, runtime_compiler=None):
+    """The board's firmware, by this compiler with these words for the linker; the runtime may be by another."""
     parts = [f"{board}-{options.head}{options.optimize}", *(["lto"] if options.lto else []),
              *(["clang"] if options.clang else []),
              *(f"no_{name}" for name in left_out(options)), *([str(options.ram)] if options.ram else [])]
     made = options.out / f"{'-'.join(parts)}{suffix}"
-    sources = sources_of(board, options)
-    given = [*sources, *(path for folder in INCLUDES for path in folder.rglob("*.h")), *BAREMETAL.rglob("*.ld"),
-             *BAREMETAL.rglob("*.json")]
-    if made.exists() and made.stat().st_mtime > max(path.stat().st_mtime for path in given):
-        return made
-    run(*compiler, *FLAGS, options.optimize, *BOARDS[board]["flags"], *INCLUDE, *choices_of(options),
-        *compiled(sources), *link, "-o", made)
+    own, runtime = sources_of(board, options)
+    flags = [options.optimize, *BOARDS[board]["flags"]]
+    compiled = objects.compiled([*(runtime_compiler or compiler), *flags, *features_of(options)], runtime)
+    run(*compiler, *FLAGS, *flags, *INCLUDE, *choices_of(options), *own, *compiled, *link, "-o", made)
     return made
 
 
