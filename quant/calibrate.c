@@ -6,7 +6,7 @@
 #include "budget/budget.h"
 #include "head/head_features.h"
 #include "head/head_views.h"
-#include "pipeline.h"
+#include "stages.h"
 #include "state/state.h"
 
 /* Histograms by size: OCTAVES x STEPS bins from 2^LOWEST on; bin 0 holds all that is smaller, the last all larger. */

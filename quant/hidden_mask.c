@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "le_bytes.h"
-#include "weight_file.h"
+#include "core/little_endian.h"
 #include "head/weights.h"
+#include "weight_file.h"
 
 /* What stands for them, and beside 16-bit activations that much more. */
 static const struct {
@@ -46,9 +46,9 @@ static size_t biases_of(const t3r_layer *layer)
 static void fold(const layer_blocks *blocks, size_t weight, size_t bias, int64_t value)
 {
     uint8_t *at = blocks->weights + weight * blocks->weight_bytes, *to = blocks->bias + bias * blocks->bias_bytes;
-    int64_t sum = le_get_signed(to, blocks->bias_bytes) + value * le_get_signed(at, blocks->weight_bytes);
-    le_put(at, 0, blocks->weight_bytes);
-    le_put(to, (uint64_t)sum, blocks->bias_bytes);
+    int64_t sum = weight_number(to, blocks->bias_bytes) + value * weight_number(at, blocks->weight_bytes);
+    weight_number_put(at, 0, blocks->weight_bytes);
+    weight_number_put(to, sum, blocks->bias_bytes);
 }
 
 /* Every weight of input `channel`. */
@@ -107,16 +107,15 @@ uint8_t *hidden_mask_make(const uint8_t *file, size_t *count)
         uint8_t *row = copy + T3R_WEIGHTS_HEADER_BYTES + (size_t)n * T3R_WEIGHTS_LAYER_BYTES;
         layer_blocks blocks = {.layer = layer, .weight_bytes = weight_bytes, .bias_bytes = bias_bytes};
         blocks.weights = copy + at;
-        le_put(row + LAYER_AT_WEIGHTS, at, 4);
+        t3r_store_le32(row + LAYER_AT_WEIGHTS, (uint32_t)at);
         memcpy(blocks.weights, file + layer.weights, weights_of(&layer) * weight_bytes);
         at += aligned(weights_of(&layer) * weight_bytes);
         blocks.bias = copy + at;
-        le_put(row + LAYER_AT_BIAS, at, 4);
+        t3r_store_le32(row + LAYER_AT_BIAS, (uint32_t)at);
         memcpy(blocks.bias, file + layer.bias, biases_of(&layer) * bias_bytes);
         at += aligned(biases_of(&layer) * bias_bytes);
         fold_layer(&blocks, header.activation_bits == 16);
     }
-    le_put(copy + WEIGHT_AT_BYTES, *count, 4);
-    le_put(copy + WEIGHT_AT_CRC, weight_file_crc(copy, *count), 4);
+    weight_file_seal(copy, *count);
     return copy;
 }

@@ -7,6 +7,7 @@
 
 #include <cjson/cJSON.h>
 
+#include "core/little_endian.h"
 #include "quant_reason.h"
 
 #define LENGTH_BYTES 8u
@@ -269,8 +270,7 @@ const char *safetensors_metadata(const safetensors *file, const char *key)
 
 float safetensors_element(const safetensors_tensor *tensor, uint64_t i)
 {
-    const uint8_t *b = tensor->bytes + 4 * i;
-    uint32_t bits = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    const uint32_t bits = t3r_load_le32(tensor->bytes + 4 * i);
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;

@@ -2,8 +2,9 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
-#include "le_bytes.h"
+#include "core/little_endian.h"
 #include "trim3r.h"
 
 static size_t aligned(size_t bytes)
@@ -63,45 +64,54 @@ uint32_t weight_parameters(const head_graph *graph)
     return (uint32_t)parameters;
 }
 
-uint32_t weight_file_crc(const uint8_t *bytes, size_t count)
+void weight_number_put(uint8_t *to, int64_t value, uint32_t bytes)
 {
-    uint32_t crc = 0xffffffffu;
-    for (size_t i = 16; i < count; i++) {
-        crc ^= bytes[i];
-        for (int bit = 0; bit < 8; bit++) {
-            crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xedb88320u : 0);
-        }
+    for (uint32_t i = 0; i < bytes; i++) {
+        to[i] = (uint8_t)((uint64_t)value >> (8 * i));
     }
-    return ~crc;
 }
 
-static void put_header(uint8_t *to, const quantized_head *head, size_t count)
+int64_t weight_number(const uint8_t *from, uint32_t bytes)
+{
+    uint64_t value = 0, sign = UINT64_C(1) << (8 * bytes - 1);
+    for (uint32_t i = 0; i < bytes; i++) {
+        value |= (uint64_t)from[i] << (8 * i);
+    }
+    return (int64_t)((value ^ sign) - sign);
+}
+
+void weight_file_seal(uint8_t *bytes, size_t count)
+{
+    t3r_store_le32(bytes + WEIGHT_AT_BYTES, (uint32_t)count);
+    t3r_store_le32(bytes + WEIGHT_AT_CRC, (uint32_t)crc32_z(0, bytes + WEIGHT_AT_SEALED, count - WEIGHT_AT_SEALED));
+}
+
+static void put_header(uint8_t *to, const quantized_head *head)
 {
     memcpy(to + WEIGHT_AT_MAGIC, "T3RW", 4); /* no text. NOLINT(bugprone-not-null-terminated-result) */
-    le_put(to + WEIGHT_AT_FORMAT, T3R_WEIGHTS_FORMAT, 2);
-    le_put(to + WEIGHT_AT_EPOCH, T3R_BITS_EPOCH, 2);
-    le_put(to + WEIGHT_AT_BYTES, count, 4);
-    le_put(to + WEIGHT_AT_WEIGHT_BITS, head->weight_bits, 1);
-    le_put(to + WEIGHT_AT_ACTIVATION_BITS, head->activation_bits, 1);
-    le_put(to + WEIGHT_AT_LAYERS, head->graph.count, 1);
-    le_put(to + WEIGHT_AT_FEATURE_SET, T3R_FEATURE_SET, 1);
-    le_put(to + WEIGHT_AT_MACS, weight_macs_q8(&head->graph), 4);
-    le_put(to + WEIGHT_AT_PARAMETERS, weight_parameters(&head->graph), 4);
+    t3r_store_le16(to + WEIGHT_AT_FORMAT, T3R_WEIGHTS_FORMAT);
+    t3r_store_le16(to + WEIGHT_AT_EPOCH, T3R_BITS_EPOCH);
+    to[WEIGHT_AT_WEIGHT_BITS] = (uint8_t)head->weight_bits;
+    to[WEIGHT_AT_ACTIVATION_BITS] = (uint8_t)head->activation_bits;
+    to[WEIGHT_AT_LAYERS] = (uint8_t)head->graph.count;
+    to[WEIGHT_AT_FEATURE_SET] = T3R_FEATURE_SET;
+    t3r_store_le32(to + WEIGHT_AT_MACS, weight_macs_q8(&head->graph));
+    t3r_store_le32(to + WEIGHT_AT_PARAMETERS, weight_parameters(&head->graph));
     memcpy(to + WEIGHT_AT_NAME, head->graph.name, strlen(head->graph.name));
 }
 
 static void put_row(uint8_t *to, const head_layer *layer, int16_t zero)
 {
-    le_put(to + LAYER_AT_KIND, layer->kind, 1);
-    le_put(to + LAYER_AT_LEVEL, layer->level, 1);
-    le_put(to + LAYER_AT_SOURCE, layer->sources[0], 1);
-    le_put(to + LAYER_AT_SOURCE + 1, layer->sources[1], 1);
-    le_put(to + LAYER_AT_INPUTS, layer->inputs, 2);
-    le_put(to + LAYER_AT_OUTPUTS, layer->outputs, 2);
-    le_put(to + LAYER_AT_KERNEL, layer->kernel, 1);
-    le_put(to + LAYER_AT_STRIDE, layer->stride, 1);
-    le_put(to + LAYER_AT_PHASES, layer->phases, 1);
-    le_put(to + LAYER_AT_ZERO, (uint64_t)(int64_t)zero, 2);
+    to[LAYER_AT_KIND] = (uint8_t)layer->kind;
+    to[LAYER_AT_LEVEL] = (uint8_t)layer->level;
+    to[LAYER_AT_SOURCE] = (uint8_t)layer->sources[0];
+    to[LAYER_AT_SOURCE + 1] = (uint8_t)layer->sources[1];
+    t3r_store_le16(to + LAYER_AT_INPUTS, (uint16_t)layer->inputs);
+    t3r_store_le16(to + LAYER_AT_OUTPUTS, (uint16_t)layer->outputs);
+    to[LAYER_AT_KERNEL] = (uint8_t)layer->kernel;
+    to[LAYER_AT_STRIDE] = (uint8_t)layer->stride;
+    to[LAYER_AT_PHASES] = (uint8_t)layer->phases;
+    t3r_store_le16(to + LAYER_AT_ZERO, (uint16_t)zero);
 }
 
 static int64_t block_number(const quantized_layer *layer, enum weight_block block, size_t i)
@@ -125,7 +135,7 @@ uint8_t *weight_file_make(const quantized_head *head, size_t *count)
     if (bytes == NULL) {
         return NULL;
     }
-    put_header(bytes, head, *count);
+    put_header(bytes, head);
     size_t at = T3R_WEIGHTS_HEADER_BYTES + (size_t)head->graph.count * T3R_WEIGHTS_LAYER_BYTES;
     for (uint32_t n = 0; n < head->graph.count; n++) {
         const head_layer *layer = &head->graph.layers[n];
@@ -135,13 +145,13 @@ uint8_t *weight_file_make(const quantized_head *head, size_t *count)
             enum weight_block block = (enum weight_block)b;
             uint32_t step = weight_block_step(block, head->weight_bits, head->activation_bits);
             size_t length = weight_block_bytes(layer, block, head->weight_bits, head->activation_bits);
-            le_put(row + LAYER_AT_WEIGHTS + 4 * b, at, 4);
+            t3r_store_le32(row + LAYER_AT_WEIGHTS + 4 * b, (uint32_t)at);
             for (size_t i = 0; i < length / step && head->layers[n].weight != NULL; i++) {
-                le_put(bytes + at + i * step, (uint64_t)block_number(&head->layers[n], block, i), step);
+                weight_number_put(bytes + at + i * step, block_number(&head->layers[n], block, i), step);
             }
             at += aligned(length);
         }
     }
-    le_put(bytes + WEIGHT_AT_CRC, weight_file_crc(bytes, *count), 4);
+    weight_file_seal(bytes, *count);
     return bytes;
 }

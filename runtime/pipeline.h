@@ -2,10 +2,8 @@
 #ifndef T3R_PIPELINE_H
 #define T3R_PIPELINE_H
 
-#include "budget/budget.h"
 #include "budget/importance.h"
 #include "state/state.h"
-#include "head/head.h"
 #include "trim3r.h"
 #include "state/views.h"
 
@@ -14,12 +12,5 @@ t3r_status t3r_analyse(t3r_runtime *rt);
 /* Budget, head and refinement: the scene. `importance` is that of the allocation `given`, NULL for the others. */
 t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_view *views, const t3r_build *build,
                            const t3r_importance *importance);
-
-/* What the last t3r_build_scene() allocated by, for whoever looks on from outside: of an analysed runtime, its planes
- * by t3r_views_of(). */
-t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views);
-
-/* The texture plane of a single view, not blurred yet: for streams. */
-void t3r_view_texture(const t3r_runtime *rt, const t3r_view *view);
 
 #endif

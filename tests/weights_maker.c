@@ -17,9 +17,9 @@
             {POINT, 0, {9, NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS},                                                          \
     }
 const made_layer small_shape[] = SHAPE(16, 32, 48);
-const made_layer base_shape[] = SHAPE(28, 56, 72);
+const made_layer wide_shape[] = SHAPE(28, 56, 72);
 const uint32_t small_layers = sizeof small_shape / sizeof *small_shape;
-const uint32_t base_layers = sizeof base_shape / sizeof *base_shape;
+const uint32_t wide_layers = sizeof wide_shape / sizeof *wide_shape;
 
 static uint64_t next(uint64_t *state)
 {

@@ -14,9 +14,10 @@ typedef struct made_layer {
     uint16_t outputs;
 } made_layer;
 
-/* Shapes of the size of the shipped heads; their length. */
-extern const made_layer small_shape[], base_shape[];
-extern const uint32_t small_layers, base_layers;
+/* A U-net of about the size of the shipped `small`, and one of thrice its multiply-accumulates; their length. */
+extern const made_layer small_shape[], wide_shape[];
+extern const uint32_t small_layers, wide_layers;
+#define SMALL_SHAPE_COLUMN_BYTES 704 /* of head work, at any width and with any bits */
 
 /* The file, aligned to 16 and to be freed; *bytes its length. */
 uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_bits, uint32_t activation_bits,

@@ -87,8 +87,6 @@ static t3r_config configure(const options *o)
         config.head = T3R_HEAD_LEARNED;
         config.head_column_bytes = t3r_head_column_bytes(HEAD, HEAD_BYTES, o->width);
     }
-#elif defined(MOMENT)
-    config.head = T3R_HEAD_MOMENT;
 #endif
     return config;
 }

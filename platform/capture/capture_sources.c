@@ -7,62 +7,51 @@
 #include "host/reason.h"
 #include "host/text.h"
 
-/* Every adapter, in the order of the list; of one that was left out, what its user is told. */
-#define ALWAYS(name) HERE(name)
-#ifdef T3R_V4L2
-#define WITH_V4L2 HERE(v4l2)
-#else
-#define WITH_V4L2 ABSENT("v4l2", "DEVICE", "it needs Linux; T3R_V4L2 was off when it was configured")
-#endif
-#ifdef T3R_LIBCAMERA
-#define WITH_LIBCAMERA HERE(libcamera)
-#else
-#define WITH_LIBCAMERA                                                                                                 \
-    ABSENT("libcamera", "CAMERA", "tools/setup --cameras, then configure again with T3R_LIBCAMERA=AUTO")
-#endif
-#ifdef T3R_OPENCV
-#define WITH_OPENCV HERE(opencv)
-#else
-#define WITH_OPENCV ABSENT("opencv", "URL", "tools/setup --cameras, then configure again with T3R_OPENCV=AUTO")
-#endif
-#define SOURCES ALWAYS(replay) WITH_V4L2 WITH_LIBCAMERA WITH_OPENCV
+extern const t3r_capture_source t3r_source_replay, t3r_source_v4l2, t3r_source_libcamera, t3r_source_opencv;
 
-#define HERE(name) extern const t3r_capture_source t3r_source_##name;
-#define ABSENT(name, argument, why)
-SOURCES
-#undef HERE
-#undef ABSENT
-
-typedef struct source_row {
-    const t3r_capture_source *source; /* NULL: not in this build */
-    const char *name, *argument, *why;
-} source_row;
-
-static const source_row rows[] = {
-#define HERE(name) {&t3r_source_##name, #name, NULL, NULL},
-#define ABSENT(name, argument, why) {NULL, name, argument, "not in this build (" why ")"},
-    SOURCES
-#undef HERE
-#undef ABSENT
+/* An adapter that is not in this build cannot be opened, and says why. */
+#ifndef T3R_V4L2
+const t3r_capture_source t3r_source_v4l2 = {
+    .name = "v4l2",
+    .argument = "DEVICE",
+    .says = "not in this build (it needs Linux; T3R_V4L2 was off when it was configured)",
 };
-#define ROWS (sizeof rows / sizeof rows[0])
+#endif
+#ifndef T3R_LIBCAMERA
+const t3r_capture_source t3r_source_libcamera = {
+    .name = "libcamera",
+    .argument = "CAMERA",
+    .says = "not in this build (tools/setup --cameras, then configure again with T3R_LIBCAMERA=AUTO)",
+};
+#endif
+#ifndef T3R_OPENCV
+const t3r_capture_source t3r_source_opencv = {
+    .name = "opencv",
+    .argument = "URL",
+    .says = "not in this build (tools/setup --cameras, then configure again with T3R_OPENCV=AUTO)",
+};
+#endif
+
+/* In the order of the list. */
+static const t3r_capture_source *const sources[] = {&t3r_source_replay, &t3r_source_v4l2, &t3r_source_libcamera,
+                                                    &t3r_source_opencv};
+#define SOURCES (sizeof sources / sizeof sources[0])
 
 uint32_t t3r_capture_adapter_count(void)
 {
-    return ROWS;
+    return SOURCES;
 }
 
 t3r_capture_adapter t3r_capture_adapter_of(uint32_t index)
 {
-    const t3r_capture_source *source = rows[index].source;
-    t3r_capture_adapter told = {.name = rows[index].name, .available = source != NULL};
-    if (source != NULL && source->module != NULL &&
-        t3r_capture_module(source->module, told.says, sizeof told.says) == NULL) {
-        told.available = false;
+    const t3r_capture_source *source = sources[index];
+    t3r_capture_adapter adapter = {.name = source->name, .available = source->open != NULL};
+    if (source->module != NULL && t3r_capture_module(source->module, adapter.says, sizeof adapter.says) == NULL) {
+        adapter.available = false;
     } else {
-        snprintf(told.says, sizeof told.says, "%s", source != NULL ? source->says : rows[index].why);
+        snprintf(adapter.says, sizeof adapter.says, "%s", source->says);
     }
-    return told;
+    return adapter;
 }
 
 /* Devices name themselves: any text. */
@@ -82,10 +71,9 @@ static void say_clean(void *user, const char *line)
 void t3r_capture_devices(const char *adapter, void (*say)(void *user, const char *line), void *user)
 {
     listener to = {say, user};
-    for (uint32_t i = 0; i < ROWS; i++) {
-        const t3r_capture_source *source = rows[i].source;
-        if (source != NULL && source->devices != NULL && strcmp(source->name, adapter) == 0) {
-            source->devices(say_clean, &to);
+    for (uint32_t i = 0; i < SOURCES; i++) {
+        if (sources[i]->devices != NULL && strcmp(sources[i]->name, adapter) == 0) {
+            sources[i]->devices(say_clean, &to);
         }
     }
 }
@@ -105,10 +93,9 @@ static t3r_capture *refuse_unknown(const char *what, char *error, size_t error_b
 {
     char known[256] = "";
     size_t length = 0;
-    for (uint32_t i = 0; i < ROWS && length < sizeof known; i++) {
-        const char *argument = rows[i].source != NULL ? rows[i].source->argument : rows[i].argument;
-        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s:%s", i == 0 ? "" : ", ", rows[i].name,
-                                   argument);
+    for (uint32_t i = 0; i < SOURCES && length < sizeof known; i++) {
+        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s:%s", i == 0 ? "" : ", ",
+                                   sources[i]->name, sources[i]->argument);
     }
     t3r_reason(error, error_bytes, "%s: is none of %s", what, known);
     return NULL;
@@ -123,13 +110,13 @@ t3r_capture *t3r_capture_open(const char *source, const t3r_capture_settings *se
         return NULL;
     }
     const char *colon = strchr(source, ':');
-    for (uint32_t i = 0; colon != NULL && i < ROWS; i++) {
-        size_t length = strlen(rows[i].name);
-        if ((size_t)(colon - source) != length || strncmp(source, rows[i].name, length) != 0) {
+    for (uint32_t i = 0; colon != NULL && i < SOURCES; i++) {
+        const size_t length = strlen(sources[i]->name);
+        if ((size_t)(colon - source) != length || strncmp(source, sources[i]->name, length) != 0) {
             continue;
         }
-        if (rows[i].source != NULL) {
-            return rows[i].source->open(colon + 1, &filled, error, error_bytes);
+        if (sources[i]->open != NULL) {
+            return sources[i]->open(colon + 1, &filled, error, error_bytes);
         }
         t3r_reason(error, error_bytes, "this adapter is not in this build: trim3r capture --list says why");
         return NULL;

@@ -2,10 +2,8 @@
 
 #include <string.h>
 
-#include "host/bytes.h"
+#include "mcap_records.h"
 
-#define COMPRESSION_ROOM 8u /* "zstd", "lz4" or "" */
-#define CHUNK_FIELDS 48u    /* bytes before the records, with the most of a name */
 #define MESSAGE_INDEX_BYTES (T3R_MCAP_RECORD_HEAD_BYTES + 2 + 4 + 16) /* of one message */
 
 void t3r_mcap_chunk_note(t3r_mcap_chunk *chunk, uint16_t channel, uint64_t time_ns, uint64_t offset)
@@ -45,9 +43,8 @@ void t3r_mcap_message_indexes(t3r_mcap_writer *writer, const t3r_mcap_chunk *chu
 /* A chunk and its message indexes as the file holds them. */
 typedef struct written_chunk {
     uint64_t start, length; /* of the record */
-    uint8_t times[16];
-    uint64_t bytes, packed_bytes;
-    char compression[COMPRESSION_ROOM + 1];
+    uint8_t head[T3R_MCAP_RECORD_HEAD_BYTES + T3R_MCAP_CHUNK_FIELDS];
+    t3r_mcap_chunk_record fields; /* points into head */
     uint32_t channels;
     uint8_t channel[T3R_MCAP_CHUNK_CHANNELS][2];
 } written_chunk;
@@ -62,23 +59,19 @@ static int read_back(const t3r_mcap_writer *writer, uint64_t offset, uint64_t en
 /* 0, or -1 where the file does not hold what was written. */
 static int read_chunk(const t3r_mcap_writer *writer, uint64_t start, uint64_t end, written_chunk *out)
 {
-    uint8_t head[T3R_MCAP_RECORD_HEAD_BYTES + CHUNK_FIELDS], indexes[T3R_MCAP_CHUNK_CHANNELS * MESSAGE_INDEX_BYTES];
+    uint8_t indexes[T3R_MCAP_CHUNK_CHANNELS * MESSAGE_INDEX_BYTES];
     size_t count;
-    if (read_back(writer, start, end, head, sizeof head, &count) != 0 || count < sizeof head ||
-        head[0] != T3R_MCAP_CHUNK) {
+    t3r_mcap_head head;
+    if (read_back(writer, start, end, out->head, sizeof out->head, &count) != 0 || count < sizeof out->head ||
+        !t3r_mcap_head_of(out->head, end - start, &head) || head.opcode != T3R_MCAP_CHUNK) {
         return -1;
     }
-    const uint8_t *fields = head + T3R_MCAP_RECORD_HEAD_BYTES;
-    uint32_t name = t3r_load_le32(fields + 28);
-    *out = (written_chunk){.start = start, .length = T3R_MCAP_RECORD_HEAD_BYTES + t3r_load_le64(head + 1)};
-    if (name > COMPRESSION_ROOM || out->length > end - start) {
-        return -1;
-    }
-    memcpy(out->times, fields, sizeof out->times);
-    out->bytes = t3r_load_le64(fields + 16);
-    memcpy(out->compression, fields + 32, name);
-    out->packed_bytes = t3r_load_le64(fields + 32 + name);
-    if (read_back(writer, start + out->length, end, indexes, sizeof indexes, &count) != 0) {
+    t3r_mcap_fields in = {out->head + T3R_MCAP_RECORD_HEAD_BYTES, T3R_MCAP_CHUNK_FIELDS, 0, false};
+    out->fields = t3r_mcap_chunk_of(&in);
+    out->start = start;
+    out->length = T3R_MCAP_RECORD_HEAD_BYTES + head.bytes;
+    out->channels = 0;
+    if (in.failed || read_back(writer, start + out->length, end, indexes, sizeof indexes, &count) != 0) {
         return -1;
     }
     while (out->channels < T3R_MCAP_CHUNK_CHANNELS && (out->channels + 1) * MESSAGE_INDEX_BYTES <= count &&
@@ -91,9 +84,11 @@ static int read_chunk(const t3r_mcap_writer *writer, uint64_t start, uint64_t en
 
 static void put_chunk_index(t3r_mcap_writer *writer, const written_chunk *chunk)
 {
-    t3r_text name = t3r_text_of(chunk->compression);
-    t3r_mcap_record(writer, T3R_MCAP_CHUNK_INDEX, 16 + 8 + 8 + 4 + chunk->channels * 10 + 8 + 4 + name.count + 8 + 8);
-    t3r_mcap_put_raw(writer, chunk->times, sizeof chunk->times);
+    const t3r_mcap_chunk_record *fields = &chunk->fields;
+    t3r_mcap_record(writer, T3R_MCAP_CHUNK_INDEX,
+                    16 + 8 + 8 + 4 + chunk->channels * 10 + 8 + 4 + fields->compression.count + 8 + 8);
+    t3r_mcap_put_u64(writer, fields->first_ns);
+    t3r_mcap_put_u64(writer, fields->last_ns);
     t3r_mcap_put_u64(writer, chunk->start);
     t3r_mcap_put_u64(writer, chunk->length);
     t3r_mcap_put_u32(writer, chunk->channels * 10);
@@ -102,9 +97,9 @@ static void put_chunk_index(t3r_mcap_writer *writer, const written_chunk *chunk)
         t3r_mcap_put_u64(writer, chunk->start + chunk->length + i * MESSAGE_INDEX_BYTES);
     }
     t3r_mcap_put_u64(writer, (uint64_t)chunk->channels * MESSAGE_INDEX_BYTES);
-    t3r_mcap_put_text(writer, name);
-    t3r_mcap_put_u64(writer, chunk->packed_bytes);
-    t3r_mcap_put_u64(writer, chunk->bytes);
+    t3r_mcap_put_text(writer, fields->compression);
+    t3r_mcap_put_u64(writer, fields->packed_bytes);
+    t3r_mcap_put_u64(writer, fields->unpacked_bytes);
 }
 
 void t3r_mcap_chunk_indexes(t3r_mcap_writer *writer, uint64_t start, uint64_t end)

@@ -6,13 +6,10 @@
 #include <string.h>
 #include <zlib.h>
 
-#include "host/bytes.h"
 #include "chunk_codec.h"
 #include "host/grow.h"
-#include "reader_limits.h"
-#include "mcap.h"
-#include "mcap_fields.h"
 #include "host/reason.h"
+#include "reader_limits.h"
 
 #define REST_BYTES (UINT64_C(32) << 20) /* of a file in the spill that are read before their pages may go */
 
@@ -63,57 +60,37 @@ static const char *const short_fields = "a field reaches past the record's end";
 
 static int read_schema(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    t3r_mcap_schema_record schema = {.id = t3r_mcap_take_u16(in)};
-    schema.name = t3r_mcap_take_text(in);
-    schema.encoding = t3r_mcap_take_text(in);
-    schema.definition = t3r_mcap_take_text(in);
+    const t3r_mcap_schema_record schema = t3r_mcap_schema_of(in);
     if (in->failed) {
         return malformed(w, T3R_MCAP_SCHEMA, place, short_fields);
     }
-    /* Id 0 means "no schema": such a record is to be ignored. */
     return schema.id == 0 ? 0 : w->visitor->schema(w->visitor->user, &schema, place);
 }
 
 static int read_channel(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    t3r_mcap_channel_record channel = {.id = t3r_mcap_take_u16(in)};
-    channel.schema = t3r_mcap_take_u16(in);
-    channel.topic = t3r_mcap_take_text(in);
-    channel.encoding = t3r_mcap_take_text(in);
-    t3r_mcap_take_text(in); /* the map of metadata, unused */
-    if (in->failed) {
-        return malformed(w, T3R_MCAP_CHANNEL, place, short_fields);
-    }
-    return w->visitor->channel(w->visitor->user, &channel, place);
+    const t3r_mcap_channel_record channel = t3r_mcap_channel_of(in);
+    return in->failed ? malformed(w, T3R_MCAP_CHANNEL, place, short_fields)
+                      : w->visitor->channel(w->visitor->user, &channel, place);
 }
 
 static int read_message(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    t3r_mcap_message_record message = {.channel = t3r_mcap_take_u16(in)};
-    message.sequence = t3r_mcap_take_u32(in);
-    message.log_ns = t3r_mcap_take_u64(in);
-    message.publish_ns = t3r_mcap_take_u64(in);
-    if (in->failed) {
-        return malformed(w, T3R_MCAP_MESSAGE, place, short_fields);
-    }
-    message.data = in->bytes + in->at;
-    message.bytes = in->count - in->at;
-    return w->visitor->message(w->visitor->user, &message, place);
+    const t3r_mcap_message_record message = t3r_mcap_message_of(in);
+    return in->failed ? malformed(w, T3R_MCAP_MESSAGE, place, short_fields)
+                      : w->visitor->message(w->visitor->user, &message, place);
 }
 
 static int read_metadata(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
-    t3r_text name = t3r_mcap_take_text(in);
-    t3r_text map = t3r_mcap_take_text(in);
-    t3r_mcap_fields pairs = {(const uint8_t *)map.chars, map.count, 0, in->failed};
-    while (!pairs.failed && pairs.at < pairs.count) {
-        t3r_text key = t3r_mcap_take_text(&pairs);
-        t3r_text value = t3r_mcap_take_text(&pairs);
-        if (!pairs.failed && w->visitor->metadata(w->visitor->user, name, key, value, place) < 0) {
+    t3r_mcap_metadata_record metadata = t3r_mcap_metadata_of(in);
+    t3r_text key, value;
+    while (!in->failed && t3r_mcap_pair_of(&metadata.pairs, &key, &value)) {
+        if (w->visitor->metadata(w->visitor->user, metadata.name, key, value, place) < 0) {
             return -1;
         }
     }
-    return pairs.failed ? malformed(w, T3R_MCAP_METADATA, place, short_fields) : 0;
+    return in->failed || metadata.pairs.failed ? malformed(w, T3R_MCAP_METADATA, place, short_fields) : 0;
 }
 
 static int read_attachment(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
@@ -155,36 +132,27 @@ static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chun
     int kept = 0;
     for (size_t at = 0; at < count;) {
         place.offset = at;
-        uint8_t opcode = bytes[at];
-        bool has_head = count - at >= T3R_MCAP_RECORD_HEAD_BYTES;
-        uint64_t length = has_head ? t3r_load_le64(bytes + at + 1) : 0;
-        if (!has_head || length > count - at - T3R_MCAP_RECORD_HEAD_BYTES) {
-            return cut ? kept : malformed(w, opcode, place, "it reaches past the chunk's end");
+        t3r_mcap_head head;
+        if (!t3r_mcap_head_of(bytes + at, count - at, &head)) {
+            return cut ? kept : malformed(w, head.opcode, place, "it reaches past the chunk's end");
         }
-        t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
-        int status = 0;
-        switch (opcode) {
-        case T3R_MCAP_SCHEMA:
-            status = read_schema(w, &in, place);
-            break;
-        case T3R_MCAP_CHANNEL:
-            status = read_channel(w, &in, place);
-            break;
-        case T3R_MCAP_MESSAGE:
-            status = read_message(w, &in, place);
-            break;
-        default: /* opcodes from 0x10 on are extensions, to be skipped */
-            status = opcode <= T3R_MCAP_DATA_END ? malformed(w, opcode, place, "it may not stand in a chunk") : 0;
-            break;
+        if (!t3r_mcap_in_chunk(head.opcode)) {
+            return malformed(w, head.opcode, place, "it may not stand in a chunk");
         }
+        at += T3R_MCAP_RECORD_HEAD_BYTES;
+        t3r_mcap_fields in = {bytes + at, (size_t)head.bytes, 0, false};
+        const int status = head.opcode == T3R_MCAP_SCHEMA    ? read_schema(w, &in, place)
+                           : head.opcode == T3R_MCAP_CHANNEL ? read_channel(w, &in, place)
+                           : head.opcode == T3R_MCAP_MESSAGE ? read_message(w, &in, place)
+                                                             : 0;
         if (status < 0) {
             return -1;
         }
         kept |= status;
         if (packed && status == T3R_MCAP_KEPT && count_message(w) != 0) {
-            return malformed(w, opcode, place, "the chunks unpack to more messages than such a file may have");
+            return malformed(w, head.opcode, place, "the chunks unpack to more messages than such a file may have");
         }
-        at += T3R_MCAP_RECORD_HEAD_BYTES + (size_t)length;
+        at += (size_t)head.bytes;
     }
     return kept;
 }
@@ -214,11 +182,9 @@ static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
     return malformed(w, T3R_MCAP_CHUNK, place, what);
 }
 
-/* A chunk's fields, and as much of its content as is there. */
+/* A chunk, and as much of its content as is there. */
 typedef struct chunk {
-    uint64_t unpacked_bytes;
-    uint32_t crc;
-    t3r_text compression;
+    t3r_mcap_chunk_record record;
     const uint8_t *packed;
     size_t packed_bytes;
     bool cut;
@@ -261,22 +227,22 @@ static void leave_room(walk *w, const unpacked *u, bool is_kept)
 static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, unpacked *out, size_t *count,
                                 int *status)
 {
-    if (!t3r_chunk_codec_known(c->compression)) {
+    if (!t3r_chunk_codec_known(c->record.compression)) {
         char name[32], what[96];
-        t3r_text_copy(name, sizeof name, c->compression);
+        t3r_text_copy(name, sizeof name, c->record.compression);
         snprintf(what, sizeof what, "its compression '%s' is not supported (lz4 and zstd are)", name);
         *status = malformed(w, T3R_MCAP_CHUNK, place, what);
         return NULL;
     }
-    if (check_unpacked(w, place, c->unpacked_bytes) != 0) {
+    if (check_unpacked(w, place, c->record.unpacked_bytes) != 0) {
         *status = -1;
         return NULL;
     }
-    uint64_t most = t3r_chunk_codec_most(c->compression, c->packed_bytes);
-    if (c->unpacked_bytes > most && !c->cut) {
+    uint64_t most = t3r_chunk_codec_most(c->record.compression, c->packed_bytes);
+    if (c->record.unpacked_bytes > most && !c->cut) {
         return "its uncompressed_size is more than its data can hold";
     }
-    uint64_t room = c->unpacked_bytes < most ? c->unpacked_bytes : most;
+    uint64_t room = c->record.unpacked_bytes < most ? c->record.unpacked_bytes : most;
     *out = take_room(w, (size_t)room);
     if (out->bytes == NULL) {
         *status = malformed(w, T3R_MCAP_CHUNK, place,
@@ -286,8 +252,9 @@ static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, u
     }
     w->chunks->bytes += room;
     const char *wrong =
-        t3r_chunk_decompress(c->compression, c->packed, c->packed_bytes, out->bytes, (size_t)room, count);
-    return wrong == NULL && *count != c->unpacked_bytes ? "its data are shorter than its uncompressed_size" : wrong;
+        t3r_chunk_decompress(c->record.compression, c->packed, c->packed_bytes, out->bytes, (size_t)room, count);
+    return wrong == NULL && *count != c->record.unpacked_bytes ? "its data are shorter than its uncompressed_size"
+                                                               : wrong;
 }
 
 static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
@@ -295,9 +262,9 @@ static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
     unpacked own = {.bytes = NULL};
     size_t count = c->packed_bytes;
     int status = 0;
-    const char *wrong = c->compression.count > 0 ? unpack_chunk(w, c, place, &own, &count, &status) : NULL;
+    const char *wrong = c->record.compression.count > 0 ? unpack_chunk(w, c, place, &own, &count, &status) : NULL;
     const uint8_t *records = own.bytes != NULL ? own.bytes : c->packed;
-    if (status == 0 && wrong == NULL && !c->cut && c->crc != 0 && c->crc != crc32_z(0, records, count)) {
+    if (status == 0 && wrong == NULL && !c->cut && c->record.crc != 0 && c->record.crc != crc32_z(0, records, count)) {
         wrong = "its CRC does not match its records";
     }
     w->damaged = status == 0 && wrong != NULL && w->cut && !c->cut;
@@ -309,27 +276,23 @@ static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
     return status < 0 ? -1 : 0;
 }
 
-/* `in` holds the content, or as much of it as a cut file has left. */
-static int read_chunk(walk *w, t3r_mcap_fields *in, t3r_mcap_place place, bool cut)
+/* `in` holds the record, or as much of its `bytes` as a cut file has left. */
+static int read_chunk(walk *w, t3r_mcap_fields *in, t3r_mcap_place place, uint64_t bytes)
 {
-    t3r_mcap_take_u64(in); /* message_start_time */
-    t3r_mcap_take_u64(in); /* message_end_time */
-    chunk c = {.unpacked_bytes = t3r_mcap_take_u64(in), .cut = cut};
-    c.crc = t3r_mcap_take_u32(in);
-    c.compression = t3r_mcap_take_text(in);
-    uint64_t packed_bytes = t3r_mcap_take_u64(in);
-    if (in->failed) {
-        return cut ? 0 : malformed(w, T3R_MCAP_CHUNK, place, short_fields);
+    const bool cut = in->count < bytes;
+    chunk c = {.record = t3r_mcap_chunk_of(in), .cut = cut};
+    if (in->failed && cut) {
+        return 0;
     }
-    size_t available = in->count - in->at;
-    if (packed_bytes > available && !cut) {
+    if (in->failed || c.record.packed_bytes > bytes - in->at) {
         return malformed(w, T3R_MCAP_CHUNK, place, short_fields);
     }
-    if (c.compression.count == 0 && c.unpacked_bytes != packed_bytes) {
+    if (c.record.compression.count == 0 && c.record.unpacked_bytes != c.record.packed_bytes) {
         return malformed(w, T3R_MCAP_CHUNK, place, "uncompressed_size differs from the size of its records");
     }
+    const size_t there = in->count - in->at;
     c.packed = in->bytes + in->at;
-    c.packed_bytes = packed_bytes < available ? (size_t)packed_bytes : available;
+    c.packed_bytes = c.record.packed_bytes < there ? (size_t)c.record.packed_bytes : there;
     return walk_packed(w, &c, place);
 }
 
@@ -410,7 +373,7 @@ static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_pl
             return malformed(w, opcode, place, "it stands behind the DataEnd record");
         }
         return opcode == T3R_MCAP_MESSAGE      ? read_message(w, in, place)
-               : opcode == T3R_MCAP_CHUNK      ? read_chunk(w, in, place, false)
+               : opcode == T3R_MCAP_CHUNK      ? read_chunk(w, in, place, in->count)
                : opcode == T3R_MCAP_ATTACHMENT ? read_attachment(w, in, place)
                : opcode == T3R_MCAP_METADATA   ? read_metadata(w, in, place)
                                                : read_data_end(w, in, place);
@@ -419,20 +382,6 @@ static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_pl
     default: /* indexes, which a reader from front to back does not need, and extensions */
         return 0;
     }
-}
-
-const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count)
-{
-    size_t compared = count < T3R_MCAP_MAGIC_BYTES ? count : T3R_MCAP_MAGIC_BYTES;
-    if (count == 0) {
-        return "the file is empty";
-    }
-    if (memcmp(bytes, T3R_MCAP_MAGIC, compared) != 0) {
-        bool other_version = count >= T3R_MCAP_MAGIC_BYTES && memcmp(bytes, T3R_MCAP_MAGIC, 5) == 0 &&
-                             memcmp(bytes + 6, &T3R_MCAP_MAGIC[6], 2) == 0;
-        return other_version ? "byte 5: an MCAP version other than 0" : "byte 0: not an MCAP file";
-    }
-    return count < T3R_MCAP_MAGIC_BYTES ? "cut off inside the magic of its first 8 bytes" : NULL;
 }
 
 /* The footer was read; what follows must be the end magic, or the part of it that a cut file has left. */
@@ -477,36 +426,34 @@ int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *vi
             rested = at;
         }
         t3r_mcap_place place = {at, false, 0};
-        uint8_t opcode = bytes[at];
-        uint64_t rest = w.limit - at;
-        uint64_t length = rest >= T3R_MCAP_RECORD_HEAD_BYTES ? t3r_load_le64(bytes + at + 1) : 0;
-        bool fits = rest >= T3R_MCAP_RECORD_HEAD_BYTES && length <= rest - T3R_MCAP_RECORD_HEAD_BYTES;
+        const uint64_t rest = w.limit - at;
+        t3r_mcap_head head;
+        const bool fits = t3r_mcap_head_of(bytes + at, rest, &head);
+        const uint64_t head_bytes = rest < T3R_MCAP_RECORD_HEAD_BYTES ? rest : T3R_MCAP_RECORD_HEAD_BYTES;
+        const uint64_t there = fits ? head.bytes : rest - head_bytes;
+        t3r_mcap_fields in = {bytes + at + head_bytes, (size_t)there, 0, false};
         /* A file system may leave zeros behind where a file was cut. */
-        if (w.cut && (!fits || opcode == 0)) {
+        if (w.cut && (!fits || head.opcode == 0)) {
             *end = (t3r_mcap_end){true, at};
-            if (opcode == T3R_MCAP_CHUNK && rest > T3R_MCAP_RECORD_HEAD_BYTES && w.data_end == 0) {
-                t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES,
-                                      (size_t)(rest - T3R_MCAP_RECORD_HEAD_BYTES), 0, false};
-                return read_chunk(&w, &in, place, true);
-            }
-            return 0;
+            return head.opcode == T3R_MCAP_CHUNK && there > 0 && w.data_end == 0
+                       ? read_chunk(&w, &in, place, head.bytes)
+                       : 0;
         }
         if (!fits) {
-            return malformed(&w, opcode, place, "it reaches past the file's end");
+            return malformed(&w, head.opcode, place, "it reaches past the file's end");
         }
-        if (at == T3R_MCAP_MAGIC_BYTES && opcode != T3R_MCAP_HEADER) {
-            return malformed(&w, opcode, place, "the first record is not a Header");
+        if (at == T3R_MCAP_MAGIC_BYTES && head.opcode != T3R_MCAP_HEADER) {
+            return malformed(&w, head.opcode, place, "the first record is not a Header");
         }
-        t3r_mcap_fields in = {bytes + at + T3R_MCAP_RECORD_HEAD_BYTES, (size_t)length, 0, false};
-        if (read_record(&w, opcode, &in, place) < 0) {
+        if (read_record(&w, head.opcode, &in, place) < 0) {
             return -1;
         }
         if (w.damaged) {
             *end = (t3r_mcap_end){true, at};
             return 0;
         }
-        at += T3R_MCAP_RECORD_HEAD_BYTES + length;
-        if (opcode == T3R_MCAP_FOOTER) {
+        at += T3R_MCAP_RECORD_HEAD_BYTES + head.bytes;
+        if (head.opcode == T3R_MCAP_FOOTER) {
             return check_end(&w, at, count, end);
         }
     }

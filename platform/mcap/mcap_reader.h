@@ -11,8 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "mcap_records.h"
 #include "spill.h"
-#include "host/text.h"
 
 /* Where a record starts. */
 typedef struct t3r_mcap_place {
@@ -20,24 +20,6 @@ typedef struct t3r_mcap_place {
     bool in_chunk;
     uint64_t chunk_offset; /* of the chunk record in the file */
 } t3r_mcap_place;
-
-typedef struct t3r_mcap_schema_record {
-    uint16_t id;
-    t3r_text name, encoding, definition;
-} t3r_mcap_schema_record;
-
-typedef struct t3r_mcap_channel_record {
-    uint16_t id, schema;
-    t3r_text topic, encoding;
-} t3r_mcap_channel_record;
-
-typedef struct t3r_mcap_message_record {
-    uint16_t channel;
-    uint32_t sequence;
-    uint64_t log_ns, publish_ns;
-    const uint8_t *data;
-    size_t bytes;
-} t3r_mcap_message_record;
 
 /* Each returns 0 to go on, T3R_MCAP_KEPT when it keeps what the record points to, or -1 once it has written its reason
  * where t3r_mcap_read()'s goes. */
@@ -67,9 +49,6 @@ typedef struct t3r_mcap_end {
     bool cut;            /* the file stops short of its end */
     uint64_t cut_offset; /* where the first record that is not whole starts */
 } t3r_mcap_end;
-
-/* What is wrong with the first bytes of a file, 8 of them and more if there are, or NULL. */
-const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count);
 
 /* 0, or -1 with "what, where" in error[]. */
 int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *visitor, t3r_mcap_chunks *chunks,

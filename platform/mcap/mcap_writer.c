@@ -1,6 +1,6 @@
 #include "mcap_writer.h"
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "crc32.h"
 
 void t3r_mcap_put_raw(t3r_mcap_writer *writer, const void *bytes, size_t count)

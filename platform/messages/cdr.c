@@ -1,6 +1,6 @@
 #include "cdr.h"
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 
 #define ENCAPSULATION_BYTES 4u
 
@@ -50,13 +50,15 @@ uint8_t t3r_cdr_get_u8(t3r_cdr_reader *reader)
 uint32_t t3r_cdr_get_u32(t3r_cdr_reader *reader)
 {
     const uint8_t *bytes = take_aligned(reader, 4);
-    return bytes == NULL ? 0 : reader->big_endian ? t3r_load_be32(bytes) : t3r_load_le32(bytes);
+    const uint32_t value = bytes == NULL ? 0 : t3r_load_le32(bytes);
+    return reader->big_endian ? __builtin_bswap32(value) : value;
 }
 
 uint64_t t3r_cdr_get_u64(t3r_cdr_reader *reader)
 {
     const uint8_t *bytes = take_aligned(reader, 8);
-    return bytes == NULL ? 0 : reader->big_endian ? t3r_load_be64(bytes) : t3r_load_le64(bytes);
+    const uint64_t value = bytes == NULL ? 0 : t3r_load_le64(bytes);
+    return reader->big_endian ? __builtin_bswap64(value) : value;
 }
 
 t3r_text t3r_cdr_get_string(t3r_cdr_reader *reader)

@@ -1,6 +1,6 @@
 #include "message_frame.h"
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "fixed_camera.h"
 #include "fixed_double.h"
 #include "recording/pixel_layout.h"
@@ -97,6 +97,18 @@ static uint16_t steps_of_metres(uint32_t bits, uint64_t unit_q40)
     return steps <= UINT16_MAX ? (uint16_t)steps : 0;
 }
 
+static uint16_t load16(const t3r_ros_image *image, const uint8_t *sample)
+{
+    const uint16_t value = t3r_load_le16(sample);
+    return image->is_bigendian ? __builtin_bswap16(value) : value;
+}
+
+static uint32_t load32(const t3r_ros_image *image, const uint8_t *sample)
+{
+    const uint32_t value = t3r_load_le32(sample);
+    return image->is_bigendian ? __builtin_bswap32(value) : value;
+}
+
 void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *out)
 {
     const bool metres = t3r_message_is_metres(image);
@@ -104,13 +116,7 @@ void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *
         const uint8_t *row = image->data + (size_t)y * image->step;
         for (uint32_t x = 0; x < image->width; x++, out += 2) { /* what is written was read before */
             const uint8_t *sample = row + (size_t)x * (metres ? 4 : 2);
-            uint16_t steps;
-            if (metres) {
-                steps = steps_of_metres(image->is_bigendian ? t3r_load_be32(sample) : t3r_load_le32(sample), unit_q40);
-            } else {
-                steps = (uint16_t)(image->is_bigendian ? sample[0] << 8 | sample[1] : t3r_load_le16(sample));
-            }
-            t3r_store_le16(out, steps);
+            t3r_store_le16(out, metres ? steps_of_metres(load32(image, sample), unit_q40) : load16(image, sample));
         }
     }
 }

@@ -2,17 +2,13 @@
 
 #include <string.h>
 
-#include "host/bytes.h"
-#include "messages/cdr.h"
 #include "host/fixed_text.h"
-#include "mcap/mcap.h"
-#include "mcap/mcap_fields.h"
+#include "mcap/mcap_records.h"
+#include "mcap/reader_limits.h"
+#include "messages/cdr.h"
 #include "messages/message_frame.h"
 #include "pixel_layout.h"
-#include "mcap/reader_limits.h"
 
-#define MESSAGE_HEAD_BYTES 22u      /* channel, sequence, log time, publish time */
-#define CHUNK_HEAD_BYTES 32u        /* times, uncompressed size, CRC, length of the compression's name */
 #define DEFAULT_UNIT_Q40 1099511628 /* 0.001, of recordings without the metadata "trim3r" */
 
 /* A record, between its head and its end. */
@@ -45,30 +41,25 @@ static int read_at(t3r_frame_reader *reader, uint64_t offset, void *bytes, size_
 
 /* ---- records ---- */
 
-static bool at_end(const t3r_frame_reader *reader, uint64_t end)
-{
-    return end - reader->at < T3R_MCAP_RECORD_HEAD_BYTES;
-}
-
 /* The record at reader->at: 1, or 0 where the file ends, or is cut off. */
 static int read_record(t3r_frame_reader *reader, record *out)
 {
     if (reader->chunk_end != 0 && reader->at == reader->chunk_end) {
         reader->chunk_end = 0;
     }
-    const uint64_t end = reader->chunk_end != 0 ? reader->chunk_end : reader->source.bytes;
-    uint8_t head[T3R_MCAP_RECORD_HEAD_BYTES];
-    if (at_end(reader, end)) {
-        return reader->chunk_end != 0 ? fail(reader, "a record reaches past its chunk's end") : 0;
-    }
-    if (read_at(reader, reader->at, head, sizeof head) != 0) {
+    const uint64_t rest = (reader->chunk_end != 0 ? reader->chunk_end : reader->source.bytes) - reader->at;
+    uint8_t bytes[T3R_MCAP_RECORD_HEAD_BYTES] = {0};
+    t3r_mcap_head head;
+    if (rest >= sizeof bytes && read_at(reader, reader->at, bytes, sizeof bytes) != 0) {
         return -1;
     }
-    *out = (record){head[0], reader->at + sizeof head, t3r_load_le64(head + 1)};
-    if (out->bytes > end - out->at) {
+    if (!t3r_mcap_head_of(bytes, rest, &head)) {
         return reader->chunk_end != 0 ? fail(reader, "a record reaches past its chunk's end") : 0;
     }
-    return 1;
+    *out = (record){head.opcode, reader->at + sizeof bytes, head.bytes};
+    return reader->chunk_end != 0 && !t3r_mcap_in_chunk(head.opcode)
+               ? fail(reader, "a record stands in a chunk that may not")
+               : 1;
 }
 
 static void pass_over(t3r_frame_reader *reader, const record *r)
@@ -76,10 +67,10 @@ static void pass_over(t3r_frame_reader *reader, const record *r)
     reader->at = r->at + r->bytes;
 }
 
-/* The first bytes of a record, as many as there is room for. */
-static int open_fields(t3r_frame_reader *reader, const record *r, t3r_mcap_fields *in)
+/* Reads the first `most` bytes of a record, for which there is room. */
+static int open_fields(t3r_frame_reader *reader, const record *r, size_t most, t3r_mcap_fields *in)
 {
-    const size_t count = r->bytes < sizeof reader->small ? (size_t)r->bytes : sizeof reader->small;
+    const size_t count = r->bytes < most ? (size_t)r->bytes : most;
     *in = (t3r_mcap_fields){reader->small, count, 0, false};
     return read_at(reader, r->at, reader->small, count);
 }
@@ -117,28 +108,24 @@ static void keep(t3r_frame_reader_name *names, uint32_t *count, uint16_t id, uin
 static int read_schema(t3r_frame_reader *reader, const record *r)
 {
     t3r_mcap_fields in;
-    if (open_fields(reader, r, &in) != 0) {
+    if (open_fields(reader, r, sizeof reader->small, &in) != 0) {
         return -1;
     }
-    const uint16_t id = t3r_mcap_take_u16(&in);
-    const t3r_text name = t3r_mcap_take_text(&in);
-    if (!in.failed) {
-        keep(reader->schemas, &reader->schema_count, id, type_named(name));
-    }
+    const t3r_mcap_schema_record schema = t3r_mcap_schema_of(&in);
+    keep(reader->schemas, &reader->schema_count, schema.id, type_named(schema.name));
     return 0;
 }
 
 static int read_channel(t3r_frame_reader *reader, const record *r)
 {
     t3r_mcap_fields in;
-    if (open_fields(reader, r, &in) != 0) {
+    if (open_fields(reader, r, sizeof reader->small, &in) != 0) {
         return -1;
     }
-    const uint16_t id = t3r_mcap_take_u16(&in), schema = t3r_mcap_take_u16(&in);
-    t3r_mcap_take_text(&in); /* topic */
-    const t3r_text encoding = t3r_mcap_take_text(&in);
-    if (!in.failed && t3r_text_is(encoding, "cdr")) {
-        keep(reader->channels, &reader->channel_count, id, type_of(reader->schemas, reader->schema_count, schema));
+    const t3r_mcap_channel_record channel = t3r_mcap_channel_of(&in);
+    if (t3r_text_is(channel.encoding, "cdr")) {
+        keep(reader->channels, &reader->channel_count, channel.id,
+             type_of(reader->schemas, reader->schema_count, channel.schema));
     }
     return 0;
 }
@@ -146,14 +133,13 @@ static int read_channel(t3r_frame_reader *reader, const record *r)
 static int read_metadata(t3r_frame_reader *reader, const record *r)
 {
     t3r_mcap_fields in;
-    if (open_fields(reader, r, &in) != 0) {
+    if (open_fields(reader, r, sizeof reader->small, &in) != 0) {
         return -1;
     }
-    const bool ours = t3r_text_is(t3r_mcap_take_text(&in), "trim3r");
-    t3r_mcap_take_u32(&in); /* bytes of the map */
-    while (ours && !in.failed && in.at < in.count) {
-        const t3r_text key = t3r_mcap_take_text(&in), value = t3r_mcap_take_text(&in);
-        if (in.failed || !t3r_text_is(key, "depth_unit")) {
+    t3r_mcap_metadata_record metadata = t3r_mcap_metadata_of(&in);
+    t3r_text key, value;
+    while (t3r_text_is(metadata.name, "trim3r") && t3r_mcap_pair_of(&metadata.pairs, &key, &value)) {
+        if (!t3r_text_is(key, "depth_unit")) {
             continue;
         }
         if (t3r_q40_from_text(value, &reader->depth_unit_q40) != 0 || reader->depth_unit_q40 == 0 ||
@@ -167,28 +153,22 @@ static int read_metadata(t3r_frame_reader *reader, const record *r)
 /* Goes on with the records within the chunk. */
 static int enter_chunk(t3r_frame_reader *reader, const record *r)
 {
-    uint8_t head[CHUNK_HEAD_BYTES], length[8];
-    if (reader->chunk_end != 0) {
-        return fail(reader, "a chunk stands in a chunk");
+    t3r_mcap_fields in;
+    if (open_fields(reader, r, T3R_MCAP_CHUNK_FIELDS, &in) != 0) {
+        return -1;
     }
-    if (r->bytes < sizeof head + sizeof length) {
+    const t3r_mcap_chunk_record chunk = t3r_mcap_chunk_of(&in);
+    if (in.failed) {
         return fail(reader, "a chunk is cut short");
     }
-    if (read_at(reader, r->at, head, sizeof head) != 0) {
-        return -1;
-    }
-    if (t3r_load_le32(head + 28) != 0) {
+    if (chunk.compression.count > 0) {
         return fail(reader, "its chunks are compressed; trim3r import --compression none unpacks them");
     }
-    if (read_at(reader, r->at + sizeof head, length, sizeof length) != 0) {
-        return -1;
-    }
-    const uint64_t records_at = r->at + sizeof head + sizeof length, end = r->at + r->bytes;
-    if (t3r_load_le64(length) != end - records_at) {
+    if (chunk.packed_bytes != r->bytes - in.at) {
         return fail(reader, "a chunk's size is not that of its records");
     }
-    reader->at = records_at;
-    reader->chunk_end = end;
+    reader->at = r->at + in.at;
+    reader->chunk_end = r->at + r->bytes;
     return 0;
 }
 
@@ -332,22 +312,22 @@ static int read_stamp(t3r_frame_reader *reader, const record *data, uint64_t log
 /* 1: the message belongs to the next instant, and stays where it is. */
 static int read_message(t3r_frame_reader *reader, const record *r, instant *now)
 {
-    uint8_t head[MESSAGE_HEAD_BYTES];
-    if (r->bytes < sizeof head) {
-        return fail(reader, "a message is cut short");
-    }
-    if (read_at(reader, r->at, head, sizeof head) != 0) {
+    t3r_mcap_fields in;
+    if (open_fields(reader, r, T3R_MCAP_MESSAGE_FIELDS, &in) != 0) {
         return -1;
     }
-    const uint16_t channel = t3r_load_le16(head);
-    const uint8_t type = type_of(reader->channels, reader->channel_count, channel);
+    const t3r_mcap_message_record message = t3r_mcap_message_of(&in);
+    if (in.failed) {
+        return fail(reader, "a message is cut short");
+    }
+    const uint8_t type = type_of(reader->channels, reader->channel_count, message.channel);
     const bool is_pose = type < T3R_ROS_TYPE_COUNT && t3r_ros_is_pose((t3r_ros_type)type);
     if (type != T3R_ROS_IMAGE && type != T3R_ROS_CAMERA_INFO && !is_pose) {
         return 0;
     }
-    const record data = {r->opcode, r->at + sizeof head, r->bytes - sizeof head};
+    const record data = {r->opcode, r->at + in.at, r->bytes - in.at};
     int64_t stamp_ns;
-    if (read_stamp(reader, &data, t3r_load_le64(head + 6), &stamp_ns) != 0) {
+    if (read_stamp(reader, &data, message.log_ns, &stamp_ns) != 0) {
         return -1;
     }
     if (now->begun && stamp_ns != now->stamp_ns) {
@@ -358,7 +338,7 @@ static int read_message(t3r_frame_reader *reader, const record *r, instant *now)
     }
     now->begun = true;
     now->stamp_ns = stamp_ns;
-    return type == T3R_ROS_IMAGE ? read_any_image(reader, channel, &data, now)
+    return type == T3R_ROS_IMAGE ? read_any_image(reader, message.channel, &data, now)
                                  : read_small(reader, (t3r_ros_type)type, &data, now);
 }
 

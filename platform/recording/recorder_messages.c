@@ -1,7 +1,7 @@
 /* A frame and an event as ROS 2 messages. */
 #include <stdbool.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "messages/fixed_double.h"
 #include "pixel_layout.h"
 #include "recorder.h"

@@ -11,13 +11,9 @@ extern "C" {
 
 /* Aligned to 16; to be bound in place, from flash. */
 extern const uint8_t t3r_head_tiny[];  /* at most 400 multiply-accumulates a pixel, 4 KB */
-extern const uint8_t t3r_head_nano[];  /* 1.5 k, 16 KB */
 extern const uint8_t t3r_head_small[]; /* 5 k, 48 KB */
-extern const uint8_t t3r_head_base[];  /* 16 k, 128 KB */
 extern const uint32_t t3r_head_tiny_bytes;
-extern const uint32_t t3r_head_nano_bytes;
 extern const uint32_t t3r_head_small_bytes;
-extern const uint32_t t3r_head_base_bytes;
 
 #ifdef __cplusplus
 }

@@ -3,7 +3,6 @@
 #include "core/features.h"
 #include "core/hash.h"
 #include "image/develop.h"
-#include "image/image.h"
 #include "state/state.h"
 
 /* All that must not change from strip to strip: the frame but its planes, and the camera. */
@@ -46,12 +45,16 @@ t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
         return T3R_ERR_NO_DEPTH;
     }
     const uint32_t depth_height = shown.depth == NULL ? 0 : shown.depth_height;
-    const uint64_t digest = digest_of(&shown, camera);
-    if (t3r_image_check(&shown) != T3R_OK ||
-        !are_rows(row, rows, shown.height, shown.format == T3R_PIXEL_NV12 ? 2 : 1) ||
+    t3r_camera taken;
+    t3r_status status = t3r_frame_check(rt, &shown, camera, &taken);
+    if (status != T3R_OK) {
+        return status;
+    }
+    if (!are_rows(row, rows, shown.height, shown.format == T3R_PIXEL_NV12 ? 2 : 1) ||
         !are_rows(depth_row, depth_rows, depth_height, 1)) {
         return T3R_ERR_FRAME;
     }
+    const uint64_t digest = digest_of(&shown, camera);
     const bool begins = row == 0 && depth_row == 0 && (rows > 0 || rt->strips.rows == 0);
     const t3r_strips none = {.digest = digest};
     const t3r_strips before = begins ? none : rt->strips;
@@ -65,10 +68,9 @@ t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
                              .begins = begins,
                              .ends = after.rows == shown.height && after.depth_rows == depth_height};
     t3r_begin_view(rt);
-    t3r_camera undistorted;
-    const t3r_status status = t3r_develop_strip(rt, slot, &shown, camera, &strip, &undistorted);
+    status = t3r_develop_strip(rt, slot, &shown, &strip, &taken);
     if (status == T3R_OK && !strip.ends) {
         rt->strips = after;
     }
-    return status != T3R_OK || !strip.ends ? status : t3r_end_view(rt, slot, &undistorted, frame->depth_unit_q40);
+    return status != T3R_OK || !strip.ends ? status : t3r_end_view(rt, slot, &taken, frame->depth_unit_q40);
 }

@@ -80,8 +80,8 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
     } else if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
-    t3r_camera undistorted;
-    t3r_status status = t3r_frame_check(rt, &shown, camera, &undistorted); /* before anything is discarded */
+    t3r_camera taken;
+    t3r_status status = t3r_frame_check(rt, &shown, camera, &taken); /* before anything is discarded */
     if (status != T3R_OK) {
         return status;
     }
@@ -90,11 +90,8 @@ t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
         return T3R_ERR_NO_DEPTH; /* before the oldest view is overwritten */
     }
     t3r_begin_view(rt);
-    status = t3r_develop_view(rt, slot, &shown, camera, &undistorted);
-    if (status != T3R_OK) {
-        return status;
-    }
-    return t3r_end_view(rt, slot, &undistorted, frame->depth_unit_q40);
+    status = t3r_develop_view(rt, slot, &shown, &taken);
+    return status == T3R_OK ? t3r_end_view(rt, slot, &taken, frame->depth_unit_q40) : status;
 }
 
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
@@ -103,11 +100,16 @@ t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera
     T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL && rgb_out != NULL && undistorted != NULL,
                       T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(rt->config.views > 0 && rt->views == 0 && !rt->has_scene, T3R_ERR_STATE);
-    rt->strips = (t3r_strips){0};
-    t3r_status status = t3r_develop_view(rt, 0, frame, camera, undistorted);
+    t3r_camera taken;
+    t3r_status status = t3r_frame_check(rt, frame, camera, &taken);
+    if (status == T3R_OK) {
+        rt->strips = (t3r_strips){0};
+        status = t3r_develop_view(rt, 0, frame, &taken);
+    }
     if (status != T3R_OK) {
         return status;
     }
+    *undistorted = taken;
     const t3r_view view = t3r_view_of(rt, 0);
     size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);
     for (size_t i = 0; i < pixels; i++) {

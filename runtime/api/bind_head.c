@@ -17,7 +17,7 @@ t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes)
         return status;
     }
     const t3r_config *c = &rt->config;
-    if (t3r_head_learned_work_bytes(weights, c->width) > T3R_HEAD_WORK_(c->width, c->height, c->head_column_bytes)) {
+    if (t3r_head_learned_work_bytes(weights, c->width) > T3R_HEAD_WORK_(c->width, c->head_column_bytes)) {
         return T3R_ERR_WEIGHTS;
     }
     rt->weights = weights;

@@ -1,6 +1,7 @@
 /* Streams: a keyframe into the map, and how much the next one would show of it. */
 #include "api/checks.h"
 #include "core/camera.h"
+#include "image/develop.h"
 #include "state/state.h"
 #include "stream/stream.h"
 #include "stream/stream_overlap.h"
@@ -22,9 +23,13 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     }
     rt->build = t3r_build_of(&rt->config); /* a restored arena may hold another, whose head is not bound */
     t3r_stream_report outcome = {0};
-    t3r_status status = t3r_stream_follow(rt, frame, camera);
+    t3r_camera taken;
+    t3r_status status = t3r_frame_check(rt, frame, camera, &taken); /* before anything moves */
     if (status == T3R_OK) {
-        status = t3r_stream_take(rt, frame, camera, &outcome);
+        status = t3r_stream_follow(rt, &taken);
+    }
+    if (status == T3R_OK) {
+        status = t3r_stream_take(rt, frame, &taken, &outcome);
     }
     if (report != NULL) {
         *report = outcome;

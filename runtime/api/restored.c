@@ -88,7 +88,7 @@ static bool is_stream(const t3r_runtime *rt)
 static bool is_reuse(const t3r_runtime *rt)
 {
     const t3r_reuse *reuse = &rt->reuse;
-    if (!rt->config.warm || t3r_is_stream(&rt->config) || !reuse->centres) {
+    if (!t3r_is_warm(&rt->config) || !reuse->centres) {
         return reuse->views == 0 && reuse->centres == 0;
     }
     if (reuse->views >> rt->views != 0) {
@@ -111,7 +111,8 @@ static bool is_slot(const t3r_runtime *rt)
     if (t3r_is_stream(&rt->config)) {
         return is_stream(rt);
     }
-    return rt->next_slot == 0 || (rt->config.warm && rt->views == rt->config.views && rt->next_slot < rt->views);
+    return rt->next_slot == 0 ||
+           (t3r_is_warm(&rt->config) && rt->views == rt->config.views && rt->next_slot < rt->views);
 }
 
 /* Whether the pose given is one that t3r_add_view() takes. Nothing but alignment reads it. */
@@ -140,7 +141,7 @@ static bool is_view(const t3r_runtime *rt, uint32_t v)
 /* Whether the configuration is one that t3r_init() keeps: t3r_config_check() lets through what it would have chosen. */
 static bool is_settled(const t3r_config *config)
 {
-    return config->clusters != 0 && config->cluster_batches != 0;
+    return config->clusters == t3r_cluster_count(config) && config->cluster_batches == t3r_cluster_batch_count(config);
 }
 
 /* The numbers of the state, before anything that they lead to is read. */

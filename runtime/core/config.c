@@ -31,11 +31,11 @@ uint32_t t3r_cluster_count(const t3r_config *c)
         return 0;
     }
     const uint32_t points = c->width * c->height * c->views; /* at most 2^28 */
-    if (c->clusters != 0) {
-        return c->clusters;
-    }
     if (t3r_is_stream(c)) {
         return 1;
+    }
+    if (c->clusters != 0) {
+        return c->clusters;
     }
     switch (c->allocate) {
     case T3R_ALLOCATE_DENSITY:
@@ -141,7 +141,7 @@ static uint32_t value_of(const t3r_config *c, size_t setting)
  */
 static size_t first_need(const t3r_config *c)
 {
-    uint32_t lacking = c->head == T3R_HEAD_MOMENT ? T3R_HAS_MOMENT & ~T3R_FEATURES_BUILT : 0;
+    uint32_t lacking = 0;
     for (size_t i = 0; i < RANGES_COUNT && lacking == 0; i++) {
         lacking = value_of(c, i) >= ranges[i].from ? ranges[i].feature & ~T3R_FEATURES_BUILT : 0;
     }

@@ -23,13 +23,13 @@ enum { T3R_SETTINGS(T3R_NEED_) T3R_NEEDS_COUNT };
 /* What a head needs, 0 for one that every library has. */
 static inline uint32_t t3r_feature_of_head(t3r_head head)
 {
-    return head == T3R_HEAD_MOMENT ? T3R_HAS_MOMENT : T3R_NEED(head, head);
+    return T3R_NEED(head, head);
 }
 
 /* Whether builds follow one another; the compiler knows that they do not where that is left out. */
 static inline bool t3r_is_warm(const t3r_config *config)
 {
-    return T3R_FEATURE_STREAMS && config->warm != 0;
+    return T3R_FEATURE_STREAMS && config->warm != 0 && config->stream == 0;
 }
 
 /* Whether depth is made of the colours; the compiler knows that it is not where stereo is left out. */

@@ -1,39 +1,40 @@
-/* Numbers as the weight file holds them and as hashes take them: little-endian, whatever the machine. */
+/* Integers in little-endian bytes: the same on every machine, at any alignment. */
 #ifndef T3R_LITTLE_ENDIAN_H
 #define T3R_LITTLE_ENDIAN_H
 
 #include <stdint.h>
 
-static inline uint32_t t3r_le_u16(const uint8_t *p)
+static inline uint16_t t3r_load_le16(const uint8_t *p)
 {
-    return (uint32_t)p[0] | (uint32_t)p[1] << 8;
+    return (uint16_t)(p[0] | p[1] << 8);
 }
 
-static inline uint32_t t3r_le_u32(const uint8_t *p)
+static inline uint32_t t3r_load_le32(const uint8_t *p)
 {
-    return t3r_le_u16(p) | t3r_le_u16(p + 2) << 16;
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-static inline int32_t t3r_le_i32(const uint8_t *p)
+static inline uint64_t t3r_load_le64(const uint8_t *p)
 {
-    return (int32_t)t3r_le_u32(p);
+    return (uint64_t)t3r_load_le32(p) | (uint64_t)t3r_load_le32(p + 4) << 32;
 }
 
-static inline int64_t t3r_le_i64(const uint8_t *p)
-{
-    return (int64_t)((uint64_t)t3r_le_u32(p) | (uint64_t)t3r_le_u32(p + 4) << 32);
-}
-
-static inline void t3r_set_le_u16(uint8_t *p, uint16_t x)
+static inline void t3r_store_le16(uint8_t *p, uint16_t x)
 {
     p[0] = (uint8_t)x;
     p[1] = (uint8_t)(x >> 8);
 }
 
-static inline void t3r_set_le_u32(uint8_t *p, uint32_t x)
+static inline void t3r_store_le32(uint8_t *p, uint32_t x)
 {
-    t3r_set_le_u16(p, (uint16_t)x);
-    t3r_set_le_u16(p + 2, (uint16_t)(x >> 16));
+    t3r_store_le16(p, (uint16_t)x);
+    t3r_store_le16(p + 2, (uint16_t)(x >> 16));
+}
+
+static inline void t3r_store_le64(uint8_t *p, uint64_t x)
+{
+    t3r_store_le32(p, (uint32_t)x);
+    t3r_store_le32(p + 4, (uint32_t)(x >> 32));
 }
 
 /* Two bytes of an aligned table in place, read in one piece so that a loop over them becomes vector loads. */

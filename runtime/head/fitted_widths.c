@@ -64,7 +64,7 @@ int32_t t3r_mean_density_q10(const t3r_budget_settings *settings, const t3r_clus
     return t3r_round_shift32(t3r_log2_q16(settings->gaussians) - t3r_log2_q16(points), 6);
 }
 
-/* Both closed forms stay below 2^23, and the gain below 8. */
+/* Scales an entry of a covariance: it stays below 2^23, and the gain below 8. */
 static int32_t scaled(int32_t x_q12, uint32_t gain_q16)
 {
     return (int32_t)t3r_round_shift64((int64_t)x_q12 * gain_q16, 16);

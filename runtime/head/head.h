@@ -29,7 +29,7 @@ typedef struct t3r_head_input {
     const t3r_budget_settings *settings;
     const t3r_cluster *clusters;
     const void *weights; /* of `learned`, checked; NULL for the others */
-    void *work;          /* two bytes a pixel; `learned`: at least t3r_head_learned_work_bytes() */
+    void *work;          /* of `learned`: at least t3r_head_learned_work_bytes() */
     size_t work_bytes;
     const t3r_covering_views *covering; /* what widths are fitted to; NULL: the own view alone */
     uint32_t narrowest_q12;             /* T3R_NARROWEST..., of this build */
@@ -73,14 +73,12 @@ static inline bool t3r_head_goes_on(const t3r_head_input *input)
 #define T3R_HEAD_STOPPED UINT32_MAX
 
 /* Each writes the Gaussians of the retained points in the rows begin..end - 1, in raster order, to `out` and returns
- * their number, or T3R_HEAD_STOPPED. The bands of a view together give what the whole view gives. `moment` sweeps over
- * the whole view: its range must be 0..height. */
+ * their number, or T3R_HEAD_STOPPED. The bands of a view together give what the whole view gives. */
 typedef uint32_t t3r_head_rows(const t3r_head_input *input, uint32_t begin, uint32_t end, t3r_gaussian *out);
 
 /* X(enumerator of t3r_head, name, function), a row a head. */
 #define T3R_HEADS(X)                                                                                                   \
     X(T3R_HEAD_ANALYTIC, "analytic", t3r_head_analytic)                                                                \
-    X(T3R_HEAD_MOMENT, "moment", t3r_head_moment)                                                                      \
     X(T3R_HEAD_LEARNED, "learned", t3r_head_learned)
 
 #define T3R_HEAD_FUNCTION_(HEAD, name, function) t3r_head_rows function;

@@ -125,12 +125,6 @@ static uint32_t row_cost(const t3r_runtime *rt)
     return rt->build.head == T3R_HEAD_LEARNED ? rt->config.width / 6 : 1;
 }
 
-/* Parts into which the work of a round is cut. `moment` sweeps over whole views, and one worker takes view by view. */
-static uint32_t parts_of(const t3r_runtime *rt, const t3r_workers *workers)
-{
-    return t3r_is_parallel(workers) && rt->build.head != T3R_HEAD_MOMENT ? workers->count : 1;
-}
-
 /* Cuts the views first..end - 1 into bands: each view for itself, and where one more of `parts` equal parts of the work
  * is full. `made`: Gaussians before them; returns how many there are with theirs. */
 static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t parts, uint32_t made)
@@ -182,7 +176,7 @@ static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool a
             return T3R_ERR_CANCELLED;
         }
         job->first = begin;
-        *made = cut_bands(job, begin, T3R_MIN(begin + round, end), parts_of(rt, &workers), *made);
+        *made = cut_bands(job, begin, T3R_MIN(begin + round, end), round, *made);
         t3r_run_tasks(&workers, job->count, make_band, job);
         if (job->stopped) {
             return T3R_ERR_CANCELLED;

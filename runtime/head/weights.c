@@ -33,10 +33,10 @@ t3r_weights_header t3r_weights_header_of(const void *weights)
         .weight_bits = p[16],
         .activation_bits = p[17],
         .layers = p[18],
-        .macs_q8 = t3r_le_u32(p + 20),
-        .parameters = t3r_le_u32(p + 24),
-        .bytes = t3r_le_u32(p + 8),
-        .crc = t3r_le_u32(p + 12),
+        .macs_q8 = t3r_load_le32(p + 20),
+        .parameters = t3r_load_le32(p + 24),
+        .bytes = t3r_load_le32(p + 8),
+        .crc = t3r_load_le32(p + 12),
     };
 }
 
@@ -47,16 +47,16 @@ t3r_layer t3r_weights_layer(const void *weights, uint32_t index)
         .kind = (t3r_layer_kind)p[0],
         .level = p[1],
         .source = {p[2], p[3]},
-        .inputs = (uint16_t)t3r_le_u16(p + 4),
-        .outputs = (uint16_t)t3r_le_u16(p + 6),
+        .inputs = t3r_load_le16(p + 4),
+        .outputs = t3r_load_le16(p + 6),
         .kernel = p[8],
         .stride = p[9],
         .phases = p[10],
-        .zero = (int16_t)t3r_le_u16(p + 12),
-        .weights = t3r_le_u32(p + 16),
-        .bias = t3r_le_u32(p + 20),
-        .multiplier = t3r_le_u32(p + 24),
-        .shift = t3r_le_u32(p + 28),
+        .zero = (int16_t)t3r_load_le16(p + 12),
+        .weights = t3r_load_le32(p + 16),
+        .bias = t3r_load_le32(p + 20),
+        .multiplier = t3r_load_le32(p + 24),
+        .shift = t3r_load_le32(p + 28),
     };
 }
 
@@ -83,13 +83,13 @@ static bool is_name(const uint8_t name[16])
 
 static t3r_weights_fault header_fault(const uint8_t *p, size_t bytes)
 {
-    if (bytes < T3R_WEIGHTS_HEADER_BYTES || t3r_le_u32(p) != MAGIC) {
+    if (bytes < T3R_WEIGHTS_HEADER_BYTES || t3r_load_le32(p) != MAGIC) {
         return T3R_FAULT_FOREIGN;
     }
-    if (t3r_le_u16(p + 4) != T3R_WEIGHTS_FORMAT) {
+    if (t3r_load_le16(p + 4) != T3R_WEIGHTS_FORMAT) {
         return T3R_FAULT_FORMAT;
     }
-    if (t3r_le_u16(p + 6) != T3R_BITS_EPOCH) {
+    if (t3r_load_le16(p + 6) != T3R_BITS_EPOCH) {
         return T3R_FAULT_EPOCH;
     }
     t3r_weights_header header = t3r_weights_header_of(p);
@@ -200,11 +200,11 @@ static bool sum_fits(const uint8_t *file, const t3r_weights_header *header, cons
     uint64_t sum = 0;
     for (uint32_t t = 0; t < taps; t++, at += step) {
         const uint8_t *p = file + layer->weights + (size_t)at * (header->weight_bits / 8);
-        sum += magnitude(header->weight_bits == 8 ? (int8_t)*p : (int16_t)t3r_le_u16(p));
+        sum += magnitude(header->weight_bits == 8 ? (int8_t)*p : (int16_t)t3r_load_le16(p));
     }
     const uint8_t *bias = file + layer->bias + (size_t)row * (wide ? 8 : 4);
-    return wide ? magnitude(t3r_le_i64(bias)) + (sum << 15) < (uint64_t)1 << 47
-                : magnitude(t3r_le_i32(bias)) + (sum << 7) < (uint64_t)1 << 31;
+    return wide ? magnitude((int64_t)t3r_load_le64(bias)) + (sum << 15) < (uint64_t)1 << 47
+                : magnitude((int32_t)t3r_load_le32(bias)) + (sum << 7) < (uint64_t)1 << 31;
 }
 
 static t3r_weights_fault block_fault(const uint8_t *file, const t3r_weights_header *header, const t3r_layer *layer)
@@ -218,7 +218,7 @@ static t3r_weights_fault block_fault(const uint8_t *file, const t3r_weights_head
     }
     for (uint32_t o = 0; o < layer->outputs; o++) {
         int8_t shift = (int8_t)file[layer->shift + o];
-        if (t3r_le_i32(file + layer->multiplier + (size_t)o * 4) < 1 << 30 || shift < SHIFT_LEAST ||
+        if ((int32_t)t3r_load_le32(file + layer->multiplier + (size_t)o * 4) < 1 << 30 || shift < SHIFT_LEAST ||
             shift > SHIFT_MOST) {
             return T3R_FAULT_MULTIPLIER;
         }

@@ -53,32 +53,27 @@ t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const 
     return status;
 }
 
-/* Checks frame and camera and cuts the work. *resized gets the camera of the working size, its lens too. */
-static t3r_status prepare(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_view *view,
-                          develop_job *job, t3r_camera *resized)
+/* Cuts the work. */
+static develop_job job_of(const t3r_runtime *rt, const t3r_frame *frame, t3r_view *view, const t3r_camera *resized)
 {
-    const t3r_status status = t3r_frame_check(rt, frame, camera, resized);
-    if (status != T3R_OK) {
-        return status;
-    }
     const uint32_t width = rt->config.width, height = rt->config.height;
     t3r_cut cut =
         t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_IMAGE_WORK), T3R_IMAGE_WORK_BYTES_(width, height, rt->config.workers));
     const size_t pixels = T3R_PIXELS_(width, height);
-    *job = (develop_job){
+    develop_job job = {
         .rt = rt, .frame = frame, .view = view, .colour = {view->colour[0], view->colour[1], view->colour[2]}};
     int32_t *grid = t3r_take(&cut, T3R_GRID_NODES_(width, height) * 8);
-    job->work = t3r_take(&cut, rt->config.workers * T3R_IMAGE_ROW_BYTES_(width));
-    job->depth = view->depth;
+    job.work = t3r_take(&cut, rt->config.workers * T3R_IMAGE_ROW_BYTES_(width));
+    job.depth = view->depth;
     if (resized->distortion != T3R_DISTORTION_NONE) {
-        job->grid = grid;
-        job->depth = t3r_take(&cut, pixels * sizeof *job->depth);
+        job.grid = grid;
+        job.depth = t3r_take(&cut, pixels * sizeof *job.depth);
         uint8_t *colour = t3r_take(&cut, 3 * pixels);
         for (int c = 0; c < 3; c++) {
-            job->colour[c] = colour + (size_t)c * pixels;
+            job.colour[c] = colour + (size_t)c * pixels;
         }
     }
-    return T3R_OK;
+    return job;
 }
 
 static t3r_status make_grid(const develop_job *job, const t3r_camera *resized)
@@ -86,50 +81,39 @@ static t3r_status make_grid(const develop_job *job, const t3r_camera *resized)
     return job->grid == NULL ? T3R_OK : t3r_undistort_grid(resized, job->view->width, job->view->height, job->grid);
 }
 
-/* What follows when all rows are resized. */
-static t3r_camera finish(const t3r_runtime *rt, develop_job *job, const t3r_camera *resized)
+/* Ends a view when all rows are resized; *camera loses its lens. */
+static void finish(const t3r_runtime *rt, develop_job *job, t3r_camera *camera)
 {
     const t3r_workers workers = t3r_workers_of(rt);
     if (job->grid != NULL) {
         t3r_run_rows(&workers, job->view->height, undistort_rows, job);
     }
     t3r_depth_validity(job->view);
-    t3r_camera undistorted = *resized;
-    undistorted.distortion = T3R_DISTORTION_NONE;
+    camera->distortion = T3R_DISTORTION_NONE;
     for (int i = 0; i < 5; i++) {
-        undistorted.distortion_q24[i] = 0;
+        camera->distortion_q24[i] = 0;
     }
-    return undistorted;
 }
 
-t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
-                            t3r_camera *undistorted)
+t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, t3r_camera *camera)
 {
     t3r_view view = t3r_view_of(rt, index);
-    develop_job job;
-    t3r_camera resized;
-    t3r_status status = prepare(rt, frame, camera, &view, &job, &resized);
-    if (status == T3R_OK) {
-        status = make_grid(&job, &resized);
-    }
+    develop_job job = job_of(rt, frame, &view, camera);
+    const t3r_status status = make_grid(&job, camera);
     if (status == T3R_OK) {
         const t3r_workers workers = t3r_workers_of(rt);
         t3r_run_rows(&workers, view.height, resize_rows, &job);
-        *undistorted = finish(rt, &job, &resized);
+        finish(rt, &job, camera);
     }
     return status;
 }
 
-t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
-                             const t3r_strip *strip, t3r_camera *undistorted)
+t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_strip *strip,
+                             t3r_camera *camera)
 {
     t3r_view view = t3r_view_of(rt, index);
-    develop_job job;
-    t3r_camera resized;
-    t3r_status status = prepare(rt, frame, camera, &view, &job, &resized);
-    if (status == T3R_OK && strip->begins) {
-        status = make_grid(&job, &resized); /* it is kept for the last strip */
-    }
+    develop_job job = job_of(rt, frame, &view, camera);
+    const t3r_status status = strip->begins ? make_grid(&job, camera) : T3R_OK; /* it is kept for the last strip */
     if (status != T3R_OK) {
         return status;
     }
@@ -140,7 +124,7 @@ t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *f
         t3r_image_depth(frame, view.width, view.height, 0, view.height, job.depth);
     }
     if (strip->ends) {
-        *undistorted = finish(rt, &job, &resized);
+        finish(rt, &job, camera);
     }
     return T3R_OK;
 }

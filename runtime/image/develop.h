@@ -6,16 +6,15 @@
 
 #include "trim3r.h"
 
-/* Whether the image stage takes this frame and camera, but for a lens that shows too little of the picture: nothing is
- * written. *resized gets the camera of the working size, its lens too. T3R_ERR_UNSUPPORTED: a lens, and this library
- * has none. */
+/* Checks what callers bring: whether the image stage takes this frame and camera, but for a lens that shows too little
+ * of the picture. *resized gets the camera of the working size, its lens too. T3R_ERR_UNSUPPORTED: a lens, and this
+ * library has none. */
 t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                            t3r_camera *resized);
 
-/* Checks frame and camera, then fills colour, depth and validity of view `index`: resized to the working size and
- * undistorted. *undistorted gets the camera of the planes. On an error the planes may be part written. */
-t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
-                            t3r_camera *undistorted);
+/* Fills colour, depth and validity of view `index` from a checked frame: resized to the working size and undistorted.
+ * *camera is that of t3r_frame_check() and becomes that of the planes. On an error the planes may be part written. */
+t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, t3r_camera *camera);
 
 /* A run of rows of a frame, which its planes begin with. */
 typedef struct t3r_strip {
@@ -24,8 +23,9 @@ typedef struct t3r_strip {
     bool begins, ends;              /* the first strip of a view, and the last */
 } t3r_strip;
 
-/* The same strip by strip; *undistorted is filled by the last. In between, the work of the image stage must stay. */
-t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_camera *camera,
-                             const t3r_strip *strip, t3r_camera *undistorted);
+/* The same strip by strip; *camera is that of the planes after the last one. In between, the work of the image stage
+ * must stay. */
+t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, const t3r_strip *strip,
+                             t3r_camera *camera);
 
 #endif

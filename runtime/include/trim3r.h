@@ -183,7 +183,6 @@ typedef uint32_t t3r_head;
 enum {
     T3R_HEAD_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
     T3R_HEAD_ANALYTIC,   /* a disc on the surface, as wide as its retained neighbours are apart */
-    T3R_HEAD_MOMENT,     /* moments of the pruned pixels that lie nearest in position and colour */
     T3R_HEAD_LEARNED,    /* a network sees image, mask and density: t3r_bind_head() */
     T3R_HEAD_COUNT
 };
@@ -361,8 +360,6 @@ typedef struct t3r_plan_info {
     X(BUDGET, "budget", BUDGET)                                                                                        \
     X(DISC_PIXELS, "disc_pixels", HEAD)                                                                                \
     X(DISC_GAUSSIANS, "disc_gaussians", HEAD)                                                                          \
-    X(MOMENT_PIXELS, "moment_pixels", HEAD)                                                                            \
-    X(MOMENT_GAUSSIANS, "moment_gaussians", HEAD)                                                                      \
     X(FEATURES, "features", HEAD)                                                                                      \
     X(LIFTS, "lifts", HEAD)                                                                                            \
     X(ACTIVATIONS, "activations", HEAD)                                                                                \
@@ -447,7 +444,7 @@ typedef struct t3r_ram_info {
     size_t stack_bytes;
     /* What is left for the program's own variables. */
     size_t program_bytes;
-    /* The weights in quant/heads for t3r_bind_head(): "nano", "small" or "base". NULL = the head is a closed form. */
+    /* The weights in quant/heads for t3r_bind_head(): "tiny" or "small". NULL = the head `analytic`. */
     const char *weights;
 } t3r_ram_info;
 
@@ -498,10 +495,10 @@ static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uin
     return config;
 }
 
-/* The SuperClusters that the configuration asks for. Where `clusters` is 0, its allocation chooses: 300 for
- * T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views' pixels
- * for T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters, and for streams. A request's own
- * allocation finds what the configuration's chose. 0 without a configuration. */
+/* The SuperClusters that the configuration asks for: 1 for a stream. Where `clusters` is 0, its allocation chooses: 300
+ * for T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views'
+ * pixels for T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters. A request's own allocation finds
+ * what the configuration's chose. 0 without a configuration. */
 uint32_t t3r_cluster_count(const t3r_config *config);
 
 /* The mini-batches of the K-means. Where `cluster_batches` is 0, one for 8 SuperClusters, 1..24. 0 without a
@@ -635,8 +632,8 @@ t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 const char *t3r_weights_error(const void *weights, size_t bytes);
 
 /* The head_column_bytes with which this head works on views of this width, whatever their height, at least 1. 0 =
- * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds tiny, nano, small and
- * base with 8-bit activations; every arena holds heads that need no more than two bytes a pixel. */
+ * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds tiny and small
+ * with 8-bit activations. */
 uint32_t t3r_head_column_bytes(const void *weights, size_t bytes, uint32_t width);
 
 /* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it, and so which file to bind again. */

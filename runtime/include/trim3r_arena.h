@@ -43,8 +43,8 @@
 #define T3R_GROUP_COUNT_BYTES 64 /* what the budget counts of a SuperCluster */
 #define T3R_RATIO_BINS 512       /* of a histogram of exposure */
 /* Work of the learned head: rows of activations by the column (t3r_config.head_column_bytes; the default holds the
- * heads tiny, nano, small and base with 8-bit activations at any width), and the activations under its kernels. */
-#define T3R_HEAD_COLUMN_BYTES 704
+ * heads tiny and small with 8-bit activations at any width), and the activations under its kernels. */
+#define T3R_HEAD_COLUMN_BYTES 432
 #define T3R_HEAD_KERNEL_BYTES 4096
 #define T3R_CORRECTION_BYTES 20       /* what refinement will change in a Gaussian */
 #define T3R_REFINE_SUMS_BYTES 112     /* what refinement sums over a Gaussian's pixels */
@@ -83,9 +83,8 @@
      T3R_UP_(T3R_PIXELS_(width, height) * 2) + T3R_UP_(T3R_PIXELS_(width, height) * 3))
 /* The columns of a picture whose coarsest level, 16 pixels wide, is whole. */
 #define T3R_HEAD_COLUMNS_(width) (((size_t)(width) + 15) / 16 * 16)
-#define T3R_HEAD_WORK_(width, height, column_bytes)                                                                    \
-    T3R_MAX_(T3R_PIXELS_(width, height) * 2,                                                                           \
-             (column_bytes) > 0 ? T3R_HEAD_COLUMNS_(width) * (column_bytes) + T3R_HEAD_KERNEL_BYTES : (size_t)0)
+#define T3R_HEAD_WORK_(width, column_bytes)                                                                            \
+    ((column_bytes) > 0 ? T3R_HEAD_COLUMNS_(width) * (column_bytes) + T3R_HEAD_KERNEL_BYTES : (size_t)0)
 /* What lifting needs beside its plane: the two halves of a row. Each has T3R_WAVELET_PAD samples before and behind it,
  * and its length is rounded up to as many. The texture rows of all levels, width + 5 samples, take less. */
 #define T3R_WAVELET_PAD 8u /* samples: 16 bytes, so that halves stay aligned */
@@ -292,8 +291,7 @@
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_GROUP_COUNT_BYTES, T3R_AT_BUDGET,    \
       T3R_AT_BUDGET)                                                                                                   \
     X(with, HEAD_WORK, "head work",                                                                                    \
-      T3R_BUILDS_(shape) * T3R_WORKERS_(shape) *                                                                       \
-          T3R_UP_(T3R_HEAD_WORK_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_COLUMN_BYTES_(shape))),                    \
+      T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_UP_(T3R_HEAD_WORK_(T3R_WIDTH_(shape), T3R_COLUMN_BYTES_(shape))), \
       T3R_AT_HEAD, T3R_AT_HEAD)                                                                                        \
     X(with, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_REFINE,   \
       T3R_AT_REFINE)                                                                                                   \

@@ -28,11 +28,6 @@
 #define T3R_FEATURE_LEARNED 1
 #endif
 
-/* The head of moments: T3R_HEAD_MOMENT. */
-#ifndef T3R_FEATURE_MOMENT
-#define T3R_FEATURE_MOMENT 1
-#endif
-
 /* Refinement on the context views: t3r_config.refine above 0. */
 #ifndef T3R_FEATURE_REFINEMENT
 #define T3R_FEATURE_REFINEMENT 1
@@ -55,7 +50,6 @@
 #define T3R_HAS_LEARNED (1u << 3)
 #define T3R_HAS_REFINEMENT (1u << 4)
 #define T3R_HAS_EXTRAS (1u << 5)
-#define T3R_HAS_MOMENT (1u << 6)
 #define T3R_HAS_LOSS (T3R_HAS_REFINEMENT | T3R_HAS_EXTRAS)
 
 /* X(FEATURE, name), a row a bit. */
@@ -65,8 +59,7 @@
     X(STREAMS, streams)                                                                                                \
     X(LEARNED, learned)                                                                                                \
     X(REFINEMENT, refinement)                                                                                          \
-    X(EXTRAS, extras)                                                                                                  \
-    X(MOMENT, moment)
+    X(EXTRAS, extras)
 
 /* Those that are left in. */
 #define T3R_BUILT_(FEATURE, name) | (T3R_FEATURE_##FEATURE ? T3R_HAS_##FEATURE : 0u)

@@ -1,6 +1,5 @@
-/* The settings of the runtime: a row each. From the rows are made the fields of t3r_config, their defaults and ranges,
- * what each needs of the library, the program's options with their help, the settings of the Python package, the draws
- * of the fuzzers and the list of docs/library.md. */
+/* The settings of the runtime: a row each. The fields of t3r_config are made from the rows, with their defaults, ranges
+ * and needs. So are the program's options, Python's settings, the fuzzers' draws and the list of docs/library.md. */
 #ifndef TRIM3R_SETTINGS_H
 #define TRIM3R_SETTINGS_H
 
@@ -37,7 +36,7 @@
       "wavelet that measures texture")                                                                                 \
     X(levels, number, 1, T3R_MAX_LEVELS, 2, NONE, 0, BUILD, "levels",                                                  \
       "levels of the wavelet that texture is summed over")                                                             \
-    /* K in GaussianTrim3R. 0 = t3r_cluster_count() chooses. With 1 no K-means run. */                                 \
+    /* K in GaussianTrim3R. 0 = t3r_cluster_count() chooses. With 1 no K-means run. A stream has one. */               \
     X(clusters, number, 0, T3R_MAX_CLUSTERS, 0, NONE, 0, BUILD, "clusters",                                            \
       "number of SuperClusters; 0 = as many as the allocation and the points ask for")                                 \
     /* 0 = t3r_cluster_batch_count() chooses. */                                                                       \
@@ -53,10 +52,10 @@
       "exponent of texture in the density; 0 = texture does not count")                                                \
     X(head, head, T3R_HEAD_ANALYTIC, T3R_HEAD_COUNT - 1, T3R_HEAD_ANALYTIC, LEARNED, T3R_HEAD_LEARNED, FIELD, NULL,    \
       "head that makes Gaussians of the retained points")                                                              \
-    /* t3r_head_column_bytes() returns what a head needs. The default is enough for tiny, nano, small and base         \
+    /* t3r_head_column_bytes() returns what a head needs. The default is enough for tiny and small                     \
      * with 8-bit activations. */                                                                                      \
     X(head_column_bytes, number, 0, T3R_MAX_HEAD_COLUMN_BYTES, T3R_HEAD_COLUMN_BYTES, NONE, 0, FIELD, NULL,            \
-      "working memory of a learned head in bytes a column of the view; 0 = two bytes a pixel of the view")             \
+      "working memory of a learned head in bytes a column of the view; 0 = none, for builds by other heads")           \
     X(refine, number, 0, T3R_MAX_REFINE, T3R_DEFAULT_REFINE, REFINEMENT, 1, BUILD, "refine",                           \
       "passes of refinement on the context views, at most where they are fitted")                                      \
     /* 1 = `refine` is the most, and t3r_refinement_passes() returns the number taken. A stream takes at most          \
@@ -68,7 +67,7 @@
      * view ask for, as splats of T3R_HEAD_LEARNED, of a stream, of a build with refinement and of a head that         \
      * nothing adapts are in any case. */                                                                              \
     X(fit_widths, toggle, 0, 1, T3R_FEATURE_COMPARISON, COMPARISON, 1, BUILD, "fit-widths",                            \
-      "without refinement, fit the widths of splats of analytic and moment to the points of all views")                \
+      "without refinement, fit the widths of splats of analytic to the points of all views")                           \
     /* 1 = from its second pass on refinement weights local contrast as structural similarity does, and ignores        \
      * what a whole view shows brighter or with more contrast than the others. 0 = every missing level counts          \
      * the same, as in a stream in any case. */                                                                        \

@@ -49,12 +49,12 @@ static inline void t3r_write_u8(t3r_hash_writer *w, uint8_t x)
 
 static inline void t3r_write_u16(t3r_hash_writer *w, uint16_t x)
 {
-    t3r_set_le_u16(t3r_hash_room(w, 2), x);
+    t3r_store_le16(t3r_hash_room(w, 2), x);
 }
 
 static inline void t3r_write_u32(t3r_hash_writer *w, uint32_t x)
 {
-    t3r_set_le_u32(t3r_hash_room(w, 4), x);
+    t3r_store_le32(t3r_hash_room(w, 4), x);
 }
 
 static inline void t3r_write_u64(t3r_hash_writer *w, uint64_t x)
@@ -74,7 +74,7 @@ static inline void t3r_write_u16s(t3r_hash_writer *w, const uint16_t *values, si
         const uint32_t run = (uint32_t)(count - i < T3R_HASH_RUN / 2 ? count - i : T3R_HASH_RUN / 2);
         uint8_t *room = t3r_hash_room(w, 2 * run);
         for (uint32_t j = 0; j < run; j++) {
-            t3r_set_le_u16(room + 2 * (size_t)j, values[i + j]);
+            t3r_store_le16(room + 2 * (size_t)j, values[i + j]);
         }
         i += run;
     }

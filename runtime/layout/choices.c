@@ -9,21 +9,15 @@
 _Static_assert(T3R_QUALITY_PASSES *T3R_QUALITY_SHARES <= T3R_MAX_CHOICES, "choices are at most those of the table");
 
 /* Rows of T3R_QUALITY_HEADS; a network counts as the shipped one of about its size. */
-enum { ROW_ANALYTIC, ROW_MOMENT, ROW_TINY, ROW_NANO, ROW_SMALL, ROW_BASE };
-#define TINY_MOST_MACS 700u /* a pixel */
-#define NANO_MOST_MACS 2500u
-#define SMALL_MOST_MACS 8600u
+enum { ROW_ANALYTIC, ROW_TINY, ROW_SMALL };
+#define TINY_MOST_MACS 1400u /* a pixel */
 
 static uint32_t quality_row(t3r_head head, const void *weights)
 {
     if (head != T3R_HEAD_LEARNED) {
-        return head == T3R_HEAD_MOMENT ? ROW_MOMENT : ROW_ANALYTIC;
+        return ROW_ANALYTIC;
     }
-    const uint32_t macs = t3r_weights_header_of(weights).macs_q8 >> 8;
-    if (macs <= NANO_MOST_MACS) {
-        return macs <= TINY_MOST_MACS ? ROW_TINY : ROW_NANO;
-    }
-    return macs <= SMALL_MOST_MACS ? ROW_SMALL : ROW_BASE;
+    return t3r_weights_header_of(weights).macs_q8 >> 8 <= TINY_MOST_MACS ? ROW_TINY : ROW_SMALL;
 }
 
 /* Of the last row whose passes are no more, and of the first share that is no more once it is rounded, or the last. */

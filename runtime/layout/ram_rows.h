@@ -9,11 +9,11 @@
 /* X(ram bytes, side, views, Gaussians, weights, head column bytes, refine), a row a size; weights NULL:
  * the head `analytic` */
 #define T3R_RAM_ROWS(X)                                                                                                \
-    X(131072, 48, 2, 281, "nano", 192, 4)                                                                              \
-    X(196608, 64, 2, 434, "nano", 206, 4)                                                                              \
-    X(262144, 80, 2, 724, "nano", 216, 4)                                                                              \
-    X(524288, 128, 2, 1001, "small", 406, 4)                                                                           \
-    X(1048576, 192, 2, 1778, "small", 412, 4)                                                                          \
+    X(131072, 48, 2, 364, "tiny", 112, 4)                                                                              \
+    X(196608, 64, 2, 434, "tiny", 125, 4)                                                                              \
+    X(262144, 80, 2, 744, "tiny", 136, 4)                                                                              \
+    X(524288, 128, 2, 1356, "tiny", 148, 4)                                                                            \
+    X(1048576, 192, 2, 1865, "small", 412, 4)                                                                          \
     X(4194304, 256, 2, 17616, "small", 414, 4)
 
 #endif

@@ -97,11 +97,11 @@ static void count_network(const void *weights, const t3r_config *c, const sizes 
     }
 }
 
-/* Gaussians of a closed form: fitting a width to one other view is 1/share of what one of them takes. */
-static uint64_t closed_forms(const t3r_config *c, const sizes *s, uint32_t share)
+/* Returns the Gaussians of `analytic`: fitting a width to one other view takes a fifth of what a disc takes. */
+static uint64_t count_discs(const t3r_config *c, const sizes *s)
 {
     const bool fits = c->fit_widths != 0 && c->refine == 0;
-    return s->gaussians + (fits ? s->gaussians * (s->views - 1) / share : 0);
+    return s->gaussians + (fits ? s->gaussians * (s->views - 1) / 5 : 0);
 }
 
 static void count_head(const t3r_config *c, const t3r_layout *layout, const void *weights, const sizes *s,
@@ -111,12 +111,9 @@ static void count_head(const t3r_config *c, const t3r_layout *layout, const void
         const bool packed = is_packed(c, layout, weights);
         count_network(weights, c, s, packed ? T3R_WORK_MACS : T3R_WORK_UNPACKED_MACS, units);
         units[T3R_WORK_LIFTS] = s->gaussians;
-    } else if (c->head == T3R_HEAD_MOMENT) {
-        units[T3R_WORK_MOMENT_PIXELS] = s->points;
-        units[T3R_WORK_MOMENT_GAUSSIANS] = closed_forms(c, s, 12);
     } else {
         units[T3R_WORK_DISC_PIXELS] = s->points;
-        units[T3R_WORK_DISC_GAUSSIANS] = closed_forms(c, s, 5);
+        units[T3R_WORK_DISC_GAUSSIANS] = count_discs(c, s);
     }
 }
 

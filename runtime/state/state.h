@@ -9,6 +9,7 @@
 
 #include "ablation.h"
 #include "core/assertion.h"
+#include "core/features.h"
 #include "core/placement.h"
 #include "kernels/kernels.h"
 #include "reuse.h"
@@ -36,9 +37,12 @@ typedef struct t3r_build {
     uint32_t refine; /* 0..those of the configuration */
 } t3r_build;
 
+/* A stream allocates by pixel where a build does by SuperCluster: keys are to mean the same in every keyframe. */
 static inline t3r_build t3r_build_of(const t3r_config *config)
 {
-    return (t3r_build){config->gaussians, config->allocate, config->head, config->refine};
+    const bool clustered = config->allocate == T3R_ALLOCATE_DENSITY || config->allocate == T3R_ALLOCATE_PAPER;
+    const t3r_allocation allocation = t3r_is_stream(config) && clustered ? T3R_ALLOCATE_PIXEL : config->allocate;
+    return (t3r_build){config->gaussians, allocation, config->head, config->refine};
 }
 
 /* A context view that came in part: the rows that are there, and what they are of. */

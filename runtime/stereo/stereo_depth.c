@@ -74,71 +74,118 @@ static bool see(bool polar, uint32_t side, const sight *seen, uint32_t i, distan
     return true;
 }
 
+/* What every second pixel of every second row shows. */
+typedef struct sample {
+    uint32_t pixels, matched, still; /* matched: surely; still: of these, without parallax */
+    uint32_t histogram[BINS];        /* the others, by how far they are */
+} sample;
+
+static void count_distance(const distance *s, sample *seen)
+{
+    if (s->confidence < T3R_STEREO_SURE) {
+        return;
+    }
+    seen->matched++;
+    if (s->disparity_q16 < NO_PARALLAX_Q16) {
+        seen->still++;
+        return;
+    }
+    const int64_t baselines_q16 = t3r_round_div64(s->numerator_q24 * (1 << 22), s->denominator_q30);
+    seen->histogram[t3r_log2_wide_q16((uint64_t)T3R_MAX(baselines_q16, 1)) >> 13]++;
+}
+
+static void sample_columns(const t3r_kernels *kernels, const t3r_stereo_planes *planes, uint32_t side,
+                           const t3r_view_columns *columns, uint32_t height, sample *all)
+{
+    for (uint32_t v = 0; v < height; v += SAMPLING) {
+        sight seen;
+        look_at(kernels, planes, side, columns, v, &seen);
+        for (uint32_t i = 0; i < columns->count; i++) {
+            distance s;
+            if (see(planes->rect->polar, side, &seen, i, &s)) {
+                count_distance(&s, all);
+            }
+        }
+        all->pixels += columns->count;
+    }
+}
+
+static void sample_view(const t3r_kernels *kernels, const t3r_stereo_planes *planes, uint32_t side,
+                        const t3r_view *view, sample *all)
+{
+    const uint32_t across = (view->width + SAMPLING - 1) / SAMPLING;
+    for (uint32_t first = 0; first < across; first += T3R_RAYS) {
+        t3r_view_columns columns;
+        t3r_view_columns_of(planes->rect, side, SAMPLING * first, SAMPLING, T3R_MIN(across - first, T3R_RAYS),
+                            &columns);
+        sample_columns(kernels, planes, side, &columns, view->height, all);
+    }
+}
+
+/* Returns what the pair is good for. */
+static t3r_pair judge(const sample *seen)
+{
+    const uint32_t least = seen->pixels / LEAST_SHARE;
+    if (seen->matched < least) {
+        return T3R_PAIR_OVERLAP;
+    }
+    if (4 * (uint64_t)seen->still > 3 * (uint64_t)seen->matched) {
+        return T3R_PAIR_PARALLAX;
+    }
+    return seen->matched - seen->still < least ? T3R_PAIR_OVERLAP : T3R_PAIR_OK;
+}
+
+/* Returns the bin of the far percentile, at most FARTHEST bins beyond that of the median. */
+static int32_t far_bin(const sample *seen)
+{
+    const uint32_t moving = seen->matched - seen->still;
+    int32_t far = BINS - 1, median = 0;
+    for (uint32_t beyond = seen->histogram[far]; far > 0 && beyond <= moving / TOO_FAR;) {
+        beyond += seen->histogram[--far];
+    }
+    for (uint32_t below = seen->histogram[0]; median < far && 2 * below <= moving;) {
+        below += seen->histogram[++median];
+    }
+    return T3R_MIN(far, median + FARTHEST);
+}
+
+/* Returns the steps of a baseline with which a bin's end, 2^((bin + 1) / 8 - 16) baselines, is FAR_STEPS away. */
+static uint32_t steps_of(int32_t bin)
+{
+    const int32_t shift = (bin + 1) / 8, part = (bin + 1) % 8;
+    const int64_t limit_q16 = t3r_scale64(t3r_exp2_q16(part << 13), shift - 16);
+    return (uint32_t)t3r_clamp64(t3r_round_div64((int64_t)FAR_STEPS << 16, T3R_MAX(limit_q16, 1)), 1, STEPS_MOST);
+}
+
+/* Returns baseline / steps in Q40, 0 where no depth unit is so small or so large. */
+static uint64_t unit_of(const t3r_rectification *rect, uint32_t steps)
+{
+    const int64_t unit = t3r_round_div64((int64_t)rect->baseline_q31 << 24, steps);
+    const int32_t scale = rect->baseline_exponent - 31 - 24 + 8; /* unit below 2^57 */
+    if (scale > 0 && (scale > 47 || unit >> (47 - scale) != 0)) {
+        return 0;
+    }
+    const int64_t unit_q40 = t3r_scale64(unit, scale);
+    return unit_q40 < 1 || unit_q40 >= INT64_C(1) << 47 ? 0 : (uint64_t)unit_q40;
+}
+
 t3r_pair t3r_stereo_unit(const t3r_kernels *kernels, t3r_stereo_planes *planes, const t3r_view views[2],
                          uint64_t *depth_unit_q40)
 {
-    const t3r_rectification *rect = planes->rect;
-    uint32_t histogram[BINS] = {0}, sampled = 0, matched = 0, still = 0;
+    sample seen = {0};
     for (uint32_t side = 0; side < 2; side++) {
-        const uint32_t samples = (views[side].width + SAMPLING - 1) / SAMPLING;
-        for (uint32_t first = 0; first < samples; first += T3R_RAYS) {
-            t3r_view_columns columns;
-            sight seen;
-            t3r_view_columns_of(rect, side, SAMPLING * first, SAMPLING, T3R_MIN(samples - first, T3R_RAYS), &columns);
-            for (uint32_t v = 0; v < views[side].height; v += SAMPLING) {
-                look_at(kernels, planes, side, &columns, v, &seen);
-                for (uint32_t i = 0; i < columns.count; i++) {
-                    distance s;
-                    sampled++;
-                    if (!see(rect->polar, side, &seen, i, &s) || s.confidence < T3R_STEREO_SURE) {
-                        continue;
-                    }
-                    matched++;
-                    if (s.disparity_q16 < NO_PARALLAX_Q16) {
-                        still++;
-                        continue;
-                    }
-                    const int64_t baselines_q16 = t3r_round_div64(s.numerator_q24 * (1 << 22), s.denominator_q30);
-                    histogram[t3r_log2_wide_q16((uint64_t)T3R_MAX(baselines_q16, 1)) >> 13]++;
-                }
-            }
-        }
+        sample_view(kernels, planes, side, &views[side], &seen);
     }
-    if (matched < sampled / LEAST_SHARE) {
-        return T3R_PAIR_OVERLAP;
+    const t3r_pair pair = judge(&seen);
+    if (pair != T3R_PAIR_OK) {
+        return pair;
     }
-    if (4 * (uint64_t)still > 3 * (uint64_t)matched) {
-        return T3R_PAIR_PARALLAX;
-    }
-    const uint32_t moving = matched - still;
-    if (moving < sampled / LEAST_SHARE) {
-        return T3R_PAIR_OVERLAP;
-    }
-    int32_t bin = BINS - 1, middle = 0; /* the first from above with which too many are beyond it; the median */
-    for (uint32_t beyond = histogram[bin]; bin > 0 && beyond <= moving / TOO_FAR;) {
-        beyond += histogram[--bin];
-    }
-    for (uint32_t below = histogram[0]; middle < bin && 2 * below <= moving;) {
-        below += histogram[++middle];
-    }
-    bin = T3R_MIN(bin, middle + FARTHEST);
-    /* 60,000 steps at the bin's end, 2^((bin + 1) / 8 - 16) baselines */
-    const int32_t shift = (bin + 1) / 8, part = (bin + 1) % 8;
-    const int64_t limit_q16 = t3r_scale64(t3r_exp2_q16(part << 13), shift - 16);
-    planes->steps =
-        (uint32_t)t3r_clamp64(t3r_round_div64((int64_t)FAR_STEPS << 16, T3R_MAX(limit_q16, 1)), 1, STEPS_MOST);
-
-    /* baseline / steps, in Q40 */
-    const int64_t unit = t3r_round_div64((int64_t)rect->baseline_q31 << 24, planes->steps);
-    const int32_t scale = rect->baseline_exponent - 31 - 24 + 8; /* unit below 2^57 */
-    if (scale > 0 && (scale > 47 || unit >> (47 - scale) != 0)) {
+    planes->steps = steps_of(far_bin(&seen));
+    const uint64_t unit_q40 = unit_of(planes->rect, planes->steps);
+    if (unit_q40 == 0) {
         return T3R_PAIR_SCALE;
     }
-    const int64_t unit_q40 = t3r_scale64(unit, scale);
-    if (unit_q40 < 1 || unit_q40 >= INT64_C(1) << 47) {
-        return T3R_PAIR_SCALE;
-    }
-    *depth_unit_q40 = (uint64_t)unit_q40;
+    *depth_unit_q40 = unit_q40;
     return T3R_PAIR_OK;
 }
 

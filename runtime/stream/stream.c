@@ -3,29 +3,25 @@
  *     frame - image - depth - pointmap -+- the map seen and drawn from there -+- budget - mask - head - map - refine
  *                                       +- wavelet -- texture energy ---------+
  *
- * The map is the scene; what competes with it are the pixels that it does not show. */
+ * The stages are a build's (stages.h). The map is the scene; what competes with it are the pixels that it does not
+ * show. */
 #include "stream.h"
 
-#include "pointmap/bridge.h"
-#include "core/camera.h"
-#include "core/config.h"
 #include "budget/budget_keys.h"
 #include "budget/cluster_texture.h"
-#include "depth/depth.h"
-#include "image/develop.h"
-#include "pointmap/exposure.h"
+#include "core/config.h"
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "pointmap/flying_pixels.h"
-#include "image/image.h"
-#include "head/head_views.h"
-#include "pipeline.h"
-#include "refine/refine.h"
 #include "core/scene_frame.h"
-#include "pointmap/scene_scale.h"
-#include "stage_hash.h"
-#include "state/state.h"
+#include "head/head_views.h"
+#include "image/develop.h"
+#include "pointmap/exposure.h"
+#include "pointmap/pointmap.h"
+#include "refine/refine.h"
 #include "remember.h"
+#include "stage_hash.h"
+#include "stages.h"
+#include "state/state.h"
 #include "stream_map.h"
 #include "superclusters/one_cluster.h"
 
@@ -48,15 +44,13 @@ static void rebase(t3r_runtime *rt, const int32_t position_q20[3])
     rt->gaussians = map.count;
 }
 
-t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
+t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_camera *camera)
 {
-    t3r_camera resized;
-    t3r_status status = t3r_frame_check(rt, frame, camera, &resized); /* before anything moves */
-    if (status != T3R_OK || rt->keyframes == 0) {
-        return status;
+    if (rt->keyframes == 0) {
+        return T3R_OK;
     }
     t3r_pose pose;
-    status = t3r_pose_in_scene(camera, &rt->frame, &pose);
+    const t3r_status status = t3r_pose_in_scene(camera, &rt->frame, &pose);
     bool far = false;
     for (int i = 0; i < 3 && status == T3R_OK; i++) {
         far = far || t3r_abs32(pose.position_q20[i]) > REBASE_Q20;
@@ -81,40 +75,45 @@ static void leave_far_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t
 
 /* --- the keyframe by itself and among those at hand --------------------------------------------------------------- */
 
+static t3r_view_span alone(uint32_t slot)
+{
+    return (t3r_view_span){slot, slot + 1};
+}
+
 static t3r_status develop(t3r_runtime *rt, uint32_t slot, const t3r_frame *frame, const t3r_camera *camera)
 {
-    t3r_camera undistorted;
     if (!t3r_progress(rt, T3R_STAGE_IMAGE, 0, 1)) {
         return T3R_ERR_CANCELLED;
     }
-    t3r_status status = t3r_develop_view(rt, slot, frame, camera, &undistorted);
-    if (status != T3R_OK) {
-        return status;
-    }
-    rt->camera[slot] = undistorted;
+    rt->camera[slot] = *camera;
     rt->depth_unit_q40[slot] = frame->depth_unit_q40;
-    return T3R_OK;
+    return t3r_develop_view(rt, slot, frame, &rt->camera[slot]);
 }
 
 /* The gains that bring the new keyframe and the one before to their mean exposure. Older ones keep theirs: what each
  * keyframe is to look like is the mean of its neighbours on the way, and the map changes along with the camera's
  * exposure.
  */
-static void level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_t slot, const t3r_pointmap_work *work)
+static t3r_status level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
 {
+    if (!t3r_pointmap_step(rt, alone(slot), T3R_PART_EXPOSURE, 0)) {
+        return T3R_ERR_CANCELLED;
+    }
     const uint32_t before = (slot + rt->config.views - 1) % rt->config.views;
     for (int c = 0; c < 3; c++) {
         rt->gain_q14[slot][c] = T3R_GAIN_ONE_Q14;
     }
     if (!rt->config.exposure || before >= rt->views || before == slot) {
-        return;
+        return T3R_OK;
     }
+    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
     const t3r_view pair[2] = {views[before], views[slot]};
     uint16_t gain_q14[2][3];
-    if (t3r_exposure_gains(pair, 2, rt->frame.exponent, gain_q14, work) == 2) {
+    if (t3r_exposure_gains(pair, 2, rt->frame.exponent, gain_q14, &work) == 2) {
         memcpy(rt->gain_q14[before], gain_q14[0], sizeof gain_q14[0]);
         memcpy(rt->gain_q14[slot], gain_q14[1], sizeof gain_q14[1]);
     }
+    return T3R_OK;
 }
 
 /* Wide holes stay bridged. */
@@ -128,26 +127,14 @@ static void reset_older_marks(const t3r_runtime *rt, const t3r_view *views, uint
     }
 }
 
-static t3r_status compare_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
+static t3r_status compare_keyframes(t3r_runtime *rt, t3r_view *views, uint32_t slot)
 {
-    const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
-    if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 0, 2)) {
-        return T3R_ERR_CANCELLED;
+    reset_older_marks(rt, views, slot);
+    t3r_status status = t3r_bridge_holes(rt, views, alone(slot));
+    if (status == T3R_OK) {
+        status = t3r_find_flying_pixels(rt, views, alone(slot));
     }
-    if (rt->config.bridge_radius > 0) {
-        t3r_bridge_lend(views, rt->views, slot, rt->frame.exponent, &work);
-        t3r_bridge_view(&views[slot], rt->config.bridge_radius);
-        /* slot < T3R_MAX_VIEWS = 16. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
-        (void)t3r_bridge_settle(views, rt->views, slot, rt->frame.exponent, ~(1u << slot), &work);
-    }
-    if (rt->config.flying != 0) {
-        (void)t3r_mark_flying(views, rt->views, slot, rt->frame.exponent, false, &work);
-    }
-    if (!t3r_progress(rt, T3R_STAGE_POINTMAP, 1, 2)) {
-        return T3R_ERR_CANCELLED;
-    }
-    level_keyframe(rt, views, slot, &work);
-    return T3R_OK;
+    return status == T3R_OK ? level_keyframe(rt, views, slot) : status;
 }
 
 /* --- the map from there ------------------------------------------------------------------------------------------- */
@@ -209,41 +196,24 @@ static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot,
 
 /* --- what is new -------------------------------------------------------------------------------------------------- */
 
-static t3r_budget_settings keyframe_settings(const t3r_runtime *rt)
-{
-    const t3r_config *config = &rt->config;
-    bool clustered = config->allocate == T3R_ALLOCATE_DENSITY || config->allocate == T3R_ALLOCATE_PAPER;
-    return (t3r_budget_settings){
-        .allocate = clustered ? T3R_ALLOCATE_PIXEL : config->allocate,
-        .gamma_q8 = config->gamma_q8,
-        .clusters = 1,
-        .seed = config->seed,
-        .first_view = rt->keyframes % T3R_MAX_VIEWS,
-        .pass_over_covered = true,
-    };
-}
-
-static t3r_status add_points(t3r_runtime *rt, const t3r_view *views, uint32_t slot, t3r_stream_report *report)
+static t3r_status add_points(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3r_stream_report *report)
 {
     const t3r_view *view = &views[slot];
-    const t3r_budget_work work = {t3r_workers_of(rt), t3r_buffer_at(rt, T3R_BUFFER_BUDGET_WORK), &rt->kernels};
-    if (!t3r_progress(rt, T3R_STAGE_WAVELET, 0, 1)) {
-        return T3R_ERR_CANCELLED;
+    const t3r_budget_work work = t3r_budget_work_of(rt);
+    const t3r_status status = t3r_find_texture(rt, views, alone(slot));
+    if (status != T3R_OK) {
+        return status;
     }
-    t3r_view_texture(rt, view);
-    t3r_hash_wavelet(rt, views, slot, slot + 1);
-    /* one: keys are to mean the same in every keyframe */
-    report->points = t3r_one_cluster(view, 1, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
+    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    report->points = t3r_one_cluster(view, 1, clusters);
     t3r_blur_texture(&rt->kernels, view, 1, &work.workers);
 
-    t3r_budget_settings settings = keyframe_settings(rt);
+    t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
     t3r_map map = t3r_map_of(rt);
     t3r_budget_keys(view, 1, &settings, &work);
     t3r_map_cut cut = t3r_map_compete(&map, view, &settings, rt->config.gaussians);
     settings.gaussians = cut.added;
-    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
-    t3r_allocate(view, 1, &settings, clusters, &work);
-    t3r_hash_budget(rt, views, slot, slot + 1);
+    t3r_choose_points(rt, views, alone(slot), &settings);
     if (!t3r_progress(rt, T3R_STAGE_HEAD, 0, 1)) {
         return T3R_ERR_CANCELLED;
     }
@@ -265,28 +235,20 @@ static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot,
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
-    t3r_view *view = &views[slot];
-    if (!t3r_is_reliable_anywhere(view)) {
+    if (!t3r_is_reliable_anywhere(&views[slot])) {
         return T3R_ERR_NO_DEPTH;
     }
     t3r_hash_image(rt, views, slot, slot + 1);
-    if (!t3r_progress(rt, T3R_STAGE_DEPTH, 0, 1)) {
-        return T3R_ERR_CANCELLED;
+    t3r_status status = t3r_find_depth(rt, views, alone(slot));
+    if (status == T3R_OK && rt->keyframes == 0) {
+        status = t3r_choose_frame(rt, views);
     }
-    t3r_depth_fill(view, rt->config.fill_radius);
-    t3r_hash_depth(rt, views, slot, slot + 1);
-    if (rt->keyframes == 0) {
-        memcpy(rt->frame.origin_q32, rt->camera[slot].position_q32, sizeof rt->frame.origin_q32);
-        const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
-        t3r_status status = t3r_scene_scale_choose(view, 1, &work, &rt->frame.exponent, &rt->median_depth_q20);
-        if (status != T3R_OK) {
-            return status;
-        }
+    if (status != T3R_OK) {
+        return status;
     }
     leave_far_keyframes(rt, views, slot);
     t3r_views_of(rt, views); /* poses in the frame there is now */
-    reset_older_marks(rt, views, slot);
-    t3r_status status = compare_keyframes(rt, views, slot);
+    status = compare_keyframes(rt, views, slot);
     if (status == T3R_OK) {
         status = see_map(rt, views, slot, report);
     }

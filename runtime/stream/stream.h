@@ -4,10 +4,10 @@
 
 #include "trim3r.h"
 
-/* Whether the frame can be read and the camera stands where the map reaches; T3R_OK moves the map's origin after it. */
-t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
+/* Moves the map's origin after the checked camera where it has come far. An error: it stands where no map reaches. */
+t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_camera *camera);
 
-/* The checked keyframe into the map. */
+/* Takes the checked keyframe into the map. `camera` is that of t3r_frame_check(). */
 t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                            t3r_stream_report *report);
 

@@ -14,7 +14,7 @@ from checks import check, done, near, skip  # noqa: E402
 
 PROGRAM, FOLDER = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 SECTION = (ROOT / "docs" / "study" / "boards.md").read_text().split("\n## Flash\n")[1]
-LIMITS = {"one view, `analytic`": 48 << 10, "one view, `nano`, refinement": 80 << 10,
+LIMITS = {"one view, `analytic`": 48 << 10, "one view, `tiny`, refinement": 80 << 10,
           "one view, `small`, refinement": 110 << 10}
 TOLERANCE = 0.02 # another version of the compiler
 

@@ -16,7 +16,7 @@ from cortex_m import CLANG, COMPILER  # noqa: E402
 from firmware import BOARDS, RUNTIME  # noqa: E402
 
 PROGRAM, FOLDER, BOARD = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), "mps3-an547"
-COMPILERS = (CLANG, (COMPILER, "-ffreestanding", "-std=c11"))
+COMPILERS = ((*CLANG, "-ffreestanding", "-std=c11"), (COMPILER, "-ffreestanding", "-std=c11"))
 LEVELS = ("-O0", "-O1", "-O2", "-O3", "-Os")
 
 

@@ -44,12 +44,12 @@ static void lines_are_read_to_the_nanosecond(void **state)
     assert_int_equal(t.count, 2);
     assert_int_equal(t.poses[0].stamp_ns, 1305031102100000000); /* by stamp */
     assert_int_equal(t.poses[1].stamp_ns, 1305031102175304001);
-    assert_true(t.poses[1].pose[2] >= 3 && t.poses[1].pose[6] >= 1);
+    assert_true(t.poses[1].pose.position[2] >= 3 && t.poses[1].pose.rotation[0] >= 1);
     trajectory_free(&t);
     parsed("#timestamp, p_RS_R_x [m], ...\n1403636579763555584,1,2,3,1,0,0,0,0.1,0.2\n", &t);
     assert_string_equal(t.kind, "EuRoC");
     assert_int_equal(t.poses[0].stamp_ns, 1403636579763555584);
-    assert_true(t.poses[0].pose[6] >= 1 && t.poses[0].pose[3] <= 0); /* w comes first there */
+    assert_true(t.poses[0].pose.rotation[0] >= 1 && t.poses[0].pose.rotation[1] <= 0); /* w comes first there */
     trajectory_free(&t);
     /* of two poses of one time the first stays */
     parsed("1 1 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n", &t);
@@ -77,28 +77,29 @@ static void poses_are_interpolated_within_a_bracket(void **state)
     (void)state;
     trajectory t;
     parsed("1.0 0 0 0 0 0 0 1\n1.1 1 2 -4 0 0 0 -1\n2.0 5 5 5 0 0 0 1\n", &t);
-    double pose[POSE_NUMBERS];
-    assert_true(trajectory_at(&t, 1025000000, pose));
-    assert_true(fabs(pose[0] - 0.25) < 1e-12 && fabs(pose[1] - 0.5) < 1e-12 && fabs(pose[2] + 1) < 1e-12);
-    assert_true(fabs(fabs(pose[6]) - 1) < 1e-12); /* q and -q are one rotation: no detour */
-    assert_true(trajectory_at(&t, 2000000000, pose) && pose[0] >= 5);
-    assert_false(trajectory_at(&t, 1500000000, pose)); /* neighbours too far apart */
-    assert_false(trajectory_at(&t, 999999999, pose));
-    assert_false(trajectory_at(&t, 2000000001, pose));
+    rigid pose;
+    assert_true(trajectory_at(&t, 1025000000, &pose));
+    assert_true(fabs(pose.position[0] - 0.25) < 1e-12 && fabs(pose.position[1] - 0.5) < 1e-12 &&
+                fabs(pose.position[2] + 1) < 1e-12);
+    assert_true(fabs(fabs(pose.rotation[0]) - 1) < 1e-12); /* q and -q are one rotation: no detour */
+    assert_true(trajectory_at(&t, 2000000000, &pose) && pose.position[0] >= 5);
+    assert_false(trajectory_at(&t, 1500000000, &pose)); /* neighbours too far apart */
+    assert_false(trajectory_at(&t, 999999999, &pose));
+    assert_false(trajectory_at(&t, 2000000001, &pose));
     trajectory_free(&t);
 }
 
 static void times_that_no_integer_holds_have_no_pose(void **state)
 {
     (void)state;
-    trajectory_pose ends[2] = {{.stamp_ns = -(INT64_C(1) << 62), .pose = {0, 0, 0, 0, 0, 0, 1}},
-                               {.stamp_ns = INT64_C(1) << 62, .pose = {0, 0, 0, 0, 0, 0, 1}}};
+    trajectory_pose ends[2] = {{.stamp_ns = -(INT64_C(1) << 62), .pose = {{0}, {1}}},
+                               {.stamp_ns = INT64_C(1) << 62, .pose = {{0}, {1}}}};
     const trajectory t = {.poses = ends, .count = 2, .kind = "bag"};
-    double pose[POSE_NUMBERS];
-    assert_false(trajectory_at(&t, 0, pose)); /* neighbours 2^63 ns apart */
-    assert_true(trajectory_at_offset(&t, INT64_C(1) << 61, INT64_C(1) << 61, pose));
-    assert_false(trajectory_at_offset(&t, INT64_MAX, 1, pose));
-    assert_false(trajectory_at_offset(&t, INT64_MIN, -1, pose));
+    rigid pose;
+    assert_false(trajectory_at(&t, 0, &pose)); /* neighbours 2^63 ns apart */
+    assert_true(trajectory_at_offset(&t, INT64_C(1) << 61, INT64_C(1) << 61, &pose));
+    assert_false(trajectory_at_offset(&t, INT64_MAX, 1, &pose));
+    assert_false(trajectory_at_offset(&t, INT64_MIN, -1, &pose));
 }
 
 /* ---- clocks ---- */
@@ -162,7 +163,7 @@ static void track(motion (*path)(double), double ahead_s, trajectory *t)
         motion m = path(s);
         double cy = cos(m.yaw / 2), sy = sin(m.yaw / 2), cx = cos(-m.pitch / 2), sx = sin(-m.pitch / 2);
         t->poses[i] = (trajectory_pose){(int64_t)llround((s + 2 + ahead_s) * 1e9),
-                                        {m.x, 0, 0, cy * sx, sy * cx, -sy * sx, cy * cx}};
+                                        {{m.x, 0, 0}, {cy * cx, cy * sx, sy * cx, -sy * sx}}};
     }
 }
 

@@ -141,9 +141,9 @@ static trajectory path_of_room(void)
     for (uint32_t i = 0; i < t.count; i++) {
         t3r_recorded_camera c;
         room_recorded_camera(i % VIEWS, WIDTH, HEIGHT, &c);
-        t.poses[i] = (trajectory_pose){
-            5000000000 + (int64_t)i * 33333333,
-            {c.position[0], c.position[1], c.position[2], c.rotation[1], c.rotation[2], c.rotation[3], c.rotation[0]}};
+        t.poses[i].stamp_ns = 5000000000 + (int64_t)i * 33333333;
+        memcpy(t.poses[i].pose.position, c.position, sizeof c.position);
+        memcpy(t.poses[i].pose.rotation, c.rotation, sizeof c.rotation);
     }
     return t;
 }

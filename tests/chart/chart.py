@@ -169,7 +169,7 @@ def refuses(folder):
         refuse(INPUT, words, bad, *out)
     with open(bad, "wb") as file:
         file.write(bytes(range(128, 256)) * 40)
-    refuse(INPUT, "bad.csv:1: a byte that is not UTF-8", bad, *out)
+    refuse(INPUT, "bad.csv:1: bytes that are no printable UTF-8", bad, *out)
     os.mkdir(f"{folder}/wrong")
     with open(f"{folder}/wrong/x.png", "wb") as file:
         file.write(b"no picture")

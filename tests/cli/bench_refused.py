@@ -17,7 +17,7 @@ def refused():
     expect(1, "bench", "--runs", 1, "--points", write("odd.f32", b"\0" * 25), err="25 bytes")
     expect(1, "bench", "--runs", 1, "--points", write("nan.f32", struct.pack("<6f", *[float("nan")] * 6)), err="byte 0")
     expect(2, "bench", "--depth", "laser", err="--depth")
-    expect(2, "bench", "--head", "moment", err="--head moment")
+    expect(2, "bench", "--head", "analytic", err="--head analytic")
     expect(2, "bench", "--head", "large", err="--head")
     expect(2, "bench", "--calibrate", err="belong together")
     expect(2, "bench", "-o", "machine.json", err="belong together")

@@ -64,10 +64,10 @@ def sizes_of_ram():
         check(all(f" {found[part]}\n" in told for part in PARTS), f"--ram {text}: a line a part: {told}")
     between = expect_json("plan", "--ram", "255K")
     check(between["ram_bytes"] == SIZES["192K"] and sum(between[part] for part in PARTS) == 255 << 10, "between two rows")
-    check(expect_json("plan", "--ram", "4G")["left_bytes"] > 1 << 30, "what the largest row leaves")
-    expect(3, "plan", "--ram", (128 << 10) - 1, err="131071 bytes of RAM are too few: the smallest size is 131072")
-    expect(2, "plan", "--ram", "much", err="--ram")
-    for more in (("--size", "64x64"), ("--gaussians", 5), ("--head", "nano"), ("--refine", 2), ("--within", "1M"),
+    check(expect_json("plan", "--preset", "4G")["left_bytes"] > 1 << 30, "what the largest row leaves")
+    expect(3, "plan", "--preset", (128 << 10) - 1, err="131071 bytes of RAM are too few: the smallest preset is for 131072")
+    expect(2, "plan", "--preset", "much", err="--preset")
+    for more in (("--size", "64x64"), ("--gaussians", 5), ("--head", "tiny"), ("--refine", 2), ("--within", "1M"),
                  ("--arena", "1M"), ("--markdown",), ("--svg", "a.svg")):
         expect(2, "plan", "--ram", "256K", *more, err="--ram chooses the settings")
 
@@ -127,7 +127,7 @@ def plan():
     small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
     check(small["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
     check(analytic["head_column_bytes"] == 0 and small["head_column_bytes"] > 0, "a closed form plans a network")
-    check(expect_json(*base, "--head", "nano")["head_column_bytes"] < small["head_column_bytes"], "nano plans for small")
+    check(expect_json(*base, "--head", "tiny")["head_column_bytes"] < small["head_column_bytes"], "tiny plans for small")
     tall = ["plan", "--size", "64x512", "--keep", 1, "--refine", 0, "--head"]
     check(expect_json(*tall, "analytic")["min_bytes"] <= expect_json(*tall, "small")["min_bytes"], "a closed form needs more")
     shares_and_operations(base, found)

@@ -23,8 +23,8 @@ def replay():
     expect(1, *base, "--expect", "golden.json", "--redundancy", "off", err="stage pointmap")
     expect(1, *base, "--expect", "golden.json", "--wavelet", "haar", err="stage wavelet")
     expect(1, *base, "--expect", "golden.json", "--context", "0,2", err="stage image")
-    expect(1, *base, "--expect", "golden.json", "--head", "moment", err="stage head")
-    expect(1, *base, "--expect", "golden.json", "--head", "nano", err="stage head")
+    expect(1, *base, "--expect", "golden.json", "--head", "analytic", err="stage head")
+    expect(1, *base, "--expect", "golden.json", "--head", "tiny", err="stage head")
     check(found["head"] == "small" and len(found["head_crc"]) == 8, "replay --json does not name the head")
     broken = dict(found, hash="1" * 16, stages=dict(found["stages"], raster="2" * 16), tiles=list(found["tiles"]))
     broken["tiles"][6] = "3" * 16

@@ -77,9 +77,10 @@ static void test_refusals(void **state)
     refuse("\"a\0b\"", 5, "t.csv:1: a control character");
     refuse("a\rb", 3, "t.csv:1: a control character");
     static const char *const not_utf8[] = {
-        "\x80", "\xC3", "\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF5\x80\x80\x80", "\xF4\x90\x80\x80", "\xE2\x82"};
+        "\x80",     "\xC3",     "\xC0\x80",    "\xE0\x80\x80", "\xED\xA0\x80", "\xF5\x80\x80\x80", "\xF4\x90\x80\x80",
+        "\xE2\x82", "\xC2\x85", "\xE2\x80\xAE"};
     for (size_t i = 0; i < sizeof not_utf8 / sizeof not_utf8[0]; i++) {
-        refuse(not_utf8[i], strlen(not_utf8[i]), "t.csv:1: a byte that is not UTF-8");
+        refuse(not_utf8[i], strlen(not_utf8[i]), "t.csv:1: bytes that are no printable UTF-8");
     }
 }
 

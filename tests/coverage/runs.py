@@ -10,7 +10,7 @@ AREAS = ("unit", "oracle", "workers", "kernels", "formats")
 NOT_RUN = "data" # tests that need recorded scenes
 GOLDEN_WAYS = ([], ["--arena", "min", "--tasks", "reverse", "--workers", "3"], ["--moved"], ["--cpu-mask", "all"])
 
-HEADS = ("none", "analytic", "moment", "nano", "small")
+HEADS = ("none", "analytic", "tiny", "small")
 ALLOCATIONS = ("density", "paper", "pixel", "uniform", "random")
 WAVELETS = ("db2", "haar", "cdf53")
 

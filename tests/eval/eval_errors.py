@@ -49,8 +49,8 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(USAGE, "--head", [*one, "--keep", "10", "--head", "huge"])
     refuse(USAGE, "--heads", [*one, "--keep", "10", "--heads", "small,huge"])
     refuse(USAGE, "--heads", [*one, "--keep", "10", "--heads", "small,"])
-    refuse(USAGE, "exclude", [*one, "--keep", "10", "--heads", "small", "--head", "base"])
-    refuse(USAGE, "same name and bits", [*one, "--keep", "10", "--heads", "small,nano,small"])
+    refuse(USAGE, "exclude", [*one, "--keep", "10", "--heads", "small", "--head", "tiny"])
+    refuse(USAGE, "same name and bits", [*one, "--keep", "10", "--heads", "small,tiny,small"])
     with open(f"{folder}/bad.t3w", "wb") as file:
         file.write(b"T3RW" + bytes(100))
     result = run(trim3r, "eval", *one, "--keep", "10", "--heads", f"analytic,{folder}/bad.t3w", expect=INPUT)

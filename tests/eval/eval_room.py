@@ -123,13 +123,13 @@ def evaluate_names(folder, room):
     """Runs that differ in a column of the table may share a folder of pictures."""
     rows = []
     for more in ((), ("--refine", "0"), ("--wavelet", "haar", "--levels", "3"), ("--clusters", "50", "--allocate", "paper"),
-                 ("--head", "moment"), ("--context", "0,3"), ("--refine", "0", "--ablate=full,k-5")):
+                 ("--head", "analytic"), ("--context", "0,3"), ("--refine", "0", "--ablate=full,k-5")):
         context = () if "--context" in more else ("--context", "0,2")
         rows += json.loads(run(trim3r, "eval", room, *context, *more, "--target", "1", "--keep", "5", "--images",
                                f"{folder}/names", "--json").stdout)["rows"]
     names = [r["picture"] for r in rows]
     check(names == ["1/trim3r_5.png", "1/trim3r_refine-0_5.png", "1/trim3r_haar_levels-3_5.png",
-                    "1/trim3r_paper_k-50_5.png", "1/trim3r_moment_5.png", "1/trim3r_5.png", "1/full_refine-0_5.png",
+                    "1/trim3r_paper_k-50_5.png", "1/trim3r_analytic_5.png", "1/trim3r_5.png", "1/full_refine-0_5.png",
                     "1/k-5_refine-0_5.png"], f"names: {names}")
     check(all(os.path.exists(f"{folder}/names/{name}") for name in names), "and the files")
     check((rows[2]["wavelet"], rows[2]["levels"], rows[3]["clusters"], rows[7]["clusters"]) == ("haar", "3", "50", "5"),
@@ -175,8 +175,8 @@ def evaluate_variants(folder, room):
     check(least["arena_bytes"] < plain["arena_bytes"], "and is smaller")
     check(row("--context", "2,2")["context"] == "2", "a context frame named twice counts once")
     near(row("--from-file")["psnr"], plain["psnr"], 0.05, "the exported file looks like the memory it came from")
-    moment = row("--head", "moment", "--allocate", "uniform")
-    check((moment["head"], moment["allocate"]) == ("moment", "uniform") and moment["psnr"] != plain["psnr"],
+    analytic = row("--head", "analytic", "--allocate", "uniform")
+    check((analytic["head"], analytic["allocate"]) == ("analytic", "uniform") and analytic["psnr"] != plain["psnr"],
           "settings count")
 
 
@@ -184,18 +184,18 @@ def evaluate_heads(folder, room):
     """Rows a head, each as if it had been evaluated alone; weight files beside shipped heads."""
     heads = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "quant", "heads")
     for bits in ("8", "16"):
-        run(trim3r, "quantize", f"{heads}/nano.safetensors", "--calibrate", room, "--name", "mine", "--weights", "8",
+        run(trim3r, "quantize", f"{heads}/tiny.safetensors", "--calibrate", room, "--name", "mine", "--weights", "8",
             "--activations", bits, "-o", f"{folder}/mine{bits}.t3w")
     common = ["--context", "0,2", "--target", "1", "--keep", "20,5"]
-    names = ["analytic", "moment", "nano", "small", "base", f"{folder}/mine8.t3w", f"{folder}/mine16.t3w"]
-    labels = ["analytic", "moment", "nano", "small", "base", "mine", "mine_w8a16"]
+    names = ["analytic", "tiny", "small", f"{folder}/mine8.t3w", f"{folder}/mine16.t3w"]
+    labels = ["analytic", "tiny", "small", "mine", "mine_w8a16"]
     answer = json.loads(run(trim3r, "eval", room, *common, "--heads", ",".join(names), "--methods", "random,trim3r",
                             "--images", f"{folder}/heads", "--html", f"{folder}/heads.html", "--json").stdout)
     rows = answer["rows"]
     check([(r["method"], r["head"], r["bits"], r["keep"]) for r in rows] ==
           [("random", "small", "8", k) for k in (20, 5)] +
-          [("trim3r", n, b, k) for n, b in zip(["analytic", "moment", "nano", "small", "base", "mine", "mine"],
-                                              [None, None, "8", "8", "8", "8", "8/16"]) for k in (20, 5)],
+          [("trim3r", n, b, k) for n, b in zip(["analytic", "tiny", "small", "mine", "mine"],
+                                              [None, "8", "8", "8", "8/16"]) for k in (20, 5)],
           f"rows a head: {rows}")
     check({f"{label}_{k}.png" for label in ["random", *labels] for k in (20, 5)} <= set(os.listdir(f"{folder}/heads/1")),
           "pictures a head")
@@ -205,9 +205,9 @@ def evaluate_heads(folder, room):
     for name, alone in zip(names, range(2, len(rows), 2)):
         row = json.loads(run(trim3r, "eval", room, *common, "--head", name, "--json").stdout)["rows"][0]
         check([row[s] for s in scores] == [rows[alone][s] for s in scores], f"{name} alone and beside others")
-    nano, mine = ([r["psnr"] for r in rows if (r["head"], r["bits"]) == (name, "8")] for name in ("nano", "mine"))
-    check(nano == mine, "the shipped head is what its float file gives")
-    check(len({r["psnr"] for r in rows}) == len(rows) - len(nano), "all others differ")
+    tiny, mine = ([r["psnr"] for r in rows if (r["head"], r["bits"]) == (name, "8")] for name in ("tiny", "mine"))
+    check(tiny == mine, "the shipped head is what its float file gives")
+    check(len({r["psnr"] for r in rows}) == len(rows) - len(tiny), "all others differ")
 
 
 def evaluate_rivals(folder, room):

@@ -62,7 +62,7 @@ def the_rule(folder):
 def the_room(folder):
     room, table = f"{folder}/room.mcap", f"{folder}/a.csv"
     run(trim3r, "room", "--size", "48x48", "--frames", "12", "-o", room)
-    quick = (room, "--keep", "10", "--head", "moment", "--refine", "0")
+    quick = (room, "--keep", "10", "--head", "analytic", "--refine", "0")
     plain = rows_of(*quick)
     two = rows_of(*quick, "--views", "2")
     untimed = lambda row: {k: v for k, v in row.items() if not k.endswith("_ms")}
@@ -75,7 +75,7 @@ def the_room(folder):
         check(len(set(frames)) == 10 and row["target"] not in frames, f"ten others than the target: {frames}")
         check(4.9 < row["gaussians"] / few["gaussians"] < 5.1, "five times the points")
         check(row["psnr"] > 15 and row["context_psnr"] > 15, f"a scene of them: {row['psnr']} dB")
-        name = f"{row['target']}/trim3r_moment_refine-0_views-10_10.png"
+        name = f"{row['target']}/trim3r_analytic_refine-0_views-10_10.png"
         check(row["picture"] == name and os.path.exists(f"{folder}/ten/{name}"), f"a name of its own: {row['picture']}")
         check(os.path.exists(f"{folder}/ten/{row['target']}/context_j.png"), "all context views are written")
     # a table goes on where it was cut off

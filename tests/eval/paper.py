@@ -110,8 +110,8 @@ def check_trained_heads(folder, call, cache, heads):
     """A folder as tools/study/train/retrain leaves it: a head for the points of eagles, one of one kind of scenes."""
     os.mkdir(f"{folder}/heads")
     for name, kind, mask in (("eagles", "all", "eagles"), ("rooms", "rooms", "trim3r")):
-        run(trim3r, "quantize", f"{heads}/nano.safetensors", "--name", name, "-o", f"{folder}/heads/{name}.t3w")
-        told = {"name": name, "head": "nano", "kind": kind, "mask": mask, "start": "nano" if kind == "all" else None,
+        run(trim3r, "quantize", f"{heads}/tiny.safetensors", "--name", name, "-o", f"{folder}/heads/{name}.t3w")
+        told = {"name": name, "head": "tiny", "kind": kind, "mask": mask, "start": "tiny" if kind == "all" else None,
                 "shipped": kind == "all", "steps": 7, "batch": 4, "crop": 128, "rate": 0.001, "seed": 1,
                 "data": ["hololens_a"] * (kind == "all")}
         with open(f"{folder}/heads/{name}.json", "w", encoding="utf-8") as file:
@@ -125,7 +125,7 @@ def check_trained_heads(folder, call, cache, heads):
           "its head on the points that it was trained for")
     tells(rows["hololens_b", "eagles+head, retrained"][0], own[0])
     tells(rows["hololens_b", "eagles+head"][0], next(r for r in shipped if r["method"] == "eagles+head"))
-    for text in ("`eagles`: from the shipped `nano`, 7 steps of 4", "points of eagles", "`rooms`: `nano` from nothing",
+    for text in ("`eagles`: from the shipped `tiny`, 7 steps of 4", "points of eagles", "`rooms`: `tiny` from nothing",
                  "points of trim3r; made-up rooms\n", "made-up and recorded scenes (hololens_a)"):
         check(text in printed, f"how it was trained: {text}")
     kinds = [(s, k) for s, k, _ in filled(found["Other kinds of scenes"][0])]
@@ -165,7 +165,7 @@ with tempfile.TemporaryDirectory() as folder:
     # heads of other scenes
     head = f"{folder}/mine.t3w"
     heads = os.path.join(os.path.dirname(paper), "..", "..", "..", "quant", "heads")
-    run(trim3r, "quantize", f"{heads}/nano.safetensors", "--name", "mine", "-o", head)
+    run(trim3r, "quantize", f"{heads}/tiny.safetensors", "--name", "mine", "-o", head)
     rows = tables(run(*call, "transfer", "--head-of", f"indoor={head}").stdout)["Other kinds of scenes"][0]
     check([(s, k) for s, k, _ in filled(rows)] ==
           [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "indoor")], "heads")

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "core/fixed.h"
 #include "host/file_bytes.h"
 #include "scene/gaussian_shape.h"

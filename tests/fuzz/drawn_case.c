@@ -191,7 +191,7 @@ static t3r_camera take_pose(input *in, const t3r_frame *frame, uint32_t world_sh
                          .rotation_q30 = {1 << 30}};
     for (int i = 0; i < 3; i++) {
         const int64_t step = (int64_t)below(in, 65) - 32; /* up to 0.25 m */
-        camera.position_q32[i] = step * (INT64_C(1) << (25 - 2 * (i > 0) - MOST_WORLD_SHIFT + world_shift));
+        camera.position_q32[i] = step * (INT64_C(1) << (25 - 2 * (i > 0) - MOST_WORLD_SHIFT + (int)world_shift));
         camera.rotation_q30[1 + i] = ((int32_t)below(in, 33) - 16) * (1 << 21); /* up to 1/32 */
     }
     return camera;

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "mcap/mcap.h"
 #include "recording/recording.h"
 

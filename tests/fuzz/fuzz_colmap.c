@@ -36,11 +36,11 @@ static void check(const colmap_model *model)
         const colmap_image *image = &model->images[i];
         double norm = 0;
         for (int k = 0; k < 4; k++) {
-            norm += image->rotation[k] * image->rotation[k];
+            norm += image->pose.rotation[k] * image->pose.rotation[k];
         }
         bool inside = image->name[0] != '\0' && fabs(norm - 1) < 1e-9;
         for (int k = 0; k < 3; k++) {
-            inside = inside && fabs(image->position[k]) < 1 << T3R_LIMIT_POSITION_LOG2;
+            inside = inside && fabs(image->pose.position[k]) < 1 << T3R_LIMIT_POSITION_LOG2;
         }
         const colmap_camera *camera = colmap_model_camera(model, image->camera);
         if (!inside || (camera != NULL && camera->wrong == NULL && !isfinite(camera->intrinsics.cx))) {

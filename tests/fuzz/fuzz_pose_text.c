@@ -11,7 +11,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    double matrix[MATRIX_NUMBERS_MOST], position[3], rotation[4];
+    double matrix[MATRIX_NUMBERS_MOST];
+    rigid pose;
     uint32_t count;
     char *text = malloc(size + 1);
     if (text == NULL) {
@@ -27,8 +28,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         abort();
     }
     for (int axes = AXES_OPENCV; wrong == NULL && count == 16 && axes <= AXES_OPENGL; axes++) {
-        if (pose_of_matrix(matrix, (camera_axes)axes, position, rotation) == NULL &&
-            !(fabs(position[0]) < 1 << T3R_LIMIT_POSITION_LOG2 && fabs(rotation[0]) <= 1)) {
+        if (pose_of_matrix(matrix, (camera_axes)axes, &pose) == NULL &&
+            !(fabs(pose.position[0]) < 1 << T3R_LIMIT_POSITION_LOG2 && fabs(pose.rotation[0]) <= 1)) {
             abort();
         }
     }

@@ -20,9 +20,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         const posed_frame *frame = &folder.frames[i];
         double norm = 0;
         for (int k = 0; k < 4; k++) {
-            norm += frame->rotation[k] * frame->rotation[k];
+            norm += frame->pose.rotation[k] * frame->pose.rotation[k];
         }
-        if (!(fabs(norm - 1) < 1e-9) || !(fabs(frame->position[2]) < 1 << T3R_LIMIT_POSITION_LOG2) ||
+        if (!(fabs(norm - 1) < 1e-9) || !(fabs(frame->pose.position[2]) < 1 << T3R_LIMIT_POSITION_LOG2) ||
             !isfinite(frame->intrinsics.fx + frame->intrinsics.cy)) {
             abort();
         }

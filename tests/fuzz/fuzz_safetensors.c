@@ -24,7 +24,7 @@ static void quantize(const float_head *head, uint32_t bits)
     }
     uint8_t *file = weight_file_make(&quantized, &count);
     /* the one thing that only the whole file can break */
-    if (weight_info_read(&info, file, count, error, sizeof error) != 0 && strstr(error, "at most 16 MiB") == NULL) {
+    if (weight_info_read(&info, file, count, error, sizeof error) != 0 && strstr(error, "over 16 MiB") == NULL) {
         abort();
     }
     free(file);

@@ -133,7 +133,7 @@ static void rewind_to(trace *t, uint32_t count)
     t->count = count;
 }
 
-#define FIELD(member) {offsetof(t3r_gaussian, member) + sizeof((t3r_gaussian){0}.member), #member},
+#define FIELD(member) {offsetof(t3r_gaussian, member) + sizeof(((t3r_gaussian *)NULL)->member), #member},
 static const struct {
     size_t end;
     const char *name;

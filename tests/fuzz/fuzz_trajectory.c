@@ -23,14 +23,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         abort();
     }
     for (size_t i = 0; status == 0 && i < t.count; i++) {
-        double pose[POSE_NUMBERS];
+        rigid pose;
         if (i > 0 && t.poses[i].stamp_ns <= t.poses[i - 1].stamp_ns) {
             abort();
         }
-        if (!trajectory_at(&t, t.poses[i].stamp_ns, pose) || memcmp(pose, t.poses[i].pose, sizeof pose) != 0) {
+        if (!trajectory_at(&t, t.poses[i].stamp_ns, &pose) || memcmp(&pose, &t.poses[i].pose, sizeof pose) != 0) {
             abort();
         }
-        if (trajectory_at(&t, t.poses[i].stamp_ns + 1, pose) && !(fabs(pose[0]) < 2147483649.0 && isfinite(pose[6]))) {
+        if (trajectory_at(&t, t.poses[i].stamp_ns + 1, &pose) &&
+            !(fabs(pose.position[0]) < 2147483649.0 && isfinite(pose.rotation[0]))) {
             abort();
         }
     }

@@ -19,7 +19,7 @@ static void parse(const uint8_t *data, size_t size, const posed_folder_options *
         const posed_frame *frame = &folder.frames[i];
         double norm = 0;
         for (int k = 0; k < 4; k++) {
-            norm += frame->rotation[k] * frame->rotation[k];
+            norm += frame->pose.rotation[k] * frame->pose.rotation[k];
         }
         t3r_recorded_camera camera;
         uint32_t width = isnan(frame->intrinsics.width) ? 64 : (uint32_t)frame->intrinsics.width;

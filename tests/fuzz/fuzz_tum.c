@@ -59,7 +59,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     for (uint32_t i = 0; status == 0 && i < folder.frame_count; i++) {
         const posed_frame *frame = &folder.frames[i];
-        if (frame->image == NULL || !(fabs(frame->position[0]) <= 1 << 30) || !isfinite(frame->rotation[3])) {
+        if (frame->image == NULL || !(fabs(frame->pose.position[0]) <= 1 << 30) || !isfinite(frame->pose.rotation[3])) {
             abort();
         }
     }

@@ -1,9 +1,8 @@
-/* A weight file, made up or damaged in a few places and sealed again: the host's reader and the runtime's, written
- * apart, take and refuse the same, and the host's says why. */
+/* A weight file, made up or damaged in a few places and sealed again. The rules of layers, written once for firmware
+ * and once for the host, accept the same files, and a refusal has a reason. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "le_bytes.h"
 #include "quant/sample_head.h"
 #include "weight_info.h"
 
@@ -49,8 +48,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         file[at % 2 == 0 ? at / 2 % table : at / 2 % bytes] = data[i + 2];
     }
     if (bytes >= T3R_WEIGHTS_HEADER_BYTES) {
-        le_put(file + WEIGHT_AT_BYTES, bytes, 4);
-        le_put(file + WEIGHT_AT_CRC, weight_file_crc(file, bytes), 4);
+        weight_file_seal(file, bytes);
     }
     weight_info info;
     char error[256] = "";

@@ -7,19 +7,22 @@ golden.py build [--both-ways] [--vectors] [--run EMULATOR] COMPILER FLAG...
                                   with --both-ways in the one that differs most from it, too; with --vectors by the
                                   loops of the processor's instruction sets in the place of plain C
 golden.py replay [--few] TRIM3R   the built-in recording, made and replayed by the program
-                                  with --few only in the way that differs most from the usual one, by vectors: with
-                                  sanitizers plain C takes minutes, and golden_clang_sanitized runs it
+                                  with --few only in the way that differs most from the usual one, by vectors
 Exit 0: the same; 1: other bits, naming the first stage that differs; 77: skipped, a tool is absent.
 """
 import json
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+sys.path.insert(0, str(ROOT / "tools" / "study" / "boards"))
+
+import objects  # noqa: E402
+from objects import output_of  # noqa: E402
+
 STAGES = HERE / "stages.txt"
 ROOM = HERE / "room.json"
 VECTORS = ["--cpu-mask", "all"]
@@ -35,13 +38,6 @@ DRIVER_SOURCES = [HERE / "golden_driver.c", ROOT / "tests" / "weights_maker.c", 
                   *sorted((ROOT / "tools" / "room").glob("*.c"))]
 DRIVER_INCLUDES = [ROOT / "runtime" / "include", ROOT / "runtime", ROOT / "platform", ROOT / "tools", ROOT / "tests",
                    ROOT / "quant" / "heads"]
-
-
-def output_of(command):
-    result = subprocess.run([str(word) for word in command], capture_output=True, text=True)
-    if result.returncode != 0:
-        sys.exit(f"{' '.join(map(str, command))}: status {result.returncode}\n{result.stdout}{result.stderr}")
-    return result.stdout
 
 
 def difference(got, expected):
@@ -69,11 +65,7 @@ def same(what, got, expected):
 def check_host(driver, ways):
     expected = STAGES.read_text()
     for way in ways:
-        same(" ".join(way) or "as usual", output_of([driver, *way]), expected)
-
-
-def runtime_sources():
-    return sorted((ROOT / "runtime").rglob("*.c"))
+        same(" ".join(way) or "as usual", output_of(driver, *way), expected)
 
 
 def check_build(arguments):
@@ -84,25 +76,26 @@ def check_build(arguments):
         ways, arguments = [[*way, "--cpu-mask", "all"] for way in ways], arguments[1:]
     if arguments[0] == "--run":
         emulator, arguments = [arguments[1]], arguments[2:]
-    for tool in (arguments[0], *emulator):
-        if shutil.which(tool) is None:
-            print(f"SKIPPED: no {tool} here (tools/setup --tests)")
-            sys.exit(77)
+    lacking = objects.absent(arguments[0], *emulator)
+    if lacking is not None:
+        print(f"SKIPPED: no {lacking} here (tools/setup --tests)")
+        sys.exit(77)
+    runtime = objects.compiled([word for word in arguments if word != "-static"])
     with tempfile.TemporaryDirectory(prefix="trim3r-golden-") as folder:
         driver = pathlib.Path(folder) / "golden_driver"
         includes = [word for folder in DRIVER_INCLUDES for word in ("-I", folder)]
-        output_of([*arguments, "-std=gnu11", *includes, *runtime_sources(), *DRIVER_SOURCES, "-o", driver])
+        output_of(*arguments, "-std=gnu11", *includes, *DRIVER_SOURCES, *runtime, "-o", driver)
         expected = STAGES.read_text()
         for way in ways:
-            same(" ".join([*emulator, *arguments, *way]), output_of([*emulator, driver, *way]), expected)
+            same(" ".join([*emulator, *arguments, *way]), output_of(*emulator, driver, *way), expected)
 
 
 def replay(program, way=()):
     """What is written down of the built-in recording: its own hash, and what `trim3r replay --json` says of it."""
     with tempfile.TemporaryDirectory(prefix="trim3r-golden-") as folder:
         recording = pathlib.Path(folder) / "room.mcap"
-        made = json.loads(output_of([program, "room", "--json", "-o", recording]))
-        said = json.loads(output_of([program, "replay", recording, "--json", *way]))
+        made = json.loads(output_of(program, "room", "--json", "-o", recording))
+        said = json.loads(output_of(program, "replay", recording, "--json", *way))
     kept = {"recording": made["hash"], **{key: said[key] for key in ("bits_epoch", "gaussians", "stages", "hash")}}
     return json.dumps(kept, indent=2) + "\n"
 

@@ -135,11 +135,11 @@ static void test_text(void **state)
     assert_int_equal(model.image_count, 3);
     assert_string_equal(model.images[0].name, "a 9.png"); /* numbers by value */
     assert_string_equal(model.images[1].name, "a 10.png");
-    assert_true(model.images[0].position[0] == -1 && model.images[0].position[2] == -3);
+    assert_true(model.images[0].pose.position[0] == -1 && model.images[0].pose.position[2] == -3);
     /* half a turn around x: the camera looks back */
-    assert_true(model.images[1].position[0] == -1 && model.images[1].position[1] == 2 &&
-                model.images[1].position[2] == 3);
-    assert_true(model.images[2].rotation[0] == 1);
+    assert_true(model.images[1].pose.position[0] == -1 && model.images[1].pose.position[1] == 2 &&
+                model.images[1].pose.position[2] == 3);
+    assert_true(model.images[2].pose.rotation[0] == 1);
     assert_int_equal(colmap_model_camera(&model, 8)->id, 8);
     assert_null(colmap_model_camera(&model, 9));
     colmap_model_free(&model);
@@ -159,8 +159,8 @@ static void test_refusals(void **state)
     refuse_text(colmap_read_images_text, IMAGE(""), "line 1: no name");
     refuse_text(colmap_read_images_text, "1 2 0 0 0 1 2 3 7 a\n", "line 1: the quaternion's norm");
     refuse_text(colmap_read_images_text, "1 nan 0 0 0 1 2 3 7 a\n", "line 1: the quaternion's norm");
-    refuse_text(colmap_read_images_text, "1 1 0 0 0 inf 2 3 7 a\n", "line 1: a translation is not");
-    refuse_text(colmap_read_images_text, "1 1 0 0 0 2e9 2 3 7 a\n", "line 1: a translation is not");
+    refuse_text(colmap_read_images_text, "1 1 0 0 0 inf 2 3 7 a\n", "line 1: a number is not finite");
+    refuse_text(colmap_read_images_text, "1 1 0 0 0 2e9 2 3 7 a\n", "line 1: a position is 2^30 or more");
     char *longer = malloc(10000);
     memset(longer, ' ', 9999);
     longer[9999] = '\0';

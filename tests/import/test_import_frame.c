@@ -51,7 +51,7 @@ static void write_ramps(scratch *s, uint32_t width, uint32_t height, uint32_t de
 static posed_frame ramp_frame(void)
 {
     static char colour[] = "colour.png", depth[] = "depth.png";
-    posed_frame frame = {.image = colour, .depth = depth, .rotation = {1, 0, 0, 0}};
+    posed_frame frame = {.image = colour, .depth = depth, .pose = {.rotation = {1, 0, 0, 0}}};
     frame.intrinsics = (posed_intrinsics){
         .width = NAN, .height = NAN, .fx = 210, .fy = 190, .cx = 104.3, .cy = 71.9, .angle_x = NAN, .angle_y = NAN};
     return frame;

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "import/folders/transforms_json.h"
-#include "posing/quaternion.h"
+#include "geometry/quaternion.h"
 
 #define IDENTITY "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
 #define FRAME(more) "{\"file_path\":\"a.png\",\"transform_matrix\":" IDENTITY more "}"

@@ -66,12 +66,12 @@ static void test_association(void **state)
     assert_string_equal(folder.frames[2].depth, "depth/c.png");
     /* a third of the way; half-way, through a quaternion of the other sign: 20 degrees about z become 10 */
     const posed_frame *f = folder.frames;
-    assert_true(fabs(f[0].position[0] - 1) < 1e-6 && fabs(f[0].position[1] - 2) < 1e-6);
-    assert_true(fabs(f[1].position[0] - 4) < 1e-6);
-    assert_true(fabs(f[1].rotation[0] - cos(5 * 3.14159265358979 / 180)) < 1e-6);
-    assert_true(fabs(f[1].rotation[3] - sin(5 * 3.14159265358979 / 180)) < 1e-6);
+    assert_true(fabs(f[0].pose.position[0] - 1) < 1e-6 && fabs(f[0].pose.position[1] - 2) < 1e-6);
+    assert_true(fabs(f[1].pose.position[0] - 4) < 1e-6);
+    assert_true(fabs(f[1].pose.rotation[0] - cos(5 * 3.14159265358979 / 180)) < 1e-6);
+    assert_true(fabs(f[1].pose.rotation[3] - sin(5 * 3.14159265358979 / 180)) < 1e-6);
     /* neighbours too far apart: the nearest */
-    assert_true(f[2].position[0] == 1 && fabs(f[2].rotation[0] - 0.5) < 1e-12);
+    assert_true(f[2].pose.position[0] == 1 && fabs(f[2].pose.rotation[0] - 0.5) < 1e-12);
     t3r_recorded_camera camera;
     assert_int_equal(posed_frame_camera(&f[0], 640, 480, &camera, error, sizeof error), 0);
     assert_true(camera.fx == 500 && camera.cx == 319.5 && camera.cy == 239.5);

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""cross_kernels.py ROUNDS EMULATOR COMPILER FLAG...: the kernels' variants for another processor, built by its compiler and
-compared with plain C under an emulator, so many seeds of each. Exit 0: the same bits; 77: skipped, a tool is absent.
+"""cross_kernels.py ROUNDS EMULATOR COMPILER FLAG...: the kernels' variants for another processor or by another compiler,
+compared with plain C, so many seeds of each; EMULATOR is `none` for this processor. Exit 0: the same bits; 77: skipped, a
+tool is absent.
 """
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -11,26 +11,31 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 RUNTIME = ROOT / "runtime"
+sys.path.insert(0, str(ROOT / "tools" / "study" / "boards"))
+
+import objects  # noqa: E402
+
 SOURCES = [*sorted(HERE.glob("check*.c")), *(HERE / f"{name}.c" for name in ("cross_kernels", "guarded", "judge",
                                                                           "wrong_variants")),
-           ROOT / "platform" / "host" / "cpu.c", *sorted((RUNTIME / "kernels").rglob("*.c")),
-           *sorted((RUNTIME / "core").glob("*.c"))]
+           ROOT / "platform" / "host" / "cpu.c"]
 INCLUDES = [RUNTIME / "include", RUNTIME, ROOT / "platform", ROOT / "tests"]
 
 
 def main():
     if len(sys.argv) < 4:
         sys.exit(__doc__)
-    rounds, emulator, *compiler = sys.argv[1:]
-    for tool in (emulator, compiler[0]):
-        if shutil.which(tool) is None:
-            print(f"SKIPPED: no {tool} here (tools/setup --tests)")
-            sys.exit(77)
+    rounds, *words = sys.argv[1:]
+    emulator, compiler = ([], words[1:]) if words[0] == "none" else (words[:1], words[1:])
+    lacking = objects.absent(*emulator, compiler[0])
+    if lacking is not None:
+        print(f"SKIPPED: no {lacking} here (tools/setup --tests)")
+        sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="trim3r-kernels-") as folder:
         program = pathlib.Path(folder) / "cross_kernels"
         includes = [word for path in INCLUDES for word in ("-I", path)]
-        subprocess.run([*compiler, "-std=gnu11", "-static", *includes, *SOURCES, "-lm", "-o", program], check=True)
-        sys.exit(subprocess.run([emulator, program, rounds]).returncode)
+        objects.output_of(*compiler, "-std=gnu11", "-static", *includes, *SOURCES, *objects.compiled(compiler), "-lm", "-o",
+                          program)
+        sys.exit(subprocess.run([*emulator, program, rounds]).returncode)
 
 
 if __name__ == "__main__":

@@ -123,7 +123,7 @@ static void packed_layers_give_the_same(void **state)
     for (uint32_t round = 0; round < ROUNDS; round++) {
         size_t bytes;
         uint8_t *weights = round % 2 == 0 ? make_weights(small_shape, small_layers, 8, 8, round, &bytes)
-                                          : make_weights(base_shape, base_layers, 8, 8, round, &bytes);
+                                          : make_weights(wide_shape, wide_layers, 8, 8, round, &bytes);
         const t3r_kernels kernels = table_of(round);
         uint32_t *runs = &packed[kernels.convolve_packed == convolve_bytes];
         p.width = (uint32_t)unit_between(&seed, 1, MOST_WIDTH);

@@ -49,8 +49,6 @@ static void print_scenes(void)
     config = plain_config();
     config.head = T3R_HEAD_LEARNED;
     print_scene("learned", &config);
-    config.head = T3R_HEAD_MOMENT;
-    print_scene("moment", &config);
     config = plain_config();
     config.refine = 4;
     print_scene("refinement", &config);
@@ -137,8 +135,7 @@ static void print_lost_keyframe(void)
 static void print_calls(void)
 {
     const t3r_config config = plain_config();
-    const t3r_request moment = {.head = T3R_HEAD_MOMENT}, bounded = {.max_loss_q8 = 256};
-    const t3r_request random = {.allocate = T3R_ALLOCATE_RANDOM};
+    const t3r_request bounded = {.max_loss_q8 = 256}, random = {.allocate = T3R_ALLOCATE_RANDOM};
     const t3r_frame frame = {0};
     const t3r_camera camera = {0};
     t3r_runtime *rt;
@@ -146,7 +143,6 @@ static void print_calls(void)
     print_call("plain", t3r_init(&rt, arena, sizeof arena, &config));
     print_call("streams", t3r_stream_keyframe(rt, &frame, &camera, NULL));
     print_call("learned", t3r_bind_head(rt, arena, 1));
-    print_call("moment", t3r_reconstruct(rt, &moment, &scene));
     print_call("loss", t3r_reconstruct(rt, &bounded, &scene));
     print_call("allocations", t3r_reconstruct(rt, &random, &scene));
     print_call("lenses", add_wide_angle(rt));

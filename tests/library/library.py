@@ -16,7 +16,7 @@ VERSION = ".".join(re.findall(r"#define T3R_VERSION_\w+ (\d+)", (ROOT / "runtime
 SERIES = VERSION.rpartition(".")[0] # what shared libraries and packages are named by
 HEADS = ROOT / "quant" / "heads"
 HASH = (HERE / "golden_hash.txt").read_text().strip()
-FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras", "moment")
+FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras")
 WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 
 

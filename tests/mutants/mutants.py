@@ -79,7 +79,7 @@ not end.
 
 The share is caught of those that compile and are not equivalent. Equivalent mutants differ from the source for no value
 that the function allows, so no test can tell them apart. [equivalent.txt](../../tests/mutants/equivalent.txt) has each
-with the reason. A test runs a sample by day and all at night. It fails when one survives without a reason, when a listed
+with the reason. A test runs all of them at night. It fails when one survives without a reason, when a listed
 one is caught or exists no longer, and when the share falls below {least} %.
 """
 

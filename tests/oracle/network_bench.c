@@ -83,7 +83,7 @@ int main(void)
         measure("small", small_shape, small_layers, bits & 1 ? 16 : 8, bits & 2 ? 16 : 8);
     }
     for (uint32_t bits = 0; bits < 4; bits++) {
-        measure("base", base_shape, base_layers, bits & 1 ? 16 : 8, bits & 2 ? 16 : 8);
+        measure("wide", wide_shape, wide_layers, bits & 1 ? 16 : 8, bits & 2 ? 16 : 8);
     }
     return 0;
 }

@@ -7,7 +7,6 @@ upsampling; sums at the edge of their accumulators; images of odd and of the sma
 made for another processor, of the other byte order, and run under an emulator.
 """
 import pathlib
-import shutil
 import struct
 import subprocess
 import sys
@@ -16,9 +15,13 @@ import zlib
 
 import numpy as np
 
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent.parent / "tools" / "study" / "boards"))
+
+import objects  # noqa: E402
+
 NETWORKS = 160
 FEATURES, OUTPUTS = 9, 9
-HERE = pathlib.Path(__file__).resolve().parent
 RUNTIME = HERE.parent.parent / "runtime"
 CONV, DEPTHWISE, POINT, NONE = 0, 1, 2, 255
 SIZES = [(37, 29), (8, 8), (8, 33), (64, 9), (9, 8), (50, 40), (16, 17), (31, 64)]
@@ -266,13 +269,13 @@ def compare(net, mask, output, order):
 
 def built(compiler, runner, folder):
     """The driver for another processor, static, with the command that runs it."""
-    if shutil.which(compiler) is None or shutil.which(runner) is None:
-        print(f"SKIPPED: no {compiler} or no {runner} here (tools/setup --tests)")
+    lacking = objects.absent(compiler, runner)
+    if lacking is not None:
+        print(f"SKIPPED: no {lacking} here (tools/setup --tests)")
         sys.exit(77)
     made = pathlib.Path(folder) / "network_driver"
-    sources = sorted(RUNTIME.rglob("*.c"))
-    subprocess.run([compiler, "-O2", "-static", "-I", RUNTIME, "-I", RUNTIME / "include", HERE / "network_driver.c",
-                    *sources, "-o", made], check=True)
+    objects.output_of(compiler, "-O2", "-static", "-I", RUNTIME, "-I", RUNTIME / "include", HERE / "network_driver.c",
+                      *objects.compiled([compiler, "-O2"]), "-o", made)
     return [runner, str(made)]
 
 

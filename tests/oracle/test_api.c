@@ -563,6 +563,7 @@ static void budgets(void **state)
             config.max_gaussians = config.gaussians = POINTS;
             config.allocate = (t3r_allocation)allocation;
             config.head = (t3r_head)head;
+            config.head_column_bytes = SMALL_SHAPE_COLUMN_BYTES;
             config.keep_analysis = 1;
             bench b = bench_of(config);
             t3r_scene scene;

@@ -103,8 +103,9 @@ static void plan_equals_macros(void **state)
         assert_true(plan.bytes <= t3r_most_arena_bytes(&c)); /* what is refused where size_t is small */
         const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
 #define SHAPE                                                                                                          \
-    T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.clusters, c.render_width, c.render_height,               \
-               c.head_column_bytes, keep, c.refine, c.depth == T3R_DEPTH_STEREO, c.workers, c.warm, c.remember)
+    T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.stream ? 1 : c.clusters, c.render_width,                 \
+               c.render_height, c.head_column_bytes, keep, c.refine, c.depth == T3R_DEPTH_STEREO, c.workers,      \
+               c.warm, c.remember)
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(SHAPE));
         assert_true(plan.bytes == T3R_FULL_BYTES_(SHAPE));
 #undef SHAPE
@@ -211,7 +212,7 @@ static void plan_depends_on_sizes_alone(void **state)
     c.levels = T3R_MAX_LEVELS;
     c.cluster_batches = 1024;
     c.allocate = T3R_ALLOCATE_PAPER;
-    c.head = T3R_HEAD_MOMENT;
+    c.head = T3R_HEAD_LEARNED;
     c.fill_radius = 8;
     c.bridge_radius = 255;
     c.seed = 12345;

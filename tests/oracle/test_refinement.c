@@ -169,7 +169,6 @@ static void follows_the_oracle(void **state)
     (void)state;
     make_views();
     const splat_maker heads[] = {{"analytic", T3R_HEAD_ANALYTIC, {0}},
-                                 {"moment", T3R_HEAD_MOMENT, {0}},
                                  {"unadapted", T3R_HEAD_ANALYTIC, {.unadapted = 1}}};
     for (size_t h = 0; h < sizeof heads / sizeof heads[0]; h++) {
         t3r_scene plain;

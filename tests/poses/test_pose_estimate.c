@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "core/camera.h"
 #include "posing/estimate.h"
 #include "room/room.h"

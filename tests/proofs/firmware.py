@@ -43,16 +43,15 @@ def check(target, objects, library, folder, wanted, defines=()):
 def main():
     target = proof.TARGETS[sys.argv[1]]
     with proof.scratch() as folder:
-        (folder / "runtime").mkdir()
         (folder / "heads").mkdir()
         hosted = proof.compile_one(proof.compiler_of(target), target, proof.PLANTED / "hosted.c", folder / "hosted.o")
         proof.must_find(hosted.stderr.splitlines(), "string.h", "hosted.c")
-        objects = proof.compile_each(target, proof.runtime_sources(), folder / "runtime", EXTRA)
+        objects = proof.runtime_objects(target)
         heads = proof.compile_each(target, sorted(HEADS.glob("*.c")), folder / "heads", EXTRA)
         library = folder / "libheads.a"
         proof.run([target.prefix + "ar", "rcs", library, *heads], check=True)
-        proof.must_find(check(target, objects, library, folder, "small", ["-DSECOND_HEAD=t3r_head_base"]),
-                        "holds base, small", "a firmware that names two")
+        proof.must_find(check(target, objects, library, folder, "small", ["-DSECOND_HEAD=t3r_head_tiny"]),
+                        "holds small, tiny", "a firmware that names two")
         proof.must_find(check(target, objects, library, folder, "large",
                               ["-DHEAD=t3r_head_large", "-DHEAD_BYTES=1"]), "does not link", "one that is not shipped")
         findings = []

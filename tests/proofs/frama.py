@@ -58,7 +58,8 @@ SUBJECTS = {
         "all doubles to the fractions of a camera and of depth, all floats to that of depth",
         "other fractions; that the numbers are right: tests compare them"),
     "messages": (
-        [f"platform/{name}.c" for name in ("ros_messages", "cdr", "text", "message_frame", "fixed_camera", "pixel_layout")],
+        [f"platform/{name}.c" for name in ("messages/ros_messages", "messages/cdr", "host/text", "messages/message_frame",
+                                           "messages/fixed_camera", "recording/pixel_layout")],
         ["-eva-precision", "4", "-eva-slevel", "20000", "-eva-auto-loop-unroll", "64", *APART, "2",
          "-eva-use-spec", "t3r_fixed_from_double"],
         "what `t3r_frame_reader` reads of a message: head of an image, CameraInfo, poses, and what `message_frame.c` makes of "
@@ -67,8 +68,9 @@ SUBJECTS = {
         "many coefficients",
         "texts of other lengths, as Eva has to know where a field stands"),
     "reader": (
-        [f"platform/{name}.c" for name in ("ros_messages", "ros_schemas", "cdr", "text", "message_frame", "fixed_camera",
-                                           "pixel_layout", "fixed_text")],
+        [f"platform/{name}.c" for name in ("mcap/mcap_records", "messages/ros_messages", "messages/ros_schemas", "messages/cdr",
+                                           "messages/message_frame", "messages/fixed_camera", "host/text", "host/fixed_text",
+                                           "recording/pixel_layout")],
         ["-eva-precision", "3", "-eva-slevel", "5000", "-eva-auto-loop-unroll", "64", "-eva-min-loop-unroll", "20", *APART, "2",
          "-eva-use-spec", "t3r_fixed_from_float"],
         "of `t3r_frame_reader`: opening, a record's head, entering a chunk, schemas, stamps, `t3r_frame_reader_rows()`, "

@@ -1,6 +1,5 @@
 """Instructions of each stage of builds of the built-in room, in plain C at -O2 on one thread, as callgrind counts them: what
 no other program on the machine disturbs."""
-import concurrent.futures
 import os
 import re
 import shutil
@@ -9,7 +8,7 @@ import sys
 import proof
 
 DRIVER = proof.HERE / "instructions_driver.c"
-HEAD_SOURCES = [proof.ROOT / "quant" / "heads" / f"{name}.c" for name in ("nano", "small", "base")]
+HEAD_SOURCES = [proof.ROOT / "quant" / "heads" / f"{name}.c" for name in ("tiny", "small")]
 TARGET = proof.TARGETS["x86_64-O2"]
 
 
@@ -27,27 +26,14 @@ def skip(reason):
 
 
 def build(folder):
-    """The driver with the runtime, the heads and the room, each compiled as the proofs of the stack are."""
+    """The driver with the runtime that the proofs of the stack look at, the heads and the room."""
     name = proof.compiler_of(TARGET)
-    hosted = sorted((proof.ROOT / "tools" / "room").glob("*.c")) + [DRIVER]
+    own = [DRIVER, *HEAD_SOURCES, *sorted((proof.ROOT / "tools" / "room").glob("*.c"))]
     folders = ("runtime", "runtime/include", "platform", "tools", "quant/heads", "tests")
     includes = [word for place in folders for word in ("-I", proof.ROOT / place)]
-
-    def compiled(numbered):
-        index, source = numbered
-        made = folder / f"{index:03d}.o"
-        if source in hosted:
-            done = proof.run([name, "-std=c11", "-D_GNU_SOURCE", "-O2", *includes, "-c", source, "-o", made])
-        else:
-            done = proof.compile_one(name, TARGET, source, made, ["-I", proof.ROOT / "quant" / "heads"])
-        if done.returncode != 0:
-            proof.broken(f"{source} does not compile", done.stderr.splitlines())
-        return made
-    sources = [*proof.runtime_sources(), *HEAD_SOURCES, *hosted]
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = list(pool.map(compiled, enumerate(sources)))
     program = folder / "instructions_driver"
-    proof.run([name, *objects, "-o", program], check=True)
+    proof.objects.output_of(name, "-std=c11", "-D_GNU_SOURCE", "-O2", *includes, *own, *proof.runtime_objects(TARGET), "-o",
+                            program)
     return program
 
 

@@ -52,15 +52,12 @@ static bool read_build(const char *text, build *b)
         const char *name;
         const uint8_t *weights;
         uint32_t bytes;
-    } networks[] = {{"nano", t3r_head_nano, t3r_head_nano_bytes},
-                    {"small", t3r_head_small, t3r_head_small_bytes},
-                    {"base", t3r_head_base, t3r_head_base_bytes}};
+    } networks[] = {{"tiny", t3r_head_tiny, t3r_head_tiny_bytes}, {"small", t3r_head_small, t3r_head_small_bytes}};
     b->config = t3r_default_config(width, height, views, gaussians);
     b->config.clusters = clusters;
     b->config.cluster_batches = batches;
     b->config.refine = passes;
     b->config.depth = strcmp(b->depth, "stereo") == 0 ? T3R_DEPTH_STEREO : T3R_DEPTH_SENSOR;
-    b->config.head = strcmp(b->head, "moment") == 0 ? T3R_HEAD_MOMENT : T3R_HEAD_ANALYTIC;
     for (size_t i = 0; i < sizeof networks / sizeof networks[0]; i++) {
         if (strcmp(b->head, networks[i].name) == 0) {
             b->config.head = T3R_HEAD_LEARNED;

@@ -14,6 +14,10 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+sys.path.insert(0, str(ROOT / "tools" / "study" / "boards"))
+
+import objects  # noqa: E402
+
 RUNTIME = ROOT / "runtime"
 PLANTED = HERE / "planted"
 FREESTANDING = ["-std=c11", "-ffreestanding", "-fno-tree-loop-distribute-patterns"]
@@ -41,13 +45,13 @@ TARGETS = {
     "x86_64-O0": Target("x86_64-O0", "", ["-O0"]),
     "x86_64-general-registers": Target("x86_64-general-registers", "", ["-O2", "-mgeneral-regs-only"]),
     "i686": Target("i686", "i686-linux-gnu-", ["-O2", "-fno-pic"], "i686"),
-    "cortex-m3": Target("cortex-m3", "arm-none-eabi-", ["-O2", "-mthumb", "-mcpu=cortex-m3", "-mfloat-abi=soft"],
+    "cortex-m3": Target("cortex-m3", "arm-none-eabi-", ["-O2", "-mcpu=cortex-m3", "-mthumb", "-mfloat-abi=soft"],
                         "Cortex-M3 and larger, Cortex-A15"),
-    "cortex-m7": Target("cortex-m7", "arm-none-eabi-", ["-O2", "-mthumb", "-mcpu=cortex-m7", "-mfloat-abi=soft"],
+    "cortex-m7": Target("cortex-m7", "arm-none-eabi-", ["-O2", "-mcpu=cortex-m7", "-mthumb", "-mfloat-abi=soft"],
                         "Cortex-M3 and larger, Cortex-A15"),
     "cortex-m7-Os": Target("cortex-m7-Os", "arm-none-eabi-", ["-Os", "-mthumb", "-mcpu=cortex-m7", "-mfloat-abi=soft"],
                            "Cortex-M3 and larger, Cortex-A15"),
-    "cortex-m55": Target("cortex-m55", "arm-none-eabi-", ["-O2", "-mthumb", "-mcpu=cortex-m55+nofp", "-mfloat-abi=hard"],
+    "cortex-m55": Target("cortex-m55", "arm-none-eabi-", ["-O2", "-mcpu=cortex-m55+nofp", "-mthumb", "-mfloat-abi=hard"],
                          "Cortex-M3 and larger, Cortex-A15"),
     # without registers for real numbers: any use of one is an error, or calls a helper that is not listed
     "aarch64": Target("aarch64", "aarch64-linux-gnu-", ["-O2", "-mgeneral-regs-only"]),
@@ -95,8 +99,13 @@ def compile_one(compiler, target, source, made, extra=()):
     return run([compiler, *FREESTANDING, *target.flags, *extra, *includes, "-c", source, "-o", made])
 
 
+def runtime_objects(target):
+    """The runtime's objects for the target, which all proofs and tests share; beside each its call graph, NAME.ci."""
+    return objects.compiled([compiler_of(target), *target.flags])
+
+
 def runtime_sources():
-    return sorted(RUNTIME.rglob("*.c"))
+    return objects.sources()
 
 
 def public_headers():

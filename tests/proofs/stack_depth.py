@@ -8,11 +8,13 @@ import re
 import sys
 
 import proof
+from proof import objects
 
 LIMIT_BYTES = 12 * 1024
 UNOPTIMISED_LIMIT_BYTES = 14 * 1024
 NODE = re.compile(r'^node: \{ title: "([^"]+)" label: "([^"]*)"')
 EDGE = re.compile(r'^edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
+SOURCE = re.compile(r'^graph: \{ title: "(?:.*/)?([^"/]+)"')
 FRAME = re.compile(r"(\d+) bytes \(([^)]*)\)")
 INDIRECT = "__indirect_call"
 
@@ -26,13 +28,15 @@ class Graph:
     def __init__(self, files):
         self.bytes, self.kind, self.calls, self.source = {}, {}, {}, {}
         for path in files:
-            for line in path.read_text().splitlines():
+            text = path.read_text()
+            source = SOURCE.match(text)[1]
+            for line in text.splitlines():
                 node, edge = NODE.match(line), EDGE.match(line)
                 frame = node and FRAME.search(node.group(2))
                 if frame:
                     self.bytes[node.group(1)] = int(frame.group(1))
                     self.kind[node.group(1)] = frame.group(2)
-                    self.source[node.group(1)] = path.stem.split("_", 1)[1] + ".c"
+                    self.source[node.group(1)] = source
                 if edge:
                     self.calls.setdefault(edge.group(1), set()).add(edge.group(2))
         called = set().union(*self.calls.values()) if self.calls else set()
@@ -127,13 +131,9 @@ def misplaced(pointers, runtime):
                 yield f"{key}: that file names {' '.join(sorted(named))}"
 
 
-def graph_of(target, sources, folder):
-    proof.compile_each(target, sources, folder, ["-fstack-usage", "-fcallgraph-info=su"])
-    graphs = sorted(folder.glob("*.ci"))
-    graph = Graph(graphs)
-    for path in graphs:
-        path.unlink()
-    return graph
+def planted_graph(target, name, folder):
+    made = proof.compile_each(target, [proof.PLANTED / name], folder, objects.GRAPH_FLAGS)
+    return Graph(objects.call_graphs(made))
 
 
 def main():
@@ -143,10 +143,10 @@ def main():
         for name, offence in [("recursion.c", "recursion: "), ("dynamic_frame.c", "frame of unknown size"),
                               ("deep.c", "deeper than"), ("task.c", "not declared in pointers.txt: planted_task"),
                               ("task.c", "calls through a pointer")]:
-            graph = graph_of(target, [proof.PLANTED / name], folder)
+            graph = planted_graph(target, name, folder)
             proof.must_find(check(graph, ["t3r_planted"], {}, limit)[0], offence, name)
-        graph = graph_of(target, proof.runtime_sources(), folder)
-        findings, table = check(graph, proof.public_functions(), pointers, limit)
+    graph = Graph(objects.call_graphs(proof.runtime_objects(target)))
+    findings, table = check(graph, proof.public_functions(), pointers, limit)
     if "--markdown" in sys.argv:
         print("| function | stack, bytes |\n|---|---|")
         for name, size, _ in table:

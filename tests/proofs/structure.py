@@ -13,7 +13,7 @@ import proof
 
 # Rooms of the runtime from the foundation up: each may include those before it.
 ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
-         "raster", "head", "refine", "stage_hash", "pipeline", "loss", "stream", "layout", "api")
+         "raster", "head", "refine", "stage_hash", "stages", "pipeline", "loss", "stream", "layout", "api")
 MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, room in enumerate(ROOMS)}
 RUNTIME = set(MAY)
 MAY["quant"] = RUNTIME
@@ -29,11 +29,12 @@ def tool(name, *uses, base=("platform",)):
 
 
 tool("cli")
+tool("geometry", base=())
 tool("room")
 tool("pictures", "cli")
-tool("posing", "cli")
+tool("posing", "cli", "geometry")
 tool("import", "pictures", "posing")
-tool("scene", "pictures", "posing")
+tool("scene", "pictures", "geometry")
 tool("reconstruction", "import", "scene", base=("platform", "quant"))
 tool("capture", "reconstruction")
 tool("viewer", "reconstruction")

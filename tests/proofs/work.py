@@ -15,16 +15,16 @@ LARGE = 0.1  # of a build: a stage that is to be within MOST_OFF, too
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
 CHECKED_NAME = "checked"
 CHECKED = ("checked-1,80,64,2,1024,small,sensor,100,24,1", "checked-2,128,96,1,614,analytic,sensor,200,24,2",
-           "checked-3,64,64,3,2458,nano,sensor,64,8,3", "checked-4,96,96,2,369,moment,sensor,128,24,0",
+           "checked-3,64,64,3,2458,tiny,sensor,64,8,3", "checked-4,96,96,2,369,analytic,sensor,128,24,0",
            "checked-5,80,80,1,192,analytic,sensor,64,8,2")
 FITTED = ("f1,96,96,2,1843,small,sensor,64,24,1", "f2,128,128,2,655,analytic,sensor,300,24,2",
-          "f3,96,96,2,3686,nano,sensor,100,24,1", "f4,128,128,2,1638,base,sensor,64,24,0",
-          "f5,64,64,4,1638,moment,sensor,200,24,2", "f6,64,64,2,8192,small,sensor,300,24,1",
-          "f7,160,120,1,384,analytic,sensor,400,24,2", "f8,80,80,2,12800,nano,sensor,50,24,1",
+          "f3,96,96,2,3686,tiny,sensor,100,24,1", "f4,128,128,2,1638,small,sensor,64,24,0",
+          "f5,64,64,4,1638,analytic,sensor,200,24,2", "f6,64,64,2,8192,small,sensor,300,24,1",
+          "f7,160,120,1,384,analytic,sensor,400,24,2", "f8,80,80,2,12800,tiny,sensor,50,24,1",
           "f9,64,64,2,819,analytic,stereo,200,24,0", "f10,96,96,2,1843,analytic,stereo,100,24,0",
-          "f11,64,64,1,2048,moment,sensor,200,0,1", "f12,192,144,2,2765,analytic,sensor,200,24,1",
-          "f13,64,64,2,8192,base,sensor,100,8,0", "f14,48,48,1,691,small,sensor,64,24,4",
-          "f15,96,96,2,922,base,sensor,64,12,1", "f16,64,64,2,164,analytic,sensor,100,24,2",
+          "f11,64,64,1,2048,analytic,sensor,200,0,1", "f12,192,144,2,2765,analytic,sensor,200,24,1",
+          "f13,64,64,2,8192,small,sensor,100,8,0", "f14,48,48,1,691,small,sensor,64,24,4",
+          "f15,96,96,2,922,small,sensor,64,12,1", "f16,64,64,2,164,analytic,sensor,100,24,2",
           "f17,96,96,2,369,analytic,sensor,100,0,1")
 HEADING = """/* Instructions of plain C on x86-64 in 1/1000 a unit of each kind of work, as gcc 12 -O2 makes them.
  * tests/proofs/work.py --fit makes this file. */

@@ -26,7 +26,7 @@ FRAMES = trim3r.room(3, SIDE, SIDE)
 
 def small(views=2, **options):
     """A reconstructor of small views, quick to build."""
-    return trim3r.Reconstructor(SIDE, SIDE, views=views, **{"head": "nano", **options})
+    return trim3r.Reconstructor(SIDE, SIDE, views=views, **{"head": "tiny", **options})
 
 
 def with_views(frames=(FRAMES[0], FRAMES[2]), **options):

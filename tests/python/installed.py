@@ -15,7 +15,7 @@ from checks import done, run
 
 USE = """
 import pathlib, trim3r
-made = trim3r.Reconstructor(32, 32, views=1, head="nano")
+made = trim3r.Reconstructor(32, 32, views=1, head="tiny")
 made.add_view(trim3r.room(1, 32, 32)[0])
 made.build(100)
 print(pathlib.Path(trim3r.__file__).parent, trim3r.run_hash(made.stage_hashes))
@@ -44,7 +44,7 @@ def check_installed(install, folder):
     shutil.rmtree(folder / "there")
     said = subprocess.run([sys.executable, "-B", "-c", USE], env={**os.environ, "PYTHONPATH": str(moved.parent)},
                           capture_output=True, text=True, check=True).stdout.split()
-    with trim3r.Reconstructor(32, 32, views=1, head="nano") as made:
+    with trim3r.Reconstructor(32, 32, views=1, head="tiny") as made:
         made.add_view(trim3r.room(1, 32, 32)[0])
         made.build(100)
         check(said == [str(moved), trim3r.run_hash(made.stage_hashes)], f"{said}")

@@ -95,7 +95,7 @@ def check_cameras():
 def check_settings():
     for words, options in (("width", {"width": 4}), ("", {"height": "64"}), ("views", {"views": 17}),
                            ("", {"views": -1}), ("gaussians", {"gaussians": 0}), ("", {"gaussians": 1 << 40}),
-                           ("nano, small, base", {"head": "huge"}), ("sensor, stereo", {"depth": "lidar"}),
+                           ("tiny, small", {"head": "huge"}), ("sensor, stereo", {"depth": "lidar"}),
                            ("workers", {"workers": 17}), ("too small", {"arena_bytes": 1000}),
                            ("render", {"render_size": (5000, 5)}), ("no setting", {"settings": {"refinement": 3}}),
                            ("refine", {"settings": {"refine": 33}}),
@@ -138,7 +138,7 @@ def check_builds():
                               ({"keep": 0}, "keep"), ({"keep": 101}, "keep"), ({"keep": NAN}, "keep"),
                               ({"gaussians": 1, "keep": 1}, "either"), ({"max_loss": -1}, "max_loss"),
                               ({"max_loss": 11}, "max_loss"), ({"max_loss": NAN}, "max_loss"),
-                              ({"allocate": "best"}, "density"), ({"head": "huge"}, "nano, small, base"),
+                              ({"allocate": "best"}, "density"), ({"head": "huge"}, "tiny, small"),
                               ({"importance": [np.zeros((3, 3), np.uint16)] * 2}, "importance"),
                               ({"importance": [np.zeros((SIDE, SIDE))] * 2}, "importance"),
                               ({"importance": [np.zeros((SIDE, SIDE), np.uint16)]}, "importance")):

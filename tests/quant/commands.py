@@ -127,7 +127,7 @@ def test_refusals():
     expect(2, "head-info", err="missing")
     expect(2, "head-info", "own.t3w", "own.t3w", err="too many")
     expect(1, "head-info", "absent.t3w", err="absent.t3w: No such file")
-    expect(1, "head-info", write("cut.t3w", read("own.t3w")[:-1]), err="cut.t3w: header: 544 bytes in all, but the file has 543")
+    expect(1, "head-info", write("cut.t3w", read("own.t3w")[:-1]), err="cut.t3w: the file is not as long as it says")
     expect(1, "head-info", write("cut.safetensors", read("own.safetensors")[:-1]), err="outside the file")
     expect(1, "head-info", write("empty.t3w", b""), err="empty.t3w: 0 bytes are no .safetensors")
 

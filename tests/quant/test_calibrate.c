@@ -293,7 +293,7 @@ static void test_features_of_a_pair(void **state)
         assert_non_null(c);
         assert_int_equal(t3r_init(&runtime, arena, plan.bytes, &config), T3R_OK);
         assert_int_equal(t3r_set_ablation(runtime, &(t3r_ablation){.unadapted = unadapted}), T3R_OK);
-        assert_int_equal(t3r_bind_head(runtime, t3r_head_nano, t3r_head_nano_bytes), T3R_OK);
+        assert_int_equal(t3r_bind_head(runtime, t3r_head_tiny, t3r_head_tiny_bytes), T3R_OK);
         add_pair(runtime);
         assert_int_equal(t3r_reconstruct(runtime, NULL, &scene), T3R_OK);
         t3r_view views[T3R_MAX_VIEWS];

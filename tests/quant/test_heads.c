@@ -18,9 +18,7 @@ static const struct {
     uint32_t most_macs, most_bytes;
 } heads[] = {
     {"tiny", t3r_head_tiny, &t3r_head_tiny_bytes, 400, 4 << 10},
-    {"nano", t3r_head_nano, &t3r_head_nano_bytes, 1500, 16 << 10},
     {"small", t3r_head_small, &t3r_head_small_bytes, 5000, 48 << 10},
-    {"base", t3r_head_base, &t3r_head_base_bytes, 16000, 128 << 10},
 };
 enum { HEADS = sizeof heads / sizeof heads[0] };
 

@@ -2,7 +2,7 @@
  * runtime's check too. */
 #include "weight_info.h"
 
-#include "le_bytes.h"
+#include "core/little_endian.h"
 #include "sample_head.h"
 #include "unit/unit.h"
 
@@ -37,7 +37,7 @@ static sample_file make(uint32_t weight_bits, uint32_t activation_bits)
 
 static void seal(const sample_file *file)
 {
-    le_put(file->bytes + WEIGHT_AT_CRC, weight_file_crc(file->bytes, file->count), 4);
+    weight_file_seal(file->bytes, file->count);
 }
 
 static void refuse(const sample_file *file, const char *why)
@@ -56,8 +56,10 @@ static void refuse_change(uint32_t weight_bits, uint32_t activation_bits, size_t
                           const char *why)
 {
     sample_file file = make(weight_bits, activation_bits);
-    assert_true(le_get(file.bytes + at, bytes) != value);
-    le_put(file.bytes + at, value, bytes);
+    uint8_t before[8];
+    memcpy(before, file.bytes + at, bytes);
+    weight_number_put(file.bytes + at, (int64_t)value, bytes);
+    assert_memory_not_equal(file.bytes + at, before, bytes);
     seal(&file);
     refuse(&file, why);
     free(file.bytes);
@@ -68,12 +70,18 @@ static void refuse_header(size_t at, uint32_t bytes, uint64_t value, const char 
     refuse_change(8, 8, at, bytes, value, why);
 }
 
-/* A field of layer n, from 1. */
+/* A field of layer n, from 1; the reason does not name the layer. */
+static void refuse_row(uint32_t n, size_t at, uint32_t bytes, uint64_t value, const char *why)
+{
+    refuse_header(T3R_WEIGHTS_HEADER_BYTES + (n - 1) * (size_t)T3R_WEIGHTS_LAYER_BYTES + at, bytes, value, why);
+}
+
+/* The reason names the layer. */
 static void refuse_layer(uint32_t n, size_t at, uint32_t bytes, uint64_t value, const char *why)
 {
     char text[128];
     snprintf(text, sizeof text, "layer %u: %s", (unsigned)n, why);
-    refuse_header(T3R_WEIGHTS_HEADER_BYTES + (n - 1) * (size_t)T3R_WEIGHTS_LAYER_BYTES + at, bytes, value, text);
+    refuse_row(n, at, bytes, value, text);
 }
 
 static void test_reads(void **state)
@@ -112,7 +120,7 @@ static void test_damage(void **state)
     sample_file file = make(8, 8);
     for (size_t cut = 0; cut < file.count; cut++) {
         sample_file part = copy_of(file.bytes, cut);
-        refuse(&part, cut < T3R_WEIGHTS_HEADER_BYTES ? "its header takes 64" : "cut off?");
+        refuse(&part, cut < T3R_WEIGHTS_HEADER_BYTES ? "not a weight file" : "not as long as it says");
         free(part.bytes);
     }
     for (size_t at = 16; at < file.count; at++) {
@@ -127,36 +135,36 @@ static void test_header(void **state)
 {
     (void)state;
     refuse_header(WEIGHT_AT_MAGIC, 4, 0, "not a weight file");
-    refuse_header(WEIGHT_AT_FORMAT, 2, 2, "the format is 2, not 1");
+    refuse_header(WEIGHT_AT_FORMAT, 2, 2, "another format");
     refuse_header(WEIGHT_AT_EPOCH, 2, T3R_BITS_EPOCH + 1, "made for bits epoch");
-    refuse_header(WEIGHT_AT_BYTES, 4, 64, "64 bytes in all");
-    refuse_header(WEIGHT_AT_WEIGHT_BITS, 1, 4, "the weights' width is 4");
-    refuse_header(WEIGHT_AT_ACTIVATION_BITS, 1, 32, "the activations' width is 32");
-    refuse_header(WEIGHT_AT_LAYERS, 1, 0, "the number of layers is 0");
-    refuse_header(WEIGHT_AT_LAYERS, 1, 25, "the number of layers is 25");
-    refuse_header(WEIGHT_AT_LAYERS, 1, 5, "layer 5: the output zero of the last layer");
-    refuse_header(WEIGHT_AT_FEATURE_SET, 1, 2, "the feature set is 2");
-    refuse_header(WEIGHT_AT_MACS, 4, 1, "the number of multiply-accumulates is 1");
-    refuse_header(WEIGHT_AT_PARAMETERS, 4, 1, "the number of parameters is 1");
+    refuse_header(WEIGHT_AT_WEIGHT_BITS, 1, 4, "8 or 16 bits");
+    refuse_header(WEIGHT_AT_ACTIVATION_BITS, 1, 32, "8 or 16 bits");
+    refuse_header(WEIGHT_AT_LAYERS, 1, 0, "layers must be 1..24");
+    refuse_header(WEIGHT_AT_LAYERS, 1, 25, "layers must be 1..24");
+    refuse_header(WEIGHT_AT_LAYERS, 1, 5, "layer 5: the last one is not");
+    refuse_header(WEIGHT_AT_FEATURE_SET, 1, 2, "other features");
+    refuse_header(WEIGHT_AT_MACS, 4, 1, "counts are not those of the layers");
+    refuse_header(WEIGHT_AT_PARAMETERS, 4, 1, "counts are not those of the layers");
     refuse_header(WEIGHT_AT_RESERVED, 4, 1u << 24, "reserved bytes");
-    refuse_header(WEIGHT_AT_NAME, 1, 0, "there is something behind the name");
-    refuse_header(WEIGHT_AT_NAME + 1, 1, 'A', "is not 1 to 15");
-    refuse_header(WEIGHT_AT_NAME + 8, 8, UINT64_C(0x0061616161616161), "behind the name");
+    refuse_header(WEIGHT_AT_NAME, 1, 0, "the header's name");
+    refuse_header(WEIGHT_AT_NAME + 1, 1, 'A', "the header's name");
+    refuse_header(WEIGHT_AT_NAME + 8, 8, UINT64_C(0x0061616161616161), "the header's name");
     refuse_header(WEIGHT_AT_RESERVED_END + 15, 1, 1, "reserved bytes");
     sample_file file = make(8, 8);
+    t3r_store_le32(file.bytes + WEIGHT_AT_BYTES, 64);
+    refuse(&file, "not as long as it says");
     memset(file.bytes + WEIGHT_AT_NAME, 'a', HEAD_NAME_BYTES);
     seal(&file);
-    refuse(&file, "the name has no end");
+    refuse(&file, "the header's name");
     memset(file.bytes + WEIGHT_AT_NAME, 0, HEAD_NAME_BYTES);
     seal(&file);
-    refuse(&file, "the name ''");
+    refuse(&file, "the header's name");
     free(file.bytes);
     /* a table that the file has no room for */
     file = make(8, 8);
     sample_file part = copy_of(file.bytes, T3R_WEIGHTS_HEADER_BYTES + 5 * T3R_WEIGHTS_LAYER_BYTES);
-    le_put(part.bytes + WEIGHT_AT_BYTES, part.count, 4);
     seal(&part);
-    refuse(&part, "the table of layers is cut off");
+    refuse(&part, "their table in the file");
     free(part.bytes);
     free(file.bytes);
 }
@@ -187,21 +195,22 @@ static void test_layers(void **state)
     refuse_layer(1, LAYER_AT_STRIDE, 1, 1, "a source is finer");
     refuse_layer(1, LAYER_AT_PHASES, 1, 4, "phases of other");
     refuse_layer(5, LAYER_AT_PHASES, 1, 3, "phases are neither");
-    refuse_layer(1, LAYER_AT_RESERVED, 1, 1, "reserved bytes");
-    refuse_layer(1, LAYER_AT_RESERVED_2, 2, 256, "reserved bytes");
-    refuse_layer(1, LAYER_AT_ZERO, 2, 128, "the output zero is no activation");
-    refuse_layer(1, LAYER_AT_ZERO, 2, 0xff7f, "the output zero is no activation");
-    refuse_layer(6, LAYER_AT_ZERO, 2, 0xff80, "the output zero of the last layer");
+    refuse_row(1, LAYER_AT_RESERVED, 1, 1, "reserved bytes");
+    refuse_row(1, LAYER_AT_RESERVED_2, 2, 256, "reserved bytes");
+    refuse_row(1, LAYER_AT_ZERO, 2, 128, "an output zero is no int8");
+    refuse_row(1, LAYER_AT_ZERO, 2, 0xff7f, "an output zero is no int8");
+    refuse_layer(6, LAYER_AT_ZERO, 2, 0xff80, "the last one is not a linear");
+    refuse_row(6, LAYER_AT_ZERO, 2, 1, "the last layer is not a linear");
     for (uint32_t n = 1; n <= 6; n++) {
-        refuse_layer(n, LAYER_AT_WEIGHTS, 4, 72, "weights are not aligned");
-        refuse_layer(n, LAYER_AT_BIAS, 4, 1000 * 16 + 8, "bias is not aligned");
-        refuse_layer(n, LAYER_AT_MULTIPLIER, 4, 1, "multipliers are not aligned");
-        refuse_layer(n, LAYER_AT_SHIFT, 4, 0xffffffff, "shifts are not aligned");
-        refuse_layer(n, LAYER_AT_WEIGHTS, 4, 0xfffffff0, "weights lie outside");
-        refuse_layer(n, LAYER_AT_WEIGHTS, 4, 240, "weights lie outside"); /* in the table */
-        refuse_layer(n, LAYER_AT_BIAS, 4, 0, "bias lies outside");
-        refuse_layer(n, LAYER_AT_MULTIPLIER, 4, 1u << 20, "multipliers lie outside");
-        refuse_layer(n, LAYER_AT_SHIFT, 4, 0x80000000, "shifts lie outside");
+        refuse_row(n, LAYER_AT_WEIGHTS, 4, 72, "not aligned to 16");
+        refuse_row(n, LAYER_AT_BIAS, 4, 1000 * 16 + 8, "not aligned to 16");
+        refuse_row(n, LAYER_AT_MULTIPLIER, 4, 1, "not aligned to 16");
+        refuse_row(n, LAYER_AT_SHIFT, 4, 0xffffffff, "not aligned to 16");
+        refuse_row(n, LAYER_AT_WEIGHTS, 4, 0xfffffff0, "outside the file");
+        refuse_row(n, LAYER_AT_WEIGHTS, 4, 240, "outside the file"); /* in the table */
+        refuse_row(n, LAYER_AT_BIAS, 4, 0, "outside the file");
+        refuse_row(n, LAYER_AT_MULTIPLIER, 4, 1u << 20, "outside the file");
+        refuse_row(n, LAYER_AT_SHIFT, 4, 0x80000000, "outside the file");
     }
 }
 
@@ -209,7 +218,7 @@ static void test_layers(void **state)
 static size_t block_at(uint32_t weight_bits, uint32_t activation_bits, enum weight_block block)
 {
     sample_file file = make(weight_bits, activation_bits);
-    size_t at = le_get(file.bytes + T3R_WEIGHTS_HEADER_BYTES + LAYER_AT_WEIGHTS + 4 * (size_t)block, 4);
+    size_t at = t3r_load_le32(file.bytes + T3R_WEIGHTS_HEADER_BYTES + LAYER_AT_WEIGHTS + 4 * (size_t)block);
     free(file.bytes);
     return at;
 }
@@ -217,27 +226,28 @@ static size_t block_at(uint32_t weight_bits, uint32_t activation_bits, enum weig
 static void test_numbers(void **state)
 {
     (void)state;
-    refuse_header(block_at(8, 8, BLOCK_MULTIPLIER) + 20, 4, (1 << 30) - 1, "layer 1: a multiplier");
-    refuse_header(block_at(8, 8, BLOCK_MULTIPLIER), 4, 1u << 31, "layer 1: a multiplier");
-    refuse_header(block_at(8, 8, BLOCK_SHIFT) + 5, 1, 16, "layer 1: a shift");
-    refuse_header(block_at(8, 8, BLOCK_SHIFT), 1, 256 - 31, "layer 1: a shift");
-    refuse_header(block_at(8, 8, BLOCK_BIAS), 4, 0x7fffffff, "layer 1: weights and bias could overflow");
-    refuse_header(block_at(8, 8, BLOCK_BIAS) + 20, 4, 0x80000000, "layer 1: weights and bias could overflow");
-    refuse_change(16, 16, block_at(16, 16, BLOCK_BIAS), 8, UINT64_C(1) << 47, "could overflow");
-    refuse_change(8, 16, block_at(8, 16, BLOCK_BIAS), 8, UINT64_C(1) << 63, "could overflow");
+    refuse_header(block_at(8, 8, BLOCK_MULTIPLIER) + 20, 4, (1 << 30) - 1, "a multiplier or shift");
+    refuse_header(block_at(8, 8, BLOCK_MULTIPLIER), 4, 1u << 31, "a multiplier or shift");
+    refuse_header(block_at(8, 8, BLOCK_SHIFT) + 5, 1, 16, "a multiplier or shift");
+    refuse_header(block_at(8, 8, BLOCK_SHIFT), 1, 256 - 31, "a multiplier or shift");
+    refuse_header(block_at(8, 8, BLOCK_BIAS), 4, 0x7fffffff, "sums could leave");
+    refuse_header(block_at(8, 8, BLOCK_BIAS) + 20, 4, 0x80000000, "sums could leave");
+    refuse_change(16, 16, block_at(16, 16, BLOCK_BIAS), 8, UINT64_C(1) << 47, "sums could leave");
+    refuse_change(8, 16, block_at(8, 16, BLOCK_BIAS), 8, UINT64_C(1) << 63, "sums could leave");
     /* weights alone: 324 of them at their most, times 2^7, are beyond 2^30 */
     sample_file file = make(16, 8);
     size_t at = block_at(16, 8, BLOCK_WEIGHTS);
     for (size_t i = 0; i < 6 * 324; i++) {
-        le_put(file.bytes + at + 2 * i, 0x8000, 2);
+        t3r_store_le16(file.bytes + at + 2 * i, 0x8000);
     }
-    le_put(file.bytes + block_at(16, 8, BLOCK_BIAS), 0x40000000, 4);
+    t3r_store_le32(file.bytes + block_at(16, 8, BLOCK_BIAS), 0x40000000);
     seal(&file);
-    refuse(&file, "layer 1: weights and bias could overflow");
+    refuse(&file, "sums could leave");
     free(file.bytes);
 }
 
-/* Fields of many values, sealed again: the two readers, written apart, take and refuse the same files. */
+/* Fields of many values, sealed again: the rules of layers, written once for firmware and once for the host, accept the
+ * same files. */
 static void test_agreement(void **state)
 {
     (void)state;
@@ -251,7 +261,7 @@ static void test_agreement(void **state)
             uint8_t before = file.bytes[at];
             for (size_t i = 0; i < sizeof values; i++) {
                 file.bytes[at] = values[i];
-                if (at < WEIGHT_AT_CRC || at >= WEIGHT_AT_WEIGHT_BITS) {
+                if (at >= WEIGHT_AT_SEALED) {
                     seal(&file);
                 }
                 weight_info info;

@@ -7,11 +7,11 @@ compiler=$1
 source=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-files="host/fixed_text host/text mcap/crc32 mcap/mcap_chunk_writer mcap/mcap_writer messages/cdr
+files="host/fixed_text host/text mcap/crc32 mcap/mcap_chunk_writer mcap/mcap_records mcap/mcap_writer messages/cdr
     messages/fixed_camera messages/fixed_double messages/ros_messages messages/ros_schemas recording/pixel_layout
     recording/recorder_chunk recording/recorder_messages recording/recorder_summary recording/recording_writer"
 for file in $files; do
-    "$compiler" -std=gnu11 -O2 -fno-stack-protector -I "$source/platform" -I "$source/runtime/include" \
+    "$compiler" -std=gnu11 -O2 -fno-stack-protector -I "$source/platform" -I "$source/runtime" -I "$source/runtime/include" \
         -c "$source/platform/$file.c" -o "$scratch/$(basename "$file").o"
 done
 ld -r -o "$scratch/recorder.o" "$scratch"/*.o

@@ -8,7 +8,7 @@ import xml.etree.ElementTree
 from common import check, done, run
 
 trim3r, speed = map(os.path.abspath, sys.argv[1:3])
-NAMES = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs", "efficientgs+finetune", "analytic", "base")
+NAMES = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs", "efficientgs+finetune", "analytic", "tiny")
 
 with tempfile.TemporaryDirectory() as folder:
     run(speed, "--program", trim3r, "--size", "32x32", "--runs", "1", "--svg", f"{folder}/speed.svg")

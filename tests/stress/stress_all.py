@@ -51,7 +51,7 @@ def rivals():
 
 
 def settings():
-    for options in (("--keep", "8,100", "--head", "moment"), ("--allocate", "paper", "--head", "nano"),
+    for options in (("--keep", "8,100", "--head", "analytic"), ("--allocate", "paper", "--head", "tiny"),
                     ("--allocate", "pixel", "--threads", "2", "--arena", "min")):
         cells(*SMALL, "--captures", "0", "--strengths", "1,3", *options)
     rows = all_of(cells(*SMALL, "--captures", "0", "--strengths", "2", "--auto", "--max-loss", "1"), 1, 1)

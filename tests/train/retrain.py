@@ -39,7 +39,7 @@ class Retrain(unittest.TestCase):
         cls.folder.cleanup()
 
     def run_it(self, *arguments, expect=0):
-        command = [sys.executable, "-B", os.path.join(TRAIN, "retrain"), *arguments, "--head", "nano", "--crop", "64",
+        command = [sys.executable, "-B", os.path.join(TRAIN, "retrain"), *arguments, "--head", "tiny", "--crop", "64",
                    "--batch", "2", "--processes", "1", "--data", self.data, "--program", TRIM3R, "--out", self.out]
         found = subprocess.run(command, capture_output=True, text=True, timeout=600)
         self.assertEqual(found.returncode, expect, found.stderr)
@@ -58,14 +58,14 @@ class Retrain(unittest.TestCase):
         self.assertRegex(first, r"2 heads to be trained, about \d+ min by 1 processes; 0 are there")
         self.assertRegex(first, r"eagles: step 4/4 .* left \(\d+ of all\)")
         eagles, rooms = self.told("eagles"), self.told("rooms")
-        self.assertEqual([eagles[k] for k in ("mask", "kind", "start", "steps")], ["eagles", "all", "nano", 4])
+        self.assertEqual([eagles[k] for k in ("mask", "kind", "start", "steps")], ["eagles", "all", "tiny", 4])
         self.assertEqual([rooms[k] for k in ("mask", "kind", "start", "data")], ["trim3r", "rooms", None, []])
         self.assertEqual(eagles["data"], ["pictures"])
         for name in ("eagles", "rooms"):
             answer = subprocess.run([TRIM3R, "head-info", os.path.join(self.out, name + ".t3w")], check=True,
                                     capture_output=True, text=True)  # fmt: skip
             self.assertIn(name, answer.stdout)
-        shipped, _ = head_net.load_safetensors(os.path.join(HEADS, "nano.safetensors"))
+        shipped, _ = head_net.load_safetensors(os.path.join(HEADS, "tiny.safetensors"))
         made = self.floats("eagles")
         apart = [float((a - b).abs().max()) for a, b in zip(made.parameters(), shipped.parameters())]
         self.assertTrue(0 < max(apart) < 0.02, f"it goes on with the shipped head: {apart}")
@@ -84,7 +84,7 @@ class Retrain(unittest.TestCase):
         with open(os.path.join(self.out, "eagles.t3w"), "rb") as head:
             self.assertEqual(head.read(), kept)
         self.assertTrue(eagles["shipped"])
-        copy = shutil.copy(os.path.join(HEADS, "nano.safetensors"), self.folder.name)
+        copy = shutil.copy(os.path.join(HEADS, "tiny.safetensors"), self.folder.name)
         self.assertIn("1 heads to be trained", self.run_it("eagles", "--steps", "4", "--from", copy), "from elsewhere")
         self.assertFalse(self.told("eagles")["shipped"])
         self.assertIn("1 heads to be trained", self.run_it("eagles", "--steps", "5"))

@@ -25,7 +25,7 @@ STEPS = 6
 def run_in(folder, *more):
     common = (
         "--head",
-        "nano",
+        "tiny",
         "--steps",
         str(STEPS),
         "--crop",
@@ -86,14 +86,14 @@ class Training(unittest.TestCase):
             other = run_in(three, "--seed", "2")
             other.train()
             self.assertFalse(same(whole.head, other.head))
-            for name in ("checkpoint.pt", "log.csv", "curves.png", "nano.safetensors"):
+            for name in ("checkpoint.pt", "log.csv", "curves.png", "tiny.safetensors"):
                 self.assertTrue(os.path.exists(os.path.join(one, name)), name)
             with self.assertRaises(SystemExit):
                 run_in(one, "--seed", "2")  # another run's checkpoint lies there
 
     def test_processes_share_a_step(self):
         """Two processes end with the bits of one that takes the mean of both shares' gradients."""
-        options = "--head nano --steps 4 --crop 64 --batch 2 --novel 0 --quantized 0".split()
+        options = "--head tiny --steps 4 --crop 64 --batch 2 --novel 0 --quantized 0".split()
         with tempfile.TemporaryDirectory() as folder:
             shared, *alone = (os.path.join(folder, name) for name in ("shared", "first", "second"))
             command = [sys.executable, os.path.join(TRAIN, "train.py"), *options, "--processes", "2", "--out", shared]
@@ -103,7 +103,7 @@ class Training(unittest.TestCase):
             two.rank = 1
             while one.step < one.options.steps:
                 step_as_two(one, two)
-        expected, begun = one.head.state_dict(), head_net.Head(head_net.HEADS["nano"], one.options.seed).state_dict()
+        expected, begun = one.head.state_dict(), head_net.Head(head_net.HEADS["tiny"], one.options.seed).state_dict()
         self.assertTrue(all(torch.equal(got[key], expected[key]) for key in expected))
         self.assertFalse(any(torch.equal(got[key], begun[key]) for key in expected if key.startswith("weight")))
 
@@ -123,13 +123,13 @@ class Training(unittest.TestCase):
         self.assertTrue(all(torch.equal(a, b) for a, b in zip(head.parameters(), again.parameters())))
 
     def test_shipped_sizes(self):
-        for name, most, parameters in (("tiny", 400, 4e3), ("nano", 1500, 16e3), ("small", 5000, 48e3), ("base", 16000, 128e3)):
+        for name, most, parameters in (("tiny", 400, 4e3), ("small", 5000, 48e3)):
             head = head_net.Head(head_net.HEADS[name])
             self.assertLessEqual(head_net.multiply_accumulates(head.layers), most, name)
             self.assertLess(sum(p.numel() for p in head.parameters()), parameters, name)
 
     def test_rounding_changes_little_and_lets_derivatives_through(self):
-        head = head_net.Head(head_net.HEADS["nano"], 5)
+        head = head_net.Head(head_net.HEADS["tiny"], 5)
         drawn = samples.Samples([], 64, 1.0).crops(np.random.default_rng(1), 2)
         batch = train.objective.Batch(drawn, "cpu")
         head.mode = "observe"
@@ -144,7 +144,7 @@ class Training(unittest.TestCase):
 
     def test_a_triplet_teaches(self):
         source = samples.Samples([], 96, 1.0)
-        head = head_net.Head(head_net.HEADS["nano"])
+        head = head_net.Head(head_net.HEADS["tiny"])
         for seed in range(8):
             context, target = source.triplet(np.random.default_rng(seed))
             loss, decibel = train.objective.novel_loss(head, context, target, train.perceptual.StandIn(), "cpu")

@@ -8,28 +8,29 @@ static void read(void **state)
 {
     (void)state;
     static const uint8_t bytes[] = {0x01, 0x82, 0x03, 0x84, 0x05, 0x86, 0x07, 0x88};
-    assert_int_equal(t3r_le_u16(bytes), 0x8201);
-    assert_int_equal(t3r_le_u16(bytes + 1), 0x0382);
-    assert_int_equal(t3r_le_u32(bytes), 0x84038201);
-    assert_int_equal(t3r_le_i32(bytes), INT32_MIN + 0x04038201);
-    assert_int_equal(t3r_le_i64(bytes), INT64_MIN + INT64_C(0x0807860584038201));
+    assert_int_equal(t3r_load_le16(bytes), 0x8201);
+    assert_int_equal(t3r_load_le16(bytes + 1), 0x0382);
+    assert_int_equal(t3r_load_le32(bytes), 0x84038201);
+    assert_int_equal(t3r_load_le64(bytes), UINT64_C(0x8807860584038201));
     static const uint8_t ones[] = {0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff};
-    assert_int_equal(t3r_le_u16(ones), 0xffff);
-    assert_int_equal(t3r_le_u32(ones), UINT32_MAX);
-    assert_int_equal(t3r_le_i32(ones), -1);
-    assert_int_equal(t3r_le_i64(ones), -1);
+    assert_int_equal(t3r_load_le16(ones), 0xffff);
+    assert_int_equal(t3r_load_le32(ones), UINT32_MAX);
+    assert_int_equal(t3r_load_le64(ones), UINT64_MAX);
 }
 
 static void write(void **state)
 {
     (void)state;
     uint8_t bytes[8] = {0};
-    t3r_set_le_u16(bytes + 1, 0x8201);
+    t3r_store_le16(bytes + 1, 0x8201);
     const uint8_t two[8] = {0, 0x01, 0x82};
     assert_memory_equal(bytes, two, sizeof two);
-    t3r_set_le_u32(bytes + 3, 0x86058403);
+    t3r_store_le32(bytes + 3, 0x86058403);
     const uint8_t six[8] = {0, 0x01, 0x82, 0x03, 0x84, 0x05, 0x86};
     assert_memory_equal(bytes, six, sizeof six);
+    t3r_store_le64(bytes, UINT64_C(0x8807860584038201));
+    const uint8_t eight[8] = {0x01, 0x82, 0x03, 0x84, 0x05, 0x86, 0x07, 0x88};
+    assert_memory_equal(bytes, eight, sizeof eight);
 }
 
 static void table_in_place(void **state)

@@ -51,7 +51,7 @@ typedef struct plan {
 
 static const plan plans[] = {
     {"one SuperCluster", T3R_HEAD_ANALYTIC, 1, 0, {0}},
-    {"moment", T3R_HEAD_MOMENT, 6, 0, {0}},
+    {"SuperClusters", T3R_HEAD_ANALYTIC, 6, 0, {0}},
     {"a network", T3R_HEAD_LEARNED, 6, 0, {0}},
     {"a bounded loss", T3R_HEAD_ANALYTIC, 6, 1, {.max_loss_q8 = HALF_DB}},
 };
@@ -60,6 +60,7 @@ static void at_every_step(const plan *p, const uint8_t *weights, size_t weight_b
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.head = p->head;
+    config.head_column_bytes = SMALL_SHAPE_COLUMN_BYTES;
     config.clusters = p->clusters;
     config.keep_analysis = p->keep_analysis;
     config.refine = 1;

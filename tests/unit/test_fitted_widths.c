@@ -221,17 +221,14 @@ static uint64_t fitted_hash(t3r_config config, way taken, bool differs)
 static void builds_that_ask(void **state)
 {
     (void)state;
-    for (t3r_head head = T3R_HEAD_ANALYTIC; head <= T3R_HEAD_MOMENT; head++) {
-        t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
-        config.head = head;
-        const uint64_t wanted = fitted_hash(config, (way){0}, true);
-        assert_true(fitted_hash(config, (way){.least = true}, true) == wanted);
-        assert_true(fitted_hash(config, (way){.parallel = true}, true) == wanted);
-        (void)fitted_hash(config, (way){.unadapted = true}, false);
-        config.stream = 1;
-        (void)fitted_hash(config, (way){0}, false);
-    }
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
+    const uint64_t wanted = fitted_hash(config, (way){0}, true);
+    assert_true(fitted_hash(config, (way){.least = true}, true) == wanted);
+    assert_true(fitted_hash(config, (way){.parallel = true}, true) == wanted);
+    (void)fitted_hash(config, (way){.unadapted = true}, false);
+    config.stream = 1;
+    (void)fitted_hash(config, (way){0}, false);
+    config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.fit_widths = 2;
     assert_int_equal(t3r_plan(&config, &(t3r_plan_info){0}), T3R_ERR_CONFIG);
     assert_string_equal(t3r_config_error(&config), "fit_widths must be 0 or 1");

@@ -2,6 +2,7 @@
  * of these values gives, holds for its call alone, and leaves everything as it was when it is refused. */
 #include "unit.h"
 #include "rgbd_frame.h"
+#include "trim3r_heads.h"
 
 #include "state/ablation.h"
 #include "state/state.h"
@@ -49,6 +50,7 @@ static t3r_runtime *with_view(const t3r_config *config)
     assert_int_equal(t3r_init(&rt, arena, arena_bytes, config), T3R_OK);
     t3r_frame frame = rgbd_frame(rgb, depth, SIDE, SIDE, MILLIMETRE_Q40);
     t3r_camera camera = straight_camera(SIDE);
+    assert_int_equal(t3r_bind_head(rt, t3r_head_tiny, t3r_head_tiny_bytes), T3R_OK);
     assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_OK);
     return rt;
 }
@@ -99,7 +101,7 @@ static void every_combination(void **state)
             .gaussians = parts & 1 ? FEWER : 0,
             .max_loss_q8 = parts & 2 ? HALF_DB : 0,
             .allocate = parts & 4 ? T3R_ALLOCATE_UNIFORM : T3R_ALLOCATE_CONFIGURED,
-            .head = parts & 8 ? T3R_HEAD_MOMENT : T3R_HEAD_CONFIGURED,
+            .head = parts & 8 ? T3R_HEAD_LEARNED : T3R_HEAD_CONFIGURED,
             .importance = parts & 16 ? planes : NULL,
             .importance_stride_bytes = parts & 32 || parts & 16 ? SIDE * 2 : 0, /* says nothing without planes */
         };
@@ -165,6 +167,7 @@ static void a_refused_request_leaves_all_as_it_was(void **state)
     t3r_runtime *rt = with_view(&config);
     t3r_scene scene;
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    assert_int_equal(t3r_bind_head(rt, NULL, 0), T3R_OK);
     memcpy(before, arena, arena_bytes);
     for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
         assert_true(t3r_reconstruct(rt, &refused[i], &scene) != T3R_OK);

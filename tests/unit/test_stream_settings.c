@@ -64,7 +64,7 @@ static void each_setting(void **state)
     base.stream = 1;
     base.refine = 1;
     const uint32_t usually = run(&base, usual);
-    t3r_config other[13];
+    t3r_config other[14];
     size_t n = 0;
 #define OTHER(field, value) (other[n] = base, other[n].field = (value), n++)
     OTHER(bridge_radius, 0);
@@ -76,6 +76,7 @@ static void each_setting(void **state)
     OTHER(structural, 1);
     OTHER(align, 0);
     OTHER(remember, 1);
+    OTHER(clusters, 5);
     OTHER(allocate, T3R_ALLOCATE_PAPER);
     OTHER(allocate, T3R_ALLOCATE_PIXEL);
     OTHER(allocate, T3R_ALLOCATE_UNIFORM);
@@ -88,7 +89,7 @@ static void each_setting(void **state)
         const bool clustered = other[i].allocate == T3R_ALLOCATE_PAPER || other[i].allocate == T3R_ALLOCATE_PIXEL;
         /* a stream has one SuperCluster, so that these are one allocation, and refines without the structural loss,
          * with poses as they are given */
-        if (clustered || other[i].structural != 0 || other[i].align == 0) {
+        if (clustered || other[i].clusters != 0 || other[i].structural != 0 || other[i].align == 0) {
             assert_int_equal(count, usually);
             assert_memory_equal(first, usual, count * sizeof *first);
         }

@@ -168,7 +168,7 @@ static t3r_config settings(t3r_head head)
 static void heads(void **state)
 {
     (void)state;
-    static const t3r_head all[] = {T3R_HEAD_ANALYTIC, T3R_HEAD_MOMENT, T3R_HEAD_LEARNED};
+    static const t3r_head all[] = {T3R_HEAD_ANALYTIC, T3R_HEAD_LEARNED};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         const t3r_config config = settings(all[i]);
         check_ways(&config);

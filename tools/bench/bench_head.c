@@ -2,7 +2,7 @@
 
 #include "head/head.h"
 #include "head/head_views.h"
-#include "pipeline.h"
+#include "stages.h"
 #include "state/state.h"
 #include "head/weights.h"
 

@@ -5,7 +5,7 @@
 #include "head/head_features.h"
 #include "head/head_views.h"
 #include "head/network.h"
-#include "pipeline.h"
+#include "stages.h"
 #include "state/state.h"
 
 static size_t view_bytes(const t3r_view *view)

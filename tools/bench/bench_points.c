@@ -8,6 +8,7 @@
 
 #include "core/camera.h"
 #include "host/file_bytes.h"
+#include "host/little_floats.h"
 #include "host/reason.h"
 
 /* as in GaussianTrim3R */
@@ -76,10 +77,7 @@ int bench_points_read(bench_points *points, const char *path, char *error, size_
         result = allocate(points, (uint32_t)count, error, error_bytes);
     }
     for (size_t i = 0; result == 0 && i < count * T3R_DIMENSIONS; i++) {
-        const uint8_t *b = data + 4 * i;
-        uint32_t bits = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-        float value;
-        memcpy(&value, &bits, sizeof value);
+        const float value = t3r_load_float(data + 4 * i);
         if (!isfinite(value)) {
             t3r_reason(error, error_bytes, "%s: byte %zu: not a finite number", path, 4 * i);
             result = -1;

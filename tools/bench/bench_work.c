@@ -171,7 +171,7 @@ static int open_heads(bench_work *w, const bench_settings *o)
         code = chosen_head_open(&w->measured, o->head);
     }
     if (code == CLI_OK && w->measured.weights == NULL) {
-        code = cli_error(CLI_BAD_USAGE, "--head %s: a network is measured; tiny, nano, small, base, FILE.t3w", o->head);
+        code = cli_error(CLI_BAD_USAGE, "--head %s: a network is measured; tiny, small, FILE.t3w", o->head);
     }
     return code;
 }

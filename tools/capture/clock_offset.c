@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "geometry/quaternion.h"
 #include "host/reason.h"
 
 #define MOST_SHIFT 8      /* of columns and rows between neighbours: a tenth of the picture */
@@ -110,33 +111,14 @@ void clock_motion_of(const clock_picture *before, const clock_picture *after, cl
 
 /* ---- poses ---- */
 
-static void rotate_back(const double q[4], const double v[3], double out[3])
-{
-    /* by the conjugate of w x y z: world to camera */
-    double w = q[0], x = -q[1], y = -q[2], z = -q[3];
-    double tx = 2 * (y * v[2] - z * v[1]), ty = 2 * (z * v[0] - x * v[2]), tz = 2 * (x * v[1] - y * v[0]);
-    out[0] = v[0] + w * tx + (y * tz - z * ty);
-    out[1] = v[1] + w * ty + (z * tx - x * tz);
-    out[2] = v[2] + w * tz + (x * ty - y * tx);
-}
-
 /* What the picture should do between two poses: to the right and down, by rotation (radians) and by translation (world
  * units), seen in the first camera. */
-static void expected(const double a[POSE_NUMBERS], const double b[POSE_NUMBERS], double right[TERMS],
-                     double down[TERMS])
+static void expected(const rigid *a, const rigid *b, double right[TERMS], double down[TERMS])
 {
-    double from[3], to[3], qa[4], qb[4], moved[3], forward[3], seen[3];
-    pose_split(a, from, qa);
-    pose_split(b, to, qb);
-    for (int i = 0; i < 3; i++) {
-        moved[i] = to[i] - from[i];
-    }
-    double local[3];
-    rotate_back(qa, moved, local);
-    /* the second camera's axis in the world, then in the first camera */
-    const double back[4] = {qb[0], -qb[1], -qb[2], -qb[3]}, axis[3] = {0, 0, 1};
-    rotate_back(back, axis, forward);
-    rotate_back(qa, forward, seen);
+    const rigid back = rigid_inverse(a), second = rigid_compose(&back, b); /* in the first camera */
+    const double axis[3] = {0, 0, 1}, *local = second.position;
+    double seen[3];
+    quaternion_rotate(second.rotation, axis, seen);
     double ahead = seen[2] > 0.1 ? seen[2] : 0.1;
     right[0] = -seen[0] / ahead;
     down[0] = -seen[1] / ahead;
@@ -152,12 +134,13 @@ static double explained_at(const clock_motion *motions, size_t count, const traj
     double a[2][TERMS][TERMS] = {{{0}}}, b[2][TERMS] = {{0}}, squares = 0, fitted = 0;
     *used = 0;
     for (size_t i = 0; i < count; i++) {
-        double from[POSE_NUMBERS], to[POSE_NUMBERS], x[2][TERMS];
-        if (!trajectory_at_offset(t, motions[i].from_ns, offset_ns, from) ||
-            !trajectory_at_offset(t, motions[i].to_ns, offset_ns, to)) {
+        rigid from, to;
+        double x[2][TERMS];
+        if (!trajectory_at_offset(t, motions[i].from_ns, offset_ns, &from) ||
+            !trajectory_at_offset(t, motions[i].to_ns, offset_ns, &to)) {
             continue;
         }
-        expected(from, to, x[0], x[1]);
+        expected(&from, &to, x[0], x[1]);
         const double y[2] = {motions[i].right, motions[i].down};
         for (int axis = 0; axis < 2; axis++) {
             for (int r = 0; r < TERMS; r++) {

@@ -1,7 +1,7 @@
 #include "capture/options.h"
 
 #include <argp.h>
-#include <inttypes.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -167,24 +167,27 @@ static void parse_intrinsics(struct argp_state *state, const char *text, capture
     o->has_intrinsics = true;
 }
 
+static const char *name_of(int key)
+{
+    const struct argp_option *o = options;
+    while (o->key != key) {
+        o++;
+    }
+    return o->name;
+}
+
 /* Which adapters use an option of the camera's, and what it needs besides. */
 static const struct {
     int key;
-    const char *option, *adapters;
+    const char *adapters;
     bool of_depth; /* belongs to --depth-source */
 } uses[] = {
-    {KEY_SIZE, "size", "v4l2 libcamera opencv", false},
-    {KEY_RATE, "rate", "v4l2 libcamera opencv", false},
-    {KEY_FORMAT, "format", "v4l2 libcamera opencv", false},
-    {KEY_BACKEND, "backend", "opencv", false},
-    {KEY_BUFFERS, "buffers", "v4l2 libcamera", false},
-    {KEY_REPEAT, "repeat", "replay", false},
-    {KEY_DEPTH_SOURCE, "depth-source", "v4l2 opencv", false},
-    {KEY_DEPTH_SIZE, "depth-size", "v4l2 opencv", true},
-    {KEY_DEPTH_UNIT, "depth-unit", "v4l2 opencv", true},
-    {KEY_PAIR, "pair", "v4l2", true},
-    {KEY_STALL, "stall", "v4l2 libcamera opencv", false},
-    {KEY_RECONNECT, "reconnect", "v4l2 libcamera opencv", false},
+    {KEY_SIZE, "v4l2 libcamera opencv", false},   {KEY_RATE, "v4l2 libcamera opencv", false},
+    {KEY_FORMAT, "v4l2 libcamera opencv", false}, {KEY_BACKEND, "opencv", false},
+    {KEY_BUFFERS, "v4l2 libcamera", false},       {KEY_REPEAT, "replay", false},
+    {KEY_DEPTH_SOURCE, "v4l2 opencv", false},     {KEY_DEPTH_SIZE, "v4l2 opencv", true},
+    {KEY_DEPTH_UNIT, "v4l2 opencv", true},        {KEY_PAIR, "v4l2", true},
+    {KEY_STALL, "v4l2 libcamera opencv", false},  {KEY_RECONNECT, "v4l2 libcamera opencv", false},
 };
 
 /* Whether the word is one of the words, each but the last with a space behind it. */
@@ -210,10 +213,10 @@ static void check_uses(struct argp_state *state, const capture_options *o)
         }
         if (is_among(o->source, length, "replay v4l2 libcamera opencv") &&
             !is_among(o->source, length, uses[i].adapters)) {
-            argp_error(state, "--%s is of no use to %.*s: it belongs to %s", uses[i].option, (int)length, o->source,
-                       uses[i].adapters);
+            argp_error(state, "--%s is of no use to %.*s: it belongs to %s", name_of(uses[i].key), (int)length,
+                       o->source, uses[i].adapters);
         } else if (uses[i].of_depth && o->settings.depth == NULL) {
-            argp_error(state, "--%s belongs to --depth-source", uses[i].option);
+            argp_error(state, "--%s belongs to --depth-source", name_of(uses[i].key));
         }
     }
 }
@@ -259,6 +262,78 @@ static void check(struct argp_state *state, capture_options *o)
     }
 }
 
+/* A switch (bool), a text, a count (uint32_t), a decimal number (double), or two sides (uint32_t) one after the other.
+ */
+typedef enum value_kind { FLAG, TEXT, COUNT, DECIMAL, SIZE } value_kind;
+
+/* Options whose value is one field; the others stand in parse(). */
+static const struct {
+    int key;
+    value_kind kind;
+    size_t field;
+    double low, high; /* of COUNT and DECIMAL */
+} values[] = {
+#define AT(field) offsetof(capture_options, field)
+    {KEY_SOURCE, TEXT, AT(source), 0, 0},
+    {KEY_LIST, FLAG, AT(list), 0, 0},
+    {KEY_SIZE, SIZE, AT(settings.width), 0, 0},
+    {KEY_FORMAT, TEXT, AT(settings.format), 0, 0},
+    {KEY_BACKEND, TEXT, AT(settings.backend), 0, 0},
+    {KEY_BUFFERS, COUNT, AT(settings.buffers), 2, 32},
+    {KEY_REPEAT, COUNT, AT(settings.repeat), 1, UINT32_MAX},
+    {KEY_DEPTH_SOURCE, TEXT, AT(settings.depth), 0, 0},
+    {KEY_DEPTH_SIZE, SIZE, AT(settings.depth_width), 0, 0},
+    {KEY_PAIR, COUNT, AT(settings.pair_ms), 1, 1000},
+    {KEY_STALL, COUNT, AT(settings.stall_ms), 1, 3600000},
+    {KEY_RECONNECT, DECIMAL, AT(reconnect_seconds), 0, 1e6},
+    {KEY_FISHEYE, FLAG, AT(fisheye), 0, 0},
+    {KEY_POSES, TEXT, AT(poses), 0, 0},
+    {KEY_POSE_TOPIC, TEXT, AT(pose_topic), 0, 0},
+    {'o', TEXT, AT(output), 0, 0},
+    {KEY_SYNC, FLAG, AT(sync), 0, 0},
+    {KEY_FRAMES, COUNT, AT(frames), 1, UINT32_MAX},
+    {KEY_SECONDS, DECIMAL, AT(seconds), 0, 1e9},
+    {KEY_BUILD, TEXT, AT(scene), 0, 0},
+    {KEY_EVERY, COUNT, AT(every), 1, 1000000},
+    {KEY_LOCAL, FLAG, AT(local), 0, 0},
+    {KEY_HASH, FLAG, AT(hash), 0, 0},
+    {KEY_QUIET, FLAG, AT(quiet), 0, 0},
+    {KEY_JSON, FLAG, AT(json), 0, 0},
+#undef AT
+};
+
+/* Returns false for an option that is not among values[]. */
+static bool read_value(int key, const char *text, struct argp_state *state)
+{
+    size_t i = 0;
+    while (i < sizeof values / sizeof values[0] && values[i].key != key) {
+        i++;
+    }
+    if (i == sizeof values / sizeof values[0]) {
+        return false;
+    }
+    void *field = (char *)state->input + values[i].field;
+    uint32_t *whole = field;
+    switch (values[i].kind) {
+    case FLAG:
+        *(bool *)field = true;
+        break;
+    case TEXT:
+        *(const char **)field = text;
+        break;
+    case COUNT:
+        *whole = option_number(state, name_of(key), text, (uint32_t)values[i].low, (uint32_t)values[i].high);
+        break;
+    case DECIMAL:
+        *(double *)field = option_decimal(state, name_of(key), text, values[i].low, values[i].high);
+        break;
+    case SIZE:
+        option_size(state, name_of(key), text, 2, &whole[0], &whole[1]);
+        break;
+    }
+    return true;
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     capture_options *o = state->input;
@@ -272,95 +347,20 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         state->child_inputs[1] = &o->build;
         state->child_inputs[2] = &o->stored;
         return 0;
-    case KEY_SOURCE:
-        o->source = arg;
-        return 0;
-    case KEY_LIST:
-        o->list = true;
-        return 0;
-    case KEY_SIZE:
-        option_size(state, "size", arg, 2, &s->width, &s->height);
-        return 0;
     case KEY_RATE:
         s->rate_millihertz = (uint32_t)(option_decimal(state, "rate", arg, 0, 10000) * 1000 + 0.5);
-        return 0;
-    case KEY_FORMAT:
-        s->format = arg;
-        return 0;
-    case KEY_BACKEND:
-        s->backend = arg;
-        return 0;
-    case KEY_BUFFERS:
-        s->buffers = option_number(state, "buffers", arg, 2, 32);
-        return 0;
-    case KEY_REPEAT:
-        s->repeat = option_number(state, "repeat", arg, 1, UINT32_MAX);
-        return 0;
-    case KEY_DEPTH_SOURCE:
-        s->depth = arg;
-        return 0;
-    case KEY_DEPTH_SIZE:
-        option_size(state, "depth-size", arg, 2, &s->depth_width, &s->depth_height);
         return 0;
     case KEY_DEPTH_UNIT:
         s->depth_unit_q40 = (uint64_t)(option_decimal(state, "depth-unit", arg, 0, 100) * 0x1p40 + 0.5);
         return 0;
-    case KEY_PAIR:
-        s->pair_ms = option_number(state, "pair", arg, 1, 1000);
-        return 0;
-    case KEY_STALL:
-        s->stall_ms = option_number(state, "stall", arg, 1, 3600000);
-        return 0;
-    case KEY_RECONNECT:
-        o->reconnect_seconds = option_decimal(state, "reconnect", arg, 0, 1e6);
-        return 0;
     case KEY_INTRINSICS:
         parse_intrinsics(state, arg, o);
-        return 0;
-    case KEY_FISHEYE:
-        o->fisheye = true;
-        return 0;
-    case KEY_POSES:
-        o->poses = arg;
-        return 0;
-    case KEY_POSE_TOPIC:
-        o->pose_topic = arg;
         return 0;
     case KEY_OFFSET:
         parse_offset(state, arg, o);
         return 0;
-    case 'o':
-        o->output = arg;
-        return 0;
     case KEY_MAX_BYTES:
         o->max_bytes = option_bytes(state, "max-bytes", arg);
-        return 0;
-    case KEY_SYNC:
-        o->sync = true;
-        return 0;
-    case KEY_FRAMES:
-        o->frames = option_number(state, "frames", arg, 1, UINT32_MAX);
-        return 0;
-    case KEY_SECONDS:
-        o->seconds = option_decimal(state, "seconds", arg, 0, 1e9);
-        return 0;
-    case KEY_BUILD:
-        o->scene = arg;
-        return 0;
-    case KEY_EVERY:
-        o->every = option_number(state, "every", arg, 1, 1000000);
-        return 0;
-    case KEY_LOCAL:
-        o->local = true;
-        return 0;
-    case KEY_HASH:
-        o->hash = true;
-        return 0;
-    case KEY_QUIET:
-        o->quiet = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
         return 0;
     case ARGP_KEY_ARG:
         argp_error(state, "'%s' is too many", arg);
@@ -369,7 +369,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         check(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return read_value(key, arg, state) ? 0 : ARGP_ERR_UNKNOWN;
     }
 }
 

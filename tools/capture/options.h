@@ -19,8 +19,8 @@ typedef struct capture_options {
     const char *scene;
     recording_options stored; /* how the recording stores messages */
     bool list, json, sync, hash, local, quiet;
-    uint32_t every;
-    uint64_t max_bytes, frames;
+    uint32_t every, frames;
+    uint64_t max_bytes;
     double seconds, reconnect_seconds;
     reconstruction_options build;
     uint64_t given; /* a bit for each KEY_* that stands in the command */

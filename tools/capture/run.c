@@ -157,11 +157,12 @@ static int complete(run_state *s, t3r_capture_frame *frame)
         wrong = resized ? NULL : capture_camera_set_intrinsics(plan->intrinsics, &frame->camera);
     }
     if (plan->poses != NULL) {
-        double pose[POSE_NUMBERS];
-        frame->has_pose = trajectory_at_offset(plan->poses, frame->stamp_ns, plan->offset_ns, pose);
+        rigid pose;
+        frame->has_pose = trajectory_at_offset(plan->poses, frame->stamp_ns, plan->offset_ns, &pose);
         if (frame->has_pose) {
-            t3r_recorded_camera camera = {.position = {pose[0], pose[1], pose[2]},
-                                          .rotation = {pose[6], pose[3], pose[4], pose[5]}};
+            t3r_recorded_camera camera = {0};
+            memcpy(camera.position, pose.position, sizeof camera.position);
+            memcpy(camera.rotation, pose.rotation, sizeof camera.rotation);
             wrong = wrong != NULL ? wrong : capture_camera_set_pose(&camera, &frame->camera);
         }
     }

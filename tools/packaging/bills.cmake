@@ -54,7 +54,7 @@ function(t3r_bill component package)
   set(bills ${bills} ${bill} PARENT_SCOPE)
 endfunction()
 
-set(heads nano small base)
+set(heads tiny small)
 t3r_bill(dev libtrim3r-dev HEADS ${heads} TARGETS trim3r_runtime trim3r_heads)
 if(TARGET trim3r_shared)
   t3r_bill(shared ${shared_package} TARGETS trim3r_shared)

@@ -14,7 +14,7 @@
 #define SHORT_ROUNDS 2u /* of a calibration in passing: some two seconds */
 #define SHOWN_MOST 16u  /* rows of a list as text */
 
-static const char *const every_head[] = {"small", "base", "nano", "tiny", "moment", "analytic"};
+static const char *const every_head[] = {"small", "tiny", "analytic"};
 enum { HEADS = sizeof every_head / sizeof every_head[0] };
 
 /* ---- the machine ------------------------------------------------------------------------------------------------- */

@@ -6,7 +6,7 @@
 
 #include "core/camera.h"
 #include "cli/cli.h"
-#include "posing/quaternion.h"
+#include "geometry/quaternion.h"
 #include "posing/relative.h"
 #include "host/reason.h"
 

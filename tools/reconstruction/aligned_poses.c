@@ -6,22 +6,21 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
+#include "geometry/quaternion.h"
 #include "import/poses/poses_output.h"
 
 /* Of the rotation that turns one quaternion into the other. The vector part of their quotient, unlike its scalar part,
  * keeps small angles exact. */
 static double degrees_between(const int32_t a_q30[4], const int32_t b_q30[4])
 {
-    double a[4], b[4];
+    double back[4], b[4], quotient[4];
     for (int i = 0; i < 4; i++) {
-        a[i] = a_q30[i];
+        back[i] = i == 0 ? a_q30[i] : -(double)a_q30[i];
         b[i] = b_q30[i];
     }
-    const double scalar = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
-    const double x = a[0] * b[1] - a[1] * b[0] - a[2] * b[3] + a[3] * b[2];
-    const double y = a[0] * b[2] - a[2] * b[0] - a[3] * b[1] + a[1] * b[3];
-    const double z = a[0] * b[3] - a[3] * b[0] - a[1] * b[2] + a[2] * b[1];
-    return 2 * atan2(sqrt(x * x + y * y + z * z), fabs(scalar)) * 180 / acos(-1);
+    quaternion_multiply(back, b, quotient);
+    const double *v = quotient + 1;
+    return 2 * atan2(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), fabs(quotient[0])) * 180 / acos(-1);
 }
 
 static double distance_between(const int64_t a_q32[3], const int64_t b_q32[3])

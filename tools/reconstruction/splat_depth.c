@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/little_endian.h"
 #include "scene/splat_camera.h"
 
 #define MOST_STEPS 65535.0
@@ -95,8 +96,7 @@ static void count_steps(splat_depth *out, const seen_mean *pixels, size_t count,
         if (pixels[i].depth > 0) {
             steps = (uint32_t)fmin(fmax(floor(pixels[i].depth / unit + 0.5), 1), MOST_STEPS);
         }
-        out->steps[2 * i] = (uint8_t)steps;
-        out->steps[2 * i + 1] = (uint8_t)(steps >> 8);
+        t3r_store_le16(out->steps + 2 * i, (uint16_t)steps);
     }
 }
 

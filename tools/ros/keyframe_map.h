@@ -23,8 +23,7 @@ typedef struct keyframe_map_settings {
     uint32_t refine;          /* the passes of each keyframe [T3R_STREAM_REFINE] */
     uint32_t warm;            /* likewise [0] */
     uint32_t threads;         /* 1..T3R_MAX_WORKERS [1] */
-    const char
-        *head; /* analytic, moment, tiny, nano, small, base or a file .t3w; read by the call that opens [small] */
+    const char *head;         /* analytic, tiny, small or a file .t3w; read by the call that opens [small] */
 } keyframe_map_settings;
 
 keyframe_map_settings keyframe_map_defaults(void);

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "host/little_floats.h"
 #include "scene/gaussian_shape.h"
 
 #define NAME(name) #name,
@@ -12,11 +12,8 @@ const char *const point_cloud_fields[POINT_CLOUD_FIELD_COUNT] = {POINT_CLOUD_FIE
 
 static uint8_t *put_float(uint8_t *at, double value)
 {
-    const float narrow = (float)value;
-    uint32_t bits;
-    memcpy(&bits, &narrow, sizeof bits);
-    t3r_store_le32(at, bits);
-    return at + sizeof bits;
+    t3r_store_float(at, value);
+    return at + sizeof(float);
 }
 
 /* 0..32640 in 1/128 of a level; rounded, so that it is what a picture of the Gaussian alone would show. */

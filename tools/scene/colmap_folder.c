@@ -6,9 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pictures/picture.h"
-#include "host/reason.h"
 #include "cli/files/whole_file.h"
+#include "geometry/quaternion.h"
+#include "host/reason.h"
+#include "pictures/picture.h"
 
 #define NOWHERE UINT32_MAX
 
@@ -48,26 +49,18 @@ static void point_of(const writer *w, uint32_t index, double point[3])
 static pose pose_of(const writer *w, const t3r_camera *camera)
 {
     pose p;
-    double norm = 0;
-    for (int i = 0; i < 4; i++) {
-        norm += (double)camera->rotation_q30[i] * camera->rotation_q30[i];
-    }
-    norm = camera->rotation_q30[0] < 0 ? -sqrt(norm) : sqrt(norm);
+    const int sign = camera->rotation_q30[0] < 0 ? -1 : 1;
+    double centre[3];
     for (int i = 0; i < 4; i++) { /* the conjugate turns back */
-        p.quaternion[i] = (i == 0 ? 1 : -1) * (camera->rotation_q30[i] / norm);
+        p.quaternion[i] = (i == 0 ? sign : -sign) * (double)camera->rotation_q30[i];
     }
-    double a = p.quaternion[0], x = p.quaternion[1], y = p.quaternion[2], z = p.quaternion[3];
-    const double rotation[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - a * z),     2 * (x * z + a * y),
-                                2 * (x * y + a * z),     1 - 2 * (x * x + z * z), 2 * (y * z - a * x),
-                                2 * (x * z - a * y),     2 * (y * z + a * x),     1 - 2 * (x * x + y * y)};
-    memcpy(p.rotation, rotation, sizeof rotation);
+    quaternion_normalise(p.quaternion);
+    quaternion_matrix(p.quaternion, p.rotation);
     for (int i = 0; i < 3; i++) {
-        p.translation[i] = 0;
-        for (int k = 0; k < 3; k++) {
-            int64_t origin = w->model->local ? w->model->scene->frame.origin_q32[k] : 0;
-            p.translation[i] -= rotation[3 * i + k] * ldexp((double)(camera->position_q32[k] - origin), -32);
-        }
+        const int64_t origin = w->model->local ? w->model->scene->frame.origin_q32[i] : 0;
+        centre[i] = -ldexp((double)(camera->position_q32[i] - origin), -32);
     }
+    matrix_apply(p.rotation, centre, p.translation);
     return p;
 }
 
@@ -77,9 +70,9 @@ static bool project(const writer *w, uint32_t index, uint32_t v, observation *at
     const colmap_view *view = &w->model->views[v];
     double point[3], in[3];
     point_of(w, index, point);
+    matrix_apply(w->poses[v].rotation, point, in);
     for (int i = 0; i < 3; i++) {
-        const double *row = &w->poses[v].rotation[3 * i];
-        in[i] = row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + w->poses[v].translation[i];
+        in[i] += w->poses[v].translation[i];
     }
     at->x = ldexp(view->camera.fx_q16 * (in[0] / in[2]) + view->camera.cx_q16, -16) + 0.5;
     at->y = ldexp(view->camera.fy_q16 * (in[1] / in[2]) + view->camera.cy_q16, -16) + 0.5;

@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "geometry/quaternion.h"
+
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -15,30 +17,6 @@ static void rotate_pair(double a[3], double b[3], double cosine, double sine)
         double x = a[i], y = b[i];
         a[i] = cosine * x - sine * y;
         b[i] = sine * x + cosine * y;
-    }
-}
-
-/* Unit quaternion of a rotation whose columns are axis[0..2] (Shepperd: the largest of the four first). */
-static void to_quaternion(double axis[3][3], double q[4])
-{
-    double m00 = axis[0][0], m11 = axis[1][1], m22 = axis[2][2];
-    double square[4] = {1 + m00 + m11 + m22, 1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22};
-    int largest = 0;
-    for (int i = 1; i < 4; i++) {
-        largest = square[i] > square[largest] ? i : largest;
-    }
-    /* entry (row, column) of the matrix is axis[column][row] */
-    double yz = axis[1][2] - axis[2][1], zx = axis[2][0] - axis[0][2], xy = axis[0][1] - axis[1][0];
-    double sxy = axis[0][1] + axis[1][0], szx = axis[2][0] + axis[0][2], syz = axis[1][2] + axis[2][1];
-    double rows[4][4] = {
-        {square[0], yz, zx, xy}, {yz, square[1], sxy, szx}, {zx, sxy, square[2], syz}, {xy, szx, syz, square[3]}};
-    double norm = 0;
-    for (int i = 0; i < 4; i++) {
-        norm += rows[largest][i] * rows[largest][i];
-    }
-    norm = (rows[largest][0] < 0 ? -1 : 1) / sqrt(norm);
-    for (int i = 0; i < 4; i++) {
-        q[i] = rows[largest][i] * norm;
     }
 }
 
@@ -79,21 +57,22 @@ gaussian_shape gaussian_shape_of(const t3r_gaussian *gaussian)
     for (int i = 0; i < 3; i++) {
         shape.scale[i] = fmax(shape.scale[i], least);
     }
-    to_quaternion(axis, shape.rotation);
+    /* the axes are the rotation's columns */
+    const double rotation[9] = {axis[0][0], axis[1][0], axis[2][0], axis[0][1], axis[1][1],
+                                axis[2][1], axis[0][2], axis[1][2], axis[2][2]};
+    quaternion_of_rotation(rotation, shape.rotation);
     return shape;
 }
 
 int gaussian_shape_set(t3r_gaussian *gaussian, const double scale[3], const double rotation[4])
 {
-    double norm = sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2] +
-                       rotation[3] * rotation[3]);
+    double unit[4] = {rotation[0], rotation[1], rotation[2], rotation[3]}, factor[9];
+    const double norm = quaternion_norm(unit);
     if (!(norm > 0) || !isfinite(norm)) {
         return -1;
     }
-    double w = rotation[0] / norm, x = rotation[1] / norm, y = rotation[2] / norm, z = rotation[3] / norm;
-    double factor[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-                        2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                        2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    quaternion_normalise(unit);
+    quaternion_matrix(unit, factor);
     double largest = 0;
     for (int i = 0; i < 9; i++) {
         factor[i] *= scale[i % 3];

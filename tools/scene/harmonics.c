@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "geometry/quaternion.h"
+
 #define SIDE_MOST 7u /* harmonics of degree 3 */
 
 void harmonics_of(const double direction[3], double values[HARMONICS_REST_MOST])
@@ -72,10 +74,7 @@ static void turn_degree(const double rotation[9], uint32_t degree, double *matri
     for (uint32_t i = 0; i < side; i++) {
         const double *d = directions[i];
         double turned[3], values[HARMONICS_REST_MOST];
-        for (int axis = 0; axis < 3; axis++) {
-            const double *row = &rotation[3 * axis];
-            turned[axis] = row[0] * d[0] + row[1] * d[1] + row[2] * d[2];
-        }
+        matrix_apply(rotation, d, turned);
         harmonics_of(d, values);
         memcpy(before[i], &values[first], side * sizeof values[0]);
         harmonics_of(turned, values);

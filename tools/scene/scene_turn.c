@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "posing/quaternion.h"
+#include "geometry/quaternion.h"
 
 /* Quaternions w x y z. */
 static const double stays[4] = {1, 0, 0, 0};
@@ -23,15 +23,6 @@ static const struct {
     [SCENE_UP_Z] = {"z", {M_SQRT1_2, M_SQRT1_2, 0, 0}},
     [SCENE_UP_MZ] = {"-z", {M_SQRT1_2, -M_SQRT1_2, 0, 0}},
 };
-
-/* First b, then a. */
-static void multiply(const double a[4], const double b[4], double out[4])
-{
-    out[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
-    out[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
-    out[2] = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
-    out[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
-}
 
 static scene_turn turn_of(const double q[4], const double matrix[9])
 {
@@ -69,7 +60,7 @@ scene_turn scene_turn_to(scene_axes axes, scene_up up)
 {
     double both[4];
     const bool bare = axes == SCENE_AXES_AS_THEY_ARE && up != SCENE_UP_UNKNOWN;
-    multiply(bare ? half_about_x : from_scene(axes), ups[up].rotation, both);
+    quaternion_multiply(bare ? half_about_x : from_scene(axes), ups[up].rotation, both);
     return axes_turn(both);
 }
 
@@ -86,11 +77,8 @@ void scene_turn_apply(const scene_turn *turn, double position[3], double rotatio
     }
     const double p[3] = {position[0], position[1], position[2]};
     const double q[4] = {rotation[0], rotation[1], rotation[2], rotation[3]};
-    for (int axis = 0; axis < 3; axis++) {
-        const double *to = &turn->matrix[3 * axis];
-        position[axis] = to[0] * p[0] + to[1] * p[1] + to[2] * p[2];
-    }
-    multiply(turn->rotation, q, rotation);
+    matrix_apply(turn->matrix, p, position);
+    quaternion_multiply(turn->rotation, q, rotation);
     harmonics_turn_apply(&turn->harmonics, degree, rest);
 }
 

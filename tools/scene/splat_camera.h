@@ -16,7 +16,4 @@ typedef struct splat_camera {
 /* The pinhole camera of a t3r_camera for a scene in this frame. */
 splat_camera splat_camera_of(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height);
 
-/* The matrix, row-major, of a quaternion (w, x, y, z) of any length above 0. */
-void splat_rotation(const double q[4], double r[9]);
-
 #endif

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "viewer/bundle_layout.h"
 
 #define MOST_BYTES (UINT64_C(1) << 30)

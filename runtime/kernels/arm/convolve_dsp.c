@@ -66,7 +66,7 @@ static inline scaling scaling_of(const t3r_convolution *layer, uint32_t output)
 {
     const int32_t shift = (int8_t)layer->shift[output];
     const int32_t left = T3R_MAX(shift + 2, 0), right = T3R_MAX(-1 - shift, 1);
-    return (scaling){.multiplier = t3r_le_i32(layer->multiplier + (size_t)output * 4),
+    return (scaling){.multiplier = (int32_t)t3r_load_le32(layer->multiplier + (size_t)output * 4),
                      .limit = left > 0 ? 1 << (18 - shift) : INT32_MAX,
                      .half = 1 << (right - 1),
                      .zero = layer->zero,
@@ -92,7 +92,7 @@ void t3r_convolve_dsp(const t3r_convolution *layer, const t3r_block *block, void
         x[i] = (const int16_t *)block->x + (size_t)T3R_MIN(i, block->pixels - 1) * block->step;
     }
     for (uint32_t output = 0; output < layer->outputs; output++) {
-        const int32_t bias = t3r_le_i32(layer->bias + (size_t)output * 4);
+        const int32_t bias = (int32_t)t3r_load_le32(layer->bias + (size_t)output * 4);
         const scaling s = scaling_of(layer, output);
         int32_t sum[T3R_BLOCK_PIXELS] = {bias, bias, bias, bias};
         dot(x, layer->weights + (size_t)output * layer->taps, layer->taps, sum);

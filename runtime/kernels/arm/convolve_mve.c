@@ -49,7 +49,7 @@ static inline int32x4_t scaled(int32x4_t sum, const t3r_convolution *layer, uint
         sum = vmaxq_s32(vminq_s32(sum, vdupq_n_s32(limit)), vdupq_n_s32(-limit));
         sum = vshlq_r_s32(sum, left);
     }
-    const int32x4_t multiplier = vdupq_n_s32(t3r_le_i32(layer->multiplier + (size_t)output * 4));
+    const int32x4_t multiplier = vdupq_n_s32((int32_t)t3r_load_le32(layer->multiplier + (size_t)output * 4));
     return vaddq_n_s32(vrshlq_n_s32(vmulhq_s32(sum, multiplier), -right), layer->zero);
 }
 
@@ -67,7 +67,7 @@ void t3r_convolve_mve(const t3r_convolution *layer, const t3r_block *block, void
     const uint32x4_t place = vmulq_n_u32(vidupq_n_u32(0, 1), out_pitch);
     for (uint32_t output = 0; output < layer->outputs; output++) {
         int32x4_t sum = dot(&c, layer->weights + (size_t)output * layer->taps, layer->taps);
-        sum = scaled(vaddq_n_s32(sum, t3r_le_i32(layer->bias + (size_t)output * 4)), layer, output);
+        sum = scaled(vaddq_n_s32(sum, (int32_t)t3r_load_le32(layer->bias + (size_t)output * 4)), layer, output);
         if (layer->output_bits == 8) {
             sum = vmaxq_s32(vminq_s32(sum, vdupq_n_s32(INT8_MAX)), vdupq_n_s32(INT8_MIN));
             vstrbq_scatter_offset_p_s32((int8_t *)out + output, place, sum, there);

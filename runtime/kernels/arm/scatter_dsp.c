@@ -111,19 +111,27 @@ typedef union factor {
     int16x2_t both;
 } factor;
 
-typedef struct pair_factors {
-    factor product, square, x, y, xx, xy, yy;
-    factor square_x, square_y, square_xx, square_xy, square_yy;
-} pair_factors;
+static inline uint32_t added(uint32_t sum, factor a, factor b)
+{
+    return (uint32_t)__smlad(a.both, b.both, (int32_t)sum);
+}
+
+static inline uint32_t added_alone(uint32_t sum, factor a)
+{
+    const factor one = {.one = {1, 1}};
+    return added(sum, a, one);
+}
+
+#include "kernels/lanes/scatter_moments.h"
 
 enum { CHUNK = 32 }; /* pairs whose factors are kept at a time */
 
 static void factors_of(const pixel_term *term, uint32_t count, const t3r_shift_steps square_by,
-                       const t3r_shift_steps product_by, pair_factors *f)
+                       const t3r_shift_steps product_by, factors *f)
 {
     for (uint32_t i = 0; i < count; i++, term++) {
         const uint32_t k = i % 2;
-        pair_factors *to = f + i / 2;
+        factors *to = f + i / 2;
         const int32_t x = term->x_q13, y = term->y_q13;
         const int32_t xx = mulr_q15(x, x), xy = mulr_q15(x, y), yy = mulr_q15(y, y);
         const int32_t m = (int32_t)(((term->square >> square_by.first) + square_by.half) >> square_by.half);
@@ -141,58 +149,6 @@ static void factors_of(const pixel_term *term, uint32_t count, const t3r_shift_s
         to->square_xy.one[k] = (int16_t)mulr_q15(m, xy);
         to->square_yy.one[k] = (int16_t)mulr_q15(m, yy);
     }
-}
-
-/* A sum with the products of two pixels; modulo 2^32. */
-static inline uint32_t added(uint32_t sum, factor a, factor b)
-{
-    return (uint32_t)__smlad(a.both, b.both, (int32_t)sum);
-}
-
-/* Orders 0 to 2 */
-static inline __attribute__((always_inline)) void add_low(const pair_factors *f, uint32_t pairs, bool of_squares,
-                                                          uint32_t sums[T3R_REFINE_MOMENTS_2])
-{
-    const factor one = {.one = {1, 1}};
-    uint32_t s0 = sums[T3R_M_1], s1 = sums[T3R_M_X], s2 = sums[T3R_M_Y];
-    uint32_t s3 = sums[T3R_M_X2], s4 = sums[T3R_M_XY], s5 = sums[T3R_M_Y2];
-    for (const pair_factors *end = f + pairs; f != end; f++) {
-        const factor term = of_squares ? f->square : f->product;
-        s0 = added(s0, term, one);
-        s1 = added(s1, term, f->x);
-        s2 = added(s2, term, f->y);
-        s3 = added(s3, term, f->xx);
-        s4 = added(s4, term, f->xy);
-        s5 = added(s5, term, f->yy);
-    }
-    sums[T3R_M_1] = s0, sums[T3R_M_X] = s1, sums[T3R_M_Y] = s2;
-    sums[T3R_M_X2] = s3, sums[T3R_M_XY] = s4, sums[T3R_M_Y2] = s5;
-}
-
-static void add_order_3(const pair_factors *f, uint32_t pairs, uint32_t sums[T3R_REFINE_MOMENTS_4])
-{
-    uint32_t s0 = sums[T3R_M_X3], s1 = sums[T3R_M_X2Y], s2 = sums[T3R_M_XY2], s3 = sums[T3R_M_Y3];
-    for (const pair_factors *end = f + pairs; f != end; f++) {
-        s0 = added(s0, f->square_x, f->xx);
-        s1 = added(s1, f->square_x, f->xy);
-        s2 = added(s2, f->square_x, f->yy);
-        s3 = added(s3, f->square_y, f->yy);
-    }
-    sums[T3R_M_X3] = s0, sums[T3R_M_X2Y] = s1, sums[T3R_M_XY2] = s2, sums[T3R_M_Y3] = s3;
-}
-
-static void add_order_4(const pair_factors *f, uint32_t pairs, uint32_t sums[T3R_REFINE_MOMENTS_4])
-{
-    uint32_t s0 = sums[T3R_M_X4], s1 = sums[T3R_M_X3Y], s2 = sums[T3R_M_X2Y2], s3 = sums[T3R_M_XY3];
-    uint32_t s4 = sums[T3R_M_Y4];
-    for (const pair_factors *end = f + pairs; f != end; f++) {
-        s0 = added(s0, f->square_xx, f->xx);
-        s1 = added(s1, f->square_xx, f->xy);
-        s2 = added(s2, f->square_xx, f->yy);
-        s3 = added(s3, f->square_xy, f->yy);
-        s4 = added(s4, f->square_yy, f->yy);
-    }
-    sums[T3R_M_X4] = s0, sums[T3R_M_X3Y] = s1, sums[T3R_M_X2Y2] = s2, sums[T3R_M_XY3] = s3, sums[T3R_M_Y4] = s4;
 }
 
 void t3r_scatter_dsp(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, t3r_refine_sums *restrict to)
@@ -215,13 +171,10 @@ void t3r_scatter_dsp(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, 
     const t3r_shift_steps square_by = t3r_shift_steps_of(square_shift), product_by = t3r_shift_steps_of(product_shift);
     uint32_t gradient[T3R_REFINE_MOMENTS_2] = {0}, curvature[T3R_REFINE_MOMENTS_4] = {0};
     for (uint32_t first = 0; first < count; first += 2 * CHUNK) {
-        pair_factors f[CHUNK];
+        factors f[CHUNK];
         const uint32_t pairs = T3R_MIN((count - first + 1) / 2, CHUNK);
         factors_of(terms + first, 2 * pairs, square_by, product_by, f);
-        add_low(f, pairs, false, gradient);
-        add_low(f, pairs, true, curvature);
-        add_order_3(f, pairs, curvature);
-        add_order_4(f, pairs, curvature);
+        add_factors(f, pairs, gradient, curvature);
     }
     const t3r_sum_shifts by = t3r_sum_shifts_of(to->area, splat->scale, less, square_shift, product_shift);
     t3r_add_scattered(job.lacking, job.weight, gradient, curvature, &by, t3r_moment_most(to->area, splat->pixels), to);

@@ -92,11 +92,20 @@ static inline __attribute__((always_inline)) uint32_t take_splat_off(off_job *jo
     return count;
 }
 
-/* Factors of a row's pixels. */
-typedef struct row_factors {
-    int16x8_t product, square, x, y, xx, xy, yy;
-    int16x8_t square_x, square_y, square_xx, square_xy, square_yy;
-} row_factors;
+/* Of a row's pixels. */
+typedef int16x8_t factor;
+
+static inline uint32_t added(uint32_t sum, factor a, factor b)
+{
+    return (uint32_t)vmladavaq_s16((int32_t)sum, a, b);
+}
+
+static inline uint32_t added_alone(uint32_t sum, factor a)
+{
+    return (uint32_t)vaddvaq_s16((int32_t)sum, a);
+}
+
+#include "kernels/lanes/scatter_moments.h"
 
 enum { CHUNK = 8 }; /* rows whose factors are kept at a time */
 
@@ -110,7 +119,7 @@ static inline int16x8_t coordinates(const t3r_scatter_splat *splat, uint32_t k, 
 }
 
 static inline void factors_of(const row_terms *terms, const t3r_scatter_splat *splat, int32_t square_shift,
-                              int32_t product_shift, row_factors *f)
+                              int32_t product_shift, factors *f)
 {
     const int16x8_t none = vdupq_n_s16(0);
     const int16x8_t x = coordinates(splat, 0, terms), y = coordinates(splat, 1, terms);
@@ -130,56 +139,6 @@ static inline void factors_of(const row_terms *terms, const t3r_scatter_splat *s
     f->square_xx = vqrdmulhq_s16(m, xx);
     f->square_xy = vqrdmulhq_s16(m, xy);
     f->square_yy = vqrdmulhq_s16(m, yy);
-}
-
-/* A sum with the products of eight pixels; modulo 2^32. */
-static inline uint32_t added(uint32_t sum, int16x8_t a, int16x8_t b)
-{
-    return (uint32_t)vmladavaq_s16((int32_t)sum, a, b);
-}
-
-/* Orders 0 to 2 */
-static void add_low(const row_factors *f, uint32_t rows, bool of_squares, uint32_t sums[T3R_REFINE_MOMENTS_2])
-{
-    uint32_t s0 = sums[T3R_M_1], s1 = sums[T3R_M_X], s2 = sums[T3R_M_Y];
-    uint32_t s3 = sums[T3R_M_X2], s4 = sums[T3R_M_XY], s5 = sums[T3R_M_Y2];
-    for (const row_factors *end = f + rows; f != end; f++) {
-        const int16x8_t term = of_squares ? f->square : f->product;
-        s0 = (uint32_t)vaddvaq_s16((int32_t)s0, term);
-        s1 = added(s1, term, f->x);
-        s2 = added(s2, term, f->y);
-        s3 = added(s3, term, f->xx);
-        s4 = added(s4, term, f->xy);
-        s5 = added(s5, term, f->yy);
-    }
-    sums[T3R_M_1] = s0, sums[T3R_M_X] = s1, sums[T3R_M_Y] = s2;
-    sums[T3R_M_X2] = s3, sums[T3R_M_XY] = s4, sums[T3R_M_Y2] = s5;
-}
-
-static void add_order_3(const row_factors *f, uint32_t rows, uint32_t sums[T3R_REFINE_MOMENTS_4])
-{
-    uint32_t s0 = sums[T3R_M_X3], s1 = sums[T3R_M_X2Y], s2 = sums[T3R_M_XY2], s3 = sums[T3R_M_Y3];
-    for (const row_factors *end = f + rows; f != end; f++) {
-        s0 = added(s0, f->square_x, f->xx);
-        s1 = added(s1, f->square_x, f->xy);
-        s2 = added(s2, f->square_x, f->yy);
-        s3 = added(s3, f->square_y, f->yy);
-    }
-    sums[T3R_M_X3] = s0, sums[T3R_M_X2Y] = s1, sums[T3R_M_XY2] = s2, sums[T3R_M_Y3] = s3;
-}
-
-static void add_order_4(const row_factors *f, uint32_t rows, uint32_t sums[T3R_REFINE_MOMENTS_4])
-{
-    uint32_t s0 = sums[T3R_M_X4], s1 = sums[T3R_M_X3Y], s2 = sums[T3R_M_X2Y2], s3 = sums[T3R_M_XY3];
-    uint32_t s4 = sums[T3R_M_Y4];
-    for (const row_factors *end = f + rows; f != end; f++) {
-        s0 = added(s0, f->square_xx, f->xx);
-        s1 = added(s1, f->square_xx, f->xy);
-        s2 = added(s2, f->square_xx, f->yy);
-        s3 = added(s3, f->square_xy, f->yy);
-        s4 = added(s4, f->square_yy, f->yy);
-    }
-    sums[T3R_M_X4] = s0, sums[T3R_M_X3Y] = s1, sums[T3R_M_X2Y2] = s2, sums[T3R_M_XY3] = s3, sums[T3R_M_Y4] = s4;
 }
 
 static uint32_t bits_of(uint32x4_t x)
@@ -205,15 +164,12 @@ void t3r_scatter_mve(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, 
     const uint32_t product_shift = t3r_term_shift(bits_of(job.products), job.products_sum, all_rows);
     uint32_t gradient[T3R_REFINE_MOMENTS_2] = {0}, curvature[T3R_REFINE_MOMENTS_4] = {0};
     for (uint32_t first = 0; first < count; first += CHUNK) {
-        row_factors f[CHUNK];
+        factors f[CHUNK];
         const uint32_t rows = T3R_MIN(count - first, CHUNK);
         for (uint32_t i = 0; i < rows; i++) {
             factors_of(&terms[first + i], splat, (int32_t)square_shift, (int32_t)product_shift, &f[i]);
         }
-        add_low(f, rows, false, gradient);
-        add_low(f, rows, true, curvature);
-        add_order_3(f, rows, curvature);
-        add_order_4(f, rows, curvature);
+        add_factors(f, rows, gradient, curvature);
     }
     const t3r_sum_shifts by = t3r_sum_shifts_of(to->area, splat->scale, less, square_shift, product_shift);
     t3r_add_scattered(job.lacking, job.weight, gradient, curvature, &by, t3r_moment_most(to->area, splat->pixels), to);

@@ -14,9 +14,10 @@ static void pack_scaling(const t3r_convolution *layer, int32_t offset, bool fact
         for (uint32_t t = 0; is_output && t < layer->taps; t++) {
             weights += (int8_t)layer->weights[(size_t)o * layer->taps + t];
         }
-        const uint32_t bias = is_output ? (uint32_t)t3r_le_i32(layer->bias + (size_t)o * 4) : 0;
+        const uint32_t bias = is_output ? t3r_load_le32(layer->bias + (size_t)o * 4) : 0;
         scaling[T3R_SCALING_BIAS * whole + o] = (int32_t)(bias - (uint32_t)(offset * weights));
-        scaling[T3R_SCALING_MULTIPLIER * whole + o] = is_output ? t3r_le_i32(layer->multiplier + (size_t)o * 4) : 0;
+        scaling[T3R_SCALING_MULTIPLIER * whole + o] =
+            is_output ? (int32_t)t3r_load_le32(layer->multiplier + (size_t)o * 4) : 0;
         scaling[T3R_SCALING_LIMIT * whole + o] = left > 0 ? 1 << (18 - shift) : INT32_MAX;
         scaling[T3R_SCALING_LEFT * whole + o] = factors ? 1 << left : left;
         scaling[T3R_SCALING_HALF * whole + o] = 1 << (right - 1);

@@ -37,65 +37,106 @@ static inline TARGET bytes relaxed(bytes lower, bytes same, bytes upper, bytes l
     return minimum(minimum(same, minimum(lower, upper) + p1) - least, p2);
 }
 
-/* count: the disparities; paths: from the row before; along: whether there are sums. */
-static inline __attribute__((always_inline)) TARGET void follow(const t3r_path_row *given, const uint32_t count,
-                                                                const uint32_t paths, const bool along)
+#define PATH_INLINE static inline __attribute__((always_inline)) TARGET
+
+/* What stays the same along a row. */
+typedef struct path_walk {
+    const t3r_path_row *row;
+    uint32_t count, paths; /* disparities; paths from the row before */
+    size_t pitch, state;   /* bytes from pixel to pixel, and from path to path */
+    bytes guard, p1;
+} path_walk;
+
+/* The path along the row, as it was at the pixel before. */
+typedef struct path_along {
+    bytes beside[MOST_VECTORS], least;
+} path_along;
+
+/* Follows a path from the row before to pixel x: vector n of its disparities. */
+PATH_INLINE bytes step_down(const path_walk *walk, uint32_t path, const t3r_path_link *link, size_t x, uint32_t n,
+                            bytes own)
 {
-    t3r_path_row all = *given, *row = &all; /* a copy: writing bytes changes none of what it holds */
-    all.disparities = count;                /* as it is; this says so to compilers */
-    const uint32_t width = row->width, vectors = (count + BYTES - 1) / BYTES;
-    const size_t pitch = (size_t)count + 1, state = T3R_PATH_STATE_BYTES(width, count);
-    const size_t leasts = t3r_path_leasts(width, count);
-    const bytes guard = all_of(row->costs->guard), p1 = all_of(row->costs->p1);
-    bytes beside[MOST_VECTORS], least = all_of(0);
-    for (uint32_t i = 0; i < vectors; i++) {
-        beside[i] = held(least, guard, count - i * BYTES);
+    const uint32_t left = walk->count - n * BYTES; /* disparities from here on */
+    const uint8_t *from = link->from + n * BYTES;
+    const bytes same = load(from + 1, left);
+    const bytes added =
+        relaxed(load(from, left), same, load(from + 2, left), all_of(link->least), walk->p1, all_of(link->p2));
+    const bytes value = held(own + added, walk->guard, left);
+    store(walk->row->to + path * walk->state + (x + 1) * walk->pitch + 1 + n * BYTES, value, left);
+    return value;
+}
+
+/* Follows the path along the row; *lower is its vector below, then this one. */
+PATH_INLINE bytes step_along(const path_walk *walk, path_along *along, uint32_t n, bytes p2, bytes own, bytes *lower)
+{
+    const uint32_t left = walk->count - n * BYTES;
+    const bytes same = along->beside[n], upper = left > BYTES ? along->beside[n + 1] : walk->guard;
+    const bytes value = own + relaxed(below(same, *lower), same, above(same, upper), along->least, walk->p1, p2);
+    *lower = same;
+    along->beside[n] = held(value, walk->guard, left);
+    return value;
+}
+
+/* Follows all paths to pixel x. along: NULL without sums; p2: its own. */
+PATH_INLINE void step_pixel(const path_walk *walk, size_t x, bytes p2, path_along *along)
+{
+    const t3r_path_row *row = walk->row;
+    const uint32_t vectors = (walk->count + BYTES - 1) / BYTES;
+    t3r_path_link links[3];
+    bytes leasts[3], least = all_of(UINT8_MAX), lower = walk->guard;
+    _Pragma("GCC unroll 3") for (uint32_t path = 0; path < walk->paths; path++)
+    {
+        links[path] = t3r_path_link_of(row, path, (uint32_t)x);
+        leasts[path] = least;
     }
-    const size_t step = row->reverse ? SIZE_MAX : 1;
-    size_t x = row->reverse ? width - 1 : 0;
-    int32_t luma_behind = row->luma[x];
-    for (uint32_t i = 0; i < width; i++, x += step) {
-        const uint8_t *cost = row->cost + x * count;
-        t3r_path_link links[3];
-        bytes leasts_here[3], next_least = all_of(UINT8_MAX), lower = guard;
-        _Pragma("GCC unroll 3") for (uint32_t path = 0; path < paths; path++)
+    for (uint32_t n = 0; n < vectors; n++) {
+        const uint32_t left = walk->count - n * BYTES;
+        const bytes own = load(row->cost + x * walk->count + n * BYTES, left);
+        bytes values[T3R_PATH_LINKS];
+        _Pragma("GCC unroll 3") for (uint32_t path = 0; path < walk->paths; path++)
         {
-            links[path] = t3r_path_link_of(row, path, (uint32_t)x);
-            leasts_here[path] = next_least;
+            values[path] = step_down(walk, path, &links[path], x, n, own);
+            leasts[path] = minimum(leasts[path], values[path]);
         }
-        const int32_t change = row->luma[x] - luma_behind;
-        const bytes p2 = all_of(row->costs->p2[change < 0 ? -change : change]);
-        luma_behind = row->luma[x];
-        for (uint32_t n = 0; n < vectors; n++) {
-            const uint32_t left = count - n * BYTES; /* disparities from here on */
-            const bytes own = load(cost + n * BYTES, left);
-            bytes values[T3R_PATH_LINKS];
-            _Pragma("GCC unroll 3") for (uint32_t path = 0; path < paths; path++)
-            {
-                const uint8_t *from = links[path].from + n * BYTES;
-                const bytes same = load(from + 1, left);
-                const bytes value = held(own + relaxed(load(from, left), same, load(from + 2, left),
-                                                       all_of(links[path].least), p1, all_of(links[path].p2)),
-                                         guard, left);
-                store(row->to + path * state + (x + 1) * pitch + 1 + n * BYTES, value, left);
-                leasts_here[path] = minimum(leasts_here[path], value);
-                values[path] = value;
-            }
-            if (along) {
-                const bytes same = beside[n], upper = n + 1 < vectors ? beside[n + 1] : guard;
-                const bytes value = own + relaxed(below(same, lower), same, above(same, upper), least, p1, p2);
-                lower = same;
-                beside[n] = held(value, guard, left);
-                next_least = minimum(next_least, beside[n]);
-                values[paths] = value;
-                sum(row->sums + x * count + n * BYTES, values, paths + 1, left, row->reverse);
-            }
+        if (along != NULL) {
+            values[walk->paths] = step_along(walk, along, n, p2, own, &lower);
+            least = minimum(least, along->beside[n]);
+            sum(row->sums + x * walk->count + n * BYTES, values, walk->paths + 1, left, row->reverse);
         }
-        least = least_of(next_least);
-        _Pragma("GCC unroll 3") for (uint32_t path = 0; path < paths; path++)
-        {
-            row->to[path * state + leasts + x + 1] = first_of(least_of(leasts_here[path]));
-        }
+    }
+    if (along != NULL) {
+        along->least = least_of(least);
+    }
+    uint8_t *to = row->to + t3r_path_leasts(row->width, walk->count) + x + 1;
+    _Pragma("GCC unroll 3") for (uint32_t path = 0; path < walk->paths; path++)
+    {
+        to[path * walk->state] = first_of(least_of(leasts[path]));
+    }
+}
+
+/* Follows a row's paths. sums: whether there are any, of the path along the row, too. */
+PATH_INLINE void follow(const t3r_path_row *given, const uint32_t count, const uint32_t paths, const bool sums)
+{
+    t3r_path_row row = *given; /* a copy: writing bytes changes none of what it holds */
+    row.disparities = count;   /* as it is; this says so to compilers */
+    const path_walk walk = {
+        .row = &row,
+        .count = count,
+        .paths = paths,
+        .pitch = (size_t)count + 1,
+        .state = T3R_PATH_STATE_BYTES(row.width, count),
+        .guard = all_of(row.costs->guard),
+        .p1 = all_of(row.costs->p1),
+    };
+    path_along along = {.least = all_of(0)};
+    for (uint32_t n = 0; n * BYTES < count; n++) {
+        along.beside[n] = held(along.least, walk.guard, count - n * BYTES);
+    }
+    const size_t step = row.reverse ? SIZE_MAX : 1;
+    size_t x = row.reverse ? row.width - 1 : 0;
+    for (uint32_t i = 0; i < row.width; i++, x += step) {
+        const bytes p2 = all_of(t3r_path_p2_along(&row, (uint32_t)x, i));
+        step_pixel(&walk, x, p2, sums ? &along : NULL);
     }
 }
 

@@ -1,10 +1,38 @@
-/* points.c with several points at a time, in 64-bit lanes: included once for each width, which defines LANES, TARGET
- * and the operations that need an instruction by name. Lanes hold 32-bit numbers wherever they are multiplied. */
+/* points.c with several points at a time, in 64-bit lanes: included once for each width, which defines LANES, TARGET,
+ * how its instructions begin (OF), and the functions declared first. Lanes hold 32-bit numbers wherever they are
+ * multiplied. */
 #include "core/fixed.h"
 #include "kernels/points_parts.h"
 
 typedef int64_t lanes __attribute__((vector_size(LANES * sizeof(int64_t))));
 typedef uint64_t wide __attribute__((vector_size(LANES * sizeof(uint64_t))));
+typedef long long vector __attribute__((vector_size(LANES * sizeof(int64_t)), may_alias)); /* as instructions take it */
+typedef long long half_there __attribute__((vector_size(LANES * sizeof(int32_t)), aligned(4), may_alias));
+
+/* Stores the lower halves. */
+static inline TARGET void narrow(lanes from, int32_t *to);
+/* Whether any lane of a mask is set. */
+static inline TARGET int any(lanes mask);
+
+static inline TARGET lanes times(lanes a, lanes b)
+{
+    return (lanes)OF(mul_epi32)((vector)a, (vector)b);
+}
+
+static inline TARGET lanes times_unsigned(lanes a, lanes b)
+{
+    return (lanes)OF(mul_epu32)((vector)a, (vector)b);
+}
+
+static inline TARGET lanes widened_steps(const uint16_t *from)
+{
+    return (lanes)OF(cvtepu16_epi64)(LANES == 4 ? load_half_quad(from) : load_quad(from));
+}
+
+static inline TARGET lanes widened(const int32_t *from)
+{
+    return (lanes)OF(cvtepi32_epi64)(*(const half_there *)(const void *)from);
+}
 
 static inline TARGET lanes all(int64_t x)
 {

@@ -1,6 +1,6 @@
 /* ray_row in 32-bit lanes of any number. The file that includes this names the function, RAY_ROW, and defines TARGET,
- * LANES and the intrinsics of its instruction set behind multiply(), multiply_signed() and join(). A quotient
- * x / z is made of z's reciprocal and mended by its remainder. */
+ * LANES, how its instructions begin (OF) and join(). A quotient x / z is made of z's reciprocal and mended by its
+ * remainder. */
 #ifndef T3R_RAY_LANES_H
 #define T3R_RAY_LANES_H
 
@@ -11,12 +11,21 @@ typedef int32_t lanes __attribute__((vector_size(LANES * sizeof(int32_t))));
 typedef int32_t lanes_there __attribute__((vector_size(LANES * sizeof(int32_t)), aligned(4), may_alias));
 typedef uint32_t ulanes __attribute__((vector_size(LANES * sizeof(int32_t))));
 typedef uint64_t pairs __attribute__((vector_size(LANES * sizeof(int32_t))));
+typedef long long vector __attribute__((vector_size(LANES * sizeof(int32_t)), may_alias)); /* as instructions take it */
 
-/* The even lanes' products, and those of all whose upper halves are taken. join(): even lanes of one, odd ones of the
- * other. */
-static inline TARGET pairs multiply(ulanes a, ulanes b);
-static inline TARGET pairs multiply_signed(lanes a, lanes b);
+/* Joins the even lanes of one and the odd ones of the other. */
 static inline TARGET lanes join(pairs even, pairs odd);
+
+/* Multiplies the even lanes. */
+static inline TARGET pairs multiply(ulanes a, ulanes b)
+{
+    return (pairs)OF(mul_epu32)((vector)a, (vector)b);
+}
+
+static inline TARGET pairs multiply_signed(lanes a, lanes b)
+{
+    return (pairs)OF(mul_epi32)((vector)a, (vector)b);
+}
 
 /* What is lost and gained below 2^32 by three steps of Newton's: the reciprocal is lowered by it, and so never above.
  */

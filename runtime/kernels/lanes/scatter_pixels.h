@@ -80,37 +80,47 @@ T3R_LANES_INLINE T3R_SCATTER void take_off(const off_job *job, const t3r_blended
     }
 }
 
-/* Half of them: squares and products of four columns of each part. */
-T3R_LANES_INLINE T3R_SCATTER void note_half(off_job *job, lanes two_moves, lanes last_move, lanes two_lacks,
-                                            lanes last_lack, lanes *square_out, lanes *product_out)
+/* Columns of three colours as sums of products take them: pairs of two colours, and the third beside 0. */
+typedef struct columns {
+    lanes two, third;
+} columns;
+
+T3R_LANES_INLINE T3R_SCATTER columns first_columns(const lanes x[3])
 {
-    lanes square = OF_LANES(madd_epi16)(two_moves, two_moves);
-    lanes product = OF_LANES(madd_epi16)(two_moves, two_lacks);
-    accumulate(&square, last_move, last_move);
-    accumulate(&product, last_move, last_lack);
-    *square_out = square;
-    *product_out = product;
-    job->squares = either(job->squares, square);
-    job->squares_sum = add(job->squares_sum, OF_LANES(srli_epi32)(square, 8));
-    const lanes size = size_bits(product);
+    return (columns){OF_LANES(unpacklo_epi16)(x[0], x[1]), OF_LANES(unpacklo_epi16)(x[2], all(0))};
+}
+
+T3R_LANES_INLINE T3R_SCATTER columns last_columns(const lanes x[3])
+{
+    return (columns){OF_LANES(unpackhi_epi16)(x[0], x[1]), OF_LANES(unpackhi_epi16)(x[2], all(0))};
+}
+
+T3R_LANES_INLINE T3R_SCATTER lanes sum_of_products(columns a, columns b)
+{
+    return SCATTER_ADD(OF_LANES(madd_epi16)(a.two, b.two), a.third, b.third);
+}
+
+/* Notes squares and products of four columns of each part: half of them. */
+T3R_LANES_INLINE T3R_SCATTER void note_half(off_job *job, columns moves, columns lacks, lanes *square, lanes *product)
+{
+    *square = sum_of_products(moves, moves);
+    *product = sum_of_products(moves, lacks);
+    const lanes size = size_bits(*product);
+    job->squares = either(job->squares, *square);
+    job->squares_sum = add(job->squares_sum, OF_LANES(srli_epi32)(*square, 8));
     job->products = either(job->products, size);
     job->products_sum = add(job->products_sum, OF_LANES(srli_epi32)(size, 8));
 }
 
 T3R_LANES_INLINE T3R_SCATTER void note_terms(off_job *job, const taken_pixels *x, step_terms *terms)
 {
-    const lanes zero = all(0), share = OF_LANES(sra_epi16)(x->w, job->less);
-    const lanes *moves = x->moves, *lacks = x->lacks;
+    const lanes share = OF_LANES(sra_epi16)(x->w, job->less);
     for (int c = 0; c < 3; c++) {
-        accumulate(&job->lacking[c], share, lacks[c]);
+        accumulate(&job->lacking[c], share, x->lacks[c]);
     }
     accumulate(&job->weight, share, OF_LANES(set1_epi16)(1));
-    note_half(job, OF_LANES(unpacklo_epi16)(moves[0], moves[1]), OF_LANES(unpacklo_epi16)(moves[2], zero),
-              OF_LANES(unpacklo_epi16)(lacks[0], lacks[1]), OF_LANES(unpacklo_epi16)(lacks[2], zero), &terms->square[0],
-              &terms->product[0]);
-    note_half(job, OF_LANES(unpackhi_epi16)(moves[0], moves[1]), OF_LANES(unpackhi_epi16)(moves[2], zero),
-              OF_LANES(unpackhi_epi16)(lacks[0], lacks[1]), OF_LANES(unpackhi_epi16)(lacks[2], zero), &terms->square[1],
-              &terms->product[1]);
+    note_half(job, first_columns(x->moves), first_columns(x->lacks), &terms->square[0], &terms->product[0]);
+    note_half(job, last_columns(x->moves), last_columns(x->lacks), &terms->square[1], &terms->product[1]);
 }
 
 /* Both; without `terms` it is taken off alone. */

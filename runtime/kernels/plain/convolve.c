@@ -106,7 +106,7 @@ static void dot(const t3r_convolution *layer, four_columns x, uint32_t output, i
 static t3r_requantization requantization_of(const t3r_convolution *layer, uint32_t output)
 {
     return (t3r_requantization){
-        .multiplier = t3r_le_i32(layer->multiplier + (size_t)output * 4),
+        .multiplier = (int32_t)t3r_load_le32(layer->multiplier + (size_t)output * 4),
         .shift = (int8_t)layer->shift[output],
         .zero = layer->zero,
         .low = layer->output_bits == 8 ? INT8_MIN : INT16_MIN,
@@ -120,9 +120,9 @@ static void finish(const t3r_convolution *layer, uint32_t output, const t3r_requ
 {
     int16_t activation;
     if (layer->activation_bits == 16) {
-        activation = t3r_requantize_wide(t3r_le_i64(layer->bias + (size_t)output * 8) + sum, r);
+        activation = t3r_requantize_wide((int64_t)t3r_load_le64(layer->bias + (size_t)output * 8) + sum, r);
     } else {
-        activation = t3r_requantize((int32_t)(t3r_le_i32(layer->bias + (size_t)output * 4) + sum), r);
+        activation = t3r_requantize((int32_t)((int32_t)t3r_load_le32(layer->bias + (size_t)output * 4) + sum), r);
     }
     if (layer->output_bits == 8) {
         ((int8_t *)out)[at] = (int8_t)activation;

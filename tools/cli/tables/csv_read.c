@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "host/reason.h"
+#include "host/text.h"
 
 #define NUMBER_MOST 1e15 /* the largest that a chart has a use for */
 
@@ -20,27 +21,6 @@ void csv_reader_open(csv_reader *reader, const char *name, const char *text, siz
 static int fail(const csv_reader *reader, const char *why, char *error, size_t error_bytes)
 {
     return t3r_reason(error, error_bytes, "%s:%u: %s", reader->name, (unsigned)reader->line, why);
-}
-
-/* Bytes of the UTF-8 character at `p`, of which `left` are there; 0: none of Unicode's. */
-static size_t utf8_bytes(const unsigned char *p, size_t left)
-{
-    size_t count = p[0] < 0x80 ? 1 : p[0] >= 0xC2 && p[0] < 0xE0 ? 2 : p[0] >= 0xE0 && p[0] < 0xF0 ? 3 : 4;
-    if (count == 1) {
-        return 1;
-    }
-    if (p[0] < 0xC2 || p[0] > 0xF4 || left < count) {
-        return 0;
-    }
-    for (size_t i = 1; i < count; i++) {
-        if ((p[i] & 0xC0) != 0x80) {
-            return 0;
-        }
-    }
-    bool overlong = (p[0] == 0xE0 && p[1] < 0xA0) || (p[0] == 0xF0 && p[1] < 0x90);
-    bool surrogate = p[0] == 0xED && p[1] > 0x9F;
-    bool beyond = p[0] == 0xF4 && p[1] > 0x8F;
-    return overlong || surrogate || beyond ? 0 : count;
 }
 
 /* Where the row being read stands within `row`. */
@@ -82,9 +62,10 @@ static const char *end_cell(csv_reader *reader, row_state *state, size_t *start)
 static const char *take(csv_reader *reader, row_state *state)
 {
     const char *p = reader->text + reader->at;
-    size_t left = reader->bytes - reader->at, count = utf8_bytes((const unsigned char *)p, left);
+    const bool is_plain = *p == '\t' || (state->quoted && (*p == '\n' || *p == '\r'));
+    const size_t left = reader->bytes - reader->at, count = is_plain ? 1 : t3r_text_character((t3r_text){p, left});
     if (count == 0) {
-        return "a byte that is not UTF-8";
+        return (unsigned char)*p < 0x80 ? "a control character" : "bytes that are no printable UTF-8";
     }
     reader->at += count;
     if (*p == '"' && state->quoted) {
@@ -105,10 +86,6 @@ static const char *take(csv_reader *reader, row_state *state)
         }
         state->quoted = state->begun = true;
         return NULL;
-    }
-    unsigned char c = (unsigned char)*p;
-    if (c == 0x7F || (c < 0x20 && c != '\t' && !(state->quoted && (c == '\n' || c == '\r')))) {
-        return "a control character";
     }
     return put(reader, state, p, count);
 }

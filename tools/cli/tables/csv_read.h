@@ -22,8 +22,8 @@ typedef struct csv_reader {
 void csv_reader_open(csv_reader *reader, const char *name, const char *text, size_t bytes);
 
 /* The next row that is not an empty line, as texts in `cell`, valid until the next call: 1, or 0 at the end, or -1 with
- * "name:line: why" in error[]: an open quote, text behind a quoted cell, a control character, bytes that are no UTF-8,
- * a row of too many cells or bytes. */
+ * "name:line: why" in error[]: an open quote, text behind a quoted cell, a control character, bytes that are no
+ * printable UTF-8, a row of too many cells or bytes. */
 int csv_reader_next(csv_reader *reader, char *error, size_t error_bytes);
 
 /* A finite number in decimal digits, *given = true; of "" and "nan" *given = false. 0, or -1: neither. */

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/quaternion.h"
+#include "host/reason.h"
+#include "import/depth/register_depth.h"
 #include "messages/fixed_camera.h"
 #include "messages/fixed_double.h"
-#include "import/depth/register_depth.h"
-#include "host/reason.h"
 #include "messages/ros_messages.h"
 
 /* ---- reading ---- */
@@ -23,7 +24,6 @@ static double number(uint64_t f64)
 /* NULL, or what is wrong. */
 static const char *rigid_of(const t3r_ros_pose *pose, rigid *out)
 {
-    double norm = 0;
     for (int i = 0; i < 3; i++) {
         out->position[i] = number(pose->position_f64[i]);
         if (!isfinite(out->position[i])) {
@@ -31,17 +31,13 @@ static const char *rigid_of(const t3r_ros_pose *pose, rigid *out)
         }
     }
     for (int i = 0; i < 4; i++) {
-        double q = number(pose->rotation_f64[i]); /* x y z w */
-        out->rotation[(i + 1) % 4] = q;
-        norm += q * q;
+        out->rotation[(i + 1) % 4] = number(pose->rotation_f64[i]); /* x y z w */
     }
-    norm = sqrt(norm);
+    const double norm = quaternion_norm(out->rotation);
     if (!(norm > 1e-6 && norm < 1e6)) {
         return "a rotation has no direction";
     }
-    for (int i = 0; i < 4; i++) {
-        out->rotation[i] /= norm;
-    }
+    quaternion_normalise(out->rotation);
     return NULL;
 }
 

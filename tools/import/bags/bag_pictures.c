@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "host/little_floats.h"
 #include "host/reason.h"
 
 /* In front of the picture of compressedDepth: how it was made, and two floats a and b. */
@@ -13,14 +13,6 @@
 static bool begins_with(t3r_text text, const char *word)
 {
     return text.count >= strlen(word) && memcmp(text.chars, word, strlen(word)) == 0;
-}
-
-static float float_at(const uint8_t *bytes)
-{
-    uint32_t bits = t3r_load_le32(bytes);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
 }
 
 /* Metres are a / (sample - b), as depth_image_transport quantizes them; 0 is no measurement. */
@@ -59,7 +51,7 @@ static int decode_depth(bag_pictures *pictures, t3r_text format, const uint8_t *
         return t3r_reason(error, error_bytes, "the depth image is no 16-bit grey picture");
     }
     if (!png && begins_with(format, "32FC1")) {
-        metres_to_steps(p, (double)float_at(bytes + 4), (double)float_at(bytes + 8), unit_q40);
+        metres_to_steps(p, (double)t3r_load_float(bytes + 4), (double)t3r_load_float(bytes + 8), unit_q40);
     }
     to_bytes(p);
     *out = (t3r_decoded_image){p->width, p->height, T3R_PIXEL_GREY, p->samples};

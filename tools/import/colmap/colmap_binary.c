@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "host/little_floats.h"
 #include "import/colmap/colmap_camera.h"
 #include "import/colmap/colmap_model.h"
 #include "mcap/reader_limits.h"
@@ -37,9 +37,9 @@ static bool take_doubles(FILE *file, double *values, uint32_t count)
 {
     bool taken = true;
     for (uint32_t i = 0; i < count && taken; i++) {
-        uint64_t bits;
-        taken = take_u64(file, &bits);
-        memcpy(&values[i], &bits, sizeof bits);
+        uint8_t bytes[8];
+        taken = take_bytes(file, bytes, sizeof bytes);
+        values[i] = taken ? t3r_load_double(bytes) : 0;
     }
     return taken;
 }
@@ -86,9 +86,9 @@ static const char *read_image(FILE *file, colmap_model *model)
 {
     uint32_t id, camera;
     uint64_t points;
-    double rotation[4], translation[3];
+    rigid pose;
     char name[COLMAP_NAME_BYTES];
-    if (!take_u32(file, &id) || !take_doubles(file, rotation, 4) || !take_doubles(file, translation, 3) ||
+    if (!take_u32(file, &id) || !take_doubles(file, pose.rotation, 4) || !take_doubles(file, pose.position, 3) ||
         !take_u32(file, &camera)) {
         return cut;
     }
@@ -101,7 +101,7 @@ static const char *read_image(FILE *file, colmap_model *model)
         fseeko(file, (off_t)(points * POINT_BYTES), SEEK_CUR) != 0) {
         return "its points reach past the file's end";
     }
-    return colmap_model_add_image(model, name, camera, rotation, translation);
+    return colmap_model_add_image(model, name, camera, pose);
 }
 
 /* A count, and so many of what `read` takes; each is at least as many bytes as its fields, so a lie ends at the end. */

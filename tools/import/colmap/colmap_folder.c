@@ -185,8 +185,7 @@ static int add_frames(const char *directory, const posed_folder_options *options
         frame->image = strdup(path);
         frame->posed = true;
         frame->intrinsics = camera->intrinsics;
-        memcpy(frame->position, image->position, sizeof frame->position);
-        memcpy(frame->rotation, image->rotation, sizeof frame->rotation);
+        frame->pose = image->pose;
         if (frame->image == NULL) {
             return t3r_reason(error, error_bytes, "out of memory");
         }

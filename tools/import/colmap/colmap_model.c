@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/poses/rigid.h"
+#include "geometry/quaternion.h"
+#include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 
 void colmap_model_free(colmap_model *model)
@@ -38,39 +39,7 @@ const char *colmap_model_add_camera(colmap_model *model, const colmap_camera *ca
     return NULL;
 }
 
-/* NULL, or what is wrong with the pose. */
-static const char *invert(const double rotation[4], const double translation[3], colmap_image *out)
-{
-    double norm = 0;
-    rigid pose;
-    for (int i = 0; i < 4; i++) {
-        norm += rotation[i] * rotation[i];
-    }
-    if (!(norm >= 0.81 && norm <= 1.21)) { /* also where it is not a number */
-        return "the quaternion's norm is not 1 within 0.1";
-    }
-    for (int i = 0; i < 4; i++) {
-        pose.rotation[i] = rotation[i] / sqrt(norm);
-    }
-    for (int i = 0; i < 3; i++) {
-        if (!(fabs(translation[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-            return T3R_LIMIT_TEXT("a translation is not a number below 2^", T3R_LIMIT_POSITION_LOG2, "");
-        }
-        pose.position[i] = translation[i];
-    }
-    pose = rigid_inverse(&pose);
-    for (int i = 0; i < 3; i++) {
-        if (!(fabs(pose.position[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-            return T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more");
-        }
-    }
-    memcpy(out->position, pose.position, sizeof out->position);
-    memcpy(out->rotation, pose.rotation, sizeof out->rotation);
-    return NULL;
-}
-
-const char *colmap_model_add_image(colmap_model *model, const char *name, uint32_t camera, const double rotation[4],
-                                   const double translation[3])
+const char *colmap_model_add_image(colmap_model *model, const char *name, uint32_t camera, rigid from_world)
 {
     colmap_image image = {.camera = camera};
     if (model->image_count == T3R_LIMIT_FRAMES) {
@@ -79,7 +48,10 @@ const char *colmap_model_add_image(colmap_model *model, const char *name, uint32
     if (name[0] == '\0') {
         return "no name";
     }
-    const char *wrong = invert(rotation, translation, &image);
+    const char *wrong = pose_check(&from_world);
+    quaternion_normalise(from_world.rotation);
+    image.pose = rigid_inverse(&from_world);
+    wrong = wrong != NULL ? wrong : pose_check_position(image.pose.position);
     if (wrong != NULL) {
         return wrong;
     }

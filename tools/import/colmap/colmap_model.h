@@ -19,7 +19,7 @@ typedef struct colmap_camera {
 typedef struct colmap_image {
     char *name; /* path in the folder of pictures */
     uint32_t camera;
-    double position[3], rotation[4]; /* as those of posed_frame */
+    rigid pose; /* camera to world */
 } colmap_image;
 
 /* Starts with zeros. */
@@ -32,11 +32,9 @@ typedef struct colmap_model {
 
 void colmap_model_free(colmap_model *model);
 
-/* Adds what a reader found. NULL, or what is wrong. An image's pose is world to camera: quaternion w x y z of norm 1
- * within 0.1, and translation. */
+/* Adds what a reader found. NULL, or what is wrong. An image's pose is world to camera. */
 const char *colmap_model_add_camera(colmap_model *model, const colmap_camera *camera);
-const char *colmap_model_add_image(colmap_model *model, const char *name, uint32_t camera, const double rotation[4],
-                                   const double translation[3]);
+const char *colmap_model_add_image(colmap_model *model, const char *name, uint32_t camera, rigid from_world);
 /* Once all are added: sorts the cameras by their numbers, and the images by their names, numbers in them by value.
  * NULL, or what is wrong: a camera that is there twice. */
 const char *colmap_model_sort(colmap_model *model);

@@ -83,12 +83,12 @@ static const char *parse_camera(char *line, colmap_model *model)
 static const char *parse_image(char *line, colmap_model *model)
 {
     uint64_t id, camera;
-    double rotation[4], translation[3];
+    rigid pose;
     if (!take_whole(&line, UINT32_MAX, &id)) {
         return "no IMAGE_ID";
     }
     for (int i = 0; i < 7; i++) {
-        if (!take_number(&line, i < 4 ? &rotation[i] : &translation[i - 4])) {
+        if (!take_number(&line, i < 4 ? &pose.rotation[i] : &pose.position[i - 4])) {
             return "not 'IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME'";
         }
     }
@@ -103,7 +103,7 @@ static const char *parse_image(char *line, colmap_model *model)
     if (length >= COLMAP_NAME_BYTES) {
         return "a name of more than 4096 bytes";
     }
-    return colmap_model_add_image(model, line, (uint32_t)camera, rotation, translation);
+    return colmap_model_add_image(model, line, (uint32_t)camera, pose);
 }
 
 /* All lines that `parse` takes; behind each, `skipped` more. */

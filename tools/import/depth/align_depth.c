@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "messages/fixed_camera.h"
 #include "import/depth/register_depth.h"
 #include "host/reason.h"
@@ -28,7 +28,7 @@ bool align_depth_same(const posed_intrinsics *colour, const posed_intrinsics *de
 static int lens_of(const posed_intrinsics *intrinsics, uint32_t width, uint32_t height, lens *out, char *error,
                    size_t error_bytes)
 {
-    const posed_frame frame = {.intrinsics = *intrinsics, .rotation = {1, 0, 0, 0}};
+    const posed_frame frame = {.intrinsics = *intrinsics, .pose = {.rotation = {1, 0, 0, 0}}};
     t3r_recorded_camera recorded = {0};
     t3r_camera fixed;
     if (posed_frame_camera(&frame, width, height, &recorded, error, error_bytes) != 0) {

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/bytes.h"
 #include "host/file_bytes.h"
+#include "host/little_floats.h"
 #include "host/reason.h"
 #include "trim3r.h"
 
@@ -24,10 +24,7 @@ static size_t count_of(const numbers *n)
 
 static float number_of(const numbers *n, size_t index)
 {
-    const uint32_t bits = t3r_load_le32(n->at + 4 * index);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    return t3r_load_float(n->at + 4 * index);
 }
 
 /* "123&" at *at, which moves behind it; 0: there is no such number of 1..T3R_MAX_SIDE. */

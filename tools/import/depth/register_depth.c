@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 
 void register_depth_size(const t3r_frame *frame, uint32_t *width, uint32_t *height)
 {

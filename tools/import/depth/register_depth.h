@@ -3,7 +3,7 @@
 #define TRIM3R_TOOLS_REGISTER_DEPTH_H
 
 #include "import/poses/lens.h"
-#include "import/poses/rigid.h"
+#include "geometry/rigid.h"
 
 /* The sides of the registered depth: colour's, divided by the least whole number with which they do not exceed the
  * measured ones. */

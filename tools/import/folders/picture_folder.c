@@ -49,7 +49,7 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
             posed_frame *frame = &out->frames[out->frame_count++];
             frame->image = strdup(entries[i]->d_name);
             frame->intrinsics = posed_intrinsics_of(numbers);
-            frame->rotation[0] = 1;
+            frame->pose = rigid_identity;
             status = frame->image != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
         }
         free(entries[i]);

@@ -68,7 +68,7 @@ t3r_recording *planar_recording(char *path, uint32_t width, uint32_t height, uin
         .image = path,
         .intrinsics =
             {.width = NAN, .height = NAN, .fx = NAN, .fy = NAN, .cx = NAN, .cy = NAN, .angle_x = 0.5, .angle_y = NAN},
-        .rotation = {1, 0, 0, 0}};
+        .pose = {.rotation = {1, 0, 0, 0}}};
     import_buffers buffers;
     t3r_recorded_frame frame;
     t3r_recording *recording = NULL;

@@ -114,7 +114,7 @@ static int read_place(const char *directory, const char *const *names, rigid *ou
     if (read_matrix(directory, name, 4, matrix, error, error_bytes) != 0) {
         return -1;
     }
-    const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, out->position, out->rotation);
+    const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, out);
     return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s/%s: %s", directory, name, wrong);
 }
 
@@ -152,7 +152,7 @@ static int add_frame(const char *directory, const pose_layout *layout, const cha
     frame->image = pose_layout_find(directory, layout->colours, stem, layout->colour_endings);
     frame->depth = pose_layout_find(directory, layout->depths, stem, layout->depth_endings);
     frame->no_depth = layout->no_depth;
-    frame->rotation[0] = 1;
+    frame->pose = rigid_identity;
     if (frame->image == NULL) {
         (void)t3r_reason(error, error_bytes, "%s: there is no picture of that name", pose_name);
         return 1;
@@ -163,7 +163,7 @@ static int add_frame(const char *directory, const pose_layout *layout, const cha
             return 1;
         }
     }
-    const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, frame->position, frame->rotation);
+    const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, &frame->pose);
     frame->posed = wrong == NULL;
     return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s/%s: %s", directory, pose_name, wrong);
 }

@@ -90,8 +90,8 @@ int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height
                           camera->fy);
     }
     memcpy(camera->coefficients, in->coefficients, sizeof camera->coefficients);
-    memcpy(camera->position, frame->position, sizeof camera->position);
-    memcpy(camera->rotation, frame->rotation, sizeof camera->rotation);
+    memcpy(camera->position, frame->pose.position, sizeof camera->position);
+    memcpy(camera->rotation, frame->pose.rotation, sizeof camera->rotation);
     return 0;
 }
 

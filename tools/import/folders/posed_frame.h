@@ -8,7 +8,7 @@
 
 #include "cli/tables/text_list.h"
 #include "import/depth/raw_depth.h"
-#include "import/poses/rigid.h"
+#include "geometry/rigid.h"
 #include "recording/recording.h"
 
 /* What a folder says of a camera; a number that it does not give is NAN. Pixels, with the principal point measured
@@ -28,12 +28,11 @@ typedef struct posed_frame {
     raw_depth depth_raw;         /* how depth is stored where it is no picture */
     uint16_t no_depth;           /* a sample of it that stands for none, as 0 does; 0: there is no other */
     char *pointmap, *confidence; /* likewise: depth made elsewhere (pointmaps.h) */
-    bool posed;                  /* false: position 0, rotation none */
+    bool posed;                  /* false: the pose is the identity */
     posed_intrinsics intrinsics;
     posed_intrinsics depth_lens; /* of the depth picture's camera; fx 0: it sees what colour's sees */
     rigid from_depth;            /* from that camera to colour's, in steps of depth; only where depth_lens has an fx */
-    double position[3];          /* camera centre, world units */
-    double rotation[4];          /* unit quaternion w x y z; camera (x right, y down, z forward) to world */
+    rigid pose;                  /* camera to world, in world units */
 } posed_frame;
 
 typedef struct posed_folder {

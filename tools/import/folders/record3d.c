@@ -13,7 +13,7 @@
 #include "host/file_bytes.h"
 #include "import/depth/exr_depth.h"
 #include "import/folders/picture_folder.h"
-#include "import/poses/pose_between.h"
+#include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 #include "host/reason.h"
 
@@ -84,28 +84,17 @@ static bool take_side(const cJSON *root, const char *name, uint32_t *side)
 /* NULL, or what is wrong. */
 static const char *take_pose(const cJSON *array, posed_frame *out)
 {
-    double numbers[POSE_NUMBERS], pose[POSE_NUMBERS], norm = 0;
-    if (!take_numbers(array, POSE_NUMBERS, numbers)) {
+    static const rigid half_about_x = {{0, 0, 0}, {0, 1, 0, 0}}; /* from y up, z backward to y down, z forward */
+    double n[7];
+    if (!take_numbers(array, 7, n)) {
         return "not 7 finite numbers: qx qy qz qw x y z";
     }
-    for (int i = 0; i < 4; i++) {
-        norm += numbers[i] * numbers[i];
-        pose[3 + i] = numbers[i];
+    rigid pose = {{n[4], n[5], n[6]}, {n[3], n[0], n[1], n[2]}};
+    const char *wrong = pose_check(&pose);
+    if (wrong != NULL) {
+        return wrong;
     }
-    for (int i = 0; i < 3; i++) {
-        pose[i] = numbers[4 + i];
-        if (!(fabs(pose[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-            return T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more");
-        }
-    }
-    if (!(norm >= 0.81 && norm <= 1.21)) {
-        return "the quaternion's norm is not 1 within 0.1";
-    }
-    double q[4];
-    pose_split(pose, out->position, q);
-    /* half a turn about the camera's x: from y up, z backward to y down, z forward */
-    const double turned[4] = {-q[1], q[0], q[3], -q[2]};
-    memcpy(out->rotation, turned, sizeof turned);
+    out->pose = rigid_compose(&pose, &half_about_x);
     out->posed = true;
     return NULL;
 }

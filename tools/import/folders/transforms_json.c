@@ -330,7 +330,7 @@ static int read_row(reader *r, const cJSON *row, double values[4])
 static int read_pose(reader *r, posed_frame *out)
 {
     const cJSON *matrix = field(&r->own, "transform_matrix");
-    out->rotation[0] = 1;
+    out->pose = rigid_identity;
     out->posed = matrix != NULL;
     if (matrix == NULL) {
         return r->options->without_poses ? 0 : fail(r, "transform_matrix", "missing");
@@ -349,7 +349,7 @@ static int read_pose(reader *r, posed_frame *out)
         }
         y += 4;
     }
-    const char *wrong = pose_of_matrix(m, AXES_OPENGL, out->position, out->rotation);
+    const char *wrong = pose_of_matrix(m, AXES_OPENGL, &out->pose);
     return wrong == NULL ? 0 : fail(r, "transform_matrix", wrong);
 }
 

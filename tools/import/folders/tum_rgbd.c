@@ -9,7 +9,8 @@
 #include <string.h>
 
 #include "host/file_bytes.h"
-#include "import/poses/pose_between.h"
+#include "geometry/quaternion.h"
+#include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 #include "host/reason.h"
 #include "trim3r.h"
@@ -20,8 +21,8 @@
 
 typedef struct stamped {
     double stamp;
-    char *name;                /* picture lists */
-    double pose[POSE_NUMBERS]; /* the trajectory: tx ty tz qx qy qz qw */
+    char *name; /* picture lists */
+    rigid pose; /* the trajectory */
 } stamped;
 
 typedef struct stamped_list {
@@ -85,17 +86,14 @@ static const char *parse_line(char *line, bool poses, stamped *item)
         item->name = strdup(name);
         return item->name != NULL ? NULL : "out of memory";
     }
-    double norm = 0;
-    for (int i = 0; i < POSE_NUMBERS; i++) {
-        if (!take_number(&at, &item->pose[i])) {
+    for (int i = 0; i < 7; i++) {
+        if (!take_number(&at, i < 3 ? &item->pose.position[i] : &item->pose.rotation[(i - 2) % 4])) {
             return "not 'time tx ty tz qx qy qz qw' in finite numbers";
         }
-        if (i < 3 && !(fabs(item->pose[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-            return T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more");
-        }
-        norm += i >= 3 ? item->pose[i] * item->pose[i] : 0;
     }
-    return norm >= 0.81 && norm <= 1.21 ? NULL : "the quaternion's norm is not 1 within 0.1";
+    const char *wrong = pose_check(&item->pose);
+    quaternion_normalise(item->pose.rotation);
+    return wrong;
 }
 
 static int parse_list(const char *path, char *text, bool poses, stamped_list *list, char *error, size_t error_bytes)
@@ -185,22 +183,20 @@ static const stamped *nearest(const stamped_list *list, double stamp)
     return best;
 }
 
-static bool find_pose(const stamped_list *trajectory, double stamp, posed_frame *frame)
+static bool find_pose(const stamped_list *trajectory, double stamp, rigid *pose)
 {
     size_t after = lower_bound(trajectory, stamp);
     if (after > 0 && after < trajectory->count) {
         const stamped *a = &trajectory->items[after - 1], *b = &trajectory->items[after];
         double gap = b->stamp - a->stamp;
         if (gap <= BRACKET_SECONDS) {
-            double pose[POSE_NUMBERS];
-            pose_between(a->pose, b->pose, (stamp - a->stamp) / gap, pose);
-            pose_split(pose, frame->position, frame->rotation);
+            *pose = rigid_between(&a->pose, &b->pose, (stamp - a->stamp) / gap);
             return true;
         }
     }
     const stamped *only = nearest(trajectory, stamp);
     if (only != NULL) {
-        pose_split(only->pose, frame->position, frame->rotation);
+        *pose = only->pose;
     }
     return only != NULL;
 }
@@ -247,7 +243,7 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
     }
     for (size_t i = 0; i < colour->count; i++) {
         posed_frame *frame = &out->frames[out->frame_count];
-        frame->posed = find_pose(trajectory, colour->items[i].stamp, frame);
+        frame->posed = find_pose(trajectory, colour->items[i].stamp, &frame->pose);
         if (!frame->posed && !without_poses) {
             if (text_list_add(&out->left_out, "%s: no pose near it in time", colour->items[i].name) != 0) {
                 return t3r_reason(error, error_bytes, "out of memory");
@@ -256,7 +252,7 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
         }
         out->frame_count++;
         if (!frame->posed) {
-            frame->rotation[0] = 1;
+            frame->pose = rigid_identity;
         }
         const stamped *measured = nearest(depth, colour->items[i].stamp);
         frame->intrinsics = *intrinsics;

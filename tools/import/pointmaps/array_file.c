@@ -7,7 +7,7 @@
 
 #include <zip.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "host/file_bytes.h"
 #include "mcap/reader_limits.h"
 #include "host/reason.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "import/folders/frame.h"
-#include "posing/quaternion.h"
+#include "geometry/quaternion.h"
 #include "posing/resection.h"
 #include "messages/fixed_camera.h"
 #include "host/reason.h"
@@ -57,16 +57,16 @@ static int maps_of(pointmap_source *source, uint32_t index, pointmaps *own, poin
 static motion pose_of(const posed_frame *frame)
 {
     motion m;
-    quaternion_matrix(frame->rotation, m.r);
-    memcpy(m.t, frame->position, sizeof m.t);
+    quaternion_matrix(frame->pose.rotation, m.r);
+    memcpy(m.t, frame->pose.position, sizeof m.t);
     return m;
 }
 
 static int set_pose(posed_frame *frame, const motion *pose)
 {
-    memcpy(frame->position, pose->t, sizeof frame->position);
+    memcpy(frame->pose.position, pose->t, sizeof frame->pose.position);
     frame->posed = true;
-    return quaternion_of(pose->r, frame->rotation) == NULL ? 0 : -1;
+    return quaternion_of(pose->r, frame->pose.rotation) == NULL ? 0 : -1;
 }
 
 static int ascending(const void *a, const void *b)

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "host/little_floats.h"
 #include "host/reason.h"
 
 #define MAGIC "\x93NUMPY"
@@ -182,16 +182,7 @@ int npy_parse(const uint8_t *bytes, size_t count, uint64_t file_bytes, npy_array
 
 double npy_value(const npy_array *array, const uint8_t *bytes)
 {
-    if (array->item_bytes == 4) {
-        uint32_t bits = t3r_load_le32(bytes);
-        float value;
-        memcpy(&value, &bits, sizeof value);
-        return value;
-    }
-    uint64_t bits = t3r_load_le64(bytes);
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    return array->item_bytes == 4 ? t3r_load_float(bytes) : t3r_load_double(bytes);
 }
 
 void npy_shape_text(const npy_array *array, char *text, size_t bytes)

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/pointmaps/array_file.h"
-#include "posing/quaternion.h"
-#include "mcap/reader_limits.h"
+#include "geometry/quaternion.h"
 #include "host/reason.h"
+#include "import/pointmaps/array_file.h"
+#include "import/poses/pose_check.h"
+#include "mcap/reader_limits.h"
 
 #define NAMES 5
 #define SMALL_MOST (16u * T3R_LIMIT_VIEWS_OF_POINTS) /* numbers of all poses, or of all intrinsics */
@@ -199,17 +200,14 @@ static int take_poses(const stack *s, bool inverse, const double *numbers, point
         for (uint32_t i = 0; i < 12; i++) {
             double value = numbers[at + i];
             *(i % 4 == 3 ? &m.t[i / 4] : &m.r[i / 4 * 3 + i % 4]) = value;
-            if (i % 4 == 3 && !(fabs(value) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-                return fail(s, T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more"), error,
-                            error_bytes);
-            }
         }
         for (uint32_t i = 12; i < rows * 4; i++) {
             if (numbers[at + i] != (i == 15 ? 1 : 0)) {
                 return fail(s, "the last row is not 0 0 0 1", error, error_bytes);
             }
         }
-        const char *wrong = quaternion_of(m.r, quaternion);
+        const char *wrong = pose_check_position(m.t);
+        wrong = wrong != NULL ? wrong : quaternion_of(m.r, quaternion);
         if (wrong != NULL) {
             return fail(s, wrong, error, error_bytes);
         }

@@ -1,12 +1,12 @@
 #include "import/poses/pose_matrix.h"
 
 #include <math.h>
-#include <stdbool.h>
+#include <stddef.h>
 
-#include "posing/quaternion.h"
-#include "mcap/reader_limits.h"
+#include "geometry/quaternion.h"
+#include "import/poses/pose_check.h"
 
-const char *pose_of_matrix(const double m[16], camera_axes axes, double position[3], double rotation[4])
+const char *pose_of_matrix(const double m[16], camera_axes axes, rigid *pose)
 {
     static const double last[4] = {0, 0, 0, 1};
     double turned[9];
@@ -25,10 +25,8 @@ const char *pose_of_matrix(const double m[16], camera_axes axes, double position
         turned[i * 3] = m[i * 4];
         turned[i * 3 + 1] = sign * m[i * 4 + 1];
         turned[i * 3 + 2] = sign * m[i * 4 + 2];
-        position[i] = m[i * 4 + 3];
-        if (!(fabs(position[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-            return T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more");
-        }
+        pose->position[i] = m[i * 4 + 3];
     }
-    return quaternion_of(turned, rotation);
+    const char *wrong = pose_check_position(pose->position);
+    return wrong != NULL ? wrong : quaternion_of(turned, pose->rotation);
 }

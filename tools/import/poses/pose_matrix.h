@@ -2,13 +2,16 @@
 #ifndef TRIM3R_TOOLS_POSE_MATRIX_H
 #define TRIM3R_TOOLS_POSE_MATRIX_H
 
+#include "geometry/rigid.h"
+
 typedef enum camera_axes {
-    AXES_OPENCV, /* x right, y down, z forward: those of posed_frame */
+    AXES_OPENCV, /* x right, y down, z forward: those of every pose in trim3r */
     AXES_OPENGL  /* x right, y up, z backward */
 } camera_axes;
 
-/* A camera-to-world matrix, row-major, whose last row is 0 0 0 1, to the pose of posed_frame. NULL, or what is wrong:
- * an entry that is not finite, a rotation that is none, a position of 2^T3R_LIMIT_POSITION_LOG2 or more. */
-const char *pose_of_matrix(const double matrix[16], camera_axes axes, double position[3], double rotation[4]);
+/* A camera-to-world matrix, row-major, whose last row is 0 0 0 1, to a pose of a camera with the axes of OpenCV. NULL,
+ * or what is wrong: an entry that is not finite, a rotation that is none, a position of 2^T3R_LIMIT_POSITION_LOG2 or
+ * more. */
+const char *pose_of_matrix(const double matrix[16], camera_axes axes, rigid *pose);
 
 #endif

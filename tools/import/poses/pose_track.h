@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "import/poses/rigid.h"
+#include "geometry/rigid.h"
 
 #define POSE_TRACK_GAP_NS INT64_C(2000000000) /* between neighbours farther apart nothing is interpolated */
 

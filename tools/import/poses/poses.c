@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "cli/cli.h"
 #include "messages/fixed_camera.h"
 #include "import/folders/frame.h"
@@ -46,10 +46,10 @@ static int look_at(const char *directory, const posed_folder *folder, uint32_t i
 static void set_pose(posed_frame *frame, const t3r_camera *camera)
 {
     for (int i = 0; i < 3; i++) {
-        frame->position[i] = ldexp((double)camera->position_q32[i], -32);
+        frame->pose.position[i] = ldexp((double)camera->position_q32[i], -32);
     }
     for (int i = 0; i < 4; i++) {
-        frame->rotation[i] = ldexp(camera->rotation_q30[i], -30);
+        frame->pose.rotation[i] = ldexp(camera->rotation_q30[i], -30);
     }
 }
 

@@ -4,10 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/quaternion.h"
 #include "host/file_bytes.h"
+#include "host/reason.h"
+#include "import/poses/pose_check.h"
 #include "mcap/mcap.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 #include "recording/recording.h"
 
 #define MAX_BYTES ((size_t)1 << 30) /* of a bag */
@@ -56,22 +58,6 @@ static void order(trajectory *t)
         }
     }
     t->count = kept;
-}
-
-/* NULL, or what is wrong with the pose. */
-static const char *check(const double pose[POSE_NUMBERS])
-{
-    double norm = 0;
-    for (int i = 0; i < POSE_NUMBERS; i++) {
-        if (!isfinite(pose[i])) {
-            return "a number is not finite";
-        }
-        if (i < 3 && !(fabs(pose[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
-            return T3R_LIMIT_TEXT("a position is 2^", T3R_LIMIT_POSITION_LOG2, " or more");
-        }
-        norm += i >= 3 ? pose[i] * pose[i] : 0;
-    }
-    return norm >= 0.81 && norm <= 1.21 ? NULL : "the quaternion's norm is not 1 within 0.1";
 }
 
 /* ---- lines ---- */
@@ -131,19 +117,19 @@ static bool take_number(char **text, double *value)
 /* NULL, or what is wrong with the line. */
 static const char *parse_line(char *line, bool commas, trajectory_pose *out)
 {
-    static const int tum[POSE_NUMBERS] = {0, 1, 2, 3, 4, 5, 6}, euroc[POSE_NUMBERS] = {0, 1, 2, 6, 3, 4, 5};
+    double *const position = out->pose.position, *const rotation = out->pose.rotation;
     if (commas ? !take_nanoseconds(&line, &out->stamp_ns) : !take_seconds(&line, &out->stamp_ns)) {
         return commas ? "no time in nanoseconds" : "no time in seconds";
     }
     if (*line != ' ' && *line != '\t' && *line != ',') {
         return commas ? "no whole number of nanoseconds" : "no time in seconds";
     }
-    for (int i = 0; i < POSE_NUMBERS; i++) {
-        if (!take_number(&line, &out->pose[commas ? euroc[i] : tum[i]])) {
+    for (int i = 0; i < 7; i++) {
+        if (!take_number(&line, i < 3 ? &position[i] : &rotation[commas ? i - 3 : (i - 2) % 4])) {
             return commas ? "not 'nanoseconds,px,py,pz,qw,qx,qy,qz'" : "not 'seconds tx ty tz qx qy qz qw'";
         }
     }
-    return check(out->pose);
+    return pose_check(&out->pose);
 }
 
 int trajectory_parse(char *text, const char *path, trajectory *out, char *error, size_t error_bytes)
@@ -211,10 +197,10 @@ static int take_poses(const t3r_recording *bag, const char *path, uint32_t strea
     size_t room = 0;
     for (uint32_t i = 0; i < t3r_recording_pose_count(bag, stream); i++) {
         t3r_recorded_pose p = t3r_recording_pose(bag, stream, i);
-        trajectory_pose pose = {
-            p.stamp_ns,
-            {p.position[0], p.position[1], p.position[2], p.rotation[1], p.rotation[2], p.rotation[3], p.rotation[0]}};
-        const char *wrong = check(pose.pose);
+        trajectory_pose pose = {.stamp_ns = p.stamp_ns};
+        memcpy(pose.pose.position, p.position, sizeof p.position);
+        memcpy(pose.pose.rotation, p.rotation, sizeof p.rotation);
+        const char *wrong = pose_check(&pose.pose);
         if (wrong == NULL) {
             wrong = append(out, &room, &pose);
         }
@@ -272,7 +258,7 @@ int trajectory_read(const char *path, const char *topic, trajectory *out, char *
 
 /* ---- asking ---- */
 
-bool trajectory_at(const trajectory *t, int64_t stamp_ns, double pose[POSE_NUMBERS])
+bool trajectory_at(const trajectory *t, int64_t stamp_ns, rigid *pose)
 {
     size_t low = 0, high = t->count;
     while (low < high) {
@@ -284,28 +270,25 @@ bool trajectory_at(const trajectory *t, int64_t stamp_ns, double pose[POSE_NUMBE
         }
     }
     if (low < t->count && t->poses[low].stamp_ns == stamp_ns) {
-        memcpy(pose, t->poses[low].pose, sizeof t->poses[low].pose);
+        *pose = t->poses[low].pose;
         return true;
     }
     if (low == 0 || low == t->count) {
         return false;
     }
-    const trajectory_pose *a = &t->poses[low - 1], *b = &t->poses[low];
+    trajectory_pose a = t->poses[low - 1], b = t->poses[low];
     /* b is later; stamps of a bag may be as far apart as uint64_t alone holds */
-    uint64_t gap = (uint64_t)b->stamp_ns - (uint64_t)a->stamp_ns;
+    uint64_t gap = (uint64_t)b.stamp_ns - (uint64_t)a.stamp_ns;
     if (gap > TRAJECTORY_BRACKET_NS) {
         return false;
     }
-    double position[3], rotation[4];
-    pose_between(a->pose, b->pose, (double)(stamp_ns - a->stamp_ns) / (double)gap, pose);
-    pose_split(pose, position, rotation);
-    for (int i = 0; i < 4; i++) {
-        pose[3 + i] = rotation[(i + 1) % 4];
-    }
+    quaternion_normalise(a.pose.rotation);
+    quaternion_normalise(b.pose.rotation);
+    *pose = rigid_between(&a.pose, &b.pose, (double)(stamp_ns - a.stamp_ns) / (double)gap);
     return true;
 }
 
-bool trajectory_at_offset(const trajectory *t, int64_t stamp_ns, int64_t offset_ns, double pose[POSE_NUMBERS])
+bool trajectory_at_offset(const trajectory *t, int64_t stamp_ns, int64_t offset_ns, rigid *pose)
 {
     bool holds = offset_ns >= 0 ? stamp_ns <= INT64_MAX - offset_ns : stamp_ns >= INT64_MIN - offset_ns;
     return holds && trajectory_at(t, stamp_ns + offset_ns, pose);

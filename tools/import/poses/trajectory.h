@@ -7,11 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "import/poses/pose_between.h"
+#include "geometry/rigid.h"
 
 typedef struct trajectory_pose {
     int64_t stamp_ns;
-    double pose[POSE_NUMBERS]; /* camera (x right, y down, z forward) to world */
+    rigid pose; /* camera (x right, y down, z forward) to world */
 } trajectory_pose;
 
 typedef struct trajectory {
@@ -32,8 +32,8 @@ void trajectory_free(trajectory *t);
 
 /* The pose at a time of the trajectory's clock: one of that very time as it was read, else between two that are at most
  * TRAJECTORY_BRACKET_NS apart, its quaternion of norm 1. False where there is none; no memory is asked for. */
-bool trajectory_at(const trajectory *t, int64_t stamp_ns, double pose[POSE_NUMBERS]);
+bool trajectory_at(const trajectory *t, int64_t stamp_ns, rigid *pose);
 /* The pose at a time of another clock, `offset_ns` behind the trajectory's; no time of int64_t: none. */
-bool trajectory_at_offset(const trajectory *t, int64_t stamp_ns, int64_t offset_ns, double pose[POSE_NUMBERS]);
+bool trajectory_at_offset(const trajectory *t, int64_t stamp_ns, int64_t offset_ns, rigid *pose);
 
 #endif

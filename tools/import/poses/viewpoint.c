@@ -8,6 +8,7 @@
 
 #include "cli/tables/json_input.h"
 #include "core/camera.h"
+#include "geometry/quaternion.h"
 #include "host/file_bytes.h"
 #include "import/folders/transforms_json.h"
 #include "mcap/reader_limits.h"
@@ -36,8 +37,7 @@ static int set_pose(t3r_camera *camera, const double position[3], const double r
         }
         camera->position_q32[i] = (int64_t)nearbyint(ldexp(position[i], 32));
     }
-    double norm = sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2] +
-                       rotation[3] * rotation[3]);
+    const double norm = quaternion_norm(rotation);
     if (!(norm > 1e-6) || !isfinite(norm)) {
         return -1;
     }

@@ -5,7 +5,7 @@ from conan import ConanFile
 from conan.tools.cmake import CMake, CMakeToolchain, cmake_layout
 from conan.tools.files import copy
 
-FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras", "moment")
+FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras")
 
 
 class Trim3rConan(ConanFile):

@@ -1,4 +1,4 @@
-"""Gaussian heads by name: the closed forms, the shipped networks, files of weights."""
+"""Gaussian heads by name: analytic, the shipped networks, files of weights."""
 import os
 from typing import Any, NamedTuple, Union
 
@@ -10,9 +10,8 @@ from .errors import InputError
 
 HeadName = Union[str, "os.PathLike[str]"]
 
-_SHIPPED = {"tiny": (lib.t3r_head_tiny, lib.t3r_head_tiny_bytes), "nano": (lib.t3r_head_nano, lib.t3r_head_nano_bytes),
-            "small": (lib.t3r_head_small, lib.t3r_head_small_bytes), "base": (lib.t3r_head_base, lib.t3r_head_base_bytes)}
-_CLOSED = {"analytic": lib.T3R_HEAD_ANALYTIC, "moment": lib.T3R_HEAD_MOMENT}
+_SHIPPED = {"tiny": (lib.t3r_head_tiny, lib.t3r_head_tiny_bytes), "small": (lib.t3r_head_small, lib.t3r_head_small_bytes)}
+_ANALYTIC = "analytic"  # the head without weights
 _BYTES_MOST = 1 << 24  # of a file of weights; one byte more is refused
 
 
@@ -43,13 +42,13 @@ def head_of(name: HeadName) -> Head:
         The file cannot be read.
     """
     text = os.fspath(name)
-    if text in _CLOSED:
-        return Head(_CLOSED[text])
+    if text == _ANALYTIC:
+        return Head(lib.T3R_HEAD_ANALYTIC)
     if text in _SHIPPED:
         weights, count = _SHIPPED[text]
         return Head(lib.T3R_HEAD_LEARNED, ffi.cast("const void *", weights), count)
     if not text.endswith(".t3w"):
-        raise InputError(f"a head is one of {', '.join([*_SHIPPED, *_CLOSED])} or a file that ends in .t3w, not {text!r}")
+        raise InputError(f"a head is one of {', '.join([*_SHIPPED, _ANALYTIC])} or a file that ends in .t3w, not {text!r}")
     with open(text, "rb") as file:
         read = np.frombuffer(file.read(_BYTES_MOST + 1), dtype=np.uint8)
     owner = arena_of(read.nbytes) # aligned

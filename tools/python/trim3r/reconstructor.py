@@ -37,7 +37,7 @@ class Reconstructor:
     gaussians : int, optional
         The most Gaussians of a scene, and the budget where a build names none; 1..2**24. All points without it.
     head : str or path-like
-        "tiny", "nano", "small", "base", "analytic", "moment", or a path that ends in .t3w.
+        "tiny", "small", "analytic", or a path that ends in .t3w.
     render_size : pair of int, optional
         The largest picture, width and height, 1..4096 each. The working size without it.
     depth : str

@@ -20,21 +20,14 @@ static const struct {
     const uint32_t *bytes;
 } shipped[] = {
     {"tiny", t3r_head_tiny, &t3r_head_tiny_bytes},
-    {"nano", t3r_head_nano, &t3r_head_nano_bytes},
     {"small", t3r_head_small, &t3r_head_small_bytes},
-    {"base", t3r_head_base, &t3r_head_base_bytes},
 };
 enum { SHIPPED = sizeof shipped / sizeof shipped[0] };
 
-/* The runtime's own heads; `none` is the analytic one, unadapted. T3R_HEAD_CONFIGURED when it is none of them. */
-static t3r_head closed_form_of(const char *text)
+/* Whether the text is a name of the head without weights; `none` leaves it unadapted. */
+static bool is_analytic(const char *text)
 {
-    for (int head = T3R_HEAD_CONFIGURED + 1; head < T3R_HEAD_COUNT; head++) {
-        if (head != T3R_HEAD_LEARNED && strcmp(text, t3r_head_name((t3r_head)head)) == 0) {
-            return (t3r_head)head;
-        }
-    }
-    return strcmp(text, "none") == 0 ? T3R_HEAD_ANALYTIC : T3R_HEAD_CONFIGURED;
+    return strcmp(text, "analytic") == 0 || strcmp(text, "none") == 0;
 }
 
 const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES])
@@ -43,16 +36,7 @@ const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES])
     for (int i = 0; i < SHIPPED; i++) {
         length += (size_t)snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, "%s, ", shipped[i].name);
     }
-    length += (size_t)snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, "FILE" FILE_END);
-    for (int head = T3R_HEAD_CONFIGURED + 1; head < T3R_HEAD_COUNT && length < CHOSEN_HEAD_NAMES_BYTES; head++) {
-        if (head != T3R_HEAD_LEARNED) {
-            length += (size_t)snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, ", %s",
-                                       t3r_head_name((t3r_head)head));
-        }
-    }
-    if (length < CHOSEN_HEAD_NAMES_BYTES) {
-        snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, ", none");
-    }
+    snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, "FILE" FILE_END ", analytic, none");
     return names;
 }
 
@@ -69,7 +53,7 @@ static int shipped_index(const char *text)
 bool chosen_head_is_one(const char *text)
 {
     size_t length = strlen(text), end = sizeof FILE_END - 1;
-    return closed_form_of(text) != T3R_HEAD_CONFIGURED || shipped_index(text) >= 0 ||
+    return is_analytic(text) || shipped_index(text) >= 0 ||
            (length > end && strcmp(text + length - end, FILE_END) == 0);
 }
 
@@ -116,9 +100,8 @@ static int describe(chosen_head *chosen, const char *text)
 
 int chosen_head_open(chosen_head *chosen, const char *text)
 {
-    const t3r_head closed = closed_form_of(text);
-    if (closed != T3R_HEAD_CONFIGURED) {
-        *chosen = (chosen_head){.head = closed, .unadapted = strcmp(text, "none") == 0};
+    if (is_analytic(text)) {
+        *chosen = (chosen_head){.head = T3R_HEAD_ANALYTIC, .unadapted = strcmp(text, "none") == 0};
         snprintf(chosen->name, sizeof chosen->name, "%s", text);
         return CLI_OK;
     }

@@ -1,4 +1,4 @@
-/* The heads that --head names: the closed forms, the shipped networks, weight files. */
+/* The heads that --head names: analytic, none, the shipped networks, weight files. */
 #ifndef TRIM3R_TOOLS_CHOSEN_HEAD_H
 #define TRIM3R_TOOLS_CHOSEN_HEAD_H
 
@@ -15,16 +15,16 @@
 typedef struct chosen_head {
     t3r_head head;
     bool unadapted;      /* of `none`: `analytic`, which then sees every point as retained */
-    char name[16];       /* analytic, moment, none; of a network the name in its weights */
+    char name[16];       /* analytic, none; of a network the name in its weights */
     char bits[8];        /* of a network's weights and activations: 8, 16, or W/A where they differ; else "" */
-    const void *weights; /* NULL of the closed forms */
+    const void *weights; /* NULL of analytic and none */
     size_t bytes;
     uint32_t weight_bits, activation_bits;
     char crc[9]; /* of a network, 8 hexadecimal digits; else "" */
     void *owned; /* weights read from a file */
 } chosen_head;
 
-/* "tiny, nano, small, base, FILE.t3w, ...": all that --head takes. Returns `names`. */
+/* "tiny, small, FILE.t3w, ...": all that --head takes. Returns `names`. */
 const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES]);
 /* Whether the text is one of the names or ends in .t3w. */
 bool chosen_head_is_one(const char *text);
@@ -34,11 +34,11 @@ bool chosen_head_is_one(const char *text);
 int chosen_head_open(chosen_head *chosen, const char *text);
 void chosen_head_close(chosen_head *chosen);
 
-/* Shows a network a mask in which every pixel was retained (hidden_mask.h); does nothing to a closed form. CLI_OK, or a
- * status after a message; chosen_head_close() is due still. */
+/* Shows a network a mask in which every pixel was retained (hidden_mask.h); does nothing to analytic and none. CLI_OK,
+ * or a status after a message; chosen_head_close() is due still. */
 int chosen_head_hide_mask(chosen_head *chosen);
 
-/* Sets the configuration's head, and its head_column_bytes: none for a closed form, what a network needs. */
+/* Sets the configuration's head, and its head_column_bytes: 0 for analytic and none, what a network needs. */
 void chosen_head_configure(const chosen_head *chosen, t3r_config *config);
 
 /* After t3r_init(): binds a network's weights; takes away what `ablation` does, and of `none` the adapting. */

@@ -7,7 +7,7 @@
 
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
-#include "scene/formats/little_floats.h"
+#include "host/little_floats.h"
 #include "scene/scene_format.h"
 
 enum { ROW_BYTES = 32, SCALE_AT = 12, COLOUR_AT = 24, OPACITY_AT = 27, ROTATION_AT = 28 };
@@ -19,8 +19,8 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
     const uint8_t *bytes = (const uint8_t *)user + (size_t)index * ROW_BYTES;
     *row = (scene_row){.opacity_logit = logit_of_byte(bytes[OPACITY_AT])};
     for (int i = 0; i < 3; i++) {
-        const double scale = load_float(bytes + SCALE_AT + 4 * i);
-        row->position[i] = load_float(bytes + 4 * i);
+        const double scale = t3r_load_float(bytes + SCALE_AT + 4 * i);
+        row->position[i] = t3r_load_float(bytes + 4 * i);
         row->harmonic[i] = (bytes[COLOUR_AT + i] / 255.0 - 0.5) / HARMONICS_ZERO;
         row->log_scale[i] = log(scale);
         if (!isfinite(row->position[i]) || !isfinite(scale) || scale < 0) {
@@ -96,8 +96,8 @@ static int splat_write(FILE *file, const scene_source *source, char *error, size
         uint8_t bytes[ROW_BYTES];
         scene_source_row(source, order[i].index, &row);
         for (int k = 0; k < 3; k++) {
-            store_float(bytes + 4 * k, row.position[k]);
-            store_float(bytes + SCALE_AT + 4 * k, exp(row.log_scale[k]));
+            t3r_store_float(bytes + 4 * k, row.position[k]);
+            t3r_store_float(bytes + SCALE_AT + 4 * k, exp(row.log_scale[k]));
             bytes[COLOUR_AT + k] = byte_of(255 * scene_row_colour(&row, k));
         }
         bytes[OPACITY_AT] = byte_of(255 * scene_row_opacity(&row));

@@ -1,11 +1,9 @@
 """Cortex-M boards in QEMU: instructions are counted one by one."""
-import concurrent.futures
-import os
 import pathlib
 
-from firmware import BAREMETAL, BOARDS, INCLUDE, RUNTIME, STAGES, build, choices_of, is_small, row, run, said_by, words
+from firmware import BAREMETAL, BOARDS, STAGES, build, is_small, row, run, said_by, words
 
-CLANG = ("clang", "--target=arm-none-eabi", "-ffreestanding", "-std=c11", "-ffunction-sections", "-fdata-sections")
+CLANG = ("clang", "--target=arm-none-eabi")
 COMPILER, EMULATOR = "arm-none-eabi-gcc", "qemu-system-arm"
 PLUGIN_SOURCE = pathlib.Path(__file__).resolve().parent / "instructions.c"
 PLAIN = "plain C"
@@ -69,27 +67,10 @@ def measured_with(board, kernels, elf, line, options):
             "instructions": sum(instructions.values()), "instructions_of": instructions, "longest_stretch": longest}
 
 
-def by_clang(board, sources, options):
-    """The runtime's sources as objects by clang; the others as they are."""
-    folder = options.out / f"{board}{options.optimize}-clang"
-    folder.mkdir(exist_ok=True)
-
-    def compiled(source):
-        if RUNTIME not in source.parents:
-            return source
-        made = folder / f"{'-'.join(source.relative_to(RUNTIME).parts)}.o"
-        run(*CLANG, options.optimize, *BOARDS[board]["flags"], *INCLUDE, *choices_of(options), "-c", source, "-o", made)
-        return made
-
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(compiled, sources))
-
-
 def firmware_of(board, options):
     link = ["-nostartfiles", "-L", BAREMETAL / "cortex_m", "-T", BAREMETAL / "boards" / board / "board.ld",
             *([f"-Wl,--defsym=RAM_BYTES={options.ram}"] if options.ram else [])]
-    compiled = [lambda sources: by_clang(board, sources, options)] if options.clang else []
-    return build(board, ".elf", [COMPILER], link, options, *compiled)
+    return build(board, ".elf", [COMPILER], link, options, CLANG if options.clang else None)
 
 
 def measure(board, path, options):

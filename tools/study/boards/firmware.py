@@ -5,6 +5,8 @@ import re
 import subprocess
 import sys
 
+import objects
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 BAREMETAL = ROOT / "platform" / "baremetal"
 RUNTIME = ROOT / "runtime"
@@ -13,7 +15,7 @@ FEATURES = tuple(name.lower() for name in re.findall(
 BOARDS = {path.parent.name: json.loads(path.read_text()) for path in sorted(BAREMETAL.glob("boards/*/board.json"))}
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
 # What the firmware takes of the platform: the reader of recordings without a heap.
-READER = ("host/fixed_text", "host/text", "messages/cdr", "messages/fixed_camera", "messages/fixed_double",
+READER = ("host/fixed_text", "host/text", "mcap/mcap_records", "messages/cdr", "messages/fixed_camera", "messages/fixed_double",
           "messages/message_frame", "messages/ros_messages", "messages/ros_schemas", "recording/frame_reader",
           "recording/pixel_layout")
 INCLUDES = (RUNTIME / "include", RUNTIME, ROOT / "platform", BAREMETAL, ROOT / "quant" / "heads")
@@ -34,7 +36,7 @@ def left_out(options):
     return [feature for feature in FEATURES if feature not in options.features]
 
 
-CLOSED_FORM = {"analytic": [], "moment": ["-DMOMENT"]} # heads without weights: what says so to the compiler
+CLOSED_FORM = "analytic" # the head without weights
 
 
 def is_small(options):
@@ -43,39 +45,42 @@ def is_small(options):
 
 
 def sources_of(board, options):
+    """The firmware's own, and the runtime's."""
     rows = [line.split() for line in (RUNTIME / "features.txt").read_text().splitlines() if not line.startswith("#")]
     absent = {path for feature, pattern in rows if feature in left_out(options)
               for path in RUNTIME.glob(pattern) if not path.stem.endswith("_absent")}
-    runtime = sorted(path for path in RUNTIME.rglob("*.c") if "x86" not in path.parts and path not in absent)
-    weights = [] if options.head in CLOSED_FORM else [ROOT / "quant" / "heads" / f"{options.head}.c"]
+    runtime = [path for path in objects.sources() if path not in absent]
+    weights = [] if options.head == CLOSED_FORM else [ROOT / "quant" / "heads" / f"{options.head}.c"]
     reader = () if is_small(options) else READER
     other_frames = "frames_recording" if is_small(options) else "frames_planes"
     port = [*sorted(BAREMETAL.glob("*.c")), *sorted((BAREMETAL / BOARDS[board]["port"]).glob("*.c"))]
-    return [*(path for path in port if path.stem != other_frames), *runtime, *weights,
-            *(ROOT / "platform" / f"{name}.c" for name in reader)]
+    own = [*(path for path in port if path.stem != other_frames), *weights,
+           *(ROOT / "platform" / f"{name}.c" for name in reader)]
+    return own, runtime
+
+
+def features_of(options):
+    """The compiler's words for the runtime."""
+    return [*(f"-DT3R_FEATURE_{name.upper()}=0" for name in left_out(options)), *(["-flto=auto"] if options.lto else [])]
 
 
 def choices_of(options):
     """The compiler's words for features, weights and the firmware's kernels."""
-    head = CLOSED_FORM.get(options.head, [f"-DHEAD=t3r_head_{options.head}", f"-DHEAD_BYTES=t3r_head_{options.head}_bytes"])
-    return [*head, *(f"-DT3R_FEATURE_{name.upper()}=0" for name in left_out(options)),
-            *(["-DPLAIN_C"] if is_small(options) else []), *(["-flto=auto"] if options.lto else [])]
+    weights = f"t3r_head_{options.head}"
+    head = [] if options.head == CLOSED_FORM else [f"-DHEAD={weights}", f"-DHEAD_BYTES={weights}_bytes"]
+    return [*head, *features_of(options), *(["-DPLAIN_C"] if is_small(options) else [])]
 
 
-def build(board, suffix, compiler, link, options, compiled=lambda sources: sources):
-    """The board's firmware, by this compiler with these words for the linker; `compiled` may make objects of sources
-    by another."""
+def build(board, suffix, compiler, link, options, runtime_compiler=None):
+    """The board's firmware, by this compiler with these words for the linker; the runtime may be by another."""
     parts = [f"{board}-{options.head}{options.optimize}", *(["lto"] if options.lto else []),
              *(["clang"] if options.clang else []),
              *(f"no_{name}" for name in left_out(options)), *([str(options.ram)] if options.ram else [])]
     made = options.out / f"{'-'.join(parts)}{suffix}"
-    sources = sources_of(board, options)
-    given = [*sources, *(path for folder in INCLUDES for path in folder.rglob("*.h")), *BAREMETAL.rglob("*.ld"),
-             *BAREMETAL.rglob("*.json")]
-    if made.exists() and made.stat().st_mtime > max(path.stat().st_mtime for path in given):
-        return made
-    run(*compiler, *FLAGS, options.optimize, *BOARDS[board]["flags"], *INCLUDE, *choices_of(options),
-        *compiled(sources), *link, "-o", made)
+    own, runtime = sources_of(board, options)
+    flags = [options.optimize, *BOARDS[board]["flags"]]
+    compiled = objects.compiled([*(runtime_compiler or compiler), *flags, *features_of(options)], runtime)
+    run(*compiler, *FLAGS, *flags, *INCLUDE, *choices_of(options), *own, *compiled, *link, "-o", made)
     return made
 
 
@@ -94,7 +99,7 @@ def words(path, options):
     width, height = options.size
     return [f"frames={planes(path, options) if is_small(options) else path}", f"width={width}", f"height={height}", f"views={options.views}",
             f"gaussians={options.gaussians}", f"clusters={options.clusters}", f"refine={options.refine}",
-            f"learned={int(options.head not in CLOSED_FORM)}"]
+            f"learned={int(options.head != CLOSED_FORM)}"]
 
 
 def said_by(board, *command):

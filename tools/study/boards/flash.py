@@ -9,9 +9,9 @@ from firmware import words
 BOARD = "mps2-an500"
 # What is in them, head, context views, features, and the most bytes of flash.
 FIRMWARES = (("one view, `analytic`", "analytic", 1, (), 48 << 10),
-             ("one view, `nano`, refinement", "nano", 1, ("learned", "refinement"), 80 << 10),
+             ("one view, `tiny`, refinement", "tiny", 1, ("learned", "refinement"), 80 << 10),
              ("one view, `small`, refinement", "small", 1, ("learned", "refinement"), 110 << 10),
-             ("two views, `nano`, refinement", "nano", 2, ("learned", "refinement", "comparison"), None))
+             ("two views, `tiny`, refinement", "tiny", 2, ("learned", "refinement", "comparison"), None))
 SECTION = """
 ## Flash
 

@@ -1,8 +1,8 @@
 """The firmware as a program of Linux: for this processor, or for another that QEMU emulates."""
 import pathlib
 import re
-import shutil
 
+import objects
 from firmware import BAREMETAL, INCLUDE, READER, ROOT, RUNTIME, run, said_by, words
 
 FLAGS = ("-std=c11", "-O2", "-static", "-Wall", "-Wextra", "-Werror")
@@ -27,19 +27,20 @@ TARGETS = (
 def absent(target):
     """A tool that is not here, or None."""
     _, compiler, emulator, _ = target
-    return next((tool for tool in (compiler[0], emulator) if tool is not None and shutil.which(tool) is None), None)
+    return objects.absent(compiler[0], emulator)
 
 
 def sources():
     port = [path for path in BAREMETAL.glob("*.c") if path.stem != "frames_planes"]
-    return [*sorted(port), *sorted((BAREMETAL / "linux").glob("*.c")), *sorted(RUNTIME.rglob("*.c")),
+    return [*sorted(port), *sorted((BAREMETAL / "linux").glob("*.c")),
             ROOT / "quant" / "heads" / "small.c", *(ROOT / "platform" / f"{name}.c" for name in READER)]
 
 
 def program(target, options):
     _, compiler, _, _ = target
     made = options.out / f"firmware-{compiler[0]}"
-    run(*compiler, *FLAGS, *INCLUDE, "-DHEAD=t3r_head_small", "-DHEAD_BYTES=t3r_head_small_bytes", *sources(), "-o", made)
+    run(*compiler, *FLAGS, *INCLUDE, "-DHEAD=t3r_head_small", "-DHEAD_BYTES=t3r_head_small_bytes", *sources(),
+        *objects.compiled([*compiler, "-O2"]), "-o", made)
     return made
 
 

@@ -2,6 +2,7 @@
  * it: Kerbl et al. 2023, section 4 and appendix A. */
 #include <math.h>
 
+#include "geometry/quaternion.h"
 #include "study/rivals/splat_view.h"
 
 #define NEAR (1.0 / 32)     /* camera z in scene units at which splats are culled */
@@ -30,7 +31,10 @@ typedef struct projection {
 
 static void project_shape(const splat_camera *camera, const double *p, projection *j)
 {
-    splat_rotation(&p[SPLAT_ROTATION], j->axes);
+    const double *q = &p[SPLAT_ROTATION];
+    double unit[4] = {q[0], q[1], q[2], q[3]};
+    quaternion_normalise(unit);
+    quaternion_matrix(unit, j->axes);
     for (int k = 0; k < 3; k++) {
         j->scale[k] = exp(p[SPLAT_LOG_SCALE + k]);
     }

@@ -63,7 +63,7 @@ def small_u_net(channels, hidden):
     ]
 
 
-HEADS = {"tiny": small_u_net(8, 8), "nano": u_net(8, 16, 16, 10), "small": u_net(20, 28, 20, 20), "base": u_net(40, 44, 32, 32)}
+HEADS = {"tiny": small_u_net(8, 8), "small": u_net(20, 28, 20, 20)}
 
 
 def multiply_accumulates(layers, kept=1.0):
@@ -208,6 +208,8 @@ def widened(head, layers, seed=0):
             for source in new["sources"]:  # channels of the old inputs among the new ones
                 places += range(first, first + width[source])
                 first += wide[source]
+            if new["kind"] == "depthwise":
+                places = [0]  # each output has one input
             outputs, point = old["outputs"], new["kind"] == "point"
             rows = made.weight[n][:, :outputs] if point else made.weight[n][:outputs]
             rows.zero_()

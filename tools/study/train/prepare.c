@@ -8,7 +8,7 @@
 #include "head/head.h"
 #include "head/head_features.h"
 #include "head/head_views.h"
-#include "pipeline.h"
+#include "stages.h"
 #include "prepare_rival.h"
 #include "state/state.h"
 #include "trim3r_heads.h"

@@ -51,7 +51,7 @@ enum {
 static const struct argp_option options[] = {
     {"points", KEY_POINTS, "FILE", OPTION_READS, "points to cluster instead of the room's: raw float32, N x 6", 0},
     {"head", KEY_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
-     "network of head_gmac_per_s and network_ms: tiny, nano, small (default), base, or FILE.t3w", 0},
+     "network of head_gmac_per_s and network_ms: tiny, small (default), or FILE.t3w", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0,
      "source of depth of the scenes that are built and drawn: sensor (default), or stereo, from the colours", 0},
     {"stages", KEY_STAGES, "LIST", 0, "rows to time, as kmeans_ms,stereo_ms (all)", 0},
@@ -130,7 +130,7 @@ static const struct argp argp = {
         "thread, or with more of them elapsed time."
         "\vExamples:\n"
         "  trim3r bench\n"
-        "  trim3r bench --head base\n"
+        "  trim3r bench --head tiny\n"
         "  trim3r bench --depth stereo\n"
         "  trim3r bench --json --runs 21\n"
         "  trim3r bench --stages build_small_ms --profile\n"

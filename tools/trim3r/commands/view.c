@@ -104,7 +104,7 @@ static const struct argp argp = {
     .doc = "Show a scene or a recording in a browser, by the runtime itself as WebAssembly."
            "\vExamples:\n"
            "  trim3r view room.mcap --context 0,2 -o view.html\n"
-           "  trim3r view room.mcap --context 0,2 --keep 5% --head moment\n"
+           "  trim3r view room.mcap --context 0,2 --keep 5% --head tiny\n"
            "  trim3r view scene.ply -o view.html\n"
            "  trim3r view scene.ply room.mcap --context 0,2 --port 8080\n\n"
            "The page builds scenes of a recording itself: a slider changes the budget, and mask, SuperClusters, "

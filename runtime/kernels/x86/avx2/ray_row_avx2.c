@@ -7,18 +7,9 @@
 
 #define TARGET T3R_AVX2
 #define LANES 8
+#define OF(instruction) _mm256_##instruction
 #define RAY_ROW t3r_ray_row_avx2
 #include "kernels/lanes/ray_lanes.h"
-
-static inline TARGET pairs multiply(ulanes a, ulanes b)
-{
-    return (pairs)_mm256_mul_epu32((__m256i)a, (__m256i)b);
-}
-
-static inline TARGET pairs multiply_signed(lanes a, lanes b)
-{
-    return (pairs)_mm256_mul_epi32((__m256i)a, (__m256i)b);
-}
 
 static inline TARGET lanes join(pairs even, pairs odd)
 {

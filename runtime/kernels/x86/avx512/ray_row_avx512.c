@@ -7,18 +7,9 @@
 
 #define TARGET T3R_AVX512
 #define LANES 16
+#define OF(instruction) _mm512_##instruction
 #define RAY_ROW t3r_ray_row_avx512
 #include "kernels/lanes/ray_lanes.h"
-
-static inline TARGET pairs multiply(ulanes a, ulanes b)
-{
-    return (pairs)_mm512_mul_epu32((__m512i)a, (__m512i)b);
-}
-
-static inline TARGET pairs multiply_signed(lanes a, lanes b)
-{
-    return (pairs)_mm512_mul_epi32((__m512i)a, (__m512i)b);
-}
 
 static inline TARGET lanes join(pairs even, pairs odd)
 {

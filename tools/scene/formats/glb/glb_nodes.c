@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/tables/json_input.h"
-#include "posing/quaternion.h"
+#include "geometry/quaternion.h"
 #include "host/reason.h"
 
 #define NO_NODE UINT32_MAX
@@ -145,21 +145,17 @@ static int of_matrix(const node_list *l, uint32_t index, affine *out)
 /* A scale, then a rotation x y z w, then a translation. */
 static int of_parts(const node_list *l, uint32_t index, affine *out)
 {
-    double rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1}, unit[4], length = 0;
+    double rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};
     *out = (affine){.translation = {0}};
     if (get_numbers(l, index, "rotation", 4, rotation) != 0 || get_numbers(l, index, "scale", 3, scale) != 0 ||
         get_numbers(l, index, "translation", 3, out->translation) != 0) {
         return -1;
     }
-    for (int i = 0; i < 4; i++) {
-        length += rotation[i] * rotation[i];
-    }
-    if (!(fabs(length - 1) <= 1e-2)) {
+    double unit[4] = {rotation[3], rotation[0], rotation[1], rotation[2]};
+    if (!(fabs(quaternion_norm(unit) - 1) <= 5e-3)) {
         return FAIL(l, "node %" PRIu32 ": its rotation has not the length 1", index);
     }
-    for (int i = 0; i < 4; i++) {
-        unit[(i + 1) % 4] = rotation[i] / sqrt(length);
-    }
+    quaternion_normalise(unit);
     quaternion_matrix(unit, out->linear);
     for (int i = 0; i < 9; i++) {
         out->linear[i] *= scale[i % 3];
@@ -198,8 +194,7 @@ static affine joined(const affine *above, const affine *below)
 static int place(const node_list *l, const affine *whole, glb_placement *out)
 {
     const double *m = whole->linear;
-    const double volume =
-        m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+    const double volume = matrix_determinant(m);
     double rotation[9], quaternion[4];
     if (!isfinite(volume) || !(volume > 0)) {
         return FAIL(l,

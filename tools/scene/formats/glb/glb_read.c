@@ -3,13 +3,13 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "cli/tables/json_input.h"
 #include "mcap/reader_limits.h"
 #include "host/reason.h"
 #include "scene/formats/glb/glb.h"
 #include "scene/formats/glb/glb_nodes.h"
-#include "scene/formats/little_floats.h"
+#include "host/little_floats.h"
 
 typedef struct reader {
     const uint8_t *binary;
@@ -198,7 +198,7 @@ static double number_of(const accessor *a, uint32_t row, uint32_t item)
     case GLB_USHORT:
         return a->normalized ? t3r_load_le16(bytes) / 65535.0 : t3r_load_le16(bytes);
     default:
-        return load_float(bytes);
+        return t3r_load_float(bytes);
     }
 }
 

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/glb/glb.h"
-#include "scene/formats/little_floats.h"
+#include "host/little_floats.h"
 
 /* One attribute behind the other, COLOR_0 last: what programs that do not know Gaussians draw, as points. */
 typedef struct glb_layout {
@@ -142,7 +142,7 @@ static void put_attribute(const scene_row *row, uint32_t attribute, uint8_t *out
                            : attribute == GLB_HARMONIC ? row->harmonic
                                                        : row->rest[attribute - GLB_REST];
     for (uint32_t i = 0; i < glb_components(attribute); i++) {
-        store_float(out + 4 * i, values[i]);
+        t3r_store_float(out + 4 * i, values[i]);
     }
 }
 

@@ -6,7 +6,7 @@
 
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
-#include "scene/formats/little_floats.h"
+#include "host/little_floats.h"
 
 const char *const packed_ply_bounds[PACKED_BOUNDS] = {
     "min_x",       "min_y",       "min_z",       "max_x", "max_y", "max_z", "min_scale_x", "min_scale_y", "min_scale_z",
@@ -117,7 +117,8 @@ static double share(uint32_t word, uint32_t shift, uint32_t bits)
 /* Between the bounds of a chunk that begin at `low` and at `high`. */
 static double between(const packed_file *file, const uint8_t *chunk, int low, int high, double at)
 {
-    return load_float(chunk + file->chunks.offset[low]) * (1 - at) + load_float(chunk + file->chunks.offset[high]) * at;
+    return t3r_load_float(chunk + file->chunks.offset[low]) * (1 - at) +
+           t3r_load_float(chunk + file->chunks.offset[high]) * at;
 }
 
 static void unpack_rotation(uint32_t word, double rotation[4])

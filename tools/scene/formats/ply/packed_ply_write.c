@@ -5,7 +5,7 @@
 
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
-#include "scene/formats/little_floats.h"
+#include "host/little_floats.h"
 #include "scene/formats/ply/packed_ply.h"
 #include "scene/formats/ply/ply.h"
 #include "scene/scene_format.h"
@@ -126,7 +126,7 @@ static void write_bounds(FILE *file, const chunk *c)
 {
     for (int i = 0; i < PACKED_BOUNDS; i++) {
         uint8_t bytes[4];
-        store_float(bytes, c->bounds[i]);
+        t3r_store_float(bytes, c->bounds[i]);
         fwrite(bytes, 1, sizeof bytes, file);
     }
 }

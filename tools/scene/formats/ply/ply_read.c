@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "host/reason.h"
-#include "scene/formats/little_floats.h"
+#include "host/little_floats.h"
 #include "scene/formats/ply/packed_ply.h"
 #include "scene/formats/ply/ply_header.h"
 #include "scene/scene_rows.h"
@@ -102,7 +102,7 @@ static int read_vertex(void *user, uint32_t index, scene_row *row, char *error, 
     for (uint32_t i = 0; i < vertices->value_count; i++) {
         const ply_property *property = vertices->values[i];
         const uint8_t *bytes = vertices->rows + at + property->offset;
-        value[i] = property->bytes == 8 ? load_double(bytes) : load_float(bytes);
+        value[i] = property->bytes == 8 ? t3r_load_double(bytes) : t3r_load_float(bytes);
         if (!is_meant(i, value[i])) {
             return t3r_reason(error, error_bytes, "byte %" PRIu64 ": vertex %" PRIu32 ": %s is not a finite number",
                               vertices->at + at + property->offset, index, property->name);

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/formats/little_floats.h"
+#include "host/little_floats.h"
 #include "scene/scene_rows.h"
 
 static void write_properties(FILE *file, const char *names)
@@ -22,7 +22,7 @@ static void put_floats(FILE *file, const double *values, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
         uint8_t bytes[4];
-        store_float(bytes, values[i]);
+        t3r_store_float(bytes, values[i]);
         fwrite(bytes, 1, sizeof bytes, file);
     }
 }

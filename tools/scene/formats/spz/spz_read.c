@@ -5,7 +5,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "mcap/reader_limits.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"

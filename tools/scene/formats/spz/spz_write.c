@@ -5,7 +5,7 @@
 #include <string.h>
 #include <zstd.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/spz/spz.h"

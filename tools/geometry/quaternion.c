@@ -1,7 +1,59 @@
-#include "posing/quaternion.h"
+#include "geometry/quaternion.h"
 
 #include <math.h>
 #include <string.h>
+
+double quaternion_norm(const double q[4])
+{
+    return sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+}
+
+void quaternion_normalise(double q[4])
+{
+    const double norm = quaternion_norm(q);
+    for (int i = 0; i < 4; i++) {
+        q[i] /= norm;
+    }
+}
+
+void quaternion_multiply(const double a[4], const double b[4], double out[4])
+{
+    out[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
+    out[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
+    out[2] = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
+    out[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
+}
+
+void quaternion_conjugate(const double q[4], double out[4])
+{
+    out[0] = q[0];
+    for (int i = 1; i < 4; i++) {
+        out[i] = -q[i];
+    }
+}
+
+void quaternion_rotate(const double q[4], const double v[3], double out[3])
+{
+    const double *u = q + 1, in[3] = {v[0], v[1], v[2]};
+    const double t[3] = {2 * (u[1] * v[2] - u[2] * v[1]), 2 * (u[2] * v[0] - u[0] * v[2]),
+                         2 * (u[0] * v[1] - u[1] * v[0])};
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = in[i] + q[0] * t[i] + u[j] * t[k] - u[k] * t[j];
+    }
+}
+
+void matrix_apply(const double m[9], const double v[3], double out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        out[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
+    }
+}
+
+double matrix_determinant(const double m[9])
+{
+    return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+}
 
 /* The nearest rotation: Newton's iteration for the polar factor, R <- R (3 I - R^T R) / 2. Quadratic: an error of
  * 1e-3 is below 1e-12 after two steps. */
@@ -24,7 +76,7 @@ static void orthonormalise(double r[9])
 }
 
 /* Shepperd's method: divides by the largest of the four components, which is at least 1/2. */
-static void to_quaternion(const double r[9], double q[4])
+void quaternion_of_rotation(const double r[9], double q[4])
 {
     double trace = r[0] + r[4] + r[8];
     double squares[4] = {trace, r[0], r[4], r[8]};
@@ -46,10 +98,9 @@ static void to_quaternion(const double r[9], double q[4])
         q[1 + j] = r[i * 3 + j] + r[j * 3 + i];
         q[1 + k] = r[i * 3 + k] + r[k * 3 + i];
     }
-    double norm = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    double sign = q[0] < 0 ? -1 : 1;
+    const double norm = q[0] < 0 ? -quaternion_norm(q) : quaternion_norm(q);
     for (int i = 0; i < 4; i++) {
-        q[i] *= sign / norm;
+        q[i] /= norm;
     }
 }
 
@@ -68,16 +119,13 @@ const char *quaternion_of(const double matrix[9], double quaternion[4])
             }
         }
     }
-    double determinant = matrix[0] * (matrix[4] * matrix[8] - matrix[5] * matrix[7]) -
-                         matrix[1] * (matrix[3] * matrix[8] - matrix[5] * matrix[6]) +
-                         matrix[2] * (matrix[3] * matrix[7] - matrix[4] * matrix[6]);
-    if (determinant < 0) {
+    if (matrix_determinant(matrix) < 0) {
         return "the rotation mirrors (its determinant is -1)";
     }
     double r[9];
     memcpy(r, matrix, sizeof r);
     orthonormalise(r);
-    to_quaternion(r, quaternion);
+    quaternion_of_rotation(r, quaternion);
     return NULL;
 }
 

@@ -1,10 +1,11 @@
-/* Rigid transforms in doubles: from a child's frame to its parent's. */
+/* Rigid transforms in doubles, from a child's frame to its parent's: poses of cameras, and where one sensor sits on
+ * another. */
 #ifndef TRIM3R_TOOLS_RIGID_H
 #define TRIM3R_TOOLS_RIGID_H
 
 typedef struct rigid {
     double position[3];
-    double rotation[4]; /* unit quaternion w x y z */
+    double rotation[4]; /* unit quaternion, as geometry/quaternion.h has it */
 } rigid;
 
 extern const rigid rigid_identity;

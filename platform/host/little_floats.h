@@ -1,13 +1,12 @@
-/* Floats of 32 and 64 bits to and from little-endian bytes. */
-#ifndef TRIM3R_TOOLS_LITTLE_FLOATS_H
-#define TRIM3R_TOOLS_LITTLE_FLOATS_H
+/* Floats of 32 and 64 bits in little-endian bytes: little_endian.h for machines that have them. */
+#ifndef T3R_PLATFORM_LITTLE_FLOATS_H
+#define T3R_PLATFORM_LITTLE_FLOATS_H
 
-#include <stdint.h>
 #include <string.h>
 
-#include "host/bytes.h"
+#include "core/little_endian.h"
 
-static inline double load_float(const uint8_t *bytes)
+static inline float t3r_load_float(const uint8_t *bytes)
 {
     const uint32_t bits = t3r_load_le32(bytes);
     float value;
@@ -15,7 +14,7 @@ static inline double load_float(const uint8_t *bytes)
     return value;
 }
 
-static inline double load_double(const uint8_t *bytes)
+static inline double t3r_load_double(const uint8_t *bytes)
 {
     const uint64_t bits = t3r_load_le64(bytes);
     double value;
@@ -24,7 +23,7 @@ static inline double load_double(const uint8_t *bytes)
 }
 
 /* Rounded to nearest. */
-static inline void store_float(uint8_t *bytes, double value)
+static inline void t3r_store_float(uint8_t *bytes, double value)
 {
     const float narrow = (float)value;
     uint32_t bits;

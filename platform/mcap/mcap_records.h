@@ -1,0 +1,89 @@
+/* MCAP records in memory (mcap.dev/spec), for the reader of whole files and for that of firmware: no heap, no files.
+ * Of a record its first bytes may be there alone: fields that reach past them are empty or 0, and `failed` is set. */
+#ifndef T3R_PLATFORM_MCAP_RECORDS_H
+#define T3R_PLATFORM_MCAP_RECORDS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "host/text.h"
+#include "mcap.h"
+
+/* ---- fields, one after the other ---- */
+
+typedef struct t3r_mcap_fields {
+    const uint8_t *bytes;
+    size_t count, at;
+    bool failed; /* one reached past the end; those after it do, too */
+} t3r_mcap_fields;
+
+/* NULL past the end. */
+const uint8_t *t3r_mcap_take(t3r_mcap_fields *in, uint64_t count);
+uint16_t t3r_mcap_take_u16(t3r_mcap_fields *in);
+uint32_t t3r_mcap_take_u32(t3r_mcap_fields *in);
+uint64_t t3r_mcap_take_u64(t3r_mcap_fields *in);
+t3r_text t3r_mcap_take_text(t3r_mcap_fields *in);
+
+/* ---- records ---- */
+
+typedef struct t3r_mcap_head {
+    uint8_t opcode;
+    uint64_t bytes; /* of the fields, which follow */
+} t3r_mcap_head;
+
+/* Reads the head of the record at `bytes`, `rest` bytes before the end of its chunk or file: at most
+ * T3R_MCAP_RECORD_HEAD_BYTES of them are read. Returns whether the record ends by then. */
+bool t3r_mcap_head_of(const uint8_t *bytes, uint64_t rest, t3r_mcap_head *head);
+
+/* Whether a record of that kind may stand in a chunk; extensions may. */
+bool t3r_mcap_in_chunk(uint8_t opcode);
+
+typedef struct t3r_mcap_schema_record {
+    uint16_t id; /* 0: to be ignored */
+    t3r_text name, encoding, definition;
+} t3r_mcap_schema_record;
+t3r_mcap_schema_record t3r_mcap_schema_of(t3r_mcap_fields *in);
+
+typedef struct t3r_mcap_channel_record {
+    uint16_t id, schema;
+    t3r_text topic, encoding;
+} t3r_mcap_channel_record;
+t3r_mcap_channel_record t3r_mcap_channel_of(t3r_mcap_fields *in);
+
+typedef struct t3r_mcap_message_record {
+    uint16_t channel;
+    uint32_t sequence;
+    uint64_t log_ns, publish_ns;
+    const uint8_t *data; /* as much as is there */
+    size_t bytes;
+} t3r_mcap_message_record;
+#define T3R_MCAP_MESSAGE_FIELDS 22u /* bytes before the data */
+t3r_mcap_message_record t3r_mcap_message_of(t3r_mcap_fields *in);
+
+typedef struct t3r_mcap_chunk_record {
+    uint64_t first_ns, last_ns;
+    uint64_t unpacked_bytes, packed_bytes;
+    uint32_t crc; /* of the records; 0: not known */
+    t3r_text compression;
+} t3r_mcap_chunk_record;
+#define T3R_MCAP_CHUNK_FIELDS                                                                                          \
+    48u /* bytes before the records, with a name of 8 bytes; "zstd", "lz4" and "" are shorter */
+/* The records follow. */
+t3r_mcap_chunk_record t3r_mcap_chunk_of(t3r_mcap_fields *in);
+
+/* The name; the pairs follow, as many bytes of them as are there. */
+typedef struct t3r_mcap_metadata_record {
+    t3r_text name;
+    t3r_mcap_fields pairs;
+} t3r_mcap_metadata_record;
+t3r_mcap_metadata_record t3r_mcap_metadata_of(t3r_mcap_fields *in);
+/* Takes the next pair. Returns false at the end of the pairs, and with pairs->failed where one is cut off. */
+bool t3r_mcap_pair_of(t3r_mcap_fields *pairs, t3r_text *key, t3r_text *value);
+
+/* ---- files ---- */
+
+/* What is wrong with the first bytes of a file, 8 of them and more if there are, or NULL. */
+const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count);
+
+#endif

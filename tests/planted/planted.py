@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+"""planted.py FOLDER [KIND...] | --list: the tests that run by day notice a fault of each kind.
+
+A copy of the tree in FOLDER gets one fault at a time; the test that shall notice it passes without the fault, and fails with
+it. --list prints the table of docs/development.md, which must be that of FAULTS. Builds of an earlier run in FOLDER are
+used again.
+"""
+import pathlib
+import shutil
+import subprocess
+import sys
+from typing import NamedTuple
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))
+
+from checks import check, done, run  # noqa: E402
+
+PAGE = ROOT / "docs" / "development.md"
+
+
+class Fault(NamedTuple):
+    kind: str     # one word
+    what: str     # for the table
+    area: str     # folder in which the file is found by its name, wherever it lies
+    file: str
+    was: str      # "" = the file's end
+    becomes: str
+    preset: str
+    targets: str  # what the test needs built
+    test: str
+
+
+FAULTS = (
+    Fault("bits", "plain C rounds another way", "runtime", "blend.c", "(q_q17[i] + 8) >> 4", "(q_q17[i] + 7) >> 4",
+          "release", "golden_driver", "golden_stages_ways"),
+    Fault("vectors", "an AVX2 loop rounds another way", "runtime", "luma_at_avx2.c", "(sum + 32768) >> 16",
+          "(sum + 32767) >> 16", "release", "test_kernels", "kernels"),
+    Fault("endian", "bytes are not swapped where the machine is big-endian", "runtime", "little_endian.h",
+          "__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__", "0", "release", "", "network_big_endian"),
+    Fault("float", "the runtime multiplies real numbers", "runtime", "blend.c", "",
+          "int t3r_planted(int x);\nint t3r_planted(int x)\n{\n    return (int)(0.7f * (float)x);\n}\n",
+          "release", "", "proof_symbols_cortex_m3"),
+    Fault("heap", "the runtime allocates", "runtime", "blend.c", "",
+          "void *malloc(unsigned long);\nvoid *t3r_planted(void);\nvoid *t3r_planted(void)\n{\n    return malloc(8);\n}\n",
+          "release", "trim3r_runtime", "proof_symbols"),
+    Fault("global", "the runtime keeps state between calls", "runtime", "blend.c", "", "int t3r_planted = 1;\n",
+          "release", "trim3r_runtime", "proof_symbols"),
+    Fault("stack", "a function has a table of 16 KiB on the stack", "runtime", "build.c", "    t3r_view views[T3R_MAX_VIEWS];\n",
+          "    t3r_view views[T3R_MAX_VIEWS];\n    volatile char planted[16384];\n    planted[0] = 0;\n",
+          "release", "", "proof_stack_cortex_m3"),
+    Fault("structure", "the foundation includes the interface's room", "runtime", "fixed.c", "#include \"fixed.h\"\n",
+          "#include \"fixed.h\"\n\n#include \"api/checks.h\"\n", "release", "trim3r trim3r_quant tools_ros", "proof_structure"),
+    Fault("value", "a measure of pictures is a little off", "tools", "metrics.c", "(uint64_t)(difference * difference);",
+          "(uint64_t)(difference * difference) + 1;", "asan", "test_metrics", "metrics"),
+    Fault("memory", "a message is read beyond its end", "platform", "cdr.c", "reader->count - reader->at < padding + size",
+          "reader->count - reader->at < padding", "asan", "test_recording_foreign", "recording_foreign"),
+    Fault("undefined", "a byte is shifted into the sign", "platform", "bytes.h", "(uint32_t)b[3] << 24",
+          "(uint32_t)(b[3] << 24)", "asan", "test_recording", "recording"),
+    Fault("file", "a file has one Gaussian more than its bytes", "tools", "splat.c", "(uint32_t)(count / ROW_BYTES)",
+          "(uint32_t)(count / ROW_BYTES + 1)", "asan", "fuzz_splat", "seeds_splat"),
+    Fault("race", "a thread reads what another still writes", "platform", "threads.c",
+          "return atomic_load_explicit(&threads->busy, memory_order_acquire) == 0;",
+          "return atomic_load_explicit(&threads->busy, memory_order_relaxed) == 0;", "tsan", "test_threads", "threads"),
+    Fault("page", "a page names an option that is not there", "docs", "cli.md", "--gaussians", "--gausians",
+          "release", "trim3r", "docs_words"),
+)
+
+
+def table():
+    rows = [f"| {fault.kind} | {fault.what} | `{fault.test}` |" for fault in FAULTS]
+    return "\n".join(["| kind | planted | found by |", "|---|---|---|", *rows])
+
+
+def copy_of_tree(folder):
+    """The tracked files, each written only where it differs, so that builds stay fresh."""
+    for name in run("git", "-C", ROOT, "ls-files", "--cached", "--others", "--exclude-standard").stdout.splitlines():
+        source, copy = ROOT / name, folder / name
+        if not source.is_file():
+            continue
+        if not copy.exists() or copy.read_bytes() != source.read_bytes():
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, copy)
+
+
+def file_of(folder, fault):
+    found = sorted((folder / fault.area).rglob(fault.file))
+    check(len(found) == 1, f"{fault.kind}: there is one {fault.file} in {fault.area}: {found}")
+    return found[0]
+
+
+def build(folder, preset, targets):
+    if targets:
+        run("cmake", "--build", folder / "build" / preset, "--target", *targets.split(), "--parallel", "2")
+
+
+def passes(folder, fault):
+    """Whether the test passes in a fresh build; anything but a verdict of the test itself ends this one."""
+    build(folder, fault.preset, fault.targets)
+    ended = subprocess.run(["ctest", "--test-dir", folder / "build" / fault.preset, "-R", f"^{fault.test}$", "--no-tests=error"],
+                           capture_output=True, text=True)
+    check("1 tests failed out of 1" in ended.stdout or "100% tests passed" in ended.stdout, f"{fault.test}: {ended.stdout}")
+    check("Skipped" not in ended.stdout, f"{fault.test} is skipped: {ended.stdout}")
+    return ended.returncode == 0
+
+
+def main():
+    if sys.argv[1:] == ["--list"]:
+        print(table())
+        return
+    folder, kinds = pathlib.Path(sys.argv[1]), sys.argv[2:]
+    check(table() in PAGE.read_text(), "docs/development.md has another table: planted.py --list prints it")
+    chosen = [fault for fault in FAULTS if not kinds or fault.kind in kinds]
+    copy_of_tree(folder)
+    for preset in sorted({fault.preset for fault in chosen}):
+        build_folder = folder / "build" / preset
+        words = ["-DT3R_TESTS=ON", "-Wno-dev"]
+        if not build_folder.exists() and shutil.which("ninja"):
+            words += ["-G", "Ninja"]
+        if shutil.which("ccache"):
+            words += ["-DCMAKE_C_COMPILER_LAUNCHER=ccache"]
+        run("cmake", "-S", folder, "--preset", preset, "-B", build_folder, *words)
+    missed = []
+    for fault in chosen:
+        path = file_of(folder, fault)
+        text = path.read_text()
+        check(fault.was in text, f"{fault.kind}: {path} no longer has '{fault.was}': plant another fault in {__file__}")
+        check(passes(folder, fault), f"{fault.test} fails without the fault '{fault.kind}'")
+        try:
+            path.write_text(text.replace(fault.was, fault.becomes) if fault.was else text + fault.becomes)
+            found = not passes(folder, fault)
+        finally:
+            path.write_text(text)
+        print(f"{fault.kind}: {fault.what}: {'found' if found else 'MISSED'} by {fault.test}", flush=True)
+        missed += [] if found else [fault.kind]
+    check(not missed, f"missed: {missed}")
+    done()
+
+
+if __name__ == "__main__":
+    main()

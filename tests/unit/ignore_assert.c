@@ -1,0 +1,6 @@
+/* For tests that misuse the runtime on purpose, and see what it returns. */
+#include "noted_assert.h"
+
+void noted_assertion(void)
+{
+}
