@@ -34,14 +34,7 @@ static uint32_t head_column_bytes_for(const drawn_case *c, const t3r_config *k, 
 {
     const uint32_t kind = drawn >> 8, more = drawn & 255;
     const uint32_t needed = t3r_head_column_bytes(c->weights, c->weights_bytes, k->width);
-    switch (kind) {
-    case 0:
-        return T3R_HEAD_WORK_(k->width, k->height, needed) <= T3R_HEAD_WORK_(k->width, k->height, 0) ? 0 : needed;
-    case 1:
-        return T3R_MAX(needed, T3R_HEAD_COLUMN_BYTES);
-    default:
-        return needed + (kind == 2 ? more : 0);
-    }
+    return kind == 0 ? T3R_MAX(needed, T3R_HEAD_COLUMN_BYTES) : needed + (kind == 1 ? more : 0);
 }
 
 /* What keeps a case small. */
@@ -50,7 +43,7 @@ static t3r_config most_drawn(void)
     t3r_config most = most_settings();
     most.clusters = 43;
     most.cluster_batches = 3;
-    most.head_column_bytes = 1023;
+    most.head_column_bytes = 767;
     most.refine = 2;
     most.depth = 0; /* by the case, as stream is */
     most.bridge_radius = MOST_BRIDGE - 1;

@@ -104,8 +104,8 @@ static void plan_equals_macros(void **state)
         const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.stream ? 1 : c.clusters, c.render_width,                 \
-               c.render_height, c.head_column_bytes, keep, c.refine, c.depth == T3R_DEPTH_STEREO, c.workers,      \
-               c.warm, c.remember)
+               c.render_height, c.head_column_bytes, keep, c.refine, c.depth == T3R_DEPTH_STEREO, c.workers, c.warm,   \
+               c.remember)
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(SHAPE));
         assert_true(plan.bytes == T3R_FULL_BYTES_(SHAPE));
 #undef SHAPE
