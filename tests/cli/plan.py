@@ -65,8 +65,8 @@ def sizes_of_ram():
     between = expect_json("plan", "--ram", "255K")
     check(between["ram_bytes"] == SIZES["192K"] and sum(between[part] for part in PARTS) == 255 << 10, "between two rows")
     check(expect_json("plan", "--ram", "4G")["left_bytes"] > 1 << 30, "what the largest row leaves")
-    expect(3, "plan", "--ram", (128 << 10) - 1, err="131071 bytes of RAM are too few: the smallest preset is for 131072")
-    expect(2, "plan", "--ram", "much", err="--preset")
+    expect(3, "plan", "--ram", (128 << 10) - 1, err="131071 bytes of RAM are too few: the smallest size is 131072")
+    expect(2, "plan", "--ram", "much", err="--ram")
     for more in (("--size", "64x64"), ("--gaussians", 5), ("--head", "tiny"), ("--refine", 2), ("--within", "1M"),
                  ("--arena", "1M"), ("--markdown",), ("--svg", "a.svg")):
         expect(2, "plan", "--ram", "256K", *more, err="--ram chooses the settings")
