@@ -79,8 +79,8 @@ def presets():
         hashes[preset] = expect_json(*base, "--preset", preset)["hash"]
         check(hashes[preset] == expect_json(*base, *same)["hash"], f"--preset {preset} is not {same}")
         planned = ["plan", "--size", "64x64", "--keep", 20]
-        check(expect_json(*planned, "--preset", effort) == expect_json(*planned, *same), f"plan --preset {effort} is not {same}")
-    check(len(set(hashes.values())) == len(hashes), f"efforts give the same scene: {hashes}")
+        check(expect_json(*planned, "--preset", preset) == expect_json(*planned, *same), f"plan --preset {preset} is not {same}")
+    check(len(set(hashes.values())) == len(hashes), f"presets give the same scene: {hashes}")
     check(expect_json(*base, "--preset", "fast", "--head", "small")["head"] == "small", "what stands behind --preset changes nothing")
     for command in (base, ["plan", "--size", "64x64", "--keep", 20]):
         expect(2, *command, "--preset", "quick", err="--preset does not know 'quick'; there are fast, balanced, best")
