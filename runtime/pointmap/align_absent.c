@@ -1,4 +1,4 @@
-/* Alignment where it is left out: no configuration asks for it (core/config.c). */
+/* Stub for builds without alignment: core/config.c refuses configurations that ask for it. */
 #include "align.h"
 
 #if !T3R_FEATURE_ALIGN
