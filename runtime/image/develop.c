@@ -8,13 +8,13 @@
 #include "state/state.h"
 #include "undistort.h"
 
-/* A frame on its way into a view's planes. */
+/* State of converting a frame into a view's planes. */
 typedef struct develop_job {
     const t3r_runtime *rt;
     const t3r_frame *frame;
     t3r_view *view;
-    int32_t *grid;      /* NULL: nothing to undistort */
-    uint8_t *colour[3]; /* resized: the view's own planes, or those that are undistorted into them */
+    int32_t *grid;      /* NULL: no undistortion */
+    uint8_t *colour[3]; /* resized planes: the view's own, or the input of undistortion */
     uint16_t *depth;
     uint8_t *work; /* T3R_IMAGE_ROW_BYTES_ a worker */
 } develop_job;
@@ -53,7 +53,8 @@ t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const 
     return status;
 }
 
-/* Checks frame and camera and cuts the work. *resized gets the camera of the working size, its lens too. */
+/* Checks frame and camera and cuts up the work memory. *resized becomes the camera at the working size, lens
+ * included. */
 static t3r_status prepare(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_view *view,
                           develop_job *job, t3r_camera *resized)
 {
@@ -86,7 +87,7 @@ static t3r_status make_grid(const develop_job *job, const t3r_camera *resized)
     return job->grid == NULL ? T3R_OK : t3r_undistort_grid(resized, job->view->width, job->view->height, job->grid);
 }
 
-/* What follows when all rows are resized. */
+/* Undistorts and sets validity, once all rows are resized. Returns the camera of the planes. */
 static t3r_camera finish(const t3r_runtime *rt, develop_job *job, const t3r_camera *resized)
 {
     const t3r_workers workers = t3r_workers_of(rt);
@@ -128,7 +129,7 @@ t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *f
     t3r_camera resized;
     t3r_status status = prepare(rt, frame, camera, &view, &job, &resized);
     if (status == T3R_OK && strip->begins) {
-        status = make_grid(&job, &resized); /* it is kept for the last strip */
+        status = make_grid(&job, &resized); /* kept until the last strip */
     }
     if (status != T3R_OK) {
         return status;
