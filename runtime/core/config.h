@@ -1,4 +1,4 @@
-/* Whether settings are in range, and those that are chosen. */
+/* Range checks of settings, and defaults for those left open. */
 #ifndef T3R_CONFIG_H
 #define T3R_CONFIG_H
 
@@ -7,26 +7,26 @@
 #include "core/fixed.h"
 #include "trim3r.h"
 
-/* T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: t3r_config_error() has the reason. */
+/* Checks a configuration. After T3R_ERR_CONFIG or T3R_ERR_UNSUPPORTED t3r_config_error() returns the reason. */
 t3r_status t3r_config_check(const t3r_config *config);
 
-/* The same configuration with the numbers of what it leaves to be chosen. */
+/* Returns the configuration with values for the settings that it leaves open. */
 t3r_config t3r_settled(const t3r_config *config);
 
-/* The most splats that a tile is drawn from. */
+/* Returns the maximum number of splats drawn a tile. */
 static inline uint32_t t3r_tile_splats_of(const t3r_config *config)
 {
     return config->tile_splats != 0 ? config->tile_splats : UINT32_MAX;
 }
 
-/* The passes of refinement in a build that follows another (t3r_config.warm). */
+/* Returns the passes of refinement in a build that follows another (t3r_config.warm). */
 static inline uint32_t t3r_following_refinements_of(const t3r_config *config)
 {
     return (config->refinements + 1) / 2;
 }
 
-/* The same of a stream's keyframe. What is fitted is T3R_STREAM_REFINEMENTS: each keyframe corrects what those before
- * it did. */
+/* Returns the passes of refinement of a stream's keyframe. Fitted passes are T3R_STREAM_REFINEMENTS, because each
+ * keyframe corrects what earlier ones did. */
 static inline uint32_t t3r_keyframe_refinements_of(const t3r_config *config, bool follows)
 {
     const uint32_t passes =
@@ -34,7 +34,8 @@ static inline uint32_t t3r_keyframe_refinements_of(const t3r_config *config, boo
     return follows ? (passes + 1) / 2 : passes;
 }
 
-/* At least the bytes of any arena for fields in range, counted generously and in 64 bits: sums in size_t may wrap. */
+/* Returns an upper bound of the arena's bytes for fields in range. It is generous and in 64 bits, because sums in
+ * size_t may wrap. */
 uint64_t t3r_most_arena_bytes(const t3r_config *config);
 
 #endif

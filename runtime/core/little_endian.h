@@ -1,4 +1,4 @@
-/* Numbers as the weight file holds them and as hashes take them: little-endian, whatever the machine. */
+/* Little-endian numbers, as in weight files and hashes, on any machine. */
 #ifndef T3R_LITTLE_ENDIAN_H
 #define T3R_LITTLE_ENDIAN_H
 
@@ -36,7 +36,7 @@ static inline void t3r_set_le_u32(uint8_t *p, uint32_t x)
     t3r_set_le_u16(p + 2, (uint16_t)(x >> 16));
 }
 
-/* Two bytes of an aligned table in place, read in one piece so that a loop over them becomes vector loads. */
+/* Two bytes of an aligned table, read as one value so that a loop over them becomes vector loads. */
 typedef int16_t __attribute__((may_alias)) t3r_le16;
 
 static inline int16_t t3r_from_le16(t3r_le16 x)
