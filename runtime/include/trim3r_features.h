@@ -96,7 +96,7 @@
 #define T3R_HAS_PLANES (1u << 12)
 #define T3R_HAS_ALIGN (1u << 13)
 
-/* Those that are left in. */
+/* The features of this build. */
 #define T3R_FEATURES_BUILT                                                                                             \
     ((T3R_FEATURE_STEREO ? T3R_HAS_STEREO : 0u) | (T3R_FEATURE_STREAMS ? T3R_HAS_STREAMS : 0u) |                       \
      (T3R_FEATURE_LEARNED ? T3R_HAS_LEARNED : 0u) | (T3R_FEATURE_MOMENT ? T3R_HAS_MOMENT : 0u) |                       \
