@@ -7,7 +7,7 @@
 #include "host/reason.h"
 #include "host/text.h"
 
-/* Every adapter, in the order of the list; of one that was left out, what its user is told. */
+/* Every adapter, in the order of the list; for one that was left out, the message for its user. */
 #define ALWAYS(name) HERE(name)
 #ifdef T3R_V4L2
 #define WITH_V4L2 HERE(v4l2)
@@ -65,7 +65,7 @@ t3r_capture_adapter t3r_capture_adapter_of(uint32_t index)
     return told;
 }
 
-/* Devices name themselves: any text. */
+/* Devices name themselves, so a line may hold any text. */
 typedef struct listener {
     void (*say)(void *user, const char *line);
     void *user;
