@@ -131,8 +131,7 @@ t3r_capture *t3r_capture_open(const char *source, const t3r_capture_settings *se
 /* Opens the adapter `replay`: the frames of an MCAP recording. Returns NULL with a reason in error[] on failure. */
 t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes);
 
-/* An adapter, in this build or not. Listing the devices calls `say` with a line of text for each adapter, and an
- * indented one for each device found. */
+/* An adapter, in this build or missing from it. t3r_capture_devices() passes a line for each device found to `say`. */
 typedef struct t3r_capture_adapter {
     const char *name;
     bool available;

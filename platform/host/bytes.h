@@ -1,4 +1,4 @@
-/* Integers to and from bytes by assembly: the same on hosts of either byte order, at any alignment. */
+/* Integers to and from bytes by shifts: the same on hosts of either byte order, at any alignment. */
 #ifndef T3R_PLATFORM_BYTES_H
 #define T3R_PLATFORM_BYTES_H
 

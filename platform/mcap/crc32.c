@@ -1,7 +1,7 @@
 #include "crc32.h"
 
-/* Remainders of one-byte messages with 0 to 3 bytes of 0 behind them, polynomial 0xedb88320: four bytes a step
- * (Kounavis and Berry, "A systematic approach to building high performance software-based CRC generators", 2005). */
+/* Remainders of one-byte messages followed by 0 to 3 zero bytes, polynomial 0xedb88320: four bytes a step (Kounavis and
+ * Berry, "A systematic approach to building high performance software-based CRC generators", 2005). */
 static const uint32_t remainders[4][256] = {
     {0x00000000u, 0x77073096u, 0xee0e612cu, 0x990951bau, 0x076dc419u, 0x706af48fu, 0xe963a535u, 0x9e6495a3u,
      0x0edb8832u, 0x79dcb8a4u, 0xe0d5e91eu, 0x97d2d988u, 0x09b64c2bu, 0x7eb17cbdu, 0xe7b82d07u, 0x90bf1d91u,

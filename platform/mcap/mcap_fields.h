@@ -1,6 +1,4 @@
-/* The fields of an MCAP record, one behind the other: the first step past the end sets `failed`; later calls give
- * zeros.
- */
+/* Reads the fields of an MCAP record in order. The first read past the end sets `failed`; later ones give zeros. */
 #ifndef T3R_PLATFORM_MCAP_FIELDS_H
 #define T3R_PLATFORM_MCAP_FIELDS_H
 
