@@ -18,7 +18,7 @@ void colmap_model_free(colmap_model *model)
     *model = (colmap_model){0};
 }
 
-/* Room for one more; lists double at powers of two. NULL: out of memory. */
+/* Makes room for one more; lists double at powers of two. NULL: out of memory. */
 static void *grown(void *list, uint32_t count, size_t each)
 {
     return (count & (count - 1)) == 0 ? realloc(list, (count == 0 ? 1 : (size_t)count * 2) * each) : list;
@@ -38,7 +38,7 @@ const char *colmap_model_add_camera(colmap_model *model, const colmap_camera *ca
     return NULL;
 }
 
-/* NULL, or what is wrong with the pose. */
+/* Inverts the pose. Returns NULL, or what is wrong with it. */
 static const char *invert(const double rotation[4], const double translation[3], colmap_image *out)
 {
     double norm = 0;
@@ -46,7 +46,7 @@ static const char *invert(const double rotation[4], const double translation[3],
     for (int i = 0; i < 4; i++) {
         norm += rotation[i] * rotation[i];
     }
-    if (!(norm >= 0.81 && norm <= 1.21)) { /* also where it is not a number */
+    if (!(norm >= 0.81 && norm <= 1.21)) { /* also true for NaN */
         return "the quaternion's norm is not 1 within 0.1";
     }
     for (int i = 0; i < 4; i++) {

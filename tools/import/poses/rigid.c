@@ -2,7 +2,8 @@
 
 #include <math.h>
 
-/* Nearly parallel quaternions are joined by a line: the sine of the angle between them says too little. */
+/* Above this cosine quaternions are interpolated linearly, because the sine of the angle between them is too
+ * inexact. */
 #define PARALLEL 0.9999995
 
 const rigid rigid_identity = {{0, 0, 0}, {1, 0, 0, 0}};
