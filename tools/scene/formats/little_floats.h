@@ -1,4 +1,4 @@
-/* Floats of 32 and 64 bits to and from little-endian bytes. */
+/* Converts floats of 32 and 64 bits to and from little-endian bytes. */
 #ifndef TRIM3R_TOOLS_LITTLE_FLOATS_H
 #define TRIM3R_TOOLS_LITTLE_FLOATS_H
 
@@ -23,7 +23,7 @@ static inline double load_double(const uint8_t *bytes)
     return value;
 }
 
-/* Rounded to nearest. */
+/* Stores a double as a float, rounded to nearest. */
 static inline void store_float(uint8_t *bytes, double value)
 {
     const float narrow = (float)value;
