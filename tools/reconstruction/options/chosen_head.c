@@ -26,7 +26,8 @@ static const struct {
 };
 enum { SHIPPED = sizeof shipped / sizeof shipped[0] };
 
-/* The runtime's own heads; `none` is the analytic one, unadapted. T3R_HEAD_CONFIGURED when it is none of them. */
+/* Returns the runtime's own head of that name; `none` is the analytic one, unadapted. T3R_HEAD_CONFIGURED for all
+ * others. */
 static t3r_head closed_form_of(const char *text)
 {
     for (int head = T3R_HEAD_CONFIGURED + 1; head < T3R_HEAD_COUNT; head++) {
@@ -73,7 +74,7 @@ bool chosen_head_is_one(const char *text)
            (length > end && strcmp(text + length - end, FILE_END) == 0);
 }
 
-/* The bytes, aligned, for the weights held so far; frees them. */
+/* Replaces the weights by the bytes, aligned; frees the bytes. */
 static int own(chosen_head *chosen, uint8_t *bytes, size_t count)
 {
     void *aligned;

@@ -1,4 +1,4 @@
-/* The heads that --head names: the closed forms, the shipped networks, weight files. */
+/* The heads for --head: the closed forms, the shipped networks, weight files. */
 #ifndef TRIM3R_TOOLS_CHOSEN_HEAD_H
 #define TRIM3R_TOOLS_CHOSEN_HEAD_H
 
@@ -14,34 +14,34 @@
 
 typedef struct chosen_head {
     t3r_head head;
-    bool unadapted;      /* of `none`: `analytic`, which then sees every point as retained */
-    char name[16];       /* analytic, moment, none; of a network the name in its weights */
-    char bits[8];        /* of a network's weights and activations: 8, 16, or W/A where they differ; else "" */
-    const void *weights; /* NULL of the closed forms */
+    bool unadapted;      /* for `none`: `analytic`, which then treats every point as retained */
+    char name[16];       /* analytic, moment, none; for a network the name in its weights */
+    char bits[8];        /* of a network's weights and activations: 8, 16, or W/A if they differ; else "" */
+    const void *weights; /* NULL for the closed forms */
     size_t bytes;
     uint32_t weight_bits, activation_bits;
-    char crc[9]; /* of a network, 8 hexadecimal digits; else "" */
+    char crc[9]; /* for a network, 8 hexadecimal digits; else "" */
     void *owned; /* weights read from a file */
 } chosen_head;
 
-/* "tiny, nano, small, base, FILE.t3w, ...": all that --head takes. Returns `names`. */
+/* Writes "tiny, nano, small, base, FILE.t3w, ...": all values of --head. Returns `names`. */
 const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES]);
 /* Whether the text is one of the names or ends in .t3w. */
 bool chosen_head_is_one(const char *text);
 
-/* CLI_OK, and chosen_head_close() is due; or an exit status of cli.h after a message, and nothing is. A weight file is
- * refused with the reason of t3r_weights_error(). */
+/* Opens a head. Returns CLI_OK, after which chosen_head_close() is due; or an exit status of cli.h after a message. A
+ * weight file is refused with the reason of t3r_weights_error(). */
 int chosen_head_open(chosen_head *chosen, const char *text);
 void chosen_head_close(chosen_head *chosen);
 
-/* Shows a network a mask in which every pixel was retained (hidden_mask.h); does nothing to a closed form. CLI_OK, or a
- * status after a message; chosen_head_close() is due still. */
+/* Gives a network a mask in which every pixel is retained (hidden_mask.h); no effect on a closed form. Returns CLI_OK,
+ * or a status after a message; chosen_head_close() is still due. */
 int chosen_head_hide_mask(chosen_head *chosen);
 
-/* Sets the configuration's head, and its head_column_bytes: none for a closed form, what a network needs. */
+/* Sets the configuration's head and its head_column_bytes: 0 for a closed form, what a network needs otherwise. */
 void chosen_head_configure(const chosen_head *chosen, t3r_config *config);
 
-/* After t3r_init(): binds a network's weights; takes away what `ablation` does, and of `none` the adapting. */
+/* Binds a network's weights after t3r_init(); removes what `ablation` removes, and for `none` the adapting. */
 t3r_status chosen_head_bind(const chosen_head *chosen, t3r_runtime *runtime, t3r_ablation ablation);
 
 #endif

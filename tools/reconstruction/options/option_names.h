@@ -1,4 +1,5 @@
-/* Values of options that name a head, a source of depth, an effort or methods; cli/option_values.h reads the others. */
+/* Values of options that name a head, a source of depth, an effort or methods; the others are in
+ * cli/option_values.h. */
 #ifndef TRIM3R_TOOLS_OPTION_NAMES_H
 #define TRIM3R_TOOLS_OPTION_NAMES_H
 
@@ -8,14 +9,14 @@
 #include "reconstruction/method.h"
 #include "trim3r.h"
 
-/* A head's name, or a path that ends as weight files do. */
+/* Returns a head's name, or a path with the suffix of weight files. */
 const char *option_head(struct argp_state *state, const char *option, const char *text);
-/* A source of depth by its name. */
+/* Returns a source of depth by its name. */
 t3r_depth option_depth(struct argp_state *state, const char *option, const char *text);
-/* How much work a build is worth, by its name: the settings and the head for it. */
+/* Sets the settings and the head for a named effort, the amount of work of a build. */
 void option_effort(struct argp_state *state, const char *option, const char *text, t3r_config *config,
                    const char **head);
-/* One to METHOD_COUNT different methods with commas between. */
+/* Parses one to METHOD_COUNT different methods, separated by commas. */
 void option_methods(struct argp_state *state, const char *option, const char *text, method_id methods[METHOD_COUNT],
                     uint32_t *count);
 #endif
