@@ -1,10 +1,10 @@
-/* Numbers in a file's bytes, little-endian whatever the machine. */
+/* Numbers in a file's bytes, little-endian on every machine. */
 #ifndef T3R_QUANT_LE_BYTES_H
 #define T3R_QUANT_LE_BYTES_H
 
 #include <stdint.h>
 
-/* The low `bytes` of value. */
+/* Writes the low `bytes` of value. */
 static inline void le_put(uint8_t *to, uint64_t value, uint32_t bytes)
 {
     for (uint32_t i = 0; i < bytes; i++) {
@@ -21,7 +21,7 @@ static inline uint64_t le_get(const uint8_t *from, uint32_t bytes)
     return value;
 }
 
-/* The same as two's complement. */
+/* Reads the same as two's complement. */
 static inline int64_t le_get_signed(const uint8_t *from, uint32_t bytes)
 {
     uint64_t value = le_get(from, bytes), sign = UINT64_C(1) << (8 * bytes - 1);

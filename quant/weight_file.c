@@ -77,7 +77,7 @@ uint32_t weight_file_crc(const uint8_t *bytes, size_t count)
 
 static void put_header(uint8_t *to, const quantized_head *head, size_t count)
 {
-    memcpy(to + WEIGHT_AT_MAGIC, "T3RW", 4); /* no text. NOLINT(bugprone-not-null-terminated-result) */
+    memcpy(to + WEIGHT_AT_MAGIC, "T3RW", 4); /* not a string. NOLINT(bugprone-not-null-terminated-result) */
     le_put(to + WEIGHT_AT_FORMAT, T3R_WEIGHTS_FORMAT, 2);
     le_put(to + WEIGHT_AT_EPOCH, T3R_BITS_EPOCH, 2);
     le_put(to + WEIGHT_AT_BYTES, count, 4);

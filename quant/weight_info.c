@@ -15,7 +15,7 @@ typedef struct reader {
     size_t error_bytes;
 } reader;
 
-/* Field `name` of the header holds `value`, which is not `right`. */
+/* Reports that field `name` of the header holds `value`, not `right`. */
 static int fail_header(const reader *r, const char *name, uint64_t value, const char *right)
 {
     return quant_reason(r->error, r->error_bytes, "header: %s is %" PRIu64 ", not %s", name, value, right);
@@ -189,7 +189,7 @@ static int check_requantization(const reader *r, uint32_t n)
     return 0;
 }
 
-/* |bias| + reach x sum |weight| of an output and phase, against the accumulator's width. */
+/* Checks |bias| + reach x sum |weight| of every output and phase against the accumulator's width. */
 static int check_accumulators(const reader *r, uint32_t n)
 {
     const head_layer *layer = &r->info->graph.layers[n - 1];
