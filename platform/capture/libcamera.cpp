@@ -1,8 +1,8 @@
-// libcamera behind a table in C; exceptions and the library's threads stay in here.
+// libcamera as a table in C; exceptions and the library's threads stay in here.
 //
-// Written for and tested with libcamera 0.0.3 (Debian 12). Two changes of later versions matter here: 0.1
-// generateConfiguration() takes a Span of roles instead of a vector: the list in braces below fits both 0.2
-// CameraConfiguration has `orientation` instead of `transform`: neither is used
+// Written for and tested with libcamera 0.0.3 (Debian 12). Two changes of later versions matter here:
+//   0.1   generateConfiguration() takes a Span of roles instead of a vector: the list in braces below fits both
+//   0.2   CameraConfiguration has `orientation` instead of `transform`: neither is used
 #include "libcamera_shim.h"
 
 #include <algorithm>

@@ -14,8 +14,7 @@
 #include "mcap_fields.h"
 #include "host/reason.h"
 
-#define REST_BYTES                                                                                                     \
-    (UINT64_C(32) << 20) /* bytes of a file in the spill that are read before their pages may be dropped */
+#define REST_BYTES (UINT64_C(32) << 20) /* read from a file in the spill before its pages may be dropped */
 
 typedef struct walk {
     const t3r_mcap_visitor *visitor;

@@ -17,26 +17,25 @@ typedef struct t3r_triplet {
 
 /* ---- reading ------------------------------------------------------------------------------------- */
 
-/* What is read, whoever wrote the file: colour  the first sensor_msgs/Image topic in rgb8, bgr8, yuv422_yuy2 (yuyv),
- * yuv422 (uyvy) or nv12 (Y plane, then
+/* What is read, whoever wrote the file:
+ *   colour  the first sensor_msgs/Image topic in rgb8, bgr8, yuv422_yuy2 (yuyv), yuv422 (uyvy) or nv12 (Y plane, then
  *           UV, rows of `step` bytes), else the first sensor_msgs/CompressedImage topic, else the first in mono8
- * depth   16UC1 or mono16: steps of the unit in metadata "trim3r", else of 0.001; 32FC1 metres become steps of
+ *   depth   16UC1 or mono16: steps of the unit in metadata "trim3r", else of 0.001; 32FC1 metres become steps of
  *           that unit: to Q40, then divided, both round-half-even; NaN, infinity, zero, what lies behind the
  *           camera or beyond 65535 steps is 0
- * intrinsics  sensor_msgs/CameraInfo: K and D; plumb_bob, equidistant, and rational_polynomial when its terms beyond
+ *   intrinsics  sensor_msgs/CameraInfo: K and D; plumb_bob, equidistant, and rational_polynomial when its terms beyond
  *           the fifth are 0; all D zero and not equidistant is T3R_DISTORTION_NONE
- * pose    geometry_msgs/PoseStamped, TransformStamped (child to frame), PoseWithCovarianceStamped or
+ *   pose    geometry_msgs/PoseStamped, TransformStamped (child to frame), PoseWithCovarianceStamped or
  *           nav_msgs/Odometry: camera to world
  * Depth, intrinsics and pose come from the topic below the colour topic's prefix ("/camera/"), else from the only one
  * in the file. Of several depth topics, the ones that share the longest prefix with the colour topic are candidates:
  * the first in colour's frame, else the first; uncompressed before compressed. A t3r_recording_choice names topics
- * instead. A colour image is paired with the depth and pose of the same header.stamp, else with the nearest within 20
- * ms, unless they have exactly another colour image's stamp. Intrinsics hold from their stamp on, the first ones also
- * before. A stamp of 0 means the log time.
+ * instead. A colour image is paired with the depth and pose of the same header.stamp, else with the nearest within
+ * 20 ms, unless they have exactly another colour image's stamp. Intrinsics hold from their stamp on, the first ones
+ * also before. A stamp of 0 means the log time.
  *
  * Doubles become fixed point by t3r_fixed_from_double(): intrinsics Q16, distortion Q24, position Q32, rotation Q30;
- * the depth unit is decimal text, to Q40. Values that are not numbers or outside the ranges of t3r_camera are
- * refused. */
+ * the depth unit is decimal text, to Q40. NaN and values outside the ranges of t3r_camera are refused. */
 
 typedef struct t3r_recording t3r_recording;
 

@@ -11,8 +11,7 @@
     {                                                                                                                  \
         100, 40, 20, 10, 5                                                                                             \
     }
-#define CALIBRATION_PAIRS 4u /* context pairs of a recording: from its triplets, else from its frames, evenly spaced   \
-                              */
+#define CALIBRATION_PAIRS 4u /* context pairs of a recording: its triplets', else evenly spaced frames */
 
 /* Runs a recording (.mcap), or an image as a plane of width x height as in `eval --planar`. Returns an exit status of
  * cli.h, after a message unless it is CLI_OK. */

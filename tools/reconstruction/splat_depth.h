@@ -10,7 +10,7 @@
 
 #define SPLAT_DEPTH_OPACITY_Q15 1638u /* 0.05; fainter Gaussians are no surface */
 #define SPLAT_DEPTH_SURFACE                                                                                            \
-    0.0625 /* relative to the depth; means at most so far behind the foremost belong to its surface */
+    0.0625                     /* relative to the depth: means so little behind the foremost belong to its surface */
 #define SPLAT_DEPTH_MEDIANS 32 /* depths beyond so many median depths are clamped */
 
 /* The depth plane of a frame. */

@@ -9,11 +9,14 @@
 
 #include "cli/files/file_options.h"
 
-/* Refuses, with a message on stderr and an exit status of cli.h: - an output that is an input or another output, by
- * whatever name or link: bad usage; - an output that would replace a file of another kind, unless `force`, or a file
- * that may be read within an input folder, even with `force`: bad usage; - a path through a missing folder: bad input;
+/* Refuses, with a message on stderr and an exit status of cli.h:
+ * - an output that is an input or another output, by whatever name or link: bad usage;
+ * - an output that would replace a file of another kind, unless `force`, or a file that may be read within an input
+ *   folder, even with `force`: bad usage;
+ * - a path through a missing folder: bad input;
  * - inputs and outputs that are no regular files (or folders, if a folder is expected): bad input. /dev/null and
- * /dev/full can be written. The files are kept for file_guard_write() until the process ends. */
+ *   /dev/full can be written.
+ * The files are kept for file_guard_write() until the process ends. */
 int file_guard_begin(named_file *files, uint32_t count, bool force);
 
 /* Refuses a missing input. Separate from file_guard_begin(), because a bad option value is reported first. */

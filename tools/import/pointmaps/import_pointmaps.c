@@ -15,8 +15,7 @@
 #define SAMPLED 20000u       /* depths per frame for the median */
 #define MEDIAN_STEPS 8192.0
 #define MOST_STEPS 65535.0
-#define SAME_POSE 1e-3 /* largest difference of equal poses: in entries of the rotation, and relative in the position  \
-                        */
+#define SAME_POSE 1e-3 /* equal poses differ at most so: rotation entries, and relative position */
 
 static int open_maps(const pointmap_source *source, uint32_t index, pointmaps *maps, char *error, size_t error_bytes)
 {

@@ -1,12 +1,14 @@
 /* Pointmaps made elsewhere (DUSt3R, MASt3R, VGGT ...): the 3D point that each pixel of a view shows, for all views of a
  * file in one frame, with a confidence per pixel, and what is known of the cameras.
  *
- * A .npz holds, under the first of these names that it has, pts3d, world_points, points, pointmap   float32, N x H x W
- * x 3 (or H x W x 3; a leading 1 may stand before) conf, confs, world_points_conf, confidence   float32, N x H x W: as
- * the points', without the 3; may be missing poses   N x 4 x 4: camera to the points' frame; or extrinsics, extrinsic
- * N x 3 x 4 or N x 4 x 4: the points' frame to camera; may be missing intrinsics, intrinsic   N x 3 x 3, pixels of the
- * map, (0, 0) being the centre of the top-left one; or focals   N, the principal point at (W / 2, H / 2); may be
- * missing with camera axes x right, y down, z forward. A .npy holds only the points. */
+ * A .npz holds these arrays, each under the first of its names that the file has:
+ *   pts3d, world_points, points, pointmap   float32, N x H x W x 3 (or H x W x 3; a leading 1 may stand before)
+ *   conf, confs, world_points_conf, confidence   float32, N x H x W: as the points', without the 3; may be missing
+ *   poses   N x 4 x 4: camera to the points' frame; or
+ *   extrinsics, extrinsic   N x 3 x 4 or N x 4 x 4: the points' frame to camera; may be missing
+ *   intrinsics, intrinsic   N x 3 x 3, pixels of the map, (0, 0) being the centre of the top-left one; or
+ *   focals   N, the principal point at (W / 2, H / 2); may be missing
+ * Camera axes are x right, y down, z forward. A .npy holds only the points. */
 #ifndef TRIM3R_TOOLS_POINTMAPS_H
 #define TRIM3R_TOOLS_POINTMAPS_H
 
