@@ -21,7 +21,7 @@ typedef struct t3r_spill {
 
 /* Takes `count` bytes of undefined content. Returns NULL when the disk is full. */
 uint8_t *t3r_spill_take(t3r_spill *spill, size_t count);
-/* Returns the bytes that were taken last. */
+/* Gives back the bytes that were taken last. */
 void t3r_spill_return(t3r_spill *spill, size_t count);
 /* Lets the system drop the pages from memory until they are read again. */
 void t3r_spill_rest(const t3r_spill *spill);
