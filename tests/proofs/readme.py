@@ -1,13 +1,10 @@
 #!/usr/bin/env python3
-"""readme.py example LIBRARY... | table PROGRAM [--update] | peers: what the documents show is what happens.
+"""readme.py example LIBRARY... | table PROGRAM [--update]: what the documents show is what happens.
 
 example: the README's C program compiles without a warning, links with the runtime and the shipped heads alone and prints
          what the README says.
 table:   the arena table of docs/firmware.md is what `trim3r plan --markdown` prints; --update writes it there.
-peers:   the README's table of libraries is that of docs/study/peers.md, as tools/study/scripts/peers shortens it.
 """
-import importlib.machinery
-import importlib.util
 import re
 import sys
 
@@ -56,20 +53,6 @@ def check_table(text, printed):
             printed]
 
 
-def check_peers(text, page):
-    """With the script that writes both."""
-    scripts = proof.ROOT / "tools" / "study" / "scripts"
-    sys.path.insert(0, str(scripts))
-    loader = importlib.machinery.SourceFileLoader("peers", str(scripts / "peers"))
-    peers = importlib.util.module_from_spec(importlib.util.spec_from_loader("peers", loader))
-    loader.exec_module(peers)
-    begin, end = peers.MARKS
-    shown = text.partition(begin)[2].partition(end)[0]
-    if shown.count("\n") > 2 and shown == peers.readme_table(page):
-        return []
-    return ["the README's table of libraries is not that of docs/study/peers.md; tools/study/scripts/peers --write"]
-
-
 def main():
     what, *paths = [word for word in sys.argv[1:] if word != "--update"]
     if what == "example":
@@ -81,13 +64,6 @@ def main():
                 proof.must_find(check_example(wrong, paths, folder), offence, "the README's example")
             proof.verdict("the README's example builds, runs and prints what the README says",
                           check_example(text, paths, folder))
-        return
-    if what == "peers":
-        sys.dont_write_bytecode = True
-        text, page = README.read_text(), (proof.ROOT / "docs" / "study" / "peers.md").read_text()
-        proof.must_find(check_peers(text, page.replace("| K-means |", "| K-medians |")), "is not that of",
-                        "the README's table of libraries")
-        proof.verdict("the README's table of libraries is that of docs/study/peers.md", check_peers(text, page))
         return
     text, printed = FIRMWARE.read_text(), proof.run([paths[0], *PLAN], check=True).stdout
     if "--update" in sys.argv:

@@ -19,15 +19,20 @@ WAYS = {  # of a depth: the poses that it is tried with, and the estimator's sou
 }
 ABOUT = """## Novel views from colour alone
 
-The paper's setting: two pictures, their intrinsics, no poses, no depth. Context views' poses estimated from colour (from
-pictures as they are), depth by stereo, 256x256, the default head; the scenes and triplets of [stereo.md](stereo.md). Nothing given reaches the program but the target's pose. It must be converted to the estimated frame, where the first camera is
-the origin and the second is 1 away. For that the midpoints of the given and the estimated context cameras are laid on each other.
-They are turned by the mean of what turns either camera, and scaled by the ratio of the distances. With depth they are not
-scaled: lengths are the sensor's. So errors of the given poses and of the estimated ones both count. `the target's too`: its pose is estimated
-with the others, from its own picture, and nothing given is used.
+This is the paper's setting: two pictures with intrinsics, without poses and depth. The poses of the context views are estimated
+from colour, from pictures of their own size, and depth comes by stereo, at 256x256 with the default head. Scenes and triplets are
+those of [stereo.md](stereo.md). The only given pose that the program uses is that of the target.
 
-PSNR of the target, 100 % and 10 % kept, means over what was posed and matched. The mask is the sensor's where both context views have a
-sensor's depth. Otherwise it is what the depths by stereo of given or of estimated poses cover, uncovered pixels being black. The change is against given poses and the same depth, on the same triplets. What was refused is listed below.
+The target's pose must be converted to the estimated frame, where the first camera is the origin and the second is 1 away. For that
+the midpoints of the given and the estimated context cameras are aligned. The rotation is the mean of those that align either
+camera, and the scale is the ratio of the distances. With depth nothing is scaled, because lengths are the sensor's. So errors of
+the given and of the estimated poses both count. In rows with `the target's too` its pose is estimated with the others, from its own
+picture, and no given pose is used.
+
+The table has the PSNR of the target at 100 % and 10 % kept, means over the triplets that were posed and matched. The mask is the
+sensor's if both context views have a sensor's depth. Otherwise it is the area that the stereo depths of given or estimated poses
+cover, and uncovered pixels are black. The change is against given poses and the same depth, on the same triplets. Refused triplets
+are listed below.
 """
 
 
