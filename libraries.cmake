@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the program and the tests need beside the compiler: PkgConfig::NAME of each. All that is missing is named at once.
 find_package(PkgConfig QUIET)
 set(T3R_MISSING)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Which capture adapters are built: sets T3R_ADAPTER_SOURCES, _DEFINITIONS and _LIBS, and adds the modules in C++.
 include(CheckIncludeFile)
 set(T3R_ADAPTER_SOURCES)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Finds the ranges of a float head's activations by running it on the runtime's input. */
 #ifndef T3R_QUANT_CALIBRATE_H
 #define T3R_QUANT_CALIBRATE_H

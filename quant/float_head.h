@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A head in floats, as training writes it: a .safetensors file (README.md, "Float heads"). */
 #ifndef T3R_QUANT_FLOAT_HEAD_H
 #define T3R_QUANT_FLOAT_HEAD_H

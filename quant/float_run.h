@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Runs a float head over one view: for calibration, and to compare the quantized head with. */
 #ifndef T3R_QUANT_FLOAT_RUN_H
 #define T3R_QUANT_FLOAT_RUN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The layers of a head: their sources and sizes (runtime/head/weights.h has their meaning). Shared by the float head,
  * the quantized head and the weight file. */
 #ifndef T3R_QUANT_HEAD_GRAPH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "hidden_mask.h"
 
 #include <stdbool.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Makes a head ignore the pruning: a weight file in which two features of the mask are constants. */
 #ifndef T3R_QUANT_HIDDEN_MASK_H
 #define T3R_QUANT_HIDDEN_MASK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The only way in which quant/ reports what went wrong. */
 #ifndef T3R_QUANT_REASON_H
 #define T3R_QUANT_REASON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Quantizes a float head with ranges (README.md, "Quantization"; runtime/head/weights.h has the arithmetic). */
 #ifndef T3R_QUANT_QUANTIZE_H
 #define T3R_QUANT_QUANTIZE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads .safetensors: 8 bytes of header length, a JSON header, then the tensors' bytes, all little-endian. Nothing in
  * it is trusted: the header must be one JSON object, names must differ, every tensor must be F32 with the bytes of its
  * shape, and the tensors must fill the bytes after the header without overlap or gap. */

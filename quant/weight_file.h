@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes the .t3w weight file (runtime/head/weights.h). */
 #ifndef T3R_QUANT_WEIGHT_FILE_H
 #define T3R_QUANT_WEIGHT_FILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Describes a weight file. t3r_weights_check() decides whether it is sound; where its layers are not, the reason names
  * the layer and the field. */
 #ifndef T3R_QUANT_WEIGHT_INFO_H

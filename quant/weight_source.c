@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "weight_source.h"
 
 #define BYTES_A_LINE 24

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a weight file as a C source: `const uint8_t t3r_head_NAME[]`, aligned to 16, and `const uint32_t
  * t3r_head_NAME_bytes`. heads/trim3r_heads.h declares the shipped ones. */
 #ifndef T3R_QUANT_WEIGHT_SOURCE_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What a library may be built without. Files of features.txt leave `sources`; `left_out` gets the macros that say so, which
 # the library's users need, too.
 option(T3R_WITH_COMPARISON "Build the runtime with several views, which are compared" ON)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The way of the data. The image stage comes before, frame by frame (develop.c), rendering follows (render.c):
  *
  *     frames - image -+- wavelet -- texture energy --+

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The way of the data, from the planes of the context views to the scene. */
 #ifndef T3R_PIPELINE_H
 #define T3R_PIPELINE_H
 
 #include "budget/importance.h"
 #include "state/state.h"
-#include "trim3r.h"
 #include "state/views.h"
+#include "trim3r.h"
 
 /* Depth, pointmap, wavelet, superclusters: all that does not depend on the budget. */
 t3r_status t3r_analyse(t3r_runtime *rt);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stages that a build and a keyframe of a stream have in common, in the order of pipeline.c. Each works on a span
  * of the views, and may look at the others. */
 #ifndef T3R_STAGES_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A headless Chromium, driven over the pipe of its DevTools protocol: no other package, no port."""
 import base64
 import json

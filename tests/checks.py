@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the scripts of all folders share: expectations, the first that fails ending the script."""
 import subprocess
 import sys

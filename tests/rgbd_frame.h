@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A frame of rows without padding, and the camera of a square one, as most tests make them. */
 #ifndef T3R_TESTS_RGBD_FRAME_H
 #define T3R_TESTS_RGBD_FRAME_H

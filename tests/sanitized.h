@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Whether sanitizers watch, or branches are counted: what only repeats may then repeat less. */
 #ifndef TRIM3R_TESTS_SANITIZED_H
 #define TRIM3R_TESTS_SANITIZED_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tests of whole builds run plain C, which sanitizers make ten times as slow. With them they take the processor's own
  * vectors: the bits are the same, and tests/kernels runs both kinds with sanitizers. */
 #ifndef TRIM3R_TESTS_SANITIZED_CPU_H

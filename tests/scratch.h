@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A folder of the test's own, removed with what is in it. */
 #ifndef T3R_TESTS_SCRATCH_H
 #define T3R_TESTS_SCRATCH_H

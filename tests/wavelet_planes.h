@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The runtime's wavelet as tests look at it: all coefficients in Mallat's layout, the way back, and images that wrap.
  */
 #ifndef T3R_TESTS_WAVELET_PLANES_H

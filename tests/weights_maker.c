@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "weights_maker.h"
 
 #include <stdbool.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Weight files for tests: a head's graph as a list, its numbers at random but lively, written by
  * runtime/head/weights.h's text. */
 #ifndef T3R_TESTS_WEIGHTS_MAKER_H

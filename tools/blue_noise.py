@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Make runtime/budget/blue_noise.c: a 64 x 64 void-and-cluster threshold map (Ulichney 1993).
 
     tools/blue_noise.py > runtime/budget/blue_noise.c

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Files as constants of C: cmake -DOUTPUT=x.c -DNAMES=a;b -DFILES=a.css;b.js -P embed.cmake
 # A zero ends each, so that a text is a string; NAME_bytes counts without it. Bytes instead of a literal, whose length
 # compilers bound.

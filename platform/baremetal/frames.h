@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where the firmware's frames come from. A firmware links one source: frames_recording.c reads a recording;
  * frames_planes.c reads planes as a camera's driver leaves them. A read error is reported and ends the firmware. */
 #ifndef T3R_BAREMETAL_FRAMES_H

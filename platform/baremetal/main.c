@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The firmware of every board: a recording in, by strips of rows; Gaussians, a view and every stage's hash out. Words
  * on the command line, each KEY=NUMBER, say what is built; the defaults are those of t3r_default_config().
  *

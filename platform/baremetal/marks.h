@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Marks where a stage begins, visibly from outside: a function for each stage, at an address in the symbol table.
  * tools/boards counts instructions between the marks. A profiler or a pin may use them as well. */
 #ifndef T3R_BAREMETAL_MARKS_H

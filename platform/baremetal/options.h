@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The words of the command line. */
 #ifndef T3R_BAREMETAL_OPTIONS_H
 #define T3R_BAREMETAL_OPTIONS_H

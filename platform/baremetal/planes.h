@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The head of a frame in a file of planes. All machines that read or write one are little-endian. */
 #ifndef T3R_BAREMETAL_PLANES_H
 #define T3R_BAREMETAL_PLANES_H

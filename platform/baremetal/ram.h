@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The parts of RAM, as the linker placed them. */
 #ifndef T3R_BAREMETAL_RAM_H
 #define T3R_BAREMETAL_RAM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Messages of the firmware: lines of text without a C library's printf. */
 #ifndef T3R_BAREMETAL_REPORT_H
 #define T3R_BAREMETAL_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Semihosting: the files and the console of a debugger, an emulator or a substitute. "Semihosting for AArch32 and
  * AArch64", Arm. */
 #ifndef T3R_BAREMETAL_SEMIHOST_H

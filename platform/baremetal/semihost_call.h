@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One request to the debugger, the emulator or a substitute. */
 #ifndef T3R_BAREMETAL_SEMIHOST_CALL_H
 #define T3R_BAREMETAL_SEMIHOST_CALL_H

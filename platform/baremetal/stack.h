@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Measures the depth of the stack: it is painted before main(), and the paint that is left is counted. */
 #ifndef T3R_BAREMETAL_STACK_H
 #define T3R_BAREMETAL_STACK_H

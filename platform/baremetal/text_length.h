@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Returns the length of a text in a few bytes of code: a C library's strlen() is written for speed. */
 #ifndef T3R_BAREMETAL_TEXT_LENGTH_H
 #define T3R_BAREMETAL_TEXT_LENGTH_H

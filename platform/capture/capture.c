@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What all sources share: counting, events, defaults. */
 #include "capture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Capture: where frames come from. One interface over every source: recordings (`replay`), V4L2, libcamera, OpenCV.
  *
  * An adapter opens a source; the caller asks for one frame after the other and closes it. A frame's memory, which is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What an adapter implements. Its state starts with a t3r_capture whose operations point back to it. */
 #ifndef T3R_PLATFORM_CAPTURE_ADAPTER_H
 #define T3R_PLATFORM_CAPTURE_ADAPTER_H

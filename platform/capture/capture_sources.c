@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The sources of this build by name. */
 #include <stdio.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A progressive JPEG may have thousands of scans, each a pass over the whole picture. libjpeg's progress monitor counts
  * them and stops the reading. */
 #ifndef T3R_PLATFORM_JPEG_SCANS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The adapter `libcamera`: one stream of a camera. Frames stay where the library put them. */
 #include "libcamera.h"
 
@@ -8,8 +9,8 @@
 
 #include "capture_adapter.h"
 #include "capture_module.h"
-#include "recording/pixel_layout.h"
 #include "host/reason.h"
+#include "recording/pixel_layout.h"
 
 #define FAR_AHEAD 0x80000000u /* a sequence "ahead" by more has gone backwards */
 #define NO_BUFFER UINT32_MAX

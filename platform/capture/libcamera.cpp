@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // libcamera as a table in C; exceptions and the library's threads stay in here.
 //
 // Written for and tested with libcamera 0.0.3 (Debian 12). Two changes of later versions matter here:

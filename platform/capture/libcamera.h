@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Capture by libcamera over the table of its module, so that tests can stand in for the library. */
 #ifndef T3R_PLATFORM_LIBCAMERA_H
 #define T3R_PLATFORM_LIBCAMERA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the module of libcamera offers, in C. Its callbacks run on a thread of the library; they store the index,
  * sequence and time stamp of a finished buffer, nothing else. */
 #ifndef T3R_PLATFORM_LIBCAMERA_SHIM_H

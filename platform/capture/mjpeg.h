@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Motion JPEG: decodes one picture into RGB, in integers that are the same for every version of libjpeg-turbo (slow,
  * exact inverse DCT; plain upsampling). The library allocates while it works. */
 #ifndef T3R_PLATFORM_MJPEG_H

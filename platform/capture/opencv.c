@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The adapter `opencv`: films, pictures and devices by OpenCV's VideoCapture. Colour is BGR or grey; depth comes from a
  * second VideoCapture with 16 bits a pixel, picture by picture. */
 #include <math.h>
@@ -6,8 +7,8 @@
 
 #include "capture_adapter.h"
 #include "capture_module.h"
-#include "opencv_shim.h"
 #include "host/reason.h"
+#include "opencv_shim.h"
 #include "source_name.h"
 
 #define DEFAULT_RATE 30.0

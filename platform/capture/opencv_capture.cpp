@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // VideoCapture as a table in C; exceptions stay in here.
 #include "opencv_shim.h"
 

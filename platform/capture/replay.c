@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The adapter `replay`: a recording's frames in order, as fast as they are asked for. */
 #include <stdlib.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a source is called in messages and in recordings: credentials and folders stay private. */
 #ifndef T3R_PLATFORM_SOURCE_NAME_H
 #define T3R_PLATFORM_SOURCE_NAME_H

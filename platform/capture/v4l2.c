@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The adapter `v4l2`: a colour node, and a depth node if one is named. Frames stay where the driver put them; a buffer
  * goes back to the driver with the call that asks for the next frame. */
 #include "v4l2.h"
@@ -9,10 +10,10 @@
 #include <string.h>
 
 #include "capture_adapter.h"
-#include "recording/frame_pairing.h"
-#include "mjpeg.h"
-#include "recording/pixel_layout.h"
 #include "host/reason.h"
+#include "mjpeg.h"
+#include "recording/frame_pairing.h"
+#include "recording/pixel_layout.h"
 #include "v4l2_node.h"
 
 #define NS_PER_MS INT64_C(1000000)

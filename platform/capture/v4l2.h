@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* V4L2 capture over a table of system calls, so that tests can stand in for the kernel. */
 #ifndef T3R_PLATFORM_V4L2_H
 #define T3R_PLATFORM_V4L2_H

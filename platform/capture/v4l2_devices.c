@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The V4L2 devices of this machine, for `trim3r capture --list`. */
 #include <errno.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Chooses which of a device's formats is captured: one that the runtime reads, at the wished size and rate if
  * possible. */
 #ifndef T3R_PLATFORM_V4L2_FORMAT_H

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "v4l2_node.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <string.h>
 
-#include "recording/pixel_layout.h"
 #include "host/reason.h"
+#include "recording/pixel_layout.h"
 
 #define MOST_REFUSED 8u       /* so many EIO in a row are a failure */
 #define FAR_AHEAD 0x80000000u /* a sequence "ahead" by more has gone backwards */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One video node: opened, format negotiated, streaming into mapped buffers. It knows nothing of pairs. */
 #ifndef T3R_PLATFORM_V4L2_NODE_H
 #define T3R_PLATFORM_V4L2_NODE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Features of the current processor that its operating system supports as well, for t3r_set_cpu(). */
 #ifndef T3R_PLATFORM_CPU_H
 #define T3R_PLATFORM_CPU_H

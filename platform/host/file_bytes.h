@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Files for reading, and their bytes in memory. */
 #ifndef T3R_PLATFORM_FILE_BYTES_H
 #define T3R_PLATFORM_FILE_BYTES_H

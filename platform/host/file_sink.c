@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include <stdio_ext.h>
 #include <sys/stat.h>
 

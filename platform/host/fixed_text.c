@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "fixed_text.h"
 
 int t3r_q40_from_text(t3r_text text, uint64_t *value_q40)

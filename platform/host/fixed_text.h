@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts Q40 numbers to decimal text and back, in integers: the depth unit in a recording's metadata. */
 #ifndef T3R_PLATFORM_FIXED_TEXT_H
 #define T3R_PLATFORM_FIXED_TEXT_H

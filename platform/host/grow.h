@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Room for one more item in a heap array. */
 #ifndef T3R_PLATFORM_GROW_H
 #define T3R_PLATFORM_GROW_H

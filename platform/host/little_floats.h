@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Floats of 32 and 64 bits in little-endian bytes: little_endian.h for machines that have them. */
 #ifndef T3R_PLATFORM_LITTLE_FLOATS_H
 #define T3R_PLATFORM_LITTLE_FLOATS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The only way in which platform/ reports what went wrong. */
 #ifndef T3R_PLATFORM_REASON_H
 #define T3R_PLATFORM_REASON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Text inside a file's bytes: counted, not terminated, and not necessarily UTF-8. */
 #ifndef T3R_PLATFORM_TEXT_H
 #define T3R_PLATFORM_TEXT_H

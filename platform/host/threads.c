@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* parallel_for on POSIX threads, which draw indices from one shared counter.
  *
  * A build has hundreds of jobs of a few hundred microseconds. Waking a thread takes about a tenth of that, far more in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A fixed set of threads for t3r_hooks.parallel_for. Results do not depend on which thread runs which index, because
  * the runtime's tasks write to separate places. */
 #ifndef T3R_PLATFORM_THREADS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Decompression of MCAP chunks: "lz4" (frame format) and "zstd". Host side. */
 #ifndef T3R_PLATFORM_CHUNK_CODEC_H
 #define T3R_PLATFORM_CHUNK_CODEC_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Compression of chunks, for recorders on machines with a heap (recording.h). chunk_codec.h reads the result. */
 #ifndef T3R_PLATFORM_CHUNK_PACKER_H
 #define T3R_PLATFORM_CHUNK_PACKER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CRC-32 (IEEE 802.3, reflected, as in zlib and MCAP) for the recorder, which calls no library. Readers use zlib's. */
 #ifndef T3R_PLATFORM_CRC32_H
 #define T3R_PLATFORM_CRC32_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "mcap_chunk_writer.h"
 
 #include <string.h>

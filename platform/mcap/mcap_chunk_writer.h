@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Chunks of MCAP files and their indexes. A chunk is measured before it is written, so that a sink that only appends is
  * enough. The summary's chunk indexes are read back from the file, so that memory does not grow with it. */
 #ifndef T3R_PLATFORM_MCAP_CHUNK_WRITER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads MCAP files in memory, front to back: checks the bounds of every record, decompresses chunks, checks CRCs, and
  * passes each schema, channel, message and metadata record to a visitor. It knows records, not their meaning.
  *

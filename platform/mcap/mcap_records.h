@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* MCAP records in memory (mcap.dev/spec), for the reader of whole files and for that of firmware: no heap, no files.
  * Of a record its first bytes may be there alone: fields that reach past them are empty or 0, and `failed` is set. */
 #ifndef T3R_PLATFORM_MCAP_RECORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes MCAP records through a sink: no heap, one pass, a running CRC-32. It knows records, not their meaning.
  *
  * A record is opened with its exact content size and then filled field by field; t3r_mcap_begin(), schema, channel and
@@ -9,9 +10,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "host/text.h"
 #include "mcap.h"
 #include "recording/recording.h"
-#include "host/text.h"
 
 typedef struct t3r_mcap_writer {
     t3r_sink sink;

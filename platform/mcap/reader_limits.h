@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The limits of all readers. Build, eval and replay can use whatever import accepts, and no file demands more work or
  * memory than its frames justify. SECURITY.md lists the limits by reader. They are plain integers, so that messages can
  * print them. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Memory for large, long-lived data that is rarely read: pages of a nameless file in TMPDIR or /var/tmp, which the
  * system may write out. Addresses stay valid; the file disappears with the process. */
 #ifndef T3R_PLATFORM_SPILL_H

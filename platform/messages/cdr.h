@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CDR, the wire format of ROS 2 messages (XCDR version 1, plain): read in either byte order, written little-endian.
  *
  * Every number is aligned to its size, counted from the end of the 4-byte encapsulation header. */
@@ -7,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "recording/recording.h"
 #include "host/text.h"
+#include "recording/recording.h"
 
 /* ---- reading: the first read past the end, or the first malformed field, sets `failed`; later reads give zeros */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts cameras and depth units from doubles to the runtime's fixed point. Values outside its ranges
  * (reader_limits.h) after rounding are refused. Readers and writers of recordings share these checks, so that what one
  * accepts the other can use. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts IEEE 754 doubles and floats, given as bits, to fixed point: round-half-even, range-checked, integers only,
  * so that the result is the same on every processor and with every math library. */
 #ifndef T3R_PLATFORM_FIXED_DOUBLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts ROS 2 messages of one instant to a frame and its camera: checked, and their doubles turned into fixed point.
  * No heap: a frame's planes lie in the messages' own bytes. Each check returns NULL, or what is wrong. */
 #ifndef T3R_PLATFORM_MESSAGE_FRAME_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The ROS 2 messages of a recording, read from and written to CDR. Doubles stay the 64 bits of the file (names end in
  * _f64); recording_frame.c converts them to fixed point. */
 #ifndef T3R_PLATFORM_ROS_MESSAGES_H

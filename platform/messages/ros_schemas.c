@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Names and definitions of the ROS 2 messages in use: the fields of ros2/common_interfaces (foxy and later), without
  * comments. */
 #include "ros_messages.h"

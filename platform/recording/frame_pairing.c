@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "frame_pairing.h"
 
 #include <stdbool.h>

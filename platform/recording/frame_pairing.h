@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Decides which colour and depth images belong to one instant, as they arrive. */
 #ifndef T3R_PLATFORM_FRAME_PAIRING_H
 #define T3R_PLATFORM_FRAME_PAIRING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads frames of a recording in order, without a heap: for firmware.
  *
  * It reads what trim3r records and imports: uncompressed chunks or none, and images as pixels. The messages of one

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The memory layout of the pixel formats and their names in ROS: one table for writer and reader of recordings. */
 #ifndef T3R_PLATFORM_PIXEL_LAYOUT_H
 #define T3R_PLATFORM_PIXEL_LAYOUT_H

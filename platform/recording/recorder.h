@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the files of the recorder share: its state, its channels, and messages inside and outside chunks. */
 #ifndef T3R_PLATFORM_RECORDER_H
 #define T3R_PLATFORM_RECORDER_H

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a frame and an event as ROS 2 messages. */
 #include <stdbool.h>
 
 #include "core/little_endian.h"
 #include "messages/fixed_double.h"
+#include "messages/ros_messages.h"
 #include "pixel_layout.h"
 #include "recorder.h"
-#include "messages/ros_messages.h"
 
 static void put_camera_info(t3r_recorder *recorder, int64_t stamp_ns, const t3r_recorded_camera *camera)
 {

@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What precedes and follows the messages of a recording. */
 #include <string.h>
 
-#include "recorder.h"
 #include "messages/ros_messages.h"
+#include "recorder.h"
 
 #define TOPIC_ROOM (T3R_RECORDER_CAMERA_ROOM + 16u)
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Recordings: MCAP files of ROS 2 messages in CDR. For hosts: this reader uses the heap. */
 #ifndef T3R_PLATFORM_RECORDING_H
 #define T3R_PLATFORM_RECORDING_H

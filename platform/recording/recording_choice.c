@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Chooses which streams make up the frames, and says why the others do not. */
 #include <stdio.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A file that a recording grows in and that may be cut off at any moment. Every message is passed to the system as soon
  * as it is complete, so that a process that dies loses at most the message in progress; with `sync` it also goes to the
  * disk. */

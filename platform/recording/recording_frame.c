@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads one frame of a recording from its messages. */
 #include "recording_index.h"
 
@@ -5,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "host/reason.h"
 #include "messages/message_frame.h"
 #include "pixel_layout.h"
-#include "host/reason.h"
 
 /* The frame being read, and where reasons go. */
 typedef struct reading {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the files of the recording reader share: the messages of a recording by stream, and each frame's companions. */
 #ifndef T3R_PLATFORM_RECORDING_INDEX_H
 #define T3R_PLATFORM_RECORDING_INDEX_H
@@ -6,8 +7,8 @@
 #include <stdint.h>
 
 #include "mcap/mcap_reader.h"
-#include "recording.h"
 #include "messages/ros_messages.h"
+#include "recording.h"
 
 #define T3R_NO_MESSAGE SIZE_MAX
 #define T3R_NOTE_BYTES 512

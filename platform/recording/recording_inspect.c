@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a message says about itself and its stream. */
 #include <string.h>
 
-#include "pixel_layout.h"
 #include "host/reason.h"
+#include "pixel_layout.h"
 #include "recording_index.h"
 
 static void remark_encoding(t3r_recording *recording, t3r_stream *stream, const char *what, t3r_text encoding)

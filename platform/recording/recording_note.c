@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Remarks on a recording, one after the other. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "recording_index.h"
 #include "host/text.h"
+#include "recording_index.h"
 
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Decides which messages belong to one instant. */
 #include "recording_index.h"
 

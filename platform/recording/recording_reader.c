@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads MCAP records into streams of indexed messages and metadata. */
 #include "recording.h"
 
@@ -10,9 +11,9 @@
 #include "host/file_bytes.h"
 #include "host/fixed_text.h"
 #include "host/grow.h"
+#include "host/reason.h"
 #include "mcap/reader_limits.h"
 #include "pixel_layout.h"
-#include "host/reason.h"
 #include "recording_index.h"
 
 #define IDS 65536u                                  /* schema and channel ids have 16 bits */

@@ -1,15 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The recorder: writes one camera's frames as MCAP, in one pass, with a bounded state in the caller's memory. */
 #include "recording.h"
 
 #include <stdbool.h>
 #include <string.h>
 
-#include "messages/fixed_camera.h"
 #include "host/fixed_text.h"
-#include "pixel_layout.h"
 #include "mcap/reader_limits.h"
-#include "recorder.h"
+#include "messages/fixed_camera.h"
 #include "messages/ros_messages.h"
+#include "pixel_layout.h"
+#include "recorder.h"
 
 #define MAX_EVENT_BYTES 1024u
 #define MAX_STAMP_NS ((int64_t)1000000000 << 31) /* ROS keeps seconds in int32_t */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The shipped heads: weight files (runtime/head/weights.h) as constants, each in its own source file, so that a
  * firmware contains only the heads that it names. */
 #ifndef TRIM3R_HEADS_H

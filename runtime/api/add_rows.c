@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A context view that comes in strips of rows. */
 #include "adding.h"
 #include "core/features.h"

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Context views: frames to planes, and what stereo found of them. */
 #include "adding.h"
 #include "core/features.h"
 #include "core/memory.h"
-#include "layout/arena.h"
-#include "state/state.h"
 #include "image/develop.h"
 #include "image/image.h"
+#include "layout/arena.h"
+#include "state/state.h"
 
 static bool has_measured_depth(const t3r_runtime *rt, uint32_t index)
 {

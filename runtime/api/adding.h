@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a context view takes, whether it comes whole or in strips. */
 #ifndef T3R_ADDING_H
 #define T3R_ADDING_H

@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The weights of a learned head. */
-#include "layout/arena.h"
-#include "state/state.h"
 #include "head/head.h"
 #include "head/weights.h"
+#include "layout/arena.h"
+#include "state/state.h"
 
 t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Weights where learned heads are left out: none can be bound. */
 #include "state/state.h"
 

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A scene of the views: what is asked for, and whether it can be had, is settled here. */
 #include "api/checks.h"
 #include "core/config.h"
 #include "core/features.h"
 #include "loss/budget_choice.h"
-#include "state/state.h"
 #include "pipeline.h"
+#include "state/state.h"
 
 /* A request with the configuration's values where it has none of its own. */
 typedef struct build_order {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What callers, files and copied arenas bring is checked by these, and nowhere deeper. */
 #ifndef T3R_CHECKS_H
 #define T3R_CHECKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Colours that depend on the direction of view (SPEC, "Harmonics"). */
 #include "api/checks.h"
 #include "core/fixed.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Streams: a keyframe into the map, and how much the next one would show of it. */
 #include "api/checks.h"
 #include "core/camera.h"

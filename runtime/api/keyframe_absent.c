@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Streams where they are left out. */
 #include "state/state.h"
 

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The arena: laid out, or found again as it was left. */
 #include "api/restored.h"
 #include "core/config.h"
-#include "layout/arena.h"
 #include "core/hash.h"
 #include "core/memory.h"
-#include "state/state.h"
 #include "image/image.h"
+#include "layout/arena.h"
+#include "state/state.h"
 
 /* Changes with the layout: an arena laid out by another build is refused. */
 static uint64_t layout_hash(const t3r_layout *layout)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A view of the scene in the arena. */
 #include "core/features.h"
 #include "core/fixed.h"

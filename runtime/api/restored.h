@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* An arena that was copied or restored from bytes is not trusted: what the stages rely on is looked at once. */
 #ifndef T3R_RESTORED_H
 #define T3R_RESTORED_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The scene in the arena: read, or written by whoever has one from a file. */
 #include "api/checks.h"
 #include "core/features.h"

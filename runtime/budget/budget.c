@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "budget.h"
 
 #include "budget_keys.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The budget: which Z of the valid points are retained (GaussianTrim3R 3.1.2; SPEC.md, "Budget").
  *
  * All modes share one mechanism. Each point has a key, log2 of its blue-noise threshold over its wanted density.
@@ -12,9 +13,9 @@
 
 #include "core/workers.h"
 #include "kernels/kernels.h"
+#include "state/views.h"
 #include "superclusters/superclusters.h"
 #include "trim3r.h"
-#include "state/views.h"
 
 typedef struct t3r_budget_settings {
     t3r_allocation allocate;

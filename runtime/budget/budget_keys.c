@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "budget_keys.h"
 
 #include "blue_noise.h"

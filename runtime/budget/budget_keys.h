@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Keys: log2 of a point's blue-noise threshold over the density wanted around it. */
 #ifndef T3R_BUDGET_KEYS_H
 #define T3R_BUDGET_KEYS_H

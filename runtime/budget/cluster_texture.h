@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Texture in the forms that the budget uses: blurred, as the mean of a SuperCluster, and as an order of
  * SuperClusters. */
 #ifndef T3R_CLUSTER_TEXTURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The allocation `given`: the caller chooses the points to retain by importance, and their density is counted (SPEC.md,
  * "Budget"). */
 #ifndef T3R_IMPORTANCE_H
@@ -6,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "superclusters/superclusters.h"
 #include "state/views.h"
+#include "superclusters/superclusters.h"
 
 /* One plane a context view, each width x height, owned by the caller and used within one call. */
 typedef struct t3r_importance {

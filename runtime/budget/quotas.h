@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Quotas: how many points each SuperCluster retains. */
 #ifndef T3R_QUOTAS_H
 #define T3R_QUOTAS_H

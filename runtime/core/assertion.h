@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Checks at which a debug build may stop: compile the runtime with these macros defined. */
 #ifndef T3R_ASSERTION_H
 #define T3R_ASSERTION_H

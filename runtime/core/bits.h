@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sets stored as bits of a word. */
 #ifndef T3R_BITS_H
 #define T3R_BITS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cameras in fixed point. */
 #include "camera.h"
 

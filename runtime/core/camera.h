@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cameras: range checks, rotation matrices, change of pixel grid. */
 #ifndef T3R_CAMERA_H
 #define T3R_CAMERA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Settings: their defaults and their ranges. */
 #include "config.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Range checks of settings, and defaults for those left open. */
 #ifndef T3R_CONFIG_H
 #define T3R_CONFIG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Division of many numbers by one through its reciprocal, with the exact quotient. */
 #ifndef T3R_DIVISOR_H
 #define T3R_DIVISOR_H

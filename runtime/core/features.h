@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Features of this build (trim3r_features.h), and which of them settings need. */
 #ifndef T3R_CORE_FEATURES_H
 #define T3R_CORE_FEATURES_H

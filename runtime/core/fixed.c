@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Square root, logarithm and power of two (SPEC, "Fixed-point functions"). */
 #include "fixed.h"
 

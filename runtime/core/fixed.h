@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Fixed-point arithmetic: the one place where rounding is defined (SPEC.md, "Rounding").
  *
  * Every rounding in the runtime is round-half-up: add half, shift arithmetically. Right shifts of negative

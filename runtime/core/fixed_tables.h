@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The tables of logarithm and power of two, for code that looks up several numbers at once. */
 #ifndef T3R_FIXED_TABLES_H
 #define T3R_FIXED_TABLES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The hash of a stage: FNV-1a, 64 bits, over a canonical little-endian serialisation (SPEC.md, "Hash"). */
 #ifndef T3R_HASH_H
 #define T3R_HASH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Integers in little-endian bytes: the same on every machine, at any alignment. */
 #ifndef T3R_LITTLE_ENDIAN_H
 #define T3R_LITTLE_ENDIAN_H

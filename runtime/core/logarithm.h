@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inline log2 and 2^x for hot loops; other code calls the functions of fixed.h. */
 #ifndef T3R_LOGARITHM_H
 #define T3R_LOGARITHM_H

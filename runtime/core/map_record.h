@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A stream's record of each Gaussian, which refinement reads as well. */
 #ifndef T3R_MAP_RECORD_H
 #define T3R_MAP_RECORD_H

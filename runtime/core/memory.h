@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The four functions that the runtime calls and does not define: a C library's, or a firmware's own. They are declared
  * here, so no header of a C library is needed. */
 #ifndef T3R_CORE_MEMORY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Names and sentences, as the command line and tables print them. */
 #include "features.h"
 #include "trim3r.h"

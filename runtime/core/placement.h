@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A camera's position and orientation, without its lens. */
 #ifndef T3R_PLACEMENT_H
 #define T3R_PLACEMENT_H

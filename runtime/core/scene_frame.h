@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The scene's fixed-point frame: the first context camera's centre is the origin, and a power of two brings the median
  * depth into [1, 2) scene units. So a scene 0.07 units wide and one at map coordinates have the same relative
  * precision. */

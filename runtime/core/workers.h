@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Work that may run on several threads at once: numbered tasks, passed to the caller's hook.
  *
  * A task writes only to memory that no other task of the same call reads or writes, or to its worker's own memory.

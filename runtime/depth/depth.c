@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Validity of depth, and filling of small holes between measured pixels. */
 #include "depth.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage depth: validity of measured depth, and filling of small holes. */
 #ifndef T3R_DEPTH_H
 #define T3R_DEPTH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How wide a splat is where several views cover its surface. */
 #ifndef T3R_FITTED_WIDTHS_H
 #define T3R_FITTED_WIDTHS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Fitted widths where views are not compared: no configuration is allowed to ask for them (core/config.c). */
 #include "fitted_widths.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The Gaussian head: retained points to Gaussians that also cover what was pruned around them. Every head predicts a
  * footprint in the image plane, in pixels of the source view; t3r_lift() makes it a 3-D Gaussian on the surface. */
 #ifndef T3R_HEAD_H

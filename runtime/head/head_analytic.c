@@ -1,7 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A head without weights: a disc on the surface, sigma 0.6 of the spacing of its kept neighbours, coloured by the mean
  * of the pixels it stands for. */
-#include "depth/depth.h"
 #include "core/fixed.h"
+#include "depth/depth.h"
 #include "fitted_widths.h"
 #include "head.h"
 

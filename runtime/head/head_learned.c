@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A network's outputs at the retained pixels to footprints (SPEC.md, "Learned head"). */
 #include "core/cut.h"
 #include "core/fixed.h"

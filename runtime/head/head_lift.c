@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "core/fixed.h"
 #include "head.h"
 #include "raster/raster_splat.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Heads as the command line and the tables spell them. */
 #include "head.h"
 

@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The configured head over the retained points of views: bands of rows, shared out among workers. */
 #ifndef T3R_HEAD_VIEWS_H
 #define T3R_HEAD_VIEWS_H
 
-#include "state/state.h"
 #include "head.h"
+#include "state/state.h"
 
 /* What the head sees of a view, its work being worker 0's. It holds the pointers that it is given. */
 t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,

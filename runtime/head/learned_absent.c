@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What stands for learned heads where they are left out: no build is allowed to ask for one (api/checks.c). */
 #include "head.h"
 #include "weights.h"

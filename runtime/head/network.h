@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A learned head's layers, run row by row over an image or a band of its rows (SPEC.md, "Learned head: order").
  *
  * A plane layer keeps a ring of the rows that its readers still need, so activations take a few rows a layer, never a

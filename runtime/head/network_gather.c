@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Activations from the rings to where the kernels read them: columns, or strips of the rows under a kernel. */
 #include "network_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Layers as the kernels take them: as the file has them, or packed. */
 #include "network_parts.h"
 

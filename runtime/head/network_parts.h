@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the files of the network share: the geometry of layers, and activations gathered for the kernels. */
 #ifndef T3R_NETWORK_PARTS_H
 #define T3R_NETWORK_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which rows of which layer are made when, and how many of them are kept. */
 #include "network_parts.h"
 

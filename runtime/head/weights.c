@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The weight file checked: afterwards every offset, index, shift and sum of it is what the network counts on. */
 #include "weights.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The .t3w weight file: a quantized head as it lies in flash (SPEC.md, "Weights").
  *
  * Little-endian throughout and used in place. A header of 64 bytes, a table of layers of 32 bytes each, then the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is wrong with a weight file, in words. */
 #include "trim3r.h"
 #include "weights.h"

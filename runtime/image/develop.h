@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage image: converts a camera's frame to the planes of a context view. */
 #ifndef T3R_DEVELOP_H
 #define T3R_DEVELOP_H

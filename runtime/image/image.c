@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Conversion of frames to planes of the working size. Widths and heights: source W x H, destination w x h. */
 #include "image.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage image, first part: camera frames to R, G, B and depth planes of the working size.
  *
  * Colour is the exact area average of the source pixels under each destination pixel (when enlarging, too),

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Lens distortion as a grid of source positions, and sampling through the grid. */
 #include "undistort.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage image, second part: the pinhole image of the same intrinsics, through a coarse grid of source positions.
  *
  * A grid has a node every T3R_GRID_STEP pixels, (width / step + 2) x (height / step + 2) of them row by row,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stubs for builds without lens distortion: a camera with distortion is refused. */
 #include "undistort.h"
 

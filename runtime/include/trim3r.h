@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r turns a few posed camera frames into a budgeted set of 3-D Gaussians and draws views of it, in integers.
  *
  * This is the whole interface of the runtime. It has no heap, no floating point, no operating system and no writable

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The arena, at compile time: every buffer's bytes, first and last stage, and the sums that follow.
  *
  * t3r_plan() and t3r_init() read the same table (runtime/layout/arena.c), so a static array sized by

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a program and the library must agree on: the structs of trim3r.h, field by field. Each side compiles a digest of
  * it, and the calls by which a program starts compare the two. */
 #ifndef TRIM3R_INTERFACE_H

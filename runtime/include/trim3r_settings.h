@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The settings of the runtime: a row each. The fields of t3r_config are made from the rows, with their defaults, ranges
  * and needs. So are the program's options, Python's settings, the fuzzers' draws and the list of docs/library.md. */
 #ifndef TRIM3R_SETTINGS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The innermost loop of the rasterizer: blends one splat over its rows of a tile, eight columns at a time (SPEC.md,
  * "Raster: blending"). */
 #ifndef T3R_KERNEL_BLEND_H

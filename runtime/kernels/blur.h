@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The two directions of the texture's blur. A 5 x 5 box applied twice has nine taps 1 2 3 4 5 4 3 2 1 along each axis,
  * over 25, round-half-up. A row is 1..T3R_MAX_SIDE samples, unaligned; nothing beyond it is read or written. */
 #ifndef T3R_KERNEL_BLUR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Matching cost: the number of 24 comparisons that differ between two neighbourhoods (SPEC.md, "Stereo").
  *
  * The census of a pixel compares 24 pairs of places in the 7 x 5 pixels around it. Only order counts, so any exposure,

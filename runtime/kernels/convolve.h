@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The innermost loops of a learned head: compute a layer for a block of pixels, with all outputs and their
  * requantization in one call (SPEC.md, "Learned head: arithmetic"). */
 #ifndef T3R_KERNEL_CONVOLVE_H

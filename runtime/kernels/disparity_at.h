@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Disparities of a plane at places between its pixels, and the places they lead to (SPEC.md, "Stereo"). */
 #ifndef T3R_KERNEL_DISPARITY_AT_H
 #define T3R_KERNEL_DISPARITY_AT_H

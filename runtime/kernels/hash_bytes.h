@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The hash of a stage over serialised bytes (core/hash.h). */
 #ifndef T3R_KERNEL_HASH_BYTES_H
 #define T3R_KERNEL_HASH_BYTES_H

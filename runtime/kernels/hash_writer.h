@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Serialises values little-endian into the hash of a stage (SPEC.md, "Hash"), a run of bytes at a time. */
 #ifndef T3R_HASH_WRITER_H
 #define T3R_HASH_WRITER_H

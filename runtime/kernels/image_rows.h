@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Conversion of camera rows to planes, and the sums for resizing (SPEC.md, "Image"). No pointer is aligned, and nothing
  * is read or written beyond the counts. */
 #ifndef T3R_KERNEL_IMAGE_ROWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The table of the runtime's hot loops: one entry a loop. The header of each kernel states its ranges, alignment
  * and padding.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The budget's keys, a run of pixels at a time (SPEC.md, "Budget"). None of these pointers is aligned. */
 #ifndef T3R_KERNEL_KEYS_H
 #define T3R_KERNEL_KEYS_H

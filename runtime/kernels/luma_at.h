@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A picture's luma at places between its pixels (SPEC.md, "Stereo").
  *
  * Bilinear as in undistortion: the place is rounded to Q8, half up, and clamped to the picture, and the weighted sum of

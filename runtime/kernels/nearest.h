@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The innermost loop of the K-means: finds the nearest of K centres for each of a run of points. */
 #ifndef T3R_KERNEL_NEAREST_H
 #define T3R_KERNEL_NEAREST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Semi-global aggregation of a row of pixels along several paths (SPEC.md, "Stereo").
  *
  *     L(p, k) = C(p, k) + min(L'(k), L'(k - 1) + P1, L'(k + 1) + P1, P2),    L' = L(before p on the path) - its least

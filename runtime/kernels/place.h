@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Splats in the coordinates of a tile, as blending reads them (SPEC.md, "Raster: blending"). */
 #ifndef T3R_KERNEL_PLACE_H
 #define T3R_KERNEL_PLACE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Back-projection of pixels with depth to points of the scene, and projection of points to the pixels of a view. */
 #ifndef T3R_KERNEL_POINTS_H
 #define T3R_KERNEL_POINTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Back-projection of one pixel, and what plain C and the variants of `locate` share (points.c). */
 #ifndef T3R_KERNEL_POINTS_PARTS_H
 #define T3R_KERNEL_POINTS_PARTS_H

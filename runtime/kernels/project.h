@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Projection of the scene's Gaussians to splats of one view (SPEC.md, "Raster"). */
 #ifndef T3R_KERNEL_PROJECT_H
 #define T3R_KERNEL_PROJECT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scalar parts of projection, shared by projecting one Gaussian and several (project.c). */
 #ifndef T3R_KERNEL_PROJECT_PARTS_H
 #define T3R_KERNEL_PROJECT_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The loops of the radix sort, a byte a pass. Arrays are aligned to 4 bytes; nothing beyond `count` entries is read,
  * and only the entries that a pass fills are written. */
 #ifndef T3R_KERNEL_RADIX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Projection of a row of rays into a picture (SPEC.md, "Stereo").
  *
  *     ray = (a turn + b slope + base) / 2^30        place = ray_x / ray_z scale + offset, likewise for y

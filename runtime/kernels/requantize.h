@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Requantization of an accumulator to an activation: TFLite's single-rounding reference (SPEC.md, "Learned head:
  * arithmetic"). */
 #ifndef T3R_KERNEL_REQUANTIZE_H

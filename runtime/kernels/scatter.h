@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The innermost loop of refinement: adds the pixels of a tile to the sums of one splat (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SCATTER_H
 #define T3R_KERNEL_SCATTER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bit widths of all terms that scattering sums, shared by plain C and the variants (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SCATTER_BITS_H
 #define T3R_KERNEL_SCATTER_BITS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The innermost loops of k-means++: the distances of the sample with a new centre (SPEC.md, "SuperClusters"). */
 #ifndef T3R_KERNEL_SEED_H
 #define T3R_KERNEL_SEED_H

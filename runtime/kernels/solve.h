@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Corrections of Gaussians from their sums (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SOLVE_H
 #define T3R_KERNEL_SOLVE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Correction of Gaussians: parts shared by plain C and the variants (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SOLVE_PARTS_H
 #define T3R_KERNEL_SOLVE_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The variants of all architectures in this build. */
 #ifndef T3R_KERNEL_VARIANTS_H
 #define T3R_KERNEL_VARIANTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The lifting steps of the wavelets over rows of int16; plain C defines them. A row is a plane's row (vertical lifting)
  * or one half of a split row (horizontal lifting). Rows are aligned to 2 bytes and of any length; nothing beyond
  * `count` samples is read or written. Two inputs that are not `restrict` may be the same row or overlap. */

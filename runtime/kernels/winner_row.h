@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The least of each pixel's summed costs, for left and right pixels (SPEC.md, "Stereo"). */
 #ifndef T3R_KERNEL_WINNER_ROW_H
 #define T3R_KERNEL_WINNER_ROW_H

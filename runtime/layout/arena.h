@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The arena planner: one layout function behind t3r_plan(), t3r_init() and the macros of trim3r_arena.h. */
 #ifndef T3R_ARENA_H
 #define T3R_ARENA_H

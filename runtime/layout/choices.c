@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which settings fit, and which of them are expected to lose least. */
 #include "arena.h"
 #include "core/config.h"

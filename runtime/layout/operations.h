@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Instructions of plain C on x86-64 in 1/1000 a unit of each kind of work, as gcc 12 -O2 makes them.
  * tests/proofs/work.py --fit makes this file. */
 #ifndef T3R_OPERATIONS_H

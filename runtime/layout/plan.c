@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a configuration needs, and which configuration an arena can hold. */
 #include "arena.h"
 #include "core/config.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How much work a build is worth, as settings. */
 #include "core/features.h"
 #include "state/state.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The best settings for a size of RAM. */
 #include "arena.h"
 #include "core/config.h"

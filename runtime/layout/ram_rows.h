@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The best settings for some sizes of RAM: tools/study/scripts/ram --write makes this file. */
 #ifndef T3R_RAM_ROWS_H
 #define T3R_RAM_ROWS_H

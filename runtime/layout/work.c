@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How much work a build is, and what that takes at some prices: SPEC, "Work". */
 #include "arena.h"
 #include "core/config.h"

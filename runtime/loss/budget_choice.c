@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "budget_choice.h"
 
-#include "pointmap/align.h"
-#include "pointmap/disagreement.h"
 #include "core/fixed.h"
 #include "pipeline.h"
+#include "pointmap/align.h"
+#include "pointmap/disagreement.h"
 #include "refine/refine.h"
 #include "state/state.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A budget no larger than needed: the budget that a loss allows, predicted from two small trial scenes and from the
  * disagreement of the context views (SPEC.md, "Budget within a loss"). */
 #ifndef T3R_BUDGET_CHOICE_H

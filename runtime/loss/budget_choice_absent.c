@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stub for builds without a bounded loss: api/build.c refuses requests that ask for one. */
 #include "budget_choice.h"
 

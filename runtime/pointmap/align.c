@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Corrects the poses of context views until the views agree: Gauss-Newton steps on what the views show of the same
  * surfaces, from coarse pictures to fine ones (Lucas and Kanade, "An iterative image registration technique", 1981;
  * Kerl, Sturm and Cremers, "Robust odometry estimation for RGB-D cameras", 2013). */

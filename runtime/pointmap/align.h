@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Alignment: correction of the poses of context views until the views agree (SPEC.md, "Between views"). */
 #ifndef T3R_ALIGN_H
 #define T3R_ALIGN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The linear equations of alignment. */
 #ifndef T3R_ALIGN_SOLVE_H
 #define T3R_ALIGN_SOLVE_H

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bridging of wide depth holes: depth from other views that measured it, and else from the edges of the hole. */
 #ifndef T3R_BRIDGE_H
 #define T3R_BRIDGE_H
 
 #include <stdint.h>
 
-#include "state/views.h"
 #include "pointmap_work.h"
+#include "state/views.h"
 
 /* Gives depth to pixels that have none, but have known pixels within `radius` (0..255; 0: take only depth of other
  * views) at both ends in their row, column or a diagonal. Known pixels are measured, filled, or measured by another

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bridging across views: takes depth that other views measured, and checks bridges against them. */
 #include "bridge.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stubs for builds without comparison of views: core/config.c refuses a second view and streams. */
 #include "align.h"
 #include "bridge.h"

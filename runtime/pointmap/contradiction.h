@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Points of one view that another view contradicts by seeing through them. */
 #ifndef T3R_CONTRADICTION_H
 #define T3R_CONTRADICTION_H

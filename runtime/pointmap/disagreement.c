@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "disagreement.h"
 
 #include <stdbool.h>
 
-#include "exposure.h"
 #include "core/fixed.h"
+#include "exposure.h"
 #include "reproject.h"
 
 /* Sum of at most 3 channels x 2^24 pixels x 16 views x 2 neighbours squares: below 2^24 x 2^31. */

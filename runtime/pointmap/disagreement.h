@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Disagreement of views on the colours of one surface: the error that no number of Gaussians removes. */
 #ifndef T3R_DISAGREEMENT_H
 #define T3R_DISAGREEMENT_H

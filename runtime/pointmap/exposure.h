@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Exposure levelled between views: a gain for each view and channel, from surfaces that two views measured. */
 #ifndef T3R_EXPOSURE_H
 #define T3R_EXPOSURE_H

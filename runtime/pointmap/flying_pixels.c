@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "flying_pixels.h"
 
 #include <stdbool.h>
 
-#include "depth/depth.h"
-#include "core/fixed.h"
 #include "contradiction.h"
+#include "core/fixed.h"
+#include "depth/depth.h"
 
 static bool lies_between(const t3r_view *view, size_t pixel, size_t before, size_t after)
 {

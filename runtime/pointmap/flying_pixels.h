@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Flying pixels: measured depth where no surface is. Between two surfaces a sensor, or a match, may return a depth in
  * between. In another view such a point is in front of what that view measured. */
 #ifndef T3R_FLYING_PIXELS_H

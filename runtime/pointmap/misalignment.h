@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Comparison of a view's pixels with another view, and the derivatives by both poses. */
 #ifndef T3R_MISALIGNMENT_H
 #define T3R_MISALIGNMENT_H

@@ -1,7 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "pointmap.h"
 
-#include "depth/depth.h"
 #include "core/fixed.h"
+#include "depth/depth.h"
 #include "kernels/points_parts.h"
 
 /* Distance of the farthest neighbour in the slope, pixels. */

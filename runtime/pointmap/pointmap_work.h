@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Work memory of the comparison of views. */
 #ifndef T3R_POINTMAP_WORK_H
 #define T3R_POINTMAP_WORK_H

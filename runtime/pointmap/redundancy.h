@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Redundancy between views: pixels whose surface another view has measured about as finely or more finely. */
 #ifndef T3R_REDUNDANCY_H
 #define T3R_REDUNDANCY_H
 
 #include <stdint.h>
 
-#include "state/views.h"
 #include "pointmap_work.h"
+#include "state/views.h"
 
 /* Marks the pixels of view v that another view covers (t3r_is_covered) and returns their number. The other view's pixel
  * on which the point falls must be measured, unmarked and at most 1/32 off in depth. Its footprint z / f must be at

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reproject.h"
 
 t3r_pinhole t3r_pinhole_of(const t3r_view *view)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Projection of one view's pixels into another view. */
 #ifndef T3R_REPROJECT_H
 #define T3R_REPROJECT_H

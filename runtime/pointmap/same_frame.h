@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Whether a build that follows another (t3r_config.warm) may keep its frame. */
 #ifndef T3R_SAME_FRAME_H
 #define T3R_SAME_FRAME_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The scale of a scene: its median measured depth lies in [1, 2) scene units (core/scene_frame.h). */
 #ifndef T3R_SCENE_SCALE_H
 #define T3R_SCENE_SCALE_H

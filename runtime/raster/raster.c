@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The rasterizer: projects, orders, bins by tiles and blends front to back.
  *
  * Fewer bytes never change a pixel. The depth order is global, a pass takes as many whole tiles as its lists have

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tile lists. Each task counts or fills a band of tiles. It reads the tile span of every splat, four bytes each in
  * depth order, and takes the splats in its band. */
 #include "core/fixed.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What rendering and refinement do with a view before its tiles are drawn: projection, depth order and counts by
  * tile. */
 #ifndef T3R_RASTER_LIST_H

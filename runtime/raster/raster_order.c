@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The global depth order: a stable radix sort, one byte a pass. */
 #include "raster_splat.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Projection of a camera in the scene's frame. */
 #include "core/camera.h"
 #include "core/fixed.h"

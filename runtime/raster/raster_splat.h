@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Records and stages of the rasterizer: project, order, bin, blend (SPEC.md, "Raster"). */
 #ifndef T3R_RASTER_SPLAT_H
 #define T3R_RASTER_SPLAT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tiles: which splats a tile lists, and how it is drawn from its list. */
 #ifndef T3R_RASTER_TILE_H
 #define T3R_RASTER_TILE_H

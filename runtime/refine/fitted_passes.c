@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "fitted_passes.h"
 
 #include "core/fixed.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The number of refinement passes that is worth it. */
 #ifndef T3R_FITTED_PASSES_H
 #define T3R_FITTED_PASSES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stub for builds without fitted passes: core/config.c refuses configurations that ask for them. */
 #include "fitted_passes.h"
 

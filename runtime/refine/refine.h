@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Refinement: draws the context views, scatters the residuals back to the Gaussians that drew each pixel, and corrects
  * these Gaussians (SPEC.md, "Refinement"). A pass measures everything on one scene, then changes all of it at once. */
 #ifndef T3R_REFINE_H
@@ -5,8 +6,8 @@
 
 #include <stdint.h>
 
-#include "raster/raster_list.h"
 #include "core/map_record.h"
+#include "raster/raster_list.h"
 #include "state/views.h"
 
 /* Applies a correction to a Gaussian. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stubs for builds without refinement: core/config.c refuses configurations that ask for a pass. */
 #include "refine.h"
 

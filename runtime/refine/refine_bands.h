@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cuts the tiles of a view into bands for workers.
  *
  * A band is a run of consecutive tiles that one task draws. A Gaussian may lie in several bands, and two tasks must not

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Applies a correction to a Gaussian (SPEC.md, "Refinement"). */
 #include "core/fixed.h"
 #include "core/scene_frame.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "refine_layout.h"
 
 #include "core/cut.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Layout of the refinement work buffer. */
 #ifndef T3R_REFINE_LAYOUT_H
 #define T3R_REFINE_LAYOUT_H

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "refine_tile.h"
 
 #include <stdbool.h>
 
-#include "pointmap/exposure.h"
 #include "core/fixed.h"
 #include "core/memory.h"
+#include "pointmap/exposure.h"
 #include "state/remembered.h"
 
 /* Whether the pixel counts in the loss. */

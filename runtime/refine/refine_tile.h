@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Refinement of one tile of a context view: draws it as the rasterizer does and scatters its residuals to the
  * splats. */
 #ifndef T3R_REFINE_TILE_H

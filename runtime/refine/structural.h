@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A loss that weights errors of structure, as eyes do. */
 #ifndef T3R_STRUCTURAL_H
 #define T3R_STRUCTURAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stubs for builds without the structural loss: core/config.c refuses configurations that ask for it. */
 #include "structural.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Differences in brightness and contrast of a whole view from the other views. */
 #ifndef T3R_VIEW_LEVELS_H
 #define T3R_VIEW_LEVELS_H

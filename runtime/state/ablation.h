@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Switches that remove a part of the method, so that tests and evaluations can measure its worth. They are not
  * settings: products don't need them, and each makes scenes worse. */
 #ifndef T3R_ABLATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Keyframes that a stream remembers after their planes are gone: their colours, for refinement. */
 #ifndef T3R_REMEMBERED_H
 #define T3R_REMEMBERED_H

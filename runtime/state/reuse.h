@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a build takes over from the last one (t3r_config.warm): recorded after an analysis, cleared when a build
  * fails. */
 #ifndef T3R_REUSE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The head of the arena: the runtime's whole state except the planes. It has offsets instead of pointers, so that a
  * copied arena works. The hooks, the bound weights and the table of kernels are exceptions: t3r_attach() clears the
  * first two and fills the third again. */
@@ -11,11 +12,11 @@
 #include "core/assertion.h"
 #include "core/features.h"
 #include "core/placement.h"
+#include "core/workers.h"
 #include "kernels/kernels.h"
 #include "reuse.h"
 #include "trim3r.h"
 #include "views.h"
-#include "core/workers.h"
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Results of the analysis stages: the planes of one context view, and the scene's frame. */
 #ifndef T3R_VIEWS_H
 #define T3R_VIEWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Semi-global matching in blocks of rows. */
 #include "match.h"
 

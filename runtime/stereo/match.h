@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage stereo, second part: disparities of a rectified pair by semi-global matching (SPEC.md, "Stereo").
  *
  * Pixel (x, y) of the left plane is compared with (x + disparities - 1 - k, y) of the right one, k = 0..disparities

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cleaning of disparities: removing wrong ones and filling holes (SPEC.md, "Stereo"). */
 #ifndef T3R_MATCH_CLEAN_H
 #define T3R_MATCH_CLEAN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Work memory of the matching paths: the parts of T3R_MATCH_PARTS_(). */
 #ifndef T3R_MATCH_LAYOUT_H
 #define T3R_MATCH_LAYOUT_H

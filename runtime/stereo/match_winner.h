@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The disparities of one row from its summed costs. */
 #ifndef T3R_MATCH_WINNER_H
 #define T3R_MATCH_WINNER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Penalties and empty states of semi-global aggregation (kernels/path_row.h; SPEC.md, "Stereo"). */
 #ifndef T3R_PATH_H
 #define T3R_PATH_H

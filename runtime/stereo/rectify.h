@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage stereo, first part: maps two posed pinhole cameras to planes in which every point lies in the same row of both
  * (SPEC.md, "Stereo: rectification").
  *

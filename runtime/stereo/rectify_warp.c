@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sampling along the rows of a rectified plane. */
 #include "core/fixed.h"
 #include "rectify.h"

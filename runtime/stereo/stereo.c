@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stereo of one pair of views, from colours to depth. */
 #include "stereo.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage stereo: depth for two posed colour views (SPEC.md, "Stereo"). It rectifies (rectify.h), finds the range of
  * disparities in a coarse pass at a quarter of the size, matches (match.h), and returns to the views' own pixels. */
 #ifndef T3R_STEREO_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stubs for builds without stereo: core/config.c refuses configurations that ask for it. */
 #include "stereo_views.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "stereo_depth.h"
 
 #include "core/fixed.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth at a view's pixels from disparities in rectified planes. */
 #ifndef T3R_STEREO_DEPTH_H
 #define T3R_STEREO_DEPTH_H

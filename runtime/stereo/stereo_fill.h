@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Filling of what stereo could not match with the depth of the surroundings (SPEC.md, "Stereo: filling"). */
 #ifndef T3R_STEREO_FILL_H
 #define T3R_STEREO_FILL_H

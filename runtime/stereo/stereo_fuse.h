@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Fusion of several pairs' depths of one view (SPEC.md, "Stereo: more than two views"). */
 #ifndef T3R_STEREO_FUSE_H
 #define T3R_STEREO_FUSE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One side of a rectified pair in the work memory of stereo: the parts of T3R_STEREO_SIDE_BYTES_(). */
 #ifndef T3R_STEREO_PLANES_H
 #define T3R_STEREO_PLANES_H

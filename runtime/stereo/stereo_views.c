@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "stereo_views.h"
 
 #include "core/cut.h"
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "stereo/planes/plane_fill.h"
 #include "state/state.h"
 #include "stereo.h"
+#include "stereo/planes/plane_fill.h"
 #include "stereo_fill.h"
 #include "stereo_fuse.h"
 

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage depth by stereo: chooses pairs of views, matches them, and fuses each view's depths (SPEC.md, "Stereo: more
  * than two views"). */
 #ifndef T3R_STEREO_VIEWS_H
 #define T3R_STEREO_VIEWS_H
 
-#include "trim3r.h"
 #include "state/views.h"
+#include "trim3r.h"
 
 /* Partners of each view: those of the highest match score. */
 #define T3R_STEREO_PARTNERS 2u

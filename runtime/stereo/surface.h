@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Surfaces of a view in terms of one over depth, which is linear in the picture along a plane (SPEC.md, "Stereo:
  * surfaces"). */
 #ifndef T3R_SURFACE_H

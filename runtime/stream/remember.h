@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which keyframes a stream remembers, and which Gaussians they hold. */
 #ifndef T3R_REMEMBER_H
 #define T3R_REMEMBER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The way of a keyframe. Its planes take the slot of the oldest of the keyframes at hand:
  *
  *     frame - image - depth - pointmap -+- the map seen and drawn from there -+- budget - mask - head - map - refine

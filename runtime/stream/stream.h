@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A keyframe of a stream, from the camera's frame to the map. */
 #ifndef T3R_STREAM_H
 #define T3R_STREAM_H

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "stream_map.h"
 
 #include "budget/budget_keys.h"
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "pointmap/contradiction.h"
 #include "head/head.h"
+#include "pointmap/contradiction.h"
 #include "state/state.h"
 
 #define FINER_Q8 256        /* log2: pixels on the surface so much narrower replace the Gaussian */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The map of a stream: its Gaussians with what is noted beside each, seen by a keyframe, and cut to its cap. */
 #ifndef T3R_STREAM_MAP_H
 #define T3R_STREAM_MAP_H
@@ -5,10 +6,10 @@
 #include <stdint.h>
 
 #include "budget/budget.h"
-#include "pointmap/pointmap.h"
-#include "trim3r.h"
 #include "core/map_record.h"
+#include "pointmap/pointmap.h"
 #include "state/views.h"
+#include "trim3r.h"
 
 /* log2: pixels on the surface so much wider than its own do not update a Gaussian. */
 #define T3R_AFAR_Q8 128

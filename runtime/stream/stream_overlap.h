@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How much a camera would see of what the newest keyframe saw. */
 #ifndef T3R_STREAM_OVERLAP_H
 #define T3R_STREAM_OVERLAP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A single SuperCluster, for allocations and streams that use none. */
 #ifndef T3R_ONE_CLUSTER_H
 #define T3R_ONE_CLUSTER_H

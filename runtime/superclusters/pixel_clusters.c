@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "pixel_clusters.h"
 
 #include "core/fixed.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* First centres of the K-means: k-means++ (Arthur and Vassilvitskii 2007) on a sample of the points, with the best of a
  * few draws for each centre. */
 #ifndef T3R_SEEDING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* SuperClusters: K-means on x, y, z, r, g, b (GaussianTrim3R 3.1.1, eq. 1) by bounded mini-batches and one assignment
  * pass. The work memory depends on K, not on the number of points (SPEC.md, "SuperClusters"). */
 #ifndef T3R_SUPERCLUSTERS_H
@@ -6,11 +7,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "kernels/kernels.h"
 #include "core/fixed.h"
 #include "core/workers.h"
-#include "trim3r.h"
+#include "kernels/kernels.h"
 #include "state/views.h"
+#include "trim3r.h"
 
 #define T3R_CLUSTER_BATCH 4096u /* maximum points of a mini-batch */
 #define T3R_CLUSTER_POINTS 16u  /* points of the sample and of a mini-batch for each SuperCluster */

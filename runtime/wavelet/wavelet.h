@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage wavelet: integer lifting on int16 planes, exactly invertible for any size, and texture energy.
  *
  * A plane's sample is (luma - 128) x 2^T3R_WAVELET_FRACTION with luma = (77 R + 150 G + 29 B + 128) >> 8. No

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Horizontal lifting: splits a row into lows and highs in the working memory, lifts them there and stores them back,
  * lows first. */
 #include "wavelet_level.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Shared by the files of the wavelet stage: one level of a transform, how a line is lifted, and where its coefficients
  * lie.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Texture energy: a transform whose rows stay in place, then the sum of absolute coefficients over all levels.
  *
  * 16 and 32 bits suffice, by the table in wavelet_level.h: |h| + |v| <= 2 x 10,430 on every level; 0.268 |d| <= 8,750

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Vertical lifting of a level: lifts whole rows against each other. It runs down the rows and makes each row (luma and
  * horizontal lifting) just before it is first needed, so that the work stays in cache. */
 #include "wavelet_level.h"

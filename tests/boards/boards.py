@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """boards.py TRIM3R FOLDER BOARD...: the firmware of each board makes the bits of this machine, takes what docs/study/boards.md
 has, and says what it lacks. The boards share a port."""
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """everywhere.py TRIM3R FOLDER [PROCESSOR...]: tools/everywhere finds the bits of this machine in each row of these
 processors (all), notices one hash that differs, and docs/study/everywhere.md has the hashes of today."""
 import copy

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """flash.py TRIM3R FOLDER: the flash of small firmwares stays within its limits and is what docs/study/boards.md has.
 Their hashes are those of this machine."""
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """levels.py TRIM3R FOLDER: gcc and clang compile each file of the runtime for the Cortex-M55 at every level. The firmware
 with a runtime by clang, whose enumerations are wider than those of the rest by gcc, has the bits of this machine."""
 import concurrent.futures

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """stack.py: what docs/study/boards.md has of the stack, which an emulator painted, against the bound from the call graph. The
 painted stack is within the bound and what the firmware's own functions take; and the bound is not far above it."""
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """capture.py TRIM3R: the command as a user has it: sources, signals, files that roll over, poses, events, --build."""
 import json
 import os

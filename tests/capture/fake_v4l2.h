@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A V4L2 driver in this process, behind the table of system calls: two nodes at most, a clock of its own that moves
  * only when somebody waits, and faults on order. It is as strict as the kernel's own queue: buffers that are queued
  * twice or mapped and forgotten are found. */

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A reader of MCAP records and of the few ROS 2 messages that these tests look at, by the formats' documentation."""
 import struct
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """opencv.py TRIM3R: pictures and films by OpenCV's VideoCapture against the very samples they were made of, and the
 Gaussians of them against those of a recording made without OpenCV. Skipped without the adapter or numpy and cv2."""
 import functools

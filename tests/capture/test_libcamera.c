@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Capture by libcamera over a library that lives in this process: agreement, frames without a copy, gaps, failures,
  * unplugging, standing still. */
 #include <setjmp.h>

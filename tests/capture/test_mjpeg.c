@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Motion JPEG: pictures that a camera compressed, with and without Huffman tables, and damaged ones. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,10 +13,10 @@
 #include <cmocka.h>
 
 #include "capture/capture_adapter.h"
-#include "fake_v4l2.h"
 #include "capture/mjpeg.h"
-#include "mcap/reader_limits.h"
 #include "capture/v4l2.h"
+#include "fake_v4l2.h"
+#include "mcap/reader_limits.h"
 
 enum { WIDTH = 32, HEIGHT = 16 };
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Trajectories: what is read, what lies between two poses, and the offset of two clocks found from moving pictures. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A recording whose process is killed, 200 times at random moments, however it stores its messages: every frame that
  * was whole is there, and those read back are those that were written. Files that roll over keep within their bytes. */
 #include <setjmp.h>

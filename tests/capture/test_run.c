@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The whole way of a frame, from a driver to a recording and to Gaussians, asks for no memory once it runs: the
  * allocator of this program counts. And what it delivers live is what its recording replays, bit for bit. */
 #include <errno.h>
@@ -16,11 +17,11 @@
 
 #include "capture/capture_adapter.h"
 #include "capture/run.h"
+#include "capture/v4l2.h"
 #include "cli/cli.h"
 #include "fake_v4l2.h"
 #include "room/room.h"
 #include "scratch.h"
-#include "capture/v4l2.h"
 
 /* ---- the allocator: glibc's own, counted; it stands in for the whole process's, the C library included ---- */
 

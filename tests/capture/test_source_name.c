@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a source is called: never by a password, a token or a folder. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* V4L2 capture over a driver that lives in this process: what it agrees on, what it hands on, and every way to fail. */
 #include <errno.h>
 #include <setjmp.h>
@@ -11,8 +12,8 @@
 #include <cmocka.h>
 
 #include "capture/capture_adapter.h"
-#include "fake_v4l2.h"
 #include "capture/v4l2.h"
+#include "fake_v4l2.h"
 
 enum { MOST_EVENTS = 512 };
 

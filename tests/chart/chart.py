@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """chart.py TRIM3R: `trim3r chart` from outside: SVG, PNG and report, what is refused, tables of older versions."""
 import json
 import os

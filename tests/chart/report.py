@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """report.py TRIM3R [FOLDER]: the report in a headless Chromium: every axis, the legend, pointer and keyboard, pictures,
 light and dark, a phone; no errors, no requests. With FOLDER, what it looks like goes there."""
 import sys

@@ -1,14 +1,15 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The Pareto front against its definition. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <math.h>
 #include <string.h>
 #include <cmocka.h>
 
-#include "study/chart/front.h"
 #include "core/fixed.h"
+#include "study/chart/front.h"
 
 enum { MOST = 40 };
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A bound of the runtime's arithmetic that does not hold ends the program and says where. Every file is compiled with
  * this first, so it includes nothing: glibc's own end of an assertion does. */
 #ifndef T3R_CHECKED_H

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """checked.py FOLDER SHARED_DATA: the program built with T3R_CHECK_FIXED builds, follows and draws scenes of the built-in room
 by every head, source of depth and way of working, of perturbed frames, and of the recorded scenes where they are there. A
 bound that does not hold ends it."""

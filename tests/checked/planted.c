@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bounds that do not hold, one an argument. */
 #include <stdlib.h>
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """arena.py TRIM3R: the arena and threads change nothing but the time."""
 import sys
 

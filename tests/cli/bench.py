@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """bench.py TRIM3R: every figure of `trim3r bench`, and K-means of points that are given."""
 import os
 import struct

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """bench_refused.py TRIM3R: what `trim3r bench` refuses before it measures anything."""
 import struct
 import sys

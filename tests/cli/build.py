@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """build.py TRIM3R: what `trim3r build` refuses, and what it makes."""
 import csv
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """calibrate.py TRIM3R: a machine is measured, and plans go by its file."""
 import json
 import sys

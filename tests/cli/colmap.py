@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """colmap.py TRIM3R: `build --colmap` read back by an independent reader of COLMAP's text models: points stand where the
 pictures show them, to half a pixel and in colour."""
 import json

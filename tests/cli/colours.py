@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """colours.py TRIM3R: errors, warnings and headings have colours on a terminal, and nowhere else."""
 import os
 import pty

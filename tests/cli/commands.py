@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """commands.py TRIM3R: what every command answers: help, unknown options, a full disk."""
 import subprocess
 import sys

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """completion.py TRIM3R: shells complete commands, options and files; a word that is nearly one is answered with it."""
 import os
 import shutil

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """diff.py TRIM3R: scenes and pictures compared, and what differs."""
 import json
 import struct

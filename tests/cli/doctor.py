@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """doctor.py TRIM3R: what a machine has is listed, and a self-check that gives other bits is an error."""
 import sys
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """heads.py TRIM3R: `--head`: each gives another scene and is named; weights that are refused say why. `--preset`."""
 import json
 import os

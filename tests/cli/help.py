@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """help.py TRIM3R: how help reads. A command and a switch say in the imperative what they do, an option with a value says in
 a noun phrase what that value is: lower case first, no full stop, then range and default as `1..16 (4)`."""
 import os

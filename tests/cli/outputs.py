@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """outputs.py TRIM3R: no command writes over what it reads, or twice to one file, or over a file of another kind.
 
 Every output option of every command against every input and every other output, from the commands' own tables

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """parts.py TRIM3R: nothing half done stays, whether a signal ends a command or the disk is full; and what could not be
 printed is an error."""
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """plan.py TRIM3R: what `trim3r plan` refuses and tells."""
 import sys
 import xml.dom.minidom

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """product.py TRIM3R STUDY_LIBRARY...: the program without the study does a user's work, has nothing of the study in it,
 and names the build that has the commands asked for."""
 import shutil

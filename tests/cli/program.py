@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The program from outside: exit codes, messages, JSON. The program is the first argument of each script that uses this."""
 import json
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """recordings.py TRIM3R: files that are no recordings, cut ones, ones without depth."""
 import json
 import os

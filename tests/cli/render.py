@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """render.py TRIM3R: what `trim3r render` refuses, and what it draws."""
 import json
 import os

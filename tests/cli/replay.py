@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """replay.py TRIM3R: replays agree with what is expected, however they run, or say where they differ."""
 import json
 import sys

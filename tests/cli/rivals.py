@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """rivals.py TRIM3R: scenes of the rivals by `trim3r build`."""
 import sys
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """slide.py TRIM3R: `trim3r replay --slide`: a scene at every frame, warm or not; the same bits every time."""
 import json
 import sys

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """stream.py TRIM3R: `trim3r replay --stream`: keyframes, views that are held back, the same bits every time."""
 import json
 import os

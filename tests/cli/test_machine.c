@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Machines of plans: files of prices, and how prices are fitted to times. */
 #include <setjmp.h>
 #include <stdarg.h>

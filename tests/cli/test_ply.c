@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scene files: what is written reads back, and what is not a scene is refused with a reason. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The pool: every index exactly once, whatever the number of threads, job after job. */
 #include <setjmp.h>
 #include <stdarg.h>

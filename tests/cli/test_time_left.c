@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The time left of work of which a part was there already. */
 #include <setjmp.h>
 #include <stdarg.h>

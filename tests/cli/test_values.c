@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Values on the command line: lists, percentages, sizes, budgets, hashes. */
 #include <setjmp.h>
 #include <stdarg.h>

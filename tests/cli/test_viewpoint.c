@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pose files and trajectories. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,8 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "scratch.h"
 #include "import/poses/viewpoint.h"
+#include "scratch.h"
 
 #define ONE_Q30 (1 << 30)
 

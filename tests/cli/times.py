@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """times.py TRIM3R: each kind of work has a time of its own, and they add up to no more than the command took."""
 import re
 import sys

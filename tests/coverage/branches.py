@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Branches of the runtime: which there are and which were taken, by gcov of all objects in a build folder."""
 import collections
 import concurrent.futures

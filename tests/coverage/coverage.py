@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Counts which branches of the runtime the tests take, and holds the others against uncovered.txt.
 
     coverage.py FOLDER             builds in the folder, runs, counts

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the coverage's test must find: planted branches, a lacking reason, one too many, a low share."""
 import pathlib
 import tempfile

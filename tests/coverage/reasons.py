@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """uncovered.txt: the branches that no test takes, and why.
 
 A reason stands above its places, which are indented: `FILE FUNCTION BRANCHES: TEXT OF THE LINE`. An empty line ends it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is run to see which branches of the runtime are taken: programs of tests, and the program trim3r."""
 import itertools
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """check_pages.py TRIM3R: what the pages say in words.
 
 Every command stands in a shell block that runs, or that says why it does not. Options, names of the interface and links

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures in a table that was copied by hand stand side by side in a row of its source: PSNR alone, or PSNR / SSIM."""
 import re
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that pages begin with, each made once for all of them, on built-in input."""
 import json
 import pathlib

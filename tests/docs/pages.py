@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pages and what stands in them: blocks, prose, links."""
 import pathlib
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What pages refer to exists: commands, their options, names of the interface, links."""
 import functools
 import re

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """run_pages.py TRIM3R [PAGE...]: the shell blocks of the pages (pages.py) run, and print what the pages say.
 
 The blocks of a page run in order in an empty folder that holds what the page names as given. A text block right after a

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """settings.py [--update]: the list of settings in docs/library.md is that of trim3r_settings.h, and each option has its
 setting's name. --update writes the list."""
 import pathlib

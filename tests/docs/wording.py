@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How pages read: the length of sentences, and lines that wrapping made into lists."""
 import re
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """against_scorer.py SCORE_PICTURES SCORE.PY: psnr, ssim and sharp of random picture pairs, with masks and without,
 against the independent scorer: 0.02 dB, 0.001."""
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_ablate.py TRIM3R: `trim3r eval --ablate` on the built-in room, small: which rows, what each of them is, the table."""
 import csv
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_budgets.py TRIM3R: `trim3r eval --gaussians` and `--poses` mean what they mean for `trim3r build`."""
 import json
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_errors.py TRIM3R: every wrong use of `trim3r eval` says what and where, with the right exit status."""
 import os
 import resource

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_fleet.py TRIM3R SNAKEFILE: the workflow over a folder of recordings: its tables are those of the program called
 by hand; what fails is tried again, the rest goes on, and a second call does what is left; a changed bit is an error; jobs
 that go through a submit command, as on a cluster, make the same tables; the program is found."""

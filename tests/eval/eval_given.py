@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_given.py TRIM3R: points that are given: by pictures (`--allocate given --importance`), and by rivals (`+head`),
 on the built-in room. Which points were retained shows in scenes of the head `none`, which leaves points where they are."""
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_methods.py TRIM3R: how `trim3r eval` takes methods and ablations: what it refuses, and --views and --scene with
 them."""
 import json

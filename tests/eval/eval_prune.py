@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_prune.py TRIM3R: `build` and `eval` with `--prune`: a pixel-aligned scene made elsewhere, which here is the
 unpruned scene of the built-in room, pruned by trim3r and by its rivals."""
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_refused.py TRIM3R: of several cases those whose frames are refused are left out, told with their reason and
 counted, on one process and on several; alone each is an error; where nothing is left the exit status is 1."""
 import csv

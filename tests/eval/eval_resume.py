@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_resume.py TRIM3R: `trim3r eval` on several processes gives the rows of one; a table cut off anywhere is made
 whole by --resume, without making again what stands in it; tables of other times or columns are refused."""
 import csv

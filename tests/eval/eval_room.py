@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_room.py TRIM3R SCORE.PY: `trim3r eval` on the built-in room, small: rows, columns, masks, pictures, and the
 independent scorer's figures on the written pictures (where the scorer is there)."""
 import csv

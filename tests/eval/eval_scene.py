@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_scene.py TRIM3R: `trim3r eval --scene` gives a file the scores of what `render` draws from it, with
 its harmonics."""
 import json

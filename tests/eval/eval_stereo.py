@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_stereo.py TRIM3R: scenes from colours alone: the built-in room, with and without the depth it was recorded with;
 more views; pairs that cannot be matched, and what is said of them."""
 import csv

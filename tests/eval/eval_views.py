@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """eval_views.py TRIM3R: `trim3r eval --views` takes the frames that its help promises, makes scenes of them, and says
 which; a recording with too few is told."""
 import csv

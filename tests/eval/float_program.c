@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The program with the learned head in floats: whatever network is asked for, the float head in the file that
  * T3R_FLOAT_HEAD names gives the outputs, rounded only to their own 16 bits. All before and behind is the runtime's,
  * so a score beside the program's own tells what quantization costs.
@@ -8,11 +9,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "host/file_bytes.h"
 #include "float_run.h"
 #include "head/head.h"
 #include "head/head_features.h"
 #include "head/network.h"
+#include "host/file_bytes.h"
 
 static const double scale[T3R_HEAD_OUTPUTS] = {16384, 16384, 8192, 8192, 16384, 32768, 8192, 8192, 8192};
 static const float_plane *outputs; /* of the view in work */

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """floors.py TRIM3R TRIM3R_FLOAT SHARED_DATA: what the shipped heads reach on real scenes of the test split at 256x256,
 held to what is promised of them and to what was measured.
 

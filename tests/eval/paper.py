@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """paper.py TRIM3R TOOLS/PAPER DATA: `tools/study/scripts/paper --quick` on the recorded scenes: every part has its table, cells are the
 means of eval's rows, what was measured is not measured again, and a run cut off goes on."""
 import csv

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """prune_scene.py TRIM3R DATA: a real scene that an optimiser made, of no pixels' grid, and pictures of it: two of them and
 the file are pruned, the third is met. bulba.ply is a thing of 7 cm; the cameras are made up."""
 import json

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* score_pictures TARGET.png RENDER.png [MASK.png]: the measures of two PNG files, as JSON. For the scripts beside. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The process pool: order, the same from one process and from several, failures, a worker that dies. */
 #include <setjmp.h>
 #include <signal.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """ar.py TRIM3R AR_LOOP: a line and a view for every frame; what the view drawn ahead shows is nearer to the frame that
 then comes than the frame before it is; what is wrong with a source is told."""
 import math

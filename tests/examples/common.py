@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What scripts of this folder share; the program is their first argument, the example their second."""
 import os
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """replay.py TRIM3R REPLAY_TEST: a recording passes against what was written down of it, and fails with one bit of one
 sample changed, with a digit changed of what was written down, cut, longer, or another one."""
 import tempfile

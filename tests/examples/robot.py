@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """robot.py TRIM3R ROBOT_LOOP ROBOT_SMALL COMPILER SOURCE: how far the way is clear, by what the recording's depth says,
 with much room and with little; no room is an error of the compiler; the robot's own code neither allocates nor uses
 floats."""

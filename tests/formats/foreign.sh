@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Scene files both ways with readers and writers that are not ours.   foreign.sh TRIM3R BUILD_FOLDER PYTHON
 set -eu
 trim3r=$1

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every format of scene files: what is written reads back within the steps of the format, cut and damaged files are
  * refused with a reason. */
 #include <setjmp.h>
@@ -11,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/little_endian.h"
 #include "core/fixed.h"
+#include "core/little_endian.h"
 #include "host/file_bytes.h"
 #include "scene/gaussian_shape.h"
 #include "scene/scene_file.h"

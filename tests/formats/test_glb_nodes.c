@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Nodes of a .glb: translations, rotations and uniform scales move the Gaussians, all else is refused with a reason. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* t3r_harmonics_colour() against float64, in all directions and at the ends of its ranges. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Palettes: rows that differ keep rows of their own as long as there is room; means are those of their rows. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Turns of scenes between axes: positions, shapes and harmonics turn alike. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """viewer.py TRIM3R VIEWER [FOLDER]: a folder of pictures with poses becomes a scene by two commands. PlayCanvas's SuperSplat
 viewer, whose page and code lie in VIEWER, opens it in a headless Chromium and shows what trim3r draws from the same place.
 With FOLDER, what it looks like goes there."""

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # An own folder to a scene in a viewer that is not ours.   viewer.sh TRIM3R BUILD_FOLDER PYTHON [PICTURES]
 set -eu
 trim3r=$1

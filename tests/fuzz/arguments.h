@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What fuzzers of the C interface share: bytes to numbers, frames, cameras, Gaussians and pictures, wild ones among
  * them. Whatever is read or written lies in memory of exactly the bytes that the interface names. */
 #ifndef T3R_FUZZ_ARGUMENTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bytes to a build, a slide of builds that follow one another, or a stream, which the runtime accepts: settings,
  * frames, cameras, weights and requests. The same bytes give the same case. Each number has its fixed place among them,
  * so that a fuzzer that changes a byte changes a number and leaves the others. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bytes to a sequence of calls of the C interface: wild settings, frames, cameras, Gaussians and targets, in any
  * order, in arenas of any size, with copies and cancellations in between. Whatever comes, every call answers with a
  * documented status, stays inside the memory it was given, and a copied arena draws the same picture. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bytes to damages of an arena that was stored, and to what is done with it once it is attached. Damages are of a kind
  * that a look at single fields does not find: labels, counts, depths, order and the state's numbers change together and
  * still agree, or agree but for one. t3r_attach() may refuse such an arena. Whatever it takes must be safe in every
@@ -9,12 +10,12 @@
 #include <string.h>
 
 #include "api/checks.h"
-#include "rgbd_frame.h"
 #include "arguments.h"
 #include "budget/budget.h"
 #include "budget/cluster_texture.h"
 #include "core/fixed.h"
 #include "core/map_record.h"
+#include "rgbd_frame.h"
 #include "state/state.h"
 #include "state/views.h"
 #include "superclusters/superclusters.h"

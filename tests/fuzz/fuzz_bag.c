@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* libFuzzer: bags from memory as import reads them: pictures decoded, transforms composed, depth registered. Seeds:
  * `recording_tool seeds FOLDER` (tests/recordings). */
 #include <stdlib.h>

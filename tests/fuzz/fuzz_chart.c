@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a table of eval: an error with its line, or a chart and a report that hold together. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A recording of one compressed chunk: a byte names the codec, four say how much it unpacks to, the rest is packed. An
  * error, or frames that can be asked for. */
 #include <stdlib.h>

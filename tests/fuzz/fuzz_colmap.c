@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A model of COLMAP, text or binary by the first byte, its cameras and its images with a marker between them: an error,
  * or poses within the limits and lenses of finite numbers. */
 #define _GNU_SOURCE /* memmem() */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as depth of OpenEXR: an error, or samples of the sides that its header gave. */
 #include <stdint.h>
 #include <stdlib.h>

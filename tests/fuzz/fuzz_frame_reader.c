@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* libFuzzer: recordings from memory by the reader for firmware, every byte of a frame read, by strips of rows. */
 #include <stddef.h>
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a .glb (scene_bytes.h). */
 #include "scene_bytes.h"
 

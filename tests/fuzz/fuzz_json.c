@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any text as what --expect and --pose take: an error, or hashes, and cameras that the runtime takes. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bytes to a variant of a kernel and its arguments, anything within the ranges of the kernel's header: it gives what
  * plain C gives, bit for bit, and touches no byte beside its buffers, which the sanitizer guards. The checks of
  * tests/kernels make the arguments, and draw from the bytes where a test draws at random. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any text as a machine of plans: a reason, or prices of a known machine. */
 #include <stdlib.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a picture of a live camera: decoded, or a reason; the decoder goes on after either. */
 #include <stdlib.h>
 

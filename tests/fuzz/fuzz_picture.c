@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a PNG or JPEG: an error, or a picture of the size that its header gave. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a .ply, of 3DGS or compressed (scene_bytes.h). */
 #include "scene_bytes.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A .npz or .npy, whatever it is: an error, or maps whose views are finite, in any order, or say why not. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A text with a matrix: an error, or numbers whose pose, if it is one, lies within the limits. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a file of float32 depth: an error, or samples of as many bytes as there are. */
 #include <stdint.h>
 #include <stdlib.h>

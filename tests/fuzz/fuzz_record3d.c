@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The metadata of a Record3D export: an error, or poses within the limits and lenses of finite numbers. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* libFuzzer: recordings from memory, every frame read. Seeds: `recording_tool seeds FOLDER` (tests/recordings). */
 #include <stddef.h>
 #include <stdint.h>

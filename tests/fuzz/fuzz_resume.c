@@ -1,12 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any text as the table that eval --resume goes on with: an error, or rows. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <math.h>
 #include <string.h>
 
 #include "cli/cli.h"
-#include "memory_file.h"
 #include "evaluation/resume.h"
 #include "evaluation/table.h"
+#include "memory_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

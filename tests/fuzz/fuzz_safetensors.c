@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A float head, made up or damaged in a few places: refused with a reason, or quantized to a file that its reader
  * takes, or refused by the quantizer with a reason. */
 #include <stdlib.h>

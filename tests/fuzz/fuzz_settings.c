@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bytes to a case (drawn_case.h) and to a way of running it, in which everything differs that must not matter: the
  * arena's size, its place, what was in it and what it was used for before, the room that settings leave, the number of
  * workers and the order of their tasks, the processor's variants, strips instead of whole frames, bytes between rows,
@@ -7,8 +8,8 @@
 #include <string.h>
 
 #include "core/fixed.h"
-#include "host/cpu.h"
 #include "drawn_case.h"
+#include "host/cpu.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a .sog (scene_bytes.h). */
 #include "scene_bytes.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bytes to two cameras, settings and pictures: whatever passes the check of cameras gets an answer, within the memory
  * that the macros promise, and depths within their range. It is the same in plain C and in the processor's variants. */
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The text of a trajectory, whatever it is: an error, or poses in the order of their times that lie between others. */
 #include <math.h>
 #include <stdint.h>

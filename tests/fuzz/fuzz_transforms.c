@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The text of a transforms.json, whatever it is: an error or cameras that the recorder takes, no file touched. */
 #include <math.h>
 #include <stdlib.h>

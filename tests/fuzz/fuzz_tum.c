@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* rgb.txt, groundtruth.txt and depth.txt of a TUM RGB-D folder, a zero byte between them: an error, or frames whose
  * poses lie within the limits. No picture is opened. */
 #define _GNU_SOURCE /* memfd_create() */

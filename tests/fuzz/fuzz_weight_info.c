@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A weight file, made up or damaged in a few places and sealed again. The rules of layers, written once for firmware
  * and once for the host, accept the same files, and a refusal has a reason. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A weight file, made up or damaged in a few places and sealed again: refused with a reason, or it runs over a small
  * image in exactly the memory it asks for. */
 #include <stdio.h>

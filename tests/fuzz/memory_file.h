@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A fuzzer's bytes as a file, for readers that take a path. */
 #ifndef T3R_FUZZ_MEMORY_FILE_H
 #define T3R_FUZZ_MEMORY_FILE_H

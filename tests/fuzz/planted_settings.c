@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which of the lines that CMakeLists.txt plants is wrong in this run: the number in T3R_PLANTED; 0 = none. */
 #include <stdlib.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* run_seeds [FOLDER...]: a fuzz target without a fuzzer, for the build with sanitizers. Runs every file of the folders,
  * each also with some bytes changed, and strings of random bytes: the same ones each time. */
 #include <dirent.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Same bits: every stage's hash, against the ones written down in this folder.
 
 golden.py host [--few] DRIVER     the driver as built here, in every way that must not matter (arena, tasks, moves)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Runs the whole runtime over the built-in room in several configurations and prints every stage's hash:
  * "configuration stage hash". It uses the runtime, the room and a shipped head alone, so that it builds wherever
  * they do.
@@ -10,10 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "state/ablation.h"
 #include "core/hash.h"
 #include "host/cpu.h"
 #include "room/room.h"
+#include "state/ablation.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
 #include "weights_maker.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Hostile files: each a name, what kind of input it is, what writes it, and words that its refusal must say ("" where any
 will do, None where it may also be read)."""
 import gzip

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bytes of every format that trim3r reads, right or wrong as asked: the standard library alone."""
 import io
 import json

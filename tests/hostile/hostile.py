@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every command that reads, over files that were made to hurt it: each is read or refused with one line that names it, in
 3 seconds of the processor and 512 MB, and nothing of its text reaches the terminal raw.
 

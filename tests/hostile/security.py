@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SECURITY.md names every limit of platform/mcap/reader_limits.h with its value, and files that exist.
 
 security.py SOURCE_FOLDER

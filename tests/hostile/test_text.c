@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Text of others: what is cleaned, what stays, and that reasons and messages are. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """trim3r import, info and room as a user meets them: outputs, messages, exit statuses, and nothing left behind.
 
 commands.py TRIM3R DATA

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the scripts of this folder share; the program is their first argument. A failed expectation is told, and the script
 goes on."""
 import os

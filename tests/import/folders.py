@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Folders that others make: the room, written as each kind of folder, is imported as it is: the same pictures, depth,
 intrinsics and poses. What a folder lacks or holds in vain is told.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames of a recording as arrays, and pictures as files: what the scripts of this folder share. Needs numpy."""
 
 import os

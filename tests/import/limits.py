@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What import takes, build, replay and eval can use: values each side of every limit of platform/mcap/reader_limits.h, through
 the program.
 

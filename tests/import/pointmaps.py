@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """trim3r import of pointmaps that NumPy wrote, made of the built-in room's depth: every step comes back exactly, poses and
 intrinsics come from where they should, and files that are not right are refused by name.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """--poses estimate as a user meets it: pictures without poses become a recording whose poses are right and stay what they
 are, build estimates those of its context views, and what cannot work is refused with a reason.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Poses over time and the tree of frames: against what is known of them. */
 #include <math.h>
 #include <setjmp.h>
@@ -7,8 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "import/poses/lens.h"
 #include "import/bags/transform_tree.h"
+#include "import/poses/lens.h"
 
 #define MS INT64_C(1000000)
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Models of COLMAP: every camera model becomes the lens it means or is refused by name; what a text may hold, and what
  * it may not, with the line that is wrong. */
 #include <math.h>

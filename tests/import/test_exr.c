@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth as OpenEXR: what the library writes is read back in steps; what is no depth, cut off or damaged is refused. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cropping and resizing: pixels and camera must still agree. Checked by projecting points through both cameras, and
  * against an area average in double. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures: what is written is read back, what is damaged is refused. */
 #include <setjmp.h>
 #include <signal.h>
@@ -9,9 +10,9 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include <cmocka.h>
 #include <jpeglib.h>
 #include <png.h>
+#include <cmocka.h>
 
 #include "pictures/picture.h"
 #include "scratch.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The built-in room: its bits, and that pictures, depth and poses tell of one and the same room. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* transforms.json: good texts give the right cameras, bad ones an error that names frame and field. */
 #include <math.h>
 #include <setjmp.h>
@@ -10,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "import/folders/transforms_json.h"
 #include "geometry/quaternion.h"
+#include "import/folders/transforms_json.h"
 
 #define IDENTITY "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
 #define FRAME(more) "{\"file_path\":\"a.png\",\"transform_matrix\":" IDENTITY more "}"

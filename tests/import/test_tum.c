@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* TUM RGB-D folders, made on the fly: association, interpolation, intrinsics, errors. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A block of pixels through a layer, against sums in 64 bits and the rounding of SPEC.md in doubles' place: whole
  * numbers. */
 #include "checks.h"

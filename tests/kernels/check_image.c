@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rows of frames, and the blur. */
 #include "checks.h"
 #include "guarded.h"

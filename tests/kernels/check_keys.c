@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The budget's keys. */
 #include "checks.h"
 #include "core/fixed.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The sample of k-means++, the nearest centre, and the radix sort. */
 #include "checks.h"
 #include "guarded.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pixels to points, and points to pixels. */
 #include "checks.h"
 #include "guarded.h"

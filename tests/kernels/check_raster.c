@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Projection, blending, scattering and solving. Plain C is judged in doubles by the tests of the rasterizer and of
  * refinement; here a variant must have its bits, and blending goes pixel by pixel. */
 #include "checks.h"

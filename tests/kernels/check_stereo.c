@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Places of rays, census, its costs, the paths' rows, and who wins. */
 #include "checks.h"
 #include "core/fixed.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rows of the wavelet: each entry against its formula, sample by sample, in wide integers that then wrap. */
 #include "checks.h"
 #include "guarded.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A check an entry of the table: makes an input of the seed, random or of the largest values, runs the entry in guarded
  * buffers and compares with a straightforward reference, or with plain C where a test in doubles judges plain C. */
 #ifndef T3R_TESTS_KERNEL_CHECKS_H

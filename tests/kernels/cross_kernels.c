@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every variant that an emulated processor has, against plain C: `cross_kernels ROUNDS` tries that many seeds of each.
  * It needs no library, so that any cross compiler builds it. Exit 0: the same bits. */
 #include <stdio.h>

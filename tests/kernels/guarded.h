@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Buffers that show who reads or writes beyond them: each ends or begins at a page that nobody may touch, and what lies
  * beside it on its own pages is looked at afterwards. */
 #ifndef T3R_TESTS_GUARDED_H

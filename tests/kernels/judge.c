@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "judge.h"
 
 #include <stdio.h>
 
-#include "host/cpu.h"
 #include "guarded.h"
+#include "host/cpu.h"
 
 typedef struct trial {
     const t3r_kernels *kernels;

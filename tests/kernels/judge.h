@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Compares entries of a table of kernels by their checks, seed by seed. */
 #ifndef T3R_TESTS_KERNEL_JUDGE_H
 #define T3R_TESTS_KERNEL_JUDGE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Masks of processor features as text. */
 #include "host/cpu.h"
 #include "trim3r.h"

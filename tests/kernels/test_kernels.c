@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every entry of the table of kernels, in plain C and in each variant that this processor has: random and largest
  * values, odd lengths, buffers that lie anywhere beside forbidden pages. A variant that fails is named with its input's
  * seed; `test_kernels ENTRY SEED` runs that one again. `test_kernels --rounds N FIRST` tries N seeds from FIRST on of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A learned head with its layers packed, for each variant that this processor has, against plain C: all outputs of
  * pictures of any width, in bands, with work for packing or a little less. A variant in plain C reads strips of
  * bytes, so that they are tested on every processor. */
@@ -10,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "host/cpu.h"
 #include "head/network.h"
+#include "host/cpu.h"
 #include "sanitized.h"
 #include "unit/unit.h"
 #include "weights_maker.h"

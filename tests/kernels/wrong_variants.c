@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Variants that are wrong here and there, as a hand would write them. */
 #include "judge.h"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """amalgamation.py [--all]: tools/amalgamate writes the same two files every time, each compiler takes them in one call,
 and what they build has the bits of the library.
 

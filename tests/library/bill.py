@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """bill.py BUILD PACKAGE=FILE...: the bill of materials of each package has what SPDX 2.3 asks for, and names the libraries
 that its files load, those and no others, with the versions that are here. Heads are those of the tree. The same input
 gives the same bill."""

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """consumers.py BUILD: the build folder is installed, and programs elsewhere use what lies there: by find_package with the
 static and the shared library, and by pkg-config. Each prints the same hash. The shared library exports what trim3r.h
 declares and nothing else."""

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """features.py [--each]: a library without a feature says so wherever it is asked for, and has the bits of the whole one
 in all else.
 

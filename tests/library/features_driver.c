@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* features_driver: a line for each feature, of a scene that uses it, and a line of a call that needs it. A library
  * without a feature prints "unsupported" there, and what any other prints in all the other lines. */
 #include <inttypes.h>

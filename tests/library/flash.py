@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """flash.py [--each | --update]: what features take of a Cortex-M7's flash, as docs/library.md has it.
 
 The two files of tools/amalgamate, compiled for size and linked with a firmware that calls every function of trim3r.h but

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """interface.py LIBRARY: programs and the library agree on the structs of trim3r.h, or the program is told.
 
 The structs are the same with short enumerations and without, for gcc and clang. A program with short ones uses the

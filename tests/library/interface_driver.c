@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* interface_driver: prints the status of each call by which a program starts, and whether it wrote anything. */
 #include <stdio.h>
 #include <string.h>

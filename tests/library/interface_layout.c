@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The layout of the structs of trim3r.h as constants: a compiler that lays them out in another way writes others. */
 #include "trim3r.h"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests of the library share: where things are, compilers, and the hash that every consumer must print."""
 import concurrent.futures
 import os

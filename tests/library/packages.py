@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """packages.py BUILD: cpack makes Debian packages of the build folder. Unpacked together into one folder, a program is
 built with what lies there, and the packed program runs. Files, names and dependencies are as wanted."""
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """paths.py BUILD FILE...: no file that was built holds the path of the tree or of the build folder, in its run path
 neither, and none looks for libraries in the folder that one works in."""
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """recipes.py: the recipes for Conan, vcpkg and Yocto parse, agree with the tree, and set options that it has.
 
 Neither tool need be here. Conan's recipe runs with stand-ins for Conan's own classes, vcpkg's port with stand-ins for

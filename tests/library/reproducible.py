@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """reproducible.py: two builds of copies of the tree, in folders whose paths differ in length, give the same bytes, debug
 information included: the libraries, the heads, the program, its modules for cameras, the Python package, man pages and
 bills of materials."""

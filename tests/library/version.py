@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """version.py: the version and the bits epoch of trim3r.h are those of every file that states them."""
 import re
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Mutants of the fixed-point core, each compiled with the unit tests that should notice it.
 
     mutants.py             a sample, the same each time: every mutant is caught, or listed in equivalent.txt with a reason

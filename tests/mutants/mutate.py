@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mutants of a C source: the source with one small mistake, each the sort that a tired hand makes. Comments, strings,
 preprocessor lines, declared lengths of arrays, and bounds that a release build does not check stay as they are.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is mutated and what is not: x + 1 < 2 in a comment stays. */
 #include <stdint.h>
 #define LONGER(x)                                                                                                      \

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the raster tests share: scenes made up on the spot, drawn by the runtime into arenas of chosen sizes. */
 #ifndef TRIM3R_TESTS_ORACLE_DRAWING_H
 #define TRIM3R_TESTS_ORACLE_DRAWING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The pointmap of two frames of a recording, in double, as raw float32 N x 6: xyz from the first camera over the median
  * depth, rgb over 255. Usage: dump_points REC.mcap A B OUT.f32 */
 #include <math.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The runtime's K-means against scikit-learn's MiniBatchKMeans on the same points: K = 300, the pointmap of two views.
 
 Ours may be at most 1.05 x theirs in mean squared distance. Usage: kmeans_sklearn.py TRIM3R DUMP_POINTS DATA_FOLDER

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* network_bench: multiply-accumulates a second of heads of the shipped sizes on one core, every width of weights and
  * activations, at all points and at every tenth; their work memory a column. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* network_driver WEIGHTS WIDTH HEIGHT: features (int8, [height][width][9]) and a mask (a byte a pixel) on stdin. Runs
  * the network row by row in exactly the work memory it asks for and writes, in host order, a record for every row of a
  * plane layer as it is made (uint32 layer, row, bytes; the row), then the outputs at the masked pixels in raster order

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """network_numpy.py DRIVER, or network_numpy.py --build COMPILER RUNNER: random quantized networks, each layer computed in plain int64 by numpy from the text of
 runtime/head/weights.h, against the runtime's rows and outputs, bit for bit.
 

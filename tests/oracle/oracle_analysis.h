@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Float64 counterparts of the analysis stages, from their textbook definitions. */
 #ifndef TRIM3R_TESTS_ORACLE_ANALYSIS_H
 #define TRIM3R_TESTS_ORACLE_ANALYSIS_H

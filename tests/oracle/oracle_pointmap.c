@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "oracle_analysis.h"
 
 void oracle_unproject(const oracle_camera *camera, double x, double y, double z, double point[3])

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A float64 rasterizer to judge the integer one by: the definitions of the 3DGS renderers (EWA projection,
  * 0.3 px^2 low-pass, alpha in [1/255, 0.99], front-to-back), written without a look at runtime code. */
 #ifndef TRIM3R_TESTS_ORACLE_RASTER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Refinement in float64, pass by pass, from the text of SPEC.md ("Refinement"). */
 #ifndef TRIM3R_TESTS_ORACLE_REFINE_H
 #define TRIM3R_TESTS_ORACLE_REFINE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Analysis by filters straight from their definitions: y[i] = sum over k of filter[k] x[2 i + k + phase], wrapped. */
 #include "oracle_analysis.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* stereo_driver match W H DISPARITIES PATHS: two luma planes on stdin, W x H and W + DISPARITIES - 1 x H (match.h); the
  * disparities of the first, 16 bits each, and its confidences on stdout.
  *

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """stereo_opencv.py DRIVER DATA [--time]: matching against OpenCV's StereoSGBM on Middlebury's teddy: pixels off by more
 than two, of those that both views see, as taken, with one picture half as bright, and with noise. With --time, for a
 release build where nothing else runs, then the processor time of both in turns: their ratio, its median over the rounds

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The analysis stages against their float64 counterparts: back-projection and tangents, K-means, wavelet energy. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The C interface used wrongly: null pointers, every field beyond its documented range, calls out of order. Each
  * gives the documented status and leaves the arena as it was, to the byte. */
 #include <setjmp.h>

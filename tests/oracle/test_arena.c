@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The arena's promises: the macros and t3r_plan() agree, the minimum works and one byte less is refused, any size
  * is answered without a touch beyond it, buffers that live at one time never share a byte. */
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The learned head through the C interface: binding weights, the same bits in every arena, what its outputs mean. */
 #include <math.h>
 #include <setjmp.h>
@@ -9,13 +10,13 @@
 
 #include <cmocka.h>
 
-#include "state/ablation.h"
-#include "rgbd_frame.h"
-#include "state/state.h"
 #include "drawing.h"
 #include "head/head_views.h"
-#include "stages.h"
+#include "rgbd_frame.h"
 #include "sanitized.h"
+#include "stages.h"
+#include "state/ablation.h"
+#include "state/state.h"
 #include "weights_maker.h"
 
 enum { W = 45, H = 34, POINTS = W * H };

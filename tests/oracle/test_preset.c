@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Settings for a size of RAM: they fit it, and too little is refused. Settings for so much work. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The integer raster against the float64 oracle on the same Gaussians: at least 50 dB, both rounded to 8 bits,
  * over all pixels; and the promise that the arena's size never shows in a pixel. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The integer refinement, one pass to the default number of them, against the float64 oracle on the same scene: two
  * views of a slanted surface with holes in its depth and a nearer one before it. */
 #include <math.h>
@@ -11,11 +12,11 @@
 
 #include <cmocka.h>
 
-#include "state/ablation.h"
-#include "state/state.h"
-#include "rgbd_frame.h"
 #include "drawing.h"
 #include "oracle_refine.h"
+#include "rgbd_frame.h"
+#include "state/ablation.h"
+#include "state/state.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VIEWS = 2, BUDGET = 2 * PIXELS / 8, PASSES = 4 };
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Views that come in strips of rows: the hashes are those of whole frames, and strips out of order are refused. */
 #include <setjmp.h>
 #include <stdarg.h>

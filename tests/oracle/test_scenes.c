@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The integer raster against the float64 oracle on real input: every test scene with sensor depth, built at 100 % and
  * at 5 % of its valid points, as it lies in the arena and as it is written to a .ply; and a trained scene from a
  * foreign .ply, the oracle fed with the file's own numbers.

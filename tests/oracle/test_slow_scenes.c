@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes that are made to be slow: faint Gaussians as wide as the picture, so that every tile lists them all and
  * nothing ends early. The plan bounds what is blended, tile_splats bounds it further, and a caller can stop within a
  * tile. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Streams: a camera goes along a textured wall with boxes before it, for a long time. The cap holds, the bits depend on
  * nothing that must not matter, what cannot be is refused, what was cancelled does no harm. */
 #include <math.h>
@@ -13,9 +14,9 @@
 
 #include "drawing.h"
 #include "rgbd_frame.h"
-#include "state/state.h"
 #include "sanitized.h"
 #include "sanitized_cpu.h"
+#include "state/state.h"
 #include "stream/stream_map.h"
 
 enum { W = 24, H = 16, PIXELS = W * H, CAP = 150, AT_HAND = 3, WALL_MM = 2000, BOX_MM = 1600 };

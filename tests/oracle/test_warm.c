@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Builds that follow one another (t3r_config.warm): a pair of views slides along a textured wall with boxes before it.
  * The bits depend on the calls alone; what no longer holds is not taken over. */
 #include <math.h>

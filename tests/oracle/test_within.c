@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* No more than a scene needs: the budget chosen in the arena, on two views of a textured wall with a box before it. */
 #include <math.h>
 #include <setjmp.h>
@@ -11,8 +12,8 @@
 #include <cmocka.h>
 
 #include "drawing.h"
-#include "rgbd_frame.h"
 #include "refine/refine.h"
+#include "rgbd_frame.h"
 #include "sanitized.h"
 #include "sanitized_cpu.h"
 #include "state/state.h"

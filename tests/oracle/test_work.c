@@ -1,16 +1,17 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The work of builds and the settings that fit: counts follow the configuration, lists hold what they promise. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
 
-#include "weights_maker.h"
 #include "trim3r.h"
+#include "weights_maker.h"
 
 static t3r_config config_of(uint32_t gaussians)
 {

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """planted.py FOLDER [KIND...] | --list: the tests that run by day notice a fault of each kind.
 
 A copy of the tree in FOLDER gets one fault at a time; the test that shall notice it passes without the fault, and fails with

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """pose_free.py SCRIPTS: where tools/study/scripts/pose_free.py puts the target's camera among estimated ones."""
 import os
 import sys

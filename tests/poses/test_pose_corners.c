@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Corners, what they look like, and the pyramid: integers, so exact; turned with the picture. */
 #include <setjmp.h>
 #include <stdarg.h>

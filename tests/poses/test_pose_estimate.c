@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Poses estimated on the built-in room against those that it was drawn from, and pairs of which nothing can be known.
  */
 #include <math.h>
@@ -11,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "core/little_endian.h"
 #include "core/camera.h"
+#include "core/little_endian.h"
 #include "posing/estimate.h"
 #include "room/room.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The geometry under pose estimation, on exact numbers: five points, resection, triangulation, rounding. */
 #include <math.h>
 #include <setjmp.h>

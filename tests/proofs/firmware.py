@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """firmware.py TARGET: a firmware that names one head is made without a C library and holds that head alone.
 
 freestanding/firmware.c, the runtime and the shipped heads, these as a library with an object a head, compiled with no

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """format.py: each file in C and C++ is as clang-format writes it, but for those that programs write and what is planted."""
 import concurrent.futures
 import os

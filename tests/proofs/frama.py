@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """frama.py: Eva, of Frama-C, finds no alarm in a driver of tests/proofs/frama, a subject each.
 
     frama.py                 the subjects that docs/study/proofs.md lists, and that each finds a check that is left out

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """headers.py: each public header compiles alone, first and twice, as C11 and as C++17, without a warning."""
 import shutil
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Instructions of each stage of builds of the built-in room, in plain C at -O2 on one thread, as callgrind counts them: what
 no other program on the machine disturbs."""
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """instructions.py [--update]: no stage takes more instructions than instructions.txt allows. callgrind counts those of two
 small builds in plain C at -O2, which no other program on the machine disturbs. Other builds take the operations that the
 runtime predicts (work.py). --update writes the table anew.

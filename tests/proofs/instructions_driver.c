@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Builds of the built-in room and a view of each, in plain C on one thread. Under callgrind each stage's instructions
  * are a part of the output of their own, named by the build and the stage. A build is an argument:
  * NAME,WIDTH,HEIGHT,VIEWS,GAUSSIANS,HEAD,DEPTH,CLUSTERS,BATCHES,PASSES. For each one a line with its units of work is

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """misra.py: no rule of MISRA C:2012 has more departures in the runtime than docs/study/misra.md lists, and each that has
 some has a reason there."""
 import importlib.machinery

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the proofs share: compiling the runtime for a target, and the verdict.
 
 A proof first shows that it can fail: each kind of offence stands planted in planted/ and must be found there.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """readme.py example LIBRARY... | table PROGRAM [--update]: what the documents show is what happens.
 
 example: the README's C program compiles without a warning, links with the runtime and the shipped heads alone and prints

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """stack_depth.py TARGET [--markdown]: the deepest stack of each public function, from the compiler's own call graph.
 
 Fails on recursion, on frames whose size is not known at compile time, on a depth over the limit, and on calls through

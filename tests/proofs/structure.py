@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """structure.py [LIBRARY...]: the picture of the house holds. Every area includes only what stands below it, and no two
 source files of a library call each other, be it through others.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """symbols.py TARGET [LIBRARY]: the runtime calls nothing but memcpy, memmove, memset and memcmp, and keeps no state.
 
 Beyond those four, only the integer helpers that docs/firmware.md names for the core. On a core without an FPU every

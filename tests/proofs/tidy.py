@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """tidy.py: clang-tidy finds nothing in the runtime, quant/ and platform/; /.clang-tidy says which checks it makes."""
 import concurrent.futures
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """words.py: the source of the runtime has no real numbers, no heap, no streams, no operating system.
 
 Symbols cannot show a real constant that the compiler folded away, so the source itself is read. The words must not

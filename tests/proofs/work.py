@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """work.py --fit: fits the operations of a unit of each kind of work to instructions of builds in plain C at -O2, and writes
 runtime/layout/operations.h. The proof `instructions` checks them on builds that the fit did not see: those and their large
 stages take within 25 % of the operations that t3r_count_work() leads to.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """wp.py: WP, of Frama-C, proves the results that tests/proofs/frama/contracts.h promises of functions of fixed.h.
 
 Goals that its own simplifier leaves go to Z3 by way of Why3. Exit 77: a tool is absent (tools/setup --tests).

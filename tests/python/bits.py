@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """bits.py LIBRARY TRIM3R: the package's frames, hashes, scenes, files and figures are those of the program."""
 import json
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests of the Python package share: the package itself, as it was built."""
 import contextlib
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """example.py LIBRARY: the example runs, prints what docs/python.md shows, and draws its charts."""
 import os
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """installed.py LIBRARY BUILD: what `cmake --install` and pip put into a folder is the whole package, wherever it is
 moved."""
 import importlib.util

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """layout.py LIBRARY COMPILER: each struct and each constant of the package is the compiler's, and each function is
 there."""
 import pathlib

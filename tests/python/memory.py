@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """memory.py LIBRARY TRIM3R: pixels are handed over where they lie, results lie in the arena, and nothing is freed too
 early."""
 import dataclasses

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """page.py LIBRARY: the Python on docs/python.md runs, block after block, and so does that in the package's docstring."""
 import contextlib
 import io

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """refused.py LIBRARY: what cannot be used is refused with a reason, and leaves everything as it was."""
 import dataclasses
 import pathlib

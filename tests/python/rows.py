@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """rows.py LIBRARY: a view by strips of rows has the bits of the whole view, whatever the strips; they are handed over
 where they lie, and what is no next strip is refused."""
 import dataclasses

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """types_checked.py LIBRARY: mypy finds nothing in the package, nor in a program that uses it well, and finds what is
 used wrongly. Everything public has a docstring and types."""
 import inspect

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """work.py LIBRARY: progress, stopping, threads, and the end of a reconstructor."""
 import copy
 import gc

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """trim3r quantize and head-info from outside: what they say, what they refuse, what calibration finds.
 
     commands.py PATH/TO/trim3r"""

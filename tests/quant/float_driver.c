@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* float_driver HEAD.safetensors VIEW WIDTH HEIGHT OUT: the float graph of quant/ for a script to compare.
  * VIEW holds the features, int8 [HEIGHT][WIDTH][9], then the retained pixels, a byte each; OUT gets every layer's
  * output, float32 in the machine's order, one plane behind the other. */
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "host/file_bytes.h"
 #include "float_run.h"
+#include "host/file_bytes.h"
 
 static void give_up(const char *why)
 {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Heads in numpy, written from runtime/head/weights.h alone: .safetensors out, .t3w in, the graph in floats and in integers.
 
 A description is the JSON object of the metadata key "trim3r"; tensors are a dict of float32 arrays."""

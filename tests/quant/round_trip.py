@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Random heads through `trim3r quantize` and back: the float graph of quant/ against numpy's, every layer of the weight
 file, run in numpy's integers, against exact bounds, the runtime's bits against those, and the whole against the float
 graph.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A small float head with every kind of layer, random but repeatable, ranges included. For tests and fuzzers. */
 #ifndef T3R_TESTS_SAMPLE_HEAD_H
 #define T3R_TESTS_SAMPLE_HEAD_H

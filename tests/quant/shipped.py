@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """shipped.py TRIM3R HEADS: the C arrays in HEADS are what tools/study/train/ship makes of the float heads beside them."""
 import os
 import pathlib

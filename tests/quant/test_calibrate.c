@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Calibration: maxima and percentiles against a sort, and views of a runtime. */
 #include "calibrate.h"
 #include "rgbd_frame.h"

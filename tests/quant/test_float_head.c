@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Float heads: tensors end where they belong, and every mistake in the description or a tensor is refused. */
 #include "float_head.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The shipped heads: sound, of their class, and at home in the default arena. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,9 +8,9 @@
 
 #include <cmocka.h>
 
+#include "head/weights.h"
 #include "trim3r_heads.h"
 #include "weight_info.h"
-#include "head/weights.h"
 
 static const struct {
     const char *name;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A head that does not see the mask, against the head itself run on features that say so. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +10,8 @@
 #include <cmocka.h>
 
 #include "core/fixed.h"
-#include "hidden_mask.h"
 #include "head/network.h"
+#include "hidden_mask.h"
 #include "trim3r_heads.h"
 #include "weights_maker.h"
 

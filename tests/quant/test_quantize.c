@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Quantized layers: how far each is from its floats, that scales and shifts are in range, whatever the weights. */
 #include "quantize.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* .safetensors: what is read, and that everything else is refused with a reason. */
 #include "safetensors.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Weight files: every field of a sound one, changed, is refused with a reason by the host's reader, and by the
  * runtime's check too. */
 #include "weight_info.h"

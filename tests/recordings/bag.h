@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Recordings made by hand for the tests: MCAP files in memory, with CDR of either byte order, as a foreign writer
  * might make them. Independent of platform/messages/cdr.c and of the recorder. */
 #ifndef T3R_TESTS_BAG_H

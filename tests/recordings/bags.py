@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bags that a foreign writer makes: trim3r import reads them, and what it writes is what is known of them.
 
 bags.py TRIM3R FOLDER; FOLDER has node's packages and modules (bags.sh).

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Bags of a foreign writer to recordings (bags.py), in the folder where the packages are.   bags.sh TRIM3R BUILD PYTHON
 set -eu
 build=$2/reference

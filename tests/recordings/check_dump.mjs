@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // What our reader makes of a file (JSON of `recording_tool dump` on stdin), against the sample's values.
 //   recording_tool dump FILE | node check_dump.mjs ENCODING
 import assert from "node:assert/strict";

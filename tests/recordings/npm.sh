@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced by the tests that need node: installs the packages of package-lock.json in $build once, and copies the modules
 # of $sources there.
 skip() {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // A file of ours, read by MCAP's reference reader: every record checked, every message decoded by its own schema text.
 // Chunked files are read once more by the reader that seeks by the index.
 //   node read_ours.mjs none|zstd|lz4|unchunked ENCODING FILE

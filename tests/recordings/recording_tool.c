@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* For the tests' scripts: `recording_tool sample STORAGE FORMAT FILE` writes the sample recording (sample.h),
  * `recording_tool dump FILE` prints what the reader makes of a recording as JSON, `recording_tool seeds FOLDER` writes
  * a fuzzer's seeds. Fixed-point numbers that may not fit a double are strings. */

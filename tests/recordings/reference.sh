@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Both ways with MCAP's reference reader and writer (npm: @mcap/core).   reference.sh RECORDING_TOOL BUILD_FOLDER
 set -eu
 tool=$1

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // ROS 2's messages as a ROS 2 installation defines them: definitions with all that they refer to, and as text.
 import common from "@foxglove/rosmsg-msgs-common";
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The sample recording of these tests: small, every value told by a formula, so that other programs can check it. */
 #ifndef T3R_TESTS_SAMPLE_H
 #define T3R_TESTS_SAMPLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // The values of the sample recording, told again independently of sample.c (sample.h says them in words).
 export const FRAMES = 3, WIDTH = 6, HEIGHT = 4, DEPTH_WIDTH = 3, DEPTH_HEIGHT = 2;
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // The ROS 2 messages as a ROS 2 installation defines them (ros2/common_interfaces), for files of the reference writer.
 const header = `
 ================================================================================

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Recordings to start a fuzzer from: small, whole and cut, chunked and not, without CRCs where those would reject
  * every changed byte. */
 #ifndef T3R_TESTS_SEEDS_H

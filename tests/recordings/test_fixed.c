@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* platform/messages/fixed_double.c and platform/host/fixed_text.c against exact cases. */
 #include <math.h>
 #include <setjmp.h>
@@ -8,8 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "messages/fixed_double.h"
 #include "host/fixed_text.h"
+#include "messages/fixed_double.h"
 
 static uint32_t float_bits(float x)
 {

@@ -1,4 +1,6 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Recordings that others make: big-endian CDR, other encodings, other topics, stamps that do not match, chunks. */
+#include <lz4frame.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,9 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
-#include <lz4frame.h>
 #include <zstd.h>
+#include <cmocka.h>
 
 #include "bag.h"
 #include "mcap/crc32.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The reader for firmware gives the frames that the reader with a heap gives, and ends where a file is cut. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Recordings that unpack to more than memory should hold: they are read, and what is seen stays where it was. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,9 +11,9 @@
 #include <string.h>
 
 #include "mcap/chunk_packer.h"
+#include "mcap/spill.h"
 #include "recording/recording.h"
 #include "scratch.h"
-#include "mcap/spill.h"
 
 /* 166 MB of pictures, in a file of a quarter of that: more than T3R_LIMIT_UNPACKED_HEAP. */
 enum { FRAMES = 20, WIDTH = 1920, HEIGHT = 1440, ROW_BYTES = WIDTH * 3, NOISE_BYTES = ROW_BYTES / 4 };

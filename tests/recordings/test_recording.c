@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Recordings of our own: what is written is what is read, wherever the file is cut, and never after it was changed. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,8 +13,8 @@
 #include "bag.h"
 #include "capture/capture.h"
 #include "mcap/chunk_packer.h"
-#include "messages/fixed_double.h"
 #include "mcap/mcap_reader.h"
+#include "messages/fixed_double.h"
 #include "recording/pixel_layout.h"
 #include "sample.h"
 

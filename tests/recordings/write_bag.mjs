@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // A bag as MCAP's reference writer stores it, of the messages that SPEC lists: {packing, messages: [{topic, type, stamp
 // (ns), message, data (base64)}]}. `data` becomes the field of that name. node write_bag.mjs SPEC FILE
 import { readFileSync, writeFileSync } from "node:fs";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // The sample as MCAP's reference writer stores it: chunked with lz4, zstd, uncompressed, and without chunks; poses as
 // TransformStamped.   node write_theirs.mjs none|lz4|zstd|unchunked ENCODING FILE
 import { writeFileSync } from "node:fs";

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # What the recorder needs from a C library: memcpy, memset, memcmp (clang: bcmp), memmove and strlen, so neither
 # heap nor files.
 #   writer_symbols.sh COMPILER SOURCE_FOLDER

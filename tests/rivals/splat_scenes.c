@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "splat_scenes.h"
 
 const t3r_scene_frame scene_frame = {{0, 0, 0}, 0};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Small scenes for the tests of the rivals. */
 #ifndef TRIM3R_TESTS_RIVALS_SPLAT_SCENES_H
 #define TRIM3R_TESTS_RIVALS_SPLAT_SCENES_H

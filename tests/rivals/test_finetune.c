@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Fine-tuning finds its way back to pictures that a known model drew, and does so the same way every time. */
 #include <stdio.h>
 
-#include "study/rivals/finetune.h"
 #include "splat_scenes.h"
+#include "study/rivals/finetune.h"
 
 enum { SIDE = 32, VALUES = SIDE * SIDE * 3, VIEWS = 2, COUNT = 60 };
 

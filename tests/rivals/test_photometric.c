@@ -1,6 +1,7 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The loss of fine-tuning against its definition, the slow way, and its derivatives against differences. */
-#include "study/rivals/photometric.h"
 #include "splat_scenes.h"
+#include "study/rivals/photometric.h"
 
 enum { WIDTH = 19, HEIGHT = 14, VALUES = WIDTH * HEIGHT * 3 };
 

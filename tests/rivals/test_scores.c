@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The published scores on scenes where the answer is known, or can be had the slow way. */
 #include <stdio.h>
 
+#include "splat_scenes.h"
 #include "study/rivals/rival.h"
 #include "study/rivals/score.h"
-#include "splat_scenes.h"
 
 enum { SIDE = 33 };
 

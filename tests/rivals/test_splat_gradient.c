@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The derivatives of a drawn view against central differences, in every parameter of every Gaussian. */
 #include <stdio.h>
 

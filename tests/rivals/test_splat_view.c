@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The rivals' rasterizer draws what the runtime's integer raster draws: at least 50 dB, both rounded to 8 bits. */
 #include <stdio.h>
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """colcon.py PACKAGE STAND_IN [whole]: Debian's colcon and ament configure the package and compile its sources. The packages
 of ROS 2 that Debian lacks are stand-ins: messages that Debian's rosidl generates, and rclcpp and tf2 of the tests. With
 `whole` the tree around it is built, too, which takes a minute: the program starts and ends."""

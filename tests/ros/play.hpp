@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // A recording's messages as messages of ROS 1 or ROS 2, and what a test wants to know of a cloud.
 #ifndef TRIM3R_TESTS_ROS_PLAY_HPP
 #define TRIM3R_TESTS_ROS_PLAY_HPP
@@ -9,8 +10,8 @@
 #include <string>
 
 extern "C" {
-#include "recording/recording.h"
 #include "messages/ros_messages.h"
+#include "recording/recording.h"
 }
 
 namespace play

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """ros1.py TRIM3R ros1_node|none ros1_play|none: the node for ROS 1 as a process of its own beside Debian's master. It gets a
 recording as messages over TCP: clouds and hashes against `trim3r replay --stream`, with poses of their own and by tf."""
 import os

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // ros1_play RECORDING KEYFRAMES CLOUD [tf]: publishes the recording's frames to a running node, waits for that many
 // clouds, tells each as a line of JSON and keeps the points of the last one in the file CLOUD, then calls the node's
 // service `save`. Poses go as messages of their own, or with `tf` by way of a body that carries the camera.

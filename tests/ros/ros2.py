@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """ros2.py TRIM3R ros2_drive|none: the shell for ROS 2 in one process, on messages that Debian's rosidl generates and the
 stand-in of rclcpp. Clouds and hashes are those of `trim3r replay --stream`, whatever way poses come. Wrong messages are
 refused with a reason and change nothing."""

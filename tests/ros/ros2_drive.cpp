@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // ros2_drive RECORDING CLOUD SCENE KIND: the shell for ROS 2 in one process, on real messages of ROS 2 and the stand-in
 // of rclcpp: publishes the recording's frames, tells each cloud as a line of JSON and each line of the log on stderr,
 // and keeps the points of the last cloud. KIND: how poses come, pose odometry transform tf; or `faults`, where some

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """answer.py TOOLS DOCS: every script that measures, and the demo, tells how it is used, and refuses what it does not know before
 it does anything; pages begin as their scripts would write them."""
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """configure.py CMAKE: on a bare system the build says what is missing, all of it at once, and does without the tests."""
 import os
 import pathlib

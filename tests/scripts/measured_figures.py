@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """measured_figures.py SCRIPTS: what the scripts that measure share: tables, means, blocks of a file, triplets, and files that
 are made once for each program and command."""
 import contextlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """pages.py SCRIPTS DOCS: `pages` reads the epochs that pages name, goes on where one page fails, notes how long each took, and
 the index of docs/study is as it would write it."""
 import contextlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """speed.py TRIM3R SPEED: the README's picture of speed against accuracy, of tiny rooms: it names every method and head."""
 import os
 import sys

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """page.py TRIM3R [FOLDER]: the page of `trim3r stress --html` in a headless Chromium: the worst cases in falling order as
 the table of the same run has them, what was refused, every picture there, light and dark, a phone; no errors, no
 requests. With FOLDER, what it looks like goes there."""

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The plane of squares in small, to be measured cell by cell. */
 #ifndef TRIM3R_TESTS_STRESS_PLANE_H
 #define TRIM3R_TESTS_STRESS_PLANE_H

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """stress_all.py TRIM3R ours|rivals|settings: every perturbation and drawn scene in every strength, small: nothing crashes,
 no invariant breaks, and with sanitizers nothing is found. ours: with noisy captures and still scenes, from as many
 Gaussians as SuperClusters up; rivals: as published, fine-tuned, and as points for our head; settings: budgets in other

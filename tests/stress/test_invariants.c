@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every invariant, broken on purpose: it must be reported, and end `trim3r stress` in an exit status of 1. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What each perturbation guarantees, on frames where it can be seen; of strength 0 each is none. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The synthetic scenes: what the two context views show is what the target shows, but where something stands before it.
  */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cells of a small scene: what is measured must agree with what is known of it. */
 #include <math.h>
 #include <setjmp.h>

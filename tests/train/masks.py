@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What a head is trained on for a rival's choice of points: the very points that `trim3r build --method RIVAL+head` keeps
 of the same views.
 

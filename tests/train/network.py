@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The network that torch trains against the one that quant calibrates and the one that the runtime runs: the same graph
 of random weights in float, and rounded as integers round it; and a head that was widened against the narrow one.
 

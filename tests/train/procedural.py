@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The made-up training pictures: repeatable, with the statistics of photographs, depth and poses that agree.
 
 Usage: procedural.py TOOLS_TRAIN BUILD_FOLDER"""

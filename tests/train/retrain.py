@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """tools/study/train/retrain in its smallest: heads come with how they were trained, a run cut off goes on, what is there stays.
 
     retrain.py TRAIN_FOLDER BUILD_FOLDER TRIM3R"""

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The training's float copies against the runtime: footprints of given outputs; a picture drawn by the shipped head,
 plain and after each pass of refinement.
 

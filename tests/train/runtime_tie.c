@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the training's float copies are held against, for runtime.py: a head's outputs to footprints, and a picture
  * taken through the runtime with the shipped `small` and drawn again. */
 #include <stdlib.h>

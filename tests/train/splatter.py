@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The training's splatter against finite differences and against itself.
 
 Usage: splatter.py TRAIN_FOLDER BUILD_FOLDER"""

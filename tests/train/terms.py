@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The perceptual terms of the loss: LPIPS' wiring by made-up weights, the stand-in by what it must and must not see;
 usage: terms.py TRAIN_FOLDER"""
 import os

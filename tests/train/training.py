@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A run of training: repeatable, resumable, shared among processes, and rounded as integers will be; usage: training.py
 TRAIN_FOLDER BUILD_FOLDER"""
 import json

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* For tests linked with the asserting runtime that misuse nothing: an assertion that fails ends the test. */
 #include <stdio.h>
 #include <stdlib.h>

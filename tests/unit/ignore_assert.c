@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* For tests that misuse the runtime on purpose, and see what it returns. */
 #include "noted_assert.h"
 

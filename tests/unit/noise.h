@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A small generator of repeatable noise. */
 #ifndef T3R_TESTS_NOISE_H
 #define T3R_TESTS_NOISE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a firmware's debug build might define: here an assertion that fails is counted. */
 #ifndef T3R_NOTED_ASSERT_H
 #define T3R_NOTED_ASSERT_H

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Views of a plane, for what views tell of each other. */
 #ifndef T3R_TESTS_UNIT_RIG_H
 #define T3R_TESTS_UNIT_RIG_H
 
 #include "pointmap/pointmap_work.h"
-#include "unit.h"
 #include "state/views.h"
+#include "unit.h"
 
 enum { W = 64, H = 48, PIXELS = W * H, F = 64, VIEWS = 3 };
 

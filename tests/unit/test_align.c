@@ -1,7 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Poses corrected until views agree: a disturbed pose comes back, right poses stay bit for bit, repeated analyses begin
  * from the poses given, builds that may not be aligned are not; and the small equations are solved as in doubles. */
-#include "unit.h"
 #include "rgbd_frame.h"
+#include "unit.h"
 
 #include <math.h>
 #include <stdlib.h>

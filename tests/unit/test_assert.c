@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Misuse reaches the caller's T3R_ASSERT and is still refused; what a file could bring does not. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,7 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Wide depth holes: depth lent by other views, bridged between what is known, and what other views say against it. */
-#include "rig.h"
 #include "rgbd_frame.h"
+#include "rig.h"
 
 #include "pointmap/bridge.h"
 #include "pointmap/flying_pixels.h"

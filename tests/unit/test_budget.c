@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The budget stage alone: exact quotas in every mode, nested sets, and counts as large as configurations allow. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The budget that a loss allows, from made-up evidence: as the formula in doubles, within its bounds at all extremes.
  */
 #include "unit.h"

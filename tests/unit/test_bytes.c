@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers as bytes: little-endian on every machine, and the hash over them. */
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cameras: what is refused, rotation matrices and changes of size against double. */
 #include "unit.h"
 

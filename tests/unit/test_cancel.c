@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A build that is cancelled at any of its steps says so, leaves no scene, and the next one makes what it would have
  * made before. */
 #include "unit.h"

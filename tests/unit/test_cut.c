@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Memory cut into parts ends exactly where the plan's formulas say, whatever the sizes. */
 #include "unit.h"
 

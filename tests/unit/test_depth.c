@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth: validity, and holes that are filled or left. */
 #include "unit.h"
 

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Functions by table or polynomial over their whole domain: how far they are off, and a checksum that every compiler
  * and processor gives. A domain of 2^32 and more is taken densely where its shape changes, and at all its edges. */
 #include "unit.h"
 
+#include "core/alpha.h"
 #include "core/divisor.h"
 #include "core/hash.h"
 #include "core/logarithm.h"
-#include "core/alpha.h"
 #include "kernels/blend.h"
 #include "kernels/project_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How many passes pay: as the formula in doubles, within its bounds at all extremes, fewer for more Gaussians and for
  * views that disagree more. Whole builds are in test_refine.c. */
 #include "unit.h"

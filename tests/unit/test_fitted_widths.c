@@ -1,7 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Widths that follow how often a surface is covered: as the formula in doubles, by the views that count alone, and in
  * whole builds only where they were asked for. */
-#include "rig.h"
 #include "rgbd_frame.h"
+#include "rig.h"
 
 #include "core/fixed.h"
 #include "core/hash.h"

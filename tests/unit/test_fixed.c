@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Fixed-point functions over their domain, against double. */
 #include "unit.h"
 

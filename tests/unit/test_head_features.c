@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The features of a learned head, against their definition in doubles. */
 #include "unit.h"
 

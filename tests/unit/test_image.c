@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Frames to planes: what is refused, formats against the real BT.601, the area average against exact sums. */
 #include "unit.h"
 

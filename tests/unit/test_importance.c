@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The allocation `given`: the points of highest importance and no others, the density that heads are told, and that
  * nothing of it stays behind for the other allocations. The references are made here, by sorting and by counting. */
 #include <math.h>
@@ -10,10 +11,10 @@
 #include <cmocka.h>
 
 #include "budget/budget.h"
-#include "rgbd_frame.h"
+#include "budget/importance.h"
 #include "core/fixed.h"
 #include "core/hash.h"
-#include "budget/importance.h"
+#include "rgbd_frame.h"
 #include "state/state.h"
 
 enum {

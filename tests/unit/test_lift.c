@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Footprints to Gaussians: where a pixel is narrower than all that is kept, and where it has no width at all. */
 #include "rig.h"
 

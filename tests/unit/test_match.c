@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Matching: the census against its definition, semi-global matching in blocks against one that keeps everything, and
  * what is done about disparities that are wrong. */
 #include "unit.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Planes where stereo matched nothing: found among noise and strays, continued beyond what was matched, bounded, the
  * same on views of any side; and outlines that matched outlines. Whole builds are in test_stereo_views.c. */
 #include "unit.h"

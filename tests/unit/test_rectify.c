@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rectification: rows and distances against double precision, the rows' pictures, refusals. */
 #include "unit.h"
 

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Refinement on the built-in room: it gains what it promises, changes nothing where nothing is missing, can be
  * cancelled anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
-#include "unit.h"
 #include "rgbd_frame.h"
 #include "sanitized_cpu.h"
+#include "unit.h"
 
-#include "core/hash.h"
 #include "core/fixed.h"
+#include "core/hash.h"
 #include "refine/refine.h"
 #include "room/room.h"
 #include "state/state.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a tile's pixels add to splats of all kinds, small and huge, needles, centred far outside, one behind the other:
  * against sums in double over the rasterizer's own weights, and the same bits whatever is kept between the drawings and
  * however the scene is sliced. */

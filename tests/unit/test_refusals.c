@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Calls that are refused at the door, and copies of an arena that say what cannot be: each limit from both sides. */
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a stream remembers of keyframes whose planes are gone: colours in five bits that keep their mean, those that the
  * map needs, and a map that goes on showing them. */
 #include "unit.h"

@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a build may be asked for: every part of a request alone and with the others gives the scene that a configuration
  * of these values gives, holds for its call alone, and leaves everything as it was when it is refused. */
-#include "unit.h"
 #include "rgbd_frame.h"
 #include "trim3r_heads.h"
+#include "unit.h"
 
 #include "state/ablation.h"
 #include "state/state.h"

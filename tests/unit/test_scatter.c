@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Splats taken off a tile: what is behind the first is what was drawn; the largest values that there can be fit; and
  * the same splats in another scale of brightness, or a tile further, add what they should. */
 #include "unit.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The scene's frame: poses and depth steps in scene units, against exact arithmetic. */
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The state after errors and cancels: refused calls leave what they promise to leave, and a damaged copy is refused. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,9 +9,9 @@
 
 #include "budget/budget.h"
 #include "budget/cluster_texture.h"
-#include "rgbd_frame.h"
 #include "core/fixed.h"
 #include "core/hash.h"
+#include "rgbd_frame.h"
 #include "state/state.h"
 #include "superclusters/superclusters.h"
 

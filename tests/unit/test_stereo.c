@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stereo: depth of a scene that is drawn here, from pairs of every kind. */
 #include "unit.h"
 

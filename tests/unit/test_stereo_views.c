@@ -1,7 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth by stereo in the pipeline: the built-in room from colours alone, refusals, more than two views, and its parts:
  * several pairs brought together, what was not matched filled. */
-#include "unit.h"
 #include "rgbd_frame.h"
+#include "unit.h"
 
 #include "core/fixed.h"
 #include "core/hash.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Who stays in a stream's map: against sorting; what stays grows and nothing else changes; moves are exact. */
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Streams with each setting at its other end: the map stays within its budget, and the same calls make the same map. */
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What structural similarity asks for: as in doubles for tiles of all contrasts with pixels that do not count, and
  * within bounds. */
 #include "unit.h"

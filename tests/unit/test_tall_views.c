@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth by stereo of pictures as tall as a block of 8, 16, 32 and 64 rows is for: a wall two metres away. */
 #include "unit.h"
 

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
-#include "rig.h"
 #include "rgbd_frame.h"
+#include "rig.h"
 
+#include "core/fixed.h"
 #include "pointmap/disagreement.h"
 #include "pointmap/exposure.h"
-#include "core/fixed.h"
 #include "pointmap/flying_pixels.h"
 #include "pointmap/redundancy.h"
 #include "pointmap/reproject.h"

@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The undistortion grid against double, and the sampling through it. */
 #include "unit.h"
 
-#include "trim3r.h"
 #include "core/camera.h"
 #include "image/undistort.h"
+#include "trim3r.h"
 
 #define Q16(x) ((int32_t)lround((x)*65536.0))
 #define Q24(x) ((int32_t)lround((x)*16777216.0))

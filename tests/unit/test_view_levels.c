@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Levels of views: found as they were made, the mean of all left to the scene, taken off what is missing, within their
  * bounds at all extremes. */
 #include "unit.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The validity plane: its predicates exclude each other, and its numbers outside the runtime are those of the SPEC. */
 #include "unit.h"
 

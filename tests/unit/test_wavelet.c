@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Wavelets: exact inversion, the 16-bit proof recomputed and attained, db2 against its filters, texture. */
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The weight file's checker: what is sound passes, every field beyond its range is refused with its reason, whatever
  * the CRC says. */
 #include "unit.h"

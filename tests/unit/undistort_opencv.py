@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """undistort_opencv.py DRIVER: undistorted pictures against OpenCV's own maps and interpolation."""
 import subprocess
 import sys

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the unit tests share: cmocka's includes and repeatable noise. */
 #ifndef T3R_TESTS_UNIT_H
 #define T3R_TESTS_UNIT_H

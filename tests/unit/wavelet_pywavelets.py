@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """wavelet_pywavelets.py DRIVER [DATA]: texture energies against PyWavelets' db2, periodized, within 1 % in sum.
 
 On made-up images always; on the first pictures of each scene in DATA too, where that folder is there.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """page.py TRIM3R [FOLDER]: the viewer in a headless Chromium: its hash is the native one, the slider rebuilds, every
 overlay differs, mouse and keyboard move the camera, a phone; no errors, no requests. With FOLDER, what it looks like
 goes there."""

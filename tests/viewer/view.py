@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """view.py TRIM3R: the page as a file and over loopback, and what is refused."""
 import http.client
 import json

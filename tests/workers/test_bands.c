@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bands of tiles: whatever their number and the room at their borders, each Gaussian's sums get every tile's share
  * once, and no two bands write to the same place. */
 #include "unit/unit.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Order and lists of splats: stable by depth whatever bytes the depths share, and the same lists for any number of
  * workers and any room for them. */
 #include "unit/unit.h"

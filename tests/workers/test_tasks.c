@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tasks: who runs them, and which part of the work each takes. */
 #include "unit/unit.h"
 

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Builds and views of the built-in room by threads, and by tasks in reverse order whose workers take turns: each stage
  * has the hash that one worker gives it. */
-#include "unit/unit.h"
 #include "rgbd_frame.h"
 #include "sanitized_cpu.h"
+#include "unit/unit.h"
 
-#include "room/room.h"
 #include "host/threads.h"
+#include "room/room.h"
 #include "trim3r_heads.h"
 
 enum { WIDTH = 88, HEIGHT = 72, VIEWS = 3, BUDGET = VIEWS * WIDTH * HEIGHT / 8, KEYFRAMES = 4 };

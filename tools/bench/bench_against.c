@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/bench_against.h"
 
 #include <inttypes.h>
@@ -5,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/spread.h"
 #include "cli/cli.h"
 #include "cli/tables/json_input.h"
 #include "cli/tables/json_output.h"
 #include "cli/work/other_program.h"
 #include "host/file_bytes.h"
-#include "bench/spread.h"
 
 #define ERROR_BYTES 512
 #define LIST_BYTES 1024

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* This program's bench and another program's, in turns: how many times as fast each stage is. */
 #ifndef TRIM3R_TOOLS_BENCH_AGAINST_H
 #define TRIM3R_TOOLS_BENCH_AGAINST_H

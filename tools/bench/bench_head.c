@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/bench_head.h"
 
 #include "head/head.h"
 #include "head/head_views.h"
+#include "head/weights.h"
 #include "stages.h"
 #include "state/state.h"
-#include "head/weights.h"
 
 bool bench_head_run(t3r_runtime *runtime)
 {

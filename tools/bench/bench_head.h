@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The head stage alone, on views that have been analysed. */
 #ifndef TRIM3R_TOOLS_BENCH_HEAD_H
 #define TRIM3R_TOOLS_BENCH_HEAD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The variants of inner loops in a table of kernels. */
 #ifndef TRIM3R_TOOLS_BENCH_KERNELS_H
 #define TRIM3R_TOOLS_BENCH_KERNELS_H

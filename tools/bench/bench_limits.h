@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Upper limits of the machine, measured next to the stages: multiply-adds of 8-bit numbers, and copying. */
 #ifndef TRIM3R_TOOLS_BENCH_LIMITS_H
 #define TRIM3R_TOOLS_BENCH_LIMITS_H

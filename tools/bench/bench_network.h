@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The learned head's network alone, without features and lifting, on views that have been analysed. */
 #ifndef TRIM3R_TOOLS_BENCH_NETWORK_H
 #define TRIM3R_TOOLS_BENCH_NETWORK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Counts the pairs of a pixel and a splat that are blended: the cost of drawing and refining a scene. */
 #ifndef TRIM3R_TOOLS_BENCH_PAIRS_H
 #define TRIM3R_TOOLS_BENCH_PAIRS_H

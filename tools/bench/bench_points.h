@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The bench's points: six numbers each, clustered by the runtime's K-means and evaluated in double. */
 #ifndef TRIM3R_TOOLS_BENCH_POINTS_H
 #define TRIM3R_TOOLS_BENCH_POINTS_H

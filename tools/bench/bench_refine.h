@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One refinement pass alone, on views that have been analysed. */
 #ifndef TRIM3R_TOOLS_BENCH_REFINE_H
 #define TRIM3R_TOOLS_BENCH_REFINE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stereo matching alone, on views that have been analysed. */
 #ifndef TRIM3R_TOOLS_BENCH_STEREO_H
 #define TRIM3R_TOOLS_BENCH_STEREO_H

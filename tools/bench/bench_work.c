@@ -1,14 +1,15 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/bench_work.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/cli.h"
-#include "room/room.h"
 #include "bench/bench_limits.h"
 #include "bench/bench_network.h"
 #include "bench/bench_stereo.h"
+#include "cli/cli.h"
+#include "room/room.h"
 #include "wavelet/wavelet.h"
 
 #define REFINEMENTS 4u

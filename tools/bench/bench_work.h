@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The work that the bench times: two 256x256 views of the built-in room, the scenes made of them, and what single
  * stages need besides. */
 #ifndef TRIM3R_TOOLS_BENCH_WORK_H
@@ -6,12 +7,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "bench/bench_points.h"
 #include "cli/options/processor_options.h"
+#include "host/threads.h"
+#include "planning/bench_views.h"
 #include "reconstruction/options/chosen_head.h"
 #include "reconstruction/replay/stage_times.h"
-#include "bench/bench_points.h"
-#include "planning/bench_views.h"
-#include "host/threads.h"
 
 #define BENCH_SIDE 256u
 #define BENCH_VIEWS 2u

@@ -1,12 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/self_check.h"
 
 #include <stdlib.h>
 
 #include "cli/cli.h"
 #include "core/hash.h"
+#include "host/threads.h"
 #include "reconstruction/options/chosen_head.h"
 #include "room/room.h"
-#include "host/threads.h"
 
 enum { SIDE = 64, VIEWS = 2, BUDGET = 400, SEED = 1, PIXELS = SIDE * SIDE };
 

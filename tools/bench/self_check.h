@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A small build and view of the built-in room, whose hash is the same on every machine. */
 #ifndef TRIM3R_TOOLS_SELF_CHECK_H
 #define TRIM3R_TOOLS_SELF_CHECK_H

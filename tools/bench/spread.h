@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Order statistics of repeated figures. */
 #ifndef TRIM3R_TOOLS_SPREAD_H
 #define TRIM3R_TOOLS_SPREAD_H

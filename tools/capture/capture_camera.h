@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts a camera between doubles, as a recording holds it, and fixed point, as the runtime takes it. A live frame
  * gets exactly the camera that its recording will have. */
 #ifndef TRIM3R_TOOLS_CAPTURE_CAMERA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Estimates how far a trajectory's clock is ahead of the camera's from the motion of the picture. The motion is
  * measured by matching whole neighbouring frames at a small size, and predicted from the rotation and translation
  * between the poses. The result is the offset at which the prediction explains the motion best. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Builds Gaussians from frames as they arrive. All memory is allocated once, the newest frame is read where its driver
  * put it, and the result equals `trim3r build` on a recording of the same frames, bit for bit. */
 #ifndef TRIM3R_TOOLS_LIVE_BUILD_H

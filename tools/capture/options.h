@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The command line of `trim3r capture`, checked as a whole. */
 #ifndef TRIM3R_TOOLS_CAPTURE_OPTIONS_H
 #define TRIM3R_TOOLS_CAPTURE_OPTIONS_H

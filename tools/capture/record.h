@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes frames and events into recordings that roll over: a file ends before it would exceed its size, and the next
  * one begins. */
 #ifndef TRIM3R_TOOLS_CAPTURE_RECORD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The loop of `trim3r capture`: frames from a source to a recording, to Gaussians, or to both. Nothing is allocated
  * after the first frame; with a build, after the first frame that it uses. */
 #ifndef TRIM3R_TOOLS_CAPTURE_RUN_H
@@ -8,8 +9,8 @@
 #include <stdint.h>
 
 #include "capture/capture.h"
-#include "capture/record.h"
 #include "capture/live_build.h"
+#include "capture/record.h"
 #include "import/poses/trajectory.h"
 
 typedef struct capture_plan {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What every subcommand shares. The state here is per process: its name in messages and its progress line. */
 #include "cli/cli.h"
 

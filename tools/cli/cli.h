@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What every subcommand shares: exit codes, messages, progress, one JSON object on stdout. */
 #ifndef TRIM3R_TOOLS_CLI_H
 #define TRIM3R_TOOLS_CLI_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "evaluation/cases.h"
 
 #include <inttypes.h>
@@ -6,11 +7,11 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "import/folders/planar_recording.h"
-#include "import/poses/recording_poses.h"
 #include "cli/files/recorded_frame.h"
 #include "evaluation/nearest_views.h"
 #include "host/text.h"
+#include "import/folders/planar_recording.h"
+#include "import/poses/recording_poses.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 

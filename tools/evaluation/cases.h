@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What an evaluation goes through: the triplets of recordings, or images, each on a plane. */
 #ifndef TRIM3R_TOOLS_EVALUATION_CASES_H
 #define TRIM3R_TOOLS_EVALUATION_CASES_H

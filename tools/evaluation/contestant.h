@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Whatever has rows of its own in an evaluation: trim3r once a head, or what a program adds. */
 #ifndef TRIM3R_TOOLS_EVALUATION_CONTESTANT_H
 #define TRIM3R_TOOLS_EVALUATION_CONTESTANT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "evaluation/evaluation.h"
 
 #include <inttypes.h>
@@ -9,10 +10,10 @@
 
 #include "cli/cli.h"
 #include "cli/files/part_files.h"
-#include "reconstruction/reconstruction_error.h"
 #include "cli/files/recorded_frame.h"
-#include "reconstruction/developed_frame.h"
 #include "pictures/metrics.h"
+#include "reconstruction/developed_frame.h"
+#include "reconstruction/reconstruction_error.h"
 #include "scene/scene_file.h"
 
 /* alpha_q15 is one minus transmittance; 32767 is the runtime's one */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How well a reconstruction shows a view it was not given.
  *
  * A case is one (scene, context, target). evaluation_views_make() prepares what all of its rows share: the recorded

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "evaluation/nearest_views.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which recorded frames show most of what a target shows: the frames that `eval --views` adds to a triplet's own. */
 #ifndef TRIM3R_TOOLS_NEAREST_VIEWS_H
 #define TRIM3R_TOOLS_NEAREST_VIEWS_H

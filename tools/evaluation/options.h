@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What `trim3r eval` compares and writes, as the command line gives it. */
 #ifndef TRIM3R_TOOLS_EVALUATION_OPTIONS_H
 #define TRIM3R_TOOLS_EVALUATION_OPTIONS_H

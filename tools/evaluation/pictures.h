@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What an evaluation leaves to look at: PNG files in a folder a case, and an HTML page. */
 #ifndef TRIM3R_TOOLS_EVALUATION_PICTURES_H
 #define TRIM3R_TOOLS_EVALUATION_PICTURES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "evaluation/report.h"
 
 #include <inttypes.h>
@@ -7,9 +8,9 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/tables/json_output.h"
 #include "evaluation/pictures.h"
 #include "evaluation/table.h"
-#include "cli/tables/json_output.h"
 
 #define ERROR_BYTES 512
 #define PATH_BYTES 4096

@@ -1,15 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where the rows of an evaluation go as they arrive: the terminal or one JSON object, a CSV file, pictures, a page. */
 #ifndef TRIM3R_TOOLS_EVALUATION_REPORT_H
 #define TRIM3R_TOOLS_EVALUATION_REPORT_H
 
 #include <cjson/cJSON.h>
 
+#include "cli/files/whole_file.h"
 #include "cli/tables/csv_file.h"
 #include "evaluation/evaluation.h"
 #include "evaluation/resume.h"
 #include "evaluation/settings.h"
 #include "pictures/html_page.h"
-#include "cli/files/whole_file.h"
 
 typedef struct evaluation_outputs {
     const char *csv, *images, *page; /* paths; NULL = none */

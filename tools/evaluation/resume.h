@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The rows that an evaluation cut off, or an earlier one, left in its table. */
 #ifndef TRIM3R_TOOLS_EVALUATION_RESUME_H
 #define TRIM3R_TOOLS_EVALUATION_RESUME_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The settings of an evaluation in words: those that are not the default, for tables and for names of pictures. */
 #ifndef TRIM3R_TOOLS_EVALUATION_SETTINGS_H
 #define TRIM3R_TOOLS_EVALUATION_SETTINGS_H

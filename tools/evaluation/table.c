@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "evaluation/table.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "cli/tables/csv_read.h"
 #include "cli/help/style.h"
+#include "cli/tables/csv_read.h"
 #include "host/text.h"
 
 typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */

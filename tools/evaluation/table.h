@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rows of an evaluation as cells of a table: the one list of columns that CSV, JSON, terminal and page share. */
 #ifndef TRIM3R_TOOLS_EVALUATION_TABLE_H
 #define TRIM3R_TOOLS_EVALUATION_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The rows of an evaluation made: every case with every contestant at every budget, on one process or several. */
 #ifndef TRIM3R_TOOLS_EVALUATION_WORK_H
 #define TRIM3R_TOOLS_EVALUATION_WORK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The loop of AR glasses: every frame becomes Gaussians as it arrives, and these are drawn from where the head will be
  * when the next frame arrives. Prints a line per frame on stderr, and the views on stdout as consecutive PPM pictures:
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A product's own regression test: frames that were recorded once must always give the same bits, on its processor,
  * with its compiler, with its next release. Every stage of every build and of every view is hashed:
  *

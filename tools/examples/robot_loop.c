@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The loop of a robot: all memory of its map is one block of guaranteed size. Two frames at a time become as many
  * Gaussians as fit, and the map shows how far ahead the way is clear. Nothing is allocated once the camera is open, no
  * number is a float, and the size of the map is fixed at compile time:

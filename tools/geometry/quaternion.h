@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rotations in doubles, as quaternions w x y z and as row-major matrices. A rotation turns what a camera, or any child,
  * sees into the axes of its parent. Camera axes are x right, y down, z forward. */
 #ifndef TRIM3R_TOOLS_QUATERNION_H

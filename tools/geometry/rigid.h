@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rigid transforms in doubles, from a child's frame to its parent's: poses of cameras, and where one sensor sits on
  * another. */
 #ifndef TRIM3R_TOOLS_RIGID_H

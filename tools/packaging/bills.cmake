@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Bills of materials, one a package, as SPDX 2.3: what the package is, the heads in it, and the libraries that its files
 # load. CMAKE_READELF tells which those are; versions are those that the configuration found.
 if(NOT CMAKE_READELF)

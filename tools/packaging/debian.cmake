@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Debian packages, by `cpack` in the build folder: the shared library, what builds programs, the program, its modules for
 # cameras, which need much and are therefore apart, and the Python package.
 set(CPACK_GENERATOR DEB)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Pages for man(1), of the texts that help prints: cmake -DPROGRAM=trim3r -DFOLDER=man1 -P man_pages.cmake
 file(MAKE_DIRECTORY ${FOLDER})
 execute_process(COMMAND ${PROGRAM} --commands OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # One bill of materials: cmake -DOUTPUT=x.spdx.json -DPACKAGE= -DCOMPONENT= -DVERSION= -DFILES= -DHEADS= -DNEEDS= -DKNOWN=
 # -DREADELF= -P write_bill.cmake. The same input gives the same bytes: its date is SOURCE_DATE_EPOCH, else that of 0.
 cmake_minimum_required(VERSION 3.25)

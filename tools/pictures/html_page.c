@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "pictures/html_page.h"
 
 #include <stdbool.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One self-contained HTML page of pictures and a table: nothing is fetched, pictures are embedded, texts escaped. It
  * follows the reader's light or dark setting, and a switch turns pictures into maps of their error.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Quality measures of views; a test compares them with an independent implementation. */
 #ifndef TRIM3R_TOOLS_METRICS_H
 #define TRIM3R_TOOLS_METRICS_H

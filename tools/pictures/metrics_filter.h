@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Separable filters on planes of doubles, only for the measures. */
 #ifndef TRIM3R_TOOLS_METRICS_FILTER_H
 #define TRIM3R_TOOLS_METRICS_FILTER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* LDR-FLIP after Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild: "FLIP: A Difference Evaluator for
  * Alternating Images" (2020). Written from the paper's definition: contrast sensitivity filters and the HyAB distance
  * of Hunt-adjusted L*a*b* for colour, edge and point detectors for features, colour difference to the power of one

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "pictures/picture.h"
 
 #include <errno.h>
@@ -8,15 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <jpeglib.h>
 #include <jerror.h>
+#include <jpeglib.h>
 #include <png.h>
 
-#include "host/file_bytes.h"
 #include "capture/jpeg_scans.h"
+#include "cli/files/whole_file.h"
+#include "host/file_bytes.h"
 #include "host/reason.h"
 #include "trim3r.h"
-#include "cli/files/whole_file.h"
 
 /* Both libraries report errors by longjmp. Everything that must survive a jump, or be freed after one, is in a struct
  * of the caller's, so that no local variable is read after a jump. */

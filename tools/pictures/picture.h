@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures on disk: PNG (8-bit RGB or grey, 16-bit grey) through libpng, JPEG through libjpeg-turbo. */
 #ifndef TRIM3R_TOOLS_PICTURE_H
 #define TRIM3R_TOOLS_PICTURE_H

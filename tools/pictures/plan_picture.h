@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Draws the arena as an SVG: stages across, bytes upwards, each buffer a block from its first to its last stage. */
 #ifndef TRIM3R_TOOLS_PLAN_PICTURE_H
 #define TRIM3R_TOOLS_PLAN_PICTURE_H

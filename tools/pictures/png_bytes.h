@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Encodes a picture as the bytes of a PNG file. */
 #ifndef TRIM3R_TOOLS_PNG_BYTES_H
 #define TRIM3R_TOOLS_PNG_BYTES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Context views of the built-in room: every other frame. */
 #ifndef TRIM3R_TOOLS_BENCH_VIEWS_H
 #define TRIM3R_TOOLS_BENCH_VIEWS_H

@@ -1,15 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "planning/calibrate.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 
 #include "cli/cli.h"
+#include "host/threads.h"
+#include "planning/bench_views.h"
+#include "planning/price_fit.h"
 #include "reconstruction/options/chosen_head.h"
 #include "reconstruction/replay/stage_times.h"
 #include "room/room.h"
-#include "planning/bench_views.h"
-#include "planning/price_fit.h"
-#include "host/threads.h"
 
 /* Configurations in which each kind of work dominates in one and matters little in another. */
 static const struct {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Measures the time of a unit of each kind of work on this machine: times builds of the built-in room stage by stage,
  * and fits prices to the times. */
 #ifndef TRIM3R_TOOLS_CALIBRATE_H

@@ -1,15 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "planning/fitting.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
 #include "cli/cli.h"
-#include "cli/tables/json_output.h"
 #include "cli/options/processor_options.h"
+#include "cli/tables/json_output.h"
 #include "host/cpu.h"
+#include "planning/calibrate.h"
 #include "reconstruction/options/chosen_head.h"
 #include "reconstruction/reconstruction_error.h"
-#include "planning/calibrate.h"
 
 #define SHORT_ROUNDS 2u /* rounds of a short calibration: about two seconds */
 #define SHOWN_MOST 16u  /* most rows of the printed list */

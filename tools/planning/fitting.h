@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The settings that fit an arena and a time: what `plan --arena --time` lists. */
 #ifndef TRIM3R_TOOLS_FITTING_H
 #define TRIM3R_TOOLS_FITTING_H

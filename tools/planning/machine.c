@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "planning/machine.h"
 
 #include <math.h>
@@ -8,9 +9,9 @@
 
 #include <cjson/cJSON.h>
 
+#include "cli/files/whole_file.h"
 #include "cli/tables/json_input.h"
 #include "cli/tables/json_output.h"
-#include "cli/files/whole_file.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
 

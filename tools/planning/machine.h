@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A machine as plans model it: the time of a unit of each kind of work. A JSON file, which `bench --calibrate` writes
  * and `plan --machine` reads on any machine:
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Fits prices to times: each time is the sum over all kinds of units times price. */
 #ifndef TRIM3R_TOOLS_PRICE_FIT_H
 #define TRIM3R_TOOLS_PRICE_FIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The work of a build, stage by stage: operations, and with a machine's prices milliseconds. */
 #ifndef TRIM3R_TOOLS_WORK_TABLE_H
 #define TRIM3R_TOOLS_WORK_TABLE_H

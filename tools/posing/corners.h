@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Corners of a grey picture and what the picture shows around them, in integers: the same on every machine.
  *
  * A pyramid of pictures, each 4/5 of the one before; Harris corners in each, spread over the picture, their places by

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a picture shows around a place: 256 comparisons of grey levels, turned by the patch's own direction. */
 #ifndef TRIM3R_TOOLS_POSING_DESCRIPTOR_H
 #define TRIM3R_TOOLS_POSING_DESCRIPTOR_H

@@ -1,14 +1,15 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "posing/estimate.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/camera.h"
 #include "cli/cli.h"
+#include "core/camera.h"
 #include "geometry/quaternion.h"
-#include "posing/relative.h"
 #include "host/reason.h"
+#include "posing/relative.h"
 
 #define DEEP_LEAST 20u  /* matching corners with depth in both views, or colour decides */
 #define SHARED_LEAST 8u /* depths that must agree on a scale */

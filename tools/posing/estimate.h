@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Poses of any number of views: each from the best one that has its pose already. */
 #ifndef TRIM3R_TOOLS_POSING_ESTIMATE_H
 #define TRIM3R_TOOLS_POSING_ESTIMATE_H

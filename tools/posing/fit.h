@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How well a motion explains matches, and the motion that explains them best. */
 #ifndef TRIM3R_TOOLS_POSING_FIT_H
 #define TRIM3R_TOOLS_POSING_FIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "posing/five_point.h"
 
 #include <lapacke.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Essential matrices of five pairs of rays. */
 #ifndef TRIM3R_TOOLS_POSING_FIVE_POINT_H
 #define TRIM3R_TOOLS_POSING_FIVE_POINT_H

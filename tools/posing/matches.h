@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Corners of two views that show the same. */
 #ifndef TRIM3R_TOOLS_POSING_MATCHES_H
 #define TRIM3R_TOOLS_POSING_MATCHES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rotations and motions of cameras, in doubles. Matrices are row-major. */
 #ifndef TRIM3R_TOOLS_POSING_MOTION_H
 #define TRIM3R_TOOLS_POSING_MOTION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where poses come from, and how the option --poses names it. */
 #ifndef TRIM3R_TOOLS_POSES_SOURCE_H
 #define TRIM3R_TOOLS_POSES_SOURCE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "posing/pyramid.h"
 
 uint32_t pyramid_side(uint32_t side)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures at 4/5, 16/25 ... of their size. */
 #ifndef TRIM3R_TOOLS_POSING_PYRAMID_H
 #define TRIM3R_TOOLS_POSING_PYRAMID_H

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "posing/relative.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "posing/five_point.h"
 #include "host/reason.h"
+#include "posing/five_point.h"
 
 #define MATCHES_LEAST 20u /* that agree with a motion */
 #define TRIES_LEAST 100u

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The motion between two views: from colour alone, or with depth. */
 #ifndef TRIM3R_TOOLS_POSING_RELATIVE_H
 #define TRIM3R_TOOLS_POSING_RELATIVE_H

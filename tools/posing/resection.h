@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A camera's pose from places in space and the rays on which it sees them. */
 #ifndef TRIM3R_TOOLS_POSING_RESECTION_H
 #define TRIM3R_TOOLS_POSING_RESECTION_H

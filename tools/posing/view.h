@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A frame as pose estimation sees it: corners, their rays, their depths. */
 #ifndef TRIM3R_TOOLS_POSING_VIEW_H
 #define TRIM3R_TOOLS_POSING_VIEW_H

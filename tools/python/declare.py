@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """declare.py HEADER ROOT PACKAGE BUILD COMPILER OPTION...: what the Python package knows of C, out of the headers.
 
 PACKAGE/_declarations.py has every type and constant that HEADER leads to below ROOT, and the functions of the headers

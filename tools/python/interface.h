@@ -1,13 +1,14 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the Python package calls: every function that these headers declare. declare.py reads them. */
 #ifndef TRIM3R_PYTHON_INTERFACE_H
 #define TRIM3R_PYTHON_INTERFACE_H
 
 #include "host/cpu.h"
+#include "host/threads.h"
 #include "pictures/metrics.h"
 #include "recording/recording.h"
 #include "room/room.h"
 #include "scene/scene_file.h"
-#include "host/threads.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """For pip: what it makes of the package holds a shared library, so it is for this kind of machine alone."""
 from setuptools import Distribution, setup
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Measures how far a build moved the poses of its context views (`align`). */
 #ifndef TRIM3R_TOOLS_ALIGNED_POSES_H
 #define TRIM3R_TOOLS_ALIGNED_POSES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/colmap_start.h"
 
 #include <stdlib.h>

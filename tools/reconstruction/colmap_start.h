@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes the start of an outside optimiser: a build's context views and points as a COLMAP model. */
 #ifndef TRIM3R_TOOLS_COLMAP_START_H
 #define TRIM3R_TOOLS_COLMAP_START_H

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/developed_frame.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "reconstruction/reconstruction_error.h"
 #include "cli/files/recorded_frame.h"
+#include "reconstruction/reconstruction_error.h"
 
 int developed_frame(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
                     uint8_t *rgb, uint16_t *depth, t3r_camera *camera)

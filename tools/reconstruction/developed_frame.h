@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Runs a recorded frame through the image stage alone and returns the resulting picture. */
 #ifndef TRIM3R_TOOLS_DEVELOPED_FRAME_H
 #define TRIM3R_TOOLS_DEVELOPED_FRAME_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads the importance of the points of the context views (allocation `given`) from grey pictures. */
 #ifndef TRIM3R_TOOLS_IMPORTANCE_PICTURES_H
 #define TRIM3R_TOOLS_IMPORTANCE_PICTURES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A way to make a scene of a recording: ours, and those that a program adds to it (tools/study has rivals). */
 #ifndef TRIM3R_TOOLS_METHOD_H
 #define TRIM3R_TOOLS_METHOD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One run of the runtime on a recording: arena, hooks, views, scene. */
 #include "reconstruction/reconstruction.h"
 
@@ -6,15 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/camera.h"
 #include "cli/cli.h"
-#include "host/cpu.h"
-#include "reconstruction/reconstruction_error.h"
 #include "cli/files/recorded_frame.h"
+#include "core/camera.h"
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "core/scene_frame.h"
+#include "host/cpu.h"
 #include "reconstruction/importance_pictures.h"
+#include "reconstruction/reconstruction_error.h"
 #include "reconstruction/scene_append.h"
 #include "reconstruction/scene_frames.h"
 

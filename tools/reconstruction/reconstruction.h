@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One run of the runtime on a recording: what build, eval, replay and bench share.
  *
  * Chosen frames go into an arena of the requested size, the hooks are set, the scene is built; the caller then renders,
@@ -11,12 +12,12 @@
 #include <stdint.h>
 
 #include "cli/options/processor_options.h"
+#include "host/threads.h"
+#include "posing/poses_source.h"
 #include "reconstruction/options/chosen_head.h"
 #include "reconstruction/replay/stage_times.h"
-#include "posing/poses_source.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
-#include "host/threads.h"
 #include "trim3r.h"
 
 typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/reconstruction_error.h"
 
 #include "cli/cli.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Explains a status of the runtime to the user. */
 #ifndef TRIM3R_TOOLS_RECONSTRUCTION_ERROR_H
 #define TRIM3R_TOOLS_RECONSTRUCTION_ERROR_H

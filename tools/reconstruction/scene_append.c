@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/scene_append.h"
 
 #include "core/scene_frame.h"

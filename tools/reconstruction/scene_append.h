@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Loads a scene from a file into the runtime's arena. */
 #ifndef TRIM3R_TOOLS_SCENE_APPEND_H
 #define TRIM3R_TOOLS_SCENE_APPEND_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Uses a scene made elsewhere as context frames: the colours of the recorded views with the depth of its Gaussians,
  * which then are points like any others. */
 #ifndef TRIM3R_TOOLS_SCENE_FRAMES_H

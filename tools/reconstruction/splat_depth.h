@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Renders Gaussians as depth: what a depth camera at a view would measure of the means of a scene made elsewhere. */
 #ifndef TRIM3R_TOOLS_SPLAT_DEPTH_H
 #define TRIM3R_TOOLS_SPLAT_DEPTH_H

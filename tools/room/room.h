@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The built-in recording: a furnished room, ray-cast in integers, with exact depth and poses. The same source gives the
  * same bits with every compiler and on every processor; it reads nothing and keeps no state.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The furniture of the room, and ray casting. Lengths Q16 metres, directions and distances along a ray Q20. */
 #ifndef TRIM3R_TOOLS_ROOM_SCENE_H
 #define TRIM3R_TOOLS_ROOM_SCENE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The room's surfaces: colours from integer value noise. Lengths Q16 metres, colours Q4 (0..4080). */
 #ifndef TRIM3R_TOOLS_ROOM_TEXTURE_H
 #define TRIM3R_TOOLS_ROOM_TEXTURE_H

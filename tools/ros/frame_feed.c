@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "ros/frame_feed.h"
 
 #include <inttypes.h>
@@ -5,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "recording/frame_pairing.h"
+#include "host/reason.h"
 #include "import/bags/bag_pictures.h"
 #include "messages/message_frame.h"
+#include "recording/frame_pairing.h"
 #include "recording/pixel_layout.h"
-#include "host/reason.h"
 #include "ros/throttle.h"
 
 #define POSES_MOST 256u

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Turns messages of a camera's topics, in the order of arrival, into frames for the map: checked, paired by time, in
  * bounded queues. It depends on no version of ROS.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A map that follows a camera from arriving frames: the arena, the choice of keyframes, the scene. */
 #ifndef TRIM3R_TOOLS_KEYFRAME_MAP_H
 #define TRIM3R_TOOLS_KEYFRAME_MAP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // Converts ROS messages to and from the structures of platform/messages/ros_messages.h. The templates take the messages
 // of ROS 1 and of ROS 2, whose fields differ in three names: nsec and nanosec, K and k, D and d. Only numbers are
 // copied: texts and images stay in the message.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // The node without ROS: messages of a camera in, the map and its clouds out. A wrapper for a version of ROS calls it
 // from one thread and handles clouds and lines.
 #ifndef TRIM3R_TOOLS_ROS_NODE_HPP

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "ros/point_cloud.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts Gaussians to the points of a sensor_msgs/PointCloud2: little-endian floats, in the world's frame. */
 #ifndef TRIM3R_TOOLS_POINT_CLOUD_H
 #define TRIM3R_TOOLS_POINT_CLOUD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // The node for ROS 1: topics, parameters and services of roscpp. docs/ros.md describes them.
 #include <cstdio>
 #include <memory>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "ros/ros2_node.hpp"
 
 #include <utility>

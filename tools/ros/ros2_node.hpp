@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // The node for ROS 2: topics, parameters and services of rclcpp. docs/ros.md describes them.
 #ifndef TRIM3R_TOOLS_ROS2_NODE_HPP
 #define TRIM3R_TOOLS_ROS2_NODE_HPP

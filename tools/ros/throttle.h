@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Prints a repeated line only now and then, with the number of suppressed ones. */
 #ifndef TRIM3R_TOOLS_THROTTLE_H
 #define TRIM3R_TOOLS_THROTTLE_H

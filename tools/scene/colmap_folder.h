@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a scene's points and context views as a COLMAP model in text, a start for other optimisers: DIR/images/, and
  * cameras.txt, images.txt and points3D.txt in DIR/sparse/0/, where 3D Gaussian Splatting and gsplat look for them.
  *

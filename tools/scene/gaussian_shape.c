@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One-sided Jacobi on the rows of F: exact to the last bits even for thin Gaussians, where an eigendecomposition of the
  * covariance would lose all scales below 1e-8 of the largest. */
 #include "scene/gaussian_shape.h"

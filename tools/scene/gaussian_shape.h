@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts the shape of a Gaussian between the runtime's factor F (covariance F F^T) and axes and rotation, as files
  * hold it. */
 #ifndef TRIM3R_TOOLS_GAUSSIAN_SHAPE_H

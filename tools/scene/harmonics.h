@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Spherical harmonics of degree 1 to 3 in double: colours that depend on the viewing direction. The order and the signs
  * are those of 3D Gaussian Splatting and of KHR_gaussian_splatting. */
 #ifndef TRIM3R_TOOLS_HARMONICS_H

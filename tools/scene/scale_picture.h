@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Histograms of splat scales as an SVG: a panel per scene, one below the other, with the same logarithmic axis. */
 #ifndef TRIM3R_TOOLS_SCALE_PICTURE_H
 #define TRIM3R_TOOLS_SCALE_PICTURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes on disk, read and written in double; SPEC's fixed point begins after reading. */
 #ifndef TRIM3R_TOOLS_SCENE_FILE_H
 #define TRIM3R_TOOLS_SCENE_FILE_H

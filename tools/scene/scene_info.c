@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/scene_info.h"
 
 #include <inttypes.h>
@@ -6,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/camera.h"
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
+#include "cli/files/whole_file.h"
 #include "cli/tables/json_output.h"
+#include "core/camera.h"
 #include "recording/recording.h"
 #include "scene/scale_picture.h"
 #include "scene/scene_file.h"
-#include "cli/files/whole_file.h"
 
 #define ERROR_BYTES 512
 #define QUANTILES 5

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* `trim3r info SCENE.ply...`: the contents of scene files, and the widths of their Gaussians. */
 #ifndef TRIM3R_TOOLS_SCENE_INFO_H
 #define TRIM3R_TOOLS_SCENE_INFO_H

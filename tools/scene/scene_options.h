@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The options of the commands that write scenes. */
 #ifndef TRIM3R_TOOLS_SCENE_OPTIONS_H
 #define TRIM3R_TOOLS_SCENE_OPTIONS_H

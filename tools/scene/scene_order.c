@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/scene_order.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The order of Gaussians in formats that pack neighbours together. */
 #ifndef TRIM3R_TOOLS_SCENE_ORDER_H
 #define TRIM3R_TOOLS_SCENE_ORDER_H

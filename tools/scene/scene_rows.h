@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts Gaussians in double, as scene files have them, to a scene in the runtime's fixed point, and back. */
 #ifndef TRIM3R_TOOLS_SCENE_ROWS_H
 #define TRIM3R_TOOLS_SCENE_ROWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts the runtime's fixed point to the numbers of scene files. */
 #include <math.h>
 

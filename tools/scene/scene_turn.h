@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Turns between the axes of files and of a scene. A scene in memory has the axes of its recording, or of a .ply: for
  * formats with axes of their own, x points right in it, y down and z forward. */
 #ifndef TRIM3R_TOOLS_SCENE_TURN_H

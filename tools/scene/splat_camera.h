@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cameras in floats, for the host's work on scenes. */
 #ifndef TRIM3R_TOOLS_SCENE_SPLAT_CAMERA_H
 #define TRIM3R_TOOLS_SCENE_SPLAT_CAMERA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Widths of the Gaussians of a scene: order statistics and bins of a logarithm (a histogram as in GaussianTrim3R's
  * Figure 6). Scale here means the root of the product of a Gaussian's two largest standard deviations: the radius of a
  * disc that covers as much of a surface, whatever the thickness along the normal. */

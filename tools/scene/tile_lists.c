@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/tile_lists.h"
 
 #include <stdlib.h>

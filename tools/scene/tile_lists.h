@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Counts the splats that the tiles of a view list, which is the cost of drawing it. A scene of surfaces lists a few
  * tiles per Gaussian. A weight file or a foreign scene can have faint Gaussians as wide as the picture: then every tile
  * lists them all, no pixel ends early, and a view takes hundreds of times as long. */

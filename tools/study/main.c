@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r with its study: what measures it against other methods, and what trained its heads. */
 #include <stddef.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What measures the product, and what made its heads: commands beside those of the product, and a main() of its own.
 t3r_area(study/chart USES pictures)
 t3r_area(study/rivals USES reconstruction)

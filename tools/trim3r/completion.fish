@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Completion of trim3r in fish. The program itself says which commands and options it has.
 function __trim3r_options
     set -l words (commandline -opc)

@@ -1,4 +1,5 @@
 #compdef trim3r
+# SPDX-License-Identifier: Apache-2.0
 # Completion of trim3r in zsh. The program itself says which commands and options it has.
 _trim3r() {
     local -a rows names

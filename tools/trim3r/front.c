@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "trim3r/front.h"
 
 #include <argp.h>
@@ -13,8 +14,8 @@
 #include "cli/help/man_page.h"
 #include "cli/help/style.h"
 #include "host/text.h"
-#include "trim3r/commands/commands.h"
 #include "trim3r.h"
+#include "trim3r/commands/commands.h"
 
 static const trim3r_command product[] = {
     {"import", command_import, "turn a folder of posed pictures into a recording"},

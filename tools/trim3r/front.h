@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The program trim3r but for main(), which may add commands to those of the product. */
 #ifndef TRIM3R_TOOLS_FRONT_H
 #define TRIM3R_TOOLS_FRONT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r, the product alone. */
 #include <stddef.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A bundle in memory: the input of a page of `trim3r view` (bundle_layout.h). */
 #ifndef TRIM3R_TOOLS_BUNDLE_H
 #define TRIM3R_TOOLS_BUNDLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The bundle: all input of a viewer's page, as bytes. bundle.c writes it, module/module.c reads it.
  *
  * Little-endian, in this order:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "viewer/page.h"
 
 #include <stdlib.h>
@@ -5,8 +6,8 @@
 
 #include <cjson/cJSON.h>
 
-#include "cli/tables/json_output.h"
 #include "cli/help/markup.h"
+#include "cli/tables/json_output.h"
 
 /* Embedded by the build: page/view.html with marks for the others, such as <!--style-->. The module is empty if there
  * was no compiler for it. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The page of `trim3r view`: one HTML file that contains the runtime as WebAssembly, a bundle, and the viewer. It
  * fetches nothing. */
 #ifndef TRIM3R_TOOLS_VIEWER_PAGE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Serves one page by HTTP on loopback only. */
 #ifndef TRIM3R_TOOLS_VIEWER_SERVER_H
 #define TRIM3R_TOOLS_VIEWER_SERVER_H

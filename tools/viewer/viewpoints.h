@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Viewpoints of a page: recorded frames, or a place in front of a scene without frames. */
 #ifndef TRIM3R_TOOLS_VIEWER_VIEWPOINTS_H
 #define TRIM3R_TOOLS_VIEWER_VIEWPOINTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "marks.h"
 
 /* Each function has a statement that the compiler cannot merge, so that no two share an address. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "ram.h"
 
 extern uint8_t data_begin_at[], zero_end_at[], memory_begin_at[], memory_end_at[], stack_bottom_at[], stack_top_at[];

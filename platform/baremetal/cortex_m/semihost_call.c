@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "semihost_call.h"
 
 int32_t semihost_call(uint32_t operation, const void *block)

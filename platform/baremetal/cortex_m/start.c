@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* From reset to main() on a Cortex-M: the vector table, initialised data, the painted stack. Symbols that end in _at
  * are addresses from sections.ld. */
 #include <stdint.h>

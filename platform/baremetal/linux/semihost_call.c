@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Does with an operating system's calls what a debugger does for a board, so that the firmware runs as a program. */
 #include "semihost_call.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The module's imports, which host.mjs provides. */
 #ifndef T3R_BAREMETAL_WASM_HOST_H
 #define T3R_BAREMETAL_WASM_HOST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // Runs the module of platform/baremetal/wasm under Node.js:
 //
 //     node host.mjs MODULE RUNS WORD...

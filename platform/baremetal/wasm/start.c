@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* From the call of the module to main(): the painted stack. It holds variables whose address is taken; the engine keeps
  * the others. */
 #include "semihost.h"

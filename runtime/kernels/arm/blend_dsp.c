@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Blending for a Cortex-M with products of 16 bits: pixel by pixel, and none where the splat cannot be seen. */
 #include "variants.h"
 
@@ -7,8 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "core/fixed.h"
 #include "core/alpha.h"
+#include "core/fixed.h"
 #include "products.h"
 
 /* Of less than this no alpha comes to 1/255, whatever the opacity. */

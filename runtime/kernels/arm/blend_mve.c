@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Blending, eight pixels at a time, in vectors of Helium. */
 #include "variants.h"
 
@@ -5,8 +6,8 @@
 
 #include <arm_mve.h>
 
-#include "core/memory.h"
 #include "core/alpha.h"
+#include "core/memory.h"
 
 /* What is left of T3R_ALPHA_RANGE when q / 8 is taken away, 16 times, with the half that rounds, in the even and the
  * odd columns; from row to row, and what steps lose. Modulo 2^32, as plain C's sums are without overflow. */

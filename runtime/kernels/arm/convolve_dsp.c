@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A layer of 8-bit weights and activations for a Cortex-M with sums of two products, four pixels at a time. */
 #include "variants.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A layer of 8-bit weights and activations, four pixels at a time, in vectors of Helium. */
 #include "variants.h"
 

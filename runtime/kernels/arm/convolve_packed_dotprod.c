@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A packed layer, four outputs a vector, by dot products: four activations, in all lanes, times four weights of each.
  */
 #include "variants.h"

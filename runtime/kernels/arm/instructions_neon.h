@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The instructions that lanes/ takes, in NEON, under the names that x86 has for them. */
 #ifndef T3R_KERNELS_ARM_INSTRUCTIONS_NEON_H
 #define T3R_KERNELS_ARM_INSTRUCTIONS_NEON_H

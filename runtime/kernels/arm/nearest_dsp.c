@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The nearest centre for a Cortex-M with sums of two products: of a few centres by looking at all of them. With more,
  * plain C's neighbours are quicker. */
 #include "variants.h"

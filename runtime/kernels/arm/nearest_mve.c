@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The nearest centre by looking at all of them, four at a time, in vectors of Helium. */
 #include "variants.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The nearest centre, four at a time. */
 #include "variants.h"
 

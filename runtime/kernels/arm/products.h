@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The upper halves of products of 32 bits, which a Cortex-M with DSP instructions rounds in one. */
 #ifndef T3R_KERNELS_ARM_PRODUCTS_H
 #define T3R_KERNELS_ARM_PRODUCTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scattering for a Cortex-M with sums of two products: pixels in which the splat has no weight add nothing, the others
  * are gathered and summed two at a time. */
 #include "variants.h"

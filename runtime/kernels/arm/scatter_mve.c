@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scattering, eight pixels at a time, in vectors of Helium. Rows in which the splat has no weight add nothing. */
 #include "variants.h"
 

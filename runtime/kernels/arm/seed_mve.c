@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Distances of a sample to a centre, four at a time, in vectors of Helium. */
 #include "variants.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Corrections, four Gaussians at a time. */
 #include "variants.h"
 

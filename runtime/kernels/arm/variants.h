@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The variants for Arm. Those of a Cortex-M are there where the whole build is for one that has them: a firmware knows
  * its core. */
 #ifndef T3R_ARM_VARIANTS_H

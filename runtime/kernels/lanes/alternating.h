@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The halves of numbers of 64 bits, and tables of pairs, where lanes alternate (even_odd.h) and no mask registers join
  * them. */
 #ifndef T3R_KERNELS_LANES_ALTERNATING_H

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Blending, PIXELS at a time: two rows of eight columns or a row of the tile, or eight columns of a row. Comes behind a
  * header of pixels, in a file that names the functions: BLEND and BLEND_KEEP. */
 #ifndef T3R_KERNELS_LANES_BLEND_PIXELS_H
 #define T3R_KERNELS_LANES_BLEND_PIXELS_H
 
-#include "core/memory.h"
 #include "core/alpha.h"
+#include "core/memory.h"
 
 /* (a b + 2^15) / 2^16 of 16 unsigned bits: the high half and the top bit of the low one. */
 static inline T3R_LANES_TARGET lanes mulr_q16(lanes a, lanes b)

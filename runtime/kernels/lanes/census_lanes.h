@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* census_costs in vectors of BYTES disparities; what path_lanes.h declares comes first. */
 #ifndef T3R_CENSUS_LANES_H
 #define T3R_CENSUS_LANES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A packed layer, LANES outputs a vector: TAPS activations, in all lanes, times as many weights of each. Comes behind a
  * header of lanes and one that multiplies, as pairs_of_taps.h does, in a file that names the functions: PACK_LAYER and
  * CONVOLVE_PACKED. */

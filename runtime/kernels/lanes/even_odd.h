@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers of 64 bits in the place of two lanes: where instructions multiply even lanes. Comes behind operations.h. */
 #ifndef T3R_KERNELS_LANES_EVEN_ODD_H
 #define T3R_KERNELS_LANES_EVEN_ODD_H

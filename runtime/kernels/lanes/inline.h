@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How functions of vectors are inlined, and loops over a few of them unrolled. */
 #ifndef T3R_KERNELS_LANES_INLINE_H
 #define T3R_KERNELS_LANES_INLINE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Keys, LANES at a time: keys.c step by step. Comes behind a header of lanes, in a file that names the functions:
  * WANTED_ROW and KEY_ROW. */
 #ifndef T3R_KERNELS_LANES_KEYS_LANES_H

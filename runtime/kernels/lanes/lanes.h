@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sixteen unsigned bits a lane, in plain C: eight lanes where the target has vectors, one where it has none.
  *
  * Each step is a loop of its own over all lanes, so that a compiler sees 16 bits go in and come out and takes one

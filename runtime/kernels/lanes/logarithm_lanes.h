@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Logarithms by the table of core/fixed_tables.h. Comes behind a header of lanes. */
 #ifndef T3R_KERNELS_LANES_LOGARITHM_LANES_H
 #define T3R_KERNELS_LANES_LOGARITHM_LANES_H

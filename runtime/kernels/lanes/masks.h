@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What instruction sets without mask registers share: a mask has all bits of a lane, or none. Comes behind
  * operations.h. */
 #ifndef T3R_KERNELS_LANES_MASKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The nearest centre by looking at all of them, LANES at a time. Comes behind a header of lanes, in a file that names
  * the functions: NEAREST_BEGIN and NEAREST. */
 #ifndef T3R_KERNELS_LANES_NEAREST_LANES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the headers of lanes share: they name the type, the target and how its instructions begin. */
 #ifndef T3R_KERNELS_LANES_OPERATIONS_H
 #define T3R_KERNELS_LANES_OPERATIONS_H

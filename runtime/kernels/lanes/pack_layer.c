@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Layers in the order of the packed kernels. */
 #include "core/little_endian.h"
 #include "packed_scaling.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What nearest_begin leaves in the place of the neighbours, a group of centres behind the other: features by pairs of
  * dimensions, as pmaddwd takes them, and half norms; behind the last centre those that are nearest to nothing. */
 #ifndef T3R_KERNELS_LANES_PACKED_CENTRES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sums of outputs to activations (kernels/requantize.h), without shifts of 64 bits.
  *
  * A sum is scaled by multiplier / 2^n, n = 31 - shift. For n above 32, floor(sum x multiplier / 2^32) is the high half

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Products of a packed layer where instructions multiply pairs of 16 bits. Comes behind a header of lanes. */
 #ifndef T3R_KERNELS_LANES_PAIRS_OF_TAPS_H
 #define T3R_KERNELS_LANES_PAIRS_OF_TAPS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* path_row in vectors of BYTES disparities. The file that includes this defines TARGET, BYTES, MOST_VECTORS, how its
  * instructions begin (OF) and the functions declared first. The path along the row stays in registers. */
 #ifndef T3R_PATH_LANES_H

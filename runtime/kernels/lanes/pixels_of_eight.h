@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Eight pixels of a row of a tile in a vector: blending and scattering. Comes behind a header of four lanes. */
 #ifndef T3R_KERNELS_LANES_PIXELS_OF_EIGHT_H
 #define T3R_KERNELS_LANES_PIXELS_OF_EIGHT_H

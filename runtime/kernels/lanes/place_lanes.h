@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Splats in a tile, LANES at a time. Those centred far from it, whose quadratic takes more bits, are left to plain C.
  * Comes behind a header of lanes, in a file that names the function: PLACE. */
 #ifndef T3R_KERNELS_LANES_PLACE_LANES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* points.c with several points at a time, in 64-bit lanes: included once for each width, which defines LANES, TARGET,
  * how its instructions begin (OF), and the functions declared first. Lanes hold 32-bit numbers wherever they are
  * multiplied. */

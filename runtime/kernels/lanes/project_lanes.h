@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Projection of LANES Gaussians at a time: project.c step by step, with its bounds. Where a number of project.c has 64
  * bits and that of a usual Gaussian 32, this is the usual one's; the others are marked, and plain C projects them.
  * Comes behind a header of lanes, in a file that names the function: PROJECT. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* ray_row in 32-bit lanes of any number. The file that includes this names the function, RAY_ROW, and defines TARGET,
  * LANES, how its instructions begin (OF) and join(). A quotient x / z is made of z's reciprocal and mended by its
  * remainder. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Words of LANES records, a vector a word, read and written. Comes behind a header of lanes. */
 #ifndef T3R_KERNELS_LANES_RECORDS_H
 #define T3R_KERNELS_LANES_RECORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The scaling of a packed layer's sums, LANES outputs at a time (requantize.h). Comes behind a header of lanes. */
 #ifndef T3R_KERNELS_LANES_REQUANTIZE_LANES_H
 #define T3R_KERNELS_LANES_REQUANTIZE_LANES_H

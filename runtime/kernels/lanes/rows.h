@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Plain C's loops over rows once more: the compiler vectorizes them as well as a hand would. A file that compiles for
  * an instruction set includes this and says what they are called there: ROW(name). */
 #ifndef T3R_KERNELS_LANES_ROWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The sums of scatter.c from factors of pixels, of several pixels a factor. Comes after the type `factor` and after
  * what adds to a sum, modulo 2^32, the products of two factors' pixels (added) and the pixels of one (added_alone). */
 #ifndef T3R_KERNELS_LANES_SCATTER_MOMENTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scattering, PIXELS at a time: two rows of eight columns or a row of the tile, or eight columns of a row. Sums are
  * modulo 2^32, so that lanes do not show. Comes behind a header of pixels, in a file that names the function (SCATTER),
  * its target (T3R_SCATTER) and how products of pairs are added (SCATTER_ADD). */

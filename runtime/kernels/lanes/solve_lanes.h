@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Corrections, LANES Gaussians at a time: solve.c step by step, a Gaussian a lane of 32 bits. Comes behind a header of
  * lanes, in a file that names the function: SOLVE. */
 #ifndef T3R_KERNELS_LANES_SOLVE_LANES_H

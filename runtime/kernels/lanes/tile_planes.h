@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pixels of a tile by one number, row by row. */
 #ifndef T3R_KERNELS_LANES_TILE_PLANES_H
 #define T3R_KERNELS_LANES_TILE_PLANES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* winner_row in vectors of WORDS disparities. The right pixels that a left one has for candidates stand in a window
  * that moves by one lane a pixel; the lane that leaves it is done. */
 #ifndef T3R_WINNER_LANES_H

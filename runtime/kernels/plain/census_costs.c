@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "kernels/census.h"
 
 /* Returns the set bits of each nibble of x: 0..4 each. */

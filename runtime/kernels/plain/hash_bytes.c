@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "kernels/hash_bytes.h"
 
 #include "core/hash.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "kernels/kernels.h"
 
 /* Entries of a feature that is left out are NULL and never called. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "kernels/luma_at.h"
 
 #include <stdbool.h>

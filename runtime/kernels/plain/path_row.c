@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "kernels/path_row.h"
 
 static inline uint8_t minimum(uint8_t a, uint8_t b)

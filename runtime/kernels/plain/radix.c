@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "kernels/radix.h"
 
 void t3r_radix_count_c(const uint32_t *restrict keys, uint32_t count, uint32_t histogram[T3R_RADIX_DIGITS * T3R_RADIX])

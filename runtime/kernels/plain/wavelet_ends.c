@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The first and last rows of a db2 transform. They come once a plane, so variants are not worth it. */
 #include "core/fixed.h"
 #include "kernels/wavelet_rows.h"

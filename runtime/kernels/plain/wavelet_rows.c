@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Wavelet rows in plain C. Every sum fits 16 bits for the ranges that wavelet_level.h proves. */
 #include "kernels/wavelet_rows.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "kernels/winner_row.h"
 
 const int16_t t3r_winner_beside[2 * T3R_PATH_MOST] = {

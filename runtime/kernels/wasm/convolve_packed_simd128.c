@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A packed layer, four outputs a vector. */
 #include "variants.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* WebAssembly's vector instructions by the names that the code of kernels/lanes calls them: those of SSE4.1, which say
  * what each does. Macros, as names that are put together cannot be renamed: tools/amalgamate renames functions. */
 #ifndef T3R_KERNELS_WASM_INSTRUCTIONS_SIMD128_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The budget's keys, four at a time. */
 #include "variants.h"
 

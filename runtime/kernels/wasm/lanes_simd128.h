@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Four numbers of 32 bits, and of 64 where a product has them: in vectors of WebAssembly. */
 #ifndef T3R_KERNELS_WASM_LANES_SIMD128_H
 #define T3R_KERNELS_WASM_LANES_SIMD128_H

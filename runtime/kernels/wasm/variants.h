@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The variants for WebAssembly: there where the whole module may have vectors, as a module with them does not load
  * elsewhere. */
 #ifndef T3R_WASM_VARIANTS_H

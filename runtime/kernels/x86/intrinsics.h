@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The processor's vector instructions, without a header of the C library. */
 #ifndef T3R_KERNELS_X86_INTRINSICS_H
 #define T3R_KERNELS_X86_INTRINSICS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* 128 bits of a vector, as the code that all instruction sets share takes them. */
 #ifndef T3R_KERNELS_X86_QUADS_H
 #define T3R_KERNELS_X86_QUADS_H

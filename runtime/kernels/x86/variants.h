@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The variants for x86-64. Each function is compiled for its own instruction set by an attribute, so that the library
  * as a whole runs on every x86-64. A build for general registers alone has none. */
 #ifndef T3R_X86_VARIANTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth for what stereo could not match, along the planes of what it matched (SPEC.md, "Stereo: planes"). */
 #ifndef T3R_PLANE_FILL_H
 #define T3R_PLANE_FILL_H

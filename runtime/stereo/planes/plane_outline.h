@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Outlines that matched outlines (SPEC.md, "Stereo: planes"). */
 #ifndef T3R_PLANE_OUTLINE_H
 #define T3R_PLANE_OUTLINE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "plane_search.h"
 
 #include "core/cut.h"

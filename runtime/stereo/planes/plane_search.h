@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The planes that a view's matched pixels lie on (SPEC.md, "Stereo: planes"). */
 #ifndef T3R_PLANE_SEARCH_H
 #define T3R_PLANE_SEARCH_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JPEGs whose decoded samples are known exactly: every block has one colour. Baseline, 4:2:2 (ITU-T T.81)."""
 import struct
 

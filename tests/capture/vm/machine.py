@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A virtual machine with Debian's kernel, drivers of it, and one program to be run in it. No root is needed; with KVM
 where that works, without where not."""
 import glob

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """opencv.py TRIM3R MODULE INJECT FOLDER: the kernel's virtual camera vivid through OpenCV and through V4L2, in a
 virtual machine: the same samples where OpenCV converts nothing, others where it does. MODULE is OpenCV's adapter."""
 import sys

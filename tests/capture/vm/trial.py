@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the scripts of this folder share: one job in a virtual machine, and a look at what it left."""
 import json
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """usb.py TRIM3R USB_CAMERA FOLDER MJPG [MODULE]: capture from a USB camera by the driver uvcvideo, in a virtual
 machine whose USB bus is virtual as well (vhci_hcd). USB_CAMERA is the camera; every image that it sends is known, so
 every image that is recorded is looked at, and every one that is missing must have been told. MJPG is 1 where that is

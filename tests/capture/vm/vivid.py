@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """vivid.py TRIM3R INJECT FOLDER [FRAMES]: capture by V4L2 from the kernel's own virtual camera, in a virtual machine:
 frames of every pixel format recorded and replayed with the same hash, then every fault that the driver can be asked
 for."""

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* vivid_inject DEVICE CONTROL VALUE: one V4L2 control, numbers as in C. */
 #include <fcntl.h>
 #include <stdio.h>

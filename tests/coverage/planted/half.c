@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One way out of a condition is never taken, and a condition never asked: what the counting must find. */
 static int half(int number)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What every consumer of the library builds, with nothing but the public headers. */
 #ifndef T3R_TESTS_CONSUMER_SCENE_H
 #define T3R_TESTS_CONSUMER_SCENE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* t3r_attach() of small arenas whose configuration is sound, and whose every other byte is any. */
 #include "layout/arena.h"
 #include "state/state.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* t3r_weights_check() of files with a network of a known shape: the offsets of its blocks, and every byte outside the
  * header and the shapes, are any. */
 #include "head/weights.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* fixed.h with the contracts of contracts.h, for WP. */
 #include "contracts.h"
 

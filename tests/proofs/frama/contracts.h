@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What functions of fixed.h promise of their results, for all arguments that T3R_BOUND allows. These declarations stand
  * before those of fixed.h, so that the runtime's own text has none of it. That nothing overflows on the way is Eva's
  * part (fixed.c). */

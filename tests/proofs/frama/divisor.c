@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* runtime/core/divisor.h and the inline functions of logarithm.h over their domains: every divisor from 1 to 2^30, one
  * power of two after another, because the shift follows from the size of the divisor. */
 #include "core/divisor.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* platform/messages/fixed_double.c: all doubles and floats, an exponent after another where a shift follows from it, to
  * the fractions that readers ask for. */
 #include "messages/fixed_double.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* runtime/core/fixed.h and fixed.c, each function over its domain, a power of two after another where a shift follows
  * from the size of a number. Where a bound joins two arguments, the boxes below lie within it; docs/study/proofs.md
  * says what they leave out. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the drivers of Eva share. It stands before every source, by -include. */
 #ifndef T3R_FRAMA_H
 #define T3R_FRAMA_H

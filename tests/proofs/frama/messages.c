@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The ROS messages of a recording, and what becomes of their numbers: any bytes. Which byte stands where follows from
  * the lengths of the texts, so each of a few lengths is tried, one after the other, and each length of the message. The
  * message ends where its array does: a step past its end is one out of bounds. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* runtime/layout/arena.c with every configuration that t3r_config_check() lets through: each field that a size depends
  * on is any number of its range in runtime/core/config.c. Overflow of unsigned numbers is an alarm here, too. */
 #include "core/config.h"

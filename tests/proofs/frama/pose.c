@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* t3r_pose_in_scene() for all that t3r_attach() lets through, an exponent after another: a shift follows from it. */
 #include "core/camera.h"
 #include "core/scene_frame.h"

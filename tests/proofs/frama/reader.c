@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The reader of recordings for firmware: records at any place, and rows of any image that it finds. The source gives
  * any bytes; that these are some that it has is not asked here. */
 #include "recording/frame_reader.c"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* runtime/head/weights.c on any bytes of any length up to 95: what is checked before the table of layers. */
 #include "head/weights.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A firmware without a C library, with one head: what a linker keeps of the runtime and of the shipped heads. */
 #include <stddef.h>
 #include <stdint.h>

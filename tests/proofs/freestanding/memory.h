@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The four functions that the runtime calls, for a program without a C library. One of its files includes this. */
 #ifndef T3R_TESTS_FREESTANDING_MEMORY_H
 #define T3R_TESTS_FREESTANDING_MEMORY_H

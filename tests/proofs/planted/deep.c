@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 void planted_fill(unsigned char *bytes, unsigned n);
 unsigned t3r_planted(unsigned n);
 

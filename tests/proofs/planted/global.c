@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 int planted_next(void);
 
 int planted_next(void)

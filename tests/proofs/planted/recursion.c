@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 unsigned planted_odd(unsigned n);
 unsigned planted_even(unsigned n);
 unsigned t3r_planted(unsigned n);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 void t3r_planted(void (*each)(void (*task)(int), int), int n);
 void planted_fill(int n);
 

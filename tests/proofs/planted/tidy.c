@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads what is known to be nowhere. */
 int first_of(const int *numbers);
 

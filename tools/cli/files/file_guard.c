@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The state here is per process: the files of its command line. */
 #include "cli/files/file_guard.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Keeps commands from overwriting a file that is read or that is another output. Checked before any work, for all files
  * on the command line, and again as each file is written, for names in folders and numbered names. */
 #ifndef TRIM3R_TOOLS_FILE_GUARD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/files/file_kind.h"
 
 #include <errno.h>

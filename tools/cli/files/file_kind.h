@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Kinds of files that the commands write, recognised by their first bytes. */
 #ifndef TRIM3R_TOOLS_FILE_KIND_H
 #define TRIM3R_TOOLS_FILE_KIND_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/files/file_options.h"
 
 #include <getopt.h>
@@ -7,12 +8,12 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/help/edit_distance.h"
 #include "cli/files/file_guard.h"
-#include "cli/tables/json_output.h"
+#include "cli/help/edit_distance.h"
 #include "cli/help/man_page.h"
 #include "cli/help/option_list.h"
 #include "cli/help/style.h"
+#include "cli/tables/json_output.h"
 #include "cli/tables/word_list.h"
 
 enum { KEY_LISTING = 0x8000, KEY_COMPLETE, KEY_MAN_PAGE, KEY_COLOR, KEY_FORCE, LONG_OPTION = 0x10000 };

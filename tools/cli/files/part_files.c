@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The state here is per process: its unfinished files. A signal handler reads it, so it consists of atomic pointers. */
 #include "cli/files/part_files.h"
 

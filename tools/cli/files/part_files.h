@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Files and folders that are not complete yet. A signal that ends the process (SIGINT, SIGTERM, SIGHUP, SIGQUIT,
  * SIGPIPE) removes them first. */
 #ifndef TRIM3R_TOOLS_PART_FILES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A frame of a recording that can be built from. */
 #ifndef TRIM3R_TOOLS_RECORDED_FRAME_H
 #define TRIM3R_TOOLS_RECORDED_FRAME_H

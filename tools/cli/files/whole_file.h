@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A file that appears under its name only when it is complete: first written next to it, renamed at the end. A
  * character device (such as /dev/null) is written directly. Files that file_guard.h protects are not replaced, and a
  * signal that ends the process leaves no part. */

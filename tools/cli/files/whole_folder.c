@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/files/whole_folder.h"
 
 #include <dirent.h>

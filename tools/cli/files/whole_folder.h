@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A folder that appears under its name only when it is complete: made next to it first, renamed at the end. An existing
  * empty folder keeps its place and rights: its contents are made in a hidden folder inside. */
 #ifndef TRIM3R_TOOLS_WHOLE_FOLDER_H

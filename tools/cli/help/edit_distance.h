@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Edit distance of two words, for "did you mean". */
 #ifndef TRIM3R_TOOLS_EDIT_DISTANCE_H
 #define TRIM3R_TOOLS_EDIT_DISTANCE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/help/markup.h"
 
 void markup_text(FILE *out, const char *text)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Common parts of writing SVG and HTML. */
 #ifndef TRIM3R_TOOLS_MARKUP_H
 #define TRIM3R_TOOLS_MARKUP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* All rows of a command's option tables, including its children's, in order. */
 #ifndef TRIM3R_TOOLS_OPTION_LIST_H
 #define TRIM3R_TOOLS_OPTION_LIST_H

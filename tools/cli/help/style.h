@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Colours and weights on a terminal; files and pipes get none. The state is per process. */
 #ifndef TRIM3R_TOOLS_STYLE_H
 #define TRIM3R_TOOLS_STYLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Values of options for the commands' argp parsers. A bad one is a usage error that names the option and ends the
  * process: the function does not return. */
 #ifndef TRIM3R_TOOLS_OPTION_VALUES_H

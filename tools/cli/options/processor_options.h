@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The options of every command that runs stages: how much of the processor they use. Results do not depend on them. */
 #ifndef TRIM3R_TOOLS_PROCESSOR_OPTIONS_H
 #define TRIM3R_TOOLS_PROCESSOR_OPTIONS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The options of every command that writes a recording: how its messages are stored. */
 #ifndef TRIM3R_TOOLS_RECORDING_OPTIONS_H
 #define TRIM3R_TOOLS_RECORDING_OPTIONS_H

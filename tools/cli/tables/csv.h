@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Comma-separated tables (RFC 4180, with plain newlines); texts are quoted if necessary. Bytes that csv_read.h refuses,
  * control characters and invalid UTF-8, become '?'. */
 #ifndef TRIM3R_TOOLS_CSV_H

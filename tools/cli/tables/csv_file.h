@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A table that long work writes row by row. In a new table each row appears at once, so that interrupted work keeps its
  * rows. An existing table stays in place until the new one is complete. */
 #ifndef TRIM3R_TOOLS_CSV_FILE_H
@@ -5,8 +6,8 @@
 
 #include <stdbool.h>
 
-#include "cli/tables/csv.h"
 #include "cli/files/whole_file.h"
+#include "cli/tables/csv.h"
 
 typedef struct csv_file {
     csv_table table; /* its `file` is NULL until a table is open */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads comma-separated tables from any source (RFC 4180; lines may also end in a plain newline) row by row. */
 #ifndef TRIM3R_TOOLS_CSV_READ_H
 #define TRIM3R_TOOLS_CSV_READ_H

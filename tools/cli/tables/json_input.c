@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/tables/json_input.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "mcap/reader_limits.h"
 #include "host/reason.h"
+#include "mcap/reader_limits.h"
 
 /* Bounds the number of values: a value begins the text, or follows a bracket, a brace or a comma outside strings. */
 static size_t most_values(const char *text, size_t bytes)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* JSON from other programs. */
 #ifndef TRIM3R_TOOLS_JSON_INPUT_H
 #define TRIM3R_TOOLS_JSON_INPUT_H

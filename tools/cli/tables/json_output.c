@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/tables/json_output.h"
 
 #include <inttypes.h>

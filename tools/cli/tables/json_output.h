@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The one JSON object that a command prints on stdout with --json. */
 #ifndef TRIM3R_TOOLS_JSON_OUTPUT_H
 #define TRIM3R_TOOLS_JSON_OUTPUT_H

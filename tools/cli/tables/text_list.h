@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Lines of text to print at the end of a command. */
 #ifndef TRIM3R_TOOLS_TEXT_LIST_H
 #define TRIM3R_TOOLS_TEXT_LIST_H

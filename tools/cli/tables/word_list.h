@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The words of a text, separated by commas. */
 #ifndef TRIM3R_TOOLS_WORD_LIST_H
 #define TRIM3R_TOOLS_WORD_LIST_H

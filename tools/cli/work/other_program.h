@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Runs another program to its end for its output. */
 #ifndef TRIM3R_TOOLS_OTHER_PROGRAM_H
 #define TRIM3R_TOOLS_OTHER_PROGRAM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Runs independent items of work in several processes. What they send arrives in the order of the items, whichever
  * process made it.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/work/time_left.h"
 
 double cli_time_left(uint32_t before, uint32_t done, uint32_t total, double elapsed)

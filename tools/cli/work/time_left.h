@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Estimates the remaining time of work from its progress. */
 #ifndef TRIM3R_TOOLS_TIME_LEFT_H
 #define TRIM3R_TOOLS_TIME_LEFT_H

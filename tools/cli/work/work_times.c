@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/work/work_times.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What import does with a bag's frames beyond reading them: composes and interpolates poses, registers depth to
  * colour. */
 #ifndef TRIM3R_TOOLS_BAG_FRAMES_H
@@ -7,8 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "import/depth/register_depth.h"
 #include "import/bags/transform_tree.h"
+#include "import/depth/register_depth.h"
 #include "recording/recording.h"
 
 typedef struct bag_frames_options {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/bags/bag_options.h"
 
 #include "cli/options/option_values.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Options by which import reads a bag: names of its topics and frames. */
 #ifndef TRIM3R_TOOLS_BAG_OPTIONS_H
 #define TRIM3R_TOOLS_BAG_OPTIONS_H

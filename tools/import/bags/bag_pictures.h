@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Decodes the compressed images of a bag for import. */
 #ifndef TRIM3R_TOOLS_BAG_PICTURES_H
 #define TRIM3R_TOOLS_BAG_PICTURES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/bags/recording_import.h"
 
 #include <inttypes.h>
@@ -5,13 +6,13 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "cli/tables/json_output.h"
 #include "cli/files/whole_file.h"
+#include "cli/tables/json_output.h"
+#include "host/reason.h"
 #include "import/bags/bag_pictures.h"
 #include "import/folders/posed_recording.h"
 #include "import/poses/poses_output.h"
 #include "import/poses/recording_poses.h"
-#include "host/reason.h"
 #include "messages/ros_messages.h"
 
 #define ERROR_BYTES 1024

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The frames of /tf and /tf_static: each has a parent, and a pose in its parent over time. */
 #ifndef TRIM3R_TOOLS_TRANSFORM_TREE_H
 #define TRIM3R_TOOLS_TRANSFORM_TREE_H
@@ -5,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "import/poses/pose_track.h"
 #include "host/text.h"
+#include "import/poses/pose_track.h"
 
 #define TRANSFORM_NO_FRAME UINT32_MAX
 

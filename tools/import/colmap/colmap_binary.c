@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* cameras.bin: count (8 bytes), then each: number (4), model (4), width (8), height (8), parameters (8 each).
  * images.bin: count (8), then each: number (4), quaternion and translation (7 x 8), camera (4), name and a zero byte,
  * count of points (8), points (24 each). Little-endian. */
@@ -5,10 +6,10 @@
 #include <string.h>
 
 #include "host/little_floats.h"
+#include "host/reason.h"
 #include "import/colmap/colmap_camera.h"
 #include "import/colmap/colmap_model.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 
 #define POINT_BYTES 24
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/colmap/colmap_camera.h"
 
 #include <math.h>

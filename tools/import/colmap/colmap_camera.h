@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Camera models of COLMAP. */
 #ifndef TRIM3R_TOOLS_COLMAP_CAMERA_H
 #define TRIM3R_TOOLS_COLMAP_CAMERA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Dense depth maps of COLMAP (patch_match_stereo), next to a model of undistorted pictures. */
 #ifndef TRIM3R_TOOLS_COLMAP_DEPTH_H
 #define TRIM3R_TOOLS_COLMAP_DEPTH_H

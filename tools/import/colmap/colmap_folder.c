@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/colmap/colmap_folder.h"
 
 #include <stdio.h>
@@ -5,10 +6,10 @@
 #include <string.h>
 
 #include "host/file_bytes.h"
+#include "host/reason.h"
 #include "import/colmap/colmap_depth.h"
 #include "import/colmap/colmap_model.h"
 #include "import/folders/picture_folder.h"
-#include "host/reason.h"
 
 #define PATH_BYTES 8192
 #define MODELS_MOST 100u /* numbered folders of models */

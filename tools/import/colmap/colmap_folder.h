@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Folders with a sparse model of COLMAP. */
 #ifndef TRIM3R_TOOLS_COLMAP_FOLDER_H
 #define TRIM3R_TOOLS_COLMAP_FOLDER_H

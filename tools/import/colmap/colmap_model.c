@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #define _GNU_SOURCE /* strverscmp() */
 #include "import/colmap/colmap_model.h"
 

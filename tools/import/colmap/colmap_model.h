@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A sparse model of COLMAP: its cameras and the poses of its images. Points are skipped. */
 #ifndef TRIM3R_TOOLS_COLMAP_MODEL_H
 #define TRIM3R_TOOLS_COLMAP_MODEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* cameras.txt: CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS...
  * images.txt, two lines per image: IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then its points. */
 #include <errno.h>
@@ -5,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "host/reason.h"
 #include "import/colmap/colmap_camera.h"
 #include "import/colmap/colmap_model.h"
 #include "import/folders/line_reader.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 
 #define BLANKS " \t\r"
 

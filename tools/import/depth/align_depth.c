@@ -1,12 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/depth/align_depth.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/little_endian.h"
-#include "messages/fixed_camera.h"
-#include "import/depth/register_depth.h"
 #include "host/reason.h"
+#include "import/depth/register_depth.h"
+#include "messages/fixed_camera.h"
 
 #define SAME_PIXELS 0.5
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The whole file is in memory; the library reads it from there, a chunk (some lines, or a tile) at a time. */
 #include "import/depth/exr_depth.h"
 
@@ -7,9 +8,9 @@
 #include <strings.h>
 
 #include "host/file_bytes.h"
+#include "host/reason.h"
 #include "import/depth/raw_depth.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 #include "trim3r.h"
 
 bool exr_depth_is(const char *name)

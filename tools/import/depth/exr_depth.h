@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth as OpenEXR: one channel of half or float32. A build without the library refuses such files with the reason. */
 #ifndef TRIM3R_TOOLS_EXR_DEPTH_H
 #define TRIM3R_TOOLS_EXR_DEPTH_H

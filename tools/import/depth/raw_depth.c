@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/depth/raw_depth.h"
 
 #include <math.h>

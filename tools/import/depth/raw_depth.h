@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth as files of float32. */
 #ifndef TRIM3R_TOOLS_RAW_DEPTH_H
 #define TRIM3R_TOOLS_RAW_DEPTH_H

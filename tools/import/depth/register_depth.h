@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Converts the depth of one camera to what another camera beside it would have measured. */
 #ifndef TRIM3R_TOOLS_REGISTER_DEPTH_H
 #define TRIM3R_TOOLS_REGISTER_DEPTH_H
 
-#include "import/poses/lens.h"
 #include "geometry/rigid.h"
+#include "import/poses/lens.h"
 
 /* Computes the sides of the registered depth: colour's, divided by the least integer that makes them no larger than the
  * measured ones. */

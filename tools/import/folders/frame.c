@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/folders/frame.h"
 
 #include <math.h>
@@ -7,14 +8,14 @@
 #include <unistd.h>
 
 #include "core/camera.h"
-#include "messages/fixed_camera.h"
+#include "host/reason.h"
 #include "image/image.h"
 #include "image/undistort.h"
 #include "import/depth/align_depth.h"
 #include "import/depth/exr_depth.h"
-#include "pictures/picture.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
+#include "messages/fixed_camera.h"
+#include "pictures/picture.h"
 
 #define MIN_SIDE 2u /* least side of t3r_frame */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One frame of a posed folder as the recording holds it: decoded, cropped, resized, its camera adapted. */
 #ifndef TRIM3R_TOOLS_IMPORT_FRAME_H
 #define TRIM3R_TOOLS_IMPORT_FRAME_H
@@ -5,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "pictures/picture.h"
 #include "import/folders/posed_frame.h"
+#include "pictures/picture.h"
 #include "recording/recording.h"
 
 /* A rectangle of whole pixels. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/folders/line_reader.h"
 
 #include "mcap/reader_limits.h"

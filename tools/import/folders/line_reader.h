@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads lines of a text that is too large for memory. */
 #ifndef TRIM3R_TOOLS_LINE_READER_H
 #define TRIM3R_TOOLS_LINE_READER_H

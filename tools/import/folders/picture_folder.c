@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A folder that holds only pictures. */
 #define _GNU_SOURCE /* versionsort() */
 #include "import/folders/picture_folder.h"
@@ -10,8 +11,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include "mcap/reader_limits.h"
 #include "host/reason.h"
+#include "mcap/reader_limits.h"
 
 static int is_picture(const struct dirent *entry)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures without poses. */
 #ifndef TRIM3R_TOOLS_PICTURE_FOLDER_H
 #define TRIM3R_TOOLS_PICTURE_FOLDER_H

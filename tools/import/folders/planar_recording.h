@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A single image as a recording. */
 #ifndef TRIM3R_TOOLS_PLANAR_RECORDING_H
 #define TRIM3R_TOOLS_PLANAR_RECORDING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A pose is camera to world, 4x4 or 3x4, x right, y down, z forward. Depth pictures have 16 bits, in millimetres unless
  * specified otherwise. Camera matrices are 4x4 or 3x3; pixel (0, 0) is the centre of the top-left pixel. */
 #define _GNU_SOURCE /* versionsort() */
@@ -11,13 +12,13 @@
 #include <string.h>
 
 #include "host/file_bytes.h"
+#include "host/reason.h"
 #include "import/depth/align_depth.h"
 #include "import/folders/frame.h"
-#include "import/poses/matrix_text.h"
 #include "import/folders/pose_layout.h"
+#include "import/poses/matrix_text.h"
 #include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 
 #define PATH_BYTES 1024
 #define ERROR_BYTES 1024

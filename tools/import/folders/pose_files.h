@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Folders with a text file for each pose, as in exports of ScanNet. */
 #ifndef TRIM3R_TOOLS_POSE_FILES_H
 #define TRIM3R_TOOLS_POSE_FILES_H

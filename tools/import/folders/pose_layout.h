@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How folders with a text for each pose name their files. */
 #ifndef TRIM3R_TOOLS_POSE_LAYOUT_H
 #define TRIM3R_TOOLS_POSE_LAYOUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/folders/posed_folder.h"
 
 #include <errno.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include "host/file_bytes.h"
+#include "host/reason.h"
 #include "import/colmap/colmap_folder.h"
 #include "import/depth/exr_depth.h"
 #include "import/folders/picture_folder.h"
@@ -16,7 +18,6 @@
 #include "import/folders/transforms_json.h"
 #include "import/folders/tum_rgbd.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 
 static bool has_transforms(const char *directory)
 {

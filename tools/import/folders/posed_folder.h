@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Folders of pictures with known cameras, of every kind that posed_folder.c lists, or pictures without poses. Reading a
  * folder gives the list of its frames; the caller reads the pictures. */
 #ifndef TRIM3R_TOOLS_POSED_FOLDER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Frames of a posed folder: what every reader fills in, and what is derived from it. */
 #ifndef TRIM3R_TOOLS_POSED_FRAME_H
 #define TRIM3R_TOOLS_POSED_FRAME_H
@@ -7,8 +8,8 @@
 #include <stdint.h>
 
 #include "cli/tables/text_list.h"
-#include "import/depth/raw_depth.h"
 #include "geometry/rigid.h"
+#include "import/depth/raw_depth.h"
 #include "recording/recording.h"
 
 /* A camera as a folder describes it; missing numbers are NAN. In pixels, with the principal point measured from the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/folders/posed_recording.h"
 
 #include <math.h>

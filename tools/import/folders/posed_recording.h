@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a recording again, with changed frames. */
 #ifndef TRIM3R_TOOLS_POSED_RECORDING_H
 #define TRIM3R_TOOLS_POSED_RECORDING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* An unpacked .r3d: metadata, and rgbd with N.jpg, N.depth (float32 in metres, packed with LZFSE) and N.conf. The
  * export with EXR: metadata.json, rgb and depth. Poses are camera to world as qx qy qz qw x y z, with OpenGL camera
  * axes. K is a 3x3 matrix column by column, in pixels of pictures of w x h, measured as in nerfstudio: from the corner
@@ -11,11 +12,11 @@
 
 #include "cli/tables/json_input.h"
 #include "host/file_bytes.h"
+#include "host/reason.h"
 #include "import/depth/exr_depth.h"
 #include "import/folders/picture_folder.h"
 #include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 
 #define DEPTH_MAGIC_BYTES 4
 #define MILLIMETRE 0.001 /* step that depth is rounded to */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Exports of Record3D. */
 #ifndef TRIM3R_TOOLS_RECORD3D_H
 #define TRIM3R_TOOLS_RECORD3D_H

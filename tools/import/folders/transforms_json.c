@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* transforms.json: camera-to-world matrices with OpenGL axes (x right, y up, z backward). Intrinsics are in a frame or,
  * for all frames, at the top; a frame's own win. */
 #define _GNU_SOURCE /* strcasestr() */
@@ -9,11 +10,11 @@
 #include <string.h>
 
 #include "cli/tables/json_input.h"
-#include "messages/fixed_camera.h"
+#include "host/reason.h"
 #include "import/depth/exr_depth.h"
 #include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
+#include "messages/fixed_camera.h"
 #include "trim3r.h"
 
 #define MAX_PATH_BYTES 4096u

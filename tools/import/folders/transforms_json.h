@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* transforms.json, as instant-ngp, NeRFCapture and nerfstudio write it. */
 #ifndef TRIM3R_TOOLS_TRANSFORMS_JSON_H
 #define TRIM3R_TOOLS_TRANSFORMS_JSON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* TUM RGB-D folders: rgb.txt, depth.txt (optional) and groundtruth.txt, whose lines begin with a time in seconds. Depth
  * is the nearest in time within 20 ms; poses are interpolated between neighbours at most 100 ms apart, else the nearest
  * within 20 ms is used, else the picture is left out. */
@@ -8,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "host/file_bytes.h"
 #include "geometry/quaternion.h"
+#include "host/file_bytes.h"
+#include "host/reason.h"
 #include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 #include "trim3r.h"
 
 #define NEAR_SECONDS 0.020

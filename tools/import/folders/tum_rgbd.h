@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* TUM RGB-D lists. */
 #ifndef TRIM3R_TOOLS_TUM_RGBD_H
 #define TRIM3R_TOOLS_TUM_RGBD_H

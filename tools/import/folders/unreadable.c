@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/folders/unreadable.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "import/folders/frame.h"
 #include "host/reason.h"
+#include "import/folders/frame.h"
 
 enum { REASON_BYTES = 512 };
 #define GONE UINT32_MAX

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Leaves out the pictures of a posed folder that cannot be read, so that the rest can be imported. */
 #ifndef TRIM3R_TOOLS_UNREADABLE_H
 #define TRIM3R_TOOLS_UNREADABLE_H

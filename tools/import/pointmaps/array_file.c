@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/pointmaps/array_file.h"
 
 #include <inttypes.h>
@@ -9,8 +10,8 @@
 
 #include "core/little_endian.h"
 #include "host/file_bytes.h"
-#include "mcap/reader_limits.h"
 #include "host/reason.h"
+#include "mcap/reader_limits.h"
 
 #define BLOCK_BYTES 65536u
 

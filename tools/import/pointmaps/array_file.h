@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* NumPy arrays in files: a .npz, which is a zip archive of NAME.npy, stored or deflated, or one .npy; through libzip.
  * Headers are read first, numbers only on request. */
 #ifndef TRIM3R_TOOLS_ARRAY_FILE_H

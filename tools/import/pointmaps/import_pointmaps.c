@@ -1,14 +1,15 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/pointmaps/import_pointmaps.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/folders/frame.h"
 #include "geometry/quaternion.h"
-#include "posing/resection.h"
-#include "messages/fixed_camera.h"
 #include "host/reason.h"
+#include "import/folders/frame.h"
+#include "messages/fixed_camera.h"
+#include "posing/resection.h"
 
 #define RESECTED 3000u       /* points that a pose is computed from */
 #define RESECTION_PIXELS 5.0 /* largest accepted root mean square error, for 512 pixels */

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Uses pointmaps as the depth of a folder's frames. */
 #ifndef TRIM3R_TOOLS_IMPORT_POINTMAPS_H
 #define TRIM3R_TOOLS_IMPORT_POINTMAPS_H
 
-#include "pictures/picture.h"
-#include "import/pointmaps/pointmaps.h"
 #include "import/folders/posed_frame.h"
+#include "import/pointmaps/pointmaps.h"
+#include "pictures/picture.h"
 
 typedef struct pointmap_options {
     const char *file;        /* one .npz for all frames, in their order; NULL: each frame's pointmap_path */

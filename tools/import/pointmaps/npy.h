@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* NumPy's .npy: a header in text, then numbers without gaps. Little-endian floats in C order are read. */
 #ifndef TRIM3R_TOOLS_NPY_H
 #define TRIM3R_TOOLS_NPY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pointmaps made elsewhere (DUSt3R, MASt3R, VGGT ...): the 3D point that each pixel of a view shows, for all views of a
  * file in one frame, with a confidence per pixel, and what is known of the cameras.
  *

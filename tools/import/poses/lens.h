@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A camera's lens in doubles, both ways: for registration, before fixed point. */
 #ifndef TRIM3R_TOOLS_LENS_H
 #define TRIM3R_TOOLS_LENS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/poses/matrix_text.h"
 
 #include <stdlib.h>

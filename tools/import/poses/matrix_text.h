@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Matrices as text files of numbers. */
 #ifndef TRIM3R_TOOLS_MATRIX_TEXT_H
 #define TRIM3R_TOOLS_MATRIX_TEXT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What readers of poses ask of each. */
 #ifndef TRIM3R_TOOLS_POSE_CHECK_H
 #define TRIM3R_TOOLS_POSE_CHECK_H

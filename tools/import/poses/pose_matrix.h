@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Poses as matrices, as other programs' files hold them. */
 #ifndef TRIM3R_TOOLS_POSE_MATRIX_H
 #define TRIM3R_TOOLS_POSE_MATRIX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The poses of one object over time, interpolated at any time between them. */
 #ifndef TRIM3R_TOOLS_POSE_TRACK_H
 #define TRIM3R_TOOLS_POSE_TRACK_H

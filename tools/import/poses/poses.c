@@ -1,14 +1,15 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/poses/poses.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/little_endian.h"
 #include "cli/cli.h"
-#include "messages/fixed_camera.h"
-#include "import/folders/frame.h"
+#include "core/little_endian.h"
 #include "host/reason.h"
+#include "import/folders/frame.h"
+#include "messages/fixed_camera.h"
 
 static int look_at(const char *directory, const posed_folder *folder, uint32_t index, pose_view *view,
                    t3r_camera *camera, char *error, size_t error_bytes)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Estimates the poses of a folder's frames from their pictures. */
 #ifndef TRIM3R_TOOLS_IMPORT_POSES_H
 #define TRIM3R_TOOLS_IMPORT_POSES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reports on poses. */
 #ifndef TRIM3R_TOOLS_POSES_OUTPUT_H
 #define TRIM3R_TOOLS_POSES_OUTPUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Estimates poses of a recording's frames from their pictures, replacing its own. */
 #ifndef TRIM3R_TOOLS_RECORDING_POSES_H
 #define TRIM3R_TOOLS_RECORDING_POSES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where a camera was over time, by another clock: a TUM trajectory, EuRoC's table, or a topic of a ROS 2 bag. */
 #ifndef TRIM3R_TOOLS_TRAJECTORY_H
 #define TRIM3R_TOOLS_TRAJECTORY_H

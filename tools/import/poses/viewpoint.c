@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "import/poses/viewpoint.h"
 
 #include <inttypes.h>
@@ -10,9 +11,9 @@
 #include "core/camera.h"
 #include "geometry/quaternion.h"
 #include "host/file_bytes.h"
+#include "host/reason.h"
 #include "import/folders/transforms_json.h"
 #include "mcap/reader_limits.h"
-#include "host/reason.h"
 
 #define MAX_POSES_BYTES ((size_t)16 << 20) /* a single pose is parsed twice and printed between */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Viewpoints of pictures: pose files and trajectories. */
 #ifndef TRIM3R_TOOLS_VIEWPOINT_H
 #define TRIM3R_TOOLS_VIEWPOINT_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The recipe for Yocto: the tree itself is built, wherever this file lies in it.
 SUMMARY = "Posed camera frames to a budgeted set of 3-D Gaussians, in integers"
 LICENSE = "Apache-2.0"

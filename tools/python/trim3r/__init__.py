@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """trim3r: posed colour and depth frames to a budgeted set of 3-D Gaussians, and views drawn of them.
 
 The work is that of the C library, in integers, with the same bits on every processor. Arrays of pixels are handed to it

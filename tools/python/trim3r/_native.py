@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The package's shared library, and what calls of it have in common."""
 import pathlib
 from typing import Any, Callable

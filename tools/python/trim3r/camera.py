@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cameras: intrinsics, lens and pose."""
 import dataclasses
 from typing import Any, Sequence, Tuple

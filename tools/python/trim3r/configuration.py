@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Settings: a t3r_config of names and numbers."""
 from typing import Any, Dict, Mapping, Optional, Union
 

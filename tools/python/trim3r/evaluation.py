@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How well scenes show a view that they were not given: the measure of `trim3r eval`."""
 import dataclasses
 from typing import List, Optional, Sequence, Tuple

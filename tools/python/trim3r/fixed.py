@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Numbers to fixed point, as recordings are read: times a power of two, rounded half to even."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames: one captured instant as arrays, handed to the library where they lie."""
 import dataclasses
 from typing import Any, Optional, Tuple, Union

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gaussian heads by name: analytic, the shipped networks, files of weights."""
 import os
 from typing import Any, NamedTuple, Union

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the library calls while it works: progress, hashes of stages, threads."""
 from typing import Any, Callable, Dict, Optional
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The image stage alone."""
 from typing import Any
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a picture is judged, as `trim3r eval` does.
 
 All functions take the picture as it should be and the one that was drawn, uint8 of (H, W, 3) both, and a mask of (H, W):

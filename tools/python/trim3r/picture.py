@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pictures: a scene as a camera sees it."""
 import dataclasses
 from typing import Any

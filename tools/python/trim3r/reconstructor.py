@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The runtime: views in, a scene of exactly so many Gaussians, pictures of it."""
 import collections
 import contextlib

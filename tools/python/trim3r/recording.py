@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recordings: MCAP files of ROS 2 messages."""
 import os
 from typing import Any, Iterator, List, NamedTuple, Tuple, Union

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Requests: what one build shall be."""
 from typing import Any, Optional, Sequence, Tuple
 

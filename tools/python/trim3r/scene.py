@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenes: Gaussians in the library's integers, and what they mean in world units."""
 import os
 from typing import Any, Callable, Tuple, Union

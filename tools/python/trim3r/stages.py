@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stages and their hashes."""
 from typing import Mapping
 

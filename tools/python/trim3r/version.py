@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which trim3r this is."""
 from ._native import lib, text_of
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/options/chosen_head.h"
 
 #include <inttypes.h>
@@ -6,11 +7,11 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "host/file_bytes.h"
+#include "head/weights.h"
 #include "hidden_mask.h"
+#include "host/file_bytes.h"
 #include "trim3r_heads.h"
 #include "weight_file.h"
-#include "head/weights.h"
 
 #define FILE_END ".t3w"
 

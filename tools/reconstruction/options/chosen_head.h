@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The heads that --head names: analytic, none, the shipped networks, weight files. */
 #ifndef TRIM3R_TOOLS_CHOSEN_HEAD_H
 #define TRIM3R_TOOLS_CHOSEN_HEAD_H

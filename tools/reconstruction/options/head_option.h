@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The option --head of the commands that make Gaussians; its help names every head of the runtime. */
 #ifndef TRIM3R_TOOLS_HEAD_OPTION_H
 #define TRIM3R_TOOLS_HEAD_OPTION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Values of options that name a head, a source of depth or a preset; cli/option_values.h reads the others. */
 #ifndef TRIM3R_TOOLS_OPTION_NAMES_H
 #define TRIM3R_TOOLS_OPTION_NAMES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The options that build, eval, replay and bench share. */
 #include "reconstruction/reconstruction.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/options/poses_option.h"
 
 #include "posing/poses_source.h"

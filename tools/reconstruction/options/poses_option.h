@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The option --poses of the commands that build from recordings. */
 #ifndef TRIM3R_TOOLS_POSES_OPTION_H
 #define TRIM3R_TOOLS_POSES_OPTION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The settings of the runtime that a user may change: the rows of trim3r_settings.h with an option. They feed the
  * parser,
  * --help, the words in tables and in names of pictures, and JSON. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/replay/hash_report.h"
 
 #include <stdio.h>

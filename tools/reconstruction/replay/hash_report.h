@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reports the hashes of a replay as text and JSON. */
 #ifndef TRIM3R_TOOLS_HASH_REPORT_H
 #define TRIM3R_TOOLS_HASH_REPORT_H

@@ -1,13 +1,14 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/replay/replay_expectation.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "host/file_bytes.h"
-#include "mcap/reader_limits.h"
 #include "cli/tables/json_input.h"
 #include "cli/tables/json_output.h"
+#include "host/file_bytes.h"
+#include "mcap/reader_limits.h"
 
 #define ERROR_BYTES 512
 

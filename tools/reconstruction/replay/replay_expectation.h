@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The expected result of a replay: a hash, or the JSON of an earlier run. */
 #ifndef TRIM3R_TOOLS_REPLAY_EXPECTATION_H
 #define TRIM3R_TOOLS_REPLAY_EXPECTATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/replay/replay_slide.h"
 
 #include <inttypes.h>
@@ -5,10 +6,10 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "cli/tables/json_output.h"
 #include "cli/files/recorded_frame.h"
-#include "reconstruction/replay/hash_report.h"
+#include "cli/tables/json_output.h"
 #include "reconstruction/reconstruction_error.h"
+#include "reconstruction/replay/hash_report.h"
 
 typedef struct slide_run {
     const reconstruction_options *options;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/replay/replay_stream.h"
 
 #include <errno.h>
@@ -9,14 +10,14 @@
 #include <sys/stat.h>
 
 #include "cli/cli.h"
-#include "reconstruction/replay/hash_report.h"
-#include "reconstruction/reconstruction_error.h"
 #include "cli/files/recorded_frame.h"
 #include "cli/help/style.h"
-#include "core/hash.h"
 #include "cli/tables/json_output.h"
+#include "core/hash.h"
 #include "pictures/metrics.h"
 #include "pictures/picture.h"
+#include "reconstruction/reconstruction_error.h"
+#include "reconstruction/replay/hash_report.h"
 
 #define TEXT_BYTES 4096
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* `trim3r replay --stream`: adds a recording's frames in order, keyframes into one bounded map; the others are held
  * out. */
 #ifndef TRIM3R_TOOLS_REPLAY_STREAM_H
@@ -6,8 +7,8 @@
 #include <stdint.h>
 
 #include "reconstruction/reconstruction.h"
-#include "recording/recording.h"
 #include "reconstruction/replay/replay_expectation.h"
+#include "recording/recording.h"
 
 #define REPLAY_STREAM_EVERY 3u
 #define REPLAY_STREAM_AT_HAND 4u

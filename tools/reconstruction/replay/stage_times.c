@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "reconstruction/replay/stage_times.h"
 
 #include "cli/help/style.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where the time of a build went, by stage. */
 #ifndef TRIM3R_TOOLS_STAGE_TIMES_H
 #define TRIM3R_TOOLS_STAGE_TIMES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers as single bytes, for several formats. */
 #ifndef TRIM3R_TOOLS_BYTE_CODES_H
 #define TRIM3R_TOOLS_BYTE_CODES_H

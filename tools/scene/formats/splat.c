@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* .splat: 32 bytes per Gaussian, without a header. Position and linear scale are three floats each; red, green, blue,
  * opacity and the rotation w x y z (128 + 128 q) are bytes. Viewers draw Gaussians in the order of the file while they
  * load. */
@@ -5,9 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "host/little_floats.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
-#include "host/little_floats.h"
 #include "scene/scene_format.h"
 
 enum { ROW_BYTES = 32, SCALE_AT = 12, COLOUR_AT = 24, OPACITY_AT = 27, ROTATION_AT = 28 };

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What each part of the method is worth: the settings with one of them taken away or changed, as in GaussianTrim3R's
  * Tables 3 to 8. */
 #ifndef TRIM3R_TOOLS_ABLATION_H

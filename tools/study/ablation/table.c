@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The table of `trim3r eval --ablate`. */
 #include "study/ablation/ablation.h"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cortex-M boards in QEMU: instructions are counted one by one."""
 import pathlib
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the ports of the firmware share: its sources, its build, and what it prints."""
 import json
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What small firmwares take of a Cortex-M7's flash."""
 import argparse
 import concurrent.futures

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A plugin of QEMU (TCG plugins, API version 1) that counts the instructions between marks, exactly.
  *
  *     -plugin libinstructions.so,mark=head:0x1a2c,mark=refine:0x1a34 -d plugin -D counts.txt

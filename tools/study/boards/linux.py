@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The firmware as a program of Linux: for this processor, or for another that QEMU emulates."""
 import pathlib
 import re

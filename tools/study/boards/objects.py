@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The runtime's objects by a compiler and its flags: compiled once, for all that link or examine them."""
 import concurrent.futures
 import fcntl

@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* planes WIDTH HEIGHT IN.mcap OUT: the frames of a recording as platform/baremetal/frames_planes.c reads them. */
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "recording/frame_reader.h"
 #include "planes.h"
+#include "recording/frame_reader.h"
 
 static int read_file(void *user, uint64_t offset, void *bytes, size_t count)
 {

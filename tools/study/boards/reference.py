@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every board is given, and what this machine makes of it."""
 import json
 

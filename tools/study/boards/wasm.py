@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The firmware as a WebAssembly module under Node.js: times, as there is nothing that counts instructions."""
 import json
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scales of a chart: a range of values to 0..1, and round values on the way with their names. */
 #ifndef TRIM3R_TOOLS_CHART_AXIS_H
 #define TRIM3R_TOOLS_CHART_AXIS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The Pareto front: what nothing else beats in cost and quality at once. */
 #ifndef TRIM3R_TOOLS_CHART_FRONT_H
 #define TRIM3R_TOOLS_CHART_FRONT_H

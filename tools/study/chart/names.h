@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How series and points are told apart: by words, colours and shapes. */
 #ifndef TRIM3R_TOOLS_CHART_NAMES_H
 #define TRIM3R_TOOLS_CHART_NAMES_H

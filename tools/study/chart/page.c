@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "study/chart/page.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-#include "study/chart/svg.h"
 #include "cli/help/markup.h"
+#include "study/chart/svg.h"
 
 /* What is embedded by the build: page.html with the marks <!--style-->, <!--svg-->, <!--data--> and <!--script-->. */
 extern const char chart_page_html[], chart_page_css[], chart_page_js[];

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The report: one HTML file that fetches nothing, with every axis, scene and point, and the pictures behind them. */
 #ifndef TRIM3R_TOOLS_CHART_PAGE_H
 #define TRIM3R_TOOLS_CHART_PAGE_H

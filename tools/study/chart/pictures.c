@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "study/chart/pictures.h"
 
 #include <stdbool.h>
@@ -6,9 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "host/reason.h"
 #include "pictures/picture.h"
 #include "pictures/png_bytes.h"
-#include "host/reason.h"
 
 #define PATH_BYTES 4096
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The pictures behind a chart's points, from the folders that eval --images wrote. */
 #ifndef TRIM3R_TOOLS_CHART_PICTURES_H
 #define TRIM3R_TOOLS_CHART_PICTURES_H

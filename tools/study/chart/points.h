@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The points of a chart: one for each way of building a scene, over the cases that it was measured on. */
 #ifndef TRIM3R_TOOLS_CHART_POINTS_H
 #define TRIM3R_TOOLS_CHART_POINTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "study/chart/raster.h"
 
 #include <errno.h>
@@ -8,8 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "host/reason.h"
 #include "cli/files/whole_file.h"
+#include "host/reason.h"
 
 /* A program rather than its library: linked, that and what it needs would load with every call of ours. */
 #define RASTERIZER "rsvg-convert"

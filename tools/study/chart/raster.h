@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* SVG to PNG, by the program rsvg-convert. */
 #ifndef TRIM3R_TOOLS_CHART_RASTER_H
 #define TRIM3R_TOOLS_CHART_RASTER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Charts as one SVG picture: a panel each, the legend below, settings where a pointer rests. */
 #ifndef TRIM3R_TOOLS_CHART_SVG_H
 #define TRIM3R_TOOLS_CHART_SVG_H

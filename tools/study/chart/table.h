@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tables of `trim3r eval`, of this version or an older one, as rows of settings and measures. */
 #ifndef TRIM3R_TOOLS_CHART_TABLE_H
 #define TRIM3R_TOOLS_CHART_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Each text once, numbered from 0 in order of first appearance. */
 #ifndef TRIM3R_TOOLS_CHART_TEXTS_H
 #define TRIM3R_TOOLS_CHART_TEXTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One chart: quality against one cost, over all scenes or within one, ready to draw. */
 #ifndef TRIM3R_TOOLS_CHART_VIEW_H
 #define TRIM3R_TOOLS_CHART_VIEW_H

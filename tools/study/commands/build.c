@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r build by a rival, too. */
 #include "study/commands/commands.h"
 

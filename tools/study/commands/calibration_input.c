@@ -1,12 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "study/commands/calibration_input.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
-#include "reconstruction/reconstruction_error.h"
 #include "import/folders/planar_recording.h"
 #include "reconstruction/reconstruction.h"
+#include "reconstruction/reconstruction_error.h"
 #include "recording/recording.h"
 
 /* One scene of the context frames, at every budget. */

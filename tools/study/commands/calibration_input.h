@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The calibration input of a head: recordings and plain images through the runtime, at several budgets. */
 #ifndef TRIM3R_TOOLS_CALIBRATION_INPUT_H
 #define TRIM3R_TOOLS_CALIBRATION_INPUT_H

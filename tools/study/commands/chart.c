@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r chart: tables of eval as pictures and as a report. */
 #include "study/commands/commands.h"
 
@@ -6,6 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/cli.h"
+#include "cli/files/file_options.h"
+#include "cli/files/whole_file.h"
+#include "cli/options/option_values.h"
+#include "cli/tables/word_list.h"
 #include "study/chart/names.h"
 #include "study/chart/page.h"
 #include "study/chart/pictures.h"
@@ -14,11 +20,6 @@
 #include "study/chart/svg.h"
 #include "study/chart/table.h"
 #include "study/chart/view.h"
-#include "cli/cli.h"
-#include "cli/files/file_options.h"
-#include "cli/options/option_values.h"
-#include "cli/files/whole_file.h"
-#include "cli/tables/word_list.h"
 
 #define ERROR_BYTES 512
 #define MOST_COSTS ((uint32_t)(CHART_COSTS_END - CHART_QUALITIES))

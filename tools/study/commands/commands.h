@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The commands of the study, as those in trim3r/commands/commands.h. Two take the place of the product's: they have its
  * options, and more. */
 #ifndef TRIM3R_TOOLS_STUDY_COMMANDS_H

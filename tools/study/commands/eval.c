@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r eval with rivals, and with parts of the method taken away. */
 #include "study/commands/commands.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r quantize: a float head to a weight file. */
 #include "study/commands/commands.h"
 
@@ -9,18 +10,18 @@
 #include <string.h>
 
 #include "calibrate.h"
-#include "study/commands/calibration_input.h"
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "host/file_bytes.h"
-#include "float_head.h"
-#include "cli/tables/json_output.h"
+#include "cli/files/whole_file.h"
 #include "cli/options/option_values.h"
+#include "cli/tables/json_output.h"
+#include "float_head.h"
+#include "host/file_bytes.h"
 #include "quantize.h"
+#include "study/commands/calibration_input.h"
 #include "trim3r.h"
 #include "weight_info.h"
 #include "weight_source.h"
-#include "cli/files/whole_file.h"
 
 #define MOST_FILE_BYTES (256u << 20)
 #define PERCENTILE_8_BIT 99.99

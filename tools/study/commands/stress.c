@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r stress: what perturbed frames and hard scenes do to each method. */
 #include "study/commands/commands.h"
 
@@ -11,12 +12,12 @@
 #include "cli/files/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/word_list.h"
+#include "host/text.h"
 #include "room/room.h"
 #include "study/rivals/options.h"
 #include "study/stress/measure.h"
 #include "study/stress/report.h"
 #include "study/stress/scene.h"
-#include "host/text.h"
 
 #define MOST_ROWS 64u
 #define MOST_CAPTURES 64u

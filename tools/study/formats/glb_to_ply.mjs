@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // node glb_to_ply.mjs IN.glb OUT.ply: what three.js's loader reads of a .glb of Gaussians, as a 3DGS .ply with its axes.
 import { readFile, writeFile } from "node:fs/promises";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";

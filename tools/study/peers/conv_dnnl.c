@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* conv_dnnl [RUNS]: an int8 network of the shape of a head by oneDNN on one thread (OMP_NUM_THREADS=1), 10^9
  * multiply-accumulates a second. */
 #include <oneapi/dnnl/dnnl.h>

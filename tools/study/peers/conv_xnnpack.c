@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* conv_xnnpack [RUNS]: an int8 network of the shape of a head by XNNPACK on one thread, 10^9 multiply-accumulates a
  * second. */
 #include <xnnpack.h>

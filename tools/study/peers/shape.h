@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The network that the peers run: the shape of the head `small`, so to speak, on the pixels of two 256x256 views. */
 #ifndef TRIM3R_TOOLS_PEERS_SHAPE_H
 #define TRIM3R_TOOLS_PEERS_SHAPE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which Gaussians of an unpruned scene stay, and which pixels of its views they came from. */
 #ifndef TRIM3R_TOOLS_RIVALS_CHOOSE_H
 #define TRIM3R_TOOLS_RIVALS_CHOOSE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Per-scene fine-tuning: Adam on all parameters of a fixed number of Gaussians, the context views its only examples.
  *
  * As 3D Gaussian Splatting trains (Kerbl et al. 2023, section 5), less its densification, and all context views in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How methods choose points, and how Gaussians are made of these. */
 #ifndef TRIM3R_TOOLS_RIVALS_KINDS_H
 #define TRIM3R_TOOLS_RIVALS_KINDS_H

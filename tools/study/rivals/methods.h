@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The methods that trim3r is measured against, each as published, fine-tuned, or as the choice of points for our head.
  */
 #ifndef TRIM3R_TOOLS_RIVALS_METHODS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Options of commands that compare methods. */
 #ifndef TRIM3R_TOOLS_RIVALS_OPTIONS_H
 #define TRIM3R_TOOLS_RIVALS_OPTIONS_H

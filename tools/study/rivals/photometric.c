@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* SSIM: Wang et al. 2004, with a Gaussian window of 11 x 11, sigma 1.5, zeros beyond the border, channels apart, as 3D
  * Gaussian Splatting has it. */
 #include "study/rivals/photometric.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The loss that 3D Gaussian Splatting trains with (Kerbl et al. 2023, equation 7): a mix of the mean absolute
  * difference and of one minus the structural similarity. */
 #ifndef TRIM3R_TOOLS_RIVALS_PHOTOMETRIC_H

@@ -1,12 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "study/rivals/rival.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
+#include "core/fixed.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/scene_frames.h"
-#include "core/fixed.h"
 #include "study/rivals/choose.h"
 #include "study/rivals/score.h"
 #include "study/rivals/traced.h"

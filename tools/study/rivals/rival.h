@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes that the rivals make: the unpruned scene of a head, pruned by a published score to an exact count, as it is,
  * fine-tuned on the context views, or as the choice of points of which our head makes new Gaussians. Floats, on the
  * host: nothing here is covered by "same bits". */

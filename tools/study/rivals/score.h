@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What published methods think a Gaussian is worth, from a scene and the context views that it was made of. One file a
  * method, each from its paper's definition; none reads the pictures, only what the scene draws.
  *

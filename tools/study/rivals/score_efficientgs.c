@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* EfficientGS: Streamlining Gaussian Splatting for Large-Scale High-Resolution Scene Representation. Liu et al., 2024
  * (arXiv:2404.12777), "Gaussian pruning": a Gaussian is dominant for a ray when its blending weight is among the K
  * largest there; Gaussians that are dominant for too few rays are auxiliary and go. To meet a budget exactly the rays

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* LightGaussian: Unbounded 3D Gaussian Compression with 15x Reduction and 200+ FPS. Fan et al., NeurIPS 2024
  * (arXiv:2311.17245), section 3.2, "global significance": the sum over all pixels of the training views of
  *     1(the Gaussian meets the pixel's ray) x opacity x gamma(volume),

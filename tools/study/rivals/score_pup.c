@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* PUP 3D-GS: Principled Uncertainty Pruning for 3D Gaussian Splatting. Hanson, Tu et al., CVPR 2025 (arXiv:2406.10219),
  * section 4: the sensitivity of the reconstruction error to a Gaussian is
  *     U_i = log |det sum over the training views of (grad I)(grad I)^T|,

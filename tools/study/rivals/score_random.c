@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Random: the lower bound that every paper on pruning shows. */
 #include "study/rivals/score.h"
 

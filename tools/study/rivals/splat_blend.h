@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A splat over one row of a tile: the innermost step of drawing, walking and differentiating, in loops of a fixed
  * length over all columns, so that the compiler keeps them in vectors. */
 #ifndef TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H

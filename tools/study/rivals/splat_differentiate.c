@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Derivatives of a measure of a drawn view.
  *
  * Front to back, as it is drawn: the colour C of a pixel is the sum of T_i alpha_i c_i, so that

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Drawing a view, and telling what draws it. */
 #include <stddef.h>
 

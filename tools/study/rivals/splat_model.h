@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Gaussians as an optimiser sees them: free parameters in double, to and from the scene's integers.
  *
  * The parametrisation is that of 3D Gaussian Splatting (Kerbl et al. 2023, section 5): logarithms of the scales, a

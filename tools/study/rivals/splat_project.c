@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Projection of one Gaussian, and its derivatives. EWA splatting: Zwicker et al. 2001; as 3D Gaussian Splatting uses
  * it: Kerbl et al. 2023, section 4 and appendix A. */
 #include <math.h>

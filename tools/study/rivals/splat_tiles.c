@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Views: their memory, and which splats touch which tile in which order. */
 #include <stdlib.h>
 #include <string.h>

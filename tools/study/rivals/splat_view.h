@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A differentiable rasterizer of 3-D Gaussians in floats, for the host: what the rivals score and fine-tune with.
  *
  * It draws what the runtime's raster draws, from the same definitions (EWA projection, 0.3 px^2 low-pass, alpha =
@@ -10,8 +11,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "study/rivals/splat_model.h"
 #include "scene/splat_camera.h"
+#include "study/rivals/splat_model.h"
 #include "trim3r.h"
 
 #define SPLAT_ALPHA_LEAST (1.0 / 255)

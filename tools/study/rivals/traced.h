@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Gaussians traced back to the pixels that they came from, as the runtime's own masks tell. */
 #ifndef TRIM3R_TOOLS_RIVALS_TRACED_H
 #define TRIM3R_TOOLS_RIVALS_TRACED_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measurements on recorded scenes, made when first asked for and kept in build/results until the program changes: what the
 measuring tools share."""
 import csv

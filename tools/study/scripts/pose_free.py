@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Novel views of scenes whose poses nobody gave: the part of tools/study/scripts/poses that needs no depth to choose its pairs."""
 import json
 import os

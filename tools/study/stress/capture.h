@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The frames of one case in memory, to be perturbed: the context views, then the target, as the image stage gives them
  * (RGB and Z16 of the working size, pinhole cameras). Recorded again, they give the scene that the recording itself
  * gives. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What every scene must keep, whatever the frames were. */
 #ifndef TRIM3R_TOOLS_STRESS_INVARIANT_H
 #define TRIM3R_TOOLS_STRESS_INVARIANT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Measures the methods on one case under one perturbation. */
 #ifndef TRIM3R_TOOLS_STRESS_MEASURE_H
 #define TRIM3R_TOOLS_STRESS_MEASURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The worst cases as pictures: one HTML page. */
 #ifndef TRIM3R_TOOLS_STRESS_PAGE_H
 #define TRIM3R_TOOLS_STRESS_PAGE_H

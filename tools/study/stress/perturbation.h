@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What goes wrong with cameras, as changes of a capture: the context views change, the target stays what was recorded
  * (huge coordinates move its camera along). */
 #ifndef TRIM3R_TOOLS_STRESS_PERTURBATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Random numbers by position: the same seed and index give the same number, in any order, on every machine. */
 #ifndef TRIM3R_TOOLS_STRESS_RANDOM_H
 #define TRIM3R_TOOLS_STRESS_RANDOM_H

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where the rows of a stress test go: the terminal or one JSON object, a CSV file, a page of worst cases. */
 #ifndef TRIM3R_TOOLS_STRESS_REPORT_H
 #define TRIM3R_TOOLS_STRESS_REPORT_H
 
+#include "cli/files/whole_file.h"
 #include "cli/tables/csv_file.h"
 #include "study/stress/measure.h"
 #include "study/stress/page.h"
-#include "cli/files/whole_file.h"
 
 typedef struct stress_outputs {
     const char *csv, *page; /* paths; NULL = none */

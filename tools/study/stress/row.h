@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A row of a stress test: one perturbation of one case in one strength, one method, one budget. */
 #ifndef TRIM3R_TOOLS_STRESS_ROW_H
 #define TRIM3R_TOOLS_STRESS_ROW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What competes in a stress test, and one capture of a case made ready to be built from. */
 #ifndef TRIM3R_TOOLS_STRESS_RUN_H
 #define TRIM3R_TOOLS_STRESS_RUN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes that pruning finds hard, drawn on the spot: two context views 0.3 m apart and the target between them, through
  * a 60 degree lens, with exact depth in millimetres and exact poses. Lengths in metres; nothing here draws on chance
  * but through stress/random.h. */

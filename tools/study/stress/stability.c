@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "study/stress/stability.h"
 
 #include <math.h>
@@ -7,9 +8,9 @@
 
 #include "budget/budget.h"
 #include "cli/cli.h"
-#include "study/rivals/rival.h"
 #include "state/state.h"
 #include "state/views.h"
+#include "study/rivals/rival.h"
 
 #define NOBODY UINT32_MAX
 /* Median of the difference of two normal numbers, in their deviation: 0.6745 sqrt(2) */

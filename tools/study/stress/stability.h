@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Whether a still scene stays the same scene: which pixels are retained, and where their Gaussians stand, from one
  * noisy capture to the next. */
 #ifndef TRIM3R_TOOLS_STRESS_STABILITY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The rows of a stress test as tables: CSV, JSON, terminal. */
 #ifndef TRIM3R_TOOLS_STRESS_TABLE_H
 #define TRIM3R_TOOLS_STRESS_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a stress test says in a few lines: invariants, refusals, and ours against the best rival. */
 #ifndef TRIM3R_TOOLS_STRESS_VERDICT_H
 #define TRIM3R_TOOLS_STRESS_VERDICT_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The curves of a run as a picture."""
 import matplotlib
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Gaussian head as torch trains it: the layers of runtime/head/weights.h, in float or rounded as quant rounds."""
 import json
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C behind the training: compiled when first asked for, into $TRIM3R_BUILD, else into ~/.cache/trim3r."""
 import ctypes
 import glob

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Imported first: ends with status 77, saying what is missing, where a package of the training is not there."""
 import importlib.util
 import sys

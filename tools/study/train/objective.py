@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a step minimizes: pictures drawn from a head's splats, plain and refined, in their own and in a third view."""
 import numpy as np
 import torch

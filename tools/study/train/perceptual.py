@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Perceptual terms of the training loss: LPIPS where trunk weights are given, else a stand-in."""
 import torch
 import torch.nn.functional as F

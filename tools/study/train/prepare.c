@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The runtime's own analysis, budget and head features for the training, so that a head learns from what it will see.
  */
 #include <math.h>
@@ -8,8 +9,8 @@
 #include "head/head.h"
 #include "head/head_features.h"
 #include "head/head_views.h"
-#include "stages.h"
 #include "prepare_rival.h"
+#include "stages.h"
 #include "state/state.h"
 #include "trim3r_heads.h"
 

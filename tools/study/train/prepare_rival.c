@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "prepare_rival.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "state/state.h"
 #include "study/rivals/choose.h"
 #include "study/rivals/score.h"
-#include "state/state.h"
 
 typedef struct ranking {
     splat_model model;

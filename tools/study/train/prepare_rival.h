@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which points a rival keeps, by the code that `trim3r eval` runs its +head methods with. */
 #ifndef TRIM3R_TRAIN_PREPARE_RIVAL_H
 #define TRIM3R_TRAIN_PREPARE_RIVAL_H

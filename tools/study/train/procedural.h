@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures made up by a generator, with their depth: training data without end and without a source to ask.
  *
  * Dead leaves (Lee, Mumford & Huang 2001): objects with sizes by the power law r^-3 that hide each other, which gives

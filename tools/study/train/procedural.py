@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Endless made-up pictures with depth, and posed views of made-up rooms: training data that anyone can make again.
 
     tools/study/train/procedural.py --out sheet.png [--seed N] [--rooms]

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "procedural_scene.h"
 
 static bool free_place(const room *r, vec at, float margin)

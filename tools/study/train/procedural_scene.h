@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A made-up room: what stands in it, and what its parts do. Each part a file; procedural_room.c calls them in turn. */
 #ifndef T3R_PROCEDURAL_SCENE_H
 #define T3R_PROCEDURAL_SCENE_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a head is trained on: crops of pictures with depth, and pairs of posed views with a third to be predicted.
 
 Pictures are made up without end (procedural.py) and read from whatever folders the user names: images, or posed folders

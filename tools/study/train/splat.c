@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The differentiable splatter of the training: splats of an image plane, blended front to back, with derivatives.
  *
  * What it draws is what runtime/raster draws (alpha = min(0.99, opacity exp(-q)), skipped below 1/255, pixels closed

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Splats of an image plane as torch sees them: footprints out of a head's outputs, drawn with derivatives, refined."""
 import numpy as np
 import torch

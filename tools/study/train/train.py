@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Train a Gaussian head.
 
     tools/study/train/train.py --head small --out build/small     made-up pictures alone

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What a head reaches in float, on single pictures.
 
     tools/study/train/validate.py small.safetensors IMAGE...

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r bench: the speed of each stage, on a fixed piece of work: two 256x256 views of the built-in room. */
 #include "trim3r/commands/commands.h"
 
@@ -11,18 +12,18 @@
 #include "bench/bench_against.h"
 #include "bench/bench_kernels.h"
 #include "bench/bench_stages.h"
-#include "planning/calibrate.h"
 #include "bench/cpu_flags.h"
-#include "planning/machine.h"
 #include "bench/spread.h"
-#include "reconstruction/options/chosen_head.h"
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "cli/tables/json_output.h"
 #include "cli/options/option_values.h"
 #include "cli/options/processor_options.h"
+#include "cli/tables/json_output.h"
 #include "cli/tables/word_list.h"
 #include "host/cpu.h"
+#include "planning/calibrate.h"
+#include "planning/machine.h"
+#include "reconstruction/options/chosen_head.h"
 #include "reconstruction/options/option_names.h"
 
 #define MAX_RUNS BENCH_TURNS_MOST

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r build: frames of a recording to a scene file, or to the start of an outside optimiser. */
 #include "trim3r/commands/build.h"
 
@@ -7,21 +8,21 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
+#include "cli/files/recorded_frame.h"
+#include "cli/help/style.h"
+#include "cli/options/option_values.h"
+#include "cli/tables/json_output.h"
+#include "cli/work/work_times.h"
+#include "import/poses/poses_output.h"
+#include "import/poses/recording_poses.h"
+#include "reconstruction/aligned_poses.h"
+#include "reconstruction/colmap_start.h"
+#include "reconstruction/options/poses_option.h"
+#include "reconstruction/options/settings.h"
+#include "reconstruction/reconstruction.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
 #include "scene/tile_lists.h"
-#include "reconstruction/aligned_poses.h"
-#include "reconstruction/colmap_start.h"
-#include "cli/tables/json_output.h"
-#include "cli/files/recorded_frame.h"
-#include "cli/options/option_values.h"
-#include "cli/help/style.h"
-#include "cli/work/work_times.h"
-#include "import/poses/poses_output.h"
-#include "reconstruction/options/poses_option.h"
-#include "reconstruction/reconstruction.h"
-#include "reconstruction/options/settings.h"
-#include "import/poses/recording_poses.h"
 #include "trim3r/commands/commands.h"
 
 #define ERROR_BYTES 512

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The options and the work of `trim3r build`, for any method. */
 #ifndef TRIM3R_TOOLS_COMMANDS_BUILD_H
 #define TRIM3R_TOOLS_COMMANDS_BUILD_H

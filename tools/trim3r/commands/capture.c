@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r capture: from a camera to a recording, to Gaussians, or to both. */
 #include "trim3r/commands/commands.h"
 
@@ -7,14 +8,14 @@
 #include <string.h>
 
 #include "capture/capture.h"
+#include "capture/clock_offset.h"
 #include "capture/options.h"
 #include "capture/result.h"
 #include "capture/run.h"
+#include "capture/source_name.h"
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
 #include "cli/files/part_files.h"
-#include "capture/clock_offset.h"
-#include "capture/source_name.h"
 
 #define ERROR_BYTES 512
 #define MOST_MOTIONS 3000u           /* frames that an offset is estimated from */

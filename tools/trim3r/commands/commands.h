@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The subcommands of trim3r: each is one file, commands/NAME.c, and parses its own arguments with argp.
  * argv[0] is the subcommand's name; the result is the exit status (cli.h). */
 #ifndef TRIM3R_TOOLS_COMMANDS_H

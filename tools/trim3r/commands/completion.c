@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r completion: the scripts by which a shell completes commands, options and files. */
 #include "trim3r/commands/commands.h"
 
@@ -7,8 +8,8 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "cli/options/option_values.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/option_values.h"
 
 /* Of completion.bash and its like (tools/CMakeLists.txt). */
 extern const char completion_bash[], completion_zsh[], completion_fish[];

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r convert: a scene file to another format. */
 #include "trim3r/commands/commands.h"
 
@@ -7,8 +8,8 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "cli/tables/json_output.h"
 #include "cli/options/option_values.h"
+#include "cli/tables/json_output.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r diff: what differs between two scenes, or two views. Exit status 0 = equal, 1 = different. */
 #include "trim3r/commands/commands.h"
 
@@ -9,10 +10,10 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "scene/gaussian_shape.h"
-#include "cli/tables/json_output.h"
 #include "cli/options/option_values.h"
+#include "cli/tables/json_output.h"
 #include "pictures/picture.h"
+#include "scene/gaussian_shape.h"
 #include "scene/scene_file.h"
 
 #define ERROR_BYTES 512

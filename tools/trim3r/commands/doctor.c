@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r doctor: what this machine and this build have, and whether they give the right bits. */
 #include "trim3r/commands/commands.h"
 
@@ -9,18 +10,18 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "capture/capture.h"
-#include "cli/cli.h"
-#include "cli/files/file_options.h"
-#include "cli/tables/json_output.h"
-#include "cli/options/option_values.h"
-#include "cli/options/processor_options.h"
-#include "host/cpu.h"
-#include "kernels/kernels.h"
 #include "bench/bench_kernels.h"
 #include "bench/cpu_flags.h"
 #include "bench/self_check.h"
+#include "capture/capture.h"
+#include "cli/cli.h"
+#include "cli/files/file_options.h"
+#include "cli/options/option_values.h"
+#include "cli/options/processor_options.h"
+#include "cli/tables/json_output.h"
+#include "host/cpu.h"
 #include "host/text.h"
+#include "kernels/kernels.h"
 
 #define CAMERAS_FOLDER "/sys/class/video4linux"
 #define CAMERAS_MOST 64

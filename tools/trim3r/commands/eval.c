@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r eval: scores of rendered views against recorded ones. */
 #include "trim3r/commands/commands.h"
 

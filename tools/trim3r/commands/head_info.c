@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r head-info: what a head consists of. */
 #include "trim3r/commands/commands.h"
 
@@ -9,11 +10,11 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "host/file_bytes.h"
-#include "float_head.h"
-#include "cli/tables/json_output.h"
-#include "head/network.h"
 #include "cli/options/option_values.h"
+#include "cli/tables/json_output.h"
+#include "float_head.h"
+#include "head/network.h"
+#include "host/file_bytes.h"
 #include "trim3r.h"
 #include "weight_info.h"
 

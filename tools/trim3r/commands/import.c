@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r import: a posed folder to a recording. */
 #include "trim3r/commands/commands.h"
 
@@ -10,20 +11,20 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "import/folders/frame.h"
-#include "import/pointmaps/import_pointmaps.h"
-#include "import/poses/poses.h"
-#include "cli/tables/json_output.h"
+#include "cli/files/whole_file.h"
 #include "cli/options/option_values.h"
 #include "cli/options/recording_options.h"
-#include "import/folders/posed_folder.h"
-#include "import/poses/poses_output.h"
+#include "cli/tables/json_output.h"
 #include "host/reason.h"
-#include "recording/recording.h"
 #include "import/bags/recording_import.h"
+#include "import/folders/frame.h"
+#include "import/folders/posed_folder.h"
 #include "import/folders/unreadable.h"
+#include "import/pointmaps/import_pointmaps.h"
+#include "import/poses/poses.h"
+#include "import/poses/poses_output.h"
+#include "recording/recording.h"
 #include "trim3r.h"
-#include "cli/files/whole_file.h"
 
 #define ERROR_BYTES 1024
 

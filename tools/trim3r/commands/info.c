@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r info: what a recording or scenes hold. */
 #include "trim3r/commands/commands.h"
 
@@ -8,11 +9,11 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "scene/scene_file.h"
+#include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "import/bags/bag_pictures.h"
-#include "cli/options/option_values.h"
 #include "recording/recording.h"
+#include "scene/scene_file.h"
 #include "scene/scene_info.h"
 
 #define ERROR_BYTES 512

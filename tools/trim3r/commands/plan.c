@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r plan: what an arena holds and how much work a build is, before anything runs; or which settings fit. */
 #include "trim3r/commands/commands.h"
 #include "trim3r/commands/plan_ram.h"
@@ -9,19 +10,19 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "reconstruction/reconstruction_error.h"
-#include "cli/tables/json_output.h"
+#include "cli/files/whole_file.h"
 #include "cli/options/option_values.h"
 #include "cli/options/processor_options.h"
-#include "reconstruction/options/head_option.h"
-#include "reconstruction/options/option_names.h"
-#include "pictures/plan_picture.h"
-#include "reconstruction/reconstruction.h"
-#include "reconstruction/options/settings.h"
-#include "cli/files/whole_file.h"
+#include "cli/tables/json_output.h"
 #include "core/fixed.h"
+#include "pictures/plan_picture.h"
 #include "planning/fitting.h"
 #include "planning/work_table.h"
+#include "reconstruction/options/head_option.h"
+#include "reconstruction/options/option_names.h"
+#include "reconstruction/options/settings.h"
+#include "reconstruction/reconstruction.h"
+#include "reconstruction/reconstruction_error.h"
 
 typedef struct plan_options {
     t3r_config config; /* but for the head; a render_width of 0 is the working size */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "trim3r/commands/plan_ram.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r plan --ram: the settings for a size of RAM, and what takes it. */
 #ifndef T3R_PLAN_RAM_H
 #define T3R_PLAN_RAM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r render: a scene file seen from somewhere. */
 #include "trim3r/commands/commands.h"
 
@@ -10,15 +11,15 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "reconstruction/reconstruction_error.h"
 #include "cli/files/recorded_frame.h"
-#include "core/hash.h"
-#include "cli/tables/json_output.h"
 #include "cli/options/option_values.h"
+#include "cli/tables/json_output.h"
 #include "cli/work/work_times.h"
+#include "core/hash.h"
+#include "import/poses/viewpoint.h"
 #include "pictures/picture.h"
 #include "reconstruction/reconstruction.h"
-#include "import/poses/viewpoint.h"
+#include "reconstruction/reconstruction_error.h"
 
 #define ERROR_BYTES 512
 #define MAX_PATH_BYTES 4096

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r replay: the hash of every stage, against an earlier run's. */
 #include "trim3r/commands/commands.h"
 
@@ -9,14 +10,14 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "cli/work/work_times.h"
-#include "reconstruction/reconstruction_error.h"
 #include "cli/files/recorded_frame.h"
-#include "core/hash.h"
-#include "cli/tables/json_output.h"
 #include "cli/options/option_values.h"
+#include "cli/tables/json_output.h"
+#include "cli/work/work_times.h"
+#include "core/hash.h"
 #include "reconstruction/options/settings.h"
 #include "reconstruction/reconstruction.h"
+#include "reconstruction/reconstruction_error.h"
 #include "reconstruction/replay/hash_report.h"
 #include "reconstruction/replay/replay_expectation.h"
 #include "reconstruction/replay/replay_slide.h"

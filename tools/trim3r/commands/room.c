@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r room: the built-in recording. */
 #include "trim3r/commands/commands.h"
 
@@ -7,14 +8,14 @@
 
 #include "cli/cli.h"
 #include "cli/files/file_options.h"
-#include "core/hash.h"
-#include "cli/tables/json_output.h"
+#include "cli/files/whole_file.h"
 #include "cli/options/option_values.h"
 #include "cli/options/recording_options.h"
+#include "cli/tables/json_output.h"
+#include "core/hash.h"
 #include "host/reason.h"
 #include "recording/recording.h"
 #include "room/room.h"
-#include "cli/files/whole_file.h"
 
 #define ERROR_BYTES 512
 #define DEFAULT_SEED 1u

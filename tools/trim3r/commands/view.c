@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r view: a scene, a recording or both, in a browser. */
 #include "trim3r/commands/commands.h"
 
@@ -11,9 +12,9 @@
 #include "cli/cli.h"
 #include "cli/files/file_kind.h"
 #include "cli/files/file_options.h"
-#include "cli/tables/json_output.h"
-#include "cli/options/option_values.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/option_values.h"
+#include "cli/tables/json_output.h"
 #include "reconstruction/reconstruction.h"
 #include "scene/scene_file.h"
 #include "viewer/page.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The runtime as a WebAssembly module, called by the page's worker. The worker places the bundle and the arena in the
  * module's memory, which the worker grows; the module has no heap. */
 #include <stddef.h>

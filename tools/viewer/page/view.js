@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 "use strict";
 /* The page: camera, controls and texts. The worker does all computation. */
 const $ = (id) => document.getElementById(id);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 "use strict";
 /* The runtime in a thread of its own. It answers the page's requests in order. */
 let runtime, opened;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A packed layer, eight outputs a vector. */
 #include "kernels/x86/variants.h"
 

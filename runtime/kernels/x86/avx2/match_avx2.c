@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stereo matching, thirty-two disparities at a time. */
 #include "kernels/x86/variants.h"
 

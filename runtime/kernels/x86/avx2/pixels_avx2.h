@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sixteen pixels of a tile in a vector, eight in each half: blending and scattering. */
 #ifndef T3R_KERNELS_X86_PIXELS_AVX2_H
 #define T3R_KERNELS_X86_PIXELS_AVX2_H
 
 #include "kernels/blend.h"
-#include "lanes_avx2.h"
 #include "kernels/lanes/tile_planes.h"
+#include "lanes_avx2.h"
 
 #define PIXELS 16
 #define PIXELS_USUAL T3R_TWO_ROWS

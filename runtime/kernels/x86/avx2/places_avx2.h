@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Eight places in a picture, and what lies about them. */
 #ifndef T3R_KERNELS_X86_PLACES_AVX2_H
 #define T3R_KERNELS_X86_PLACES_AVX2_H

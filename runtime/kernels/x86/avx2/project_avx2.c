@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Projection, eight Gaussians at a time. */
 #include "kernels/x86/variants.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A packed layer, eight or sixteen outputs a vector: four activations, in all lanes, times four weights of each. */
 #include "kernels/x86/variants.h"
 

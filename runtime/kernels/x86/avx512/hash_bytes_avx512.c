@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A block of 512 bytes at a time. A step of the hash is h' = (h ^ b) p = (h + d) p, where d = (l ^ b) - l and l is the
  * low byte of h. So over n bytes h' = h p^n + sum of d_i p^(n - i) modulo 2^64, once all l_i are known.
  *
@@ -8,8 +9,8 @@
 
 #ifdef T3R_X86_OPTIMIZED
 
-#include "kernels/x86/intrinsics.h"
 #include "kernels/hash_bytes.h"
+#include "kernels/x86/intrinsics.h"
 
 #define WORDS 8u  /* of a plane */
 #define WORD 64u  /* bytes that a word stands for */

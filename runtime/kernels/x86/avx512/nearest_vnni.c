@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The nearest centre by looking at all of them, sixteen at a time: the largest p c - half norm. */
 #include "kernels/x86/variants.h"
 
 #ifdef T3R_X86
 
-#include "kernels/x86/intrinsics.h"
 #include "kernels/lanes/packed_centres.h"
+#include "kernels/x86/intrinsics.h"
 
 #define LANES 16u
 #define POINTS 4u /* that share a centre's loads */

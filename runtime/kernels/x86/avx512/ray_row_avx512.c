@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sixteen rays at a time. */
 #include "kernels/x86/variants.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scattering, sixteen pixels at a time, by AVX-512's sums of products. */
 #include "kernels/x86/variants.h"
 

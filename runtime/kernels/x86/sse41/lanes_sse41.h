@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Four numbers of 32 bits, and of 64 where a product has them: in vectors of SSE4.1. */
 #ifndef T3R_KERNELS_X86_LANES_SSE41_H
 #define T3R_KERNELS_X86_LANES_SSE41_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Plain C's loops over rows, compiled for SSE4.1. */
 #include "kernels/x86/variants.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A camera of the USB Video Class (UVC), as a program: what its parts agree on.
  *
  * Sources, named where they are used: "USB 2.0", Universal Serial Bus Specification 2.0; "UVC 1.0", USB Device Class

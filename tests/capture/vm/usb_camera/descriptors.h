@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the camera tells of itself when it is plugged in: USB 2.0, 9.5 and 9.6; UVC 1.0, chapter 3. */
 #ifndef T3R_TESTS_USB_DESCRIPTORS_H
 #define T3R_TESTS_USB_DESCRIPTORS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What befalls the camera, and when: so often a stream began, so many of its frames were sent. */
 #ifndef T3R_TESTS_USB_FAULTS_H
 #define T3R_TESTS_USB_FAULTS_H

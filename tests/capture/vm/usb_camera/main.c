@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* usb_camera YUYV JPEGS [STREAM.FRAME=FAULT]...: plugs a camera into this machine's virtual USB bus, and sends images
  * of the files to whoever captures. FAULT is error, cut, stall, unplug or leave (faults.h). Ends when it has left, or
  * on a signal, which unplugs it. */

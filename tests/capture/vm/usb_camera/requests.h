@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Answers on the control pipe: standard requests (USB 2.0, 9.4), and the negotiation of a stream (UVC 1.0, 4.3.1.1). */
 #ifndef T3R_TESTS_USB_REQUESTS_H
 #define T3R_TESTS_USB_REQUESTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stream of images: cut into payloads (UVC 1.0, 2.4.3), one to each transfer that the host has asked for. */
 #ifndef T3R_TESTS_USB_STREAM_H
 #define T3R_TESTS_USB_STREAM_H

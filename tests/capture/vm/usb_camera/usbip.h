@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The virtual bus: a socket whose other end is a port of the kernel's vhci_hcd (usbip). */
 #ifndef T3R_TESTS_USBIP_H
 #define T3R_TESTS_USBIP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Planted: an argument that the function's T3R_BOUND forbids. */
 #include "core/fixed.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A rounding shift that rounds down, and says otherwise. */
 #include <stdint.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Planted: no alarm, but what follows is never reached, and so not looked at. */
 int main(void)
 {

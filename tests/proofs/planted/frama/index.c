@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Planted: an index behind an array's end. */
 static const int table[4] = {1, 2, 3, 4};
 

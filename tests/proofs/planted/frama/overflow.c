@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Planted: a sum that leaves 32 bits. */
 int main(void)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Planted: a product that leaves 64 bits without a sign. */
 int main(void)
 {

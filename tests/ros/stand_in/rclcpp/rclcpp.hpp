@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // A stand-in of rclcpp, for tests alone: Debian has none. It has the classes that the node uses, with their names and
 // parameters. Messages go from publisher to subscription at once, in one process; qualities of service are only kept.
 #ifndef TRIM3R_STAND_IN_RCLCPP_HPP

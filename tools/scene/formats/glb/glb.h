@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* glTF 2.0 in one file (.glb) with KHR_gaussian_splatting: a chunk of JSON that names attributes, a chunk with their
  * numbers. x points left, y up and z forward. */
 #ifndef TRIM3R_TOOLS_GLB_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/formats/glb/glb.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/formats/glb/glb_nodes.h"
 
 #include <inttypes.h>

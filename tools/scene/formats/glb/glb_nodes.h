@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The placement of a .glb's Gaussians by its nodes. */
 #ifndef TRIM3R_TOOLS_GLB_NODES_H
 #define TRIM3R_TOOLS_GLB_NODES_H

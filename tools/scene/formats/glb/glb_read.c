@@ -1,15 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-#include "core/little_endian.h"
 #include "cli/tables/json_input.h"
-#include "mcap/reader_limits.h"
+#include "core/little_endian.h"
+#include "host/little_floats.h"
 #include "host/reason.h"
+#include "mcap/reader_limits.h"
 #include "scene/formats/glb/glb.h"
 #include "scene/formats/glb/glb_nodes.h"
-#include "host/little_floats.h"
 
 typedef struct reader {
     const uint8_t *binary;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include <cjson/cJSON.h>
 #include <inttypes.h>
 #include <math.h>
@@ -6,10 +7,10 @@
 #include <string.h>
 
 #include "core/little_endian.h"
+#include "host/little_floats.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/glb/glb.h"
-#include "host/little_floats.h"
 
 /* One attribute after the other. COLOR_0 is last: programs that do not know Gaussians draw points from it. */
 typedef struct glb_layout {

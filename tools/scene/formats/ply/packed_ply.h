@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* PlayCanvas's compressed .ply: Gaussians in chunks of 256, each in four 32-bit words relative to the bounds of its
  * chunk; harmonics above degree 0 are bytes. */
 #ifndef TRIM3R_TOOLS_PACKED_PLY_H

@@ -1,12 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/formats/ply/packed_ply.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
+#include "host/little_floats.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
-#include "host/little_floats.h"
 
 const char *const packed_ply_bounds[PACKED_BOUNDS] = {
     "min_x",       "min_y",       "min_z",       "max_x", "max_y", "max_z", "min_scale_x", "min_scale_y", "min_scale_z",

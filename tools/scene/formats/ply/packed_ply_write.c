@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Orders Gaussians along a Z-order curve, so that those of a chunk are neighbours. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
+#include "host/little_floats.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
-#include "host/little_floats.h"
 #include "scene/formats/ply/packed_ply.h"
 #include "scene/formats/ply/ply.h"
 #include "scene/scene_format.h"

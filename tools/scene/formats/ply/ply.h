@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* 3DGS .ply, binary little-endian, harmonics of degree 0 to 3. NaN, infinities (except for an opacity of 0 or 1 and a
  * scale of 0), cut files, missing properties and other kinds of .ply are refused with a reason. */
 #ifndef TRIM3R_TOOLS_PLY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/formats/ply/ply_header.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads the header of a binary little-endian .ply. It is untrusted text, so every line, count and offset is checked. */
 #ifndef TRIM3R_TOOLS_PLY_HEADER_H
 #define TRIM3R_TOOLS_PLY_HEADER_H

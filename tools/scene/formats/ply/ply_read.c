@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* 3DGS .ply, binary little-endian: floats or doubles in any order, among other properties. */
 #include "scene/formats/ply/ply.h"
 
@@ -5,8 +6,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "host/reason.h"
 #include "host/little_floats.h"
+#include "host/reason.h"
 #include "scene/formats/ply/packed_ply.h"
 #include "scene/formats/ply/ply_header.h"
 #include "scene/scene_rows.h"

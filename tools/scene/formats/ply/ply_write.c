@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* 3DGS .ply, binary little-endian, with f_rest only for harmonics above degree 0: readers take their number from the
  * header. */
 #include "scene/formats/ply/ply.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Represents numbers by indices into 256 fitted values. */
 #ifndef TRIM3R_TOOLS_CODEBOOK_H
 #define TRIM3R_TOOLS_CODEBOOK_H

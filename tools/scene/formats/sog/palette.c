@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bisecting K-means: the cells with the largest sums of squared distances to their means are split in two until there
  * are enough. A cell of equal rows is never split. */
 #include "scene/formats/sog/palette.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Represents rows of 16-bit numbers by indices into a palette of rows. */
 #ifndef TRIM3R_TOOLS_PALETTE_H
 #define TRIM3R_TOOLS_PALETTE_H

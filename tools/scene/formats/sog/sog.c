@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/formats/sog/sog.h"
 
 #include "scene/scene_format.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* PlayCanvas's SOG, version 2: a zip archive of lossless WebP pictures, a texel per Gaussian, and meta.json, which
  * gives the meaning of their bytes. Positions are 16 bits of a logarithm, scales and colours indices into a
  * codebook. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The members of a SOG's archive. */
 #ifndef TRIM3R_TOOLS_SOG_ARCHIVE_H
 #define TRIM3R_TOOLS_SOG_ARCHIVE_H

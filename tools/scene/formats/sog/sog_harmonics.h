@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The harmonics of a SOG to write: a palette of coefficients, and an entry for each Gaussian. */
 #ifndef TRIM3R_TOOLS_SOG_HARMONICS_H
 #define TRIM3R_TOOLS_SOG_HARMONICS_H

@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
 #include "cli/tables/json_input.h"
-#include "mcap/reader_limits.h"
 #include "host/reason.h"
+#include "mcap/reader_limits.h"
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/sog/codebook.h"
 #include "scene/formats/sog/sog.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Orders Gaussians along a Z-order curve, so that neighbours in the pictures are neighbours in the scene. */
 #include <cjson/cJSON.h>
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Lossless WebP as a table of four bytes per texel. In a build without libwebp both functions fail. */
 #ifndef TRIM3R_TOOLS_WEBP_TEXELS_H
 #define TRIM3R_TOOLS_WEBP_TEXELS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Niantic's .spz: about 20 bytes per Gaussian before compression, attribute by attribute. Version 4 has a header of 32
  * bytes, a table of lengths and a Zstandard stream per attribute; versions 2 and 3 are one gzip stream of a header of
  * 16 bytes and the same attributes. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -6,8 +7,8 @@
 #include <zstd.h>
 
 #include "core/little_endian.h"
-#include "mcap/reader_limits.h"
 #include "host/reason.h"
+#include "mcap/reader_limits.h"
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/spz/spz.h"
 

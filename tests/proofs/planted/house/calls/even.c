@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One of two files that call each other. */
 int odd(unsigned n);
 int even(unsigned n);

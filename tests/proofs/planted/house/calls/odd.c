@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The other one. */
 int even(unsigned n);
 int odd(unsigned n);
